@@ -12,7 +12,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 STOP = 4e-3
 HALF = 250e-6  # of a carrier
@@ -211,7 +211,7 @@ def cards_of(gates, corners, with_formulas):
 
 def main():
     checker = Checker("decided formulas")
-    for title, (sources, gates, circuit, delays) in CASES.items():
+    for title, (sources, gates, circuit, delays) in some_of(CASES.items()):
         corners = corners_of(delays)
         end = [f".tran {STOP / 200!r} {STOP!r} uic", ".options reltol=1e-9", ".end", ""]
         outcome = []

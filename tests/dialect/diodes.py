@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 # name, a forward current in A and the voltage there; the reverse voltage
 NAMED = (
@@ -52,14 +52,14 @@ UNKNOWN = ("1N4147X", "1N4727A", "BZX84C", "BZX84C1V0", "BZX84C6V2V1", "1N", "MU
 
 def table(checker, program):
     """A current source finds the stated voltage: the tangent is taken at that current."""
-    for name, amperes, volts, reverse in NAMED:
+    for name, amperes, volts, reverse in some_of(NAMED):
         done = run(program, f"named\nI1 0 a {amperes}\nD1 a 0 {name}\n.op\n.end\n", method=None, report=False)
         checker.check(done.status == 0, f"{name}: {done.stderr}")
         checker.check("is not in the netlist" in done.stderr and f"{reverse} V in reverse" in done.stderr,
                       f"{name}: {done.stderr}")
         if done.rows:
             checker.close(done.column("v(a)")[0], volts, 1e-3 * volts, f"{name} at {amperes} A")
-    for name, volts, amperes in ZENERS:
+    for name, volts, amperes in some_of(ZENERS):
         done = run(program, f"zener\nI1 a 0 {amperes!r}\nD1 a 0 {name}\n.op\n.end\n", method=None, report=False)
         checker.check(done.status == 0 and f"Zener voltage {volts:g} V" in done.stderr,
                       f"{name}: {done.stderr}")
@@ -141,7 +141,7 @@ def theirs(text):
 
 
 def currents(checker, program):
-    for name, body, measure, allowed, with_one in CIRCUITS:
+    for name, body, measure, allowed, with_one in some_of(CIRCUITS):
         text = f"{name}\n{body}.meas tran m {measure}\n.end\n"
         fixed = text.replace(".end\n", ".options diodecurrent=1\n.end\n")
         mine, runs, said = ours(program, text)

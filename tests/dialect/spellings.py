@@ -11,7 +11,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 EXACT = 1e-8
 
@@ -29,7 +29,7 @@ class Kind:
 
 
 def check(checker, program, kind):
-    for line in [kind.plain] + list(kind.others):
+    for line in [kind.plain] + some_of(kind.others):
         done = kind.last(program, line)
         if not checker.check(done.status == 0, f"{kind.name}: '{line}' ends with {done.status}\n"
                                                f"{done.stderr}"):

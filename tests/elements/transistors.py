@@ -9,7 +9,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 # kT/q at 27 degrees, and the line that touches an exponential body diode of 1e-14 A at 1 A
 KT_Q = 300.15 * 1.380649e-23 / 1.602176634e-19
@@ -52,7 +52,7 @@ CARDS = (
 def cards(checker, program):
     """The resistance of a closed switch from a divider, at several scales of voltage."""
     for card, parameters, high, ohms in CARDS:
-        for volts in (0.05, 12, 800):
+        for volts in some_of((0.05, 12, 800)):
             name = "irf540n" if card[0] == "*" else "x"
             text = f"a card\nv1 in 0 {volts}\nr1 in d 10\nvg g 0 {pulse(0, high, 1e-6, 5e-6, 1e-5)}\n" \
                    f"m1 d g 0 0 {name} {parameters}\n{card}\n.tran 0.1u 20u\n.meas tran v find v(d) at=3u\n" \
@@ -154,7 +154,7 @@ CIRCUITS = (low_side, high_side_nmos, high_side_pmos, body_diode, synchronous, s
 
 def circuits(checker, program):
     for circuit in CIRCUITS:
-        for volts, r, ron in ((12, 10, 0.05), (0.02, 1e3, 1), (400, 20, 0.3), (5e3, 500, 2), (48, 0.5, 2e-3)):
+        for volts, r, ron in some_of(((12, 10, 0.05), (0.02, 1e3, 1), (400, 20, 0.3), (5e3, 500, 2), (48, 0.5, 2e-3))):
             lines, what, wanted = circuit(volts, r, ron)
             text = "\n".join([circuit.__name__, *lines, f".model n VDMOS(Vto=2 Ron={ron!r})",
                               f".model p PMOS(Vto=-2 Ron={ron!r})", ".tran 0.1u 10u uic", f".meas tran m {what}", ".end", ""])
@@ -168,7 +168,7 @@ def igbts(checker, program):
     """A knee and a resistance; backwards only by the diode that the card has."""
     chopper = "a chopper\nv1 in 0 {v}\nr1 in c {r}\nz1 c g 0 ig\nvg g 0 {gate}\n{card}\n.tran 0.1u 10u\n" \
               ".meas tran m avg i(z1)\n.end\n"
-    for volts, r in ((600, 10), (24, 1), (3, 100), (5e3, 50), (0.5, 10)):
+    for volts, r in some_of(((600, 10), (24, 1), (3, 100), (5e3, 50), (0.5, 10))):
         for card, knee, ron in ((".model ig NIGBT(Vt=5 Kp=2 Vce0=1.2)", 1.2, 1 / 20), (".model ig NIGBT", 0.8, 1 / (0.38 * 10.3)),
                                 (".model ig NIGBT(Vt=5 Vce0=1 Ron=20m Tau=1u Area=1e-5)", 1, 0.02)):
             on = max(0.0, (volts - knee) / (r + ron))
@@ -187,7 +187,7 @@ def bipolars(checker, program):
     vt, at = KT_Q, 1e-3
     vbe = vt * math.log1p(at / 1e-14) - vt * at / (at + 1e-14)
     rbe = vt / (at + 1e-14)
-    for volts, r, rb in ((12, 100, 1e3), (5, 1e3, 1e4), (24, 50, 470), (1, 10, 100), (100, 1e3, 2.2e3)):
+    for volts, r, rb in some_of(((12, 100, 1e3), (5, 1e3, 1e4), (24, 50, 470), (1, 10, 100), (100, 1e3, 2.2e3))):
         text = f"a relay\n.options bjt=switch\nv1 in 0 {volts}\nr1 in x {r}\nl1 x c {r * 1e-5!r} ic=0\nd1 c in ideal\n" \
                f".model ideal d(ron=0)\nq1 c b 0 t\nrb g b {rb}\nvg g 0 {pulse(0, 5, 0.0, 8e-6, 1e-3)}\n" \
                ".model t NPN(Bf=200 Is=1e-14 Rc=0.5 Re=0.1 Vaf=100)\n.tran 0.1u 20u uic\n.meas tran on find i(q1) at=7u\n" \

@@ -12,7 +12,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 TOLERANCES = [10.0 ** -k for k in range(3, 11)]
 TWO = "c1 a 0 1u ic=10\nr1 a b 1k\nd1 b c\nc2 c 0 {}\n"
@@ -27,7 +27,7 @@ def main():
     checker = Checker("fading")
     for name, cards in CIRCUITS.items():
         for stop in STOPS:
-            for tolerance in TOLERANCES:
+            for tolerance in some_of(TOLERANCES):
                 case = f"{name}, {stop}, {tolerance}"
                 netlist = f"fading\n{cards}.tran 10u {stop} uic\n.end\n"
                 result = run(program, netlist, method=None, tolerance=tolerance)

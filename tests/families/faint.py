@@ -62,7 +62,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import converter_netlists  # noqa: E402
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 TOLERANCES = 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10
 EVENT = 1e-11  # of the stop time, or the tolerance: times are as exact as what crosses
@@ -111,7 +111,7 @@ vg g 0 pulse(0 1 50u 0.1u 0.1u 30u 100u)
     # not while the switch moves: it does where the gate passes 0.5 V
     at = [(k + 0.37) * 1e-6 for k in range(1000) if k % 100 not in (50, 80)]
     exact = [min(0.0, 10.0 * math.sin(2e3 * math.pi * t)) * share[50.05e-6 < t % 1e-4 < 80.15e-6] for t in at]
-    for tolerance in TOLERANCES:
+    for tolerance in some_of(TOLERANCES):
         case = f"leak{' in a large part' if more else ''}, {tolerance}"
         result = start(program, checker, case, netlist, at, tolerance)
         if result is not None:
@@ -129,7 +129,7 @@ def flank(program, checker):
     resistance, capacitance, slope = 0.1, 20e-6, 15.0 / 20e-9
     rc = resistance * capacitance
     stop = 160e-6
-    for width in 4e-6, 8e-6, 12e-6, 16e-6, 20e-6, 24e-6:
+    for width in some_of((4e-6, 8e-6, 12e-6, 16e-6, 20e-6, 24e-6)):
         left = 10.0 * math.exp(-width / rc)  # V, across the resistor
         u = rc * math.log1p(left / (slope * rc))
         held = 10.0 - slope * u
@@ -144,7 +144,7 @@ c1 c 0 {capacitance} ic=0
 """
         at = [stop * (k + 0.37) / 200 for k in range(200)]
         exact = [10.0 * -math.expm1(-t / rc) if t < width else held for t in at]
-        for tolerance in TOLERANCES:
+        for tolerance in some_of(TOLERANCES):
             case = f"{left / resistance:.1e} A for {u:.1e} s, {tolerance}"
             result = start(program, checker, case, netlist, at, tolerance)
             if result is not None:
@@ -177,7 +177,7 @@ vg g 0 pulse(0 1 5u 0 0 4u 10u)
             current = settled[on] + (current - settled[on]) * math.exp(-rate[on] * (edge - since))
             on, since = not on, edge
         exact.append(-(settled[on] + (current - settled[on]) * math.exp(-rate[on] * (t - since))))
-    for tolerance in TOLERANCES:
+    for tolerance in some_of(TOLERANCES):
         case = f"difference{' in a large part' if more else ''}, {tolerance}"
         result = start(program, checker, case, netlist, at, tolerance)
         if result is not None:
@@ -205,7 +205,7 @@ c3 out 0 0.1753 ic=12.96
 .tran 60u 19.2m uic
 .end
 """
-    for tolerance in TOLERANCES[1:-1]:
+    for tolerance in some_of(TOLERANCES[1:-1]):
         case = f"stray, {tolerance}"
         result = start(program, checker, case, netlist, [19e-3], tolerance)
         if result is not None:
@@ -228,7 +228,7 @@ c2 q 0 0.01p ic=4
 .end
 """
     times = [10e-9 * k for k in range(1, 20)]
-    for tolerance in TOLERANCES[1:4]:
+    for tolerance in some_of(TOLERANCES[1:4]):
         case = f"opposed, {tolerance}"
         result = start(program, checker, case, netlist, times, tolerance)
         if result is not None:
@@ -254,7 +254,7 @@ l1 x 0 {henries} ic=0
 """
     before = 5.0 * math.cos(at / math.sqrt(henries * other_farads))
     exact = ohms * farads * math.log(2.0 * volts / (volts - before))
-    for stages, tolerance in ((3, 1e-9), (3, 1e-11), (5, 1e-11), (7, 1e-9)):
+    for stages, tolerance in some_of(((3, 1e-9), (3, 1e-11), (5, 1e-11), (7, 1e-9))):
         case = f"overtaken, {stages} stages, {tolerance}"
         result = run(program, netlist, at=[1.5e-6], method="radau", stages=stages, tolerance=tolerance)
         if not checker.check(result.status == 0, f"{case}: {result.stderr}"):
@@ -294,7 +294,7 @@ s1 sw 0 g1 0 sm
 .tran 33.33u 416.665u uic
 .end
 """
-    for tolerance in TOLERANCES[1:]:
+    for tolerance in some_of(TOLERANCES[1:]):
         case = f"late, {tolerance}"
         result = start(program, checker, case, netlist, [0.4e-3], tolerance)
         if result is not None:

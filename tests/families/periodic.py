@@ -12,7 +12,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 HALF_WAVE = """D1 in out
 R1 out 0 1k
@@ -189,7 +189,7 @@ def check_case(program, checker, name, tolerance):
 
 def main():
     checker = Checker("periodic")
-    for name in CASES:
+    for name in some_of(CASES):
         for tolerance in sys.argv[2:] or TOLERANCES:
             check_case(sys.argv[1], checker, name, tolerance)
     return checker.finish()

@@ -51,6 +51,8 @@ CIRCUITS = [
      "vg g 0 pulse(0 1 1m 0 0 1m)\ns1 a d g 0 si\nd1 c o\nr5 o 0 1k\nr6 b 0 10", "3m", ["c", "o"], "v1"),
 ]
 
+ROWS = ["--fill", "none"]  # those of .tran: no others are compared
+
 # What does not hold yet: v(p) is open and may stay at a rail, where it is nearest to 0 without a reader; a coil that is
 # cut off is read through its voltage, and steps of implicit Euler follow; a current with impulses is read.
 KNOWN = {("a bridge that floats", "a cable of diodes"), ("a star without a neutral", "a peak detector"),
@@ -143,12 +145,12 @@ class Quiet:
 def main():
     checker = Checker("readers")
     for name, cards, stop, nodes, source in some_of(CIRCUITS):
-        plain = run(sys.argv[1], cards_of(cards, stop, []), method=None)
+        plain = run(sys.argv[1], cards_of(cards, stop, []), method=None, options=ROWS)
         if not checker.check(plain.status == 0, f"{name}: {plain.stderr}"):
             continue
         for kind, extra in [*readers(nodes, source), *detectors(nodes, source, float_of(stop))]:
             what = f"{name}, with {kind}"
-            read = run(sys.argv[1], cards_of(cards, stop, [extra]), method=None)
+            read = run(sys.argv[1], cards_of(cards, stop, [extra]), method=None, options=ROWS)
             judge = checker if (name, kind) not in KNOWN else Quiet()
             if judge.check(read.status == 0, f"{what}: {read.stderr}"):
                 compare(judge, what, plain, read, float_of(stop))

@@ -33,6 +33,11 @@ class Run:
         lines = (self.output or b"").decode("utf-8").splitlines()
         return [[float(field) for field in line.split(",")] for line in lines[1:]]
 
+    @functools.cached_property
+    def columns(self):
+        """By name; where two signals have one name, the first."""
+        return dict(reversed(list(zip(self.names, map(list, zip(*self.rows)) if self.rows else [[] for _ in self.names]))))
+
     @property
     def time(self):
         return self.column("time")
@@ -52,8 +57,7 @@ class Run:
 
     def _plain(self, name):
         if name in self.names:
-            index = self.names.index(name)
-            return [row[index] for row in self.rows]
+            return self.columns[name]
         pair = re.fullmatch(r"v\(([^,()]+),([^,()]+)\)", name)
         if pair:
             first, second = (self._node(node) for node in pair.groups())
@@ -72,9 +76,15 @@ class Run:
 
     def scale(self, name):
         """The largest voltage or current of the run, as the unit of `name` asks."""
-        kind = "v(" if "v(" in name else "i("
-        chosen = [k for k, signal in enumerate(self.names) if signal.startswith(kind)]
-        return max((abs(row[k]) for row in self.rows for k in chosen), default=0.0)
+        return self._largest["v(" if "v(" in name else "i("]
+
+    @functools.cached_property
+    def _largest(self):
+        return {kind: self._largest_of(kind) for kind in ("v(", "i(")}
+
+    def _largest_of(self, kind):
+        chosen = [column for signal, column in self.columns.items() if signal.startswith(kind) and column]
+        return max((max(max(column), -min(column)) for column in chosen), default=0.0)
 
     def impulse(self, element, key, time=0.0):
         """Sum of an element's impulses at one time; key is 'charge' or 'flux'. 0 without a jump."""
@@ -125,9 +135,9 @@ def run(program, netlist, step=None, at=None, options=(), report=True, environme
 
 
 def some_of(cases):
-    """Every n-th of the cases where a test is called as `TEST PROGRAM N`, as with sanitizers, else all."""
-    step = int(sys.argv[2]) if len(sys.argv) > 2 else 1
-    return list(cases)[::step]
+    """Every n-th of cases that differ by numbers alone, where DALCS_TEST_SOME=n is set as .ci/run does for sanitizers:
+    what these look for shows in few of them as in all."""
+    return list(cases)[::int(os.environ.get("DALCS_TEST_SOME", "1"))]
 
 
 class Checker:

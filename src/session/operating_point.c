@@ -1,0 +1,57 @@
+/* operating_point.c - .op: one one-step problem, one row. */
+#include "pipeline.h"
+
+#include "measures.h"
+
+#include <stdlib.h>
+
+static enum dalcs_status measure_operating_point(struct dalcs_run *r, const double *row) {
+    struct dalcs_measures measures = {0};
+    enum dalcs_status status = dalcs_measures_start_rows(&measures, r, DALCS_MEASURED_OP, 0.0, 0.0);
+    if (status == DALCS_OK) {
+        dalcs_measures_row(&measures, 0.0, row);
+        status = dalcs_measures_report(&measures, r, DALCS_OK);
+    }
+    dalcs_measures_finish(&measures);
+    return status;
+}
+
+enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
+    struct dalcs_session *s = r->s;
+    struct dalcs_euler e;
+    DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, 1.0, 1.0));
+    e.open_user = &r->undetermined;
+    e.on_open = dalcs_undetermined_at;
+    enum dalcs_status status = dalcs_euler_operating_point(&e, s->circuit.transient.present);
+    if (status == DALCS_OK) {
+        status = dalcs_run_begin_plot(r, DALCS_OPERATING_POINT);
+    }
+    if (status == DALCS_OK) {
+        e.at_operating_point = true;
+        status = dalcs_undetermined_several(&r->undetermined, &e, 0.0);
+        e.at_operating_point = false;
+    }
+    double *row = dalcs_alloc((size_t)s->network.n_outputs, sizeof(*row));
+    if (status == DALCS_OK && row == NULL) {
+        status = DALCS_E_NOMEM;
+    }
+    if (status == DALCS_OK) {
+        dalcs_recorder_evaluate(&s->network, &e, row);
+        status = r->sink->row(r->sink->user, 0.0, row);
+    }
+    if (status == DALCS_OK) {
+        status = measure_operating_point(r, row);
+    }
+    if (status == DALCS_OK) {
+        status = r->sink->end(r->sink->user);
+    }
+    if (status == DALCS_OK && !s->circuit.transient.present) {
+        dalcs_recorder_states(&s->network, &e, s->start);
+        dalcs_recorder_states(&s->network, &e, s->final);
+    }
+    free(row);
+    status = dalcs_explain_failure(r, &e, status);
+    dalcs_run_add_work(r, &e);
+    dalcs_euler_finish(&e);
+    return status;
+}

@@ -1,0 +1,114 @@
+/* transient_start.c - where a transient starts: initial conditions, held voltages, the operating point, an orbit. */
+#include "transient.h"
+
+#include "gates.h"
+#include "losses_run.h"
+#include "steady.h"
+
+#include <stdlib.h>
+
+/* From x(0-), or from the operating point (NULL). */
+static enum dalcs_status start_at(struct dalcs_euler *e, struct dalcs_radau *radau,
+                                  double *const *initial) {
+    return radau != NULL ? dalcs_radau_start(radau, initial) : dalcs_euler_start(e, initial);
+}
+
+bool dalcs_sources_jump(const struct dalcs_circuit *circuit, double t) {
+    bool jumps = false;
+    for (int i = 0; i < circuit->n_stimuli && !jumps; i++) {
+        jumps = dalcs_stimulus_jumps_at(&circuit->stimulus[i], t);
+    }
+    return jumps;
+}
+
+/* A hysteresis goes on from the operating point. */
+static void take_over_switches(struct dalcs_euler *e, const struct dalcs_euler *held) {
+    for (int k = 0; k < e->n_components; k++) {
+        struct dalcs_component *c = &e->component[k];
+        const struct dalcs_osnsp *before = &held->component[k].osnsp;
+        for (int i = 0; i < c->n_switches; i++) {
+            int d = c->switch_pair[i];
+            dalcs_osnsp_command(&c->osnsp, d, dalcs_osnsp_is_on(before, d));
+        }
+    }
+}
+
+/* The operating point of `clamped`, in which .ic are held; its states start the transient. */
+static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
+                                    struct dalcs_radau *radau,
+                                    const struct dalcs_network *clamped) {
+    struct dalcs_session *s = r->s;
+    struct dalcs_euler held;
+    DALCS_TRY(dalcs_euler_setup(&held, &s->circuit, clamped, &r->osnsp, 1.0, 1.0));
+    r->undetermined.clamped = clamped;
+    held.open_user = &r->undetermined;
+    held.on_open = dalcs_undetermined_at;
+    held.on_operating_point = dalcs_held_coils_rest;
+    double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
+    enum dalcs_status status =
+        initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
+    status = dalcs_explain_failure(r, &held, status);
+    dalcs_run_add_work(r, &held);
+    if (status == DALCS_OK) {
+        for (int k = 0; k < held.n_components; k++) {
+            initial[k] = held.component[k].u; /* the same x: clamps add algebraic unknowns only */
+        }
+        take_over_switches(e, &held);
+        status = start_at(e, radau, initial);
+    }
+    free(initial);
+    dalcs_euler_finish(&held);
+    return status;
+}
+
+/* By a network of its own. */
+static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_euler *e,
+                                           struct dalcs_radau *radau) {
+    struct dalcs_session *s = r->s;
+    struct dalcs_network clamped;
+    DALCS_TRY(dalcs_network_build(&clamped, &s->circuit,
+                                  &(struct dalcs_network_options){.clamp_initial_conditions = true},
+                                  &s->diag));
+    enum dalcs_status status = start_from(r, e, radau, &clamped);
+    dalcs_network_finish(&clamped);
+    return status;
+}
+
+/* With logic at rest, if it has one: a change of an output may move what others read. NULL: it has none. */
+static enum dalcs_status operating_point(struct dalcs_euler *e, struct dalcs_logic_run *logic) {
+    bool changed = logic != NULL;
+    for (int round = 0; changed && round <= logic->network.n; round++) {
+        DALCS_TRY(dalcs_euler_operating_point(e, true));
+        DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
+    }
+    return changed || logic == NULL ? dalcs_euler_operating_point(e, true) : DALCS_OK;
+}
+
+enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,
+                                        struct dalcs_radau *radau, struct dalcs_logic_run *logic) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    if (r->orbit != NULL) {
+        return dalcs_steady_start(r->orbit, e, radau);
+    }
+    if (logic != NULL) {
+        bool changed;
+        DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
+    }
+    if (c->transient.use_initial_conditions) {
+        return start_at(e, radau, r->s->network.initial);
+    }
+    if (r->s->network.held != NULL) {
+        return start_from(r, e, radau, r->s->network.held);
+    }
+    if (c->n_initial_conditions > 0) {
+        return start_from_clamps(r, e, radau);
+    }
+    DALCS_TRY(operating_point(e, logic));
+    if (logic != NULL && dalcs_sources_jump(c, 0.0)) {
+        DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
+        if (r->losses != NULL) {
+            dalcs_losses_run_before_start(r->losses);
+        }
+    }
+    return start_at(e, radau, NULL);
+}
