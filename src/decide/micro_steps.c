@@ -191,6 +191,7 @@ enum dalcs_status dalcs_micro_pair(struct dalcs_radau *r, struct dalcs_radau_par
     dalcs_micro_positions(part, false);
     DALCS_TRY(dalcs_radau_implicit_step(r, part, h, tau, part->x, part->work.y1));
     memcpy(part->work.w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
+    memcpy(part->work.mode_first, c->osnsp.mode, (size_t)c->osnsp.n_words * sizeof(uint64_t));
     DALCS_TRY(dalcs_radau_implicit_step(r, part, h, 2.0 * tau, part->work.y1, part->work.y2));
     /* What jumps at the instant has jumped in y2: increments of the next step over it are small, and their rounding is. */
     dalcs_stages_stay_near(&part->stages, c->osnsp.mode, part->work.y2);

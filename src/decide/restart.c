@@ -203,6 +203,22 @@ static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_rada
     return take_jump(r, part);
 }
 
+/* Are both micro-steps in one mode, and does it allow every state? Then none jumps, for a jump is the projection onto
+ * what the mode allows (Heemels, Schumacher and Weiland 1999, sec. 4): what moves is faster than the micro-steps are. */
+static enum dalcs_status find_freedom(struct dalcs_radau_part *part, bool *is_free) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    struct dalcs_stage_entry *entry;
+    *is_free = false;
+    if (!dalcs_stages_have_maps(&part->stages) ||
+        !dalcs_mode_is(p->mode, part->work.mode_first, p->n_words)) {
+        return DALCS_OK;
+    }
+    enum dalcs_status status = dalcs_stages_get(
+        &part->stages, p->mode, dalcs_radau_ladder(part, part->length.level), &entry);
+    *is_free = status == DALCS_OK && dalcs_stage_frees_states(entry);
+    return status < DALCS_OK ? status : DALCS_OK;
+}
+
 /* The micro-steps of length h have seen the state move: part->x becomes the state after the jump,
  * exactly where that is known, and the jump is reported. What else they have seen is a transient
  * faster than they are: they get shorter, until they tell the mode before it, or, where time cannot be
@@ -214,6 +230,12 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
     bool noticeable = true;
     bool moves = true;
     double closer;
+    bool is_free;
+    DALCS_TRY(find_freedom(part, &is_free));
+    if (is_free) {
+        *moves_little = false;
+        return DALCS_OK;
+    }
     if (!dalcs_osnsp_is_monotone(&part->component->osnsp)) {
         DALCS_TRY(check_limit(r, part, h));
     }

@@ -138,6 +138,7 @@ struct dalcs_part_work {
     double *out_tried;                /* a step put aside while the state is projected */
     double *before; /* [n_x] the state before a jump, while the one behind is looked for */
     uint64_t *mode_tied, *mode_turned;
+    uint64_t *mode_first; /* of the first of two micro-steps */
 };
 
 struct dalcs_radau_part {

@@ -19,8 +19,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
 from dalcs_program import Checker  # noqa: E402
 
-N = 300
-MOST = 2.4
+N = 600
+MOST = 2.5
 SKIPPED = 77
 
 
