@@ -238,6 +238,10 @@ const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struc
                                            enum dalcs_smooth_kind kind, int n,
                                            const struct dalcs_form **argument);
 
+/* The product of the voltages of two nodes, as the source `what` of an element: its node; -1 after an error. */
+int dalcs_smooth_add_product(struct dalcs_builder *builder, const struct dalcs_token *element,
+                             const char *what, int first, int second);
+
 /* ---- commutate.c ----------------------------------------------------------------------------------- */
 
 /* steps (quantity - less); less NULL: nothing. A condition is 1 where it is not 0. */

@@ -1,23 +1,14 @@
-/* poly.c - POLY on E, F, G and H: a sum of several controls, as far as it is linear.
+/* poly.c - POLY on E, F, G and H: a polynomial of several controls.
  *
- *     p0 + p1 c1 + ... + pn cn, c a voltage (E, G) or the current of a V source (F, H)
+ *     p0 + p1 c1 + ... + pn cn + p11 c1 c1 + p12 c1 c2 + ..., c a voltage (E, G) or the current of a V source (F, H)
  *
  * Each term is a device of its own: the voltages of E and H in series, the currents of F and G side
- * by side behind a short that is no unknown where nobody asks for the sum. */
-#include "builder.h"
+ * by side behind a short that is no unknown where nobody asks for the sum. Products are in poly_products.c. */
+#include "poly.h"
 
 #include <string.h>
 
 enum { MOST_CONTROLS = 1000 };
-
-struct poly {
-    struct dalcs_reader *reader;
-    struct dalcs_device *device; /* of the card, with its nodes; takes the first control */
-    int n;
-    int *node;                         /* [2 n] E, G */
-    const struct dalcs_token **source; /* [n] F, H */
-    double *coefficient;               /* [n + 1] */
-};
 
 static bool is_by_voltage(const struct poly *p) {
     return p->device->kind == DALCS_VCVS || p->device->kind == DALCS_VCCS;
@@ -48,7 +39,8 @@ static bool allocate(struct poly *p) {
     const size_t n = (size_t)p->n;
     p->node = dalcs_arena_alloc(&builder->scratch, 2 * n, sizeof *p->node);
     p->source = dalcs_arena_alloc(&builder->scratch, n, sizeof *p->source);
-    p->coefficient = dalcs_arena_alloc(&builder->scratch, n + 1, sizeof *p->coefficient);
+    p->coefficient = dalcs_arena_alloc(&builder->scratch, n + 1 + (size_t)p->reader->card->n,
+                                       sizeof *p->coefficient);
     const bool ok = p->node != NULL && p->source != NULL && p->coefficient != NULL;
     builder->out_of_memory = builder->out_of_memory || !ok;
     return ok;
@@ -75,14 +67,8 @@ static bool read_coefficients(struct poly *p) {
         if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "a coefficient", &value)) {
             return false;
         }
-        if (n <= p->n) {
-            p->coefficient[n++] = value;
-        } else if (value != 0) {
-            dalcs_builder_error(reader->builder, dalcs_reader_previous(reader),
-                                "of POLY(n) the coefficients are p0 p1 ... pn",
-                                "products of controls are not linear: no ideal diodes make them");
-            return false;
-        }
+        p->coefficient[n++] = value;
+        p->n_coefficients = value != 0 ? n : p->n_coefficients;
     } while (!dalcs_reader_at_end(reader) && dalcs_reader_is_number(dalcs_reader_peek(reader, 0)));
     if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
         dalcs_reader_missing(reader, "')'");
@@ -109,8 +95,8 @@ static void set_control(struct poly *p, struct dalcs_device *device, int k) {
     }
 }
 
-/* Puts `part` behind the device: in series with it, or beside it. */
-static bool place(struct poly *p, struct dalcs_device *part, const char *what, bool in_series) {
+bool dalcs_poly_place(const struct poly *p, struct dalcs_device *part, const char *what,
+                      bool in_series) {
     struct dalcs_device *device = p->device;
     if (part == NULL) {
         return false;
@@ -136,7 +122,7 @@ static bool add_parts(struct poly *p, bool in_series) {
         }
         struct dalcs_device *part =
             dalcs_builder_add_inner_device(builder, p->device->kind, what, name);
-        if (!place(p, part, what, in_series)) {
+        if (!dalcs_poly_place(p, part, what, in_series)) {
             return false;
         }
         set_control(p, part, k);
@@ -146,7 +132,7 @@ static bool add_parts(struct poly *p, bool in_series) {
     }
     struct dalcs_device *constant = dalcs_builder_add_inner_device(
         builder, in_series ? DALCS_VSOURCE : DALCS_ISOURCE, "p0", name);
-    if (!place(p, constant, "p0", in_series)) {
+    if (!dalcs_poly_place(p, constant, "p0", in_series)) {
         return false;
     }
     constant->stimulus = circuit->n_stimuli++;
@@ -162,11 +148,11 @@ void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device) 
     }
     const bool in_series = device->kind == DALCS_VCVS || device->kind == DALCS_CCVS;
     set_control(&p, device, 0);
-    if (p.n == 1 && p.coefficient[0] == 0) {
+    if (p.n == 1 && p.coefficient[0] == 0 && p.n_coefficients <= 2) {
         return;
     }
     if (in_series || dalcs_builder_add_terminal(reader->builder, reader->card->token, device)) {
-        (void)add_parts(&p, in_series);
+        (void)(add_parts(&p, in_series) && dalcs_poly_add_products(&p, in_series));
     }
 }
 
@@ -175,5 +161,5 @@ size_t dalcs_poly_count(const struct dalcs_card *card) {
     for (int k = 1; k < card->n; k++) {
         found = found || strcmp(card->token[k].text, "poly") == 0;
     }
-    return found ? (size_t)card->n : 0;
+    return found ? 3 * (size_t)card->n : 0; /* a control, a product and a term for each word */
 }

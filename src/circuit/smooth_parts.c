@@ -131,3 +131,22 @@ const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struc
         dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, c->smooth_node[f->number_of]);
     return c->failed ? NULL : dalcs_form_affine(c, &v);
 }
+
+int dalcs_smooth_add_product(struct dalcs_builder *builder, const struct dalcs_token *element,
+                             const char *what, int first, int second) {
+    struct dalcs_compiler c = {.builder = builder, .element = element};
+    const struct dalcs_smooth smooth = {
+        .kind = DALCS_SMOOTH_PRODUCT, .n = 2, .node = {first, second}, .source = {-1, -1}};
+    const struct dalcs_behaviour *behaviour = make(&c, &smooth);
+    struct dalcs_device *device =
+        behaviour != NULL ? dalcs_builder_add_inner_device(builder, DALCS_VCVS, what, element)
+                          : NULL;
+    const int node = device != NULL ? dalcs_builder_inner_node(builder, what, element) : -1;
+    if (node < 0) {
+        return -1;
+    }
+    device->node[0] = node;
+    device->behaviour = behaviour;
+    builder->circuit->n_smooth++;
+    return node;
+}

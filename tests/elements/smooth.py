@@ -7,6 +7,7 @@ usage: smooth.py PROGRAM auto|lobatto [N]
 
 import math
 import pathlib
+import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -187,6 +188,45 @@ def check_switched(checker, program, method):
     checker.check(len(times) == 1 and abs(times[0] - 1) < 1e-8, f"a relay on a product: {times} {result.stderr}")
 
 
+def polynomial(controls, coefficients):
+    """In SPICE2's order: words over the controls, the shorter ones first."""
+    words, values, at = [()], [1.0], 0
+    while len(words) < len(coefficients):
+        for k in range(words[at][-1] if words[at] else 0, len(controls)):
+            words.append(words[at] + (k,))
+            values.append(values[at] * controls[k])
+        at += 1
+    return sum(c * v for c, v in zip(coefficients, values))
+
+
+def check_polynomials(checker, program, method):
+    """POLY of one to three controls and up to the fourth order, on E, F, G and H; one control is a difference."""
+    chance = random.Random(17)
+    lines = ["polynomials", "va a 0 sin(1 2 1)", "vb b 0 pwl(0 -1 1 2)", "vc c 0 0.7", "ra a 0 1", "rb b 0 1", "rc c 0 1"]
+    wanted = {}
+    for k in range(60):
+        letter, n = "efgh"[k % 4], 1 + k % 3
+        names = ["va", "vb", "vc"][:n]
+        nodes = ["a 0", "b c", "c 0"][:n]
+        coefficients = [chance.choice([0, 1, -2, 0.5]) for _ in range(chance.randint(n + 2, 12))]
+        ends = f"0 x{k}" if letter in "fg" else f"x{k} 0"
+        controls = " ".join(nodes if letter in "eg" else names)
+        lines.append(f"{letter}{k} {ends} poly({n}) {controls} " + " ".join(map(repr, coefficients)))
+        lines.append(f"r{k} x{k} 0 1")
+        wanted[f"v(x{k})"] = (letter, n, coefficients)
+    at = [0.0717 * k for k in range(1, 14)]
+    result = run(program, "\n".join(lines) + "\n.tran 1m 1\n", method=method, at=at, options=["--audit", "full"])
+    if not checker.check(result.status == 0, f"polynomials: exit {result.status}: {result.stderr}"):
+        return
+    for signal, (letter, n, coefficients) in wanted.items():
+        found = result.column(signal)
+        for t, v in zip(at, found):
+            a, b, c = 1 + 2 * math.sin(2 * math.pi * t), -1 + 3 * t, 0.7
+            controls = [a, b - c, c] if letter in "eg" else [-a, -b, -c]
+            checker.close(v, polynomial(controls[:n], coefficients), 1e-7 * max(1.0, max(map(abs, found))),
+                          f"{letter}, {n} controls, {coefficients} at {t:g}")
+
+
 def check_refusals(checker, program, method):
     cases = {
         "sqrt(": ("v1 a 0 -1\nb1 x 0 v=sqrt(v(a))\nrx x 0 1\n.op", 1),
@@ -214,6 +254,7 @@ def main():
     check_loops(checker, program, method)
     check_many(checker, program, method)
     check_switched(checker, program, method)
+    check_polynomials(checker, program, method)
     check_refusals(checker, program, method)
     return checker.finish()
 
