@@ -123,6 +123,10 @@ struct dalcs_audit {
         bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
         bool *is_held;     /* [n_nodes] likewise, whatever it does */
         int *first_lambda; /* [n_devices] */
+        int *
+            part_of; /* [n_nodes] the device that puts a part of a formula out there; -1: none. NULL: there are none */
+        bool *
+            is_inner; /* [n_devices] such a device that formulas alone read: what they put out is held to its law. NULL */
         bool *
             is_merged; /* [n_devices] a short whose two nodes are one: no formula reads its current */
     } net;

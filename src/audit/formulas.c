@@ -1,9 +1,24 @@
 /* formulas.c - what B, and E and G with formulas, put out, and each of their pairs. */
 #include "audit_internal.h"
 
+static double part_value(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device, double *size);
+
+/* The voltage of a node in a formula: what a part of the formula puts out there is worked out from what that reads, down to
+ * the circuit's own voltages and currents; as_is: or taken as it is. */
+static double node_value(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s, int node, bool as_is, double *scale) {
+    const int device = audit->net.part_of != NULL ? audit->net.part_of[node] : -1;
+    if (device >= 0 && !as_is) {
+        return part_value(audit, part, s, device, scale);
+    }
+    *scale = node > 0 ? audit_volts(audit, part, node, 0) : 0.0;
+    return s->v[node];
+}
+
 /* *size: what the terms are held to, added up; *terms: what they are. */
 static double affine_value(const struct dalcs_audit *audit, const struct audit_part *part,
-                           const struct dalcs_audit_state *s, int device,
+                           const struct dalcs_audit_state *s, int device, bool as_is,
                            const struct dalcs_affine *a, double *size, double *terms) {
     double sum = a->constant;
     *size = *terms = fabs(a->constant);
@@ -13,8 +28,7 @@ static double affine_value(const struct dalcs_audit *audit, const struct audit_p
         double scale;
         switch (term->kind) {
         case DALCS_QUANTITY_VOLTAGE:
-            value = s->v[term->index];
-            scale = term->index > 0 ? audit_volts(audit, part, term->index, 0) : 0.0;
+            value = node_value(audit, part, s, term->index, as_is, &scale);
             break;
         case DALCS_QUANTITY_CURRENT:
             value = audit_current(audit, s, term->index);
@@ -34,6 +48,37 @@ static double affine_value(const struct dalcs_audit *audit, const struct audit_p
         *terms += fabs(term->coefficient * value);
     }
     return sum;
+}
+
+/* Of a smooth function terms are what each argument's part of the gradient makes of its own. */
+static double smooth_value(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *s, const struct dalcs_smooth *smooth,
+                           double *size) {
+    double x[2] = {smooth->number[0], smooth->number[1]};
+    double scale[2] = {0.0, 0.0};
+    double gradient[2];
+    for (int k = 0; k < smooth->n; k++) {
+        if (smooth->node[k] >= 0) {
+            x[k] = node_value(audit, part, s, smooth->node[k], false, &scale[k]);
+        }
+    }
+    const double value = dalcs_smooth_value(smooth->kind, x);
+    dalcs_smooth_gradient(smooth->kind, x, gradient);
+    *size = fabs(value);
+    for (int k = 0; k < smooth->n; k++) {
+        const bool is_read = smooth->node[k] >= 0 && isfinite(gradient[k]);
+        *size += is_read ? fabs(gradient[k]) * fmax(scale[k], fabs(x[k])) : 0.0;
+    }
+    return value;
+}
+
+static double part_value(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device, double *size) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
+    double terms;
+    return b->smooth != NULL
+               ? smooth_value(audit, part, s, b->smooth, size)
+               : affine_value(audit, part, s, device, false, &b->output, size, &terms);
 }
 
 /* A lambda that adds to what an affine function reads besides is held to that one's scale, too. */
@@ -66,37 +111,41 @@ static double rounding_read(const struct dalcs_audit *audit, const struct dalcs_
     return rounding;
 }
 
-/* The same of a smooth function: its terms are what each argument's part of the gradient makes of it. */
-static double smooth_value(const struct dalcs_audit *audit, const struct audit_part *part,
-                           const struct dalcs_audit_state *s, const struct dalcs_smooth *smooth,
-                           double *size, double *terms) {
-    double x[2];
-    double gradient[2];
-    for (int k = 0; k < 2; k++) {
-        x[k] = k < smooth->n && smooth->node[k] >= 0 ? s->v[smooth->node[k]] : smooth->number[k];
+/* Signs and complementarity. In a part of a formula they are those of what the run has there: how near that is to what
+ * the formula says is in the value of the whole. */
+static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,
+                        const struct dalcs_audit_state *s, int device, double held) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    const bool as_is = audit->net.is_inner != NULL && audit->net.is_inner[device];
+    const enum dalcs_audit_law law =
+        d->kind == DALCS_VCVS ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
+    for (int k = 0; k < d->behaviour->n_pairs; k++) {
+        double size;
+        double terms;
+        const int pair = audit->net.first_lambda[device] + k;
+        const double w =
+            affine_value(audit, part, s, device, as_is, &d->behaviour->w[k], &size, &terms);
+        raise_lambdas(audit, device, &d->behaviour->w[k], size);
+        const double lambda = audit_ratio(s->lambda[pair], audit->scale.lambda[pair]);
+        const double over = fabs(fmin(lambda, audit_ratio(w, size))) - AUDIT_ROUNDING;
+        audit_find(audit, part, law, device, over * held, held, s->t);
     }
-    const double value = dalcs_smooth_value(smooth->kind, x);
-    dalcs_smooth_gradient(smooth->kind, x, gradient);
-    *size = *terms = fabs(value);
-    for (int k = 0; k < smooth->n; k++) {
-        const bool is_read = smooth->node[k] > 0;
-        const double scale = is_read ? audit_volts(audit, part, smooth->node[k], 0) : 0.0;
-        *size +=
-            is_read && isfinite(gradient[k]) ? fabs(gradient[k]) * fmax(scale, fabs(x[k])) : 0.0;
-    }
-    return value;
 }
 
 /* A formula's output, less what the device puts out; each of its pairs. */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    double size;
-    double terms;
     const struct dalcs_smooth *smooth = d->behaviour->smooth;
-    const double f =
-        smooth != NULL ? smooth_value(audit, part, s, smooth, &size, &terms)
-                       : affine_value(audit, part, s, device, &d->behaviour->output, &size, &terms);
+    double size;
+    double terms = 0.0;
+    if (audit->net.is_inner != NULL && audit->net.is_inner[device]) {
+        check_pairs(audit, part, s, device, 1.0); /* its output is in what reads it */
+        return;
+    }
+    const double f = smooth != NULL ? smooth_value(audit, part, s, smooth, &size)
+                                    : affine_value(audit, part, s, device, false,
+                                                   &d->behaviour->output, &size, &terms);
     const bool is_voltage = d->kind == DALCS_VCVS;
     double *largest = &part->floor.formula[is_voltage ? 0 : 1];
     *largest = fmax(*largest, terms);
@@ -107,12 +156,5 @@ void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
     const enum dalcs_audit_law law = is_voltage ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
     const double rounding = AUDIT_ROUNDING * size + rounding_read(audit, &d->behaviour->output);
     audit_find(audit, part, law, device, fabs(is - f) - rounding, held, s->t);
-    for (int k = 0; k < d->behaviour->n_pairs; k++) {
-        const int pair = audit->net.first_lambda[device] + k;
-        const double w = affine_value(audit, part, s, device, &d->behaviour->w[k], &size, &terms);
-        raise_lambdas(audit, device, &d->behaviour->w[k], size);
-        const double lambda = audit_ratio(s->lambda[pair], audit->scale.lambda[pair]);
-        const double over = fabs(fmin(lambda, audit_ratio(w, size))) - AUDIT_ROUNDING;
-        audit_find(audit, part, law, device, over * held, held, s->t);
-    }
+    check_pairs(audit, part, s, device, held);
 }

@@ -201,6 +201,38 @@ static enum dalcs_status number_lambdas(struct dalcs_audit *audit) {
     return DALCS_OK;
 }
 
+/* Parts of formulas. One that an element without a formula reads, as a term of a POLY, is held to its own law. */
+static enum dalcs_status find_formula_parts(struct dalcs_audit *audit) {
+    const struct dalcs_circuit *c = audit->circuit;
+    if (c->n_smooth == 0) {
+        return DALCS_OK;
+    }
+    audit->net.part_of = dalcs_arena_alloc(&audit->arena, (size_t)c->n_nodes, sizeof(int));
+    audit->net.is_inner = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(bool));
+    if (audit->net.part_of == NULL || audit->net.is_inner == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int n = 0; n < c->n_nodes; n++) {
+        audit->net.part_of[n] = -1;
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_behaviour *b = c->device[i].behaviour;
+        if (b != NULL && b->is_part) {
+            audit->net.part_of[c->device[i].node[0]] = i;
+            audit->net.is_inner[i] = true;
+        }
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        for (int k = 2; k < 4 && d->behaviour == NULL; k++) {
+            if (d->node[k] > 0 && audit->net.part_of[d->node[k]] >= 0) {
+                audit->net.is_inner[audit->net.part_of[d->node[k]]] = false;
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
 static void find_fed(const struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
     audit->net.is_fed[0] = audit->net.is_held[0] = true;
@@ -231,6 +263,7 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     find_fed(audit);
     merge_shorts(audit);
     DALCS_TRY(number_lambdas(audit));
+    DALCS_TRY(find_formula_parts(audit));
     DALCS_TRY(make_parts(audit));
     DALCS_TRY(make_sums(audit));
     DALCS_TRY(make_courses(audit));

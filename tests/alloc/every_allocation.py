@@ -374,6 +374,20 @@ R3 z w 1k
 .tran 50u 0.2m
 .end
 """, 0),
+    "smooth": ("""Products and functions, alone, in each other and in a POLY
+V1 in 0 dc 1 sin(1 2 1k) ac 1
+R1 in a 1
+B1 a b I=1m*v(a,b)+0.1*v(a,b)**3
+B2 b 0 I=1e-12*(exp(v(b)/0.05)-1)
+C1 b 0 1u
+B3 z 0 V=max(v(a)*v(b), 0) + exp(-log(1+v(a)*v(a))) + time*v(b)
+E4 y 0 POLY(2) a b in 0 0 1 0 0 0 2
+R4 y z 1k
+.op
+.ac lin 2 1k 2k
+.tran 50u 0.1m
+.end
+""", 0),
     "wrong_formulas": ("""Mistakes in formulas
 .func f(x) {x*f(x)}
 V1 a 0 1
