@@ -50,11 +50,26 @@ static void gradient_of_rest(const struct dalcs_smooth_input *of, const double *
     gradient[1] -= line_of(of, 1);
 }
 
-/* What a function's lines are to be at x; an argument that both read has one line. */
-static void tangent_of(const struct dalcs_smooth_input *of, const double *gradient, double *line) {
+/* The lines of the tangent at x; an argument that both read has one line. */
+static void find_lines(const struct dalcs_smooth_input *of, const double *gradient, double *line) {
     const bool is_one = of->n > 1 && of->column[0] >= 0 && of->column[0] == of->column[1];
     line[0] = gradient[0] + (is_one ? gradient[1] : 0.0);
     line[1] = is_one ? 0.0 : gradient[1];
+}
+
+/* Those at x, as far as they are finite and not 0, else the present ones. Returns by how much the steepest is steeper. */
+static double find_tangent(const struct dalcs_smooth_input *of, const double *x, double *line) {
+    double gradient[2];
+    double steeper = 0.0;
+    dalcs_smooth_gradient(of->kind, x, gradient);
+    find_lines(of, gradient, line);
+    for (int j = 0; j < 2; j++) {
+        const double present = line_of(of, j);
+        const bool is_one = of->entry[j] != NULL && isfinite(line[j]) && line[j] != 0.0;
+        steeper = is_one ? fmax(steeper, fabs(line[j] / present)) : steeper;
+        line[j] = is_one ? line[j] : present;
+    }
+    return steeper;
 }
 
 static void put_lines(const struct dalcs_smooth_input *of, const double *line) {
@@ -67,28 +82,14 @@ static void put_lines(const struct dalcs_smooth_input *of, const double *line) {
 
 bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
                             double *phi) {
+    double line[2];
     bool is_due = false;
-    for (int k = 0; k < system->n_smooth; k++) {
-        const struct dalcs_smooth_input *of = &system->smooth[k];
-        double gradient[2];
-        double line[2];
-        dalcs_smooth_gradient(of->kind, x[k], gradient);
-        tangent_of(of, gradient, line);
-        for (int j = 0; j < 2; j++) {
-            double is = fabs(line_of(of, j));
-            bool is_known = of->entry[j] != NULL && isfinite(line[j]) && line[j] != 0.0;
-            is_due = is_due || (is_known && !(fabs(line[j]) <= factor * is));
-        }
+    for (int k = 0; k < system->n_smooth && !is_due; k++) {
+        is_due = find_tangent(&system->smooth[k], x[k], line) > factor;
     }
     for (int k = 0; k < system->n_smooth && is_due; k++) {
         const struct dalcs_smooth_input *of = &system->smooth[k];
-        double gradient[2];
-        double line[2];
-        dalcs_smooth_gradient(of->kind, x[k], gradient);
-        tangent_of(of, gradient, line);
-        for (int j = 0; j < 2; j++) {
-            line[j] = isfinite(line[j]) && line[j] != 0.0 ? line[j] : line_of(of, j);
-        }
+        (void)find_tangent(of, x[k], line);
         put_lines(of, line);
         double rest = dalcs_smooth_rest(of, x[k]);
         phi[k] = isfinite(rest) ? rest : phi[k];
@@ -103,7 +104,7 @@ void dalcs_smooth_nominal_tangents(const struct dalcs_system *system) {
         double gradient[2];
         double line[2];
         dalcs_smooth_nominal_gradient(of->kind, of->number, is_number, gradient);
-        tangent_of(of, gradient, line);
+        find_lines(of, gradient, line);
         put_lines(of, line);
     }
 }
