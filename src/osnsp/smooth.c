@@ -96,6 +96,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
             dalcs_smooth_newton_begin(n, n->x);
             continue;
         }
+        n->is_refused = status == DALCS_INFEASIBLE;
         if (status != DALCS_OK) {
             return status == DALCS_INFEASIBLE ? DALCS_NOT_CONVERGED : status;
         }

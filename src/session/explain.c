@@ -1,6 +1,7 @@
 /* explain.c - numerical failures in words: the time, the elements, what to look at. */
 #include "refusal.h"
 
+#include "findings.h"
 #include "refute.h"
 #include "smooth_newton.h"
 #include "system_file.h"
@@ -216,6 +217,16 @@ static void explain_smooth(struct dalcs_session *s, const struct dalcs_component
                            const char *when) {
     const struct dalcs_smooth_newton *newton = c->osnsp.newton;
     const struct dalcs_smooth_input *of = &c->system->smooth[newton->worst];
+    if (newton->is_refused && c->osnsp.witness.n_elements > 0) {
+        const struct dalcs_witness *w = &c->osnsp.witness;
+        const char *names = dalcs_join_names(&s->arena, (size_t)w->n_elements, w->element);
+        dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, w->element[0]),
+                       "a resistance in series limits a current, one across bounds a voltage",
+                       "%s no solution was found: with the values that were tried of the products "
+                       "and functions in formulas, the circuit around %s has none",
+                       when, names == NULL ? "these elements" : names);
+        return;
+    }
     const char *name = dalcs_smooth_name(of->kind);
     const char *first = name_argument(s, c->system, of, 0);
     const char *second = of->n > 1 ? name_argument(s, c->system, of, 1) : "";
