@@ -198,7 +198,7 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
         double f = dalcs_smooth_value(of->kind, newton->x[q]);
         dalcs_smooth_gradient(of->kind, newton->x[q], gradient);
         double least = tolerance * fabs(f);
-        double most = tolerance * fabs(f);
+        double most = least;
         for (int j = 0; j < of->n; j++) {
             bool is_read = of->column[j] >= 0;
             double slope = fabs(gradient[j]) + fabs(line_of(of, j));

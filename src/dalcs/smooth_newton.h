@@ -29,8 +29,9 @@ struct dalcs_smooth_newton {
     bool limits;          /* a tangent is elsewhere than its argument */
     int n_steps;          /* since the beginning */
     int halved;           /* times that the last step was halved, or the beginning was moved */
-    bool is_refused;      /* it ended where the rest of the circuit has no answer for the values that were tried */
-    int worst;            /* of the system's smooth inputs, the one that agrees least */
+    bool
+        is_refused; /* it ended where the rest of the circuit has no answer for the values that were tried */
+    int worst;     /* of the system's smooth inputs, the one that agrees least */
     double defect; /* of the last check: over the terms of each function alone, in the tolerance */
     double defect_before; /* of the one before */
 };
