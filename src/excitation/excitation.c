@@ -104,7 +104,7 @@ static enum dalcs_status allocate(struct dalcs_excitation *excitation,
         dalcs_arena_alloc(&excitation->arena, n_terms + (size_t)most, sizeof(*excitation->term));
     excitation->constant = dalcs_arena_alloc(&excitation->arena, n, sizeof(double));
     if (excitation->wave == NULL || excitation->function == NULL || excitation->term == NULL ||
-        excitation->constant == NULL) {
+        excitation->constant == NULL || excitation->smooth == NULL) {
         return DALCS_E_NOMEM;
     }
     excitation->scratch = excitation->term + n_terms;
