@@ -276,6 +276,12 @@ static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
     put_row(newton, q, gradient);
 }
 
+/* The matrix has its rows one behind the other: its transpose by columns, for which LAPACKE needs no memory. */
+static bool factor(struct dalcs_smooth_newton *newton) {
+    return LAPACKE_dgetrf(LAPACK_COL_MAJOR, newton->n, newton->n, newton->matrix, newton->n,
+                          newton->pivot) == 0;
+}
+
 bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
     newton->limits = false;
     newton->halved = 0;
@@ -283,8 +289,9 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
     for (int q = 0; q < newton->n; q++) {
         put_tangent(newton, q);
     }
-    bool is_solved = LAPACKE_dgesv(LAPACK_ROW_MAJOR, newton->n, 1, newton->matrix, newton->n,
-                                   newton->pivot, newton->step, 1) == 0;
+    bool is_solved =
+        factor(newton) && LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->matrix,
+                                         newton->n, newton->pivot, newton->step, newton->n) == 0;
     memcpy(newton->before, newton->phi, (size_t)newton->n * sizeof(double));
     for (int q = 0; q < newton->n && is_solved; q++) {
         newton->phi[q] += newton->step[q];
@@ -299,8 +306,7 @@ bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton) {
         gradient_of_rest(input_of(newton, q), newton->x[q], gradient);
         put_row(newton, q, gradient);
     }
-    return LAPACKE_dgetrf(LAPACK_ROW_MAJOR, newton->n, newton->n, newton->matrix, newton->n,
-                          newton->pivot) == 0;
+    return factor(newton);
 }
 
 void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const double (*dx)[2],
@@ -314,6 +320,6 @@ void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const do
             change[q] += of->column[j] >= 0 ? gradient[j] * dx[q][j] : 0.0;
         }
     }
-    (void)LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', newton->n, 1, newton->matrix, newton->n,
-                         newton->pivot, change, 1);
+    (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->matrix, newton->n,
+                         newton->pivot, change, newton->n);
 }
