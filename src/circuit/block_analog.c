@@ -8,10 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The conductance that capacitors of states are charged through, S: it is in no waveform, for their currents are
- * nobody's. Of volts it makes milliamperes, as circuits have. */
-static const double charging = 1e-3;
-
 /* A device from a to b; what NULL: it has the element's name. */
 static struct dalcs_device *add(const struct dalcs_block_card *c, enum dalcs_device_kind kind,
                                 const char *what, int a, int b) {
@@ -279,8 +275,8 @@ static void parse_integrator(const struct dalcs_block_card *c) {
         dalcs_builder_error(c->builder, c->block->type, NULL, "the gain of an integrator is not 0");
         return;
     }
-    const double farad = charging / fabs(gain);
-    const double by = gain > 0 ? charging : -charging;
+    const double farad = dalcs_charging / fabs(gain);
+    const double by = gain > 0 ? dalcs_charging : -dalcs_charging;
     const int state = add_state(c, farad);
     struct dalcs_device *g = state >= 0 ? add(c, DALCS_VCCS, "charge", 0, state) : NULL;
     if (g == NULL) {
@@ -307,7 +303,7 @@ static void parse_slew(const struct dalcs_block_card *c) {
         dalcs_builder_error(c->builder, c->block->type, NULL, "both slopes are above 0");
         return;
     }
-    const double farad = charging / fmax(up, down); /* a current of `charging` at most */
+    const double farad = dalcs_charging / fmax(up, down); /* a current of dalcs_charging at most */
     const int state = add_state(c, farad);
     struct dalcs_device *e = state >= 0 ? add(c, DALCS_VCVS, "follow", state, 0) : NULL;
     if (e == NULL) {

@@ -51,6 +51,10 @@ enum dalcs_hidden {
     DALCS_HIDDEN_ALL = 7
 };
 
+/* The conductance that capacitors of blocks with states are charged through, S: it is in no waveform, for their currents
+ * are nobody's. Of volts it makes milliamperes, as circuits have. */
+static const double dalcs_charging = 1e-3;
+
 struct dalcs_builder {
     struct dalcs_circuit *circuit;
     const struct dalcs_netlist *netlist;

@@ -12,9 +12,6 @@
 
 #include <math.h>
 
-/* S: it is in no waveform, for the currents of states are nobody's. */
-static const double charging = 1e-3;
-
 struct transfer {
     struct dalcs_builder *builder;
     const struct dalcs_token *name;
@@ -106,7 +103,7 @@ static bool add_state(struct transfer *t, int k) {
         return false;
     }
     c->node[0] = t->state[k];
-    c->value = charging / t->rate[k];
+    c->value = dalcs_charging / t->rate[k];
     return true;
 }
 
@@ -120,13 +117,13 @@ static bool add_charging(struct transfer *t, int k) {
     g->node[1] = t->state[k];
     double of_state[DALCS_RATIONAL_DEGREE] = {0};
     if (k + 1 < t->n) {
-        of_state[k + 1] = charging;
+        of_state[k + 1] = dalcs_charging;
         return put(t, g, 0, of_state);
     }
     for (int i = 0; i < t->n; i++) {
-        of_state[i] = -charging * t->a[i];
+        of_state[i] = -dalcs_charging * t->a[i];
     }
-    return put(t, g, charging, of_state);
+    return put(t, g, dalcs_charging, of_state);
 }
 
 static bool expand(struct transfer *t, struct dalcs_device *device, double m) {

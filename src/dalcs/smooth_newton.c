@@ -80,6 +80,12 @@ static void put_lines(const struct dalcs_smooth_input *of, const double *line) {
     }
 }
 
+/* Where it has a value at x. */
+static void take_rest(const struct dalcs_smooth_input *of, const double *x, double *phi) {
+    const double rest = dalcs_smooth_rest(of, x);
+    *phi = isfinite(rest) ? rest : *phi;
+}
+
 bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
                             double *phi) {
     double line[2];
@@ -91,8 +97,7 @@ bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)
         const struct dalcs_smooth_input *of = &system->smooth[k];
         (void)find_tangent(of, x[k], line);
         put_lines(of, line);
-        double rest = dalcs_smooth_rest(of, x[k]);
-        phi[k] = isfinite(rest) ? rest : phi[k];
+        take_rest(of, x[k], &phi[k]);
     }
     return is_due;
 }
@@ -115,8 +120,7 @@ void dalcs_smooth_scale_tangents(const struct dalcs_system *system, double facto
         const struct dalcs_smooth_input *of = &system->smooth[k];
         const double line[2] = {factor * line_of(of, 0), factor * line_of(of, 1)};
         put_lines(of, line);
-        double rest = dalcs_smooth_rest(of, x[k]);
-        phi[k] = isfinite(rest) ? rest : phi[k];
+        take_rest(of, x[k], &phi[k]);
     }
 }
 
@@ -235,10 +239,11 @@ bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *rep
     if (*repeats) {
         newton->halved++;
         for (int q = 0; q < newton->n; q++) {
-            double f = dalcs_smooth_rest(input_of(newton, q), newton->x[q]);
-            newton->phi[q] = !is_first     ? 0.5 * (newton->phi[q] + newton->before[q])
-                             : isfinite(f) ? f
-                                           : newton->phi[q];
+            if (is_first) {
+                take_rest(input_of(newton, q), newton->x[q], &newton->phi[q]);
+            } else {
+                newton->phi[q] = 0.5 * (newton->phi[q] + newton->before[q]);
+            }
         }
     }
     return is || *repeats;

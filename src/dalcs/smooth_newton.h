@@ -48,6 +48,10 @@ void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double 
 bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
                             double *phi);
 
+/* Such factors. Lines that are flatter than the functions by the first one cost three of the 16 digits. A tangent at an
+ * argument that is still on its way is good enough if it is within the second one. */
+static const double dalcs_smooth_much_steeper = 1e3, dalcs_smooth_steeper = 2.0;
+
 /* Lines as good as any before anything is known. */
 void dalcs_smooth_nominal_tangents(const struct dalcs_system *system);
 

@@ -247,9 +247,7 @@ static enum dalcs_status setup(struct dalcs_periodic_flow *flow, const double co
     }
     memcpy(flow->source, source, n_inputs * sizeof *source);
     DALCS_TRY(stages_setup(flow));
-    const size_t n_columns = (size_t)dalcs_system_n_columns(flow->system);
-    const size_t n_out =
-        (size_t)flow->stages.layout.n_fixed + (size_t)flow->stages.method->s * n_columns + 8;
+    const size_t n_out = dalcs_stages_room(&flow->stages);
     flow->M = dalcs_arena_alloc(&flow->arena, n_x * n_x, sizeof(double));
     flow->in = dalcs_arena_alloc(&flow->arena, (size_t)flow->stages.n_in, sizeof(double));
     flow->out = dalcs_arena_alloc(&flow->arena, n_out, sizeof(double));

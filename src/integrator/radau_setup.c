@@ -83,9 +83,8 @@ static bool allocate_probe(struct dalcs_radau_part *part) {
 static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    size_t n_columns = (size_t)dalcs_system_n_columns(s);
     size_t n_guards = (size_t)(s->n_pairs + part->stages.n_watched);
-    size_t n_out = (size_t)l->n_fixed + (size_t)part->stages.method->s * n_columns + 8;
+    size_t n_out = dalcs_stages_room(&part->stages);
     part->x = dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(s->n_x), sizeof(double));
     part->segment.in = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
     part->segment.out = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));

@@ -184,8 +184,7 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const size_t n = (size_t)s->n_x;
-    const size_t n_columns = (size_t)dalcs_system_n_columns(s);
-    size_t n_out = (size_t)l->n_fixed + (size_t)part->stages.method->s * n_columns + 8;
+    const size_t n_out = dalcs_stages_room(&part->stages);
     v->part = part;
     v->n_x = part->kind == DALCS_PART_STEPPED ? s->n_x : 0;
     v->is_exact = true;

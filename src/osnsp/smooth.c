@@ -13,14 +13,8 @@
  * e-fold that it is off: 700 of them are all that a double has. */
 enum { MOST_STEPS = 1000 };
 
-/* Lines that are flatter than the functions by this factor cost three of the 16 digits. */
-static const double much_steeper = 1e3;
-
-/* Steeper lines by that factor make a mode regular that holds a node by next to nothing: 1e24 spans all digits. */
+/* Lines that are much steeper make a mode regular that holds a node by next to nothing: 1e24 spans all digits. */
 enum { MOST_STEEPER = 8 };
-
-/* A tangent at an argument that is still on its way is good enough if it is within this factor. */
-static const double steeper = 2.0;
 
 enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     if (p->system->n_smooth == 0) {
@@ -61,14 +55,17 @@ static void put_sources(const struct dalcs_osnsp *p, double *u) {
 }
 
 /* What a change of each source does to the arguments in the present mode: a difference, exact as all is affine there. */
-static void find_slope(struct dalcs_osnsp *p, double *u, double *y) {
+static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, double *y) {
     const struct dalcs_system *s = p->system;
     struct dalcs_smooth_newton *n = p->newton;
     for (int k = 0; k < s->n_smooth; k++) {
         const double change = 1.0 + fabs(n->phi[k]);
         bool clash;
         u[s->n_x + s->smooth[k].input] += change;
-        bool is_known = dalcs_osnsp_try_mode(p, u, y, &clash) == DALCS_OK;
+        const enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, &clash);
+        const bool is_known =
+            status == DALCS_OK; /* else as if it changed nothing: a step of less use */
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
         for (int q = 0; q < s->n_smooth; q++) {
             for (int j = 0; j < 2; j++) {
                 const int column = j < s->smooth[q].n ? s->smooth[q].column[j] : -1;
@@ -78,6 +75,7 @@ static void find_slope(struct dalcs_osnsp *p, double *u, double *y) {
         }
         u[s->n_x + s->smooth[k].input] = n->phi[k];
     }
+    return DALCS_OK;
 }
 
 /* From the present values and lines. */
@@ -91,7 +89,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
         put_sources(p, p->given);
         enum dalcs_status status = solve(p, sigma, p->given, y);
         if (status > DALCS_OK && p->n_tangents > 0 && n_steeper++ < MOST_STEEPER) {
-            dalcs_smooth_scale_tangents(s, much_steeper, n->x, n->phi);
+            dalcs_smooth_scale_tangents(s, dalcs_smooth_much_steeper, n->x, n->phi);
             forget(p);
             dalcs_smooth_newton_begin(n, n->x);
             continue;
@@ -114,10 +112,10 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
             return DALCS_OK;
         }
         bool stalls = step > 0 && is_done && !n->limits; /* the digits do not suffice */
-        if (stalls && dalcs_osnsp_retangent(p, steeper)) {
+        if (stalls && dalcs_osnsp_retangent(p, dalcs_smooth_steeper)) {
             continue;
         }
-        find_slope(p, p->given, y);
+        DALCS_TRY(find_slope(p, p->given, y));
         if (!dalcs_smooth_newton_step(n)) {
             return DALCS_NOT_CONVERGED;
         }
@@ -138,7 +136,7 @@ enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, 
         memset(p->newton->x, 0, (size_t)p->newton->n * sizeof(*p->newton->x));
         status = iterate(p, sigma, y, solve);
     }
-    if (status == DALCS_OK && dalcs_osnsp_retangent(p, much_steeper)) {
+    if (status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_smooth_much_steeper)) {
         put_sources(p, p->given);
         return solve(p, sigma, p->given, y);
     }

@@ -136,6 +136,12 @@ void dalcs_stages_stay_near(struct dalcs_stages *stages, const uint64_t *mode, c
 
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
 
+/* Room for any answer: a mode has no more null vectors than columns, each with a clash at every stage; in whole eights. */
+static inline size_t dalcs_stages_room(const struct dalcs_stages *stages) {
+    const size_t n_columns = (size_t)dalcs_system_n_columns(stages->system);
+    return (size_t)stages->layout.n_fixed + (size_t)stages->method->s * n_columns + 8;
+}
+
 /* Is what is next to this pair awake? (stage_rest.h) */
 bool dalcs_stages_is_awake(const struct dalcs_stages *stages, int pair);
 

@@ -11,9 +11,6 @@
 /* The part of what a step's error may be that is left to Newton's method (kappa of Hairer and Wanner, section IV.8). */
 static const double newton_part = 1e-2;
 
-/* See osnsp/smooth.c. */
-static const double much_steeper = 1e3, steeper = 2.0;
-
 /* A step in which so many are not enough is too long: near the solution each doubles the digits. */
 enum { MOST_STEPS = 12 };
 
@@ -32,8 +29,6 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
         return DALCS_OK;
     }
     const struct dalcs_stages *stages = &part->stages;
-    size_t n_columns = (size_t)dalcs_system_n_columns(s);
-    size_t n_out = (size_t)stages->layout.n_fixed + (size_t)stages->method->s * n_columns + 8;
     struct dalcs_smooth_step *p = dalcs_arena_alloc(&part->arena, 1, sizeof(*p));
     if (p == NULL) {
         return DALCS_E_NOMEM;
@@ -41,7 +36,7 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
     part->smooth = p;
     p->mode = dalcs_arena_alloc(&part->arena, (size_t)stages->n_words, sizeof(*p->mode));
     p->in = dalcs_arena_alloc(&part->arena, (size_t)stages->n_in, sizeof(double));
-    p->out = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
+    p->out = dalcs_arena_alloc(&part->arena, dalcs_stages_room(stages), sizeof(double));
     p->dx = dalcs_arena_alloc(&part->arena, (size_t)(stages->method->s + 1) * (size_t)s->n_smooth,
                               sizeof(*p->dx));
     if (p->mode == NULL || p->in == NULL || p->out == NULL || p->dx == NULL) {
@@ -232,9 +227,9 @@ static enum dalcs_status solve(struct dalcs_radau_part *part, struct dalcs_stage
 
 enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
                                           struct dalcs_stage_entry **entry) {
-    (void)dalcs_osnsp_retangent(&part->component->osnsp, much_steeper);
+    (void)dalcs_osnsp_retangent(&part->component->osnsp, dalcs_smooth_much_steeper);
     enum dalcs_status status = solve(part, entry);
-    if (status > DALCS_OK && dalcs_osnsp_retangent(&part->component->osnsp, steeper)) {
+    if (status > DALCS_OK && dalcs_osnsp_retangent(&part->component->osnsp, dalcs_smooth_steeper)) {
         status = solve(part, entry);
     }
     if (status == DALCS_OK) {
