@@ -323,7 +323,7 @@ struct dalcs_run_options {
                            this near, over each signal's largest value so far; 0: .options fill,
                            else the tolerance but at least 1e-6; INFINITY: none. At most 100,000,
                            and four for each row that there is anyway */
-    const char *curve; /* which: "cubics", and lines beside events (doc/methods.md), or "lines";
+    const char *curve; /* which: "cubics", and lines beside events (doc/output.md), or "lines";
                            NULL: .options curve, else cubics */
     double compress;  /* leave rows out as long as straight lines through the others stay this near,
                            over each signal's scale; 0: .options compress, else keep all rows */
@@ -336,7 +336,7 @@ struct dalcs_run_options {
     bool
         energy; /* keep the ledger of energies for the report; of a netlist, not of a system file */
 
-    /* Tolerances of the certificate and of the OSNSP; see doc/methods.md. All dimensionless. */
+    /* Tolerances of the certificate and of the OSNSP; see doc/output.md. All dimensionless. */
     double certificate_tolerance; /* residual over its physical scale, 2e-13 */
     double proximal_weight;       /* eps of regularised problems, 1e-8 */
     double rcond_min;   /* a mode whose 1/condition is estimated smaller is singular, 1e-14 */
@@ -344,7 +344,7 @@ struct dalcs_run_options {
     int max_pivots;     /* per solve, on top of twice the number of pairs, 200 */
     size_t cache_bytes; /* bound on factorisations kept over all components, 256 MiB */
     int dense_limit;    /* components up to this many unknowns use dense step maps, 64 (radau:
-                              see doc/methods.md); this and the bound may change the last bits of
+                              see doc/output.md); this and the bound may change the last bits of
                               results */
     size_t max_events;  /* events and jumps kept when recording, 1e6 */
     enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_NOT_CONVERGED */
