@@ -14,7 +14,7 @@ packages_of() {
         latex) echo texlive-latex-base ;;
         browser) echo chromium chromium-driver python3-selenium ;;
         crosscheck) echo ngspice python3 ;;
-        ci) echo clang libclang-rt-14-dev llvm valgrind clang-format cppcheck shellcheck fish zsh ;;
+        ci) echo clang libclang-rt-14-dev llvm valgrind clang-format codespell cppcheck shellcheck fish zsh ;;
         *)
             echo "packages.sh: no package group '$1'" >&2
             return 1

@@ -29,7 +29,8 @@ SENTENCE_LIMIT, PARAGRAPH_LIMIT, EASE_LIMIT = 35, 120, 45.0
 
 FENCE = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
 SENTENCE_END = re.compile(r"(?<!\be\.g)(?<!\bi\.e)(?<!\bp)(?<!\bpp)(?<!\bch)(?<!\bfig)(?<!\beq)"
-                          r"(?<!\bthm)(?<!\bvs)(?<!\b[A-Z])[.?!]+[\"')*\]]*(?=\s|$)")
+                          r"(?<!\bthm)(?<!\bvs)[.?!]+[\"')*\]]*(?=\s|$)")
+INITIAL = re.compile(r"(?<!\d )(?:(?<=[\s(.])|^)([A-Z])\.(?=[ -]?[A-Z])")  # "R. W. Cottle", not "10 V. The"
 WORD = re.compile(r"[^\s]*[^\W_][^\s]*")
 
 
@@ -54,7 +55,7 @@ def paragraphs(text):
 
 def plain(paragraph):
     """Links and pictures as their text; each `code` as a word with no syllables."""
-    paragraph = re.sub(r"`[^`]+`", "0", paragraph)
+    paragraph = INITIAL.sub(r"\1", re.sub(r"`[^`]+`", "0", paragraph))
     return re.sub(r"!?\[([^]]*)\]\([^)]*\)", r"\1", paragraph)
 
 
