@@ -8,6 +8,8 @@ reading ease above 45:
 
     206.835 - 1.015 words/sentences - 84.6 syllables/words        (R. Flesch, J. Appl. Psych. 32, 1948)
 
+No thing of a circuit acts as a person either (PERSONIFIED): a circuit asks, likes or wants nothing.
+
 What counts: paragraphs and items of lists. Blocks of code, tables, headings and the addresses of
 links do not. A name in `code` and a number are one word of a sentence, but not of the syllables,
 for nobody reads them letter by letter. A sentence ends with . ? or ! before a space or the end;
@@ -31,6 +33,10 @@ FENCE = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
 SENTENCE_END = re.compile(r"(?<!\be\.g)(?<!\bi\.e)(?<!\bp)(?<!\bpp)(?<!\bch)(?<!\bfig)(?<!\beq)"
                           r"(?<!\bthm)(?<!\bvs)[.?!]+[\"')*\]]*(?=\s|$)")
 INITIAL = re.compile(r"(?<!\d )(?:(?<=[\s(.])|^)([A-Z])\.(?=[ -]?[A-Z])")  # "R. W. Cottle", not "10 V. The"
+PERSONIFIED = re.compile(
+    r"\b(?:circuit|diode|switch|coil|capacitor|inductor|source|relay|netlist|file|line|card|law|mode|matrix|"
+    r"equation|rule|step|error|tolerance|report|summary|message)(?:s|es)? "
+    r"(?:asks?|likes?|tells?|wants?|knows?|thinks?|believes?|speaks?|cares?|minds|wishes|vouch\w*)\b")
 WORD = re.compile(r"[^\s]*[^\W_][^\s]*")
 
 
@@ -80,6 +86,7 @@ def measure(text):
         prose = plain(paragraph)
         if len(WORD.findall(prose)) > PARAGRAPH_LIMIT:
             findings.append((line, f"a paragraph of {len(WORD.findall(prose))} words: {prose[:60]}..."))
+        findings += [(line, f"personified: {found}") for found in PERSONIFIED.findall(prose)]
         for sentence in SENTENCE_END.split(prose):
             words = WORD.findall(sentence)
             if not words:
