@@ -133,7 +133,9 @@ class Schematic:
             if known.setdefault(net[where], node.lower()) != node.lower():
                 raise Wrong(f"{name} at {where[0]:g},{where[1]:g} is on node "
                             f"{known[net[where]]}, in the netlist on {node}")
-        if len(set(known.values()) - {"0"}) != len([node for node in known.values() if node != "0"]):
+        grounded = {net[where] for name, where, _ in self.names if name == "0"}
+        parts = [node for part, node in known.items() if node != "0" or part not in grounded]
+        if len(parts) != len(set(parts)) or "0" in parts:
             raise Wrong("a node of the netlist is in two parts that no line joins")
 
     # ---- The picture ---------------------------------------------------------------------------

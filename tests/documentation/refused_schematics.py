@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A schematic that contradicts its netlist is refused (tools/schematics.py).
 
-usage: schematics.py SOURCE_FOLDER
+usage: refused_schematics.py SOURCE_FOLDER
 """
 
 import pathlib
@@ -27,10 +27,10 @@ WRONG = [
     ("ground 0,2", "ground 2,0", "0"),
     ("node out", "node p", "p"),
     ("R1 resistor 2,0 2,2", "R2 resistor 2,0 2,2", "not drawn: r1"),
-    ("wire 0,2 2,2", "wire 0,2 2,2 2,0", "R1"),
+    ("wire 0,2 2,2", "wire 0,2 2,2 2,0", "D1"),
     ("D1 diode", "D1 dyode", "is no part"),
     ("D1 diode 0,0 2,0", "D1 diode 0,0 2;0", "2;0"),
-    ("R1 resistor 2,0 2,2 left", "R1 resistor 2,0 2,0.2 left", "too short"),
+    ("R1 resistor 2,0 2,2 left", "R1 resistor 2,0 2,0.2 left\nwire 2,0.2 2,2", "too short"),
 ]
 
 
