@@ -260,7 +260,7 @@ struct dalcs_plot {
                                     source's value comes first, under its name */
     const enum dalcs_unit *unit;   /* [n_signals] */
     bool is_complex;               /* of .ac: a row has 2 n_signals values, re and im of each */
-    size_t step, n_steps;          /* of .step: the how manieth of how many; 0 of 1 without */
+    size_t step, n_steps;          /* of .step: this is step number `step`, from 0, of n_steps; 0 of 1 without */
     size_t n_parameters;           /* that .step changes, the innermost first */
     const char *const *parameter;  /* [n_parameters] "rload", "v1", "dmod(vfwd)" */
     const double *parameter_value; /* [n_parameters] in this step */
@@ -878,7 +878,7 @@ struct dalcs_wave_table {
 
 struct dalcs_table_audit_options {
     double tolerance; /* over the largest value of a signal; 0: 1e-3, the reltol of SPICE */
-    size_t run;       /* of .step: the how manieth, from 0; its values are the circuit's */
+    size_t run;       /* of .step: its number, from 0; the circuit has its values */
 };
 
 /* A law of an element or node, where it is broken most. */
