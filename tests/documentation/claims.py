@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The figures on the README's first screen are those of the tables in doc/accuracy.md.
+"""The figures on the README's first screen are those of the tables in doc/accuracy.md and of the tests.
 
 usage: claims.py SOURCE_FOLDER
 
@@ -10,8 +10,10 @@ import pathlib
 import re
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker  # pylint: disable=wrong-import-position,import-error
+TESTS = pathlib.Path(__file__).resolve().parents[1]
+sys.path += [str(TESTS / "support"), str(TESTS / "mutations")]
+import mutations  # noqa: E402  pylint: disable=wrong-import-position,import-error
+from dalcs_program import Checker  # noqa: E402  pylint: disable=wrong-import-position,import-error
 
 
 def rows_below(text, header):
@@ -47,6 +49,9 @@ def main():
     checker.check(least <= min(ratios) < 1.05 * least, f"at least {min(ratios)}, not {least}")
     checker.check(most <= max(ratios) < 1.05 * most, f"at most {max(ratios)}, not {most}")
     checker.check(all(float(row[1]) < float(row[3]) for row in speed), "ngspice is more accurate somewhere")
+
+    faults, = claimed(readme, r"finds all (\d+) faults that the tests build into the solver")
+    checker.check(faults == len(mutations.MUTATIONS), f"{len(mutations.MUTATIONS)} faults, not {faults:g}")
     return checker.finish()
 
 
