@@ -260,7 +260,7 @@ struct dalcs_plot {
                                     source's value comes first, under its name */
     const enum dalcs_unit *unit;   /* [n_signals] */
     bool is_complex;               /* of .ac: a row has 2 n_signals values, re and im of each */
-    size_t step, n_steps;          /* of .step: the how manieth of how many; 0 of 1 without */
+    size_t step, n_steps;          /* of .step: number step, from 0, of n_steps; else 0 of 1 */
     size_t n_parameters;           /* that .step changes, the innermost first */
     const char *const *parameter;  /* [n_parameters] "rload", "v1", "dmod(vfwd)" */
     const double *parameter_value; /* [n_parameters] in this step */
@@ -323,7 +323,7 @@ struct dalcs_run_options {
                            this near, over each signal's largest value so far; 0: .options fill,
                            else the tolerance but at least 1e-6; INFINITY: none. At most 100,000,
                            and four for each row that there is anyway */
-    const char *curve; /* which: "cubics", and lines beside events (doc/methods.md), or "lines";
+    const char *curve; /* which: "cubics", and lines beside events (doc/output.md), or "lines";
                            NULL: .options curve, else cubics */
     double compress;  /* leave rows out as long as straight lines through the others stay this near,
                            over each signal's scale; 0: .options compress, else keep all rows */
@@ -336,7 +336,7 @@ struct dalcs_run_options {
     bool
         energy; /* keep the ledger of energies for the report; of a netlist, not of a system file */
 
-    /* Tolerances of the certificate and of the OSNSP; see doc/methods.md. All dimensionless. */
+    /* Tolerances of the certificate and of the OSNSP; see doc/output.md. All dimensionless. */
     double certificate_tolerance; /* residual over its physical scale, 2e-13 */
     double proximal_weight;       /* eps of regularised problems, 1e-8 */
     double rcond_min;   /* a mode whose 1/condition is estimated smaller is singular, 1e-14 */
@@ -344,7 +344,7 @@ struct dalcs_run_options {
     int max_pivots;     /* per solve, on top of twice the number of pairs, 200 */
     size_t cache_bytes; /* bound on factorisations kept over all components, 256 MiB */
     int dense_limit;    /* components up to this many unknowns use dense step maps, 64 (radau:
-                              see doc/methods.md); this and the bound may change the last bits of
+                              see doc/output.md); this and the bound may change the last bits of
                               results */
     size_t max_events;  /* events and jumps kept when recording, 1e6 */
     enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_NOT_CONVERGED */
@@ -356,7 +356,7 @@ struct dalcs_run_options {
     bool bode; /* .ac around the periodic steady state and nothing else, as if there were a .pss */
     double bode_from, bode_to; /* Hz; 0: those of .ac, else 1e-4 and 1/2 of the orbit's frequency */
     int bode_points;           /* in each decade; 0: those of .ac, else 20 */
-    const char *loop; /* the V source in a loop whose gain is asked for; NULL: .ac's, else none */
+    const char *loop; /* the V source in a loop whose gain is computed; NULL: .ac's, else none */
     int sideband;     /* as dalcs_report.response; 0: .ac's, else none */
 };
 
@@ -642,7 +642,7 @@ struct dalcs_report {
         long instants;         /* at which laws were checked */
         long segments;         /* between two events or ends of steps, of all parts */
         long audited;          /* of them, those that were looked into */
-        long screened;         /* those of which all linear laws were asked at once */
+        long screened;         /* those of which all linear laws were checked at once */
         long positions;        /* of switches, compared with their controls */
         double worst, allowed; /* the worst defect over its scale, and what it was held to */
         double time;           /* s, of that */
@@ -789,7 +789,7 @@ enum dalcs_answer {
     DALCS_NO,
     DALCS_YES,
     DALCS_CONDITIONAL, /* it depends on what the sentence says */
-    DALCS_UNDECIDED,   /* no condition tried tells */
+    DALCS_UNDECIDED,   /* no condition tried decides it */
     DALCS_NOT_CHECKED  /* too large, or a solver is missing: the sentence says which */
 };
 
@@ -817,7 +817,7 @@ struct dalcs_evidence {
 struct dalcs_condition {
     const char *id;     /* "A9" */
     const char *source; /* "Brogliato 2022, assumption 9" */
-    const char *text;   /* what it asks */
+    const char *text;   /* the condition */
     enum dalcs_answer holds;
     const char *because; /* the numbers, or what was not checked; or NULL */
     size_t n_witnesses;
@@ -878,7 +878,7 @@ struct dalcs_wave_table {
 
 struct dalcs_table_audit_options {
     double tolerance; /* over the largest value of a signal; 0: 1e-3, the reltol of SPICE */
-    size_t run;       /* of .step: the how manieth, from 0; its values are the circuit's */
+    size_t run;       /* of .step: its number, from 0; the circuit has its values */
 };
 
 /* A law of an element or node, where it is broken most. */
@@ -895,7 +895,7 @@ struct dalcs_table_law {
     size_t n_checked, n_broken;
 };
 
-/* A law that could not be asked. */
+/* A law that could not be checked. */
 struct dalcs_table_gap {
     const char *law, *where;
     const char *because; /* "v(a), i(d1) are not in the file" */
@@ -945,7 +945,7 @@ struct dalcs_spice_options {
 
 /* Writes the circuit as a netlist for ngspice: flat, parameters resolved, ideal devices replaced. An
  * edge of no width becomes a ramp centred on it, a short one node. Errors of the stream stay there.
- * What ngspice cannot be told: DALCS_E_NETLIST and a message with its place. */
+ * What ngspice cannot express: DALCS_E_NETLIST and a message with its place. */
 enum dalcs_status dalcs_session_write_spice(struct dalcs_session *session,
                                             const struct dalcs_spice_options *options,
                                             FILE *stream) DALCS_MUST_CHECK;

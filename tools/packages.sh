@@ -8,13 +8,13 @@ packages_of() {
     case $1 in
         build) echo gcc libc6-dev meson ninja-build pkg-config libsuitesparse-dev liblapacke-dev \
             libgfortran-12-dev libglpk-dev libjansson-dev libjs-dygraphs libltdl-dev sdpa uthash-dev ;;
-        test) echo check g++ mandoc mypy python3 python3-jsonschema python3-matplotlib python3-numpy \
-            python3-pandas python3-scipy ;;
+        test) echo check g++ mandoc mypy python3 python3-jsonschema python3-markdown python3-matplotlib \
+            python3-numpy python3-pandas python3-scipy ;;
         plot) echo gnuplot-nox ;;
         latex) echo texlive-latex-base ;;
         browser) echo chromium chromium-driver python3-selenium ;;
         crosscheck) echo ngspice python3 ;;
-        ci) echo clang libclang-rt-14-dev llvm valgrind clang-format cppcheck shellcheck fish zsh ;;
+        ci) echo clang libclang-rt-14-dev llvm valgrind clang-format codespell cppcheck shellcheck fish zsh ;;
         *)
             echo "packages.sh: no package group '$1'" >&2
             return 1

@@ -222,7 +222,7 @@ const char *dalcs_coils_hint(void) {
 #else
 
 const char *dalcs_coils_hint(void) {
-    return "how far they may go is not computed: this program was built without GLPK";
+    return "their intervals are not computed: this program was built without GLPK";
 }
 
 enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_part, const int *part,

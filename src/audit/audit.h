@@ -215,7 +215,7 @@ struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audi
 /* How many nodes, devices or parts a law is of. */
 int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law);
 
-/* "KCL at out", "d1", "i(s1)", "position of s1", "Tellegen"; into text[size]. */
+/* "KCL at out", "d1", "i(s1)", "position of s1", "the energy balance"; into text[size]. */
 void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
                           char *text, size_t size);
 

@@ -178,7 +178,7 @@ static enum dalcs_status list_gaps(struct file_audit *a, struct dalcs_arena *are
             law, dalcs_arena_printf(arena, "%s", where),
             m.n > 0 ? dalcs_arena_printf(arena, "%s %s not in the file", m.text,
                                          m.n == 1 ? "is" : "are")
-                    : "the sets of nodes that the file could tell of have ground in them"};
+                    : "the file has currents only for sets of nodes with ground in them"};
         if (m.failed || gap->where == NULL || gap->because == NULL) {
             return DALCS_E_NOMEM;
         }

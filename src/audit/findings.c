@@ -89,7 +89,7 @@ void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law 
         snprintf(text, size, "position of %s", c->device[index].name);
         break;
     case DALCS_AUDIT_ENERGY:
-        snprintf(text, size, "Tellegen");
+        snprintf(text, size, "the energy balance");
         break;
     default:
         snprintf(text, size, "periods leapt over");

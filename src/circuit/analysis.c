@@ -121,7 +121,7 @@ void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs
     if (dialect.name == DALCS_DIALECT_XYCE && transient->step > 0) {
         if (!dialect.is_told) {
             dalcs_builder_note(builder, place[TSTEP],
-                               ".options output initial_interval=seconds asks for others",
+                               ".options output initial_interval=seconds gives others",
                                "the first time on Xyce's .tran is its first step, which is chosen "
                                "here: there are rows every %g s",
                                transient->stop / 1000);

@@ -193,7 +193,7 @@ static void check_presence(struct dalcs_builder *builder) {
                       builder->netlist->n_script_lines > 0 || builder->netlist->asks_steady;
     if (!asks && (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
         dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
-                               "the netlist asks for nothing: no .tran, .op, .dc or .ac");
+                               "the netlist has no analysis: no .tran, .op, .dc or .ac");
     }
 }
 

@@ -242,8 +242,8 @@ bool dalcs_diode_take_part(struct dalcs_builder *builder, const struct dalcs_tok
     const bool is_zener = part.junction == DALCS_JUNCTION_ZENER;
     dalcs_builder_warn(
         builder, name, dalcs_builder_hint(builder, "add a line: .model %s D(...)", name->text),
-        "model '%s' is not in the netlist: %s as datasheets have it is taken, %g V at %g A and %g "
-        "V at %g A, %s %g V%s",
+        "model '%s' is not in the netlist: typical datasheet values of %s are used, %g V at %g A "
+        "and %g V at %g A, %s %g V%s",
         name->text, dalcs_junction_text(part.junction), v[0], i[0], v[1], i[1],
         is_zener ? "Zener voltage" : "up to", part.breakdown,
         is_zener ? dalcs_builder_hint(builder, " at %.3g A", part.at) : " in reverse");

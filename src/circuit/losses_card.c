@@ -184,7 +184,7 @@ void dalcs_losses_collect(struct dalcs_builder *builder) {
         if (builder->switchloss != NULL) {
             dalcs_builder_note(builder, builder->switchloss,
                                "add a line .losses, or run with --losses",
-                               "nobody asks for losses: this is left out");
+                               "no losses are computed: this card has no effect");
         }
         return;
     }

@@ -378,7 +378,7 @@ static bool read_kind(struct reading *r) {
         }
         dalcs_builder_error(r->builder, token,
                             dalcs_builder_suggest_of(r->builder, name, N_KINDS, token->text, USAGE),
-                            "'%s' is nothing that can be measured", token->text);
+                            "'%s' cannot be measured", token->text);
         return false;
     }
     m->kind = KINDS[k].kind;

@@ -138,7 +138,7 @@ static void report_number(struct dalcs_builder *builder, const struct dalcs_toke
         return;
     case DALCS_NUMBER_UNDERFLOW:
         dalcs_builder_error(builder, token, "write 0 if it is meant to be 0",
-                            "'%s' is too small to be told from 0", token->text);
+                            "'%s' is too small: it would be rounded to 0", token->text);
         return;
     case DALCS_NUMBER_RKM: {
         const char *hint = rkm_hint(builder, token->text);

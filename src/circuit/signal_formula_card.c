@@ -233,7 +233,7 @@ static int find_power(struct dalcs_signal_compilation *c, const struct found *fo
     if (!has_two) {
         report(c, found->begin, found->end - found->begin,
                "write the voltages and currents of its terminals, such as v(a,b)*i(x)",
-               "'%s' has more to it than one voltage and one current", name.text);
+               "'%s' is not determined by one voltage and one current", name.text);
         return -1;
     }
     *current = dalcs_signal_compilation_find(c, true, &name, NULL);

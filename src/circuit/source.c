@@ -234,7 +234,7 @@ static void check_period(struct dalcs_builder *builder, const struct dalcs_token
     const double stop = builder->circuit->transient.stop;
     if (builder->circuit->transient.present && period < stop * 1e-13) {
         dalcs_builder_error(builder, name, NULL,
-                            "a period of %g s cannot be told apart at times up to %g s", period,
+                            "a period of %g s is below the resolution of times up to %g s", period,
                             stop);
     }
 }

@@ -77,7 +77,7 @@ static bool read_table(struct dalcs_reader *reader, struct dalcs_loss_table *tab
     }
     if (n[2] != n[0] * n[1]) {
         dalcs_builder_error(builder, reader->card->token, USAGE,
-                            "%d voltages and %d currents want %d energies, not %d", n[0], n[1],
+                            "%d voltages and %d currents need %d energies, not %d", n[0], n[1],
                             n[0] * n[1], n[2]);
         return false;
     }

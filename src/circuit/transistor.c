@@ -56,7 +56,7 @@ static struct dalcs_transistor *take_part(struct dalcs_builder *builder,
     dalcs_builder_warn(
         builder, name,
         dalcs_builder_hint(builder, "add a line: .model %s VDMOS(Vto=... Ron=...)", name->text),
-        "model '%s' is not in the netlist: the usual datasheet figures are taken", name->text);
+        "model '%s' is not in the netlist: typical datasheet values are used", name->text);
     return t;
 }
 

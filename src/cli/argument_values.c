@@ -16,7 +16,7 @@ enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
         return DALCS_OK;
     }
     if (!dalcs_table_find_format(path)) {
-        dalcs_cli_error(cli, "cannot tell the format of '%s': name it .csv or .raw", path);
+        dalcs_cli_error(cli, "unknown format of '%s': name it .csv or .raw", path);
         return DALCS_E_OPTION;
     }
     arguments->output[arguments->n_outputs++] = path;
@@ -177,8 +177,8 @@ enum dalcs_status dalcs_argument_losses_plot(struct dalcs_arguments *arguments,
     }
     arguments->losses_plot = path;
     if (!dalcs_figure_can_write(path)) {
-        dalcs_cli_error(
-            cli, "--losses-plot: cannot tell the format of '%s': name it .svg, .png or .pdf", path);
+        dalcs_cli_error(cli, "--losses-plot: unknown format of '%s': name it .svg, .png or .pdf",
+                        path);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
@@ -199,8 +199,7 @@ enum dalcs_status dalcs_argument_plot(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *path) {
     arguments->plot = path;
     if (!dalcs_figure_can_write(path)) {
-        dalcs_cli_error(cli, "--plot: cannot tell the format of '%s': name it .svg, .png or .pdf",
-                        path);
+        dalcs_cli_error(cli, "--plot: unknown format of '%s': name it .svg, .png or .pdf", path);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;

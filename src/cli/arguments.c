@@ -250,11 +250,11 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
     }
     if (status == DALCS_OK && !arguments->help && arguments->at && arguments->compress > 0.0) {
         dalcs_cli_error(cli,
-                        "--compress leaves rows out, --at asks for each of its own: choose one");
+                        "--compress leaves rows out, --at prints each of its times: choose one");
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help && arguments->at && arguments->fill > 0.0) {
-        dalcs_cli_error(cli, "--fill adds rows, --at asks for its own alone: choose one");
+        dalcs_cli_error(cli, "--fill adds rows, --at prints only its own times: choose one");
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help) {

@@ -12,13 +12,13 @@
 static const char help[] =
     "usage: dalcs audit NETLIST FILE [options]\n"
     "\n"
-    "Asks whether the waveforms in FILE, a .raw or .csv file of dalcs, ngspice, LTspice or "
+    "Checks whether the waveforms in FILE, a .raw or .csv file of dalcs, ngspice, LTspice or "
     "another\n"
     "program, are those of the netlist, without running it: Kirchhoff's current law at each node,\n"
     "the law of each element, diodes exactly ideal, each switch's position against its control.\n"
     "Prints which law is broken where and by how much, and which ones FILE has no signals for.\n"
     "\n"
-    "      --tol T         what a value may be off by, over the largest of its signal (default:\n"
+    "      --tol T         the largest error allowed, over a signal's largest value (default:\n"
     "                      1e-3, the reltol of SPICE); digits of FILE and lines between its rows\n"
     "                      are allowed for besides\n"
     "      --plot N        which plot of a .raw file with several (default: the last with a time)\n"
@@ -190,7 +190,7 @@ static enum dalcs_status read_plot(const struct arguments *arguments,
     }
     if (!is_over_time(waveforms)) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL,
-                       "'%s': the laws are asked of waveforms over time, and the axis is '%s'",
+                       "'%s': the laws apply to waveforms over time, and the axis is '%s'",
                        arguments->file, waveforms->name[0]);
         return DALCS_E_OPTION;
     }

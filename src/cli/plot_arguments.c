@@ -42,8 +42,7 @@ static enum dalcs_status parse_output(struct dalcs_plot_arguments *arguments,
     arguments->output = path;
     arguments->is_page = dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
     if (!arguments->is_page && !dalcs_figure_can_write(path)) {
-        dalcs_cli_error(cli, "cannot tell the format of '%s': name it .svg, .png, .pdf or .html",
-                        path);
+        dalcs_cli_error(cli, "unknown format of '%s': name it .svg, .png, .pdf or .html", path);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;

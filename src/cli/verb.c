@@ -128,7 +128,7 @@ enum dalcs_status dalcs_verb_check_output(const struct dalcs_cli *cli, const cha
         known = known || (dot && strcasecmp(dot, ending[i]) == 0);
     }
     if (!known) {
-        dalcs_cli_error(cli, "cannot tell the format of '%s': name it %s%s%s", path, ending[0],
+        dalcs_cli_error(cli, "unknown format of '%s': name it %s%s%s", path, ending[0],
                         ending[1] ? " or " : "", ending[1] ? ending[1] : "");
         return DALCS_E_OPTION;
     }

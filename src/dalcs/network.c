@@ -132,7 +132,7 @@ static enum dalcs_status split_group(const struct dalcs_circuit *c, struct coil_
         dalcs_diag_add(diag, DALCS_ERROR, &first->where,
                        g->n > 2 ? "of three coils, k12 = k13 = 1 leaves only k23 = 1" : NULL,
                        "the %d coils coupled with '%s' cannot exist: their inductance matrix has a "
-                       "negative eigenvalue, and they could give more energy than they got",
+                       "negative eigenvalue, and they could supply more energy than they took",
                        g->n - 1, first->name);
         return DALCS_E_NETLIST;
     }

@@ -194,8 +194,8 @@ void dalcs_one_step_finish(struct dalcs_one_step *step) {
 
 /* ---- Writing ------------------------------------------------------------------------------- */
 
-static const char SINGULAR[] = "N(sigma) is singular: without complementarity the step leaves "
-                               "something open, and lambda alone does not tell x and z";
+static const char SINGULAR[] = "N(sigma) is singular: without complementarity the step is not "
+                               "determined, and lambda alone does not determine x and z";
 
 static void write_row(FILE *f, const double *row, int n) {
     for (int j = 0; j < n; j++) {
@@ -326,9 +326,8 @@ void dalcs_one_step_write_latex(FILE *f, const struct dalcs_circuit *circuit,
     if (step->is_singular) {
         fputs("A step of $h=", f);
         dalcs_print_value(&p, 1.0 / step->sigma, "s");
-        fputs("$: $N(\\sigma)$ is singular, $\\sigma=1/h$. Without complementarity the step leaves "
-              "something "
-              "open, and $\\lambda$ alone does not tell $x$ and $z$.\n\n",
+        fputs("$: $N(\\sigma)$ is singular, $\\sigma=1/h$. Without complementarity the step is not "
+              "determined, and $\\lambda$ alone does not determine $x$ and $z$.\n\n",
               f);
         return;
     }

@@ -546,7 +546,7 @@ static bool check_request(struct dalcs_reading *r) {
     }
     if (!r->builder.failed && r->builder.tran == NULL && r->builder.op == NULL) {
         dalcs_builder_error_at(&r->builder, &where, "add a line such as: .tran 10u 20m",
-                               "the file asks for nothing: no .tran and no .op");
+                               "the file has no analysis: no .tran and no .op");
     }
     return !r->builder.failed;
 }

@@ -167,7 +167,7 @@ static void read_number(struct parser *p) {
         break;
     case DALCS_NUMBER_UNDERFLOW:
         report(p, DALCS_ERROR, p->begin, p->length, "write 0 if it is meant to be 0",
-               "'%s' is too small to be told from 0", copy);
+               "'%s' is too small: it would be rounded to 0", copy);
         break;
     case DALCS_NUMBER_RKM:
     case DALCS_NUMBER_MALFORMED:

@@ -236,7 +236,7 @@ enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer, const struct dal
     if (library != NULL && access(library, R_OK) != 0) {
         const struct dalcs_location where = dalcs_token_span(&token[1], &token[card->n - 1]);
         dalcs_diag_add(lexer->diag, DALCS_WARNING, &where,
-                       "the models that elements name must stand in the netlist",
+                       "the models of the elements must be in the netlist",
                        "LTspice's library '%s' is not here: it is left out", library);
         return DALCS_OK;
     }

@@ -89,11 +89,11 @@ static void write_gaps(FILE *stream, const struct dalcs_table_audit *audit, bool
 
 static void write_verdict(FILE *stream, const struct dalcs_table_audit *audit) {
     if (audit->n_laws == 0) {
-        fputs("\n  no law could be asked\n", stream);
+        fputs("\n  no law could be checked\n", stream);
     } else if (audit->n_broken == 0) {
         fprintf(stream,
-                audit->n_laws == 1 ? "\n  the one law that could be asked holds\n"
-                                   : "\n  all %zu laws that could be asked hold\n",
+                audit->n_laws == 1 ? "\n  the one law that could be checked holds\n"
+                                   : "\n  all %zu laws that could be checked hold\n",
                 audit->n_laws);
     } else {
         const struct dalcs_table_law *worst = &audit->law[0];

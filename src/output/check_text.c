@@ -8,21 +8,17 @@ enum { WIDTH = 96 };
 /* Text at an indentation, broken at blanks. */
 static void write_wrapped(FILE *stream, int indent, int column, const char *text) {
     while (*text != '\0') {
-        size_t word = strcspn(text, " ");
-        if (column > indent && column + (int)word > WIDTH) {
+        const size_t word = strcspn(text, " ");
+        if (column > indent && column + 1 + (int)word > WIDTH) {
             fprintf(stream, "\n%*s", indent, "");
             column = indent;
+        } else if (column > indent) {
+            fputc(' ', stream);
+            column++;
         }
         fwrite(text, 1, word, stream);
         column += (int)word;
-        text += word;
-        while (*text == ' ') {
-            if (column < WIDTH) {
-                fputc(' ', stream);
-                column++;
-            }
-            text++;
-        }
+        text += word + strspn(text + word, " ");
     }
     fputc('\n', stream);
 }

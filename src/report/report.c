@@ -1,4 +1,4 @@
-/* report.c - struct dalcs_report as JSON. The keys are an interface: see doc/methods.md before
+/* report.c - struct dalcs_report as JSON. The keys are an interface: see doc/output.md before
  * changing one. SI units throughout. */
 #include "report.h"
 #include "response_json.h"

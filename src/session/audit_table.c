@@ -15,7 +15,7 @@ static enum dalcs_status take_run(struct dalcs_session *s, size_t run) {
     struct dalcs_plot plot;
     if (run >= dalcs_steps_count(&s->circuit)) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL,
-                       "the file has a run number %zu, and the netlist asks for %zu", run + 1,
+                       "the file has a run number %zu, and the netlist has %zu", run + 1,
                        dalcs_steps_count(&s->circuit));
         return DALCS_E_OPTION;
     }
@@ -30,7 +30,7 @@ enum dalcs_status dalcs_session_audit_table(struct dalcs_session *s,
     DALCS_TRY(dalcs_session_apply_values(s));
     if (s->circuit.n_devices == 0) {
         return refuse(s,
-                      "a system given by its matrices has no elements whose laws could be asked");
+                      "a system given by its matrices has no elements whose laws could be checked");
     }
     if (!(options->tolerance >= 0.0) || !isfinite(options->tolerance)) {
         return refuse(s, "the tolerance must be positive");

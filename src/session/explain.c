@@ -193,13 +193,12 @@ static const char *dump_problem(struct dalcs_run *r, const struct dalcs_euler *e
 /* A state that has grown too large. */
 static void explain_growth(struct dalcs_session *s, const struct dalcs_component *c, double time) {
     const char *element = c->system->column[c->overgrown].element;
-    dalcs_diag_add(
-        &s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, element),
-        "a negative resistance or a controlled source gives it energy all the time",
-        "at t = %.8g s the circuit is beyond numbers: it is unstable, and the %s of '%s' "
-        "has grown to more than 1e240 %s",
-        time, c->system->column_is_current[c->overgrown] ? "current" : "voltage", element,
-        c->system->column_is_current[c->overgrown] ? "A" : "V");
+    dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, element),
+                   "a negative resistance or a controlled source supplies energy all the time",
+                   "at t = %.8g s the circuit is unstable: the %s of '%s' "
+                   "has grown to more than 1e240 %s",
+                   time, c->system->column_is_current[c->overgrown] ? "current" : "voltage",
+                   element, c->system->column_is_current[c->overgrown] ? "A" : "V");
 }
 
 /* "v(a)", "40" */

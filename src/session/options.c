@@ -135,13 +135,13 @@ static enum dalcs_status choose_compression(struct dalcs_run *r) {
         return option_error(r->s, "compress must be greater than 0 and less than 1");
     }
     if (o->compress > 0.0 && o->at != NULL) {
-        return option_error(r->s, "compress leaves rows out, output times ask for each of theirs: "
-                                  "it is one or the other");
+        return option_error(
+            r->s, "compress leaves rows out, output times print each of theirs: choose one");
     }
     r->compress = o->compress > 0.0 ? o->compress : netlist->compress;
     if (r->compress > 0.0 && o->at != NULL) {
         dalcs_diag_add(&r->s->diag, DALCS_NOTE, &netlist->compress_where, NULL,
-                       "compress has no effect: every output time asked for gets its row");
+                       "compress has no effect: each output time gets its row");
         r->compress = 0.0;
     }
     return DALCS_OK;
@@ -164,13 +164,12 @@ static enum dalcs_status choose_filling(struct dalcs_run *r) {
     r->fill = o->fill > 0.0 ? o->fill : netlist->fill;
     if (is_fixed && o->fill > 0.0 && !is_none) {
         return option_error(r->s, o->at != NULL
-                                      ? "fill adds rows, output times ask for theirs alone: it is "
-                                        "one or the other"
+                                      ? "fill adds rows, output times print only theirs: choose one"
                                       : "fill has no meaning with euler, whose rows are its steps");
     }
     if (is_fixed && isfinite(netlist->fill) && netlist->fill > 0.0 && o->fill == 0.0) {
         dalcs_diag_add(&r->s->diag, DALCS_NOTE, &netlist->fill_where, NULL,
-                       o->at != NULL ? "fill has no effect: output times ask for theirs alone"
+                       o->at != NULL ? "fill has no effect: only the output times are printed"
                                      : "fill has no effect with euler, whose rows are its steps");
     }
     if (is_fixed || (!is_given && r->fixed_step > 0.0)) {

@@ -71,8 +71,8 @@ static void warn_of_switches(struct dalcs_run *r, const struct dalcs_component *
     if (c->slid_steps > 0) {
         dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
                        "a hysteresis, Vh=, keeps it from switching without end",
-                       "in %ld step%s a switch opens what closes it and closes what opens it: it "
-                       "slides along its threshold, and values are means of both positions",
+                       "in %ld step%s a switch slides along its threshold: closing turns its "
+                       "control off, opening turns it on; values are means of both positions",
                        c->slid_steps, c->slid_steps == 1 ? "" : "s");
     }
     if (c->delayed_commands == 0) {

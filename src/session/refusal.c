@@ -60,13 +60,14 @@ static const char *explain_modes(const struct dalcs_refusal *r) {
     list_active(r, &active);
     int first = r->n_elements > 0 ? device_of(r->circuit, r->element[0]) : -1;
     bool is_formula = first >= 0 && r->circuit->device[first].behaviour != NULL;
-    const char *format =
-        !r->is_certain && !has_modes(r) ? "the best answer that was tried fits worst at %s"
-        : !r->is_certain ? "no combination of conducting and blocking that was tried fits %s"
-        : !has_modes(r)  ? "the equations contradict each other, most at %s"
-        : named.n == 1 && is_formula ? "%s fits no piece of its formula"
-        : named.n == 1               ? "%s fits neither conducting nor blocking"
-                                     : "no combination of conducting and blocking fits %s";
+    const char *format = !r->is_certain && !has_modes(r)
+                             ? "the best answer that was tried has its largest residual at %s"
+                         : !r->is_certain
+                             ? "no combination of conducting and blocking that was tried fits %s"
+                         : !has_modes(r) ? "the equations contradict each other, most at %s"
+                         : named.n == 1 && is_formula ? "%s fits no piece of its formula"
+                         : named.n == 1               ? "%s fits neither conducting nor blocking"
+                                        : "no combination of conducting and blocking fits %s";
     const char *what =
         dalcs_arena_printf(&r->s->arena, format, dalcs_refusal_joined(&named, false));
     if (active.n == 0 || what == NULL) {

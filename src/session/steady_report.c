@@ -122,16 +122,16 @@ static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floque
     if (size > 1.0 + near_one && m[0].re < 0.0) {
         return dalcs_arena_printf(
             arena,
-            "unstable: what %s is off by changes its sign and grows by %.4g each period; a run "
-            "goes to an orbit of two periods or more: ask for one of %s",
+            "unstable: a deviation of %s changes its sign and grows by %.4g each period; a run "
+            "goes to an orbit of two periods or more: try a period of %s",
             m[0].state, size, dalcs_quantity_write(text, 2.0 * st->period, "s", 12));
     }
     if (size > 1.0 + near_one) {
-        return dalcs_arena_printf(arena, "unstable: what %s is off by grows by %.4g each period",
+        return dalcs_arena_printf(arena, "unstable: a deviation of %s grows by %.4g each period",
                                   m[0].state, size);
     }
     if (st->n_conserved > 0) {
-        return "not the only one: what is conserved stays what it is at the start";
+        return "not the only one: a conserved quantity keeps its initial value";
     }
     return size < 1.0 - near_one ? "stable" : "at the border of stability";
 }
@@ -175,7 +175,7 @@ static enum dalcs_status tell_conserved(struct dalcs_steady *st) {
             return DALCS_E_NOMEM;
         }
         dalcs_diag_add(&s->diag, DALCS_WARNING, NULL, "IC= or .ic with uic choose another one",
-                       "the steady state is not the only one: %s stays what it is at the start",
+                       "the steady state is not the only one: %s keeps its initial value",
                        conserved[k]);
     }
     s->report.steady.conserved = conserved;

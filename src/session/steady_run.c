@@ -94,8 +94,7 @@ enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) {
     s->report.steady.defect = st->residual;
     if (!(st->residual <= most_defect)) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "a smaller --tol",
-                       "one more period does not come back: its states are off by %.3g",
-                       st->residual);
+                       "after one more period the states are off by %.3g", st->residual);
         return DALCS_NOT_CONVERGED;
     }
     return DALCS_OK;

@@ -1,4 +1,4 @@
-/* choice.c - stages, tolerance and maps of a part, as measured: doc/methods.md says why. */
+/* choice.c - stages, tolerance and maps of a part, as measured: doc/integrator.md says why. */
 #include "choice.h"
 
 #include <math.h>

@@ -220,9 +220,10 @@ static enum dalcs_status find_constants(const struct limit *l, double h, struct 
     DALCS_TRY(dalcs_index_strength(&s.q.A, &X, &strength, work));
     DALCS_TRY(left_inverse(&s.B2, &is_told, &inverse, work));
     if (strength <= 0.0 || (!is_told && dalcs_matrix_largest(&s.L2) > 0.0)) {
-        k->why = strength <= 0.0 ? "-R2 At R2^-1 > 0 fails"
-                                 : "x depends on multipliers that z does not tell: Bt2 lacks full "
-                                   "column rank";
+        k->why = strength <= 0.0
+                     ? "-R2 At R2^-1 > 0 fails"
+                     : "x depends on multipliers that z does not determine: Bt2 lacks full "
+                       "column rank";
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_matrix_product(&through, work, &s.L2, &inverse));

@@ -210,7 +210,7 @@ static enum dalcs_status search(struct dalcs_face *s, struct dalcs_storage *foun
     }
     DALCS_TRY(dalcs_face_find(s, &exists));
     if (!exists) {
-        found->why = "no P has the kernel that its lossless motions ask for";
+        found->why = "no P has the kernel that its lossless motions require";
         return DALCS_OK;
     }
     struct dalcs_sdpa program = {0};

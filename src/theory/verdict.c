@@ -31,25 +31,26 @@ static enum dalcs_status not_passive_by_port(struct dalcs_facts *facts) {
     if (isinf(g->s[0])) {
         DALCS_TRY(dalcs_findings_verdict(
             facts->f, "passive", DALCS_NO, "D + D' has a negative eigenvalue",
-            "no: it gives energy at once to currents or voltages at its diodes"));
+            "no: it supplies energy at once to currents or voltages at its diodes"));
     } else if (g->s[0] == 0.0) {
         DALCS_TRY(dalcs_findings_verdict(
             facts->f, "passive", DALCS_NO, "H(j omega) + H(j omega)* has a negative eigenvalue",
-            g->s[1] == 0.0 ? "no: it gives energy to constant currents or voltages at its diodes "
-                             "(s = %.1g)"
-                           : "no: it gives energy to sines of %.4g rad/s at its diodes",
+            g->s[1] == 0.0
+                ? "no: it supplies energy to constant currents or voltages at its diodes "
+                  "(s = %.1g)"
+                : "no: it supplies energy to sines of %.4g rad/s at its diodes",
             fabs(g->s[1])));
     } else {
         DALCS_TRY(dalcs_findings_verdict(facts->f, "passive", DALCS_NO,
                                          "H(s) + H(s)* has a negative eigenvalue, Re s > 0",
-                                         "no: it gives energy to currents or voltages at its "
+                                         "no: it supplies energy to currents or voltages at its "
                                          "diodes that grow as exp(t * %.4g/s)",
                                          g->s[0]));
     }
     return dalcs_motion_witness(facts->f, &facts->blocks, g->s, NULL, y, facts->power);
 }
 
-/* "; g1 gives it" */
+/* "; g1 supplies the energy" */
 static enum dalcs_status name_givers(struct dalcs_facts *facts) {
     struct dalcs_verdict *v = &facts->f->verdict[facts->f->n_verdicts - 1];
     if (v->n_elements == 0) {
@@ -58,8 +59,8 @@ static enum dalcs_status name_givers(struct dalcs_facts *facts) {
     const char *list = dalcs_join_names(facts->f->result, v->n_elements, v->element);
     v->sentence = list == NULL
                       ? NULL
-                      : dalcs_arena_printf(facts->f->result, "%s; %s give%s it", v->sentence, list,
-                                           v->n_elements == 1 ? "s" : "");
+                      : dalcs_arena_printf(facts->f->result, "%s; %s suppl%s the energy",
+                                           v->sentence, list, v->n_elements == 1 ? "ies" : "y");
     return v->sentence == NULL ? DALCS_E_NOMEM : DALCS_OK;
 }
 
@@ -68,7 +69,7 @@ enum dalcs_status dalcs_verdict_passive(struct dalcs_facts *facts) {
     if (facts->system->monotone) {
         DALCS_TRY(dalcs_findings_verdict(
             facts->f, "passive", DALCS_YES, "the energies of its elements: P is the stored energy",
-            "yes: none of its R, L, C, K, diodes and switches can give energy"));
+            "yes: none of its R, L, C, K, diodes and switches can supply energy"));
         return facts->has_lcs
                    ? dalcs_lure_metric_witness(facts->f, &facts->lcs, &facts->lcs.storage, true)
                    : DALCS_OK;
@@ -91,20 +92,18 @@ enum dalcs_status dalcs_verdict_passive(struct dalcs_facts *facts) {
         return name_givers(facts);
     }
     if (facts->has_lcs && facts->lure.is_refuted) {
-        DALCS_TRY(dalcs_findings_verdict(facts->f, "passive", DALCS_NO,
-                                         "Z >= 0 against every P of " BG09 "definition 1",
-                                         "no: no quadratic form of the states bounds what it "
-                                         "gives"));
+        DALCS_TRY(dalcs_findings_verdict(
+            facts->f, "passive", DALCS_NO, "Z >= 0 against every P of " BG09 "definition 1",
+            "no: no quadratic form of the states bounds the energy that it supplies"));
         return dalcs_lure_refutation_witness(facts->f, &facts->lcs, &facts->lure.refutation, true);
     }
     facts->passive = facts->is_dense ? DALCS_UNDECIDED : DALCS_NOT_CHECKED;
     const char *open = facts->has_lcs ? facts->lure.open : facts->lcs.obstacle;
     return facts->is_dense
-               ? dalcs_findings_verdict(
-                     facts->f, "passive", facts->passive, BG09 "definition 1",
-                     "undecided: neither the stored energy proves it nor does a motion refute it; "
-                     "for other P: %s",
-                     open == NULL ? "D + D' has a negative eigenvalue" : open)
+               ? dalcs_findings_verdict(facts->f, "passive", facts->passive, BG09 "definition 1",
+                                        "undecided: the stored energy does not prove it and no "
+                                        "motion refutes it; for other P: %s",
+                                        open == NULL ? "D + D' has a negative eigenvalue" : open)
                : dalcs_findings_verdict(facts->f, "passive", facts->passive, BG09 "definition 1",
                                         "not checked: %s, and not passive by its elements alone",
                                         facts->obstacle);
@@ -122,9 +121,8 @@ static enum dalcs_status limit_of_steps(struct dalcs_facts *facts) {
     DALCS_TRY(dalcs_findings_verdict(
         facts->f, "step", unique ? DALCS_CONDITIONAL : DALCS_UNDECIDED,
         HSW99 "corollary 3.12, by the eigenvalues of all modes",
-        unique
-            ? "implicit Euler has one solution for every h < %.6g s, where %s becomes singular"
-            : "up to h = %.6g s, where %s becomes singular, no mode changes; a P-matrix it is not",
+        unique ? "implicit Euler has one solution for every h < %.6g s, where %s becomes singular"
+               : "M(1/h) is not a P-matrix below h = %.6g s, where %s becomes singular",
         1.0 / mode->value[0], text));
     facts->f->verdict[facts->f->n_verdicts - 1].value = 1.0 / mode->value[0];
     return dalcs_motion_witness(facts->f, &facts->blocks, mode->value, mode->is_on, mode->y, NULL);
@@ -162,7 +160,7 @@ static enum dalcs_status possible_steps(struct dalcs_facts *facts) {
         facts->modes.minors == DALCS_MINORS_POSITIVE
             ? "implicit Euler has one solution for every h: no mode has a positive real eigenvalue"
         : facts->modes.minors == DALCS_MINORS_NEGATIVE
-            ? "for no h does implicit Euler have one solution for all data"
+            ? "there is no h for which implicit Euler has one solution for all data"
             : "undecided: M(1/h) has a minor that is 0");
 }
 
@@ -194,8 +192,8 @@ static enum dalcs_status converges(struct dalcs_facts *facts) {
         facts->has_brogliato || !facts->is_dense ? DALCS_UNDECIDED : DALCS_NOT_CHECKED,
         "Brogliato 2022, propositions 5.2 and 5.9", "%s",
         facts->has_brogliato
-            ? "whether implicit Euler converges neither proposition 5.2 nor 5.9 tells"
-            : "whether implicit Euler converges was not checked: too large");
+            ? "convergence of implicit Euler is not shown: neither proposition 5.2 nor 5.9 applies"
+            : "convergence of implicit Euler was not checked: too large");
 }
 
 enum dalcs_status dalcs_verdict_step(struct dalcs_facts *facts) {

@@ -133,10 +133,10 @@ static enum dalcs_status exists_if_feasible(struct dalcs_facts *facts) {
     const struct dalcs_cones *cones = &facts->cones;
     const double *member = NULL;
     if (!cones->is_solved) {
-        return dalcs_findings_verdict(
-            facts->f, "exists", DALCS_NOT_CHECKED, "monotone linear complementarity",
-            "wherever the sources leave the diodes a choice: whether they do needs linear programs "
-            "(GLPK)");
+        return dalcs_findings_verdict(facts->f, "exists", DALCS_NOT_CHECKED,
+                                      "monotone linear complementarity",
+                                      "wherever the constraints of the diodes are feasible; "
+                                      "testing this needs linear programs (GLPK)");
     }
     if (is_qualified(facts)) {
         const struct dalcs_lure *lure = &facts->lure;
@@ -235,7 +235,7 @@ enum dalcs_status dalcs_verdict_exists(struct dalcs_facts *facts) {
     }
     if (facts->modes.minors == DALCS_MINORS_NEGATIVE) {
         DALCS_TRY(dalcs_findings_verdict(facts->f, "exists", DALCS_UNDECIDED, HSW99 "theorem 3.3",
-                                         "not for all starts and sources, or not one alone: M(1/h) "
+                                         "not for all starts and sources, or not unique: M(1/h) "
                                          "is not a P-matrix for small h"));
         return add_minor(facts);
     }
@@ -334,7 +334,8 @@ static enum dalcs_status unique_multipliers(struct dalcs_facts *facts) {
                   : dalcs_findings_verdict(
                         facts->f, "multipliers", DALCS_CONDITIONAL,
                         BG09 "remarks 3 and 4 (K13): a sufficient condition",
-                        "not shown of %s: the states do not see some combination of them", list));
+                        "not shown of %s: some combination of them has no effect on the states",
+                        list));
     facts->f->verdict[facts->f->n_verdicts - 1].element = name;
     facts->f->verdict[facts->f->n_verdicts - 1].n_elements = n;
     return DALCS_OK;

@@ -50,14 +50,14 @@ static enum dalcs_status describe_causes(struct dalcs_facts *facts) {
     } else if (n[1] > 0) {
         DALCS_TRY(dalcs_findings_verdict(
             facts->f, "jumps", moves ? DALCS_CONDITIONAL : DALCS_YES, source,
-            "states never jump after the start%s: a step of %s could make them, but %s none",
+            "states never jump after the start%s: only a step of %s could cause a jump, and %s "
+            "none",
             moves ? " but where a switch moves" : "", still, n[1] == 1 ? "it has" : "they have"));
     } else {
-        DALCS_TRY(dalcs_findings_verdict(facts->f, "jumps", moves ? DALCS_CONDITIONAL : DALCS_YES,
-                                         source,
-                                         "states never jump after the start%s: no source "
-                                         "bounds them",
-                                         moves ? " but where a switch moves" : ""));
+        DALCS_TRY(dalcs_findings_verdict(
+            facts->f, "jumps", moves ? DALCS_CONDITIONAL : DALCS_YES, source,
+            "states never jump after the start%s: no source acts on their constraints",
+            moves ? " but where a switch moves" : ""));
     }
     facts->f->verdict[facts->f->n_verdicts - 1].element = name[0];
     facts->f->verdict[facts->f->n_verdicts - 1].n_elements = n[0];
@@ -70,13 +70,13 @@ enum dalcs_status dalcs_verdict_jumps(struct dalcs_facts *facts) {
         (lure->D_is_P || facts->lcs.m == 0)) {
         return dalcs_findings_verdict(facts->f, "jumps", DALCS_YES,
                                       BT10 "appendix A.4 (K6): an ordinary differential equation",
-                                      "states are continuous whatever the sources do");
+                                      "states are continuous for all sources");
     }
     if (facts->has_lcs && facts->lcs.index_steps == 0 && facts->n_switches == 0 &&
         dalcs_are_relays(facts)) {
         return dalcs_findings_verdict(facts->f, "jumps", DALCS_YES,
                                       HSW99 "theorems 6.7 to 6.9; " BG13 "section 6.2",
-                                      "states are continuous: what a relay puts out is bounded");
+                                      "states are continuous: the output of a relay is bounded");
     }
     bool has_rule = facts->passive == DALCS_YES ||
                     (facts->has_lcs && (lure->is_block_coupled || facts->lcs.m == 0 ||
@@ -126,11 +126,11 @@ static enum dalcs_status judge_linear(struct dalcs_facts *facts) {
 
 static enum dalcs_status judge_stability(struct dalcs_facts *facts) {
     if (facts->passive == DALCS_YES) {
-        return dalcs_findings_verdict(
-            facts->f, "stable", DALCS_YES, BG09 "theorems 3 and 4",
-            facts->has_fed_back_switch
-                ? "yes: the stored energy never grows without sources"
-                : "yes: two trajectories never part, in the norm of the stored energy");
+        return dalcs_findings_verdict(facts->f, "stable", DALCS_YES, BG09 "theorems 3 and 4",
+                                      facts->has_fed_back_switch
+                                          ? "yes: the stored energy never grows without sources"
+                                          : "yes: the distance of two trajectories never grows, in "
+                                            "the norm of the stored energy");
     }
     const struct dalcs_mode *mode = &facts->modes.growing;
     if (facts->is_dense && mode->value[0] > 0.0) {
@@ -210,12 +210,11 @@ const char *dalcs_facts_summary(const struct dalcs_facts *facts) {
         exists && unique ? "Exactly one trajectory for every start and source"
         : v[0]->answer == DALCS_CONDITIONAL && unique
             ? dalcs_arena_printf(arena, "At most one trajectory; one exists %s", v[0]->sentence)
-        : exists
-            ? "A trajectory for every start and source; whether it is the only one is not shown"
-        : unique ? "At most one trajectory; whether one exists is not shown"
+        : exists ? "A trajectory for every start and source; that it is the only one is not shown"
+        : unique ? "At most one trajectory; that one exists is not shown"
         : v[1]->answer == DALCS_NO
             ? "For some starts and sources there is no trajectory, or more than one"
-            : "Whether a trajectory exists and is unique is not shown";
+            : "Existence and uniqueness of a trajectory are not shown";
     const char *given = facts->has_fed_back_switch ? " (for given positions of its switches)" : "";
     return first == NULL
                ? NULL
@@ -224,7 +223,7 @@ const char *dalcs_facts_summary(const struct dalcs_facts *facts) {
                                         ? "whether states jump is not shown"
                                         : v[2]->sentence,
                                     v[3]->answer == DALCS_UNDECIDED && v[3]->sentence[0] == 'u'
-                                        ? "for which steps it is solvable is not shown"
+                                        ? "the range of solvable steps is not shown"
                                         : v[3]->sentence,
                                     v[4]->sentence, v[5]->answer == DALCS_NO ? " Passive: " : "",
                                     v[5]->answer == DALCS_NO ? v[5]->sentence : "",

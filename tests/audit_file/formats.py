@@ -187,7 +187,7 @@ def check_refusals(checker, program, folder):
 def check_text(checker, program, folder):
     table = simulate(program, BRIDGE)
     found = audit(program, folder, BRIDGE, table, options=())
-    checker.check(found.status == 0 and "all 12 laws that could be asked hold" in found.text, found.text)
+    checker.check(found.status == 0 and "all 12 laws that could be checked hold" in found.text, found.text)
     found = audit(program, folder, BRIDGE, table.nudged("v(p)", 30e-3, 1.0)[0], options=())
     checker.check(found.status == 1 and "broken since" in found.text and "laws is broken, BRANCH of c1" in found.text,
                   found.text)

@@ -52,7 +52,7 @@ EXPECTED = {
         ("P4.7.1", "yes", "[B22] 6.2: item 1 applies, provided x1 >= 0"),
         ("P4.8.1", "depends", "[B22] 6.2: {0} in R+ - x1 only while x1 >= 0"),
         ("P4.8.3", "yes", "[B22] 6.2: applies, provided item 1"),
-        ("P4.3.3", "no", "[ours] it asks for Dt = 0, and Dt = h/(L + h R1); 6.2 uses it all the same"),
+        ("P4.3.3", "no", "[ours] it requires Dt = 0, and Dt = h/(L + h R1); 6.2 uses it all the same"),
         ("passive", "yes", "[ours] P = I: A + A' = [-1 1; 1 -1] <= 0, B = C'"),
         ("exists", "yes", "[BT10] 3.5: K1 and K2"),
         ("unique", "yes", "[BT10] 3.5"),

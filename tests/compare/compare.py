@@ -178,7 +178,7 @@ class Compare(unittest.TestCase):
             ((netlist, "--with", "./none"), 4, "cannot run './none': No such file or directory"),
             ((netlist, "--limit", "0"), 2, "--limit: '0' is not a number greater than 0"),
             ((netlist, "--within", "x"), 2, "--within: 'x' is not a number greater than 0"),
-            ((netlist, "-o", "a.svg"), 2, "cannot tell the format of 'a.svg': name it .html"),
+            ((netlist, "-o", "a.svg"), 2, "unknown format of 'a.svg': name it .html"),
             ((netlist, "-o", "none/a.html"), 4,
              "cannot write 'none/a.html': No such file or directory"),
             ((netlist, "--methodes", "x"), 2,

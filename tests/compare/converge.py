@@ -106,7 +106,7 @@ class Converge(unittest.TestCase):
              "--methods: write euler, radau, radau1, radau3, radau5, radau7, radau9 or several of "
              "them, each once, separated by commas"),
             (("--steps", "1u", "-o", "a.txt"),
-             "cannot tell the format of 'a.txt': name it .html or .csv"),
+             "unknown format of 'a.txt': name it .html or .csv"),
         ]
         for options, message in cases:
             with self.subTest(options=options):

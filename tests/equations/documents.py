@@ -20,7 +20,7 @@ MISTAKES = [
     ("matrix A\n", "matrix Q\n", "no matrix is called 'q'"),
     ("state x 1\n", "stat x 1\n", "did you mean 'state'"),
     ("pair d\n", "interval d 1 -1\n", "the upper bound must be greater"),
-    (".tran 1m 1\n", "", "asks for nothing"),
+    (".tran 1m 1\n", "", "has no analysis"),
     ("matrix A\n+ -1\n", "matrix P\n+ 0\n", "is singular"),
     ("matrix A\n+ -1\n", "matrix E\n+ 1\n", "the system has no inputs"),
     ("matrix A\n+ -1\n", 'matrix A "missing.mtx"\n', "cannot read the matrix"),

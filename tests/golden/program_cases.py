@@ -243,7 +243,7 @@ class Results(Case):
         self.assertEqual(len(self.table("out.csv")[1]), 3)
         self.write("0\n3m\n", "times.txt")
         done = self.dalcs("run", "a.cir", "--at", "times.txt", "-o", "out.csv")
-        self.assertIn("a.cir:5:15: note: fill has no effect: output times", done.stderr)
+        self.assertIn("a.cir:5:15: note: fill has no effect: only the output times", done.stderr)
         self.assertEqual(len(self.table("out.csv")[1]), 2)
         self.dalcs("run", "a.cir", "--method", "radau", "--step", "1m", "--fill", "1m", "-o", "out.csv")
         self.assertGreater(len(self.table("out.csv")[1]), 3)
@@ -290,8 +290,7 @@ class Results(Case):
         self.write("0\n1m\n2m\n3m\n", "times.txt")
         self.write(RECTIFIER.replace(".tran", ".options compress=0.9\n.tran"))
         done = self.dalcs("run", "a.cir", "--at", "times.txt", "-o", "out.csv")
-        self.assertIn("a.cir:6:19: note: compress has no effect: every output time asked for gets "
-                      "its row\n", done.stderr)
+        self.assertIn("a.cir:6:19: note: compress has no effect: each output time gets its row\n", done.stderr)
         self.assertEqual([row[0] for row in self.table("out.csv")[1]], [0.0, 1e-3, 2e-3, 3e-3])
 
     def test_last_time_is_rounded(self):

@@ -34,7 +34,7 @@ CASES = [  # the cards, the line and column of the message, what it says
     ((".losses", ".losses"), 9, 1, "a second .losses"),
     ((".losses", ".switchloss s1 eon v=(0 100 100) i=(0 1) e=(0 0 0 0 0 0)"), 9, 29, "does not ascend"),
     ((".losses", ".switchloss s1 eon v=(0 100) i=(2 1) e=(0 0 0 0)"), 9, 35, "does not ascend"),
-    ((".losses", ".switchloss s1 eon v=(0 100) i=(0 1) e=(0 0 0)"), 9, 1, "want 4 energies, not 3"),
+    ((".losses", ".switchloss s1 eon v=(0 100) i=(0 1) e=(0 0 0)"), 9, 1, "need 4 energies, not 3"),
     ((".losses", ".switchloss s1 on v=(0 100) i=(0 1) e=(0 0 0 0)"), 9, 16, "none of eon, eoff, err"),
     ((".losses", ".switchloss s1 eon v=(0 -1) i=(0 1) e=(0 0 0 0)"), 9, 25, "cannot be negative"),
     ((".losses", ".switchloss s7 eon v=(0 1) i=(0 1) e=(0 0 0 0)"), 9, 13, "neither a switch or diode"),

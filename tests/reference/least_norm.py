@@ -6,7 +6,7 @@ voltage they block, and what floats while all diodes block stays in the middle.
 usage: least_norm.py PROGRAM euler|default
 
 Checked to 1e-6 of the largest voltage or current, which the proximal method can give, at every row
-but those within 0.4 ms after an event: doc/methods.md leaves a few steps for the choice there. The
+but those within 0.4 ms after an event: doc/integrator.md leaves a few steps for the choice there. The
 default method runs with tolerances of 1e-3, 1e-6 and 1e-9. Implicit Euler is not asked about the
 string and the start: it keeps a side that satisfies its step, and with it the shares that diodes
 had before, off or next to no current.

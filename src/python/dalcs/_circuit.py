@@ -1,4 +1,4 @@
-"""A netlist and all that can be asked of it."""
+"""A netlist and what can be computed from it."""
 
 from __future__ import annotations
 

@@ -163,7 +163,7 @@ class Result(Table):
 
     @property
     def losses(self) -> Optional[Dict[str, Any]]:
-        """Where the power went (W, J), if the run was asked: run(..., losses=True) or .losses."""
+        """Where the power went (W, J), if the run computed it: run(..., losses=True) or .losses."""
         found = self.report.get("losses")
         return found[-1] if found else None
 
