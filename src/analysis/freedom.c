@@ -113,7 +113,11 @@ static void add_device(struct dalcs_view *view, int device) {
         add(view, device, holds ? DALCS_VOLTAGE_FIXED : DALCS_VOLTAGE_ANY, closed && m->ron == 0.0);
         break;
     }
-    default: /* current sources; controlled ones are not in a passive circuit */
+    case DALCS_VCVS: /* controlled ones do not act on what they read: for what that is now they are sources */
+    case DALCS_CCVS:
+        add(view, device, DALCS_VOLTAGE_FIXED, true);
+        break;
+    default: /* current sources */
         add(view, device, DALCS_VOLTAGE_ANY, false);
         view->freedom[view->n - 1].is_source = true;
         break;

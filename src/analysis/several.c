@@ -21,12 +21,14 @@ static const double rounding = 1e-13;
 static const double first_part = 1e-6;
 static const double second_part = 1e-3;
 
-static bool is_candidate(const struct dalcs_system *s) {
+/* Answers of monotone blocks hang together, whatever else reads them. */
+static bool is_candidate(const struct dalcs_component *c) {
+    const struct dalcs_system *s = c->system;
     int n_diodes = 0;
     for (int d = 0; d < s->n_pairs; d++) {
         n_diodes += s->pair[d].kind == DALCS_PAIR_DIODE ? 1 : 0;
     }
-    return !s->monotone && n_diodes > 0 && n_diodes <= MOST_DIODES;
+    return !dalcs_osnsp_is_monotone(&c->osnsp) && n_diodes > 0 && n_diodes <= MOST_DIODES;
 }
 
 /* All answers of a step of length h from the present values; of an operating point where h is 0. The
@@ -148,8 +150,8 @@ static enum dalcs_status look(struct dalcs_undetermined *u, struct dalcs_euler *
 enum dalcs_status dalcs_undetermined_several(struct dalcs_undetermined *u, struct dalcs_euler *e,
                                              double stop) {
     for (int k = 0; k < e->n_components; k++) {
-        const struct dalcs_system *s = &e->network->system[k];
-        if (!is_candidate(s)) {
+        const struct dalcs_system *s = e->component[k].system;
+        if (!is_candidate(&e->component[k])) {
             continue;
         }
         DALCS_TRY(dalcs_undetermined_prepare(u));

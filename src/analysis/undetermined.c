@@ -57,6 +57,7 @@ static void sort_devices(struct dalcs_undetermined *u) {
             u->first_pair[u->device[j]] = pair;
             pair += is_diode || d->kind == DALCS_SWITCH ? 1 : 0;
             pair += is_diode && isfinite(c->diode_model[d->model].vrev) ? 1 : 0;
+            pair += d->behaviour != NULL ? d->behaviour->n_pairs : 0;
         }
     }
 }
@@ -121,7 +122,7 @@ enum dalcs_status dalcs_undetermined_at(void *user, const struct dalcs_open_inst
     struct dalcs_undetermined *u = user;
     *vanishes = false;
     bool has_graph = u->circuit->n_devices > 0; /* a system file has none */
-    if (!at->engine->network->system[at->system].monotone || !has_graph) {
+    if (!dalcs_osnsp_is_monotone(&at->engine->component[at->system].osnsp) || !has_graph) {
         return DALCS_OK;
     }
     uint64_t name = name_of(at);

@@ -25,13 +25,23 @@ int dalcs_behaviour_n_inputs(const struct dalcs_behaviour *behaviour) {
     return n;
 }
 
+/* A voltage that is a function of time alone is a source as any other. A current is an unknown here, and no source's is. */
+static bool is_source(const struct dalcs_device *d) {
+    const struct dalcs_behaviour *behaviour = d->behaviour;
+    bool is = d->kind == DALCS_VCVS && behaviour->n_pairs == 0 && behaviour->smooth == NULL;
+    for (int k = 0; is && k < behaviour->output.n; k++) {
+        is = is_input(behaviour, -1, k);
+    }
+    return is;
+}
+
 enum dalcs_status dalcs_stamp_behaviour_branch(struct stamps *b, int device) {
     struct dalcs_layout *l = b->layout;
     struct dalcs_system *s = b->s;
     const struct dalcs_device *d = &l->circuit->device[device];
     int column;
     int row;
-    s->monotone = false;
+    s->monotone = s->monotone && is_source(d);
     dalcs_stamp_new_branch(b, device, &column, &row);
     DALCS_TRY(dalcs_stamp_branch_current(b, d, column, 1.0));
     l->pair[device] = b->next_pair;

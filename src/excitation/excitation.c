@@ -42,11 +42,15 @@ static void add_wave(struct dalcs_excitation *excitation, int input,
     excitation->n_terms += wave->piece.n_terms;
     wave->is_curved = wave->piece.n_terms > 0;
     excitation->is_curved = excitation->is_curved || wave->is_curved;
-    wave->has_level = !wave->is_curved || isfinite(wave->piece.to) || wave->piece.level != 0.0;
+    const bool has_others =
+        isfinite(wave->piece.to); /* pieces, with a level; those of a sum with a slope */
+    wave->has_ramp = !wave->is_curved || wave->piece.slope != 0.0 ||
+                     (has_others && stimulus->kind == DALCS_STIMULUS_FORMULA);
+    wave->has_level = wave->has_ramp || has_others || wave->piece.level != 0.0;
     if (wave->has_level) {
         add_function(excitation, wave, DALCS_EXCITATION_LEVEL, NULL);
     }
-    if (!wave->is_curved) {
+    if (wave->has_ramp) {
         add_function(excitation, wave, DALCS_EXCITATION_RAMP, NULL);
     }
     for (int k = 0; k < wave->piece.n_terms; k++) {
@@ -188,13 +192,14 @@ void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, do
                    (size_t)wave->n_functions * sizeof(*out));
             continue;
         }
-        if (!wave->is_curved) {
-            out[0] = wave->piece.level + wave->piece.slope * (t - wave->from);
-            out[1] = wave->piece.slope * h;
-            continue;
-        }
         if (wave->has_level) {
-            *out++ = wave->piece.level;
+            *out++ = wave->piece.level + wave->piece.slope * (t - wave->from);
+        }
+        if (wave->has_ramp) {
+            *out++ = wave->piece.slope * h;
+        }
+        if (!wave->is_curved) {
+            continue;
         }
         const struct dalcs_stimulus_term *now = wave->piece.term;
         if (t != wave->from) {
@@ -296,7 +301,7 @@ void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t
             inputs[wave->input] = dalcs_stimulus_value(wave->stimulus, t + tau, DALCS_RIGHT);
         } else {
             double since = (t - wave->from) + tau;
-            double value = piece->level;
+            double value = piece->level + piece->slope * since;
             for (int i = 0; i < piece->n_terms; i++) {
                 const struct dalcs_stimulus_term *term = &piece->term[i];
                 value += exp(-term->decay * since) * (term->cosine * cos(term->omega * since) +

@@ -35,9 +35,9 @@ struct dalcs_excitation_wave {
     const struct dalcs_stimulus *stimulus;
     int first; /* function */
     int n_functions;
-    bool is_curved; /* has oscillations: asked anew for every step */
-    bool has_level; /* at any time */
-    double from;    /* s, where `piece` was taken */
+    bool is_curved;           /* has oscillations: asked anew for every step */
+    bool has_level, has_ramp; /* at any time */
+    double from;              /* s, where `piece` was taken */
     struct dalcs_stimulus_piece piece;
     int smooth; /* of the system's smooth sources; -1: it is a stimulus */
 };

@@ -30,8 +30,10 @@ void dalcs_orbit_rates_of(const struct dalcs_orbit_rates *rates, double *y, doub
     for (int x = 0; x < s->n_x; x++) {
         f[x] = dalcs_csr_row_dot(&s->A, x, y) + dalcs_csr_row_dot(&s->E, x, rates->inputs);
     }
-    (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', rates->n_x, 1, rates->P, rates->n_x, rates->pivot,
-                         f, rates->n_x);
+    if (s->n_x > 0) {
+        (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', rates->n_x, 1, rates->P, rates->n_x,
+                             rates->pivot, f, rates->n_x);
+    }
 }
 
 int dalcs_orbit_guard_row(const struct dalcs_radau_part *part, int guard) {

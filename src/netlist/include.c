@@ -37,16 +37,23 @@ static const char *file_name(struct dalcs_lexer *lexer, const struct dalcs_token
                             (size_t)(token->length - 2 * quotes));
 }
 
-/* A file of that name among the libraries that are installed with dalcs, or in the folder DALCS_LIBRARIES of the
- * environment; else, or where the netlist has such a file itself, `path`. */
+/* A file of that name in the folder DALCS_LIBRARIES of the environment, else among the libraries that are installed with
+ * dalcs, else in the source tree that it was built from; `path` where the netlist has such a file itself, or nobody. */
 static const char *installed(struct dalcs_lexer *lexer, const char *name, const char *path) {
-    const char *folder = getenv("DALCS_LIBRARIES");
+    const char *const folder[] = {getenv("DALCS_LIBRARIES"), DALCS_LIBRARIES,
+                                  DALCS_SOURCE_LIBRARIES};
     if (path == NULL || strchr(name, '/') != NULL || access(path, R_OK) == 0) {
         return path;
     }
-    const char *found = dalcs_arena_printf(&lexer->netlist->arena, "%s/%s",
-                                           folder != NULL ? folder : DALCS_LIBRARIES, name);
-    return found == NULL || access(found, R_OK) == 0 ? found : path;
+    for (size_t k = 0; k < sizeof folder / sizeof *folder; k++) {
+        const char *found =
+            folder[k] != NULL ? dalcs_arena_printf(&lexer->netlist->arena, "%s/%s", folder[k], name)
+                              : path;
+        if (found == NULL || access(found, R_OK) == 0) {
+            return found;
+        }
+    }
+    return path;
 }
 
 /* `name` in the folder of the file that includes it. */

@@ -373,7 +373,7 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
 static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
     enum dalcs_status status = pivot(p, u, y, limit);
-    if (status == DALCS_OK && p->n_tied > 0 && p->system->monotone && !p->least_norm) {
+    if (status == DALCS_OK && p->n_tied > 0 && dalcs_osnsp_is_monotone(p) && !p->least_norm) {
         return dalcs_ties_settle(p, u, y);
     }
     if (status > DALCS_OK && status != DALCS_INFEASIBLE) {

@@ -124,24 +124,40 @@ static enum dalcs_analysis telling_analysis(const struct dalcs_circuit *c) {
                                 : DALCS_OPERATING_POINT;
 }
 
-/* A session of the same circuit that records the diodes' currents and nothing else. */
-static enum dalcs_status make_shadow(struct dalcs_session *s, int n, struct dalcs_session *shadow) {
-    struct dalcs_circuit *c = &shadow->circuit;
-    *c = s->circuit;
-    c->arena = (struct dalcs_arena){0};
-    c->signal = dalcs_arena_alloc(&shadow->arena, (size_t)n, sizeof *c->signal);
-    shadow->name = s->name;
-    if (c->signal == NULL) {
+/* The diodes' currents are what rows show. Behind them are the signals that gates sample. */
+static enum dalcs_status list_signals(struct dalcs_arena *arena, struct dalcs_circuit *c, int n) {
+    const struct dalcs_signal *all = c->signal;
+    const int *measured = c->measured;
+    struct dalcs_signal *signal =
+        dalcs_arena_alloc(arena, (size_t)(n + c->n_measured), sizeof *signal);
+    int *place = dalcs_arena_alloc(arena, (size_t)c->n_measured, sizeof *place);
+    if (signal == NULL || place == NULL) {
         return DALCS_E_NOMEM;
     }
     c->n_signals = 0;
     for (int k = 0; k < c->n_devices; k++) {
         if (exponential_of(c, k) != NULL) {
-            c->signal[c->n_signals++] = (struct dalcs_signal){
+            signal[c->n_signals++] = (struct dalcs_signal){
                 .name = c->device[k].name, .kind = DALCS_SIGNAL_CURRENT, .device = k};
         }
     }
     c->n_shown = c->n_signals;
+    for (int k = 0; k < c->n_measured; k++) {
+        place[k] = c->n_signals;
+        signal[c->n_signals++] = all[measured[k]];
+    }
+    c->signal = signal;
+    c->measured = place;
+    return DALCS_OK;
+}
+
+/* A session of the same circuit that records the diodes' currents and nothing else. */
+static enum dalcs_status make_shadow(struct dalcs_session *s, int n, struct dalcs_session *shadow) {
+    struct dalcs_circuit *c = &shadow->circuit;
+    *c = s->circuit;
+    c->arena = (struct dalcs_arena){0};
+    shadow->name = s->name;
+    DALCS_TRY(list_signals(&shadow->arena, c, n));
     c->losses = NULL;
     c->n_measured = c->n_measures = c->n_fouriers = c->n_prints = c->n_steps = 0;
     c->operating_point = true;

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Subcircuits that are installed with dalcs: control.lib and UniversalOpamps2.sub, against closed forms.
 
-usage: libraries.py PROGRAM FOLDER
+usage: libraries.py PROGRAM
+
+The program finds them where it was built.
 """
 
 import math
 import pathlib
 import sys
+import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import dalcs_program  # noqa: E402
@@ -14,9 +17,9 @@ from dalcs_program import Checker  # noqa: E402
 from logic import edges, root, runs, times  # noqa: E402
 
 
-def run(program, what, cards):
+def run(program, what, cards, environment=None):
     return dalcs_program.run(program, "\n".join([what, *cards, ".end", ""]), method=None, tolerance=1e-10,
-                             environment={"DALCS_LIBRARIES": sys.argv[2]})
+                             environment=environment)
 
 
 def modulators(checker, program):
@@ -122,16 +125,25 @@ def amplifiers(checker, program):
             checker.close(o, min(max(v, -2), 2), 5e-3, what)  # what is inside winds up to the rails
 
 
-def own_file_first(checker, program):
-    """A file of that name beside the netlist comes first; one that is nowhere is an error."""
-    done = run(program, "nowhere", [".lib nowhere.lib", "v1 a 0 1", "r1 a 0 1", ".tran 1 2"])
-    checker.check(done.status != 0 and "nowhere.lib" in done.stderr, f"nowhere: {done.stderr}")
+def places(checker, program):
+    """A file that is nowhere is an error. The folder that DALCS_LIBRARIES names comes before those of dalcs, which have
+    what it has not."""
+    cards = ["v1 a 0 2", "x1 a b twice", "r1 b 0 1k", ".tran 1 2"]
+    for library in ("nowhere.lib", "control.lib"):
+        done = run(program, library, [f".lib {library}", *cards])
+        checker.check(done.status != 0 and (library if library[0] == "n" else "twice") in done.stderr, f"{library}: {done.stderr}")
+    with tempfile.TemporaryDirectory() as folder:
+        (pathlib.Path(folder) / "control.lib").write_text(".subckt twice a b\ne1 b 0 a 0 2\n.ends\n")
+        done = run(program, "a folder that is named",
+                   [".lib control.lib", ".lib UniversalOpamps2.sub", *cards], {"DALCS_LIBRARIES": folder})
+        if runs(checker, done, "a folder that is named"):
+            checker.close(done.column("v(b)")[-1], 4, 1e-9, "from a folder that is named")
 
 
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("libraries")
-    for part in (modulators, controllers, amplifiers, own_file_first):
+    for part in (modulators, controllers, amplifiers, places):
         part(checker, program)
     return checker.finish()
 

@@ -228,13 +228,17 @@ def samples(checker, program):
 
 def sampled_control(checker, program):
     """A sampled PI loop on R and C: its values at the clocks are those of the difference equation. The sampling of an
-    integrator by itself: 1 + T/C of growth each clock."""
-    for r, c, period, kp in ((1e3, 1e-6, 1e-4, 0.5), (10, 1e-3, 1e-2, 0.9), (1e6, 1e-12, 5e-7, 0.2)):
-        what = f"a sampled loop of {period} s"
+    integrator by itself: 1 + T/C of growth each clock. Exponential diodes elsewhere change nothing: the runs that find
+    their currents sample as well."""
+    diodes = ["d1 ref x real", "r2 x 0 1k", "d2 clk z 1n4148", "r3 z 0 10k", ".model real d(is=1e-14 rs=10m)"]
+    for r, c, period, kp, beside in ((1e3, 1e-6, 1e-4, 0.5, []), (10, 1e-3, 1e-2, 0.9, []), (1e6, 1e-12, 5e-7, 0.2, []),
+                                     (1e3, 1e-6, 1e-4, 0.5, diodes), (20, 1e-3, 1e-2, 0.9, diodes[:2] + diodes[4:]),
+                                     (1e6, 1e-12, 5e-7, 0.2, diodes + [".losses", ".meas tran m avg v(x)*i(d1)"])):
+        what = f"a sampled loop of {period} s beside {len(beside)} cards"
         tau = r * c
         cards = [f"v1 clk 0 pulse(0 1 {period!r} 0 0 {period / 2!r} {period!r})", "vr ref 0 2",
                  f"b1 u 0 v={kp}*(v(ref)-v(y))", "a1 u 0 clk 0 0 0 h 0 SAMPLEHOLD", f"r1 h y {r!r}", f"c1 y 0 {c!r} ic=0",
-                 f".tran {period / 3!r} {12.5 * period!r} uic"]
+                 *beside, f".tran {period / 3!r} {12.5 * period!r} uic"]
         done = run_cards(program, what, cards)
         if runs(checker, done, what):
             y, h, decay = 0.0, 0.0, math.exp(-period / tau)

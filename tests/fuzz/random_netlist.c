@@ -160,9 +160,29 @@ static void signal(struct draft *d) {
     }
 }
 
-/* Piecewise linear in signals, of a depth. */
+static void formula(struct draft *d, int depth);
+
+/* A product or a smooth function of formulas. */
+static void smooth(struct draft *d, int depth) {
+    static const char *const open[] = {"exp(", "tanh(", "sin(",   "sqrt(", "ln(",
+                                       "sqr(", "atan(", "1/(1+(", "cosh(", "asinh("};
+    if (pick(d, 2) == 0) {
+        put(d, "(");
+        formula(d, depth - 1);
+        put(d, ")%s(", WORD(d, "*", "/", "*", "**"));
+        formula(d, depth - 1);
+        put(d, ")");
+    } else {
+        const char *function = open[pick(d, 10)];
+        put(d, "%s", function);
+        formula(d, depth - 1);
+        put(d, "%s", function[0] == '1' ? ")**2)" : ")");
+    }
+}
+
+/* Of signals, of a depth: piecewise linear but for smooth(). */
 static void formula(struct draft *d, int depth) {
-    const int kind = depth == 0 ? pick(d, 3) : pick(d, 12);
+    const int kind = depth == 0 ? pick(d, 3) : pick(d, 13);
     static const char *const open[] = {"abs(", "min(1,", "max(-2,", "uramp(", "u2("};
     switch (kind) {
     case 0:
@@ -207,6 +227,9 @@ static void formula(struct draft *d, int depth) {
     case 9:
         put(d, "%s", WORD(d, "2*sin(2*pi*5k*time)", "u(time-0.1m)", "(time>33u?3:0)", "1k*time"));
         break;
+    case 10:
+        smooth(d, depth);
+        break;
     default:
         put(d, "%s", open[pick(d, 5)]);
         formula(d, depth - 1);
@@ -249,9 +272,60 @@ static void passive(struct draft *d, char kind, int n, const char *a, const char
     }
 }
 
+/* Semiconductors with a gate. */
+static void gated(struct draft *d, int n, const char *a, const char *b) {
+    switch (pick(d, 3)) {
+    case 0:
+        put(d, "m%d %s %s %s %s %s", n, a, live(d), b, b, WORD(d, "mm0", "mm1", "mm2"));
+        break;
+    case 1:
+        put(d, "a%d %s %s %s %s %s", n, a, b, live(d), node(d), WORD(d, "am0", "am1", "am2"));
+        break;
+    default:
+        put(d, "z%d %s %s %s zm0", n, a, live(d), b);
+        break;
+    }
+}
+
+/* A gate or a flip-flop of LTspice whose output, behind a resistance, is a; with inputs where it has any. */
+static void logic(struct draft *d, int n, const char *a) {
+    static const struct {
+        const char *function;
+        bool has[5];
+    } of[] = {{"AND", {true, true, true, true, true}},
+              {"OR", {true, true, true, true, true}},
+              {"XOR", {true, true, false, false, false}},
+              {"BUF", {true, false, false, false, false}},
+              {"SCHMITT", {true, true, false, false, false}},
+              {"SRFLOP", {true, true, false, false, false}},
+              {"DFLOP", {true, false, true, true, true}},
+              {"COUNTER", {true, true, false, false, false}},
+              {"SAMPLEHOLD", {true, true, true, true, false}}};
+
+    const int f = pick(d, (int)(sizeof of / sizeof *of));
+    put(d, "a%d %s", n, live(d));
+    for (int k = 1; k < 5; k++) {
+        put(d, " %s", of[f].has[k] && pick(d, 2) == 0 ? live(d) : "0");
+    }
+    put(d, " 0 %s 0 %s rout=10%s", a, of[f].function,
+        f < 7 ? WORD(d, "", " td=1u", " trise=2u vhigh=5", " td=3u") : "");
+}
+
+/* Sources with states or with products, as cards have them. */
+static void transfer(struct draft *d, int n, const char *a, const char *b) {
+    if (pick(d, 2) == 0) {
+        put(d, "%s%d %s %s LAPLACE {v(%s)} = {%s}", WORD(d, "e", "g"), 40 + n, a, b, live(d),
+            WORD(d, "1/(1+s*10u)", "2/(s*1u+s**2*1n+1)", "1k/s", "s/(1+s*1u)",
+                 "(1-s*3u)/(1+s*3u)"));
+    } else {
+        put(d, "%s%d %s %s POLY(2) %s 0 %s 0 %s %s 0 %s 0.1", WORD(d, "e", "g"), 60 + n, a, b,
+            live(d), live(d), volts(d), gain(d), WORD(d, "0.01", "0", "-1", "1m"));
+    }
+}
+
 /* One element between two nodes. */
 static void element(struct draft *d, const char *a, const char *b) {
-    static const char kinds[] = "rclvdiegfhbswrcdsd";
+    static const char kinds[] = "rclvdiegfhbswrcdsdmat";
     char kind = d->n_elements == 0 ? 'v' : kinds[pick(d, (int)sizeof kinds - 1)];
     const int n = ++d->n_of[(int)kind];
     d->n_elements++;
@@ -286,6 +360,15 @@ static void element(struct draft *d, const char *a, const char *b) {
     case 's':
         put(d, "s%d %s %s %s %s %s%s", n, a, b, node(d), live(d),
             WORD(d, "sm0", "sm1", "sm2", "sm3"), WORD(d, "", " ON", " OFF"));
+        break;
+    case 'm':
+        gated(d, n, a, b);
+        break;
+    case 'a':
+        logic(d, 20 + n, strcmp(a, b) > 0 ? a : b); /* the newer node */
+        break;
+    case 't':
+        transfer(d, n, a, b);
         break;
     default:
         put(d, "w%d %s %s v%d %s", n, a, b, 1 + pick(d, d->n_sources), WORD(d, "wm0", "wm1"));
@@ -325,6 +408,13 @@ static void models(struct draft *d) {
     model(d, " sm2", "SW(Ron=1 Roff=10k Vt=%s Vh=%s)\n", vt, WORD(d, "0.2", "1", "1m"));
     model(d, " sm3", "VSWITCH(Ron=1 Roff=1Meg Von=2 Voff=1)%s%s\n", "", "");
     model(d, " wm0", "CSW(Ron=1m Roff=1Meg It=%s)%s\n", WORD(d, "1m", "0", "1"), "");
+    model(d, " mm0", "NMOS(Vto=2 Kp=10)%s%s\n", "", "");
+    model(d, " mm1", "VDMOS(Vto=%s Rd=10m Rds=1Meg Kp=20)%s\n", WORD(d, "1", "3"), "");
+    model(d, " mm2", "PMOS(Vto=-2 Ron=%s)%s\n", WORD(d, "10m", "1"), "");
+    model(d, " am0", "thyristor(Ih=%s)%s\n", WORD(d, "0", "10m", "1"), "");
+    model(d, " am1", "triac(Ron=%s)%s\n", WORD(d, "10m", "0"), "");
+    model(d, " am2", "gto(Vfwd=1 Vgoff=%s)%s\n", WORD(d, "0.5", "2"), "");
+    model(d, " zm0", "NIGBT(Vt=1 Vdiode=%s)%s\n", WORD(d, "1", "0"), "");
     model(d, " wm1", "CSW(It=10m Ih=%s)%s\n", WORD(d, "1m", "5m", "0"), "");
 }
 
@@ -373,6 +463,12 @@ static void analyses(struct draft *d) {
     }
     if (pick(d, 8) == 1) {
         put(d, "iac 0 a AC 1\n.ac dec %s 10 100k\n", WORD(d, "1", "2"));
+    }
+    if (pick(d, 10) == 1) {
+        put(d, ".pss %s\n", WORD(d, "", "100u", "31u"));
+    }
+    if (pick(d, 10) == 1) {
+        put(d, ".losses\n");
     }
     if (pick(d, 8) == 1) {
         put(d, ".step %s\n", d->parameter ? WORD(d, "param p list 1 1k", "v1 0 2 1") : "v1 1 2 1");
