@@ -93,8 +93,8 @@ static double choose_tolerance(const struct dalcs_radau_options *o, int n, int d
     return n <= dense_limit && is_free ? fmin(o->tolerance, aimed) : o->tolerance;
 }
 
-/* Without a pair there is one mode, whose factors serve for all steps of a length: stages cost in proportion, and nine let
- * steps be as many times as long as few do where nothing but an edge ends them. */
+/* Without a pair there is one mode, whose factors serve for all steps of a length. So stages cost no more than in
+ * proportion, and steps of nine are longer by more than that: nothing but an edge ends them. */
 static bool has_one_mode(const struct dalcs_component *c) {
     return c->system->n_pairs == 0 && c->system->monotone;
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Waves of diodes that change sides, down long multipliers and lines: as many as the circuit has, whatever the tolerance.
+"""Waves of diodes that change sides, down long multipliers and lines: the circuit's own, whatever the tolerance.
 
 usage: waves.py PROGRAM
 
