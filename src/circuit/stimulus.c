@@ -96,7 +96,13 @@ static void end_edges(const struct dalcs_stimulus *s, struct edges *edges) {
     edges->item[edges->n++] = (struct edge){stop, AFTER};
 }
 
-static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges *edges) {
+static double period_start(const struct dalcs_stimulus *s, double n) {
+    return n == 0 ? s->u.pulse.delay : s->u.pulse.delay + n * s->u.pulse.period;
+}
+
+/* Those around t, `near` of which is the same time: up to the first one behind it. */
+static void collect_edges(const struct dalcs_stimulus *s, double t, double near,
+                          struct edges *edges) {
     const double rise_end = s->u.pulse.rise;
     double fall_start = rise_end + s->u.pulse.width;
     double period = s->u.pulse.period;
@@ -111,13 +117,18 @@ static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges
 
     double first = isinf(period) ? 0 : floor((t - s->u.pulse.delay) / period) - 1;
     first = first < 0 ? 0 : first;
+    const bool may_be_last = s->u.pulse.n_periods > 0 && first + 1 >= s->u.pulse.n_periods;
+    if (isfinite(period) && !may_be_last && period_start(s, first + 1) < t - near) {
+        first += 1; /* what is before it does not matter */
+    }
     const int n_periods = isinf(period) ? 1 : PERIODS_AROUND;
+    bool is_behind = false;
     edges->n = 0;
-    for (int k = 0; k < n_periods; k++) {
-        const double n = first + k;
-        const double start = n == 0 ? s->u.pulse.delay : s->u.pulse.delay + n * period;
-        for (int j = 0; j < 4 && offset[j] < end; j++) {
+    for (int k = 0; k < n_periods && !is_behind; k++) {
+        const double start = period_start(s, first + k);
+        for (int j = 0; j < 4 && offset[j] < end && !is_behind; j++) {
             edges->item[edges->n++] = (struct edge){start + offset[j], (enum segment)j};
+            is_behind = start + offset[j] > t + near;
         }
     }
     if (s->u.pulse.n_periods > 0 && first + n_periods >= s->u.pulse.n_periods) {
@@ -127,9 +138,7 @@ static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges
 
 /* The edges at t are item[first..last-1]; none when the two are equal, and then t lies in the
  * segment of item[first - 1]. */
-static void find_cluster(const struct dalcs_stimulus *s, const struct edges *edges, double t,
-                         int *first, int *last) {
-    const double near = tolerance(t, s->u.pulse.delay);
+static void find_cluster(const struct edges *edges, double t, double near, int *first, int *last) {
     int k = 0;
     while (k < edges->n && edges->item[k].time < t - near) {
         k++;
@@ -163,8 +172,9 @@ static double pulse_value(const struct dalcs_stimulus *s, double t, enum dalcs_s
     struct edges edges;
     int first;
     int last;
-    collect_edges(s, t, &edges);
-    find_cluster(s, &edges, t, &first, &last);
+    const double near = tolerance(t, s->u.pulse.delay);
+    collect_edges(s, t, near, &edges);
+    find_cluster(&edges, t, near, &first, &last);
     if (last > first && side == DALCS_RIGHT) {
         return segment_start(s, edges.item[last - 1].segment);
     }
@@ -178,7 +188,7 @@ static double pulse_value(const struct dalcs_stimulus *s, double t, enum dalcs_s
     }
     /* Inside a segment, or at its end where the next period cuts it short. */
     const double end = last > first ? edges.item[first].time : t;
-    return within_segment(s, before->segment, end - before->time, tolerance(t, s->u.pulse.delay));
+    return within_segment(s, before->segment, end - before->time, near);
 }
 
 static double pulse_next_edge(const struct dalcs_stimulus *s, double t) {
@@ -188,8 +198,9 @@ static double pulse_next_edge(const struct dalcs_stimulus *s, double t) {
     struct edges edges;
     int first;
     int last;
-    collect_edges(s, t, &edges);
-    find_cluster(s, &edges, t, &first, &last);
+    const double near = tolerance(t, s->u.pulse.delay);
+    collect_edges(s, t, near, &edges);
+    find_cluster(&edges, t, near, &first, &last);
     return last < edges.n ? edges.item[last].time : INFINITY;
 }
 

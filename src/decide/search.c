@@ -27,7 +27,6 @@ static const double most_tolerated = 2e-13;
 static const double briefly = 1.0 / 64.0;
 
 enum {
-    MOST_SHORTENED = 2,
     STUCK = 3,         /* smaller steps without a smaller error */
     LEVERED_STUCK = 2, /* of levered voltages alone */
     MOST_RESTARTS = 4,
@@ -272,19 +271,6 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
         *done = true;
         return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
-    return DALCS_OK;
-}
-
-bool dalcs_search_may_shorten(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                              const struct dalcs_search *search) {
-    return !search->fixed && search->shortened < MOST_SHORTENED && !is_shortest(r, part);
-}
-
-enum dalcs_status dalcs_search_shorten(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       struct dalcs_search *search, double ratio) {
-    search->shortened++;
-    r->rejected++;
-    dalcs_length_shorten(part, ratio, 0);
     return DALCS_OK;
 }
 

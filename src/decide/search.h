@@ -18,11 +18,10 @@ struct dalcs_search {
     int turns; /* of switches with hysteresis since the state has jumped, by what turns did */
     int jumps; /* by such turns */
     bool turned;
-    bool guessed;  /* the mode is one remembered from the last time, or that of a front */
-    bool front;    /* the latter */
-    int refined;   /* times that a step was shortened for the signs at its start */
-    int shortened; /* times that one was for currents of pairs */
-    bool closer;   /* micro-steps have looked for a mode that lasts for a small part of the step */
+    bool guessed; /* the mode is one remembered from the last time, or that of a front */
+    bool front;   /* the latter */
+    int refined;  /* times that a step was shortened for the signs at its start */
+    bool closer;  /* micro-steps have looked for a mode that lasts for a small part of the step */
     int flips_closer;
     bool untied; /* tied diodes have been looked at */
     bool opened; /* and are on their other sides now, to try */
@@ -64,12 +63,6 @@ enum dalcs_status dalcs_search_refuse(struct dalcs_radau_part *part,
 bool dalcs_search_may_refine(const struct dalcs_search *search);
 enum dalcs_status dalcs_search_refine(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                       struct dalcs_search *search) DALCS_MUST_CHECK;
-
-/* A shorter step, for currents of pairs that are wrong by `ratio` times what is allowed, though no state is. */
-bool dalcs_search_may_shorten(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                              const struct dalcs_search *search);
-enum dalcs_status dalcs_search_shorten(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       struct dalcs_search *search, double ratio) DALCS_MUST_CHECK;
 
 /* A diode without current and voltage: the circuit is asked which of its sides is of least norm, and
  * where it does not know yet, as at the event itself, whether it can turn. Not beyond the next event, in

@@ -104,10 +104,8 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->work.after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->work.before = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
-    int most_levered = part->stages.n_levered > s->n_pairs ? part->stages.n_levered : s->n_pairs;
-    part->scales.current_drift =
-        dalcs_arena_alloc(&part->arena, (size_t)dalcs_dense_map_rows(most_levered), sizeof(double));
-    part->scales.pair_parts = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
+    part->scales.current_drift = dalcs_arena_alloc(
+        &part->arena, (size_t)dalcs_dense_map_rows(part->stages.n_levered), sizeof(double));
     part->scales.current_parts =
         dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_levered, sizeof(double));
     bool complete = part->x != NULL && part->segment.in != NULL && part->segment.out != NULL &&
@@ -117,8 +115,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
                     part->work.u != NULL && part->work.y1 != NULL && part->work.y2 != NULL &&
                     part->work.w1 != NULL && part->work.after != NULL &&
                     part->work.before != NULL && part->used_input != NULL &&
-                    part->scales.current_drift != NULL && part->scales.current_parts != NULL &&
-                    part->scales.pair_parts != NULL;
+                    part->scales.current_drift != NULL && part->scales.current_parts != NULL;
     return complete && (dalcs_stages_have_maps(&part->stages) || allocate_probe(part))
                ? DALCS_OK
                : DALCS_E_NOMEM;

@@ -7,7 +7,6 @@
  * of it, by shorter steps whether the error was the step's. Where all fail, as where events accumulate
  * in finite time, implicit Euler goes on by itself for a while, certified and a little at a time. */
 #include "segment.h"
-#include "current_error.h"
 #include "extremes.h"
 #include "front.h"
 #include "guards.h"
@@ -28,9 +27,6 @@ static const double fine = 3e-11;
 
 /* See is_outsized(). */
 static const double outsized = 1e6;
-
-/* Errors of states, over what is allowed, of which no current of a pair is made that is worth a look. */
-static const double least_drift = 1.0 / 64.0;
 
 enum {
     MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
@@ -139,21 +135,6 @@ static double step_to_try(const struct dalcs_radau *r, struct dalcs_radau_part *
 /* Where the step's polynomials end to count, in steps. */
 static double end_of(const struct dalcs_radau_part *part, const struct dalcs_search *search) {
     return dalcs_smaller(1.0, (search->limit - part->segment.t) / part->segment.h);
-}
-
-/* Has a mode not begun with a step of this length before? What held then is not looked at as closely again. */
-static bool is_new_step(const struct dalcs_radau_part *part, const struct dalcs_search *search) {
-    return part->guards.fresh && !search->fixed && (!search->guessed || part->length.tries_longer);
-}
-
-/* So many times what is allowed are currents of pairs wrong in such a step by errors of states that are small enough;
- * 0: no more than allowed, or it was not looked at. */
-static double errors_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                              const struct dalcs_search *search, const struct dalcs_step_quality *q,
-                              struct dalcs_stage_entry *entry) {
-    bool is_due = q->drift > least_drift && is_new_step(part, search) &&
-                  dalcs_search_may_shorten(r, part, search);
-    return is_due ? dalcs_current_error_of_pairs(r, part, entry, q->unit) : 0.0;
 }
 
 /* One step in the present mode, with its errors. *holds: they are no more than allowed; if not, the next try is
@@ -266,10 +247,6 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     DALCS_TRY(solve_accurately(r, part, search, &entry, &quality, &holds, done));
     if (!holds) {
         return DALCS_OK;
-    }
-    double of_pairs = errors_of_pairs(r, part, search, &quality, entry);
-    if (of_pairs > 1.0) {
-        return dalcs_search_shorten(r, part, search, of_pairs);
     }
     if (is_worth_projecting(part, search, &quality)) {
         bool moved;

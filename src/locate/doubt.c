@@ -104,6 +104,10 @@ static double of_all(const struct dalcs_radau_part *part, double size, double of
            dalcs_beyond_noise * dalcs_doubt_noise(part) * of_noise;
 }
 
+/* Of what the tolerance promises of a current, a guard may be off by this part: rounding and what the current falls by
+ * besides have the rest. */
+static const double part_of_promise = 0.25;
+
 /* Which is no more than the band. */
 static double within_band(const struct dalcs_radau_part *part, double size, double of_noise,
                           double scale) {
@@ -125,8 +129,12 @@ double dalcs_doubt_about(const struct dalcs_radau_part *part, int guard, double 
     bool has_map = dalcs_stage_has_map(part->segment.entry);
     double spread = has_map ? spread_at_start(part, place) : spread_about(part, guard, unit);
     double size = largest_of(part, place) + spread;
-    bool is_local = !has_map && dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    return within_band(part, size, is_local ? size : scale, scale);
+    if (has_map || !dalcs_osnsp_is_on(&part->component->osnsp, guard)) {
+        return within_band(part, size, scale, scale);
+    }
+    /* The band is a part of the largest current of all, the promise one of this current's own scale. */
+    double promised = part->tolerance * dalcs_step_scale(part, place, unit);
+    return dalcs_smaller(within_band(part, size, size, scale), part_of_promise * promised);
 }
 
 double dalcs_doubt_of_closed(const struct dalcs_radau_part *part, int pair, double scale) {

@@ -14,6 +14,16 @@
 #include <math.h>
 #include <string.h>
 
+/* Work. */
+struct basis {
+    int *place;     /* [n_columns] */
+    double *vector; /* [n_columns] one that the mode maps to 0 */
+    double *part;   /* [n_pairs] what tied pairs have of it */
+    int *exchange;  /* [n_pairs + 1] */
+    bool *is_taken; /* [n_pairs] */
+    struct dalcs_arena arena;
+};
+
 /* What a pair has in a vector: lambda of a closed one and w of an open one, in units of one conductance; 0 where it is
  * no more than rounding of its terms. */
 static double part_in(const struct dalcs_osnsp *p, const int *place, const double *vector, int d) {
@@ -34,22 +44,31 @@ static double part_in(const struct dalcs_osnsp *p, const int *place, const doubl
     return fabs(sum) > n_columns * DBL_EPSILON * size ? fabs(sum) * root : 0.0;
 }
 
-/* The tied pair that has most of a vector, -1: none has any. *n_open: how many vectors there are. */
-static enum dalcs_status find_exchange(const struct dalcs_osnsp *p, int *place, double *vector,
-                                       int *pair, int *n_open) {
+/* Of the vectors that the mode maps to 0, those that share no tied pair with one before: each is taken away by the tied
+ * pair that has most of it, whatever becomes of the others, for between them the parts are a diagonal matrix.
+ * b->exchange[*n]; *n_open: how many vectors there are. */
+static enum dalcs_status find_exchanges(const struct dalcs_osnsp *p, const struct basis *b, int *n,
+                                        int *n_open) {
     struct dalcs_null_space space;
-    DALCS_TRY(dalcs_whole_null_space(p, place, &space));
-    double most = 0.0;
-    *pair = -1;
+    DALCS_TRY(dalcs_whole_null_space(p, b->place, &space));
+    memset(b->is_taken, 0, (size_t)p->system->n_pairs * sizeof(bool));
+    *n = 0;
     *n_open = space.n_free;
     for (int k = 0; k < space.n_free; k++) {
-        dalcs_null_space_vector(&space, k, vector);
+        dalcs_null_space_vector(&space, k, b->vector);
+        double most = 0.0;
+        bool is_alone = true;
         for (int d = 0; d < p->system->n_pairs; d++) {
-            double part = p->tied[d] ? part_in(p, place, vector, d) : 0.0;
-            if (part > most) {
-                most = part;
-                *pair = d;
+            b->part[d] = p->tied[d] ? part_in(p, b->place, b->vector, d) : 0.0;
+            is_alone = is_alone && !(b->part[d] > 0.0 && b->is_taken[d]);
+            if (b->part[d] > most) {
+                most = b->part[d];
+                b->exchange[*n] = d;
             }
+        }
+        *n += is_alone && most > 0.0 ? 1 : 0;
+        for (int d = 0; d < p->system->n_pairs && is_alone; d++) {
+            b->is_taken[d] = b->is_taken[d] || b->part[d] > 0.0;
         }
     }
     dalcs_null_space_finish(&space);
@@ -57,18 +76,19 @@ static enum dalcs_status find_exchange(const struct dalcs_osnsp *p, int *place, 
 }
 
 /* From p->mode; *is_regular: to a regular one. */
-static enum dalcs_status exchange(struct dalcs_osnsp *p, int *place, double *vector,
-                                  bool *is_regular) {
+static enum dalcs_status exchange(struct dalcs_osnsp *p, const struct basis *b, bool *is_regular) {
     int before = dalcs_system_n_columns(p->system) + 1;
     int n_open;
-    int pair;
-    DALCS_TRY(find_exchange(p, place, vector, &pair, &n_open));
-    while (n_open > 0 && n_open < before && pair >= 0) {
+    int n;
+    DALCS_TRY(find_exchanges(p, b, &n, &n_open));
+    while (n_open > 0 && n_open < before && n > 0) {
         before = n_open;
-        dalcs_osnsp_flip(p, pair);
-        p->tied[pair] = false;
-        p->counters.pivots++;
-        DALCS_TRY(find_exchange(p, place, vector, &pair, &n_open));
+        for (int k = 0; k < n; k++) {
+            dalcs_osnsp_flip(p, b->exchange[k]);
+            p->tied[b->exchange[k]] = false;
+            p->counters.pivots++;
+        }
+        DALCS_TRY(find_exchanges(p, b, &n, &n_open));
     }
     *is_regular = n_open == 0;
     return DALCS_OK;
@@ -78,14 +98,20 @@ static enum dalcs_status exchange(struct dalcs_osnsp *p, int *place, double *vec
 static enum dalcs_status move_to_basis(struct dalcs_osnsp *p, const double *u, double *y,
                                        bool *has_moved) {
     size_t n = (size_t)dalcs_system_n_columns(p->system);
-    struct dalcs_arena work = {0};
-    int *place = dalcs_arena_alloc(&work, n, sizeof(int));
-    double *vector = dalcs_arena_alloc(&work, n, sizeof(double));
-    enum dalcs_status status = place == NULL || vector == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    size_t n_pairs = (size_t)p->system->n_pairs;
+    struct basis b = {0};
+    b.place = dalcs_arena_alloc(&b.arena, n, sizeof(int));
+    b.vector = dalcs_arena_alloc(&b.arena, n, sizeof(double));
+    b.part = dalcs_arena_alloc(&b.arena, n_pairs, sizeof(double));
+    b.exchange = dalcs_arena_alloc(&b.arena, n_pairs + 1, sizeof(int));
+    b.is_taken = dalcs_arena_alloc(&b.arena, n_pairs, sizeof(bool));
+    bool has_all = b.place != NULL && b.vector != NULL && b.part != NULL && b.exchange != NULL &&
+                   b.is_taken != NULL;
+    enum dalcs_status status = has_all ? DALCS_OK : DALCS_E_NOMEM;
     memcpy(p->tied_answer, y, n * sizeof(*y));
     *has_moved = false;
     if (status == DALCS_OK) {
-        status = exchange(p, place, vector, has_moved);
+        status = exchange(p, &b, has_moved);
     }
     if (status == DALCS_OK && *has_moved) {
         bool sources_clash;
@@ -93,7 +119,7 @@ static enum dalcs_status move_to_basis(struct dalcs_osnsp *p, const double *u, d
         *has_moved = status == DALCS_OK && dalcs_certificate_holds(p, sources_clash);
         status = status > DALCS_OK ? DALCS_OK : status; /* next to singular */
     }
-    dalcs_arena_finish(&work);
+    dalcs_arena_finish(&b.arena);
     return status;
 }
 

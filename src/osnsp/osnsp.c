@@ -407,7 +407,7 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
         enum dalcs_status otherwise = dalcs_scattering_solve(p, u, y);
         status = otherwise <= DALCS_OK ? otherwise : status;
     }
-    if (status > DALCS_OK && !p->system->monotone) {
+    if (status > DALCS_OK && !dalcs_osnsp_is_monotone(p)) {
         status = dalcs_enumerate(p, u, y);
         if (status == DALCS_INFEASIBLE) {
             dalcs_witness_from_modes(p);

@@ -174,30 +174,23 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
 
 /* What goes with the defects that last: what dies away at once, or what equations without memory forbid,
  * is no error of currents. */
-static void fill_currents(struct dalcs_stage_workshop *b, double *out, double *pairs) {
+static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
     const struct dalcs_stages *stages = b->stages;
-    if (stages->n_levered + b->entry->n_on > 0) {
+    if (stages->n_levered > 0) {
         filter(b, b->n_x, b->defect, 0, b->n_x);
         for (int x = 0; x < b->n_x; x++) {
             b->lasting[x] = filtered(b, x);
         }
-        filter(b, b->n_x, b->lasting, 0, b->n);
+        filter(b, b->n_x, b->lasting, b->n_x, b->n - b->entry->n_on);
     }
     for (int k = 0; k < b->entry->current_rows; k++) {
         out[k] = k < stages->n_levered ? filtered(b, stages->levered[k]).high : 0.0;
     }
-    int first = b->n - b->entry->n_on; /* closed pairs are the last unknowns */
-    for (int k = 0; k < b->entry->n_on; k++) {
-        pairs[k] = filtered(b, first + k).high;
-    }
-    for (int k = b->entry->n_on; k < b->entry->pair_rows; k++) {
-        pairs[k] = 0.0;
-    }
 }
 
-/* Where a column of the map goes, and of those of the drift of currents. */
+/* Where a column of the map goes, and of that of the drift of currents. */
 struct map_column {
-    double *out, *currents, *pairs;
+    double *out, *currents;
 };
 
 /* One column of the map, with its clashes: the answer to in[column] = 1. And on to the next. */
@@ -223,7 +216,7 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     for (int x = 0; x < b->n_x; x++) {
         out[l->drift + x] = b->defect[x].high;
     }
-    fill_currents(b, to->currents, to->pairs);
+    fill_currents(b, to->currents);
     if (b->stages->excitation->is_curved) {
         put_columns(b, DALCS_RIPPLE_LANE, out + l->ripple);
     }
@@ -241,7 +234,6 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     }
     to->out += b->entry->rows;
     to->currents += b->entry->current_rows;
-    to->pairs += b->entry->pair_rows;
 }
 
 /* residual += value * column of n entries, with room for whole quads behind both. Returns the largest
@@ -310,7 +302,7 @@ static void fill_map(struct dalcs_stage_workshop *b, const struct dalcs_stage_fu
         .high = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0}};
     double share[DALCS_LANES] = {0.0};
     const struct drive constant = {share, &one, m->exact_to};
-    struct map_column to = {b->entry->map, b->entry->current_map, b->entry->pair_map};
+    struct map_column to = {b->entry->map, b->entry->current_map};
     memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int x = 0; x < b->n_x; x++) {
         fill_column(b, x, x, &constant, &to);
@@ -346,14 +338,12 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     entry->n_clashes = b->nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
     entry->current_rows = dalcs_dense_map_rows(stages->n_levered);
-    entry->pair_rows = dalcs_dense_map_rows(entry->n_on);
-    int all_rows = entry->rows + entry->current_rows + entry->pair_rows;
+    int all_rows = entry->rows + entry->current_rows;
     entry->map = dalcs_dense_map_alloc(all_rows, n_columns(b));
     if (entry->map == NULL) {
         return DALCS_E_NOMEM;
     }
     entry->current_map = entry->map + entry->rows * n_columns(b);
-    entry->pair_map = entry->current_map + entry->current_rows * n_columns(b);
     entry->bytes += (size_t)all_rows * (size_t)n_columns(b) * sizeof(double);
     fill_map(b, function);
     return DALCS_OK;
@@ -390,13 +380,6 @@ void dalcs_stage_map_currents(const struct dalcs_stages *stages,
                           dalcs_stage_map_input(stages, in), drift);
 }
 
-void dalcs_stages_drift_of_pairs(const struct dalcs_stages *stages,
-                                 const struct dalcs_stage_entry *entry, const double *in,
-                                 double *drift) {
-    dalcs_dense_map_apply(entry->pair_rows, n_columns(stages->workshop), entry->pair_map,
-                          dalcs_stage_map_input(stages, in), drift);
-}
-
 bool dalcs_stage_has_map(const struct dalcs_stage_entry *entry) {
     return entry->map != NULL;
 }
@@ -426,10 +409,4 @@ double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
                                      const struct dalcs_stage_entry *entry, int k, const double *in,
                                      const double *scale) {
     return spread(stages, entry->current_map + k, entry->current_rows, in, scale);
-}
-
-double dalcs_stage_spread_of_pair(const struct dalcs_stages *stages,
-                                  const struct dalcs_stage_entry *entry, int k, const double *in,
-                                  const double *scale) {
-    return spread(stages, entry->pair_map + k, entry->pair_rows, in, scale);
 }

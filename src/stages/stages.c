@@ -377,17 +377,8 @@ enum dalcs_status dalcs_stages_try(struct dalcs_stages *stages,
     return DALCS_OK;
 }
 
-int dalcs_stage_closed_pairs(const struct dalcs_stage_entry *entry, const int **on) {
-    *on = entry->on;
-    return entry->map != NULL ? entry->n_on : 0;
-}
-
 int *dalcs_stage_note(struct dalcs_stage_entry *entry) {
     return &entry->note;
-}
-
-int *dalcs_stage_note_of_pairs(struct dalcs_stage_entry *entry) {
-    return &entry->note_of_pairs;
 }
 
 enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t *mode, double h,

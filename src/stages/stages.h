@@ -93,14 +93,6 @@ void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
                                     const struct dalcs_stage_entry *entry, const double *in,
                                     double *drift);
 
-/* The closed pairs on[0..] of an entry with a map; returns their number. */
-int dalcs_stage_closed_pairs(const struct dalcs_stage_entry *entry, const int **on);
-
-/* drift[n], A, of the currents of these. */
-void dalcs_stages_drift_of_pairs(const struct dalcs_stages *stages,
-                                 const struct dalcs_stage_entry *entry, const double *in,
-                                 double *drift);
-
 /* probe[n_in]: as large as in[n_in], of a state at least scale[n_x], down to half of it, with signs of chance; another
  * one for each `draw`. */
 void dalcs_stages_draw(const struct dalcs_stages *stages, int draw, const double *in,
@@ -117,14 +109,8 @@ double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
                                      const struct dalcs_stage_entry *entry, int k, const double *in,
                                      const double *scale);
 
-/* As that, of the drift of closed pair k. */
-double dalcs_stage_spread_of_pair(const struct dalcs_stages *stages,
-                                  const struct dalcs_stage_entry *entry, int k, const double *in,
-                                  const double *scale);
-
-/* For who watches the drift of currents, and of those of pairs: 0 until it was set. */
+/* For who watches the drift of currents: 0 until it was set. */
 int *dalcs_stage_note(struct dalcs_stage_entry *entry);
-int *dalcs_stage_note_of_pairs(struct dalcs_stage_entry *entry);
 
 /* Keeps an entry valid, whatever else is asked for, until it is released as often. */
 void dalcs_stages_hold(struct dalcs_stage_entry *entry);

@@ -27,9 +27,6 @@ struct dalcs_stage_entry {
     double *map; /* [rows][n_in] by columns; NULL: factors */
     int current_rows;
     double *current_map; /* [current_rows][n_in] the drift of currents, behind map */
-    int pair_rows;
-    double *pair_map; /* [pair_rows][n_in] that of the currents of pairs that are on, behind that */
-    int note_of_pairs; /* dalcs_stage_note_of_pairs() */
     int note;
     struct dalcs_stage_factors *factors;
     /* Entries with factors of their own, whose changes others may be. */

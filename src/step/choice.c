@@ -93,12 +93,22 @@ static double choose_tolerance(const struct dalcs_radau_options *o, int n, int d
     return n <= dense_limit && is_free ? fmin(o->tolerance, aimed) : o->tolerance;
 }
 
+/* Without a pair there is one mode, whose factors serve for all steps of a length. So stages cost no more than in
+ * proportion, and steps of nine are longer by more than that: nothing but an edge ends them. */
+static bool has_one_mode(const struct dalcs_component *c) {
+    return c->system->n_pairs == 0 && c->system->monotone;
+}
+
 /* Small parts pay little for more stages, mostly as dense maps, and save steps and maps. Nine are
  * too many where pulses end steps before errors do, where a map is dear, and where controlled sources may
  * make the index 3: second derivatives show ten times the rounding of seven. Large parts pay for each
  * stage with a factorisation in some new modes, and save steps where a sine sets their length. */
 static int choose_stages(double tolerance, bool does_better, const struct dalcs_component *c, int n,
                          int dense_limit, const char **because) {
+    if (n > dense_limit && has_one_mode(c)) {
+        *because = "large, one mode";
+        return 9;
+    }
     if (n > dense_limit) {
         bool few = is_pulsed(c) || !is_swinging(c);
         bool fewer = few && tolerance >= loose;

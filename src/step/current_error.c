@@ -6,8 +6,7 @@
  * ten millionth of them is a millivolt. Of other voltages nothing like it is asked: a coil cut off by
  * 10 Mohm has transients of 10 ps, which nobody wants to wait for. In most circuits no state has such a
  * lever; by maps that is looked up now and then, and costs them nothing else. Factors do not tell it: there all
- * voltages count that resistors make of coils, and search.c lets those pass that no shorter step mends, and no
- * current of a pair does. */
+ * voltages count that resistors make of coils, and search.c lets those pass that no shorter step mends. */
 #include "current_error.h"
 
 #include "extremes.h"
@@ -62,18 +61,6 @@ static double allowed_of(const struct dalcs_radau_part *part, int k, const doubl
            besides[is_current];
 }
 
-/* The column of a pair. */
-static int column_of(const struct dalcs_radau_part *part, int pair) {
-    return dalcs_system_n_equations(part->component->system) + pair;
-}
-
-static double allowed_of_pair(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                              int pair, const double unit[2]) {
-    return dalcs_larger(part->inner_tolerance, least_tolerance) *
-               dalcs_step_scale(part, column_of(part, pair), unit) +
-           r->besides[1];
-}
-
 /* The largest drift of a state, over what is allowed, that states as large as they have been could make. */
 static double spread_of_states(const struct dalcs_radau_part *part,
                                const struct dalcs_stage_entry *entry, const double unit[2],
@@ -112,33 +99,6 @@ static bool has_lever(const struct dalcs_radau_part *part, const struct dalcs_st
     return false;
 }
 
-/* The same of an error of the current of a closed pair. */
-static bool has_lever_on_pair(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                              const struct dalcs_stage_entry *entry, const double unit[2]) {
-    const int *on;
-    int n = dalcs_stage_closed_pairs(entry, &on);
-    bool has = false;
-    for (int k = 0; k < n && !has; k++) {
-        double spread = dalcs_stage_spread_of_pair(&part->stages, entry, k, part->segment.in,
-                                                   part->scales.column);
-        double least = pessimism * allowed_of_pair(r, part, on[k], unit);
-        has = growth * spread > least;
-    }
-    return has;
-}
-
-/* The largest of what currents of pairs have been made of in steps with such a lever. */
-static void raise_parts_of_pairs(struct dalcs_radau_part *part,
-                                 const struct dalcs_stage_entry *entry) {
-    const int *on;
-    int n = dalcs_stage_closed_pairs(entry, &on);
-    for (int k = 0; k < n; k++) {
-        double spread = dalcs_stage_spread(&part->stages, entry, column_of(part, on[k]),
-                                           part->segment.in, part->scales.column);
-        part->scales.pair_parts[on[k]] = dalcs_larger(part->scales.pair_parts[on[k]], spread);
-    }
-}
-
 /* The largest of what currents have been made of in steps with a lever. */
 static void raise_parts(struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry) {
     const struct dalcs_stages *stages = &part->stages;
@@ -168,25 +128,6 @@ static bool may_matter(struct dalcs_radau_part *part, struct dalcs_stage_entry *
     }
     *note += *note < 0 ? 1 : 0;
     return has;
-}
-
-/* The same of currents of pairs. */
-static bool may_matter_to_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                struct dalcs_stage_entry *entry, const double unit[2]) {
-    int *note = dalcs_stage_note_of_pairs(entry);
-    if (*note > 0) {
-        --*note;
-        return false;
-    }
-    if (*note == 0) {
-        bool has = has_lever_on_pair(r, part, entry, unit);
-        *note = has ? -STEPS_BETWEEN : STEPS_BETWEEN;
-        if (has) {
-            raise_parts_of_pairs(part, entry);
-        }
-    }
-    *note += *note < 0 ? 1 : 0;
-    return *note <= 0;
 }
 
 /* On factors no sum of all that states make of a voltage is known: probes of chance tell what rounding leaves in its
@@ -259,30 +200,4 @@ void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry
             e->of_unit = dalcs_larger(e->of_unit, error / scale);
         }
     }
-}
-
-double dalcs_current_error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                    struct dalcs_stage_entry *entry, const double unit[2]) {
-    const struct dalcs_stages *stages = &part->stages;
-    const int *on;
-    int n = dalcs_stage_closed_pairs(entry, &on);
-    double worst = 0.0;
-    if (n == 0 || !may_matter_to_pairs(r, part, entry, unit)) {
-        return worst;
-    }
-    dalcs_stages_drift_of_pairs(stages, entry, part->segment.in, part->scales.current_drift);
-    for (int k = 0; k < n; k++) {
-        double error = fabs(part->scales.current_drift[k]) / pessimism;
-        double allowed = allowed_of_pair(r, part, on[k], unit);
-        if (!(error > allowed)) {
-            continue;
-        }
-        double rounding = roundings * dalcs_stage_spread_of_pair(stages, entry, k, part->segment.in,
-                                                                 part->scales.column) +
-                          roundings_apart * part->scales.pair_parts[on[k]];
-        if (error * pessimism > rounding) {
-            worst = dalcs_larger(worst, error / allowed);
-        }
-    }
-    return worst;
 }

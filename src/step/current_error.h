@@ -17,10 +17,4 @@ void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry
                          const double unit[2], const double besides[2],
                          struct dalcs_lever_error *error);
 
-/* The largest of a current of a closed pair, by a map, over what is allowed; 0: none is more. For the first step of a
- * mode: there states have the errors of an event, and what they make of diodes' currents dies away between two
- * nodes. */
-double dalcs_current_error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                    struct dalcs_stage_entry *entry, const double unit[2]);
-
 #endif

@@ -71,9 +71,8 @@ struct dalcs_part_scales {
     /* A per V, what rounding of conductances that meet makes of nothing between them and ground. */
     double leak;
     struct dalcs_column_kinds *kinds; /* see step_error.c */
-    double *current_drift;            /* of these or of pairs, in whole eights: current_error.c */
+    double *current_drift;            /* of these, in whole eights: current_error.c */
     double *current_parts;            /* [n_levered] what they are made of, at most; ditto */
-    double *pair_parts;               /* [n_pairs] likewise; ditto */
 
     struct dalcs_lever_probe {                 /* ditto */
         const struct dalcs_stage_entry *entry; /* on factors, that was probed; NULL: none */

@@ -64,6 +64,21 @@ START_TEST(test_what_is_asked_for_is_taken) {
 
 END_TEST
 
+static const char diode[] = "V1 n0 0 SIN(0 1 50)\nD1 n0 n1 DI\n.model DI D(ron=1)\n";
+
+/* Where there is one mode its factors serve all steps: many stages, whatever drives it and how loose the tolerance. */
+START_TEST(test_large_parts) {
+    struct dalcs_radau_options loose = usual;
+    loose.tolerance = 1e-3;
+    ck_assert_int_eq(choice_of(source, 40, 1e-3, &usual).stages, 9);
+    ck_assert_int_eq(choice_of(gate, 40, 1e-3, &loose).stages, 9);
+    ck_assert_str_eq(choice_of(gate, 40, 1e-3, &loose).because, "large, one mode");
+    ck_assert_int_eq(choice_of(diode, 40, 1e-3, &usual).stages, 7);
+    ck_assert_str_eq(choice_of(diode, 40, 1e-3, &usual).because, "large, sine");
+}
+
+END_TEST
+
 /* Maps beyond half the limit: at tight tolerances, where digits are lost on factors. */
 START_TEST(test_maps) {
     struct dalcs_radau_options fine = usual;
@@ -78,4 +93,5 @@ START_TEST(test_maps) {
 
 END_TEST
 
-RUN_TESTS("choice", test_small_parts_aim_higher, test_what_is_asked_for_is_taken, test_maps)
+RUN_TESTS("choice", test_small_parts_aim_higher, test_what_is_asked_for_is_taken, test_large_parts,
+          test_maps)
