@@ -127,13 +127,14 @@ static enum dalcs_status look_longer(struct dalcs_radau_part *part, const struct
     double *before = part->work.y1;
     double *apart = part->work.y2;
     int n_x = part->component->system->n_x;
+    bool means_something = false; /* a longer step would */
     for (int x = 0; x < n_x; x++) {
         bool tells = !has_moved(part, x, after[x]) && !is_rough(part, x, after[x]);
         before[x] = after[x];
         apart[x] = is_in(part, x, of) && !tells ? INFINITY : 0.0;
+        means_something = means_something || apart[x] > 0.0;
     }
     const double shortest = part->segment.h;
-    bool means_something = true;
     enum dalcs_status status = DALCS_OK;
     for (int k = lengths->first + 1; k < PROJECTIONS && means_something && status >= DALCS_OK;
          k++) {
@@ -176,7 +177,7 @@ static enum dalcs_status move_block(struct dalcs_radau *r, struct dalcs_radau_pa
 static enum dalcs_status move_in_order(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        const struct lengths *lengths, bool *moved) {
     int n_blocks = part->component->osnsp.partition.n_blocks;
-    bool is_behind = false; /* a block has moved since the step */
+    bool is_behind = false; /* the last step is another one, or a block has moved since */
     for (int k = 0; k < n_blocks; k++) {
         int of = n_blocks > 1 ? k : -1;
         if (!has_states(part, of)) {
@@ -189,8 +190,10 @@ static enum dalcs_status move_in_order(struct dalcs_radau *r, struct dalcs_radau
                 return status < DALCS_OK ? status : DALCS_OK;
             }
         }
-        DALCS_TRY(move_block(r, part, lengths, of, &is_behind));
-        *moved = *moved || is_behind;
+        bool moves;
+        DALCS_TRY(move_block(r, part, lengths, of, &moves));
+        *moved = *moved || moves;
+        is_behind = moves || of > 0;
     }
     return DALCS_OK;
 }
