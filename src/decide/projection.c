@@ -1,7 +1,9 @@
 /* projection.c - where the stages of a step in the mode are, extrapolated to its beginning. */
 #include "projection.h"
 
+#include "extremes.h"
 #include "present.h"
+#include "step_error.h"
 
 #include <math.h>
 
@@ -12,6 +14,14 @@ static const int projection[PROJECTIONS] = {30, 20, 10};
 
 /* States that move by so many times their drift in a projecting step hide in it what they are off by. */
 static const double hidden = 16.0;
+
+/* What steps are tried for a projection. */
+struct lengths {
+    double tried; /* s, the step before them */
+    double limit; /* s, up to which one may go */
+    bool fixed;   /* the step is given */
+    int first;    /* of `projection`, in which the mode was seen */
+};
 
 /* Of try k, after a step of length `tried`. */
 static double projecting_length(const struct dalcs_radau_part *part, double tried, bool fixed,
@@ -34,19 +44,54 @@ bool dalcs_projection_sees(const struct dalcs_radau_part *part, bool fixed) {
     return sees;
 }
 
-/* Where the polynomial of a step begins. *moves: that is elsewhere, farther than the step goes. */
-static void find_beginning(struct dalcs_radau_part *part, bool *moves) {
+/* Does this state belong to block `of`? -1: to any. */
+static bool is_in(const struct dalcs_radau_part *part, int x, int of) {
+    return of < 0 || part->stages.block_of[x] == of;
+}
+
+/* Where the polynomial of a step begins. */
+static double beginning_of(const struct dalcs_radau_part *part, int x) {
     const struct dalcs_collocation *m = part->stages.method;
-    int stride = part->stages.layout.stride;
-    for (int x = 0; x < part->component->system->n_x; x++) {
-        part->work.after[x] = 0.0;
-        for (int i = 1; i <= m->n_stages; i++) {
-            part->work.after[x] += m->back[i - 1] * part->segment.out[i * stride + x];
-        }
-        double defect = fabs(part->work.after[x] - part->x[x]);
-        double regular = fabs(part->segment.out[m->s * stride + x] - part->work.after[x]);
-        *moves = *moves || defect > 4.0 * regular;
+    double beginning = 0.0;
+    for (int i = 1; i <= m->n_stages; i++) {
+        beginning += m->back[i - 1] * part->segment.out[i * part->stages.layout.stride + x];
     }
+    return beginning;
+}
+
+/* How far the step goes from there. */
+static double way_of(const struct dalcs_radau_part *part, int x, double beginning) {
+    const double *end = part->segment.out + part->stages.method->s * part->stages.layout.stride;
+    return fabs(end[x] - beginning);
+}
+
+/* Is it elsewhere than the state, farther than the step goes? */
+static bool has_moved(const struct dalcs_radau_part *part, int x, double beginning) {
+    return fabs(beginning - part->x[x]) > 4.0 * way_of(part, x, beginning);
+}
+
+/* Does the state go from node to node as rounding does? What it is off by may hide in that. */
+static bool is_rough(const struct dalcs_radau_part *part, int x, double beginning) {
+    const double *drift = part->segment.out + part->stages.layout.drift;
+    return !(hidden * fabs(drift[x]) < way_of(part, x, beginning));
+}
+
+/* Of states in other blocks than `of` work.after is where they are. *moves: not so of one in it. */
+static void find_beginning(struct dalcs_radau_part *part, int of, bool *moves) {
+    double *after = part->work.after;
+    for (int x = 0; x < part->component->system->n_x; x++) {
+        bool is_own = is_in(part, x, of);
+        after[x] = is_own ? beginning_of(part, x) : part->x[x];
+        *moves = *moves || (is_own && has_moved(part, x, after[x]));
+    }
+}
+
+static bool has_states(const struct dalcs_radau_part *part, int of) {
+    bool has = false;
+    for (int x = 0; x < part->component->system->n_x && !has; x++) {
+        has = is_in(part, x, of);
+    }
+    return has;
 }
 
 /* A step of length part->segment.h, up to limit. *means_something: it is long enough for the mode to be seen beside
@@ -62,6 +107,97 @@ static enum dalcs_status try_projection(struct dalcs_radau_part *part, double li
     return status;
 }
 
+/* Are the states of blocks before `of` within their tolerance in a step? Nothing in them is faster. */
+static bool acts_slowly(const struct dalcs_radau_part *part, int of) {
+    const double *drift = part->segment.out + part->stages.layout.drift;
+    bool slow = true;
+    for (int x = 0; x < part->component->system->n_x && slow; x++) {
+        double scale = dalcs_step_scale(part, x, part->scales.unit);
+        slow = part->stages.block_of[x] >= of || fabs(drift[x]) <= part->inner_tolerance * scale;
+    }
+    return slow;
+}
+
+/* What block `of` reads may be the voltage of a coil, and rounding of its current over so short a step is more than that.
+ * Of the states that move in the projecting step, or go as rounding does, longer ones show as much with less of it, up to
+ * their own error: of two lengths that agree best the longer one tells. *moves: there are such states. */
+static enum dalcs_status look_longer(struct dalcs_radau_part *part, const struct lengths *lengths,
+                                     int of, bool *moves) {
+    double *after = part->work.after;
+    double *before = part->work.y1;
+    double *apart = part->work.y2;
+    int n_x = part->component->system->n_x;
+    bool means_something = false; /* a longer step would */
+    for (int x = 0; x < n_x; x++) {
+        bool tells = !has_moved(part, x, after[x]) && !is_rough(part, x, after[x]);
+        before[x] = after[x];
+        apart[x] = is_in(part, x, of) && !tells ? INFINITY : 0.0;
+        means_something = means_something || apart[x] > 0.0;
+    }
+    const double shortest = part->segment.h;
+    enum dalcs_status status = DALCS_OK;
+    for (int k = lengths->first + 1; k < PROJECTIONS && means_something && status >= DALCS_OK;
+         k++) {
+        part->segment.h = projecting_length(part, lengths->tried, lengths->fixed, k);
+        means_something = false;
+        status = try_projection(part, lengths->limit, &means_something);
+        means_something = means_something && acts_slowly(part, of);
+        for (int x = 0; x < n_x && means_something; x++) {
+            double beginning = apart[x] > 0.0 ? beginning_of(part, x) : before[x];
+            double differs = fabs(beginning - before[x]);
+            before[x] = beginning;
+            after[x] = differs < apart[x] ? beginning : after[x];
+            apart[x] = dalcs_smaller(apart[x], differs);
+        }
+    }
+    for (int x = 0; x < n_x; x++) {
+        *moves = *moves || (apart[x] > 0.0 && apart[x] < INFINITY);
+    }
+    part->segment.h = shortest;
+    return status < DALCS_OK ? status : DALCS_OK;
+}
+
+/* Puts the states of one block where the last step, a projecting one, begins. */
+static enum dalcs_status move_block(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                    const struct lengths *lengths, int of, bool *moved) {
+    *moved = false;
+    find_beginning(part, of, moved);
+    if (of > 0) {
+        DALCS_TRY(look_longer(part, lengths, of, moved));
+    }
+    if (*moved) {
+        dalcs_radau_go_after(r, part);
+    }
+    return DALCS_OK;
+}
+
+/* The last step was a projecting one: puts states on what the mode allows, block by block (partition.h). What acts jumps
+ * by what it is off, over the length of such a step, and what only reads it would follow that: so it is looked at again
+ * from where the blocks before it are. */
+static enum dalcs_status move_in_order(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       const struct lengths *lengths, bool *moved) {
+    int n_blocks = part->component->osnsp.partition.n_blocks;
+    bool is_behind = false; /* the last step is another one, or a block has moved since */
+    for (int k = 0; k < n_blocks; k++) {
+        int of = n_blocks > 1 ? k : -1;
+        if (!has_states(part, of)) {
+            continue;
+        }
+        if (is_behind) {
+            struct dalcs_stage_entry *entry;
+            enum dalcs_status status = dalcs_segment_solve(part, &entry);
+            if (status != DALCS_OK) {
+                return status < DALCS_OK ? status : DALCS_OK;
+            }
+        }
+        bool moves;
+        DALCS_TRY(move_block(r, part, lengths, of, &moves));
+        *moved = *moved || moves;
+        is_behind = moves || of > 0;
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        double limit, bool fixed, bool *moved) {
     double tried = part->segment.h;
@@ -70,18 +206,18 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
         return DALCS_OK;
     }
     dalcs_radau_swap_out(part, &part->work.out_tried);
+    struct lengths lengths = {tried, limit, fixed, -1};
     bool means_something = false;
     enum dalcs_status status = DALCS_OK;
-    for (int k = 0; k < PROJECTIONS && !means_something && status >= DALCS_OK; k++) {
-        part->segment.h = projecting_length(part, tried, fixed, k);
+    while (!means_something && status >= DALCS_OK && ++lengths.first < PROJECTIONS) {
+        part->segment.h = projecting_length(part, tried, fixed, lengths.first);
         status = try_projection(part, limit, &means_something);
     }
     if (means_something) {
-        find_beginning(part, moved);
+        status = move_in_order(r, part, &lengths, moved);
     }
     if (*moved) {
-        dalcs_radau_go_after(r, part);
-        return DALCS_OK;
+        return status;
     }
     dalcs_radau_swap_out(part, &part->work.out_tried);
     part->segment.h = tried;
@@ -97,7 +233,7 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
 bool dalcs_projection_settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                              const double *unit) {
     bool moves = false;
-    find_beginning(part, &moves);
+    find_beginning(part, -1, &moves);
     const struct dalcs_system *s = part->component->system;
     for (int x = 0; x < s->n_x; x++) {
         double most = part->inner_tolerance * unit[s->column_is_current[x]];

@@ -142,15 +142,18 @@ static void extrapolate_lengths(const struct dalcs_radau_part *part, const doubl
     }
 }
 
-/* Of micro-steps of length h and h/2, with the sources as they are just behind the instant. */
+/* Of micro-steps of length h and h/2, with the sources as they are just behind the instant; where what acts has jumped
+ * before, with sources that go on: what reads may read the current that they move through a capacitor. */
 static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
                                   bool *is_seen, bool *is_near) {
     double *whole = r->base->after;
+    double goes_on = r->base->jump.is_first ? 1.0 : 0.0;
     bool noticeable;
     double closer;
-    DALCS_TRY(dalcs_micro_pair(r, part, h, 0.0));
+    DALCS_TRY(dalcs_micro_pair(r, part, h, goes_on * h));
     (void)dalcs_micro_extrapolate(part, whole, &noticeable, &closer);
-    DALCS_TRY(dalcs_micro_pair(r, part, 0.5 * h, 0.0));
+    h *= 0.5;
+    DALCS_TRY(dalcs_micro_pair(r, part, h, goes_on * h));
     *is_seen = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
     extrapolate_lengths(part, whole, is_near);
     return DALCS_OK;
@@ -199,7 +202,10 @@ static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_rada
         DALCS_TRY(find_jump(r, part, 0.5 * last));
     }
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-    DALCS_TRY(dalcs_micro_steps(r, part, h)); /* for the mode */
+    move_first(r, part);
+    status = dalcs_micro_steps(r, part, h); /* for the mode */
+    memcpy(part->x, part->work.before, bytes);
+    DALCS_TRY(status);
     return take_jump(r, part);
 }
 

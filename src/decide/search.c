@@ -1,6 +1,7 @@
 /* search.c - the answers to a step that does not hold. */
 #include "search.h"
 
+#include "blocks.h"
 #include "guard_scale.h"
 #include "guards.h"
 #include "present.h"
@@ -178,6 +179,15 @@ static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
     return true;
 }
 
+/* Asks the circuit. Blocks before this one hold, and keep their mode: nothing in it acts on them. */
+static enum dalcs_status ask_from(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                  struct dalcs_search *search, int block) {
+    keep_mode(part);
+    DALCS_TRY(dalcs_search_ask(r, part, search, false));
+    dalcs_blocks_put_back(part, block, part->work.mode_tied);
+    return DALCS_OK;
+}
+
 /* Of the first step of a mode, with an error so many times what is allowed: may it be that the state has to
  * jump, or only that the step is too long? A shorter one is tried first: it may show a transient that a
  * micro-step passes over, with the events in it, and costs less. Where every state is what it likes none jumps. */
@@ -231,7 +241,9 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
     }
     if (part->guards.fresh && search->restarts == 0 &&
         is_worth_asking(part, search, quality->own)) {
-        return dalcs_search_ask(r, part, search, false);
+        bool is_judged = isfinite(quality->own);
+        return ask_from(r, part, search,
+                        is_judged ? dalcs_blocks_first_wrong(part, quality->unit) : 0);
     }
     bool asked = search->restarts > 0 || !part->guards.fresh;
     bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
@@ -387,7 +399,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
         return DALCS_OK;
     }
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
-        return dalcs_search_ask(r, part, search, false);
+        return ask_from(r, part, search, dalcs_blocks_first_crossed(part));
     }
     if (search->flips == 2 && dalcs_search_may_refine(search)) {
         search->flips = 0; /* on neither side: a shorter step may tell which */

@@ -7,8 +7,7 @@
 
 #include <math.h>
 
-/* V or A that rounding makes of a pair that is 0. */
-static double nothing_of(const struct dalcs_radau_part *part, int pair, const double *unit) {
+double dalcs_tied_nothing(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
     return limit + dalcs_guard_rounding(part, pair, unit);
 }
@@ -16,7 +15,7 @@ static double nothing_of(const struct dalcs_radau_part *part, int pair, const do
 /* Are all of these no more than that? */
 static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
                        int stride, const double *unit) {
-    double limit = nothing_of(part, pair, unit);
+    double limit = dalcs_tied_nothing(part, pair, unit);
     bool nothing = true;
     for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
         nothing = fabs(value[k * stride]) <= limit;
@@ -114,7 +113,7 @@ static bool is_above(const struct dalcs_radau_part *part, int pair, double end,
     const double *value =
         part->segment.out + dalcs_system_n_equations(part->component->system) + pair;
     return dalcs_guard_value_at(part, value, part->stages.layout.stride, 0.5 * end) >
-           nothing_of(part, pair, unit);
+           dalcs_tied_nothing(part, pair, unit);
 }
 
 /* The tied diodes that are open close, all of them: where there are many answers they may have a part of a current. */

@@ -6,6 +6,9 @@
 
 #include "radau_state.h"
 
+/* V or A that rounding makes of a pair that is 0. */
+double dalcs_tied_nothing(const struct dalcs_radau_part *part, int pair, const double *unit);
+
 /* Is there a diode with neither current nor voltage during the whole step? It may change sides without
  * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
  * knows which is of least norm. A closed one that had no current before the event either is none of them

@@ -348,7 +348,7 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
     }
     memcpy(p->tied_mode, p->mode, bytes);
     enum dalcs_status status = pivot(p, u, y, p->system->n_pairs);
-    *is_done = status < DALCS_OK || (status == DALCS_OK && p->n_tied == 0);
+    *is_done = status < DALCS_OK || (status == DALCS_OK && p->n_tied == 0 && !p->least_norm);
     if (*is_done) {
         return status;
     }

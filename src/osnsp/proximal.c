@@ -241,13 +241,17 @@ static double move_centre(struct dalcs_osnsp *p, double *change, double *way) {
 }
 
 /* The mode where a regularised problem ends answered without weights: in a singular one the answer of least
- * norm, which is what the iterates converge to; in a regular one, or one next to it, the only one. */
+ * norm that has the right signs, which is what the iterates converge to; in a regular one, or one next to it, the only
+ * one. */
 static enum dalcs_status try_exactly(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
     size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
     memcpy(p->regularised_mode, p->mode, bytes);
     enum dalcs_status status = dalcs_exact_pivot(p, u, y, limit);
     if (status != DALCS_OK) {
         memcpy(p->mode, p->regularised_mode, bytes);
+    }
+    if (status == DALCS_NOT_CONVERGED && limit == 0) {
+        status = dalcs_open_mode_solve(p, u, y);
     }
     return status;
 }
