@@ -167,6 +167,11 @@ static size_t count_parasitics(const struct dalcs_card *card) {
     return n > 0 ? n + 1 : 0;
 }
 
+/* A flux or a charge that is a formula: terminal, core, and what finds the argument. */
+static size_t count_storage(const struct dalcs_card *card) {
+    return card->letter == 'l' || card->letter == 'c' ? 3 * count_formulas(card) : 0;
+}
+
 /* I1 a b 50m load */
 static bool is_load(const struct dalcs_card *card) {
     bool found = false;
@@ -213,7 +218,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_inner += 2 * n_limits;
             table->n_stimuli += n_limits;
         }
-        table->n_inner += count_parasitics(card);
+        table->n_inner += count_parasitics(card) + count_storage(card);
         table->n_inner += is_load(card) ? 2 : 0;
         if (dalcs_card_is_logic(card)) {
             table->n_gates++;
