@@ -2,8 +2,8 @@
  *
  * R = 0 is a short. An inductor of 0 H is one too and becomes a resistor of 0 ohm; a capacitor of
  * 0 F is open and becomes a current source of 0 A: neither has a state. */
+#include "core.h"
 #include "number.h"
-#include "storage.h"
 
 #include <string.h>
 
@@ -53,6 +53,7 @@ struct values {
     double multiplier; /* 0: none */
     struct dalcs_parasitics parasitics;
     struct dalcs_storage_law law;
+    struct dalcs_core core;
 };
 
 /* A formula in the place of a value, or behind Flux= or Q=; false: there is none. */
@@ -151,6 +152,14 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
         }
         return true;
     }
+    if (device->kind == DALCS_INDUCTOR && dalcs_core_is_name(name->text)) {
+        if (values->has_value && values->core.first == NULL) {
+            dalcs_builder_error(builder, name, NULL, "a core beside %s", family->value);
+            return false;
+        }
+        values->has_value = true;
+        return dalcs_core_read(reader, name, &values->core);
+    }
     if (may_have(device->kind, name->text)) {
         return dalcs_parasitic_read(reader, name, &values->parasitics);
     }
@@ -216,6 +225,20 @@ static void multiply(struct dalcs_device *device, struct dalcs_parasitics *paras
     dalcs_parasitic_multiply(parasitics, m);
 }
 
+/* One that is no straight line. */
+static void expand_storage(struct dalcs_builder *builder, const struct dalcs_card *card,
+                           struct dalcs_device *device, struct values *values) {
+    const double m = values->multiplier > 0 ? values->multiplier : 1;
+    const bool has_core = values->core.first != NULL;
+    struct dalcs_core_stop stop;
+    if (has_core && !dalcs_core_make(builder, card, &values->core, m, &values->law, &stop)) {
+        return;
+    }
+    if (dalcs_storage_expand(builder, card, device, &values->law, m) && has_core) {
+        dalcs_core_add_stop(builder, card->token, device->node, &stop);
+    }
+}
+
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind) {
     const struct family *family = family_of(kind);
@@ -256,6 +279,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         values.multiplier = (values.multiplier > 0 ? values.multiplier : 1) * card->parallel;
     }
     if (builder->default_rser != NULL && kind == DALCS_INDUCTOR && values.law.formula == NULL &&
+        values.core.first == NULL &&
         !dalcs_parasitic_has_rser(&values.parasitics)) {
         builder->default_rser[device - builder->circuit->device] =
             LTSPICE_RSER / (values.multiplier > 0 ? values.multiplier : 1);
@@ -264,9 +288,8 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         multiply(device, &values.parasitics, values.multiplier);
     }
     dalcs_parasitic_expand(builder, card->token, device, &values.parasitics);
-    if (values.law.formula != NULL) {
-        dalcs_storage_expand(builder, card, device, &values.law,
-                             values.multiplier > 0 ? values.multiplier : 1);
+    if (values.law.formula != NULL || values.core.first != NULL) {
+        expand_storage(builder, card, device, &values);
         return;
     }
     if (device->value == 0 && kind != DALCS_RESISTOR) {

@@ -71,6 +71,13 @@ static struct dalcs_device *add_core(struct dalcs_builder *builder,
     core->node[0] = device->node[0];
     core->node[1] = inside;
     core->value = unit;
+    if (is_coil) { /* the terminal has the whole current, and the name */
+        struct dalcs_device *terminal = &builder->circuit->device[builder->current_of[index]];
+        terminal->name = device->name;
+        terminal->letter = device->letter;
+        device->name = dalcs_arena_printf(&builder->circuit->arena, "bend(%s)", element->text);
+        builder->out_of_memory = builder->out_of_memory || device->name == NULL;
+    }
     device->node[0] = is_coil ? device->node[0] : inside;
     device->kind = is_coil ? DALCS_VCCS : DALCS_VCVS;
     device->is_storage = true;
@@ -164,30 +171,31 @@ static void put_smooth(struct dalcs_builder *builder, const struct dalcs_token *
         dalcs_builder_add_inner_device(builder, DALCS_VCCS, "balance", element);
     if (balance != NULL) {
         balance->node[0] = node;
+        balance->is_storage = true;
         dalcs_behavioural_add_formula(builder, balance, dalcs_formula_token(&w, law));
     }
 }
 
-void dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card *card,
+bool dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card *card,
                           struct dalcs_device *device, const struct dalcs_storage_law *law,
                           double m) {
     struct dalcs_storage *s = dalcs_arena_alloc(&builder->scratch, 1, sizeof *s);
     if (s == NULL) {
         builder->out_of_memory = true;
-        return;
+        return false;
     }
     *s = (struct dalcs_storage){.device = (int)(device - builder->circuit->device),
                                 .before = builder->storage};
     if (!dalcs_storage_function_make(builder, card, device, law, m, &s->f)) {
-        return;
+        return false;
     }
     if (s->f.formula == NULL && dalcs_piecewise_is_line(&s->f.curve)) {
         device->value = s->f.unit; /* an ordinary one */
-        return;
+        return false;
     }
     struct dalcs_device *core = add_core(builder, card->token, device, s->f.unit);
     if (core == NULL) {
-        return;
+        return false;
     }
     s->core = (int)(core - builder->circuit->device);
     builder->storage = s;
@@ -196,6 +204,7 @@ void dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card
     } else {
         put_smooth(builder, card->token, device, core, &s->f);
     }
+    return true;
 }
 
 /* ---- Initial states ------------------------------------------------------------------------------------ */

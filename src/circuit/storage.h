@@ -15,8 +15,8 @@ struct dalcs_storage_law {
 };
 
 /* Makes what the law says of a coil or a capacitor, of m in parallel: parts that are added to the circuit. Its nodes are
- * those that its parasitics leave. */
-void dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card *card,
+ * those that its parasitics leave; node[0] changes. False when an error was reported, or it is an ordinary one. */
+bool dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card *card,
                           struct dalcs_device *device, const struct dalcs_storage_law *law,
                           double m);
 
