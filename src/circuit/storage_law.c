@@ -333,6 +333,9 @@ static bool check_lines(struct dalcs_builder *builder, const struct dalcs_token 
 
 enum { DECADES = 9, PER_DECADE = 16 };
 
+/* Nearer to 0 than this part of an ampere or a volt no circuit is: a law that falls there falls from 0 on. */
+static const double NEAREST = 1e-8;
+
 /* Where a law begins to fall from 0 on in one direction; 0: nowhere. It ends where it has no value. */
 static double find_fall(const struct dalcs_builder *builder, const struct dalcs_storage_function *f,
                         double sign) {
@@ -380,6 +383,11 @@ static bool check_smooth(struct dalcs_builder *builder, const struct dalcs_token
     }
     for (int k = 0; k < 2; k++) {
         const double fall = find_fall(builder, f, k == 0 ? 1 : -1);
+        if (fall != 0 && fabs(fall) < NEAREST) {
+            dalcs_builder_error(builder, place, "it has to rise", "the %s falls %s a %s of 0",
+                                word->what, fall > 0 ? "above" : "below", word->of);
+            return false;
+        }
         if (fall != 0) {
             dalcs_builder_warn(builder, place,
                                "limit(x, low, high) in the place of x lets it stay where it is",

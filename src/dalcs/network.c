@@ -123,6 +123,26 @@ static void add_mutual_inductances(struct dalcs_layout *l, const int *position) 
     }
 }
 
+static int place_in(const struct coil_group *g, int device) {
+    int k = 0;
+    while (k < g->n && g->device[k] != device) {
+        k++;
+    }
+    return k;
+}
+
+/* A factor of 0 on a K card is no missing one; of the matrix nobody asks any more. */
+static void mark_zeros(const struct dalcs_circuit *c, const struct coil_group *g) {
+    for (int k = 0; k < c->n_couplings; k++) {
+        const struct dalcs_coupling *m = &c->coupling[k];
+        const int i = m->k == 0.0 ? place_in(g, m->inductor[0]) : g->n;
+        if (i < g->n) {
+            const int j = place_in(g, m->inductor[1]);
+            g->L[i * g->n + j] = g->L[j * g->n + i] = -0x1p-1000;
+        }
+    }
+}
+
 /* Two coils of a group that no K card couples; false: there are none. */
 static bool find_uncoupled(const struct coil_group *g, int *first, int *second, int *n_pairs) {
     *n_pairs = 0;
@@ -147,6 +167,7 @@ static const char *name_uncoupled(const struct dalcs_circuit *c, const struct co
     int i = 0;
     int j = 0;
     int n_pairs;
+    mark_zeros(c, g);
     if (!find_uncoupled(g, &i, &j, &n_pairs)) {
         return g->n > 2 ? "of three coils, k12 = k13 = 1 leaves only k23 = 1" : NULL;
     }
