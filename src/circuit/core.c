@@ -19,13 +19,13 @@ enum { HC, BS, BR, AREA, LM, LG, TURNS, SEGMENTS };
 
 static const struct {
     const char *name, *unit;
-} PARAMETERS[DALCS_CORE_PARAMETERS] = {[HC] = {"hc", "A/m"},     [BS] = {"bs", "T"},
-                                       [BR] = {"br", "T"},       [AREA] = {"a", "m^2"},
-                                       [LM] = {"lm", "m"},       [LG] = {"lg", "m"},
-                                       [TURNS] = {"n", "turns"}, [SEGMENTS] = {"segments", "lines"}};
+} PARAMETERS[DALCS_CORE_PARAMETERS] = {
+    [HC] = {"hc", "A/m"},     [BS] = {"bs", "T"},
+    [BR] = {"br", "T"},       [AREA] = {"a", "m^2"},
+    [LM] = {"lm", "m"},       [LG] = {"lg", "m"},
+    [TURNS] = {"n", "turns"}, [SEGMENTS] = {"segments", "lines"}};
 
-static const char USAGE[] =
-    "a core is: Lname node node Hc= Bs= Br= A= Lm= [Lg=] N= [segments=10]";
+static const char USAGE[] = "a core is: Lname node node Hc= Bs= Br= A= Lm= [Lg=] N= [segments=10]";
 
 static const double MU0 = 1.25663706212e-6; /* H/m */
 
@@ -165,8 +165,8 @@ void dalcs_core_add_stop(struct dalcs_builder *builder, const struct dalcs_token
 size_t dalcs_core_count(const struct dalcs_card *card) {
     size_t n = 0;
     for (int k = 4; k < card->n && card->letter == 'l'; k++) {
-        const bool is_one = card->token[k].kind == DALCS_TOKEN_EQUAL &&
-                            strcmp(card->token[k - 1].text, "hc") == 0;
+        const bool is_one =
+            card->token[k].kind == DALCS_TOKEN_EQUAL && strcmp(card->token[k - 1].text, "hc") == 0;
         n = is_one ? STOP_DEVICES : n;
     }
     return n;

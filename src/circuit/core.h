@@ -24,6 +24,7 @@ bool dalcs_core_read(struct dalcs_reader *reader, const struct dalcs_token *name
 struct dalcs_core_stop {
     double henry, ampere;
 };
+
 bool dalcs_core_make(struct dalcs_builder *builder, const struct dalcs_card *card,
                      const struct dalcs_core *core, double m, struct dalcs_storage_law *law,
                      struct dalcs_core_stop *stop);

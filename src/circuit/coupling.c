@@ -17,10 +17,10 @@ static int find_coil(struct dalcs_builder *builder, const struct dalcs_token *na
         return -1;
     }
     if (dalcs_storage_is(builder, device)) {
-        dalcs_builder_error(builder, name,
-                            "put it across a winding of coils with k = 1, or of an ideal transformer",
-                            "the flux of '%s' is no multiple of its current: it cannot be coupled",
-                            name->text);
+        dalcs_builder_error(
+            builder, name,
+            "put it across a winding of coils with k = 1, or of an ideal transformer",
+            "the flux of '%s' is no multiple of its current: it cannot be coupled", name->text);
         return -1;
     }
     /* An inductance of 0 became a resistor: coupling nothing. */

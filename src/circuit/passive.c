@@ -279,8 +279,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         values.multiplier = (values.multiplier > 0 ? values.multiplier : 1) * card->parallel;
     }
     if (builder->default_rser != NULL && kind == DALCS_INDUCTOR && values.law.formula == NULL &&
-        values.core.first == NULL &&
-        !dalcs_parasitic_has_rser(&values.parasitics)) {
+        values.core.first == NULL && !dalcs_parasitic_has_rser(&values.parasitics)) {
         builder->default_rser[device - builder->circuit->device] =
             LTSPICE_RSER / (values.multiplier > 0 ? values.multiplier : 1);
     }

@@ -40,8 +40,7 @@ static const struct dalcs_token *node_token(struct dalcs_builder *builder,
                                             const struct dalcs_token *element, int node) {
     const char *name = node == 0 ? "0" : builder->node_name[node];
     int first;
-    if (node != 0 &&
-        dalcs_names_find_or_add(&builder->nodes, name, node, &first) != DALCS_OK) {
+    if (node != 0 && dalcs_names_find_or_add(&builder->nodes, name, node, &first) != DALCS_OK) {
         builder->out_of_memory = true;
     }
     return dalcs_formula_name(builder, element, name);
@@ -159,9 +158,9 @@ static void put_smooth(struct dalcs_builder *builder, const struct dalcs_token *
     const struct dalcs_formula *more =
         dalcs_formula_operation(&w, DALCS_SUBTRACT, x, write_state(&w, core));
     dalcs_behavioural_add_formula(builder, device, dalcs_formula_token(&w, more));
-    const struct dalcs_formula *law = dalcs_formula_operation(
-        &w, DALCS_SUBTRACT, dalcs_storage_function_write(&w, f, x),
-        dalcs_formula_number(&w, f->at_0));
+    const struct dalcs_formula *law =
+        dalcs_formula_operation(&w, DALCS_SUBTRACT, dalcs_storage_function_write(&w, f, x),
+                                dalcs_formula_number(&w, f->at_0));
     law = dalcs_formula_operation(&w, DALCS_MULTIPLY,
                                   dalcs_formula_number(&w, dalcs_charging / f->unit), law);
     const struct dalcs_formula *state = dalcs_formula_operation(

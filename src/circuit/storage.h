@@ -26,6 +26,21 @@ bool dalcs_storage_is(const struct dalcs_builder *builder, int device);
 /* Their initial states, when all .ic cards are read. */
 void dalcs_storage_resolve(struct dalcs_builder *builder);
 
+/* ---- storage_formula.c --------------------------------------------------------------------------- */
+
+struct dalcs_formula_writer;
+
+/* The value at x of a formula of x, which is called time in it; NAN: it has none. */
+double dalcs_storage_formula_at(const struct dalcs_builder *builder, const struct dalcs_formula *f,
+                                double x);
+
+/* A copy with another argument in the place of x, and of what a card's signals say of it; card NULL: there are none.
+ * NULL when an error was reported or out of memory. */
+const struct dalcs_formula *dalcs_storage_formula_copy(struct dalcs_formula_writer *w,
+                                                       const struct dalcs_card *card,
+                                                       const struct dalcs_formula *f,
+                                                       const struct dalcs_formula *argument);
+
 /* ---- storage_law.c ------------------------------------------------------------------------------- */
 
 /* The flux or charge as a function of one argument. */
@@ -47,7 +62,6 @@ double dalcs_storage_function_at(const struct dalcs_builder *builder,
                                  const struct dalcs_storage_function *f, double x);
 
 /* Its formula with another argument. NULL: out of memory. */
-struct dalcs_formula_writer;
 const struct dalcs_formula *dalcs_storage_function_write(struct dalcs_formula_writer *w,
                                                          const struct dalcs_storage_function *f,
                                                          const struct dalcs_formula *argument);

@@ -20,8 +20,7 @@ static bool add_winding(struct dalcs_builder *builder, const struct dalcs_token 
     if (what == NULL || share == NULL) {
         return false;
     }
-    struct dalcs_device *voltage =
-        dalcs_builder_add_inner_device(builder, DALCS_VCVS, what, name);
+    struct dalcs_device *voltage = dalcs_builder_add_inner_device(builder, DALCS_VCVS, what, name);
     struct dalcs_device *current =
         k == 1 ? device : dalcs_builder_add_inner_device(builder, DALCS_CCCS, share, name);
     if (voltage == NULL || current == NULL) {

@@ -174,10 +174,11 @@ static const char *name_uncoupled(const struct dalcs_circuit *c, const struct co
     const char *a = c->device[g->device[i]].name;
     const char *b = c->device[g->device[j]].name;
     if (n_pairs > 1) {
-        return dalcs_arena_printf(arena,
-                                  "no K card couples '%s' with '%s', nor %d other pair%s: write one "
-                                  "card with all of them, K1 %s ... %s 0.99",
-                                  a, b, n_pairs - 1, n_pairs == 2 ? "" : "s", a, b);
+        return dalcs_arena_printf(
+            arena,
+            "no K card couples '%s' with '%s', nor %d other pair%s: write one "
+            "card with all of them, K1 %s ... %s 0.99",
+            a, b, n_pairs - 1, n_pairs == 2 ? "" : "s", a, b);
     }
     if (g->n != 3) {
         return dalcs_arena_printf(arena, "no K card couples '%s' with '%s': add one, K9 %s %s k", a,

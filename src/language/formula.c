@@ -20,7 +20,8 @@ struct work {
     size_t n, capacity;
     int n_parts;
     int depth;
-    const char *variable; /* a name that stands for a variable rather than a parameter; NULL: none */
+    const char
+        *variable; /* a name that stands for a variable rather than a parameter; NULL: none */
     bool failed;
 };
 
@@ -204,9 +205,9 @@ static void apply(struct work *w, const struct frame *f, const struct dalcs_oper
 
 static void push_name(struct work *w, const struct frame *f, const struct dalcs_operation *o) {
     const bool is_variable =
-        w->variable != NULL ? strcmp(o->u.name, w->variable) == 0
-                            : strcmp(o->u.name, "time") == 0 &&
-                                  dalcs_scope_find_value(w->scope, "time") == NULL;
+        w->variable != NULL
+            ? strcmp(o->u.name, w->variable) == 0
+            : strcmp(o->u.name, "time") == 0 && dalcs_scope_find_value(w->scope, "time") == NULL;
     if (is_variable) {
         push(w, make(w, f, o, DALCS_FORMULA_TIME));
     } else {
@@ -420,10 +421,8 @@ static const struct dalcs_formula *make_formula(struct dalcs_language *language,
         language->out_of_memory = true;
         return NULL;
     }
-    struct work w = {.language = language,
-                     .scope = scope,
-                     .variable = variable,
-                     .failed = expression->is_wrong};
+    struct work w = {
+        .language = language, .scope = scope, .variable = variable, .failed = expression->is_wrong};
     const struct frame f = {expression, 0};
     run(&w, &f, 0, expression->n);
     const struct dalcs_formula *formula = w.failed ? NULL : w.stack[0];
@@ -526,9 +525,9 @@ static bool has_signal(const struct dalcs_token *token) {
     const char *text = token->text;
     bool has = false;
     for (const char *p = strchr(text, '('); p != NULL && !has; p = strchr(p + 1, '(')) {
-        const bool is_alone = p - text < 2 || (strchr("_.$#@", p[-2]) == NULL &&
-                                               !(p[-2] >= '0' && p[-2] <= '9') &&
-                                               !(p[-2] >= 'a' && p[-2] <= 'z'));
+        const bool is_alone =
+            p - text < 2 || (strchr("_.$#@", p[-2]) == NULL && !(p[-2] >= '0' && p[-2] <= '9') &&
+                             !(p[-2] >= 'a' && p[-2] <= 'z'));
         has = p > text && (p[-1] == 'v' || p[-1] == 'i') && is_alone;
     }
     return has;
@@ -541,7 +540,8 @@ static int start_of_storage(const struct dalcs_card *card) {
     int k = 3;
     while (k < card->n) {
         const bool is_assigned = card->token[k - 1].kind == DALCS_TOKEN_EQUAL;
-        if (is_assigned && is_word(&card->token[k - 2], card->letter == 'l' ? coil : capacitor, 1)) {
+        if (is_assigned &&
+            is_word(&card->token[k - 2], card->letter == 'l' ? coil : capacitor, 1)) {
             return k;
         }
         if (card->token[k].kind == DALCS_TOKEN_EXPRESSION && (is_assigned || k == 3) &&

@@ -86,7 +86,8 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
     const struct dalcs_system *s = p->system;
     struct dalcs_smooth_newton *n = p->newton;
     int n_steeper = 0;
-    bool is_last = false; /* what holds no flux but its current is rounded like a flux: one step more */
+    bool is_last =
+        false; /* what holds no flux but its current is rounded like a flux: one step more */
     dalcs_smooth_newton_begin(n, n->x);
     for (int step = 0; step < MOST_STEPS; step++) {
         put_sources(p, p->given);

@@ -88,7 +88,8 @@ static enum dalcs_status add_element(struct account *a, int k) {
     struct dalcs_losses *sum = a->losses;
     struct dalcs_element_losses *e = &a->element[sum->n_elements++];
     const double energy = l->energy + l->jump;
-    const bool is_curved = d->is_storage || d->is_transformer; /* all windings together take nothing */
+    const bool is_curved =
+        d->is_storage || d->is_transformer; /* all windings together take nothing */
     const bool stores = d->kind == DALCS_INDUCTOR || d->kind == DALCS_CAPACITOR || is_curved;
     *e = (struct dalcs_element_losses){
         .element = dalcs_arena_copy(&a->r->s->arena, d->name, strlen(d->name)),
