@@ -82,7 +82,8 @@ struct dalcs_compiler {
 
     const struct dalcs_potentials *potentials; /* NULL: what sources decide has pairs, too */
 
-    bool is_silent; /* a formula is only asked what it is */
+    bool is_silent;     /* a formula is only asked what it is */
+    bool is_of_storage; /* of flux or charge */
     bool failed;
 };
 

@@ -40,6 +40,7 @@ static const struct {
     {"slew", NULL, NULL},
     {"pwl", NULL, NULL},
     {"aswitch", NULL, NULL},
+    {"transformer", NULL, NULL},
     {"d_dt", "a derivative is not causal: a jump of its input has none",
      "write a capacitor and the current through it, or s/(1 + s*t) with LAPLACE"},
     {"mult", "it is a product of signals", "a B source with one of them piecewise constant"},
@@ -63,8 +64,8 @@ static const struct {
     {"d_ram", "it has a memory of words", "a table of d_dff"},
     {"d_state", "its file is not read", "d_dff and gates"},
     {"d_lut", "its table is not read", "gates"},
-    {"core", "it saturates", "a table of L in B sources"},
-    {"lcouple", "it is a winding with a field", "K between coils"},
+    {"core", "its ports are fields", "L with Flux=pwl(x, ...), across a winding of a transformer"},
+    {"lcouple", "its ports are fields", "K between coils, or a transformer"},
     {"cmeter", "it measures at a node", ".meas"},
     {"lmeter", "it measures at a node", ".meas"},
 };
@@ -318,6 +319,10 @@ void dalcs_block_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     struct dalcs_block_card c = {.builder = builder, .card = card, .block = block};
     const int type = find_type(block->type->text);
     bool ok = true;
+    if (strcmp(TYPES[type].type, "transformer") == 0) {
+        dalcs_transformer_parse(builder, card, block);
+        return;
+    }
     if (TYPES[type].because != NULL) {
         dalcs_builder_error(builder, card->token, TYPES[type].hint, "%s is not supported: %s",
                             TYPES[type].type, TYPES[type].because);

@@ -63,6 +63,10 @@ bool dalcs_block_has_only(const struct dalcs_block_card *c, const char *const *l
 bool dalcs_block_has_ports(const struct dalcs_block_card *c, int n, int n_optional,
                            const char *usage);
 
+/* An A card whose model is a transformer. */
+void dalcs_transformer_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
+                             const struct dalcs_block *block);
+
 /* Gates, flip-flops, bridges: false where the type is none of them. */
 bool dalcs_block_parse_logic(struct dalcs_block_card *c);
 /* gain, summer, limit, int, slew, pwl, aswitch: likewise. */

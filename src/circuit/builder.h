@@ -103,6 +103,7 @@ struct dalcs_builder {
     bool *read_by_gates;            /* [n_nodes_of_gates] nodes whose bit another gate reads */
     size_t n_nodes_of_gates;
     const struct dalcs_logic_card *gate_card; /* the last of all, each points to the one before */
+    const struct dalcs_storage *storage;      /* likewise: coils and capacitors that are no lines */
 
     const struct dalcs_token *pss;  /* so with .pss */
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
@@ -414,6 +415,9 @@ int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct da
 /* The output of a device with controlling nodes: a function of their voltage. */
 void dalcs_behavioural_add_table(struct dalcs_builder *builder, const struct dalcs_device *device,
                                  const struct dalcs_piecewise *table);
+/* The output of a device: a formula. */
+void dalcs_behavioural_add_formula(struct dalcs_builder *builder, const struct dalcs_device *device,
+                                   const struct dalcs_token *formula);
 bool dalcs_behavioural_is_form(const struct dalcs_token *token);
 void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device);
 /* Compiles all formulas, when all elements are known. */

@@ -5,6 +5,7 @@
  * conditions and included files are gone before: language/ has expanded them. */
 #include "card_table.h"
 
+#include "core.h"
 #include "rational.h"
 
 #include "formula.h"
@@ -167,6 +168,13 @@ static size_t count_parasitics(const struct dalcs_card *card) {
     return n > 0 ? n + 1 : 0;
 }
 
+/* A flux or a charge that is no straight line: terminal, core, and what finds the argument. */
+static size_t count_storage(const struct dalcs_card *card) {
+    const bool is_storage = card->letter == 'l' || card->letter == 'c';
+    const size_t n_core = dalcs_core_count(card);
+    return is_storage ? 3 * count_formulas(card) + (n_core > 0 ? 3 + n_core : 0) : 0;
+}
+
 /* I1 a b 50m load */
 static bool is_load(const struct dalcs_card *card) {
     bool found = false;
@@ -213,7 +221,8 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_inner += 2 * n_limits;
             table->n_stimuli += n_limits;
         }
-        table->n_inner += count_parasitics(card);
+        table->n_inner += count_parasitics(card) + count_storage(card);
+        table->n_stimuli += dalcs_core_count(card);
         table->n_inner += is_load(card) ? 2 : 0;
         if (dalcs_card_is_logic(card)) {
             table->n_gates++;

@@ -11,6 +11,7 @@
  * Every pass goes on after an error, so that a person sees all of them. */
 #include "block.h"
 #include "card_table.h"
+#include "storage.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -262,6 +263,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(read_cards(builder, class_of));
     dalcs_passive_add_default_rser(builder);
+    dalcs_storage_resolve(builder);
     dalcs_controlled_resolve(builder);
     dalcs_transistor_resolve(builder);
     dalcs_behavioural_resolve(builder);

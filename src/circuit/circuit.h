@@ -70,8 +70,10 @@ struct dalcs_device {
     double value;     /* ohm, H, F, or gain */
     double initial;   /* IC=: V for C, A for L */
     bool has_initial;
-    bool is_limit;          /* I: limits a current, and what it takes is lost as in a diode */
-    bool initially_on;      /* S ... ON */
+    bool is_limit;       /* I: limits a current, and what it takes is lost as in a diode */
+    bool is_storage;     /* E, G: with its core, a capacitor or a coil that is no straight line */
+    bool is_transformer; /* E, F: of an ideal one, all of which together take no power */
+    bool initially_on;   /* S ... ON */
     bool has_initial_state; /* S carries ON or OFF */
     int stimulus;           /* V, I: index into circuit->stimulus, else -1 */
     int control;            /* F, H, W: index of the controlling V device, else -1 */

@@ -1,7 +1,7 @@
 /* coupling.c - K: mutual inductance k sqrt(L1 L2) of two coils, or of every two of several.
  *
  * Whether three or more coils can be coupled like this is for the equations to say (inductance.c). */
-#include "builder.h"
+#include "storage.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,6 +14,13 @@ enum { MOST_COILS = 1000 };
 static int find_coil(struct dalcs_builder *builder, const struct dalcs_token *name) {
     const int device = dalcs_builder_find_device(builder, name);
     if (device < 0) {
+        return -1;
+    }
+    if (dalcs_storage_is(builder, device)) {
+        dalcs_builder_error(
+            builder, name,
+            "put it across a winding of coils with k = 1, or of an ideal transformer",
+            "the flux of '%s' is no multiple of its current: it cannot be coupled", name->text);
         return -1;
     }
     /* An inductance of 0 became a resistor: coupling nothing. */

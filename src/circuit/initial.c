@@ -2,7 +2,7 @@
  *
  * i(l1)=value is the inductor's IC=. Saying two values for one thing is an error, for there is no
  * telling which was meant. */
-#include "builder.h"
+#include "storage.h"
 
 #include <string.h>
 
@@ -102,7 +102,9 @@ static bool read_current(struct dalcs_reader *reader, const struct dalcs_token *
         return true;
     }
     struct dalcs_device *device = &builder->circuit->device[index];
-    if (device->kind != DALCS_INDUCTOR) {
+    const bool is_coil = device->kind == DALCS_INDUCTOR ||
+                         (dalcs_storage_is(builder, index) && device->letter == 'l');
+    if (!is_coil) {
         dalcs_builder_error(builder, name, USAGE, "'%s' is %s: only an inductor keeps a current",
                             name->text, dalcs_builder_kind_text(device->kind));
     } else if (device->has_initial && device->initial != value) {

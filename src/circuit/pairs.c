@@ -110,6 +110,9 @@ static int base_of(const struct dalcs_piecewise *f) {
     for (int k = f->n; k >= 0; k--) {
         base = dalcs_piecewise_slope(f, k) == 0 ? k : base;
     }
+    if (isinf(dalcs_piecewise_slope(f, base))) { /* a vertical end */
+        base = base == 0 ? 1 : base - 1;
+    }
     return base;
 }
 

@@ -2,7 +2,7 @@
  *
  * R = 0 is a short. An inductor of 0 H is one too and becomes a resistor of 0 ohm; a capacitor of
  * 0 F is open and becomes a current source of 0 A: neither has a state. */
-#include "builder.h"
+#include "core.h"
 #include "number.h"
 
 #include <string.h>
@@ -15,6 +15,7 @@ struct family {
     const char *usage;
     const char *value;    /* what the value is called when it is missing */
     const char *names[3]; /* of the value when written as a parameter */
+    const char *law;      /* the parameter whose formula is its flux or charge, or NULL */
     enum dalcs_quantity quantity;
 };
 
@@ -22,14 +23,17 @@ static const struct family *family_of(enum dalcs_device_kind kind) {
     static const struct family resistor = {"a resistor is: Rname node node ohms",
                                            "a resistance",
                                            {"r", "resistance", NULL},
+                                           NULL,
                                            DALCS_OHM};
     static const struct family inductor = {"an inductor is: Lname node node henries [IC=amperes]",
                                            "an inductance",
                                            {"l", "inductance", "ind"},
+                                           "flux",
                                            DALCS_HENRY};
     static const struct family capacitor = {"a capacitor is: Cname node node farads [IC=volts]",
                                             "a capacitance",
                                             {"c", "capacitance", "cap"},
+                                            "q",
                                             DALCS_FARAD};
     return kind == DALCS_RESISTOR ? &resistor : kind == DALCS_INDUCTOR ? &inductor : &capacitor;
 }
@@ -48,7 +52,22 @@ struct values {
     bool has_value;
     double multiplier; /* 0: none */
     struct dalcs_parasitics parasitics;
+    struct dalcs_storage_law law;
+    struct dalcs_core core;
 };
+
+/* A formula in the place of a value, or behind Flux= or Q=; false: there is none. */
+static bool take_law(struct dalcs_reader *reader, struct values *values, bool is_slope) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    if (token == NULL || token->kind != DALCS_TOKEN_FORMULA) {
+        return false;
+    }
+    reader->at++;
+    values->has_value = true;
+    values->law.formula = token;
+    values->law.is_slope = is_slope;
+    return true;
+}
 
 /* An inductor has no Lser, a resistor nothing. */
 static bool may_have(enum dalcs_device_kind kind, const char *parasitic) {
@@ -94,9 +113,17 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
                                               "dtemp", "noisy", "noise"};
     struct dalcs_builder *builder = reader->builder;
     double ignored;
-    if (is_value_name(family, name->text)) {
+    const bool is_law = family->law != NULL && strcmp(name->text, family->law) == 0;
+    if (is_law || is_value_name(family, name->text)) {
         if (values->has_value) {
             dalcs_builder_error(builder, name, NULL, "%s is given twice", family->value);
+            return false;
+        }
+        if (take_law(reader, values, !is_law)) {
+            return true;
+        }
+        if (is_law) {
+            dalcs_reader_missing(reader, "a formula of x");
             return false;
         }
         values->has_value = true;
@@ -124,6 +151,14 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
             }
         }
         return true;
+    }
+    if (device->kind == DALCS_INDUCTOR && dalcs_core_is_name(name->text)) {
+        if (values->has_value && values->core.first == NULL) {
+            dalcs_builder_error(builder, name, NULL, "a core beside %s", family->value);
+            return false;
+        }
+        values->has_value = true;
+        return dalcs_core_read(reader, name, &values->core);
     }
     if (may_have(device->kind, name->text)) {
         return dalcs_parasitic_read(reader, name, &values->parasitics);
@@ -190,6 +225,20 @@ static void multiply(struct dalcs_device *device, struct dalcs_parasitics *paras
     dalcs_parasitic_multiply(parasitics, m);
 }
 
+/* One that is no straight line. */
+static void expand_storage(struct dalcs_builder *builder, const struct dalcs_card *card,
+                           struct dalcs_device *device, struct values *values) {
+    const double m = values->multiplier > 0 ? values->multiplier : 1;
+    const bool has_core = values->core.first != NULL;
+    struct dalcs_core_stop stop;
+    if (has_core && !dalcs_core_make(builder, card, &values->core, m, &values->law, &stop)) {
+        return;
+    }
+    if (dalcs_storage_expand(builder, card, device, &values->law, m) && has_core) {
+        dalcs_core_add_stop(builder, card->token, device->node, &stop);
+    }
+}
+
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind) {
     const struct family *family = family_of(kind);
@@ -205,7 +254,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     }
     (void)dalcs_reader_take_word(&reader, "noiseless");
     const struct dalcs_token *equal = dalcs_reader_peek(&reader, 1);
-    if (equal == NULL || equal->kind != DALCS_TOKEN_EQUAL) {
+    if ((equal == NULL || equal->kind != DALCS_TOKEN_EQUAL) && !take_law(&reader, &values, true)) {
         if (!dalcs_reader_number(&reader, family->quantity, family->value, &device->value)) {
             return;
         }
@@ -229,8 +278,8 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     if (card->parallel > 0) {
         values.multiplier = (values.multiplier > 0 ? values.multiplier : 1) * card->parallel;
     }
-    if (builder->default_rser != NULL && kind == DALCS_INDUCTOR &&
-        !dalcs_parasitic_has_rser(&values.parasitics)) {
+    if (builder->default_rser != NULL && kind == DALCS_INDUCTOR && values.law.formula == NULL &&
+        values.core.first == NULL && !dalcs_parasitic_has_rser(&values.parasitics)) {
         builder->default_rser[device - builder->circuit->device] =
             LTSPICE_RSER / (values.multiplier > 0 ? values.multiplier : 1);
     }
@@ -238,6 +287,10 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         multiply(device, &values.parasitics, values.multiplier);
     }
     dalcs_parasitic_expand(builder, card->token, device, &values.parasitics);
+    if (values.law.formula != NULL || values.core.first != NULL) {
+        expand_storage(builder, card, device, &values);
+        return;
+    }
     if (device->value == 0 && kind != DALCS_RESISTOR) {
         replace_zero(builder, device, value);
     }

@@ -76,7 +76,10 @@ static void add_voltage(struct dalcs_builder *builder, int a, int b, bool is_pai
 }
 
 static void add_current(struct dalcs_builder *builder, int device) {
-    const char *name = signal_name(builder, 'i', builder->circuit->device[device].name);
+    const struct dalcs_device *d = &builder->circuit->device[device];
+    const bool is_bend = d->is_storage && dalcs_builder_is_inner(d->name); /* of a coil */
+    const int named = is_bend ? builder->current_of[device] : device;
+    const char *name = signal_name(builder, 'i', builder->circuit->device[named].name);
     add_signal(
         builder, name,
         (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = builder->current_of[device]});

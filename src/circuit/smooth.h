@@ -43,6 +43,7 @@ struct dalcs_smooth {
     int node[2];      /* whose voltage an argument is; -1: a number */
     double number[2]; /* that number */
     int source[2]; /* the device that puts an argument out at its node for this alone; -1: none */
+    bool is_of_storage; /* it says what flux or charge is */
 };
 
 /* The function of this name with n arguments; false: it is no smooth one. */

@@ -122,7 +122,7 @@ const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struc
         return NULL;
     }
     if (c->smooth_node[f->number_of] == 0) {
-        struct dalcs_smooth smooth = {.kind = kind, .n = n};
+        struct dalcs_smooth smooth = {.kind = kind, .n = n, .is_of_storage = c->is_of_storage};
         const int node = add_smooth(c, f, &smooth, argument);
         c->failed = c->failed || node < 0;
         c->smooth_node[f->number_of] = node > 0 ? node : 0;

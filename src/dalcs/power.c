@@ -91,7 +91,8 @@ static void put_device(const struct dalcs_layout *l, const struct dalcs_system *
     const struct dalcs_device *d = &c->device[device];
     struct dalcs_power_term *term;
     if (d->behaviour != NULL) {
-        term = put(t, DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT, -1.0);
+        term = put(t, d->is_storage ? DALCS_POWER_STORED : DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT,
+                   d->is_storage ? 1.0 : -1.0);
         set_voltage(l, term->first, d->node[0], d->node[1]);
         term->second[0] = l->current_column[device];
         return;

@@ -11,6 +11,7 @@ enum dalcs_power_account {
     DALCS_POWER_SOURCES,   /* V, I and controlled ones: what they deliver */
     DALCS_POWER_RESISTORS, /* R, switches, and Roff of diodes: what they take */
     DALCS_POWER_DIODES,    /* their two branches */
+    DALCS_POWER_STORED,    /* what coils and capacitors that are no straight lines take besides */
     DALCS_N_POWER_ACCOUNTS
 };
 

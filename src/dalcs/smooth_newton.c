@@ -102,15 +102,34 @@ bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)
     return is_due;
 }
 
+static void put_nominal_line(const struct dalcs_smooth_input *of) {
+    const bool is_number[2] = {of->column[0] < 0, of->n < 2 || of->column[1] < 0};
+    double gradient[2];
+    double line[2];
+    dalcs_smooth_nominal_gradient(of->kind, of->number, is_number, gradient);
+    find_lines(of, gradient, line);
+    put_lines(of, line);
+}
+
 void dalcs_smooth_nominal_tangents(const struct dalcs_system *system) {
     for (int k = 0; k < system->n_smooth; k++) {
-        const struct dalcs_smooth_input *of = &system->smooth[k];
-        const bool is_number[2] = {of->column[0] < 0, of->n < 2 || of->column[1] < 0};
-        double gradient[2];
-        double line[2];
-        dalcs_smooth_nominal_gradient(of->kind, of->number, is_number, gradient);
-        find_lines(of, gradient, line);
-        put_lines(of, line);
+        put_nominal_line(&system->smooth[k]);
+    }
+}
+
+bool dalcs_smooth_starts_on_lines(const struct dalcs_system *system) {
+    bool starts = false;
+    for (int k = 0; k < system->n_smooth && !starts; k++) {
+        starts = system->smooth[k].starts_on_line;
+    }
+    return starts;
+}
+
+void dalcs_smooth_starting_tangents(const struct dalcs_system *system) {
+    for (int k = 0; k < system->n_smooth; k++) {
+        if (system->smooth[k].starts_on_line) {
+            put_nominal_line(&system->smooth[k]);
+        }
     }
 }
 

@@ -52,8 +52,11 @@ bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)
  * argument that is still on its way is good enough if it is within the second one. */
 static const double dalcs_smooth_much_steeper = 1e3, dalcs_smooth_steeper = 2.0;
 
-/* Lines as good as any before anything is known. */
+/* Lines as good as any before anything is known: of all functions, or of those that start on one, which say what flux
+ * and charge are: for a given flux the current is in nothing but these. */
 void dalcs_smooth_nominal_tangents(const struct dalcs_system *system);
+void dalcs_smooth_starting_tangents(const struct dalcs_system *system);
+bool dalcs_smooth_starts_on_lines(const struct dalcs_system *system);
 
 /* All lines times a factor, and phi that go with x then. */
 void dalcs_smooth_scale_tangents(const struct dalcs_system *system, double factor,

@@ -77,6 +77,7 @@ struct dalcs_smooth_input {
     int column[2];    /* of its arguments; -1: a number */
     double number[2]; /* that number */
     int row_of[2]; /* the equation that gives an argument which is not read elsewhere; -1: none */
+    bool starts_on_line; /* nothing else holds its argument */
     double *entry
         [2]; /* in A, of -g: the equations have g x, the input is the rest of the function. 0 but while a problem
                          is being solved. NULL: none */

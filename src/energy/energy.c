@@ -167,6 +167,7 @@ enum dalcs_status dalcs_energy_close(struct dalcs_energy *energy, struct dalcs_e
         energy->sum.rounding +=
             dalcs_energy_residual_part * stop * power_of_rounding(part->system, stop, largest);
     }
+    energy->sum.stored_change += energy->sum.account[DALCS_POWER_STORED];
     return DALCS_OK;
 }
 

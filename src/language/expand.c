@@ -174,8 +174,11 @@ static int put_formula(struct dalcs_language *language, struct dalcs_scope *scop
     int transfer;
     int n_transfer;
     const bool is_transfer = dalcs_transfer_find(card, &transfer, &n_transfer) && transfer == first;
-    place->formula = (is_transfer ? dalcs_formula_make_transfer
-                                  : dalcs_formula_make)(language, scope, &card->token[first], n);
+    const bool is_storage = card->letter == 'l' || card->letter == 'c';
+    place->formula = dalcs_formula_make_of(language, scope, &card->token[first], n,
+                                           is_transfer  ? "s"
+                                           : is_storage ? "x"
+                                                        : NULL);
     place->kind = place->formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
     if (last->line == place->line) {
         place->length = last->offset + last->length - place->offset;

@@ -20,7 +20,8 @@ struct work {
     size_t n, capacity;
     int n_parts;
     int depth;
-    bool is_transfer; /* s is a variable */
+    const char
+        *variable; /* a name that stands for a variable rather than a parameter; NULL: none */
     bool failed;
 };
 
@@ -203,13 +204,11 @@ static void apply(struct work *w, const struct frame *f, const struct dalcs_oper
 /* ---- Names and signals ----------------------------------------------------------------------- */
 
 static void push_name(struct work *w, const struct frame *f, const struct dalcs_operation *o) {
-    if (w->is_transfer) {
-        if (strcmp(o->u.name, "s") == 0) {
-            push(w, make(w, f, o, DALCS_FORMULA_TIME));
-        } else {
-            fold(w, f, o, 0);
-        }
-    } else if (strcmp(o->u.name, "time") == 0 && dalcs_scope_find_value(w->scope, "time") == NULL) {
+    const bool is_variable =
+        w->variable != NULL
+            ? strcmp(o->u.name, w->variable) == 0
+            : strcmp(o->u.name, "time") == 0 && dalcs_scope_find_value(w->scope, "time") == NULL;
+    if (is_variable) {
         push(w, make(w, f, o, DALCS_FORMULA_TIME));
     } else {
         fold(w, f, o, 0);
@@ -405,7 +404,7 @@ static void run(struct work *w, const struct frame *f, int begin, int end) {
 static const struct dalcs_formula *make_formula(struct dalcs_language *language,
                                                 struct dalcs_scope *scope,
                                                 const struct dalcs_token *token, int n,
-                                                bool is_transfer) {
+                                                const char *variable) {
     const struct dalcs_expression_context context = {.arena = language->arena,
                                                      .diag = language->diag,
                                                      .instance = scope->origin,
@@ -422,10 +421,8 @@ static const struct dalcs_formula *make_formula(struct dalcs_language *language,
         language->out_of_memory = true;
         return NULL;
     }
-    struct work w = {.language = language,
-                     .scope = scope,
-                     .is_transfer = is_transfer,
-                     .failed = expression->is_wrong};
+    struct work w = {
+        .language = language, .scope = scope, .variable = variable, .failed = expression->is_wrong};
     const struct frame f = {expression, 0};
     run(&w, &f, 0, expression->n);
     const struct dalcs_formula *formula = w.failed ? NULL : w.stack[0];
@@ -437,13 +434,14 @@ static const struct dalcs_formula *make_formula(struct dalcs_language *language,
 const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
                                                struct dalcs_scope *scope,
                                                const struct dalcs_token *token, int n) {
-    return make_formula(language, scope, token, n, false);
+    return make_formula(language, scope, token, n, NULL);
 }
 
-const struct dalcs_formula *dalcs_formula_make_transfer(struct dalcs_language *language,
-                                                        struct dalcs_scope *scope,
-                                                        const struct dalcs_token *token, int n) {
-    return make_formula(language, scope, token, n, true);
+const struct dalcs_formula *dalcs_formula_make_of(struct dalcs_language *language,
+                                                  struct dalcs_scope *scope,
+                                                  const struct dalcs_token *token, int n,
+                                                  const char *variable) {
+    return make_formula(language, scope, token, n, variable);
 }
 
 static bool is_word(const struct dalcs_token *token, const char *const *list, size_t n) {
@@ -522,9 +520,44 @@ bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n) {
     return *n > 0;
 }
 
+/* Does an expression read a voltage or a current? */
+static bool has_signal(const struct dalcs_token *token) {
+    const char *text = token->text;
+    bool has = false;
+    for (const char *p = strchr(text, '('); p != NULL && !has; p = strchr(p + 1, '(')) {
+        const bool is_alone =
+            p - text < 2 || (strchr("_.$#@", p[-2]) == NULL && !(p[-2] >= '0' && p[-2] <= '9') &&
+                             !(p[-2] >= 'a' && p[-2] <= 'z'));
+        has = p > text && (p[-1] == 'v' || p[-1] == 'i') && is_alone;
+    }
+    return has;
+}
+
+/* L p n FLUX=formula, C p n Q=formula; also {formula} in the place of a value, where it has signals. */
+static int start_of_storage(const struct dalcs_card *card) {
+    static const char *const coil[] = {"flux"};
+    static const char *const capacitor[] = {"q"};
+    int k = 3;
+    while (k < card->n) {
+        const bool is_assigned = card->token[k - 1].kind == DALCS_TOKEN_EQUAL;
+        if (is_assigned &&
+            is_word(&card->token[k - 2], card->letter == 'l' ? coil : capacitor, 1)) {
+            return k;
+        }
+        if (card->token[k].kind == DALCS_TOKEN_EXPRESSION && (is_assigned || k == 3) &&
+            has_signal(&card->token[k])) {
+            return k;
+        }
+        k++;
+    }
+    return k;
+}
+
 bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n) {
     bool is_table = false;
-    if (card->letter == 'b') {
+    if (card->letter == 'l' || card->letter == 'c') {
+        *first = start_of_storage(card);
+    } else if (card->letter == 'b') {
         *first = start_of_source(card);
     } else if (card->letter == 'e' || card->letter == 'g') {
         *first = start_of_controlled(card, &is_table);

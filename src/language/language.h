@@ -245,13 +245,16 @@ bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n);
 /* The same of LAPLACE: what is an expression of s. */
 bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n);
 
-/* The formula of token[0..n-1]; of a transfer s is a variable, which the formula calls time; NULL when an error was reported or out of memory. */
+/* The formula of token[0..n-1]; NULL when an error was reported or out of memory. */
 const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
                                                struct dalcs_scope *scope,
                                                const struct dalcs_token *token, int n);
-const struct dalcs_formula *dalcs_formula_make_transfer(struct dalcs_language *language,
-                                                        struct dalcs_scope *scope,
-                                                        const struct dalcs_token *token, int n);
+
+/* The same of a variable, which the formula calls time, as there is none; variable NULL: that of any source. */
+const struct dalcs_formula *dalcs_formula_make_of(struct dalcs_language *language,
+                                                  struct dalcs_scope *scope,
+                                                  const struct dalcs_token *token, int n,
+                                                  const char *variable);
 
 /* ---- expand.c ---------------------------------------------------------------------------------- */
 

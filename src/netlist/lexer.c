@@ -412,12 +412,17 @@ static bool is_language(const struct dalcs_token *name) {
     return false;
 }
 
-/* B sources, and E, G and S with name=expression: formulas need no braces. */
+/* B sources, E, G and S with name=expression, L with Flux=, C with Q=: formulas need no braces. */
 static bool may_have_formula(const struct dalcs_card *card) {
     bool may = card->letter == 'b';
     const bool has_forms = card->letter == 'e' || card->letter == 'g' || card->letter == 's';
     for (int k = 3; k < card->n && has_forms && !may; k++) {
         may = card->token[k].kind == DALCS_TOKEN_EQUAL;
+    }
+    const bool is_coil = card->letter == 'l';
+    for (int k = 4; k < card->n && (is_coil || card->letter == 'c') && !may; k++) {
+        may = card->token[k].kind == DALCS_TOKEN_EQUAL &&
+              strcmp(card->token[k - 1].text, is_coil ? "flux" : "q") == 0;
     }
     return may;
 }

@@ -23,9 +23,11 @@ enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     p->newton = dalcs_arena_alloc(&p->arena, 1, sizeof(*p->newton));
     p->given = dalcs_arena_alloc(&p->arena, (size_t)(p->system->n_x + p->system->n_inputs),
                                  sizeof(*p->given));
-    return p->newton != NULL && p->given != NULL
-               ? dalcs_smooth_newton_setup(p->newton, p->system, 1, &p->arena)
-               : DALCS_E_NOMEM;
+    if (p->newton == NULL || p->given == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_smooth_starting_tangents(p->system);
+    return dalcs_smooth_newton_setup(p->newton, p->system, 1, &p->arena);
 }
 
 void dalcs_osnsp_smooth_finish(const struct dalcs_osnsp *p) {
@@ -84,6 +86,8 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
     const struct dalcs_system *s = p->system;
     struct dalcs_smooth_newton *n = p->newton;
     int n_steeper = 0;
+    bool is_last =
+        false; /* what holds no flux but its current is rounded like a flux: one step more */
     dalcs_smooth_newton_begin(n, n->x);
     for (int step = 0; step < MOST_STEPS; step++) {
         put_sources(p, p->given);
@@ -108,10 +112,11 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
             continue;
         }
         bool agrees = dalcs_smooth_newton_agrees(n, p->options.certificate_tolerance, &is_done);
-        if (agrees && is_done) {
+        if (agrees && is_done && (is_last || !dalcs_smooth_starts_on_lines(s))) {
             return DALCS_OK;
         }
-        bool stalls = step > 0 && is_done && !n->limits; /* the digits do not suffice */
+        is_last = agrees && is_done;
+        bool stalls = step > 0 && is_done && !is_last && !n->limits; /* the digits do not suffice */
         if (stalls && dalcs_osnsp_retangent(p, dalcs_smooth_steeper)) {
             continue;
         }

@@ -28,7 +28,11 @@ static const char *kind_of(const struct dalcs_device *d) {
     case DALCS_SWITCH:
         return "switch";
     default:
-        return d->is_limit ? "diode" : "source";
+        return d->is_limit         ? "diode"
+               : d->is_transformer ? "transformer"
+               : !d->is_storage    ? "source"
+               : d->letter == 'l'  ? "coil"
+                                   : "capacitor";
     }
 }
 
@@ -84,7 +88,9 @@ static enum dalcs_status add_element(struct account *a, int k) {
     struct dalcs_losses *sum = a->losses;
     struct dalcs_element_losses *e = &a->element[sum->n_elements++];
     const double energy = l->energy + l->jump;
-    const bool stores = d->kind == DALCS_INDUCTOR || d->kind == DALCS_CAPACITOR;
+    const bool is_curved =
+        d->is_storage || d->is_transformer; /* all windings together take nothing */
+    const bool stores = d->kind == DALCS_INDUCTOR || d->kind == DALCS_CAPACITOR || is_curved;
     *e = (struct dalcs_element_losses){
         .element = dalcs_arena_copy(&a->r->s->arena, d->name, strlen(d->name)),
         .kind = kind_of(d),
@@ -94,7 +100,9 @@ static enum dalcs_status add_element(struct account *a, int k) {
         .i_rms = sqrt(l->i_square / a->length),
         .power = energy / a->length,
         .jumps = l->jump,
-        .stored_change = stores ? stored(a, k, true) - stored(a, k, false) : 0.0,
+        .stored_change = is_curved ? energy
+                         : stores  ? stored(a, k, true) - stored(a, k, false)
+                                   : 0.0,
         .switching = l->switching,
         .n_on = l->n_on,
         .n_off = l->n_off,

@@ -43,7 +43,8 @@ static int device_of(const struct dalcs_circuit *c, const char *name) {
 /* What keeps the problem from being monotone: what reads a quantity on which it acts. */
 static void list_active(const struct dalcs_refusal *r, struct dalcs_refusal_list *active) {
     for (int i = 0; i < r->circuit->n_devices; i++) {
-        if (dalcs_osnsp_acts_on_what_it_reads(r->osnsp, r->circuit->device[i].name)) {
+        if (!r->circuit->device[i].is_transformer && /* all its windings together take nothing */
+            dalcs_osnsp_acts_on_what_it_reads(r->osnsp, r->circuit->device[i].name)) {
             dalcs_refusal_put(active, r->circuit->device[i].name);
         }
     }

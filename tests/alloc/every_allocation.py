@@ -140,6 +140,36 @@ Vh i 0 0
 .save v(d) i(l1) i(g1) i(d1) i(v1)
 .end
 """, 0),
+    "storage": ("""Flux and charge that are no straight lines, a core, a transformer
+V1 a 0 5
+R1 a b 1
+L1 b 0 Flux=pwl(x,-2,-1.1u,-1,-1u,1,1u,2,1.1u) m=2
+L2 b 0 Flux=1u*tanh(x) ic=0.1
+L3 b 0 Hc=16 Bs=0.44 Br=0.1 A=1e-6 Lm=0.1 N=30 segments=2
+C1 b 0 Q=x*(x<0 ? 1n : 2n)
+A1 b 0 c 0 d 0 tr
+R2 c 0 100
+R3 d 0 100
+.model tr transformer(turns=[1 2 -3])
+.tran 10n 20n uic
+.save v(b) i(l1) i(c1)
+.end
+""", 0),
+    "wrong_storage": ("""Flux and charge that cannot be
+V1 a 0 1
+L1 a 0 Flux=-1m*tanh(x)
+L2 a 0 Flux=1m*x-1m*x**3
+L3 a 0 Hc=16
+L4 a 0 1m
+L5 b 0 1m
+L6 c 0 1m
+C1 a 0 C='v(a)+v(b)'
+C2 a 0 C='1/(2+sin(v(a)))'
+K1 L4 L5 0.99
+K2 L4 L6 0.99
+.tran 1u 3u
+.end
+""", 3),
     "gates": ("""gates, a latch with a delay, what a comparator reads of an RC, and losses
 v1 a 0 PULSE(0 1 0 0 0 4u 10u)
 a1 a q2 0 0 0 0 q1 0 AND

@@ -98,7 +98,7 @@ static void finish(void) {
 
 /* Every account has something in it, and together they are 0. */
 static void check_balance(void) {
-    for (int a = 0; a < DALCS_N_POWER_ACCOUNTS; a++) {
+    for (int a = 0; a < DALCS_POWER_STORED; a++) {
         ck_assert(fabs(energy.sum.account[a]) > 1e-3 * energy.sum.turnover);
     }
     ck_assert(fabs(energy.sum.stored_change) > 1e-6 * energy.sum.turnover);
@@ -144,7 +144,7 @@ START_TEST(test_methods_agree) {
     const struct dalcs_energy first = energy;
     finish();
     run_radau(ALL, 0, 0.0, 2e-3);
-    for (int a = 0; a < DALCS_N_POWER_ACCOUNTS; a++) {
+    for (int a = 0; a < DALCS_POWER_STORED; a++) {
         ck_assert_double_eq_tol(energy.sum.account[a], first.sum.account[a],
                                 2e-3 * energy.sum.turnover);
     }

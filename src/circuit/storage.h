@@ -1,0 +1,75 @@
+/* storage.h - coils whose flux, and capacitors whose charge, is no straight line. Private to this folder. */
+#ifndef DALCS_STORAGE_H
+#define DALCS_STORAGE_H
+
+#include "builder.h"
+
+#include "piecewise.h"
+
+/* What a card says of its flux or charge; NULL formula: nothing. */
+struct dalcs_storage_law {
+    const struct dalcs_token *formula; /* of x, its own current or voltage */
+    bool is_slope;                     /* it is the inductance or the capacitance at x */
+    bool is_curve;                     /* `curve` says it instead */
+    struct dalcs_piecewise curve;
+};
+
+/* Makes what the law says of a coil or a capacitor, of m in parallel: parts that are added to the circuit. Its nodes are
+ * those that its parasitics leave; node[0] changes. False when an error was reported, or it is an ordinary one. */
+bool dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card *card,
+                          struct dalcs_device *device, const struct dalcs_storage_law *law,
+                          double m);
+
+/* Is a device such a coil or capacitor? */
+bool dalcs_storage_is(const struct dalcs_builder *builder, int device);
+
+/* Their initial states, when all .ic cards are read. */
+void dalcs_storage_resolve(struct dalcs_builder *builder);
+
+/* ---- storage_formula.c --------------------------------------------------------------------------- */
+
+struct dalcs_formula_writer;
+
+/* The value at x of a formula of x, which is called time in it; NAN: it has none. */
+double dalcs_storage_formula_at(const struct dalcs_builder *builder, const struct dalcs_formula *f,
+                                double x);
+
+/* A copy with another argument in the place of x, and of what a card's signals say of it; card NULL: there are none.
+ * NULL when an error was reported or out of memory. */
+const struct dalcs_formula *dalcs_storage_formula_copy(struct dalcs_formula_writer *w,
+                                                       const struct dalcs_card *card,
+                                                       const struct dalcs_formula *f,
+                                                       const struct dalcs_formula *argument);
+
+/* ---- storage_law.c ------------------------------------------------------------------------------- */
+
+/* The flux or charge as a function of one argument. */
+struct dalcs_storage_function {
+    const struct dalcs_formula *formula; /* NULL: piecewise linear */
+    struct dalcs_piecewise curve;
+    double unit; /* H or F, of the size of its slope around 0 */
+    double at_0;
+};
+
+/* Reads a law; false when an error was reported. `argument` stands for x in the formula that is made of it. */
+bool dalcs_storage_function_make(struct dalcs_builder *builder, const struct dalcs_card *card,
+                                 const struct dalcs_device *device,
+                                 const struct dalcs_storage_law *law, double m,
+                                 struct dalcs_storage_function *f);
+
+/* Its value at x less that at 0, over its unit: A or V. */
+double dalcs_storage_function_at(const struct dalcs_builder *builder,
+                                 const struct dalcs_storage_function *f, double x);
+
+/* Its formula with another argument. NULL: out of memory. */
+const struct dalcs_formula *dalcs_storage_function_write(struct dalcs_formula_writer *w,
+                                                         const struct dalcs_storage_function *f,
+                                                         const struct dalcs_formula *argument);
+
+/* The argument of a piecewise linear one as a function of its value as above; vertical ends have a slope of INFINITY.
+ * False when out of memory. */
+bool dalcs_storage_function_invert(struct dalcs_arena *arena,
+                                   const struct dalcs_storage_function *f,
+                                   struct dalcs_piecewise *inverse) DALCS_MUST_CHECK;
+
+#endif
