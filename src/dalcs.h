@@ -736,6 +736,17 @@ struct dalcs_report {
             const char *name; /* "v(out)" */
             double average, rms;
         } * signal; /* [n_signals] over the period, exact */
+
+        struct {
+            double period; /* s; 0: of two periods of the sources none was found, or looked for */
+            bool stable;
+            size_t n_multipliers;
+            const struct dalcs_floquet *multiplier; /* over both periods */
+        } doubled; /* where a multiplier below -1 says that a run leaves the orbit for such a one */
+
+        bool self_oscillating; /* no source has a period: the circuit's own was found */
+        double
+            flow; /* its multiplier along the orbit, 1 but for rounding, which is none of those above */
     } steady;
 
     /* Of .ac around it (doc/bode.md). */

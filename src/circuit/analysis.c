@@ -1,7 +1,9 @@
 /* analysis.c - .tran and .op: what is to be computed. */
 #include "builder.h"
 
-static const char PSS_USAGE[] = ".pss [period] [step=tstep] [uic]";
+#include <math.h>
+
+static const char PSS_USAGE[] = ".pss [period | auto] [periods=n] [step=tstep] [osc] [uic]";
 static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic]";
 
 enum { TSTEP, TSTOP, TSTART, TMAX, N_TIMES };
@@ -136,9 +138,19 @@ static bool read_pss_word(struct dalcs_reader *reader, struct dalcs_periodic_car
         card->use_initial_conditions = true;
         return true;
     }
-    double *value = dalcs_reader_take_word(reader, "period") ? &card->period
-                    : dalcs_reader_take_word(reader, "step") ? &card->step
-                                                             : NULL;
+    if (dalcs_reader_take_word(reader, "osc")) {
+        card->oscillates = true;
+        return true;
+    }
+    if (dalcs_reader_take_word(reader, "auto")) {
+        card->period = 0.0;
+        return true;
+    }
+    const bool is_period = dalcs_reader_take_word(reader, "period");
+    double *value = is_period                                   ? &card->period
+                    : dalcs_reader_take_word(reader, "periods") ? &card->n_periods
+                    : dalcs_reader_take_word(reader, "step")    ? &card->step
+                                                                : NULL;
     if (value == NULL) {
         dalcs_reader_unexpected(reader);
         return false;
@@ -147,7 +159,12 @@ static bool read_pss_word(struct dalcs_reader *reader, struct dalcs_periodic_car
         dalcs_reader_missing(reader, "'='");
         return false;
     }
-    return dalcs_reader_list_number(reader, DALCS_SECOND, "a time", value);
+    if (is_period && dalcs_reader_take_word(reader, "auto")) {
+        card->period = 0.0;
+        return true;
+    }
+    return dalcs_reader_list_number(reader, value == &card->n_periods ? DALCS_PLAIN : DALCS_SECOND,
+                                    value == &card->n_periods ? "a number" : "a time", value);
 }
 
 void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -165,6 +182,11 @@ void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_
     }
     if (ok && (periodic->period < 0.0 || periodic->step < 0.0)) {
         dalcs_builder_error(builder, card->token, PSS_USAGE, "times must be positive");
+        ok = false;
+    }
+    if (ok && periodic->n_periods != 0.0 &&
+        (!(periodic->n_periods >= 1.0) || periodic->n_periods != floor(periodic->n_periods))) {
+        dalcs_builder_error(builder, card->token, PSS_USAGE, "periods= is a whole number");
         ok = false;
     }
     periodic->present = ok;

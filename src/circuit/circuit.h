@@ -156,6 +156,8 @@ struct dalcs_orbit_ac_card {
 struct dalcs_periodic_card {
     bool present;
     double period, step;         /* 0: it follows from the sources; rows every period/1000 */
+    double n_periods;            /* of that, which is what is asked for; 0: one */
+    bool oscillates;             /* no source has a period */
     bool use_initial_conditions; /* uic */
 };
 

@@ -80,8 +80,9 @@ void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_reader_missing(&reader, "a signal");
         return;
     }
-    if (builder->tran == NULL) {
-        dalcs_builder_note(builder, card->token, NULL, "there is no .tran: this is left out");
+    if (builder->tran == NULL && builder->pss == NULL && !builder->netlist->asks_steady) {
+        dalcs_builder_note(builder, card->token, NULL,
+                           "there is no .tran and no .pss: this is left out");
         return;
     }
     while (!dalcs_reader_at_end(&reader)) {

@@ -428,15 +428,18 @@ static enum dalcs_measured_analysis read_analysis(struct reading *r) {
     static const char *const names[] = {[DALCS_MEASURED_TRAN] = "tran",
                                         [DALCS_MEASURED_OP] = "op",
                                         [DALCS_MEASURED_DC] = "dc",
-                                        [DALCS_MEASURED_AC] = "ac"};
+                                        [DALCS_MEASURED_AC] = "ac",
+                                        [DALCS_MEASURED_PSS] = "pss"};
     const struct dalcs_token *next = dalcs_reader_peek(&r->reader, 1);
-    for (int k = 0; next != NULL && k <= DALCS_MEASURED_AC; k++) {
+    for (int k = 0; next != NULL && k <= DALCS_MEASURED_PSS; k++) {
         if (dalcs_reader_take_word(&r->reader, names[k])) {
             return (enum dalcs_measured_analysis)k;
         }
     }
-    return r->builder->tran == NULL && r->builder->op != NULL ? DALCS_MEASURED_OP
-                                                              : DALCS_MEASURED_TRAN;
+    return r->builder->tran != NULL  ? DALCS_MEASURED_TRAN
+           : r->builder->op != NULL  ? DALCS_MEASURED_OP
+           : r->builder->pss != NULL ? DALCS_MEASURED_PSS
+                                     : DALCS_MEASURED_TRAN;
 }
 
 static bool is_run(const struct dalcs_builder *builder, enum dalcs_measured_analysis analysis) {
@@ -447,6 +450,8 @@ static bool is_run(const struct dalcs_builder *builder, enum dalcs_measured_anal
         return builder->op != NULL;
     case DALCS_MEASURED_DC:
         return builder->dc != NULL;
+    case DALCS_MEASURED_PSS:
+        return builder->pss != NULL || builder->netlist->asks_steady;
     default:
         return builder->ac != NULL;
     }

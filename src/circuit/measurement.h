@@ -9,7 +9,8 @@ enum dalcs_measured_analysis {
     DALCS_MEASURED_TRAN,
     DALCS_MEASURED_OP,
     DALCS_MEASURED_DC,
-    DALCS_MEASURED_AC
+    DALCS_MEASURED_AC,
+    DALCS_MEASURED_PSS /* the period of a steady state */
 };
 
 enum dalcs_measure_kind {

@@ -27,7 +27,8 @@ const char dalcs_steady_help[] =
 
 static void write_counts(FILE *out, const struct dalcs_report *report) {
     char period[DALCS_QUANTITY_SIZE];
-    fprintf(out, "  steady    period %s, %d Newton step%s, %ld period%s",
+    fprintf(out, "  steady    %s %s, %d Newton step%s, %ld period%s",
+            report->steady.self_oscillating ? "period of its own" : "period",
             dalcs_quantity_write(period, report->steady.period, "s", DIGITS), report->steady.newton,
             report->steady.newton == 1 ? "" : "s", report->steady.periods,
             report->steady.periods == 1 ? "" : "s");
@@ -55,6 +56,9 @@ static void write_multipliers(FILE *out, const struct dalcs_report *report) {
           : n > MOST_MULTIPLIERS ? ", ..."
                                  : "",
           out);
+    if (report->steady.self_oscillating) {
+        fprintf(out, "; along the orbit %.9g", report->steady.flow);
+    }
     fputs(report->steady.exact ? "\n" : " (nearly: the mode is not known all the time)\n", out);
 }
 

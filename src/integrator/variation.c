@@ -108,6 +108,20 @@ static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row, b
     return DALCS_OK;
 }
 
+/* f where the run begins, and where it ends. */
+static void note_flow(struct dalcs_variation_part *v, double stop) {
+    const struct dalcs_radau_part *part = v->part;
+    if (!v->begun) {
+        memcpy(v->y, part->segment.out, (size_t)part->stages.layout.stride * sizeof(double));
+        dalcs_orbit_rates_of(&v->rates, v->y, 0.0, v->first);
+        v->begun = true;
+    }
+    if (part->segment.t_end >= stop) {
+        dalcs_step_values(part, part->segment.end, v->y);
+        dalcs_orbit_rates_of(&v->rates, v->y, part->segment.end * part->segment.h, v->last);
+    }
+}
+
 /* f- and dt of the event that ends the segment. */
 static void meet_event(struct dalcs_variation_part *v, int row) {
     const struct dalcs_radau_part *part = v->part;
@@ -138,6 +152,7 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     int row = ends_at_event ? dalcs_orbit_guard_row(present, g->crossed[0]) : -1;
     v->is_exact = v->is_exact && !present->segment.by_euler;
     pass_event(v);
+    note_flow(v, variation->radau->options.stop);
     enum dalcs_status status = pass_segment(v, row, is_new);
     if (status != DALCS_OK) {
         v->is_exact = false;
@@ -194,9 +209,11 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     v->guard = dalcs_arena_alloc(arena, n, sizeof(double));
     v->before = dalcs_arena_alloc(arena, n, sizeof(double));
     v->after = dalcs_arena_alloc(arena, n, sizeof(double));
+    v->first = dalcs_arena_alloc(arena, n, sizeof(double));
+    v->last = dalcs_arena_alloc(arena, n, sizeof(double));
     v->y = dalcs_arena_alloc(arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
     if (v->v == NULL || v->in == NULL || v->out == NULL || v->guard == NULL || v->before == NULL ||
-        v->after == NULL || v->y == NULL) {
+        v->after == NULL || v->first == NULL || v->last == NULL || v->y == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {

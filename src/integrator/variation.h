@@ -16,10 +16,12 @@ struct dalcs_variation_part {
     double *v;                /* [n_x][n_x] column after column */
     double *in, *out, *guard; /* of one column; [n_x] of a guard, then dt */
     struct dalcs_orbit_rates rates;
-    double *before, *after;        /* [n_x] f- and f+ */
-    double *y;                     /* work */
-    bool pending;                  /* an event has just been passed */
-    bool is_exact;                 /* no step of implicit Euler, nothing that slides */
+    double *before, *after; /* [n_x] f- and f+ */
+    double *y;              /* work */
+    double *first, *last;   /* [n_x] derivatives of the states where the run begins and ends */
+    bool begun;             /* `first` is known */
+    bool pending;           /* an event has just been passed */
+    bool is_exact;          /* no step of implicit Euler, nothing that slides */
     uint64_t signature, last_mode; /* of the modes that followed each other */
 };
 

@@ -191,6 +191,18 @@ static void write_energy(struct dalcs_json *json, const struct dalcs_report *rep
 }
 
 /* "states": just before the edges at the beginning of the period. */
+static void write_multipliers(struct dalcs_json *json, const struct dalcs_floquet *m, size_t n) {
+    dalcs_json_open(json, "multipliers", '[', false);
+    for (size_t i = 0; i < n; i++) {
+        dalcs_json_open(json, NULL, '{', true);
+        dalcs_json_number(json, "re", m[i].re);
+        dalcs_json_number(json, "im", m[i].im);
+        dalcs_json_string(json, "state", m[i].state);
+        dalcs_json_close(json, '}');
+    }
+    dalcs_json_close(json, ']');
+}
+
 static void write_steady(struct dalcs_json *json, const struct dalcs_report *report) {
     if (!report->steady.present) {
         return;
@@ -207,16 +219,19 @@ static void write_steady(struct dalcs_json *json, const struct dalcs_report *rep
     dalcs_json_boolean(json, "exact", report->steady.exact);
     dalcs_json_boolean(json, "stable", report->steady.stable);
     dalcs_json_string(json, "verdict", report->steady.verdict);
-    dalcs_json_open(json, "multipliers", '[', false);
-    for (size_t i = 0; i < report->steady.n_multipliers; i++) {
-        const struct dalcs_floquet *m = &report->steady.multiplier[i];
-        dalcs_json_open(json, NULL, '{', true);
-        dalcs_json_number(json, "re", m->re);
-        dalcs_json_number(json, "im", m->im);
-        dalcs_json_string(json, "state", m->state);
+    if (report->steady.self_oscillating) {
+        dalcs_json_boolean(json, "self_oscillating", true);
+        dalcs_json_number(json, "flow", report->steady.flow);
+    }
+    write_multipliers(json, report->steady.multiplier, report->steady.n_multipliers);
+    if (report->steady.doubled.period > 0.0) {
+        dalcs_json_open(json, "doubled", '{', false);
+        dalcs_json_number(json, "period", report->steady.doubled.period);
+        dalcs_json_boolean(json, "stable", report->steady.doubled.stable);
+        write_multipliers(json, report->steady.doubled.multiplier,
+                          report->steady.doubled.n_multipliers);
         dalcs_json_close(json, '}');
     }
-    dalcs_json_close(json, ']');
     dalcs_json_open(json, "conserved", '[', false);
     for (size_t i = 0; i < report->steady.n_conserved; i++) {
         dalcs_json_string(json, NULL, report->steady.conserved[i]);

@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Two that were written with nine digits. */
+static const double same_frequency = 1e-8;
+
 /* A result on its way into the report. */
 struct result {
     struct dalcs_session *s;
@@ -37,7 +40,9 @@ static void give(struct result *r, double value) {
 }
 
 static const char *moment(const struct result *r, char *text, double at) {
-    const char *unit = r->measuring->analysis == DALCS_MEASURED_TRAN ? "s"
+    const char *unit = r->measuring->analysis == DALCS_MEASURED_TRAN ||
+                               r->measuring->analysis == DALCS_MEASURED_PSS
+                           ? "s"
                        : r->measuring->analysis == DALCS_MEASURED_AC ? "Hz"
                                                                      : "";
     return dalcs_quantity_write(text, at, unit, 6);
@@ -222,10 +227,28 @@ static const struct dalcs_measure_card *failed_source(const struct dalcs_circuit
     return failed;
 }
 
+/* An orbit has components at multiples of its own frequency alone. One without a clock is known only afterwards. */
+static void warn_of_frequency(struct dalcs_run *r, const struct dalcs_measuring *m,
+                              const struct dalcs_harmonics *h) {
+    const double asked = h->card->frequency;
+    char text[2][DALCS_QUANTITY_SIZE];
+    if (m->analysis == DALCS_MEASURED_PSS && !r->s->report.steady.self_oscillating &&
+        fabs(h->frequency / asked - 1.0) > same_frequency) {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, &h->card->where, NULL,
+                       "the orbit has nothing at %s: these are multiples of %s",
+                       dalcs_quantity_write(text[0], asked, "Hz", 9),
+                       dalcs_quantity_write(text[1], h->frequency, "Hz", 9));
+    }
+}
+
 static enum dalcs_status tell_harmonics(struct dalcs_measures *measures, struct dalcs_run *r) {
     const struct dalcs_measuring *m = &measures->measuring;
     size_t n = (size_t)m->n_harmonics;
-    struct dalcs_fourier *fourier = dalcs_arena_alloc(&r->s->arena, n, sizeof(*fourier));
+    const size_t n_before = r->s->report.n_fourier; /* of .pss before a .tran */
+    struct dalcs_fourier *fourier = dalcs_arena_alloc(&r->s->arena, n_before + n, sizeof(*fourier));
+    for (size_t k = 0; fourier != NULL && k < n_before; k++) {
+        fourier[k] = r->s->report.fourier[k];
+    }
     r->s->report.fourier = fourier;
     for (size_t k = 0; fourier != NULL && k < n; k++) {
         const struct dalcs_harmonics *h = &m->harmonics[k];
@@ -244,6 +267,7 @@ static enum dalcs_status tell_harmonics(struct dalcs_measures *measures, struct 
                            h->card->formula.text);
             continue;
         }
+        warn_of_frequency(r, m, h);
         double square = 0.0;
         for (size_t i = 0; i < n_lines; i++) {
             double factor = i == 0 ? 1.0 : 2.0;
@@ -258,7 +282,7 @@ static enum dalcs_status tell_harmonics(struct dalcs_measures *measures, struct 
         }
         fourier[r->s->report.n_fourier++] =
             (struct dalcs_fourier){.signal = signal,
-                                   .frequency = h->card->frequency,
+                                   .frequency = h->frequency,
                                    .from = h->from,
                                    .to = h->to,
                                    .thd = sqrt(square) / magnitude[1],

@@ -80,12 +80,14 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
     const struct dalcs_circuit *c = &r->s->circuit;
     measures->next_edge = INFINITY;
     measures->begin = INFINITY;
-    bool is_period = r->orbit != NULL && !r->leaves_orbit; /* .meas tran is of another run */
-    if (is_period || !dalcs_measuring_is_wanted(c, DALCS_MEASURED_TRAN)) {
+    const bool is_period = r->orbit != NULL && !r->leaves_orbit;
+    const enum dalcs_measured_analysis analysis =
+        is_period ? DALCS_MEASURED_PSS : DALCS_MEASURED_TRAN;
+    if (!dalcs_measuring_is_wanted(c, analysis)) {
         return DALCS_OK;
     }
-    DALCS_TRY(dalcs_measuring_setup(&measures->measuring, c, DALCS_MEASURED_TRAN,
-                                    c->transient.start, c->transient.stop));
+    DALCS_TRY(dalcs_measuring_setup(&measures->measuring, c, analysis, c->transient.start,
+                                    c->transient.stop));
     measures->wanted = true;
     measures->begin = dalcs_measuring_begin(&measures->measuring);
     measures->losses = r->losses;

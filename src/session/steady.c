@@ -43,6 +43,17 @@ static void go_by(struct dalcs_steady *st, const double *from, const double *ste
     memcpy(st->at.closed, st->then.closed, (size_t)st->layout.n_pairs * sizeof(bool));
 }
 
+enum dalcs_status dalcs_steady_next_step(struct dalcs_steady *st) {
+    st->longer = 0.0;
+    return st->is_free ? dalcs_steady_newton_free(st, &st->longer) : dalcs_steady_newton(st);
+}
+
+static void take_step(struct dalcs_steady *st) {
+    go_by(st, st->at.x, st->step, 1.0);
+    st->period += st->longer;
+    st->n.newton++;
+}
+
 /* Is the last pass an answer, and no further step better? `before`: the residual before it. */
 static bool is_done(const struct dalcs_steady *st, double before) {
     bool is = st->residual <= converged || (st->residual <= good && st->residual >= before);
@@ -57,8 +68,8 @@ struct burst {
     bool done;
 };
 
-static void copy_point(const struct dalcs_steady *st, struct dalcs_orbit_point *to,
-                       const struct dalcs_orbit_point *from) {
+void dalcs_steady_copy_point(const struct dalcs_steady *st, struct dalcs_orbit_point *to,
+                             const struct dalcs_orbit_point *from) {
     memcpy(to->x, from->x, (size_t)st->layout.n_x * sizeof(double));
     memcpy(to->closed, from->closed, (size_t)st->layout.n_pairs * sizeof(bool));
 }
@@ -78,8 +89,7 @@ static enum dalcs_status go_on(struct dalcs_steady *st, struct burst *b) {
 /* One step, and plain periods where it did not help. */
 static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     const double before = st->residual;
-    go_by(st, st->at.x, st->step, 1.0);
-    st->n.newton++;
+    take_step(st);
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
     b->done = is_done(st, before);
     if (!b->done && !(st->residual <= 0.5 * before)) {
@@ -92,8 +102,7 @@ static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     return DALCS_OK;
 }
 
-/* From st->at. A run that fails on the way ends the burst, not the search. */
-static enum dalcs_status run_burst(struct dalcs_steady *st, bool *done) {
+enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) {
     enum dalcs_status first = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
     if (first != DALCS_OK) {
         return first < DALCS_OK ? first : DALCS_OK;
@@ -102,7 +111,7 @@ static enum dalcs_status run_burst(struct dalcs_steady *st, bool *done) {
     st->n.bursts++;
     for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING;
          k++) {
-        enum dalcs_status status = dalcs_steady_newton(st);
+        enum dalcs_status status = dalcs_steady_next_step(st);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
         if (status != DALCS_OK || (st->is_stuck && k == 0)) {
             break;
@@ -137,29 +146,28 @@ static enum dalcs_status leap(struct dalcs_steady *st, double *from, bool *endle
     return DALCS_OK;
 }
 
-/* Where a multiplier is near to 1 a small residual leaves the states far from the steady state: further steps, as long
- * as they help. `best` is work. */
-static enum dalcs_status refine(struct dalcs_steady *st, struct dalcs_orbit_point *best) {
+enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st, struct dalcs_orbit_point *best) {
     for (int k = 0; k < MOST_STEPS; k++) {
         const double before = st->residual;
-        enum dalcs_status status = dalcs_steady_newton(st);
+        const double period = st->period;
+        enum dalcs_status status = dalcs_steady_next_step(st);
         if (status != DALCS_OK || !(st->distance > good)) {
             return status < DALCS_OK ? status : DALCS_OK;
         }
-        copy_point(st, best, &st->at);
-        go_by(st, st->at.x, st->step, 1.0);
-        st->n.newton++;
+        dalcs_steady_copy_point(st, best, &st->at);
+        take_step(st);
         status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
         if (status != DALCS_OK || !(st->residual <= 0.5 * before) || !switches_return(st)) {
-            copy_point(st, &st->at, best);
+            dalcs_steady_copy_point(st, &st->at, best);
+            st->period = period;
             return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         }
     }
     return DALCS_OK;
 }
 
-static bool make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point) {
+bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point) {
     point->x = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_x + 1, sizeof(double));
     point->closed = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1, sizeof(bool));
     return point->x != NULL && point->closed != NULL;
@@ -168,7 +176,7 @@ static bool make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point)
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool *endless) {
     struct dalcs_orbit_point run;
     struct dalcs_orbit_point from;
-    if (!make_point(st, &run) || !make_point(st, &from)) {
+    if (!dalcs_steady_make_point(st, &run) || !dalcs_steady_make_point(st, &from)) {
         return DALCS_E_NOMEM;
     }
     *found = *endless = false;
@@ -176,16 +184,16 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool
         DALCS_TRY(dalcs_steady_pass(st, wait, DALCS_STEADY_PLAIN));
         dalcs_steady_take(st);
         total += wait;
-        copy_point(st, &run, &st->at);
+        dalcs_steady_copy_point(st, &run, &st->at);
         st->is_stuck = false;
-        DALCS_TRY(run_burst(st, found));
+        DALCS_TRY(dalcs_steady_burst(st, found));
         wait = total;
         if (!*found && st->is_stuck) {
             DALCS_TRY(leap(st, from.x, endless));
             wait = 1;
         } else if (!*found) {
-            copy_point(st, &st->at, &run);
+            dalcs_steady_copy_point(st, &st->at, &run);
         }
     }
-    return *found ? refine(st, &run) : DALCS_OK;
+    return *found ? dalcs_steady_refine(st, &run) : DALCS_OK;
 }

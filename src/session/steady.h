@@ -9,6 +9,7 @@
 #include "session_internal.h"
 
 struct dalcs_orbit_log;
+struct dalcs_steady_watch;
 
 /* Where the states of the systems lie side by side. */
 struct dalcs_steady_layout {
@@ -34,16 +35,21 @@ struct dalcs_steady {
     double *scale;                     /* [n_x] of each state on the way */
     double *step;                      /* [n_x] the last one of Newton's method */
     double *drift;                     /* [n_x] what grows by as much each period */
-    uint64_t signature;                /* of the modes that followed each other */
+    double *first,
+        *last; /* [n_x] derivatives of the states where the last pass with M began and ended */
+    uint64_t signature; /* of the modes that followed each other */
 
     struct dalcs_steady_found { /* by the last pass with means */
         double *average, *rms;  /* [n_outputs] */
         double *state;          /* [n_states] of the network, where it ended; the session's */
     } found;
 
-    bool has_point; /* `at` is known; else the run starts as any does */
-    bool is_exact;  /* M is */
-    bool is_stuck;  /* a conserved quantity grows by `drift` */
+    double longer; /* s, what that step adds to the period, where is_free */
+    bool is_free;  /* no source has a period: Newton's method looks for it, too (steady_free.h) */
+    bool is_free_of_events; /* and no event comes again and again */
+    bool has_point;         /* `at` is known; else the run starts as any does */
+    bool is_exact;          /* M is */
+    bool is_stuck;          /* a conserved quantity grows by `drift` */
 
     struct dalcs_steady_count {
         int newton, bursts, leaps;
@@ -59,6 +65,7 @@ struct dalcs_steady {
     } * conserved;      /* [n_conserved] */
 
     int n_conserved;
+    int n_free; /* where is_free: directions, beside that of the flow, in which nothing decides */
     struct dalcs_arena arena;
 };
 
@@ -68,12 +75,13 @@ void dalcs_steady_finish(struct dalcs_steady *st);
 
 /* ---- steady_period.c --------------------------------------------------------------------------- */
 
-/* The period of all sources, s: the smallest common one, or `asked` (0: none is) if that is one. The circuit's stimuli
+/* The period of all sources, s: the smallest common one, or `asked` (0: none is) if that is one; *is_free: no source has
+ * a period, and *period is what was asked for. The circuit's stimuli
  * become what they are from a multiple of it on behind all delays; those that do not repeat, what they come to, or
  * at_start what they are at t = 0. DALCS_E_OPTION: there is none, and a message says
  * why. */
 enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bool at_start,
-                                           double *period) DALCS_MUST_CHECK;
+                                           double *period, bool *is_free) DALCS_MUST_CHECK;
 
 /* Does it come again and again, by itself? */
 bool dalcs_steady_repeats(const struct dalcs_stimulus *s);
@@ -100,6 +108,12 @@ enum dalcs_steady_asked {
 enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
                                     enum dalcs_steady_asked asked) DALCS_MUST_CHECK;
 
+/* So long on (s) from st->at to st->then; the watch is told of its events. *recurs with a watch: an event has come again,
+ * between *from and *to of it. A watch that is full ends the run; then st->then is nothing. */
+enum dalcs_status dalcs_steady_pass_watched(struct dalcs_steady *st, double duration,
+                                            struct dalcs_steady_watch *watch, bool *recurs,
+                                            int *from, int *to) DALCS_MUST_CHECK;
+
 /* st->residual of that. */
 void dalcs_steady_find_residual(struct dalcs_steady *st);
 
@@ -124,7 +138,39 @@ void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *po
  * conserved, it keeps that quantity; where that grows, st->is_stuck. */
 enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
+/* What a state of a system is multiplied by, so that energies are alike: the square root of what it stores; of one that
+ * stores nothing, 1 over its scale. */
+double dalcs_steady_unit(const struct dalcs_steady *st, int system, int x);
+
+/* ---- steady_free.c ----------------------------------------------------------------------------- */
+
+/* The same where st->is_free: st->step, and *by (s) of the period. */
+enum dalcs_status dalcs_steady_newton_free(struct dalcs_steady *st, double *by) DALCS_MUST_CHECK;
+
+/* ---- steady_oscillation.c ---------------------------------------------------------------------- */
+
+/* The orbit of a circuit that oscillates by itself, as dalcs_steady_search, and st->period; guess: s, 0 for none. *rests:
+ * it comes to rest, at st->at. */
+enum dalcs_status dalcs_steady_oscillation(struct dalcs_steady *st, double guess, bool *found,
+                                           bool *rests) DALCS_MUST_CHECK;
+
 /* ---- steady.c ---------------------------------------------------------------------------------- */
+
+/* st->step of Newton's method from the last pass, and st->longer. */
+enum dalcs_status dalcs_steady_next_step(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* A burst of Newton's method from st->at. A run that fails on the way ends it, no more. */
+enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) DALCS_MUST_CHECK;
+
+/* Where a multiplier is near to 1 a small residual leaves the states far from the steady state: further steps, as long
+ * as they help. `best` is work. */
+enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st,
+                                      struct dalcs_orbit_point *best) DALCS_MUST_CHECK;
+
+/* Room for one, as long as st lives; false: there is none. */
+bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point);
+void dalcs_steady_copy_point(const struct dalcs_steady *st, struct dalcs_orbit_point *to,
+                             const struct dalcs_orbit_point *from);
 
 /* From where any run starts to *found: st->at comes back, and the last pass is from there. *endless: there is none, as
  * st->drift goes on and on. */
@@ -145,6 +191,22 @@ enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) DALCS_MUST_C
 
 /* Multipliers, verdict and messages into the report. */
 enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* The size of the largest multiplier of the last pass; 0 if it cannot be told. */
+double dalcs_steady_largest_multiplier(struct dalcs_steady *st);
+
+/* st->at is on an orbit of two periods `one`: its multipliers and the verdict into the report of that of one. */
+enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one) DALCS_MUST_CHECK;
+
+/* ---- steady_doubling.c ------------------------------------------------------------------------- */
+
+/* st has an orbit of n periods `one`. If it is one of fewer, and unstable, one of n takes its place where a run finds it. */
+enum dalcs_status dalcs_steady_replace(struct dalcs_steady *st, double one, int n) DALCS_MUST_CHECK;
+
+/* st has an orbit that two periods differ on: whether a run goes to one of two periods, into the report. st stays. */
+enum dalcs_status dalcs_steady_look_for_double(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* ---- steady_report.c --------------------------------------------------------------------------- */
 
 /* Does a small difference grow? What no period changes does not. */
 bool dalcs_steady_is_unstable(const struct dalcs_report *report);

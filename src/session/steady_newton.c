@@ -46,13 +46,14 @@ static bool make_room(struct newton *w, struct dalcs_arena *arena) {
            w->pivot != NULL;
 }
 
-/* The square root of what a state stores; of what stores nothing, over its scale. */
-static double unit_of(const struct dalcs_system *s, int x, double scale) {
+double dalcs_steady_unit(const struct dalcs_steady *st, int system, int x) {
+    const struct dalcs_system *s = &st->run->s->network.system[system];
+    const double scale = st->scale[st->layout.first[system] + x];
     double stored = 0.0;
     for (int k = s->storage.p[x]; k < s->storage.p[x + 1]; k++) {
         stored += s->storage.j[k] == x ? s->storage.x[k] : 0.0;
     }
-    return stored > 0.0 ? sqrt(stored) : 1.0 / scale;
+    return stored > 0.0 ? sqrt(stored) : 1.0 / (scale > 0.0 ? scale : 1.0);
 }
 
 static double dot(const double *a, const double *b, int n) {
@@ -146,7 +147,7 @@ static enum dalcs_status newton_of(struct dalcs_steady *st, int system, struct d
         return DALCS_E_NOMEM;
     }
     for (int x = 0; x < w.n; x++) {
-        w.unit[x] = unit_of(s, x, st->scale[first + x] > 0.0 ? st->scale[first + x] : 1.0);
+        w.unit[x] = dalcs_steady_unit(st, system, x);
         w.F[x] = w.unit[x] * (st->then.x[first + x] - st->at.x[first + x]);
     }
     for (int k = 0; k < w.n; k++) {

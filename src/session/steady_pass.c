@@ -4,6 +4,7 @@
 #include "orbit_log.h"
 #include "radau.h"
 #include "steady_means.h"
+#include "steady_watch.h"
 #include "variation.h"
 
 #include <math.h>
@@ -51,10 +52,11 @@ void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *po
 }
 
 static enum dalcs_status go(struct dalcs_radau *radau, const struct dalcs_run *r,
-                            struct dalcs_steady_means *means) {
+                            struct dalcs_steady_means *means,
+                            const struct dalcs_steady_watch *watch) {
     double t = 0.0;
     long n = 0;
-    while (t < radau->options.stop) {
+    while (t < radau->options.stop && (watch == NULL || !dalcs_steady_watch_is_full(watch))) {
         bool happens;
         t = fmin(dalcs_radau_next_stop(radau, &happens), radau->options.stop);
         radau->base->t = t;
@@ -101,6 +103,8 @@ static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variat
         const struct dalcs_variation_part *v = &variation->part[k];
         memcpy(st->M + st->layout.first_of_M[k], v->v,
                (size_t)v->n_x * (size_t)v->n_x * sizeof(double));
+        memcpy(st->first + st->layout.first[k], v->first, (size_t)v->n_x * sizeof(double));
+        memcpy(st->last + st->layout.first[k], v->last, (size_t)v->n_x * sizeof(double));
         st->is_exact = st->is_exact && v->is_exact;
         st->signature = st->signature * 31 + v->signature;
     }
@@ -111,7 +115,7 @@ static enum dalcs_status go_with_means(struct dalcs_steady *st, struct dalcs_rad
     const struct dalcs_session *s = st->run->s;
     struct dalcs_steady_means means;
     DALCS_TRY(dalcs_steady_means_setup(&means, &s->circuit, &s->network, radau));
-    enum dalcs_status status = go(radau, st->run, &means);
+    enum dalcs_status status = go(radau, st->run, &means, NULL);
     const double duration = radau->options.stop;
     for (int k = 0; k < s->network.n_outputs; k++) {
         st->found.average[k] = means.sum[k] / duration;
@@ -120,6 +124,12 @@ static enum dalcs_status go_with_means(struct dalcs_steady *st, struct dalcs_rad
     dalcs_steady_means_finish(&means);
     dalcs_recorder_states(&s->network, radau->base, st->found.state);
     return status;
+}
+
+static enum dalcs_status start(struct dalcs_steady *st, struct dalcs_euler *e,
+                               struct dalcs_radau *radau) {
+    return st->has_point ? dalcs_steady_start(&st->at, e, radau)
+                         : dalcs_transient_start(st->run, e, radau, NULL);
 }
 
 static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler *e,
@@ -132,10 +142,10 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler
         observer = dalcs_variation_observer(&variation);
         e->observer = &observer;
     }
-    enum dalcs_status status = st->has_point ? dalcs_steady_start(&st->at, e, radau)
-                                             : dalcs_transient_start(st->run, e, radau, NULL);
+    enum dalcs_status status = start(st, e, radau);
     if (status == DALCS_OK) {
-        status = asked == DALCS_STEADY_MEANS ? go_with_means(st, radau) : go(radau, st->run, NULL);
+        status =
+            asked == DALCS_STEADY_MEANS ? go_with_means(st, radau) : go(radau, st->run, NULL, NULL);
     }
     if (status == DALCS_OK) {
         read_point(st, radau);
@@ -146,6 +156,45 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler
     }
     e->observer = NULL;
     dalcs_variation_finish(&variation);
+    return status;
+}
+
+static enum dalcs_status run_watched(struct dalcs_steady *st, struct dalcs_euler *e,
+                                     struct dalcs_radau *radau, struct dalcs_steady_watch *watch) {
+    struct dalcs_observer observer;
+    if (watch != NULL) {
+        observer = dalcs_steady_watch_observer(watch);
+        e->observer = &observer;
+    }
+    enum dalcs_status status = start(st, e, radau);
+    status = status == DALCS_OK ? go(radau, st->run, NULL, watch) : status;
+    e->observer = NULL;
+    if (status == DALCS_OK) {
+        read_point(st, radau);
+    }
+    return status == DALCS_OK && watch != NULL ? watch->status : status;
+}
+
+enum dalcs_status dalcs_steady_pass_watched(struct dalcs_steady *st, double duration,
+                                            struct dalcs_steady_watch *watch, bool *recurs,
+                                            int *from, int *to) {
+    struct dalcs_run *r = st->run;
+    struct dalcs_euler e;
+    struct dalcs_radau radau = {0};
+    const struct dalcs_radau_options options = dalcs_transient_options(r, duration);
+    DALCS_TRY(dalcs_euler_setup(&e, &r->s->circuit, &r->s->network, &r->osnsp, 1e-3 * duration,
+                                duration));
+    enum dalcs_status status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
+    if (status == DALCS_OK) {
+        status = run_watched(st, &e, &radau, watch);
+        r->s->report.work.steps += radau.steps;
+    }
+    if (status == DALCS_OK && watch != NULL) {
+        *recurs = dalcs_steady_watch_recurs(watch, &radau, from, to);
+    }
+    status = dalcs_explain_failure(r, &e, status);
+    dalcs_radau_finish(&radau);
+    dalcs_euler_finish(&e);
     return status;
 }
 
@@ -185,7 +234,7 @@ enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *
     struct dalcs_observer observer = dalcs_orbit_log_observer(log);
     e->observer = &observer;
     enum dalcs_status status = dalcs_steady_start(&st->at, e, radau);
-    status = status == DALCS_OK ? go(radau, st->run, NULL) : status;
+    status = status == DALCS_OK ? go(radau, st->run, NULL, NULL) : status;
     status = status == DALCS_OK ? log->status : status;
     e->observer = NULL;
     if (status == DALCS_OK) {
@@ -234,6 +283,8 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
         st->scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->step = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->first = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->last = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->found.state =
             dalcs_arena_alloc(&r->s->arena, (size_t)network->n_states + 1, sizeof(double));
         st->found.average =
@@ -242,9 +293,9 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
             dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
         st->conserved = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->conserved));
         complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
-                   st->M != NULL && st->scale != NULL && st->step != NULL && st->drift != NULL &&
-                   st->found.state != NULL && st->found.average != NULL && st->found.rms != NULL &&
-                   st->conserved != NULL;
+                   st->M != NULL && st->first != NULL && st->last != NULL && st->scale != NULL &&
+                   st->step != NULL && st->drift != NULL && st->found.state != NULL &&
+                   st->found.average != NULL && st->found.rms != NULL && st->conserved != NULL;
     }
     if (!complete) {
         dalcs_steady_finish(st);

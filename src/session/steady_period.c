@@ -294,7 +294,7 @@ static enum dalcs_status take_asked(const struct clocks *c, double asked, double
 }
 
 enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bool at_start,
-                                           double *period) {
+                                           double *period, bool *is_free) {
     const struct dalcs_circuit *circuit = &r->s->circuit;
     struct clocks c = {.run = r, .at_start = at_start};
     size_t most = 0;
@@ -308,12 +308,7 @@ enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bo
     }
     status = status == DALCS_OK ? find_common(&c, period) : status;
     status = status == DALCS_OK ? take_asked(&c, asked, period) : status;
-    if (status == DALCS_OK && *period == 0.0) {
-        status = refuse(r, NULL,
-                        "circuits that oscillate by themselves are not supported yet; a given "
-                        "period is that of what they are driven with",
-                        "no source repeats: there is no period to look for");
-    }
+    *is_free = c.n == 0;
     for (int k = 0; k < c.n && status == DALCS_OK; k++) {
         status = c.clock[k].stimulus == NULL
                      ? DALCS_OK

@@ -101,6 +101,23 @@ static size_t count_lasting(const struct dalcs_floquet *m, size_t n) {
     return lasting;
 }
 
+/* The multiplier 1 of an oscillation's flow says nothing of stability: the nearest one is taken out. */
+static double take_out_flow(struct dalcs_floquet *m, size_t *n) {
+    size_t flow = 0;
+    for (size_t k = 1; k < *n; k++) {
+        if (hypot(m[k].re - 1.0, m[k].im) < hypot(m[flow].re - 1.0, m[flow].im)) {
+            flow = k;
+        }
+    }
+    if (*n == 0) {
+        return 0.0;
+    }
+    const double is = m[flow].re;
+    memmove(m + flow, m + flow + 1, (*n - flow - 1) * sizeof(*m));
+    --*n;
+    return is;
+}
+
 /* ---- Verdict ------------------------------------------------------------------------------------- */
 
 bool dalcs_steady_is_unstable(const struct dalcs_report *report) {
@@ -129,6 +146,9 @@ static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floque
     if (size > 1.0 + near_one) {
         return dalcs_arena_printf(arena, "unstable: a deviation of %s grows by %.4g each period",
                                   m[0].state, size);
+    }
+    if (st->is_free && st->n_free > 0) {
+        return "not the only one: nothing decides how large it is, or what else stays as it is";
     }
     if (st->n_conserved > 0) {
         return "not the only one: a conserved quantity keeps its initial value";
@@ -200,18 +220,62 @@ static enum dalcs_status tell_signals(struct dalcs_steady *st) {
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
-    struct dalcs_session *s = st->run->s;
+/* All of them, the largest first; the session's. */
+static enum dalcs_status find_multipliers(struct dalcs_steady *st, struct dalcs_floquet **found,
+                                          size_t *n) {
     struct dalcs_arena work = {0};
-    struct dalcs_floquet *m = dalcs_arena_alloc(&s->arena, (size_t)st->layout.n_x + 1, sizeof(*m));
-    size_t n = 0;
+    struct dalcs_floquet *m =
+        dalcs_arena_alloc(&st->run->s->arena, (size_t)st->layout.n_x + 1, sizeof(*m));
     enum dalcs_status status = m != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    *n = 0;
     for (int k = 0; k < st->layout.n_systems && status == DALCS_OK; k++) {
-        status = multipliers_of(st, k, m, &n, &work);
+        status = multipliers_of(st, k, m, n, &work);
     }
     dalcs_arena_finish(&work);
     DALCS_TRY(status);
-    qsort(m, n, sizeof(*m), compare_size);
+    qsort(m, *n, sizeof(*m), compare_size);
+    *found = m;
+    return DALCS_OK;
+}
+
+double dalcs_steady_largest_multiplier(struct dalcs_steady *st) {
+    struct dalcs_floquet *m;
+    size_t n;
+    return find_multipliers(st, &m, &n) == DALCS_OK && n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
+}
+
+enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one) {
+    struct dalcs_report *report = &st->run->s->report;
+    const struct dalcs_floquet *of_one = &report->steady.multiplier[0];
+    struct dalcs_floquet *m;
+    size_t n;
+    char text[DALCS_QUANTITY_SIZE];
+    DALCS_TRY(find_multipliers(st, &m, &n));
+    n = count_lasting(m, n);
+    const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
+    report->steady.doubled.period = 2.0 * one;
+    report->steady.doubled.stable = size < 1.0 - near_one;
+    report->steady.doubled.n_multipliers = n;
+    report->steady.doubled.multiplier = m;
+    report->steady.verdict = dalcs_arena_printf(
+        &st->run->s->arena,
+        "unstable: what %s is off by changes its sign and grows by %.4g each period; an orbit of "
+        "two periods, %s, was found, %s, its largest factor %.6g: .pss periods=2 has it",
+        of_one->state, hypot(of_one->re, of_one->im),
+        dalcs_quantity_write(text, 2.0 * one, "s", 12),
+        size < 1.0 - near_one ? "stable" : "unstable too", size);
+    return report->steady.verdict != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
+    struct dalcs_session *s = st->run->s;
+    struct dalcs_floquet *m;
+    size_t n;
+    DALCS_TRY(find_multipliers(st, &m, &n));
+    if (st->is_free) {
+        s->report.steady.self_oscillating = true;
+        s->report.steady.flow = take_out_flow(m, &n);
+    }
     n = count_lasting(m, n);
     s->report.steady.present = true;
     s->report.steady.period = st->period;
@@ -224,8 +288,8 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
     s->report.steady.exact = st->is_exact;
     s->report.steady.multiplier = m;
     s->report.steady.n_multipliers = n;
-    s->report.steady.stable =
-        st->n_conserved == 0 && (n == 0 || hypot(m[0].re, m[0].im) < 1.0 - near_one);
+    s->report.steady.stable = st->n_conserved == 0 && st->n_free == 0 &&
+                              (n == 0 || hypot(m[0].re, m[0].im) < 1.0 - near_one);
     s->report.steady.verdict = verdict_of(st, m, n);
     DALCS_TRY(tell_conserved(st));
     return s->report.steady.verdict != NULL ? tell_signals(st) : DALCS_E_NOMEM;

@@ -13,6 +13,9 @@ static const double rows_in_a_period = 1000.0;
  * has called good. */
 static const double most_defect = 1e-10;
 
+/* That a message names. */
+enum { MOST_STATES = 8 };
+
 /* What the circuit and the run are while a period of it is run. */
 struct kept {
     struct dalcs_transient transient;
@@ -85,6 +88,58 @@ static enum dalcs_status tell_failure(struct dalcs_steady *st, bool endless) {
     return DALCS_NOT_CONVERGED;
 }
 
+static const char *states_text(struct dalcs_steady *st) {
+    struct dalcs_arena *arena = &st->run->s->arena;
+    const char *text = "";
+    for (int x = 0; x < st->layout.n_x && text != NULL; x++) {
+        char value[DALCS_QUANTITY_SIZE];
+        if (x == MOST_STATES) {
+            return dalcs_arena_printf(arena, "%s, ...", text);
+        }
+        text = dalcs_arena_printf(arena, "%s%s%s = %s", text, x > 0 ? ", " : "",
+                                  dalcs_steady_name(st, x),
+                                  dalcs_quantity_write(value, st->at.x[x], unit_of(st, x), 9));
+    }
+    return text == NULL ? "" : text;
+}
+
+/* Of a circuit without a clock. */
+static enum dalcs_status find_oscillation(struct dalcs_steady *st, double guess) {
+    struct dalcs_session *s = st->run->s;
+    bool found;
+    bool rests;
+    DALCS_TRY(dalcs_steady_oscillation(st, guess, &found, &rests));
+    if (rests && st->layout.n_x == 0) {
+        return refuse(st->run, ".op has what there is",
+                      "no source repeats, and nothing in the circuit has a memory");
+    }
+    if (rests) {
+        dalcs_diag_add(
+            &s->diag, DALCS_ERROR, NULL,
+            ".op has that state; if the circuit is to oscillate, start it with IC= and uic",
+            "there is no oscillation: no source repeats, and the circuit comes to rest, "
+            "at %s",
+            states_text(st));
+        return DALCS_NOT_CONVERGED;
+    }
+    if (!found && st->is_free_of_events) {
+        dalcs_diag_add(
+            &s->diag, DALCS_ERROR, NULL,
+            "what is linear rings at any amplitude, or moves on and on; look at it with "
+            ".tran",
+            "there is no oscillation of its own: no source repeats, and nothing switches "
+            "again and again");
+        return DALCS_NOT_CONVERGED;
+    }
+    if (!found) {
+        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
+                       "look at it with .tran; a guess of the period, .pss 10u, may help",
+                       "no source repeats, and no oscillation was found");
+        return DALCS_NOT_CONVERGED;
+    }
+    return DALCS_OK;
+}
+
 /* ---- The period ---------------------------------------------------------------------------------- */
 
 /* Is the run that has just ended, in st->then, where it began? */
@@ -155,6 +210,12 @@ static void take_period(struct dalcs_run *r, double period, bool uic) {
 
 /* ---- All of it ----------------------------------------------------------------------------------- */
 
+/* Does the largest multiplier say that each second period differs? */
+static bool is_subharmonic(const struct dalcs_report *report) {
+    const struct dalcs_floquet *m = report->steady.multiplier;
+    return dalcs_steady_is_unstable(report) && m[0].im == 0.0 && m[0].re < 0.0;
+}
+
 /* st: set up from here on, to be finished by the caller. */
 static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dalcs_steady *st) {
     const struct dalcs_circuit *c = &r->s->circuit;
@@ -166,20 +227,38 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
         return refuse(r, "leave the method, or the step, to the program",
                       "a steady state needs steps whose error is controlled");
     }
-    DALCS_TRY(dalcs_steady_find_period(r, period, leaves, &period));
-    take_period(r, period,
-                c->transient.use_initial_conditions || c->periodic.use_initial_conditions);
+    bool is_free;
+    DALCS_TRY(dalcs_steady_find_period(r, period, leaves, &period, &is_free));
+    const double n_periods = fmax(1.0, c->periodic.n_periods);
+    const double one = period;
+    period = is_free ? period : n_periods * period;
+    if (c->periodic.oscillates && !is_free) {
+        return refuse(r, "leave osc out: the period follows from the sources",
+                      "osc is of circuits that oscillate by themselves, and here a source repeats");
+    }
+    const bool uic = c->transient.use_initial_conditions || c->periodic.use_initial_conditions;
+    take_period(r, period, uic);
     DALCS_TRY(dalcs_steady_setup(st, r, period));
-    DALCS_TRY(dalcs_steady_search(st, &found, &endless));
-    if (!found) {
-        return tell_failure(st, endless);
+    if (is_free) {
+        DALCS_TRY(find_oscillation(st, period));
+        st->period *= n_periods;
+        DALCS_TRY(n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK);
+        take_period(r, st->period, uic);
+    } else {
+        DALCS_TRY(dalcs_steady_search(st, &found, &endless));
+        if (!found) {
+            return tell_failure(st, endless);
+        }
+        DALCS_TRY(n_periods > 1.0 ? dalcs_steady_replace(st, one, (int)n_periods) : DALCS_OK);
     }
     if (r->s->report.steady.present) { /* its .pss has told */
         return DALCS_OK;
     }
-    DALCS_TRY(dalcs_steady_newton(st)); /* how far it may be off, and what is conserved */
+    DALCS_TRY(dalcs_steady_next_step(st)); /* how far it may be off, and what is conserved */
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
-    return dalcs_steady_report(st);
+    DALCS_TRY(dalcs_steady_report(st));
+    return period == one && is_subharmonic(&r->s->report) ? dalcs_steady_look_for_double(st)
+                                                          : DALCS_OK;
 }
 
 enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) {

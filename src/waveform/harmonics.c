@@ -13,10 +13,17 @@ static const double two_pi = 6.283185307179586477;
 static const double most_turn = 4.0;
 
 enum dalcs_status dalcs_harmonics_setup(struct dalcs_harmonics *h,
-                                        const struct dalcs_fourier_card *card, double stop) {
+                                        const struct dalcs_fourier_card *card, double stop,
+                                        bool is_orbit) {
     size_t n = (size_t)card->n_harmonics + 1;
-    *h = (struct dalcs_harmonics){
-        .card = card, .from = stop - card->n_periods / card->frequency, .to = stop};
+    *h = (struct dalcs_harmonics){.card = card,
+                                  .frequency = card->frequency,
+                                  .from = stop - card->n_periods / card->frequency,
+                                  .to = stop};
+    if (is_orbit) {
+        h->frequency = fmax(1.0, rint(card->frequency * stop)) / stop;
+        h->from = 0.0;
+    }
     h->cosine = dalcs_alloc(n, sizeof(double));
     h->sine = dalcs_alloc(n, sizeof(double));
     if (h->cosine == NULL || h->sine == NULL) {
@@ -39,7 +46,7 @@ struct addition {
 
 /* `value` at `time`, with its weight. */
 static void add_value(struct dalcs_harmonics *h, double time, double value) {
-    double angle = two_pi * fmod(h->card->frequency * (time - h->from), 1.0);
+    double angle = two_pi * fmod(h->frequency * (time - h->from), 1.0);
     double c1 = cos(angle);
     double s1 = sin(angle);
     double c = 1.0;
@@ -58,7 +65,7 @@ static bool add_span(void *user, const struct dalcs_span *span) {
     const struct dalcs_stretch_rule *rule = a->stretch->rule;
     struct dalcs_harmonics *h = a->h;
     double length = span->to - span->from;
-    double turn = two_pi * h->card->frequency * h->card->n_harmonics * length;
+    double turn = two_pi * h->frequency * h->card->n_harmonics * length;
     int n = 1 + (int)(turn / most_turn);
     double weight = length / (n * (h->to - h->from));
     for (int part = 0; part < n; part++) {

@@ -7,16 +7,18 @@
 
 struct dalcs_harmonics {
     const struct dalcs_fourier_card *card;
-    double from, to; /* s */
+    double frequency; /* Hz */
+    double from, to;  /* s */
     double scale;
     double *cosine, *sine; /* [n_harmonics + 1] integrals over [from, to], over its length */
     bool has_no_value;
 };
 
-/* For a run that ends at stop, in s. */
+/* For a run that ends at stop, in s; is_orbit: that is a period, whose multiple of its frequency next to the card's is
+ * taken, over all of it. */
 enum dalcs_status dalcs_harmonics_setup(struct dalcs_harmonics *h,
-                                        const struct dalcs_fourier_card *card,
-                                        double stop) DALCS_MUST_CHECK;
+                                        const struct dalcs_fourier_card *card, double stop,
+                                        bool is_orbit) DALCS_MUST_CHECK;
 void dalcs_harmonics_finish(struct dalcs_harmonics *h);
 
 void dalcs_harmonics_add(struct dalcs_harmonics *h, const struct dalcs_stretch *stretch);

@@ -15,11 +15,14 @@ static const double rounding = 1e-14, same = 4e-15;
 
 /* ---- Setting up ------------------------------------------------------------------------------- */
 
+static bool has_time(enum dalcs_measured_analysis analysis) {
+    return analysis == DALCS_MEASURED_TRAN || analysis == DALCS_MEASURED_PSS;
+}
+
 bool dalcs_measuring_is_wanted(const struct dalcs_circuit *circuit,
                                enum dalcs_measured_analysis analysis) {
-    bool wanted =
-        analysis == DALCS_MEASURED_TRAN &&
-        (circuit->n_fouriers > 0 || (circuit->losses != NULL && circuit->losses->present));
+    bool wanted = has_time(analysis) && (circuit->n_fouriers > 0 ||
+                                         (circuit->losses != NULL && circuit->losses->present));
     for (int k = 0; k < circuit->n_measures && !wanted; k++) {
         wanted = circuit->measure[k].analysis == analysis;
     }
@@ -28,7 +31,7 @@ bool dalcs_measuring_is_wanted(const struct dalcs_circuit *circuit,
 
 static enum dalcs_status set_up_harmonics(struct dalcs_measuring *m, double stop) {
     const struct dalcs_circuit *c = m->circuit;
-    if (m->analysis != DALCS_MEASURED_TRAN) {
+    if (!has_time(m->analysis)) {
         return DALCS_OK;
     }
     m->harmonics = dalcs_alloc((size_t)c->n_fouriers, sizeof(*m->harmonics));
@@ -36,7 +39,8 @@ static enum dalcs_status set_up_harmonics(struct dalcs_measuring *m, double stop
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k < c->n_fouriers; k++) {
-        DALCS_TRY(dalcs_harmonics_setup(&m->harmonics[k], &c->fourier[k], stop));
+        const bool is_orbit = m->analysis == DALCS_MEASURED_PSS;
+        DALCS_TRY(dalcs_harmonics_setup(&m->harmonics[k], &c->fourier[k], stop, is_orbit));
         m->n_harmonics++;
     }
     return DALCS_OK;
@@ -342,7 +346,7 @@ static void measure_before_start(const struct dalcs_measuring *m, struct dalcs_m
 
 static void measure_at_point(const struct dalcs_measuring *m, struct dalcs_measured *item) {
     const struct dalcs_measure_card *card = item->card;
-    if (m->analysis == DALCS_MEASURED_TRAN) {
+    if (has_time(m->analysis)) {
         if (card->analysis == m->analysis && card->kind != DALCS_MEASURE_PARAM) {
             measure_before_start(m, item);
         }

@@ -33,7 +33,7 @@ struct dalcs_measuring {
     int n;
     struct dalcs_measured *item; /* [circuit->n_measures], those of other analyses unused */
     int n_harmonics;
-    struct dalcs_harmonics *harmonics; /* one for each .four; in a .tran */
+    struct dalcs_harmonics *harmonics; /* one for each .four; in a .tran and a period */
     double *row, *row_imaginary;       /* [n_signals] the last one */
     struct dalcs_kept_stretches *kept; /* all of the run; NULL: no measurement is late */
     bool has_row;

@@ -52,13 +52,13 @@ class Case:
         for word in words:
             self.checker.check(word in said, f"{netlist}: nothing of {word!r} in {said!r}")
 
-    def finds(self, netlist, period, *words, options=(), mean=None):
+    def finds(self, netlist, period, *words, options=(), mean=None, near=1e-13):
         done, report = self.run(netlist, *options)
         said = done.stderr + done.stdout
         if not self.checker.check(done.returncode == 0, f"{netlist}: {said}"):
             return None
         found = report["steady"]["period"]
-        self.checker.check(abs(found - period) <= 1e-13 * period, f"{netlist}: period {found!r}")
+        self.checker.check(abs(found - period) <= near * period, f"{netlist}: period {found!r}")
         for word in words:
             self.checker.check(word in said, f"{netlist}: nothing of {word!r} in {said!r}")
         if mean is not None:
@@ -72,7 +72,15 @@ def refused(case):
                  "no common period")
     case.refuses((CASES / "drift.cir").read_text(), 1, "no periodic steady state",
                  "v(c1) falls by 3.33333 mV", "v(c2) rises by 3.33333 mV")
-    case.refuses((CASES / "buck_hyst.cir").read_text(), 2, "no source repeats")
+    case.refuses("* rests\nV1 a 0 10\nR1 a b 1k\nC1 b 0 1u\n.pss\n", 1, "no oscillation",
+                 "comes to rest", "v(c1) = 10 V")
+    case.refuses("* dies away\nV1 a 0 10\nL1 a b 1m\nR1 b c 1\nC1 c 0 1u\n.pss 200u uic\n", 1,
+                 "comes to rest", "v(c1) = 10 V")
+    case.refuses("* rings\nC1 x 0 1u IC=1\nL1 x 0 1m\n.pss uic\n", 1, "nothing switches")
+    case.refuses("* no end\nI1 0 x 1m\nC1 x 0 1u\n.pss uic\n", 1, "nothing switches")
+    case.refuses("* no memory\nV1 a 0 10\nR1 a 0 1k\n.pss\n", 2, "has a memory")
+    case.refuses("* a clock\n" + CLOCK + BUCK + ".pss 10u osc uic\n", 2, "leave osc out")
+    case.refuses("* half of one\n" + CLOCK + BUCK + ".pss periods=1.5 uic\n", 3, "whole number")
     case.refuses("* 100001 of the faster\nV1 a 0 SIN(0 1 1k)\nV2 b 0 SIN(0 1 1000.01)\nR1 a c 1k\n"
                  "R2 b c 1k\nC1 c 0 1u\n.pss uic\n", 2, "no common period of less than 100000")
     case.refuses("* no multiple\n" + CLOCK + BUCK + ".pss 15u uic\n", 2,
@@ -84,7 +92,7 @@ def refused(case):
     case.refuses("* fixed\n" + CLOCK + BUCK + ".pss uic\n", 2, "error is controlled",
                  options=("--method", "radau", "--step", "10n"))
     case.refuses("* a word\n" + CLOCK + BUCK + ".pss 10u sometimes\n", 3, "sometimes")
-    case.refuses("* ngspice's\n" + CLOCK + BUCK + ".pss 100k 1m out 128 8 50\n", 3, ".pss [period]")
+    case.refuses("* ngspice's\n" + CLOCK + BUCK + ".pss 100k 1m out 128 8 50\n", 3, ".pss [period")
     case.refuses("* a second\n" + CLOCK + BUCK + ".pss\n.pss\n", 3, "a second .pss")
     # i1 fills c1 by 1 mA * 10 us / 1 uF each period, and nothing empties it
     case.refuses("* fills\nV1 a 0 PULSE(0 1 0 0 0 4u 10u)\nR1 a b 1k\nC2 b 0 1n\nI1 0 c 1m\nC1 c 0 1u\n"
@@ -112,6 +120,41 @@ def periods(case):
     done, report = case.run("* quiet\nV1 a 0 PULSE(0 1 0 0 0 4u 10u)\nR1 a 0 1k\n.pss\n")
     case.checker.check(done.returncode == 0 and report["steady"]["multipliers"] == [],
                        f"without states: {done.stderr}")
+
+
+def own_period(case):
+    """A circuit without a clock: however it is asked for, its reference, and small signals around it."""
+    netlist = (CASES / "buck_hyst.cir").read_text()
+    for asked in (".pss uic", ".pss auto uic", ".pss 7u osc uic", ".pss period=auto osc uic",
+                  ".pss 1m uic", ".pss 1p uic"):
+        done, report = case.run(netlist.replace(".pss uic", asked))
+        if not case.checker.check(done.returncode == 0, f"{asked}: {done.stderr}"):
+            continue
+        found = report["steady"]
+        off = abs(found["period"] / 7.2489946675430275e-06 - 1)
+        case.checker.check(off < 1e-9, f"{asked}: the period is off by {off:.2g}")
+        for got, due in zip(found["multipliers"], (0.45289384359, 0.00149824935)):
+            case.checker.check(abs(got["re"] - due) < 1e-7, f"{asked}: multiplier {got}")
+        mean = found["signals"]["v(out)"]["average"]
+        case.checker.check(abs(mean - 5.004077806596458) < 1e-9, f"{asked}: mean {mean!r}")
+    # van der Pol's equation, mu = 1: the multiplier is the exponential of an integral along the orbit
+    report = case.finds("* van der Pol\nC1 x 0 1 IC=0.1\nL1 x 0 1\n"
+                        "B1 x 0 I=v(x)*v(x)*v(x)/3-v(x)\n.pss uic\n", 6.6632868593231, near=1e-9)
+    case.checker.check(abs(report["steady"]["multipliers"][0]["re"] - 8.59695e-4) < 1e-8,
+                       "van der Pol's multiplier")
+    done, _ = case.run(netlist.replace(".pss uic", ".pss uic\n.ac list 13795.016355542994"),
+                       verb="run")
+    if case.checker.check(done.returncode == 0, f".ac: {done.stderr}"):
+        with open(case.folder / "c.csv", encoding="ascii") as file:
+            row = next(csv.DictReader(file))
+        got = complex(float(row["re(v(out))"]), float(row["im(v(out))"]))
+        off = abs(got - (1.0426449844619279 + 0.05653497720781723j))
+        case.checker.check(off < 1e-9, f".ac is off by {off:.2g}")
+    done, report = case.run(netlist.replace(".pss uic", ".tran 1u 72.489946675430275u uic=steady"),
+                            verb="run")
+    if case.checker.check(done.returncode == 0, f"uic=steady: {done.stderr}"):
+        off = max(abs(report["final"][k] - report["start"][k]) for k in ("c1", "cf", "l1"))
+        case.checker.check(off < 1e-8, f"after ten periods it is off by {off:.2g}")
 
 
 def one_period(case):
@@ -148,6 +191,7 @@ def main():
         case = Case(pathlib.Path(sys.argv[1]).resolve(), folder)
         refused(case)
         periods(case)
+        own_period(case)
         one_period(case)
         leaving(case)
     return case.checker.finish()

@@ -1,0 +1,118 @@
+/* steady_doubling.c - orbits of several periods of the sources, where a run does not stay on that of one.
+ *
+ * Such an orbit lies near no point that is known: a run is started beside the unstable one and leaves it, and bursts of
+ * Newton's method on the map of n periods start where it has come to. What they find may be the old orbit again, or one
+ * of a part of n periods: these repeat earlier, and are none. */
+#include "steady.h"
+
+#include <math.h>
+
+/* Periods of the sources that a run takes before each burst, after those before. */
+static const long waits[] = {60, 240, 960};
+
+/* An orbit repeats earlier if it comes back but for this, over the scales: far above the rounding of one that does, as
+ * its states are known to 1e-10, and far below what tells two orbits apart that are worth two names. */
+static const double repeats_within = 1e-7;
+
+/* By such a part of the scale the run starts beside the orbit. */
+static const double beside = 1e-2;
+
+/* Does the orbit of n periods through st->at come back after fewer of them? */
+static enum dalcs_status repeats_earlier(struct dalcs_steady *st, double one, int n, bool *it) {
+    const double whole = st->period;
+    enum dalcs_status status = DALCS_OK;
+    *it = false;
+    for (int k = 1; k < n && !*it && status == DALCS_OK; k++) {
+        if (n % k == 0) {
+            st->period = k * one;
+            status = dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN);
+            *it = st->residual <= repeats_within;
+        }
+    }
+    st->period = whole;
+    return status;
+}
+
+static void step_aside(struct dalcs_steady *st) {
+    double part = 0.5;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        part = fmod(part + 0.6180339887498949, 1.0);
+        st->at.x[x] += beside * (0.5 + part) * st->scale[x];
+    }
+}
+
+/* From st->at on, which is beside the old one. */
+static enum dalcs_status look_for(struct dalcs_steady *st, double one, int n, bool *found) {
+    struct dalcs_orbit_point run;
+    if (!dalcs_steady_make_point(st, &run)) {
+        return DALCS_E_NOMEM;
+    }
+    *found = false;
+    for (size_t k = 0; k < sizeof waits / sizeof waits[0] && !*found; k++) {
+        bool is_shorter = false;
+        st->period = one;
+        DALCS_TRY(dalcs_steady_pass(st, waits[k], DALCS_STEADY_PLAIN));
+        dalcs_steady_take(st);
+        dalcs_steady_copy_point(st, &run, &st->at);
+        st->period = n * one;
+        DALCS_TRY(dalcs_steady_burst(st, found));
+        if (*found) {
+            DALCS_TRY(repeats_earlier(st, one, n, &is_shorter));
+        }
+        *found = *found && !is_shorter;
+        if (!*found) {
+            dalcs_steady_copy_point(st, &st->at, &run);
+        }
+    }
+    DALCS_TRY(*found ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK);
+    return *found ? dalcs_steady_refine(st, &run) : DALCS_OK;
+}
+
+/* As st is, with its last pass. */
+static enum dalcs_status go_back(struct dalcs_steady *st, const struct dalcs_orbit_point *orbit,
+                                 double period) {
+    dalcs_steady_copy_point(st, &st->at, orbit);
+    st->period = period;
+    return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+}
+
+enum dalcs_status dalcs_steady_replace(struct dalcs_steady *st, double one, int n) {
+    const double whole = st->period;
+    struct dalcs_orbit_point orbit;
+    bool is_shorter;
+    bool found = false;
+    if (!dalcs_steady_make_point(st, &orbit)) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_steady_copy_point(st, &orbit, &st->at);
+    DALCS_TRY(repeats_earlier(st, one, n, &is_shorter));
+    DALCS_TRY(go_back(st, &orbit, whole));
+    if (!is_shorter || dalcs_steady_largest_multiplier(st) <= 1.0 + 1e-9) {
+        return DALCS_OK;
+    }
+    step_aside(st);
+    DALCS_TRY(look_for(st, one, n, &found));
+    return found ? DALCS_OK : go_back(st, &orbit, whole);
+}
+
+enum dalcs_status dalcs_steady_look_for_double(struct dalcs_steady *st) {
+    const double one = st->period;
+    const struct dalcs_steady_count count = st->n;
+    const bool is_exact = st->is_exact;
+    struct dalcs_orbit_point orbit;
+    bool found;
+    if (!dalcs_steady_make_point(st, &orbit)) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_steady_copy_point(st, &orbit, &st->at);
+    step_aside(st);
+    enum dalcs_status status = look_for(st, one, 2, &found);
+    status = status == DALCS_OK && found ? dalcs_steady_report_double(st, one) : status;
+    if (status > DALCS_OK) { /* a run that fails there is not this orbit's */
+        status = DALCS_OK;
+    }
+    status = status == DALCS_OK ? go_back(st, &orbit, one) : status;
+    st->n = count;
+    st->is_exact = is_exact;
+    return status;
+}

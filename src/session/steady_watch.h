@@ -1,0 +1,44 @@
+/* steady_watch.h - the events of a run: when a part goes from one mode to another, and where its states are then. */
+#ifndef DALCS_STEADY_WATCH_H
+#define DALCS_STEADY_WATCH_H
+
+#include "memory.h"
+#include "radau_state.h"
+
+/* Segments without an event, that a run is given: thousands of turns of what rings. */
+enum { DALCS_WATCH_WITHOUT_EVENTS = 20000 };
+
+struct dalcs_steady_event {
+    double t; /* s */
+    int part;
+    uint64_t kind; /* of the modes before and after */
+    double *x;     /* [n_x of the part] */
+};
+
+struct dalcs_steady_watch {
+    enum dalcs_status status;
+    long n_segments;
+    int n, most;
+    struct dalcs_steady_event *event; /* [n], of `most` */
+    int n_parts;
+    uint64_t *mode; /* [n_parts] the last one, and whether there was one */
+    bool *begun;
+    struct dalcs_arena arena;
+};
+
+/* Of up to `most` events. */
+enum dalcs_status dalcs_steady_watch_setup(struct dalcs_steady_watch *watch, int n_parts,
+                                           int most) DALCS_MUST_CHECK;
+/* Has it seen enough? */
+bool dalcs_steady_watch_is_full(const struct dalcs_steady_watch *watch);
+
+void dalcs_steady_watch_finish(struct dalcs_steady_watch *watch);
+
+/* For radau->base->observer; user is the watch. */
+struct dalcs_observer dalcs_steady_watch_observer(struct dalcs_steady_watch *watch);
+
+/* The last event and one like it before, between which a period may lie: from -> to. False: no event has come twice. */
+bool dalcs_steady_watch_recurs(const struct dalcs_steady_watch *watch,
+                               const struct dalcs_radau *radau, int *from, int *to);
+
+#endif

@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""Circuits that oscillate by themselves: period and stability against closed forms, or runs as long as they take.
+
+usage: oscillators.py PROGRAM KIND
+"""
+
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import dalcs_program  # pylint: disable=wrong-import-position,import-error
+from kinds import between, part  # pylint: disable=wrong-import-position
+
+NEAR = 1e-9  # of the period
+MOST_PERIODS = 3000
+
+
+def relaxation():
+    """A capacitor through a resistor, emptied by a switch with hysteresis into another resistor."""
+    for k in range(10):
+        volts, ohms = between(0.5, 500, k, 1), between(10, 1e6, k, 2)
+        store = between(1e-12, 1e-3, k, 3)
+        low, high = (0.1 + 0.3 * part(k, 4)) * volts, (0.5 + 0.4 * part(k, 5)) * volts
+        into = ohms * between(1e-3, 0.05, k, 6)
+        both, rest = ohms * into / (ohms + into), volts * into / (ohms + into)
+        period = (ohms * store * math.log((volts - low) / (volts - high)) +
+                  both * store * math.log((high - rest) / (low - rest)))
+        yield (f"V1 in 0 {volts!r}\nR1 in c {ohms!r}\nC1 c 0 {store!r}\nS1 c d c 0 sm\n"
+               f"R2 d 0 {into!r}\n.model sm SW(Ron=0 Vt={(low + high) / 2!r} "
+               f"Vh={(high - low) / 2!r})\n", period)
+
+
+def both_ways(middle, half, ohms):
+    """Two models: closed above, and closed below with its control turned round."""
+    return (f".model above SW(Ron={ohms!r} Vt={middle!r} Vh={half!r})\n"
+            f".model below SW(Ron={ohms!r} Vt={-middle!r} Vh={half!r})\n")
+
+
+def inverter():
+    """A Schmitt inverter, which drives its own input through an RC."""
+    for k in range(10):
+        volts, ohms = between(1, 50, k, 1), between(100, 1e6, k, 2)
+        store = between(1e-11, 1e-5, k, 3)
+        middle, half = (0.4 + 0.2 * part(k, 4)) * volts, (0.02 + 0.3 * part(k, 5)) * volts
+        low, high = middle - half, middle + half
+        period = ohms * store * math.log((volts - low) / (volts - high) * high / low)
+        yield (f"Vcc p 0 {volts!r}\nSp p y 0 c below\nSn y 0 c 0 above\nR1 y c {ohms!r}\n"
+               f"C1 c 0 {store!r}\n" + both_ways(middle, half, 0.0), period)
+
+
+def royer():
+    """A coil between two supplies, turned round where its current reaches a limit."""
+    for k in range(10):
+        volts, coil = between(1, 400, k, 1), between(1e-6, 1e-1, k, 2)
+        limit, sense = between(0.01, 10, k, 3), between(1e-3, 1e-1, k, 4)
+        period = 2 * coil / sense * math.log((volts + limit * sense) / (volts - limit * sense))
+        yield (f"Vp p 0 {volts!r}\nVn n 0 {-volts!r}\nL1 y s {coil!r} IC={1.5 * limit!r}\nRs s 0 {sense!r}\n"
+               f"Sp p y 0 s below\nSn n y s 0 above\nRl y 0 {volts / limit!r}\n" +
+               both_ways(0.0, limit * sense, 0.0), period)
+
+
+def hysteretic_buck():
+    for k in range(10):
+        volts, duty, ohms = between(5, 50, k, 1), 0.25 + 0.5 * part(k, 2), between(0.5, 20, k, 3)
+        coil, store = ohms * between(2e-6, 2e-5, k, 4), between(2e-5, 2e-4, k, 5) / ohms
+        rest, half = ohms * between(0.02, 0.2, k, 6), volts * between(1e-3, 1e-2, k, 7)
+        yield (f"Vin in 0 {volts!r}\nVref ref 0 {duty * volts!r}\nS1 in sw ref out sm\nD1 0 sw\n"
+               f"L1 sw out {coil!r}\nC1 out e {store!r}\nRe e 0 {rest!r}\nR1 out 0 {ohms!r}\n"
+               f".model sm SW(Ron=0 Vt=0 Vh={half!r})\n", None)
+
+
+def bang_bang_boost():
+    """A boost converter whose coil's current is kept within a band."""
+    for k in range(10):
+        volts, ohms = between(3, 100, k, 1), between(5, 200, k, 2)
+        amperes = volts / ohms * between(2.5, 8, k, 3)
+        coil, store = ohms * between(1e-6, 1e-5, k, 4), between(1e-5, 1e-4, k, 5) / ohms
+        half = amperes * (0.1 + 0.3 * part(k, 6))
+        yield (f"Vin in 0 {volts!r}\nL1 in s {coil!r}\nRs s sw 0.01\nEx x 0 s sw 100\n"
+               f"S1 sw 0 0 x sm\nD1 sw out\nC1 out 0 {store!r}\nR1 out 0 {ohms!r}\n"
+               f".model sm SW(Ron=0 Vt={-amperes!r} Vh={half!r})\n", None)
+
+
+def ring():
+    """Three or five Schmitt inverters one behind the other, each with an RC of its own."""
+    for k in range(10):
+        volts, n = between(1, 50, k, 1), 3 if k % 2 else 5
+        middle, half = (0.45 + 0.1 * part(k, 2)) * volts, (0.02 + 0.15 * part(k, 3)) * volts
+        body = f"Vcc p 0 {volts!r}\n"
+        for j in range(n):
+            at = f"c{(j - 1) % n}"
+            ohms, store = between(100, 1e4, k, 4), between(1e-9, 1e-7, k, 5)
+            body += (f"Sp{j} p y{j} 0 {at} below\nSn{j} y{j} 0 {at} 0 above\n"
+                     f"R{j} y{j} c{j} {ohms * (0.5 + part(k + j, 6))!r}\n"
+                     f"C{j} c{j} 0 {store!r} IC={volts * part(k + j, 8)!r}\n")
+        yield body + both_ways(middle, half, 0.0), None
+
+
+def negative_resistance():
+    """An LC tank, which a comparator drives through a resistor."""
+    for k in range(10):
+        coil, store = between(1e-6, 1e-2, k, 1), between(1e-10, 1e-6, k, 2)
+        ohms = math.sqrt(coil / store)
+        volts = between(0.5, 50, k, 3)
+        yield (f"Vp p 0 {volts!r}\nVn n 0 {-volts!r}\nL1 a 0 {coil!r}\n"
+               f"C1 a 0 {store!r} IC={0.3 * volts!r}\nR1 a 0 {ohms * between(2, 8, k, 4)!r}\n"
+               f"Sp p y a 0 above\nSn n y 0 a below\nR2 y a {ohms * between(1, 10, k, 5)!r}\n" +
+               both_ways(0.0, 1e-3 * volts, 0.0), None)
+
+
+KINDS = {f.__name__: f for f in (relaxation, inverter, royer, hysteretic_buck, bang_bang_boost,
+                                 ring, negative_resistance)}
+
+
+def run(program, folder, netlist, verb, *options):
+    (folder / "c.cir").write_text(netlist)
+    done = subprocess.run([program, verb, "c.cir", "-o", "c.csv", "--report", "c.json", "-q",
+                           *options], cwd=folder, capture_output=True, text=True, check=False)
+    return done, json.loads((folder / "c.json").read_text()) if done.returncode == 0 else {}
+
+
+def settled_period(program, folder, body, steady):
+    """The time between events of a run; None: it would take too long. Some lie nearer than a period."""
+    largest = max([math.hypot(m["re"], m["im"]) for m in steady["multipliers"]], default=0.0)
+    periods = 30 if largest < 0.1 else math.ceil(1.3 * math.log(1e-12) / math.log(largest)) + 30
+    if periods > MOST_PERIODS:
+        return None
+    stop = periods * steady["period"]
+    card = f".tran {stop!r} {stop!r} {stop * (1 - 1e-9)!r} uic\n.end\n"
+    done, settled = run(program, folder, "* run\n" + body + card, "run", "--tol", "1e-11",
+                        "--fill", "none")
+    if done.returncode != 0:
+        return done.stderr
+    last = settled["events"][-1]
+    times = [e["time"] for e in settled["events"]
+             if (e["element"], e["state"]) == (last["element"], last["state"])]
+    return min((times[-1] - t for t in times[-40:-1]),
+               key=lambda T: abs(T - steady["period"]), default="no event comes again")
+
+
+def main():
+    program, kind = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+    checker = dalcs_program.Checker(kind)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        cases = [(f"{kind}_{k}", case) for k, case in enumerate(KINDS[kind]())]
+        for label, (body, period) in dalcs_program.some_of(cases):
+            done, report = run(program, folder, f"* {label}\n{body}.pss uic\n.end\n", "steady")
+            if not checker.check(done.returncode == 0, f"{label}: {done.stderr}"):
+                continue
+            steady = report["steady"]
+            checker.check(steady["self_oscillating"] and steady["stable"],
+                          f"{label}: {steady['verdict']}")
+            checker.check(abs(steady["flow"] - 1) < 1e-7, f"{label}: flow {steady['flow']!r}")
+            if period is None:
+                period = settled_period(program, folder, body, steady)
+            if period is None:
+                continue
+            if not checker.check(not isinstance(period, str), f"{label}: {period}"):
+                continue
+            off = abs(steady["period"] / period - 1)
+            checker.check(off <= NEAR, f"{label}: {steady['period']!r} s, not {period!r}: {off:.2g}")
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
