@@ -14,6 +14,27 @@ const char *dalcs_session_script_line(const struct dalcs_session *session, size_
                                                          : NULL;
 }
 
+enum dalcs_status dalcs_session_add_script_line(struct dalcs_session *session, const char *text) {
+    struct dalcs_netlist *netlist = &session->netlist;
+    if (dalcs_session_n_script_lines(session) == 0) {
+        return DALCS_E_OPTION;
+    }
+    const struct dalcs_source_line *last = &netlist->script[netlist->n_script_lines - 1];
+    const struct dalcs_source *source = last->source;
+    const int number = last->source->outer == NULL && last->number > 0 ? last->number + 1 : 1;
+    const char *own = dalcs_arena_copy(&netlist->arena, text, strlen(text));
+    if (own == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    /* the circuit of the last run may name places in the lines that move here: it is built again */
+    session->is_altered = true;
+    DALCS_TRY(dalcs_grow(&netlist->script, &netlist->script_capacity, netlist->n_script_lines + 1,
+                         sizeof *netlist->script));
+    netlist->script[netlist->n_script_lines++] =
+        (struct dalcs_source_line){.source = source, .text = own, .number = number};
+    return DALCS_OK;
+}
+
 void dalcs_session_script_message(struct dalcs_session *session, size_t line, size_t column,
                                   size_t length, enum dalcs_level level, const char *hint,
                                   const char *text) {
