@@ -42,6 +42,22 @@ static enum dalcs_status setplot(struct ng_library *l, const char *rest) {
     return ng_lend_vectors(l);
 }
 
+enum dalcs_status ng_commands_hear_set(struct ng_library *l, const char *rest) {
+    char word[64];
+    const char *equal = strchr(rest, '=');
+    if (equal == NULL || strcmp(next_word(&rest, word, sizeof word), "curplot") != 0) {
+        return DALCS_OK;
+    }
+    equal++;
+    next_word(&equal, word, sizeof word);
+    if (strcmp(word, "new") != 0) {
+        return setplot(l, word);
+    }
+    DALCS_TRY(ng_take_vectors(l));
+    DALCS_TRY(ng_plots_make(&l->plots));
+    return ng_lend_vectors(l);
+}
+
 static enum dalcs_status destroy(struct ng_library *l, const char *rest) {
     char word[64];
     DALCS_TRY(ng_take_vectors(l));

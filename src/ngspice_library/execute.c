@@ -32,6 +32,9 @@ bool ng_forget_circuit(struct ng_library *l) {
 
 static enum dalcs_status hear(void *user, const char *word, const char *rest) {
     struct ng_library *l = user;
+    if (strcmp(word, "set") == 0) {
+        return ng_commands_hear_set(l, rest);
+    }
     DALCS_TRY(ng_take_vectors(l)); /* what was made belongs to the plot before the run */
     return ng_circuit_hear(l->circuit, word, rest);
 }

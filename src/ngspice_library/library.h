@@ -83,6 +83,10 @@ enum dalcs_status ng_take_vectors(struct ng_library *library) DALCS_MUST_CHECK;
 bool ng_commands_know(void *user, const char *word);
 enum dalcs_status ng_commands_execute(void *user, const char *word, const char *rest);
 
+/* `set curplot = tran1` chooses a plot, `set curplot = new` makes one. */
+enum dalcs_status ng_commands_hear_set(struct ng_library *library,
+                                       const char *rest) DALCS_MUST_CHECK;
+
 /* ---- measure.c ------------------------------------------------------------------------------------- */
 
 /* "tran name MAX v(out)" of the last run of that kind. */

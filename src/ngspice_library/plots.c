@@ -203,6 +203,22 @@ enum dalcs_status ng_plots_begin(struct ng_plots *plots, const struct dalcs_plot
     return status;
 }
 
+enum dalcs_status ng_plots_make(struct ng_plots *plots) {
+    char type[24];
+    struct ng_plot *plot = NULL;
+    snprintf(type, sizeof type, "unknown%d", plots->n_empty + 1);
+    pthread_mutex_lock(&plots->lock);
+    const enum dalcs_status status =
+        add_plot(plots, type, "Anonymous", "Anonymous", &plot);
+    if (status == DALCS_OK) {
+        plot->analysis = DALCS_OPERATING_POINT; /* of which a plot has no scale */
+        plots->n_empty++;
+        plots->current = plots->n - 1;
+    }
+    pthread_mutex_unlock(&plots->lock);
+    return status;
+}
+
 /* Values k, k + stride, ... of an array become the vector's next ones. */
 static void append(struct ng_vector *v, size_t n, const double *value, size_t stride) {
     const size_t each = v->is_complex ? 2 : 1;
@@ -340,6 +356,7 @@ void ng_plots_destroy_all(struct ng_plots *plots) {
         remove_at(plots, plots->n - 1);
     }
     plots->current = 0;
+    plots->n_empty = 0;
     for (int k = 0; k < DALCS_N_ANALYSES; k++) {
         plots->n_made[k] = 0;
     }

@@ -43,6 +43,7 @@ struct ng_plots {
     size_t n, capacity;
     size_t current;
     int n_made[DALCS_N_ANALYSES]; /* since all were destroyed */
+    int n_empty;                  /* of ng_plots_make */
     pthread_mutex_t lock;         /* held while vectors change */
     struct ng_vector_info info;   /* what was handed out last */
     char **name;                  /* list that was handed out last; heap */
@@ -54,6 +55,9 @@ void ng_plots_close(struct ng_plots *plots);
 /* A new plot, which becomes the current one; its vectors are empty. */
 enum dalcs_status ng_plots_begin(struct ng_plots *plots,
                                  const struct dalcs_plot *about) DALCS_MUST_CHECK;
+
+/* An empty one without a scale, for what let makes. */
+enum dalcs_status ng_plots_make(struct ng_plots *plots) DALCS_MUST_CHECK;
 
 /* Rows for the current plot, as a sink gets them. */
 enum dalcs_status ng_plots_add_rows(struct ng_plots *plots, size_t n, const double *scale,

@@ -90,7 +90,7 @@ static enum dalcs_status run_session(struct dalcs_script *script) {
     return status == DALCS_OK ? keep_measured(script) : status;
 }
 
-/* Tells the host of a statement that changes later runs, or is one. */
+/* Tells the host what is about to happen. */
 static enum dalcs_status tell(struct dalcs_script *script, const struct dalcs_statement *s) {
     const char *rest;
     if (script->host->heard == NULL) {
@@ -561,7 +561,7 @@ static bool needs_circuit(const struct dalcs_statement *s) {
 static bool is_heard(const struct dalcs_statement *s) {
     return (needs_circuit(s) && s->kind != DALCS_STATEMENT_MEASURE) ||
            s->kind == DALCS_STATEMENT_LET || s->kind == DALCS_STATEMENT_RESET ||
-           s->kind == DALCS_STATEMENT_SAVE;
+           s->kind == DALCS_STATEMENT_SAVE || s->kind == DALCS_STATEMENT_SET;
 }
 
 /* A measurement; where an analysis was before it, it is made. */

@@ -26,7 +26,7 @@ struct dalcs_script_host {
     enum dalcs_status (*execute)(void *user, const char *word, const char *rest);
     /* A measurement that follows no analysis of the same lines; NULL: it is left out. */
     enum dalcs_status (*measure)(void *user, const char *rest);
-    /* Before what changes later runs, or is one, with variables replaced; may be NULL. */
+    /* Before what sets, makes or alters something, or runs, with variables replaced; may be NULL. */
     enum dalcs_status (*heard)(void *user, const char *word, const char *rest);
     /* After each run, while the session has its report; may be NULL. */
     void (*after_run)(void *user, struct dalcs_session *session, enum dalcs_status status);
