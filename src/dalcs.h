@@ -437,7 +437,7 @@ void dalcs_session_script_message(struct dalcs_session *session, size_t line, si
                                   const char *text);
 
 /* Adds a line as if it stood at the end of .control: for programs that are told commands one by one. It is
- * copied. Only for a netlist with a script. */
+ * copied; messages call it "command:1", then 2 and so on. Only for a netlist with a script. */
 enum dalcs_status dalcs_session_add_script_line(struct dalcs_session *session,
                                                 const char *text) DALCS_MUST_CHECK;
 

@@ -34,8 +34,10 @@ static const char help[] =
     "  -a, -n, -i, -p, -q, -s, -t TERMINAL, -D VARIABLE=VALUE\n"
     "                      are ngspice's and have no meaning here\n"
     "\n"
-    "Called by the name ngspice, it does without -b, prints what programs look for with -v, and refuses -p and\n"
-    "-s, which would read commands: programs that send commands load libngspice.so.0 (dalcs as-ngspice).\n"
+    "Called by the name ngspice, it does without -b, prints what programs look for with -v, and "
+    "refuses -p and\n"
+    "-s, which would read commands: programs that send commands load libngspice.so.0 (dalcs "
+    "as-ngspice).\n"
     "\n"
     "  -h, --help          this text\n"
     "\n"
@@ -44,22 +46,14 @@ static const char help[] =
 enum { ASCII = 256, DIALECT };
 
 static const struct option option[] = {
-    {"batch", no_argument, NULL, 'b'},
-    {"rawfile", required_argument, NULL, 'r'},
-    {"output", required_argument, NULL, 'o'},
-    {"ascii", no_argument, NULL, ASCII},
-    {"autorun", no_argument, NULL, 'a'},
-    {"no-spiceinit", no_argument, NULL, 'n'},
-    {"interactive", no_argument, NULL, 'i'},
-    {"pipe", no_argument, NULL, 'p'},
-    {"quiet", no_argument, NULL, 'q'},
-    {"server", no_argument, NULL, 's'},
-    {"terminal", required_argument, NULL, 't'},
-    {"version", no_argument, NULL, 'v'},
-    {"define", required_argument, NULL, 'D'},
-    {"dialect", required_argument, NULL, DIALECT},
-    {"help", no_argument, NULL, 'h'},
-    {NULL, 0, NULL, 0},
+    {"batch", no_argument, NULL, 'b'},          {"rawfile", required_argument, NULL, 'r'},
+    {"output", required_argument, NULL, 'o'},   {"ascii", no_argument, NULL, ASCII},
+    {"autorun", no_argument, NULL, 'a'},        {"no-spiceinit", no_argument, NULL, 'n'},
+    {"interactive", no_argument, NULL, 'i'},    {"pipe", no_argument, NULL, 'p'},
+    {"quiet", no_argument, NULL, 'q'},          {"server", no_argument, NULL, 's'},
+    {"terminal", required_argument, NULL, 't'}, {"version", no_argument, NULL, 'v'},
+    {"define", required_argument, NULL, 'D'},   {"dialect", required_argument, NULL, DIALECT},
+    {"help", no_argument, NULL, 'h'},           {NULL, 0, NULL, 0},
 };
 
 struct batch {
@@ -84,10 +78,11 @@ static const char *help_of(const struct batch *b) {
 /* An option of ngspice's shell, which reads commands. */
 static enum dalcs_status take_shell(const struct batch *b, const struct dalcs_cli *cli, int code) {
     if (b->is_ngspice && code != 'i') {
-        dalcs_cli_error(cli,
-                        "-%c: dalcs in ngspice's place takes no commands from a pipe; a program that "
-                        "sends them can load libngspice.so.0 (dalcs as-ngspice)",
-                        code);
+        dalcs_cli_error(
+            cli,
+            "-%c: dalcs in ngspice's place takes no commands from a pipe; a program that "
+            "sends them can load libngspice.so.0 (dalcs as-ngspice)",
+            code);
         return DALCS_E_OPTION;
     }
     fprintf(cli->err, "dalcs: note: -%c is for ngspice's shell and has no meaning here\n", code);
@@ -200,9 +195,10 @@ static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **ar
     if (status == DALCS_OK && b.help) {
         fputs(help, cli->out);
     } else if (status == DALCS_OK && b.version) {
-        fprintf(cli->out,
-                "******\n** ngspice-39 is what programs may take this for: it is dalcs %s\n******\n",
-                dalcs_version());
+        fprintf(
+            cli->out,
+            "******\n** ngspice-39 is what programs may take this for: it is dalcs %s\n******\n",
+            dalcs_version());
     } else if (status == DALCS_OK) {
         b.arguments.log = b.log;
         status = dalcs_paths_check(cli, &b.arguments);

@@ -36,7 +36,8 @@ static const char *text_of(const struct ng_lines *lines) {
 static bool begins(const char *line, const char *word) {
     const size_t n = strlen(word);
     line += strspn(line, " \t");
-    return strncasecmp(line, word, n) == 0 && (line[n] == '\0' || strchr(" \t\r\n", line[n]) != NULL);
+    return strncasecmp(line, word, n) == 0 &&
+           (line[n] == '\0' || strchr(" \t\r\n", line[n]) != NULL);
 }
 
 static const char *next_line(const char *line) {
@@ -94,7 +95,8 @@ enum dalcs_status ng_circuit_read(struct ng_circuit **circuit, const char *name,
     status = status == DALCS_OK ? ng_lines_add(&all, text_of(&c->source)) : status;
     status = status == DALCS_OK ? ng_lines_add(&all, ".control\n* commands\n.endc\n.end") : status;
     status = status == DALCS_OK ? dalcs_session_create(&c->session) : status;
-    status = status == DALCS_OK ? dalcs_session_read_text(c->session, name, all.text, all.n) : status;
+    status =
+        status == DALCS_OK ? dalcs_session_read_text(c->session, name, all.text, all.n) : status;
     ng_lines_finish(&all);
     const size_t n = status == DALCS_OK ? dalcs_session_n_script_lines(c->session) : 0;
     c->n_control = n > 0 ? n - 1 : 0; /* the last one is ours */
@@ -163,8 +165,7 @@ enum dalcs_status ng_circuit_hear(struct ng_circuit *c, const char *word, const 
     if (is_analysis) {
         ng_lines_finish(&c->made);
     } else if (status == DALCS_OK) {
-        status =
-            ng_lines_add(strcmp(word, "let") == 0 ? &c->made : &c->settings, command.text);
+        status = ng_lines_add(strcmp(word, "let") == 0 ? &c->made : &c->settings, command.text);
     }
     ng_lines_finish(&command);
     return status;

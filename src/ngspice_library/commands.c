@@ -75,12 +75,10 @@ static enum dalcs_status destroy(struct ng_library *l, const char *rest) {
 }
 
 static enum dalcs_status display(struct ng_library *l, const char *rest) {
-    static const char *const type[] = {[DALCS_VOLT] = "voltage",
-                                       [DALCS_AMPERE] = "current",
-                                       [DALCS_UNIT_SECOND] = "time",
-                                       [DALCS_UNIT_HERTZ] = "frequency",
-                                       [DALCS_UNIT_OHM] = "resistance",
-                                       [DALCS_UNIT_NONE] = "notype"};
+    static const char *const type[] = {
+        [DALCS_VOLT] = "voltage",        [DALCS_AMPERE] = "current",
+        [DALCS_UNIT_SECOND] = "time",    [DALCS_UNIT_HERTZ] = "frequency",
+        [DALCS_UNIT_OHM] = "resistance", [DALCS_UNIT_NONE] = "notype"};
     (void)rest;
     DALCS_TRY(ng_take_vectors(l));
     const struct ng_plot *plot = ng_plots_current(&l->plots);
@@ -124,17 +122,15 @@ static enum dalcs_status version(struct ng_library *l, const char *rest) {
 
 static enum dalcs_status status_of(struct ng_library *l, const char *rest) {
     (void)rest;
-    fprintf(l->talk.out, "%s, %zu plot%s\n",
-            l->circuit->is_none ? "no circuit" : l->circuit->name, l->plots.n,
-            l->plots.n == 1 ? "" : "s");
+    fprintf(l->talk.out, "%s, %zu plot%s\n", l->circuit->is_none ? "no circuit" : l->circuit->name,
+            l->plots.n, l->plots.n == 1 ? "" : "s");
     return DALCS_OK;
 }
 
 static enum dalcs_status rusage(struct ng_library *l, const char *rest) {
     (void)rest;
     const struct dalcs_report *report = dalcs_session_report(l->circuit->session);
-    fprintf(l->talk.out, "Total elapsed time (seconds) = %.6g\n",
-            (double)clock() / CLOCKS_PER_SEC);
+    fprintf(l->talk.out, "Total elapsed time (seconds) = %.6g\n", (double)clock() / CLOCKS_PER_SEC);
     if (report != NULL) {
         fprintf(l->talk.out, "Last run: %ld steps, %.6g s\n", report->work.steps,
                 report->work.wall_s);

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- Circuits ---------------------------------------------------------------------------------------- */
 
@@ -19,7 +20,7 @@ static void use_circuit(struct ng_library *l, struct ng_circuit *circuit) {
 
 bool ng_forget_circuit(struct ng_library *l) {
     struct ng_circuit *none;
-    const enum dalcs_status status = ng_circuit_read(&none, "command", NULL);
+    const enum dalcs_status status = ng_circuit_read(&none, "no circuit", NULL);
     if (status != DALCS_OK) {
         ng_circuit_destroy(none);
         ng_talk_fail(&l->talk, "%s", dalcs_status_text(status));
@@ -192,7 +193,9 @@ bool ng_execute_circuit(struct ng_library *l, const char *name, const char *text
         return false;
     }
     use_circuit(l, circuit);
-    ng_talk_say(&l->talk, "Circuit: %.*s", (int)strcspn(text, "\r\n"), text);
+    static const char word[] = ".title ";
+    const char *title = text + (strncasecmp(text, word, strlen(word)) == 0 ? strlen(word) : 0);
+    ng_talk_say(&l->talk, "Circuit: %.*s", (int)strcspn(title, "\r\n"), title);
     if (circuit->n_control == 0) {
         return true;
     }

@@ -1,4 +1,4 @@
-/* interface.c - what programs call. Nothing here ends the process, touches its signals or its locale. */
+/* interface.c - how programs begin and send commands and circuits. Nothing here ends the process, touches its signals or its locale. */
 #include "library.h"
 
 #include "diag.h"
@@ -10,42 +10,41 @@
 #include <string.h>
 #include <strings.h>
 
-/* The interface has no handle: a process has one simulator. */
-static struct ng_library the;
+struct ng_library ng_the;
 
-static bool is_ready(void) {
-    if (!the.is_open && ng_library_open(&the) != DALCS_OK) {
-        ng_library_close(&the);
+bool ng_is_ready(void) {
+    if (!ng_the.is_open && ng_library_open(&ng_the) != DALCS_OK) {
+        ng_library_close(&ng_the);
         return false;
     }
     return true;
 }
 
 __attribute__((destructor)) static void leave(void) {
-    if (the.is_open && !ng_background_is_here(&the.background)) {
-        the.talk.send_char = NULL; /* the program's functions may be gone */
-        the.tell = (struct ng_callbacks){0};
-        the.background.tell = NULL;
-        ng_library_close(&the);
+    if (ng_the.is_open && !ng_background_is_here(&ng_the.background)) {
+        ng_the.talk.send_char = NULL; /* the program's functions may be gone */
+        ng_the.tell = (struct ng_callbacks){0};
+        ng_the.background.tell = NULL;
+        ng_library_close(&ng_the);
     }
 }
 
 int ngSpice_Init(ng_send_char *send_char, ng_send_status *send_status,
                  ng_controlled_exit *controlled_exit, ng_send_data *send_data,
                  ng_send_init_data *send_init_data, ng_thread_state *thread_state, void *user) {
-    the.talk.send_char = send_char;
-    the.talk.user = user;
-    the.tell = (struct ng_callbacks){send_status, controlled_exit, send_data, send_init_data};
-    the.background.tell = thread_state;
-    the.background.user = user;
-    if (!is_ready()) {
+    ng_the.talk.send_char = send_char;
+    ng_the.talk.user = user;
+    ng_the.tell = (struct ng_callbacks){send_status, controlled_exit, send_data, send_init_data};
+    ng_the.background.tell = thread_state;
+    ng_the.background.user = user;
+    if (!ng_is_ready()) {
         return 1;
     }
-    ng_receive_open(&the);
-    ng_talk_say(&the.talk, "******");
-    ng_talk_say(&the.talk, "** ngspice-39 is what programs may take this for: it is dalcs %s",
+    ng_receive_open(&ng_the);
+    ng_talk_say(&ng_the.talk, "******");
+    ng_talk_say(&ng_the.talk, "** ngspice-39 is what programs may take this for: it is dalcs %s",
                 dalcs_version());
-    ng_talk_say(&the.talk, "******");
+    ng_talk_say(&ng_the.talk, "******");
     return 0;
 }
 
@@ -54,10 +53,10 @@ int ngSpice_Init_Sync(void *voltage, void *current, void *step, int *id, void *u
     (void)current;
     (void)step;
     if (id != NULL) {
-        the.talk.id = the.background.id = *id;
+        ng_the.talk.id = ng_the.background.id = *id;
     }
     if (user != NULL) {
-        the.talk.user = the.background.user = user;
+        ng_the.talk.user = ng_the.background.user = user;
     }
     return 0;
 }
@@ -74,34 +73,33 @@ static bool is_word(const char *command, const char *word, const char **rest) {
     return is;
 }
 
-/* May something be executed now? What was halted ends. */
-static bool is_free(const char *command) {
-    if (ng_background_is_running(&the.background)) {
-        ng_talk_warn(&the.talk, "cannot execute \"%.200s\", type \"bg_halt\" first", command);
+bool ng_is_free(const char *command) {
+    if (ng_background_is_running(&ng_the.background)) {
+        ng_talk_warn(&ng_the.talk, "cannot execute \"%.200s\", type \"bg_halt\" first", command);
         return false;
     }
-    if (ng_background_is_halted(&the.background)) {
-        ng_talk_say(&the.talk, "Note: the run that was halted ends here");
+    if (ng_background_is_halted(&ng_the.background)) {
+        ng_talk_say(&ng_the.talk, "Note: the run that was halted ends here");
     }
-    ng_background_end(&the.background);
-    if (the.is_busy) { /* one of its own callbacks asks */
-        ng_talk_warn(&the.talk, "cannot execute \"%.200s\" while another command runs", command);
+    ng_background_end(&ng_the.background);
+    if (ng_the.is_busy) { /* one of its own callbacks asks */
+        ng_talk_warn(&ng_the.talk, "cannot execute \"%.200s\" while another command runs", command);
         return false;
     }
     return true;
 }
 
 static bool load(const char *text) {
-    const char *folder = the.input_path != NULL ? the.input_path : ".";
+    const char *folder = ng_the.input_path != NULL ? ng_the.input_path : ".";
     const size_t n = strlen(folder);
     char *name = dalcs_alloc(n + sizeof "/circuit", 1);
     if (name == NULL) {
         return false;
     }
-    const bool is_here = the.input_path == NULL;
+    const bool is_here = ng_the.input_path == NULL;
     snprintf(name, n + sizeof "/circuit", "%s%s%s", is_here ? "" : folder,
              is_here || folder[n > 0 ? n - 1 : 0] == '/' ? "" : "/", "circuit");
-    const bool went_well = ng_execute_circuit(&the, name, text);
+    const bool went_well = ng_execute_circuit(&ng_the, name, text);
     free(name);
     return went_well;
 }
@@ -118,9 +116,9 @@ static bool source(const char *path) {
     copy[strcspn(copy, path[0] == '"' ? "\"" : "\r\n")] = '\0';
     bool went_well = dalcs_text_file_read(copy, INT_MAX, &text, &length, NULL, &diag) == DALCS_OK;
     if (went_well) {
-        went_well = ng_execute_circuit(&the, copy, text);
+        went_well = ng_execute_circuit(&ng_the, copy, text);
     } else {
-        ng_talk_fail(&the.talk, "source: cannot read '%s'", copy);
+        ng_talk_fail(&ng_the.talk, "source: cannot read '%s'", copy);
     }
     free(text);
     free(copy);
@@ -130,11 +128,11 @@ static bool source(const char *path) {
 
 /* The circuit is there when its .end comes. */
 static bool add_line(const char *line) {
-    bool went_well = ng_lines_add(&the.by_line, line) == DALCS_OK;
+    bool went_well = ng_lines_add(&ng_the.by_line, line) == DALCS_OK;
     const char *unused;
     if (went_well && is_word(line, ".end", &unused)) {
-        struct ng_lines lines = the.by_line;
-        the.by_line = (struct ng_lines){0};
+        struct ng_lines lines = ng_the.by_line;
+        ng_the.by_line = (struct ng_lines){0};
         went_well = load(lines.text);
         ng_lines_finish(&lines);
     }
@@ -151,27 +149,28 @@ static void work(void *argument, const char *command) {
 }
 
 static int start(const char *command) {
-    const enum dalcs_status status = ng_background_start(&the.background, work, &the, command);
+    const enum dalcs_status status =
+        ng_background_start(&ng_the.background, work, &ng_the, command);
     if (status != DALCS_OK) {
-        ng_talk_fail(&the.talk, "bg_%s: %s", command, dalcs_status_text(status));
+        ng_talk_fail(&ng_the.talk, "bg_%s: %s", command, dalcs_status_text(status));
     }
     return status != DALCS_OK;
 }
 
 static bool execute(const char *command) {
     const char *rest;
-    the.is_busy = true;
+    ng_the.is_busy = true;
     bool went_well;
     if (is_word(command, "source", &rest)) {
         went_well = source(rest);
     } else if (is_word(command, "circbyline", &rest)) {
         went_well = add_line(rest);
     } else if (is_word(command, "remcirc", &rest)) {
-        went_well = ng_forget_circuit(&the);
+        went_well = ng_forget_circuit(&ng_the);
     } else {
-        went_well = ng_execute(&the, command);
+        went_well = ng_execute(&ng_the, command);
     }
-    the.is_busy = false;
+    ng_the.is_busy = false;
     return went_well;
 }
 
@@ -180,26 +179,26 @@ int ngSpice_Command(char *command) {
     if (command == NULL) { /* PySpice frees ngspice's history so */
         return 0;
     }
-    if (!is_ready()) {
+    if (!ng_is_ready()) {
         return 1;
     }
     const char *begin = command + strspn(command, " \t\r\n");
     if (is_word(begin, "bg_halt", &rest)) {
-        if (!ng_background_halt(&the.background)) {
-            ng_talk_say(&the.talk, "Note: bg_halt: nothing runs in the background");
+        if (!ng_background_halt(&ng_the.background)) {
+            ng_talk_say(&ng_the.talk, "Note: bg_halt: nothing runs in the background");
         }
         return 0;
     }
     if (is_word(begin, "bg_resume", &rest) || is_word(begin, "resume", &rest)) {
         const bool waits = begin[0] == 'r' || begin[0] == 'R';
-        if (!ng_background_resume(&the.background)) {
-            ng_talk_say(&the.talk, "Note: resume: nothing was halted");
+        if (!ng_background_resume(&ng_the.background)) {
+            ng_talk_say(&ng_the.talk, "Note: resume: nothing was halted");
         } else if (waits) {
-            ng_background_end(&the.background);
+            ng_background_end(&ng_the.background);
         }
         return 0;
     }
-    if (!is_free(begin)) {
+    if (!ng_is_free(begin)) {
         return 0;
     }
     if (strncasecmp(begin, "bg_", 3) == 0) {
@@ -210,12 +209,12 @@ int ngSpice_Command(char *command) {
 
 int ngSpice_Circ(char **line) {
     struct ng_lines text = {0};
-    bool went_well = is_ready() && line != NULL;
+    bool went_well = ng_is_ready() && line != NULL;
     const char *unused;
     if (!went_well) {
         return 1;
     }
-    if (!is_free("a new circuit")) {
+    if (!ng_is_free("a new circuit")) {
         return 1;
     }
     for (size_t k = 0; went_well && line[k] != NULL; k++) {
@@ -225,166 +224,9 @@ int ngSpice_Circ(char **line) {
             break;
         }
     }
-    the.is_busy = true;
+    ng_the.is_busy = true;
     went_well = went_well && load(text.text != NULL ? text.text : "");
-    the.is_busy = false;
+    ng_the.is_busy = false;
     ng_lines_finish(&text);
     return went_well ? 0 : 1;
-}
-
-/* ---- Results ---------------------------------------------------------------------------------------- */
-
-struct ng_vector_info *ngGet_Vec_Info(char *name) {
-    static const int type[] = {[DALCS_VOLT] = NG_TYPE_VOLTAGE,
-                               [DALCS_AMPERE] = NG_TYPE_CURRENT,
-                               [DALCS_UNIT_SECOND] = NG_TYPE_TIME,
-                               [DALCS_UNIT_HERTZ] = NG_TYPE_FREQUENCY,
-                               [DALCS_UNIT_OHM] = NG_TYPE_NONE,
-                               [DALCS_UNIT_NONE] = NG_TYPE_NONE};
-    if (name == NULL || !is_ready()) {
-        return NULL;
-    }
-    pthread_mutex_lock(&the.plots.lock);
-    const struct ng_vector *v = ng_plots_vector(&the.plots, name);
-    if (v != NULL) {
-        double *value = v->block->value;
-        the.plots.info = (struct ng_vector_info){
-            .name = v->name,
-            .type = type[v->unit],
-            .flags = (short)((v->is_complex ? NG_FLAG_COMPLEX : NG_FLAG_REAL) | NG_FLAG_PERMANENT),
-            .real = v->is_complex ? NULL : value,
-            .pairs = v->is_complex ? (struct ng_complex *)(void *)value : NULL,
-            .length = (int)v->n};
-    }
-    pthread_mutex_unlock(&the.plots.lock);
-    return v != NULL ? &the.plots.info : NULL;
-}
-
-char *ngSpice_CurPlot(void) {
-    static char none[] = "const";
-    if (!is_ready()) {
-        return none;
-    }
-    pthread_mutex_lock(&the.plots.lock);
-    char *type = ng_plots_current(&the.plots)->type;
-    pthread_mutex_unlock(&the.plots.lock);
-    return type;
-}
-
-/* Room for a list that lives until the next one. NULL: no memory. */
-static char **begin_list(size_t n) {
-    free(the.plots.name);
-    the.plots.name = dalcs_alloc(n + 1, sizeof(char *));
-    return the.plots.name;
-}
-
-char **ngSpice_AllPlots(void) {
-    static char *none[] = {NULL};
-    if (!is_ready()) {
-        return none;
-    }
-    pthread_mutex_lock(&the.plots.lock);
-    const size_t n = the.plots.n;
-    char **list = begin_list(n);
-    for (size_t k = 0; list != NULL && k < n; k++) {
-        list[k] = the.plots.plot[n - 1 - k]->type; /* the newest first */
-    }
-    pthread_mutex_unlock(&the.plots.lock);
-    return list != NULL ? list : none;
-}
-
-char **ngSpice_AllVecs(char *name) {
-    if (name == NULL || !is_ready()) {
-        return NULL;
-    }
-    pthread_mutex_lock(&the.plots.lock);
-    const struct ng_plot *plot = ng_plots_find(&the.plots, name);
-    char **list = plot != NULL ? begin_list(plot->n) : NULL;
-    for (size_t k = 0; list != NULL && k < plot->n; k++) {
-        list[k] = plot->vector[plot->n - 1 - k]->name; /* the scale last, as ngspice lists them */
-    }
-    pthread_mutex_unlock(&the.plots.lock);
-    return list;
-}
-
-bool ngSpice_running(void) {
-    return the.is_open && ng_background_is_running(&the.background);
-}
-
-/* Events and edges are found wherever they lie: no step needs to end at a time that is given. */
-bool ngSpice_SetBkpt(double time) {
-    (void)time;
-    return the.is_open && !the.circuit->is_none;
-}
-
-char *ngCM_Input_Path(const char *path) {
-    if (path != NULL) {
-        char *copy = dalcs_alloc(strlen(path) + 1, 1);
-        if (copy != NULL) {
-            strcpy(copy, path);
-            free(the.input_path);
-            the.input_path = copy;
-        }
-    }
-    return the.input_path;
-}
-
-/* ---- What programs find in newer versions, and what is not here ---------------------------------------- */
-
-int ngSpice_LockRealloc(void) {
-    return is_ready() ? pthread_mutex_lock(&the.plots.lock) : 1;
-}
-
-int ngSpice_UnlockRealloc(void) {
-    return is_ready() ? pthread_mutex_unlock(&the.plots.lock) : 1;
-}
-
-/* No file is read but the netlists that are named. */
-int ngSpice_nospinit(void) {
-    return 0;
-}
-
-int ngSpice_nospiceinit(void) {
-    return 0;
-}
-
-int ngSpice_Reset(void) {
-    if (!is_ready() || !is_free("reset")) {
-        return 1;
-    }
-    return ng_forget_all(&the) ? 0 : 1;
-}
-
-/* Digital nodes carry voltages here: there are no event nodes. */
-char **ngSpice_AllEvtNodes(void) {
-    static char *none[] = {NULL};
-    return none;
-}
-
-void *ngGet_Evt_NodeInfo(char *node) {
-    (void)node;
-    return NULL;
-}
-
-int ngSpice_Init_Evt(void *data, void *init_data, void *user) {
-    (void)data;
-    (void)init_data;
-    (void)user;
-    return 0;
-}
-
-int ngSpice_Raw_Evt(char *node, void *data, void *init_data, void *user) {
-    (void)node;
-    (void)data;
-    (void)init_data;
-    (void)user;
-    return 1;
-}
-
-int ngSpice_Decode_Evt(void *node, int type, double *value, const char **name) {
-    (void)node;
-    (void)type;
-    (void)value;
-    (void)name;
-    return 1;
 }

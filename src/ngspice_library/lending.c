@@ -6,7 +6,8 @@
 #include <string.h>
 
 /* As the interpreter has them: complex all. */
-static enum dalcs_status lend(struct dalcs_vectors *to, const struct ng_vector *v, const char *name) {
+static enum dalcs_status lend(struct dalcs_vectors *to, const struct ng_vector *v,
+                              const char *name) {
     struct dalcs_vector copy = {
         .name = name, .unit = v->unit, .n = v->n, .is_complex = v->is_complex};
     copy.value = dalcs_alloc(v->n, sizeof *copy.value);

@@ -1,9 +1,11 @@
 /* library.h - the one simulator that a process has through libngspice.so.0, and what its files share.
  *
- *     interface.c   what programs call
+ *     interface.c   what programs call to begin, with commands and circuits
+ *     results.c     what they ask for
  *     execute.c     lines of commands and circuits -> the language of .control (src/script)
  *     commands.c    commands that are not of that language: plots, circuits
  *     measure.c     meas after a run
+ *     lending.c     plots <-> the vectors of that language
  *     receive.c     rows -> plots, and the program's callbacks
  *     background.c  bg_run, bg_halt, bg_resume
  *
@@ -45,13 +47,24 @@ struct ng_library {
     struct dalcs_script *script;
     struct ng_background background;
     struct ng_sent_row sent;
-    double told;             /* s; when progress was told last */
-    bool is_open;            /* all of the above is there */
-    bool control_waits;      /* set controlswait: .control runs after the background */
-    bool has_waiting;        /* such a block is waiting */
-    bool is_busy;            /* a command is executed */
-    bool fails;              /* the command at hand, in what the script does not know */
+    double told;        /* s; when progress was told last */
+    bool is_open;       /* all of the above is there */
+    bool control_waits; /* set controlswait: .control runs after the background */
+    bool has_waiting;   /* such a block is waiting */
+    bool is_busy;       /* a command is executed */
+    bool fails;         /* the command at hand, in what the script does not know */
 };
+
+/* ---- interface.c ---------------------------------------------------------------------------------- */
+
+/* The interface has no handle: a process has one simulator. */
+extern struct ng_library ng_the;
+
+/* It is opened by the first call. */
+bool ng_is_ready(void);
+
+/* May something be executed now? What was halted ends; else the program is told. */
+bool ng_is_free(const char *command);
 
 /* ---- execute.c ------------------------------------------------------------------------------------ */
 

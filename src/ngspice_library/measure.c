@@ -18,6 +18,7 @@ static bool analysis_of(const char *rest, enum dalcs_analysis *analysis) {
                  {"ac", DALCS_AC},
                  {"dc", DALCS_DC_SWEEP},
                  {"op", DALCS_OPERATING_POINT}};
+
     bool found = false;
     char word[16];
     rest += strspn(rest, " \t");
@@ -117,5 +118,5 @@ enum dalcs_status ng_measure(void *user, const char *rest) {
         status = DALCS_E_NETLIST;
     }
     l->fails = status != DALCS_OK;
-    return status;
+    return status == DALCS_OK ? ng_lend_vectors(l) : status;
 }

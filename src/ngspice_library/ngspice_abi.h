@@ -24,6 +24,7 @@ struct ng_vector_info {
 };
 
 enum { NG_TYPE_NONE, NG_TYPE_TIME, NG_TYPE_FREQUENCY, NG_TYPE_VOLTAGE, NG_TYPE_CURRENT };
+
 enum { NG_FLAG_REAL = 1, NG_FLAG_COMPLEX = 2, NG_FLAG_PERMANENT = 128 };
 
 /* A row of all vectors, for SendData. */

@@ -4,55 +4,11 @@
 #include "lower_case.h"
 #include "signal_name.h"
 
-#include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <time.h>
-
-enum { FIRST_ROWS = 256 };
-
-/* ---- Vectors ------------------------------------------------------------------------------------ */
-
-static char *copy_of(const char *text) {
-    char *copy = dalcs_alloc(strlen(text) + 1, 1);
-    return copy != NULL ? strcpy(copy, text) : NULL;
-}
-
-static void destroy_vector(struct ng_vector *v) {
-    for (struct ng_block *block = v->block, *older; block != NULL; block = older) {
-        older = block->older;
-        free(block);
-    }
-    free(v->name);
-    free(v->signal);
-    free(v);
-}
-
-/* Room for so many values in all. */
-static enum dalcs_status reserve(struct ng_vector *v, size_t need) {
-    if (v->block != NULL && need <= v->capacity) {
-        return DALCS_OK;
-    }
-    const size_t each = v->is_complex ? 2 : 1;
-    const size_t wanted = need + need / 2 + (v->is_own ? 0 : FIRST_ROWS);
-    if (wanted > INT32_MAX) { /* a vector's length is an int there */
-        return DALCS_E_LIMIT;
-    }
-    struct ng_block *block = malloc(sizeof *block + wanted * each * sizeof(double));
-    if (block == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    if (v->n > 0) {
-        memcpy(block->value, v->block->value, v->n * each * sizeof(double));
-    }
-    block->older = v->block;
-    v->block = block;
-    v->capacity = wanted;
-    return DALCS_OK;
-}
 
 static enum dalcs_status add_vector(struct ng_plot *plot, const char *name, const char *signal,
                                     struct ng_vector about) {
@@ -62,10 +18,10 @@ static enum dalcs_status add_vector(struct ng_plot *plot, const char *name, cons
         return DALCS_E_NOMEM;
     }
     *v = about;
-    v->name = copy_of(name);
-    v->signal = copy_of(signal);
-    if (v->name == NULL || v->signal == NULL || reserve(v, 1) != DALCS_OK) {
-        destroy_vector(v);
+    v->name = ng_copy_of(name);
+    v->signal = ng_copy_of(signal);
+    if (v->name == NULL || v->signal == NULL || ng_vector_reserve(v, 1) != DALCS_OK) {
+        ng_vector_destroy(v);
         return DALCS_E_NOMEM;
     }
     plot->vector[plot->n++] = v;
@@ -76,7 +32,7 @@ static enum dalcs_status add_vector(struct ng_plot *plot, const char *name, cons
 
 static void destroy_plot(struct ng_plot *plot) {
     for (size_t k = 0; k < plot->n; k++) {
-        destroy_vector(plot->vector[k]);
+        ng_vector_destroy(plot->vector[k]);
     }
     free(plot->vector);
     free(plot->type);
@@ -99,9 +55,9 @@ static enum dalcs_status add_plot(struct ng_plots *plots, const char *type, cons
         return DALCS_E_NOMEM;
     }
     plot->kind = kind;
-    plot->type = copy_of(type);
-    plot->title = copy_of(title);
-    plot->date = copy_of(date);
+    plot->type = ng_copy_of(type);
+    plot->title = ng_copy_of(title);
+    plot->date = ng_copy_of(date);
     if (plot->type == NULL || plot->title == NULL || plot->date == NULL) {
         destroy_plot(plot);
         return DALCS_E_NOMEM;
@@ -116,11 +72,16 @@ static enum dalcs_status add_constants(struct ng_plots *plots) {
     static const struct {
         const char *name;
         double value;
-    } constant[] = {{"planck", 6.62607015e-34}, {"boltz", 1.380649e-23},
-                    {"echarge", 1.602176634e-19}, {"kelvin", -273.15},
-                    {"c", 299792458.0},           {"e", 2.718281828459045},
-                    {"pi", 3.141592653589793},    {"no", 0.0},
-                    {"false", 0.0},               {"yes", 1.0},
+    } constant[] = {{"planck", 6.62607015e-34},
+                    {"boltz", 1.380649e-23},
+                    {"echarge", 1.602176634e-19},
+                    {"kelvin", -273.15},
+                    {"c", 299792458.0},
+                    {"e", 2.718281828459045},
+                    {"pi", 3.141592653589793},
+                    {"no", 0.0},
+                    {"false", 0.0},
+                    {"yes", 1.0},
                     {"true", 1.0}};
 
     struct ng_plot *plot;
@@ -154,6 +115,23 @@ void ng_plots_close(struct ng_plots *plots) {
     *plots = (struct ng_plots){0};
 }
 
+static size_t index_of(const struct ng_plots *plots, const char *type) {
+    size_t k = 0;
+    while (k < plots->n && strcasecmp(plots->plot[k]->type, type) != 0) {
+        k++;
+    }
+    return k;
+}
+
+/* ngspice's rule, on which programs rely: one number for all kinds, raised where the name is taken. */
+static void choose_type(struct ng_plots *plots, const char *kind, char *type, size_t size) {
+    plots->number += plots->number == 0;
+    snprintf(type, size, "%s%d", kind, plots->number);
+    while (index_of(plots, type) < plots->n) {
+        snprintf(type, size, "%s%d", kind, ++plots->number);
+    }
+}
+
 /* ngspice's word for the scale of a sweep. */
 static const char *scale_of(const struct dalcs_plot *about) {
     return about->analysis != DALCS_DC_SWEEP   ? about->scale
@@ -166,9 +144,9 @@ static enum dalcs_status add_signals(struct ng_plot *plot, const struct dalcs_pl
     char name[NG_NAME_SIZE];
     if (plot->has_scale) {
         const char *scale = scale_of(about);
-        DALCS_TRY(add_vector(plot, scale, scale,
-                             (struct ng_vector){.unit = about->scale_unit,
-                                                .is_complex = about->is_complex}));
+        DALCS_TRY(add_vector(
+            plot, scale, scale,
+            (struct ng_vector){.unit = about->scale_unit, .is_complex = about->is_complex}));
     }
     for (size_t k = 0; k < about->n_signals; k++) {
         ng_signal_name(about->name[k], name);
@@ -189,13 +167,12 @@ enum dalcs_status ng_plots_begin(struct ng_plots *plots, const struct dalcs_plot
     const enum dalcs_analysis analysis = about->analysis;
     char type[24];
     struct ng_plot *plot = NULL;
-    snprintf(type, sizeof type, "%s%d", known[analysis][0], plots->n_made[analysis] + 1);
+    choose_type(plots, known[analysis][0], type, sizeof type);
     pthread_mutex_lock(&plots->lock);
     enum dalcs_status status = add_plot(plots, type, known[analysis][1], about->title, &plot);
     if (status == DALCS_OK) {
         plot->analysis = analysis;
         plot->has_scale = analysis != DALCS_OPERATING_POINT;
-        plots->n_made[analysis]++;
         plots->current = plots->n - 1;
         status = add_signals(plot, about);
     }
@@ -206,39 +183,15 @@ enum dalcs_status ng_plots_begin(struct ng_plots *plots, const struct dalcs_plot
 enum dalcs_status ng_plots_make(struct ng_plots *plots) {
     char type[24];
     struct ng_plot *plot = NULL;
-    snprintf(type, sizeof type, "unknown%d", plots->n_empty + 1);
+    choose_type(plots, "unknown", type, sizeof type);
     pthread_mutex_lock(&plots->lock);
-    const enum dalcs_status status =
-        add_plot(plots, type, "Anonymous", "Anonymous", &plot);
+    const enum dalcs_status status = add_plot(plots, type, "Anonymous", "Anonymous", &plot);
     if (status == DALCS_OK) {
         plot->analysis = DALCS_OPERATING_POINT; /* of which a plot has no scale */
-        plots->n_empty++;
         plots->current = plots->n - 1;
     }
     pthread_mutex_unlock(&plots->lock);
     return status;
-}
-
-/* Values k, k + stride, ... of an array become the vector's next ones. */
-static void append(struct ng_vector *v, size_t n, const double *value, size_t stride) {
-    const size_t each = v->is_complex ? 2 : 1;
-    double *at = v->block->value + v->n * each;
-    for (size_t k = 0; k < n; k++) {
-        for (size_t part = 0; part < each; part++) {
-            at[k * each + part] = value[k * stride + part];
-        }
-    }
-    v->n += n;
-}
-
-static void append_scale(struct ng_vector *v, size_t n, const double *scale) {
-    const size_t each = v->is_complex ? 2 : 1;
-    for (size_t k = 0; k < n; k++, v->n++) {
-        v->block->value[v->n * each] = scale[k];
-        if (v->is_complex) {
-            v->block->value[v->n * each + 1] = 0.0;
-        }
-    }
 }
 
 enum dalcs_status ng_plots_add_rows(struct ng_plots *plots, size_t n, const double *scale,
@@ -252,16 +205,16 @@ enum dalcs_status ng_plots_add_rows(struct ng_plots *plots, size_t n, const doub
     }
     pthread_mutex_lock(&plots->lock);
     for (size_t k = 0; k < plot->n && status == DALCS_OK; k++) {
-        status = reserve(plot->vector[k], plot->vector[k]->n + n);
+        status = ng_vector_reserve(plot->vector[k], plot->vector[k]->n + n);
     }
     if (status == DALCS_OK) {
         const double *from = value;
         for (size_t k = first; k < plot->n; k++) {
-            append(plot->vector[k], n, from, stride);
+            ng_vector_append(plot->vector[k], n, from, stride);
             from += plot->vector[k]->is_complex ? 2 : 1;
         }
         if (first > 0) { /* last: a vector is never shorter than its scale */
-            append_scale(plot->vector[0], n, scale);
+            ng_vector_append_scale(plot->vector[0], n, scale);
         }
     }
     pthread_mutex_unlock(&plots->lock);
@@ -273,14 +226,6 @@ struct ng_plot *ng_plots_current(const struct ng_plots *plots) {
 }
 
 /* ---- Finding ------------------------------------------------------------------------------------ */
-
-static size_t index_of(const struct ng_plots *plots, const char *type) {
-    size_t k = 0;
-    while (k < plots->n && strcasecmp(plots->plot[k]->type, type) != 0) {
-        k++;
-    }
-    return k;
-}
 
 struct ng_plot *ng_plots_find(const struct ng_plots *plots, const char *type) {
     const size_t k = index_of(plots, type);
@@ -331,8 +276,7 @@ struct ng_vector *ng_plots_vector(const struct ng_plots *plots, const char *name
 
 static void remove_at(struct ng_plots *plots, size_t k) {
     destroy_plot(plots->plot[k]);
-    memmove(plots->plot + k, plots->plot + k + 1,
-            (plots->n - k - 1) * sizeof(struct ng_plot *));
+    memmove(plots->plot + k, plots->plot + k + 1, (plots->n - k - 1) * sizeof(struct ng_plot *));
     plots->n--;
     if (plots->current >= k) { /* the one before it becomes the current one */
         plots->current -= plots->current > 0;
@@ -356,10 +300,7 @@ void ng_plots_destroy_all(struct ng_plots *plots) {
         remove_at(plots, plots->n - 1);
     }
     plots->current = 0;
-    plots->n_empty = 0;
-    for (int k = 0; k < DALCS_N_ANALYSES; k++) {
-        plots->n_made[k] = 0;
-    }
+    plots->number = 0;
     pthread_mutex_unlock(&plots->lock);
 }
 
@@ -382,10 +323,10 @@ enum dalcs_status ng_plots_set(struct ng_plots *plots, struct ng_plot *plot, con
         v->capacity = 0; /* a new block: programs may hold the old one */
         v->is_complex = is_complex;
         v->unit = unit;
-        status = reserve(v, n > 0 ? n : 1);
+        status = ng_vector_reserve(v, n > 0 ? n : 1);
     }
     if (status == DALCS_OK && n > 0) {
-        append(v, n, value, is_complex ? 2 : 1);
+        ng_vector_append(v, n, value, is_complex ? 2 : 1);
     }
     pthread_mutex_unlock(&plots->lock);
     return status;

@@ -8,31 +8,16 @@
 #include "dalcs.h"
 #include "memory.h"
 #include "ngspice_abi.h"
+#include "vector.h"
 
 #include <pthread.h>
 
-/* Numbers, and those before them that were too few. */
-struct ng_block {
-    struct ng_block *older;
-    double value[];
-};
-
-struct ng_vector {
-    char *name;   /* "out", "v1#branch", "time" */
-    char *signal; /* "v(out)", "i(v1)", "time" */
-    enum dalcs_unit unit;
-    bool is_complex; /* two numbers each */
-    bool is_own;     /* made by let or meas: no signal of the run */
-    struct ng_block *block;
-    size_t n, capacity;
-};
-
 struct ng_plot {
     enum dalcs_analysis analysis;
-    char *type;             /* "tran1" */
-    const char *kind;       /* "Transient Analysis" */
-    char *title, *date;     /* of the circuit, of its beginning */
-    bool has_scale;         /* vector[0] */
+    char *type;         /* "tran1" */
+    const char *kind;   /* "Transient Analysis" */
+    char *title, *date; /* of the circuit, of its beginning */
+    bool has_scale;     /* vector[0] */
     struct ng_vector **vector;
     size_t n, capacity;
 };
@@ -42,11 +27,10 @@ struct ng_plots {
     struct ng_plot **plot; /* in the order of their making; the first is "const" */
     size_t n, capacity;
     size_t current;
-    int n_made[DALCS_N_ANALYSES]; /* since all were destroyed */
-    int n_empty;                  /* of ng_plots_make */
-    pthread_mutex_t lock;         /* held while vectors change */
-    struct ng_vector_info info;   /* what was handed out last */
-    char **name;                  /* list that was handed out last; heap */
+    int number;                 /* of the newest names; 0: none since all were destroyed */
+    pthread_mutex_t lock;       /* held while vectors change */
+    struct ng_vector_info info; /* what was handed out last */
+    char **name;                /* list that was handed out last; heap */
 };
 
 enum dalcs_status ng_plots_open(struct ng_plots *plots) DALCS_MUST_CHECK;

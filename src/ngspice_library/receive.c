@@ -81,8 +81,7 @@ static enum dalcs_status prepare_rows(struct ng_library *l, const struct ng_plot
 static enum dalcs_status announce(struct ng_library *l, struct ng_plot *plot) {
     struct ng_announced *vector = dalcs_alloc(plot->n, sizeof *vector);
     struct ng_announced **pointer = dalcs_alloc(plot->n, sizeof(struct ng_announced *));
-    const enum dalcs_status status =
-        vector != NULL && pointer != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    const enum dalcs_status status = vector != NULL && pointer != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (size_t k = 0; status == DALCS_OK && k < plot->n; k++) {
         pointer[k] = &vector[k];
         vector[k] = (struct ng_announced){.number = (int)k,

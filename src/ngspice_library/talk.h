@@ -5,9 +5,9 @@
 #ifndef DALCS_NG_TALK_H
 #define DALCS_NG_TALK_H
 
-#include "ngspice_abi.h"
-#include "memory.h"
 #include "dalcs.h"
+#include "memory.h"
+#include "ngspice_abi.h"
 
 #include <stdio.h>
 

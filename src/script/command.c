@@ -75,13 +75,12 @@ static enum dalcs_status keep_measured(struct dalcs_script *script) {
 
 static enum dalcs_status run_session(struct dalcs_script *script) {
     const struct dalcs_script_host *host = script->host;
-    const struct dalcs_sink sink = {
-        .user = script,
-        .begin = begin,
-        .row = row,
-        .end = end,
-        .progress = progress,
-        .rows = host->sink->rows != NULL ? rows : NULL};
+    const struct dalcs_sink sink = {.user = script,
+                                    .begin = begin,
+                                    .row = row,
+                                    .end = end,
+                                    .progress = progress,
+                                    .rows = host->sink->rows != NULL ? rows : NULL};
     const enum dalcs_status status =
         dalcs_session_run_cards(host->session, script->card, script->n_cards, host->options, &sink);
     if (host->after_run != NULL) {

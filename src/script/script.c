@@ -190,7 +190,8 @@ enum dalcs_status dalcs_script_look(const struct dalcs_session *session, bool *i
 
     struct dalcs_statements all = {0};
     size_t best = sizeof ranked / sizeof ranked[0];
-    const enum dalcs_status status = dalcs_statements_read(&all, session, 0, dalcs_session_n_script_lines(session));
+    const enum dalcs_status status =
+        dalcs_statements_read(&all, session, 0, dalcs_session_n_script_lines(session));
     for (size_t k = 0; k < all.n; k++) {
         for (size_t i = 0; i < best; i++) {
             best = strcmp(all.statement[k].word, ranked[i].word) == 0 ? i : best;
@@ -269,7 +270,8 @@ void dalcs_script_close(struct dalcs_script *script) {
 enum dalcs_status dalcs_script_run(const struct dalcs_script_host *host) {
     struct dalcs_script *script;
     DALCS_TRY(dalcs_script_open(&script, host));
-    enum dalcs_status status = dalcs_script_read(script, 0, dalcs_session_n_script_lines(host->session));
+    enum dalcs_status status =
+        dalcs_script_read(script, 0, dalcs_session_n_script_lines(host->session));
     if (status == DALCS_OK && !asks(&script->statements)) {
         status = dalcs_script_run_cards(script);
     }

@@ -57,8 +57,8 @@ struct dalcs_statements {
 
 /* The session's lines `first` to `end` - 1. Zero-initialise. Touches no message. */
 enum dalcs_status dalcs_statements_read(struct dalcs_statements *statements,
-                                        const struct dalcs_session *session,
-                                        size_t first, size_t end) DALCS_MUST_CHECK;
+                                        const struct dalcs_session *session, size_t first,
+                                        size_t end) DALCS_MUST_CHECK;
 
 /* Matches blocks with their ends, leaves to the host what it knows; errors and warnings go to its session.
  * DALCS_E_NETLIST: there were errors. */

@@ -1,7 +1,7 @@
 /* client.c - a program that uses ngspice's shared library, whichever one it is told to load: it was compiled with
  * Debian's header of ngspice. Reads what to call from stdin, a line each, and prints what came back.
  *
- *     client LIBRARY [talk] < sequence
+ *     client LIBRARY [talk] [nodata] < sequence
  *
  *     < LINE           a line of the next circuit
  *     circ             send it
@@ -13,9 +13,13 @@
  *     last NAME        its last value
  *     at NAME PLOT X   its value where the plot's scale is X, on the line between two rows
  *     most NAME        its largest value
- *     running, halted  is the background's thread? wait for its end
- *     wait, begun      until it ends, until there are rows
+ *     running          is there a run in the background?
+ *     breakpoint       what ngSpice_SetBkpt answers
+ *     wait             until the background's run is over; what it said comes then
+ *     begun NAME       until it has made two rows
+ *     slow, fast       each row takes 1 ms, or not
  *     threaded A B     read vector A all the time while command B runs in the background
+ *     input FOLDER     files that circuits include lie there
  *     counts           what the callbacks were told
  */
 #define _GNU_SOURCE
@@ -25,12 +29,14 @@
 
 #include <dlfcn.h>
 #include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-enum { MOST_LINES = 1000, SIZE = 4000 };
+enum { MOST_LINES = 1000, SIZE = 4000, NAME = 2 * SIZE + 2 };
 
 static struct {
     int (*init)(SendChar *, SendStat *, ControlledExit *, SendData *, SendInitData *,
@@ -44,12 +50,16 @@ static struct {
     char **(*vecs)(char *);
     NG_BOOL (*running)(void);
     NG_BOOL (*set_breakpoint)(double);
+    char *(*input_path)(const char *);
 } ng;
 
 static struct {
     bool talks;
-    long lines, errors, rows, plots, vectors;
-    long begun, ended, exits;
+    atomic_bool slow;
+    atomic_long lines, errors, rows, plots, vectors, begun, ended, exits;
+    long ended_before; /* when the background began last */
+    pthread_t self;
+    char from_thread[16 * SIZE]; /* lines that are not from this one, until wait */
 } told;
 
 static int on_char(char *line, int id, void *user) {
@@ -62,8 +72,12 @@ static int on_char(char *line, int id, void *user) {
     }
     told.lines++;
     told.errors += is_error && strncmp(line + 7, "Warning:", 8) != 0;
-    if (told.talks) {
+    char *kept = told.from_thread;
+    const size_t n = strlen(kept);
+    if (told.talks && pthread_equal(pthread_self(), told.self)) {
         printf("| %s\n", line);
+    } else if (told.talks) {
+        snprintf(kept + n, sizeof told.from_thread - n, "| %s\n", line);
     }
     return 0;
 }
@@ -87,6 +101,9 @@ static int on_data(pvecvaluesall row, int n, int id, void *user) {
     (void)id;
     (void)user;
     told.rows += n == row->veccount && n > 0 && row->vecsa[n - 1]->name != NULL;
+    if (told.slow) {
+        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    }
     return 0;
 }
 
@@ -150,7 +167,7 @@ static void print_vector(char *name) {
 
 static void print_at(char *name, char *plot, double x) {
     static const char *const scales[] = {"time", "frequency", "v-sweep", "i-sweep"};
-    char text[SIZE];
+    char text[NAME];
     vector_info scale = {0};
     for (size_t k = 0; k < 4 && scale.v_length == 0; k++) {
         snprintf(text, sizeof text, "%s.%s", plot, scales[k]);
@@ -165,7 +182,8 @@ static void print_at(char *name, char *plot, double x) {
     while (k + 1 < scale.v_length && value_of(&scale, k) < x) {
         k++;
     }
-    if (v == NULL || k >= scale.v_length || k >= v->v_length) {
+    const bool is_inside = k < scale.v_length && x <= value_of(&scale, k);
+    if (v == NULL || !is_inside || k >= v->v_length) {
         printf("at %s none\n", name);
         return;
     }
@@ -194,8 +212,9 @@ static void read_while_running(char *name, char *command) {
     int length = 0;
     long wrong = 0;
     double sum = 0.0;
+    told.ended_before = told.ended;
     ng.command(command);
-    while (ng.running()) {
+    while (ng.running() || told.ended == told.ended_before) {
         const vector_info *found = ng.vector(name);
         if (found != NULL) {
             const vector_info v = *found;
@@ -207,6 +226,12 @@ static void read_while_running(char *name, char *command) {
         }
     }
     printf("threaded wrong %ld finite %d\n", wrong, isfinite(sum) != 0);
+}
+
+/* What another thread said, when it is over. */
+static void print_kept(void) {
+    fputs(told.from_thread, stdout);
+    told.from_thread[0] = '\0';
 }
 
 static void execute(char *line, char **circuit, int *n_lines) {
@@ -223,7 +248,12 @@ static void execute(char *line, char **circuit, int *n_lines) {
             free(circuit[--*n_lines]);
         }
     } else if (line[0] == '!') {
+        const bool starts = strncmp(line + 2, "bg_", 3) == 0 && strcmp(line + 2, "bg_halt") != 0;
+        told.ended_before = starts ? told.ended : told.ended_before;
         const int result = ng.command(line + 2);
+        if (strncmp(line + 2, "bg_", 3) != 0) { /* it has waited for the thread */
+            print_kept();
+        }
         printf("%s: %d\n", line, result);
     } else if (strcmp(line, "null") == 0) {
         printf("null %d\n", ng.command(NULL));
@@ -241,15 +271,19 @@ static void execute(char *line, char **circuit, int *n_lines) {
         print_value("last", a);
     } else if (sscanf(line, "most %s", a) == 1) {
         print_value("most", a);
+    } else if (sscanf(line, "input %s", a) == 1) {
+        ng.input_path(a);
     } else if (strcmp(line, "running") == 0) {
         printf("running %d\n", ng.running());
+    } else if (strcmp(line, "slow") == 0 || strcmp(line, "fast") == 0) {
+        told.slow = line[0] == 's';
     } else if (strcmp(line, "breakpoint") == 0) {
         printf("breakpoint %d\n", ng.set_breakpoint(1e-3));
     } else if (strcmp(line, "wait") == 0) {
-        while (ng.running()) {
+        while (ng.running() || told.ended == told.ended_before) {
             nap();
         }
-        nap();
+        print_kept();
     } else if (sscanf(line, "begun %s", a) == 1) {
         const vector_info *v;
         while ((v = ng.vector(a)) == NULL || v->v_length < 2) {
@@ -260,8 +294,8 @@ static void execute(char *line, char **circuit, int *n_lines) {
     } else if (strcmp(line, "counts") == 0) {
         printf("counts lines %d errors %d rows %d plots %ld vectors %ld begun %ld ended %ld exits "
                "%ld\n",
-               told.lines > 0, told.errors > 0, told.rows > 0, told.plots, told.vectors, told.begun,
-               told.ended, told.exits);
+               told.lines > 0, told.errors > 0, told.rows > 0, (long)told.plots, (long)told.vectors,
+               (long)told.begun, (long)told.ended, (long)told.exits);
     } else if (line[0] != '\0' && line[0] != '#') {
         printf("not understood: %s\n", line);
     }
@@ -287,6 +321,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "client: %s\n", argc > 1 ? dlerror() : "client LIBRARY [talk] [nodata]");
         return 2;
     }
+    told.self = pthread_self();
     told.talks = argc > 2 && strcmp(argv[2], "talk") == 0;
     const bool is_bare = argc > 2 && strcmp(argv[argc - 1], "nodata") == 0; /* as KiCad */
     ng.init = find(library, "ngSpice_Init");
@@ -299,6 +334,7 @@ int main(int argc, char **argv) {
     ng.vecs = find(library, "ngSpice_AllVecs");
     ng.running = find(library, "ngSpice_running");
     ng.set_breakpoint = find(library, "ngSpice_SetBkpt");
+    ng.input_path = find(library, "ngCM_Input_Path");
     printf("init %d\n", ng.init(on_char, on_status, on_exit_asked, is_bare ? NULL : on_data,
                                 is_bare ? NULL : on_init_data, on_thread, NULL));
     printf("sync %d\n", ng.init_sync(NULL, NULL, NULL, &id, NULL));
