@@ -57,7 +57,7 @@ static void write_help(FILE *stream) {
           "\n",
           stream);
     for (int i = 0; i < N_VERBS; i++) {
-        fprintf(stream, "  %-10s %s\n", verb[i].name, verb[i].purpose);
+        fprintf(stream, "  %-10s  %s\n", verb[i].name, verb[i].purpose);
     }
     fputs("\n"
           "  -h, --help     this text; after a verb its options and examples\n"
