@@ -142,10 +142,12 @@ static bool add_line(const char *line) {
 /* In the background's thread. */
 static void work(void *argument, const char *command) {
     struct ng_library *l = argument;
+    l->plots.is_shared = true;
     if (!ng_execute(l, command)) {
         ng_talk_fail(&l->talk, "%s: simulation run aborted", command);
     }
     ng_execute_waiting(l);
+    l->plots.is_shared = false;
 }
 
 static int start(const char *command) {

@@ -20,7 +20,7 @@ static enum dalcs_status add_vector(struct ng_plot *plot, const char *name, cons
     *v = about;
     v->name = ng_copy_of(name);
     v->signal = ng_copy_of(signal);
-    if (v->name == NULL || v->signal == NULL || ng_vector_reserve(v, 1) != DALCS_OK) {
+    if (v->name == NULL || v->signal == NULL || ng_vector_reserve(v, 1, true) != DALCS_OK) {
         ng_vector_destroy(v);
         return DALCS_E_NOMEM;
     }
@@ -205,7 +205,7 @@ enum dalcs_status ng_plots_add_rows(struct ng_plots *plots, size_t n, const doub
     }
     pthread_mutex_lock(&plots->lock);
     for (size_t k = 0; k < plot->n && status == DALCS_OK; k++) {
-        status = ng_vector_reserve(plot->vector[k], plot->vector[k]->n + n);
+        status = ng_vector_reserve(plot->vector[k], plot->vector[k]->n + n, plots->is_shared);
     }
     if (status == DALCS_OK) {
         const double *from = value;
@@ -263,7 +263,7 @@ struct ng_vector *ng_plots_vector(const struct ng_plots *plots, const char *name
     char type[NG_NAME_SIZE];
     const size_t n = strcspn(name, ".");
     struct ng_vector *found = NULL;
-    if (name[n] == '.' && n < sizeof type) {
+    if (n < sizeof type && name[n] == '.') {
         snprintf(type, sizeof type, "%.*s", (int)n, name);
         const struct ng_plot *plot = ng_plots_find(plots, type);
         found = plot != NULL ? ng_plot_vector(plot, name + n + 1) : NULL;
@@ -323,7 +323,7 @@ enum dalcs_status ng_plots_set(struct ng_plots *plots, struct ng_plot *plot, con
         v->capacity = 0; /* a new block: programs may hold the old one */
         v->is_complex = is_complex;
         v->unit = unit;
-        status = ng_vector_reserve(v, n > 0 ? n : 1);
+        status = ng_vector_reserve(v, n > 0 ? n : 1, true);
     }
     if (status == DALCS_OK && n > 0) {
         ng_vector_append(v, n, value, is_complex ? 2 : 1);

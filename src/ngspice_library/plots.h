@@ -1,7 +1,7 @@
 /* plots.h - what runs have given: plots of vectors, in columns as ngspice's programs read them.
  *
- * The thread that runs makes vectors longer while another one reads them. What it replaces by something longer
- * stays where it is until the plot is destroyed: programs hold pointers to it. */
+ * The thread of a background run makes vectors longer while another one reads them. What it replaces by something
+ * longer stays where it is until the plot is destroyed: programs hold pointers to it. */
 #ifndef DALCS_NG_PLOTS_H
 #define DALCS_NG_PLOTS_H
 
@@ -28,6 +28,7 @@ struct ng_plots {
     size_t n, capacity;
     size_t current;
     int number;                 /* of the newest names; 0: none since all were destroyed */
+    bool is_shared;             /* the run at hand goes on while the program reads */
     pthread_mutex_t lock;       /* held while vectors change */
     struct ng_vector_info info; /* what was handed out last */
     char **name;                /* list that was handed out last; heap */

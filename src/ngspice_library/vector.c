@@ -22,7 +22,7 @@ void ng_vector_destroy(struct ng_vector *v) {
     free(v);
 }
 
-enum dalcs_status ng_vector_reserve(struct ng_vector *v, size_t need) {
+enum dalcs_status ng_vector_reserve(struct ng_vector *v, size_t need, bool keeps) {
     if (v->block != NULL && need <= v->capacity) {
         return DALCS_OK;
     }
@@ -39,6 +39,10 @@ enum dalcs_status ng_vector_reserve(struct ng_vector *v, size_t need) {
         memcpy(block->value, v->block->value, v->n * each * sizeof(double));
     }
     block->older = v->block;
+    if (!keeps && v->block != NULL) {
+        block->older = v->block->older;
+        free(v->block);
+    }
     v->block = block;
     v->capacity = wanted;
     return DALCS_OK;

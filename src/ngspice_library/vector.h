@@ -23,8 +23,9 @@ struct ng_vector {
 
 void ng_vector_destroy(struct ng_vector *vector);
 
-/* Room for so many values in all. */
-enum dalcs_status ng_vector_reserve(struct ng_vector *vector, size_t need) DALCS_MUST_CHECK;
+/* Room for so many values in all. `keeps`: whoever reads the present ones may go on. */
+enum dalcs_status ng_vector_reserve(struct ng_vector *vector, size_t need,
+                                    bool keeps) DALCS_MUST_CHECK;
 
 /* Values 0, stride, 2 stride, ... of an array become its next ones, for which there is room; of a complex vector
  * each with the number behind it. */

@@ -261,17 +261,17 @@ static void execute(char *line, char **circuit, int *n_lines) {
         print_list("plots", ng.plots(), false);
     } else if (strcmp(line, "current") == 0) {
         printf("current %s\n", ng.current());
-    } else if (sscanf(line, "vecs %s", a) == 1) {
+    } else if (sscanf(line, "vecs %3999s", a) == 1) {
         print_list(line, ng.vecs(a), true);
-    } else if (sscanf(line, "vector %s", a) == 1) {
+    } else if (sscanf(line, "vector %3999s", a) == 1) {
         print_vector(a);
-    } else if (sscanf(line, "at %s %s %lf", a, b, &x) == 3) {
+    } else if (sscanf(line, "at %3999s %3999s %lf", a, b, &x) == 3) {
         print_at(a, b, x);
-    } else if (sscanf(line, "last %s", a) == 1) {
+    } else if (sscanf(line, "last %3999s", a) == 1) {
         print_value("last", a);
-    } else if (sscanf(line, "most %s", a) == 1) {
+    } else if (sscanf(line, "most %3999s", a) == 1) {
         print_value("most", a);
-    } else if (sscanf(line, "input %s", a) == 1) {
+    } else if (sscanf(line, "input %3999s", a) == 1) {
         ng.input_path(a);
     } else if (strcmp(line, "running") == 0) {
         printf("running %d\n", ng.running());
@@ -284,12 +284,12 @@ static void execute(char *line, char **circuit, int *n_lines) {
             nap();
         }
         print_kept();
-    } else if (sscanf(line, "begun %s", a) == 1) {
+    } else if (sscanf(line, "begun %3999s", a) == 1) {
         const vector_info *v;
         while ((v = ng.vector(a)) == NULL || v->v_length < 2) {
             nap();
         }
-    } else if (sscanf(line, "threaded %s %[^\n]", a, b) == 2) {
+    } else if (sscanf(line, "threaded %3999s %3999[^\n]", a, b) == 2) {
         read_while_running(a, b);
     } else if (strcmp(line, "counts") == 0) {
         printf("counts lines %d errors %d rows %d plots %ld vectors %ld begun %ld ended %ld exits "
