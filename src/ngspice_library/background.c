@@ -1,4 +1,5 @@
 /* background.c - starts, halts and ends the thread. A halted one waits where the solver asks whether to go on. */
+#define _GNU_SOURCE /* pthread_timedjoin_np */
 #include "background.h"
 
 #include "memory.h"
@@ -6,6 +7,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static void tell(const struct ng_background *b, bool is_not_running) {
     if (b->tell != NULL) {
@@ -149,13 +151,32 @@ enum dalcs_status ng_background_pause(struct ng_background *b) {
     return is_cancelled ? DALCS_E_CANCELLED : DALCS_OK;
 }
 
-void ng_background_close(struct ng_background *b) {
+/* Has the thread gone, soon? */
+static bool join_soon(struct ng_background *b) {
+    static const time_t soon =
+        2; /* s; much longer than from one question of a solver to its next */
+    struct timespec until;
+    if (!b->has_thread) {
+        return true;
+    }
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_sec += soon;
+    b->has_thread = pthread_timedjoin_np(b->thread, NULL, &until) != 0;
+    return !b->has_thread;
+}
+
+bool ng_background_close(struct ng_background *b) {
     pthread_mutex_lock(&b->lock);
     if (b->state != NG_IDLE) {
         change(b, NG_CANCELLING);
     }
     pthread_mutex_unlock(&b->lock);
-    join(b);
+    if (ng_background_is_here(b) || !join_soon(b)) {
+        return false;
+    }
+    free(b->command);
+    b->command = NULL;
     pthread_mutex_destroy(&b->lock);
     pthread_cond_destroy(&b->changed);
+    return true;
 }

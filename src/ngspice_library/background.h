@@ -32,8 +32,9 @@ struct ng_background {
 
 enum dalcs_status ng_background_open(struct ng_background *background) DALCS_MUST_CHECK;
 
-/* Cancels what runs and waits for its end. */
-void ng_background_close(struct ng_background *background);
+/* Cancels what runs and waits for its end. false: it does not come. A process that ends must not wait for ever:
+ * the thread may be in a callback of a language that has ended already. */
+bool ng_background_close(struct ng_background *background);
 
 /* Executes work(argument, command) in the thread. */
 enum dalcs_status ng_background_start(struct ng_background *background,

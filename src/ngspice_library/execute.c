@@ -66,10 +66,9 @@ enum dalcs_status ng_library_open(struct ng_library *l) {
 }
 
 void ng_library_close(struct ng_library *l) {
-    if (!l->is_open) {
-        return;
+    if (!l->is_open || !ng_background_close(&l->background)) {
+        return; /* what a thread still uses stays */
     }
-    ng_background_close(&l->background);
     dalcs_script_close(l->script);
     ng_circuit_destroy(l->circuit);
     ng_lines_finish(&l->by_line);

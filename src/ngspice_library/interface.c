@@ -21,7 +21,7 @@ bool ng_is_ready(void) {
 }
 
 __attribute__((destructor)) static void leave(void) {
-    if (ng_the.is_open && !ng_background_is_here(&ng_the.background)) {
+    if (ng_the.is_open) {
         ng_the.talk.send_char = NULL; /* the program's functions may be gone */
         ng_the.tell = (struct ng_callbacks){0};
         ng_the.background.tell = NULL;
