@@ -15,7 +15,7 @@ const char *dalcs_session_script_line(const struct dalcs_session *session, size_
 }
 
 /* As messages call the lines that are added. */
-#define COMMANDS "command"
+static const char COMMANDS[] = "command";
 
 enum dalcs_status dalcs_session_add_script_line(struct dalcs_session *session, const char *text) {
     struct dalcs_netlist *netlist = &session->netlist;
