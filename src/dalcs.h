@@ -436,6 +436,11 @@ void dalcs_session_script_message(struct dalcs_session *session, size_t line, si
                                   size_t length, enum dalcs_level level, const char *hint,
                                   const char *text);
 
+/* Adds a line as if it stood at the end of .control: for programs that are told commands one by one. It is
+ * copied; messages call it "command:1", then 2 and so on. Only for a netlist with a script. */
+enum dalcs_status dalcs_session_add_script_line(struct dalcs_session *session,
+                                                const char *text) DALCS_MUST_CHECK;
+
 /* A card that is added to the netlist for one run, as if it stood on that script line; without its
  * first dot: "tran 1u 1m", "meas tran vavg avg v(out)". */
 struct dalcs_extra_card {

@@ -13,7 +13,7 @@ packages_of() {
         plot) echo gnuplot-nox ;;
         latex) echo texlive-latex-base ;;
         browser) echo chromium chromium-driver python3-selenium ;;
-        crosscheck) echo ngspice python3 ;;
+        crosscheck) echo libngspice0-dev ngspice python3 ;;
         ci) echo clang libclang-rt-14-dev llvm valgrind clang-format codespell cppcheck shellcheck fish zsh ;;
         *)
             echo "packages.sh: no package group '$1'" >&2

@@ -1,6 +1,7 @@
 /* batch.c - `dalcs -b`: the command line of ngspice in batch mode, for scripts that have one.
  *
  *     dalcs -b -r out.raw -o log circuit.cir
+ *     ngspice circuit.cir                         where the program is called so
  *
  * The order does not matter. What steers ngspice's shell has no meaning here. */
 #include "batch.h"
@@ -26,37 +27,38 @@ static const char help[] =
     "and\n"
     "                      .plot are printed as tables\n"
     "  -o, --output LOG    write there what would be printed\n"
-    "      --ascii         write the raw file as text\n"
+    "      --ascii         write the raw file as text; so does -D filetype=ascii\n"
     "      --dialect ngspice|ltspice|xyce\n"
     "                      for which simulator the netlist was written (default: what it shows)\n"
-    "  -a, -n, -i, -p, -s, -D VARIABLE=VALUE\n"
+    "  -a, -n, -i, -p, -q, -s, -t TERMINAL, -D VARIABLE=VALUE\n"
     "                      are ngspice's and have no meaning here\n"
     "  -h, --help          this text\n"
+    "\n"
+    "Called by the name ngspice, the program needs no -b, -v prints what others look for, and -p "
+    "and -s\n"
+    "are refused: they would read commands. Programs that send commands load libngspice.so.0, see\n"
+    "dalcs as-ngspice --help.\n"
     "\n"
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
 enum { ASCII = 256, DIALECT };
 
 static const struct option option[] = {
-    {"batch", no_argument, NULL, 'b'},
-    {"rawfile", required_argument, NULL, 'r'},
-    {"output", required_argument, NULL, 'o'},
-    {"ascii", no_argument, NULL, ASCII},
-    {"autorun", no_argument, NULL, 'a'},
-    {"no-spiceinit", no_argument, NULL, 'n'},
-    {"interactive", no_argument, NULL, 'i'},
-    {"pipe", no_argument, NULL, 'p'},
-    {"server", no_argument, NULL, 's'},
-    {"define", required_argument, NULL, 'D'},
-    {"dialect", required_argument, NULL, DIALECT},
-    {"help", no_argument, NULL, 'h'},
-    {NULL, 0, NULL, 0},
+    {"batch", no_argument, NULL, 'b'},          {"rawfile", required_argument, NULL, 'r'},
+    {"output", required_argument, NULL, 'o'},   {"ascii", no_argument, NULL, ASCII},
+    {"autorun", no_argument, NULL, 'a'},        {"no-spiceinit", no_argument, NULL, 'n'},
+    {"interactive", no_argument, NULL, 'i'},    {"pipe", no_argument, NULL, 'p'},
+    {"quiet", no_argument, NULL, 'q'},          {"server", no_argument, NULL, 's'},
+    {"terminal", required_argument, NULL, 't'}, {"version", no_argument, NULL, 'v'},
+    {"define", required_argument, NULL, 'D'},   {"dialect", required_argument, NULL, DIALECT},
+    {"help", no_argument, NULL, 'h'},           {NULL, 0, NULL, 0},
 };
 
 struct batch {
     struct dalcs_arguments arguments;
     const char *log;
-    bool help;
+    bool help, version;
+    bool is_ngspice; /* the program is called so */
 };
 
 bool dalcs_cli_is_batch(int argc, char **argv) {
@@ -67,11 +69,40 @@ bool dalcs_cli_is_batch(int argc, char **argv) {
     return found;
 }
 
+static const char *help_of(const struct batch *b) {
+    return b->is_ngspice ? "ngspice --help" : "dalcs -b --help";
+}
+
+/* An option of ngspice's shell, which reads commands. */
+static enum dalcs_status take_shell(const struct batch *b, const struct dalcs_cli *cli, int code) {
+    if (b->is_ngspice && code != 'i') {
+        dalcs_cli_error(
+            cli,
+            "-%c: dalcs in ngspice's place takes no commands from a pipe; a program that "
+            "sends them can load libngspice.so.0 (dalcs as-ngspice)",
+            code);
+        return DALCS_E_OPTION;
+    }
+    fprintf(cli->err, "dalcs: note: -%c is for ngspice's shell and has no meaning here\n", code);
+    return DALCS_OK;
+}
+
+/* -D VARIABLE=VALUE; what netlists it was written for shows by itself. */
+static void take_variable(struct batch *b, const struct dalcs_cli *cli, const char *text) {
+    if (strcmp(text, "filetype=ascii") == 0) {
+        b->arguments.ascii = true;
+    } else if (strncmp(text, "ngbehavior=", strlen("ngbehavior=")) != 0) {
+        fprintf(cli->err,
+                "dalcs: note: -D %s sets a variable of ngspice's shell and has no meaning here\n",
+                text);
+    }
+}
+
 static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int argc,
                                char **argv) {
     optind = 0; /* glibc: start afresh */
     opterr = 0;
-    for (int code; (code = getopt_long(argc, argv, ":br:o:anipsD:h", option, NULL)) != -1;) {
+    for (int code; (code = getopt_long(argc, argv, ":br:o:anipqst:vD:h", option, NULL)) != -1;) {
         switch (code) {
         case 'r':
             b->arguments.output[0] = optarg;
@@ -96,29 +127,34 @@ static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int
         case 'i':
         case 'p':
         case 's':
-            fprintf(cli->err, "dalcs: note: -%c is for ngspice's shell and has no meaning here\n",
-                    code);
+            DALCS_TRY(take_shell(b, cli, code));
             break;
+        case 'q':
+        case 't':
+            break;
+        case 'v':
+            b->version = true;
+            return DALCS_OK;
         case 'D':
-            fprintf(cli->err,
-                    "dalcs: note: -D %s sets a variable of ngspice's shell and has no meaning "
-                    "here\n",
-                    optarg);
+            take_variable(b, cli, optarg);
             break;
         case ':':
-            dalcs_cli_error(cli, "option '%s' needs a value; see 'dalcs -b --help'",
-                            argv[optind - 1]);
+            dalcs_cli_error(cli, "option '%s' needs a value; see '%s'", argv[optind - 1],
+                            help_of(b));
             return DALCS_E_OPTION;
         default:
-            dalcs_cli_error(cli, "unknown option '%s'; see 'dalcs -b --help'", argv[optind - 1]);
+            dalcs_cli_error(cli, "unknown option '%s'; see '%s'", argv[optind - 1], help_of(b));
             return DALCS_E_OPTION;
         }
     }
+    if (optind == argc) {
+        dalcs_cli_error(cli, "no netlist given%s; see '%s'",
+                        b->is_ngspice ? ", and dalcs has no shell that waits for commands" : "",
+                        help_of(b));
+        return DALCS_E_OPTION;
+    }
     if (optind != argc - 1) {
-        dalcs_cli_error(cli,
-                        optind == argc ? "no netlist given; see 'dalcs -b --help'"
-                                       : "one netlist at a time: '%s' is one too many",
-                        argv[argc - 1]);
+        dalcs_cli_error(cli, "one netlist at a time: '%s' is one too many", argv[argc - 1]);
         return DALCS_E_OPTION;
     }
     b->arguments.netlist = argv[optind];
@@ -145,8 +181,9 @@ static enum dalcs_status run_into_log(const struct dalcs_cli *cli, const struct 
     return status;
 }
 
-enum dalcs_exit dalcs_cli_batch(const struct dalcs_cli *cli, int argc, char **argv) {
-    struct batch b = {.arguments = {.batch = true}};
+static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **argv,
+                                bool is_ngspice) {
+    struct batch b = {.arguments = {.batch = true}, .is_ngspice = is_ngspice};
     b.arguments.output = dalcs_alloc(1, sizeof *b.arguments.output);
     if (!b.arguments.output) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
@@ -155,6 +192,11 @@ enum dalcs_exit dalcs_cli_batch(const struct dalcs_cli *cli, int argc, char **ar
     enum dalcs_status status = parse(&b, cli, argc, argv);
     if (status == DALCS_OK && b.help) {
         fputs(help, cli->out);
+    } else if (status == DALCS_OK && b.version) {
+        fprintf(
+            cli->out,
+            "******\n** ngspice-39 is what programs may take this for: it is dalcs %s\n******\n",
+            dalcs_version());
     } else if (status == DALCS_OK) {
         b.arguments.log = b.log;
         status = dalcs_paths_check(cli, &b.arguments);
@@ -164,4 +206,12 @@ enum dalcs_exit dalcs_cli_batch(const struct dalcs_cli *cli, int argc, char **ar
     }
     dalcs_arguments_finish(&b.arguments);
     return dalcs_cli_exit(status);
+}
+
+enum dalcs_exit dalcs_cli_batch(const struct dalcs_cli *cli, int argc, char **argv) {
+    return evaluate(cli, argc, argv, false);
+}
+
+enum dalcs_exit dalcs_cli_ngspice(const struct dalcs_cli *cli, int argc, char **argv) {
+    return evaluate(cli, argc, argv, true);
 }

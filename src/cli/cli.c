@@ -21,6 +21,7 @@ static const struct {
     {"plot", "draw the waveforms of a file", dalcs_cli_plot},
     {"compare", "run a netlist here and in ngspice: errors, times, waveforms", dalcs_cli_compare},
     {"converge", "errors and orders of fixed steps", dalcs_cli_converge},
+    {"as-ngspice", "run a program for which dalcs is ngspice", dalcs_cli_as_ngspice},
 };
 
 enum { N_VERBS = sizeof verb / sizeof verb[0] };
@@ -56,7 +57,7 @@ static void write_help(FILE *stream) {
           "\n",
           stream);
     for (int i = 0; i < N_VERBS; i++) {
-        fprintf(stream, "  %-10s %s\n", verb[i].name, verb[i].purpose);
+        fprintf(stream, "  %-10s  %s\n", verb[i].name, verb[i].purpose);
     }
     fputs("\n"
           "  -h, --help     this text; after a verb its options and examples\n"
@@ -90,7 +91,16 @@ static enum dalcs_exit refuse_verb(const struct dalcs_cli *cli, const char *word
     return DALCS_EXIT_USAGE;
 }
 
+/* Is that the name by which the program was called? */
+static bool is_called(const char *name, const char *path) {
+    const char *slash = strrchr(path, '/');
+    return strcmp(slash != NULL ? slash + 1 : path, name) == 0;
+}
+
 enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **argv) {
+    if (argc > 0 && is_called("ngspice", argv[0])) {
+        return dalcs_cli_ngspice(cli, argc, argv);
+    }
     if (argc < 2) {
         write_help(cli->err);
         return DALCS_EXIT_USAGE;

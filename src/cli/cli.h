@@ -47,5 +47,6 @@ enum dalcs_exit dalcs_cli_audit(const struct dalcs_cli *cli, int argc, char **ar
 enum dalcs_exit dalcs_cli_plot(const struct dalcs_cli *cli, int argc, char **argv);
 enum dalcs_exit dalcs_cli_compare(const struct dalcs_cli *cli, int argc, char **argv);
 enum dalcs_exit dalcs_cli_converge(const struct dalcs_cli *cli, int argc, char **argv);
+enum dalcs_exit dalcs_cli_as_ngspice(const struct dalcs_cli *cli, int argc, char **argv);
 
 #endif

@@ -13,6 +13,7 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct dalcs_script *script = user;
     const struct dalcs_sink *sink = script->host->sink;
     enum dalcs_status status = dalcs_vectors_begin(&script->vectors, plot);
+    script->n_signals = plot->n_signals;
     return status == DALCS_OK && sink->begin != NULL ? sink->begin(sink->user, plot) : status;
 }
 
@@ -21,6 +22,16 @@ static enum dalcs_status row(void *user, double time, const double *value) {
     const struct dalcs_sink *sink = script->host->sink;
     enum dalcs_status status = dalcs_vectors_row(&script->vectors, time, value);
     return status == DALCS_OK && sink->row != NULL ? sink->row(sink->user, time, value) : status;
+}
+
+static enum dalcs_status rows(void *user, size_t n, const double *time, const double *value) {
+    struct dalcs_script *script = user;
+    const struct dalcs_sink *sink = script->host->sink;
+    enum dalcs_status status = DALCS_OK;
+    for (size_t k = 0; k < n && status == DALCS_OK; k++) {
+        status = dalcs_vectors_row(&script->vectors, time[k], value + k * script->n_signals);
+    }
+    return status == DALCS_OK ? sink->rows(sink->user, n, time, value) : status;
 }
 
 static enum dalcs_status end(void *user) {
@@ -64,14 +75,28 @@ static enum dalcs_status keep_measured(struct dalcs_script *script) {
 
 static enum dalcs_status run_session(struct dalcs_script *script) {
     const struct dalcs_script_host *host = script->host;
-    const struct dalcs_sink sink = {
-        .user = script, .begin = begin, .row = row, .end = end, .progress = progress};
+    const struct dalcs_sink sink = {.user = script,
+                                    .begin = begin,
+                                    .row = row,
+                                    .end = end,
+                                    .progress = progress,
+                                    .rows = host->sink->rows != NULL ? rows : NULL};
     const enum dalcs_status status =
         dalcs_session_run_cards(host->session, script->card, script->n_cards, host->options, &sink);
     if (host->after_run != NULL) {
         host->after_run(host->user, host->session, status);
     }
     return status == DALCS_OK ? keep_measured(script) : status;
+}
+
+/* Tells the host what is about to happen. */
+static enum dalcs_status tell(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *rest;
+    if (script->host->heard == NULL) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_script_expand(script, s, &rest));
+    return script->host->heard(script->host->user, s->word, rest);
 }
 
 static enum dalcs_status run(struct dalcs_script *script, size_t index) {
@@ -86,6 +111,7 @@ static enum dalcs_status run(struct dalcs_script *script, size_t index) {
                                    "run: the netlist has no analysis");
     }
     status = status == DALCS_OK ? dalcs_script_add_measurements(script, index + 1) : status;
+    script->has_run = true;
     status = status == DALCS_OK ? run_session(script) : status;
     script->n_cards = n_kept;
     return status;
@@ -176,6 +202,8 @@ static enum dalcs_status split_alter(struct dalcs_script *script, const struct d
         const size_t n = strcspn(bracket + 1, "]");
         *field = dalcs_arena_copy(&script->arena, bracket + 1, n);
         *name = dalcs_arena_copy(&script->arena, *name + 1, (size_t)(bracket - *name - 1));
+    } else if (*name != NULL && (*name)[0] == '@') {
+        ++*name; /* as KiCad's tuner writes it */
     }
     if (*name == NULL) {
         return dalcs_script_refuse(script, s, NULL, "a name before '=' is missing");
@@ -522,8 +550,45 @@ static enum dalcs_status echo(struct dalcs_script *script, const struct dalcs_st
     return status;
 }
 
+/* Does it need a circuit? */
+static bool needs_circuit(const struct dalcs_statement *s) {
+    return s->kind == DALCS_STATEMENT_ANALYSIS || s->kind == DALCS_STATEMENT_MEASURE ||
+           s->kind == DALCS_STATEMENT_ALTER || s->kind == DALCS_STATEMENT_ALTER_PARAMETER ||
+           s->kind == DALCS_STATEMENT_ALTER_MODEL;
+}
+
+static bool is_heard(const struct dalcs_statement *s) {
+    return (needs_circuit(s) && s->kind != DALCS_STATEMENT_MEASURE) ||
+           s->kind == DALCS_STATEMENT_LET || s->kind == DALCS_STATEMENT_RESET ||
+           s->kind == DALCS_STATEMENT_SAVE || s->kind == DALCS_STATEMENT_SET;
+}
+
+/* A measurement; where an analysis was before it, it is made. */
+static enum dalcs_status measure(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *rest;
+    if (script->has_run || script->host->measure == NULL) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_script_expand(script, s, &rest));
+    return script->host->measure(script->host->user, rest);
+}
+
+/* What belongs to the host, with variables replaced. */
+static enum dalcs_status leave_to_host(struct dalcs_script *script,
+                                       const struct dalcs_statement *s) {
+    const char *rest;
+    DALCS_TRY(dalcs_script_expand(script, s, &rest));
+    return script->host->execute(script->host->user, s->word, rest);
+}
+
 enum dalcs_status dalcs_script_command(struct dalcs_script *script, size_t index) {
     const struct dalcs_statement *s = &script->statements.statement[index];
+    if (script->host->lacks_circuit && needs_circuit(s)) {
+        return dalcs_script_refuse(script, s, NULL, "%s: there is no circuit", s->word);
+    }
+    if (is_heard(s)) {
+        DALCS_TRY(tell(script, s));
+    }
     switch (s->kind) {
     case DALCS_STATEMENT_ANALYSIS:
         return run(script, index);
@@ -551,6 +616,10 @@ enum dalcs_status dalcs_script_command(struct dalcs_script *script, size_t index
     case DALCS_STATEMENT_WRDATA:
     case DALCS_STATEMENT_WRITE:
         return write_file(script, s);
+    case DALCS_STATEMENT_MEASURE:
+        return measure(script, s);
+    case DALCS_STATEMENT_HOST:
+        return leave_to_host(script, s);
     case DALCS_STATEMENT_BREAK:
         script->breaks = true;
         return DALCS_OK;

@@ -140,7 +140,8 @@ static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size
             break;
         default:
             status = dalcs_script_command(script, k);
-            if (status == DALCS_E_NETLIST && dalcs_statement_may_be_left_out(&all->statement[k])) {
+            if (status == DALCS_E_NETLIST && !script->host->is_strict &&
+                dalcs_statement_may_be_left_out(&all->statement[k])) {
                 status = DALCS_OK; /* as in ngspice; a warning has told */
             }
             dalcs_arena_finish(&script->arena);
@@ -189,7 +190,8 @@ enum dalcs_status dalcs_script_look(const struct dalcs_session *session, bool *i
 
     struct dalcs_statements all = {0};
     size_t best = sizeof ranked / sizeof ranked[0];
-    const enum dalcs_status status = dalcs_statements_read(&all, session);
+    const enum dalcs_status status =
+        dalcs_statements_read(&all, session, 0, dalcs_session_n_script_lines(session));
     for (size_t k = 0; k < all.n; k++) {
         for (size_t i = 0; i < best; i++) {
             best = strcmp(all.statement[k].word, ranked[i].word) == 0 ? i : best;
@@ -203,31 +205,79 @@ enum dalcs_status dalcs_script_look(const struct dalcs_session *session, bool *i
     return status;
 }
 
+static bool has_analysis(const struct dalcs_session *session) {
+    const struct dalcs_request asked = dalcs_session_request(session);
+    return asked.operating_point || asked.transient || asked.dc_sweep || asked.ac;
+}
+
+enum dalcs_status dalcs_script_open(struct dalcs_script **script,
+                                    const struct dalcs_script_host *host) {
+    *script = dalcs_alloc(1, sizeof **script);
+    if (*script == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    (*script)->host = host;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_script_read(struct dalcs_script *script, size_t first, size_t end) {
+    const struct dalcs_script_host *host = script->host;
+    dalcs_statements_finish(&script->statements);
+    script->has_run = script->quits = script->breaks = script->continues = false;
+    script->has_cards = has_analysis(host->session);
+    script->vectors.session = host->session;
+    DALCS_TRY(dalcs_statements_read(&script->statements, host->session, first, end));
+    script->vectors.text = script->statements.text;
+    script->vectors.keeps_all = keeps_all(&script->statements);
+    return dalcs_statements_check(&script->statements, host);
+}
+
+struct dalcs_vectors *dalcs_script_vectors_of(struct dalcs_script *script) {
+    return &script->vectors;
+}
+
+const char *dalcs_script_variable(const struct dalcs_script *script, const char *name) {
+    return dalcs_variables_get(&script->variables, name);
+}
+
+enum dalcs_status dalcs_script_execute(struct dalcs_script *script, bool *quits) {
+    const enum dalcs_status status = execute(script, 0, script->statements.n);
+    if (quits != NULL) {
+        *quits = script->quits;
+    }
+    dalcs_arena_finish(&script->arena);
+    return status;
+}
+
+void dalcs_script_change_circuit(struct dalcs_script *script) {
+    script->n_cards = 0;
+    dalcs_arena_finish(&script->kept);
+}
+
+void dalcs_script_close(struct dalcs_script *script) {
+    if (script == NULL) {
+        return;
+    }
+    dalcs_arena_finish(&script->arena);
+    dalcs_arena_finish(&script->kept);
+    dalcs_vectors_finish(&script->vectors);
+    dalcs_variables_finish(&script->variables);
+    dalcs_statements_finish(&script->statements);
+    free(script->card);
+    free(script);
+}
+
 enum dalcs_status dalcs_script_run(const struct dalcs_script_host *host) {
-    const struct dalcs_request asked = dalcs_session_request(host->session);
-    struct dalcs_script script = {.host = host,
-                                  .has_cards = asked.operating_point || asked.transient ||
-                                               asked.dc_sweep || asked.ac};
-    enum dalcs_status status = dalcs_statements_read(&script.statements, host->session);
-    if (status == DALCS_OK) {
-        status = dalcs_statements_check(&script.statements, host->session);
+    struct dalcs_script *script;
+    DALCS_TRY(dalcs_script_open(&script, host));
+    enum dalcs_status status =
+        dalcs_script_read(script, 0, dalcs_session_n_script_lines(host->session));
+    if (status == DALCS_OK && !asks(&script->statements)) {
+        status = dalcs_script_run_cards(script);
     }
     if (status == DALCS_OK) {
-        script.vectors.session = host->session;
-        script.vectors.text = script.statements.text;
-        script.vectors.keeps_all = keeps_all(&script.statements);
-        if (!asks(&script.statements)) {
-            status = dalcs_script_run_cards(&script);
-        }
-        if (status == DALCS_OK) {
-            status = execute(&script, 0, script.statements.n);
-        }
+        status = dalcs_script_execute(script, NULL);
     }
-    dalcs_arena_finish(&script.arena);
-    dalcs_arena_finish(&script.kept);
-    dalcs_vectors_finish(&script.vectors);
-    dalcs_variables_finish(&script.variables);
-    dalcs_statements_finish(&script.statements);
-    free(script.card);
+    dalcs_script_close(script);
     return status;
 }

@@ -19,9 +19,46 @@ struct dalcs_script_host {
     const struct dalcs_sink *sink; /* gets all results, besides the script */
     FILE *out;                     /* of print and echo */
     void *user;
+    bool is_strict; /* what cannot be said or shown is an error: somebody waits for the answer */
+    bool lacks_circuit; /* nothing can be run or altered: the netlist stands for none */
+    /* Does the host execute this word itself? NULL: none. */
+    bool (*knows)(void *user, const char *word);
+    enum dalcs_status (*execute)(void *user, const char *word, const char *rest);
+    /* A measurement that follows no analysis of the same lines; NULL: it is left out. */
+    enum dalcs_status (*measure)(void *user, const char *rest);
+    /* Before what sets, makes or alters something, or runs, with variables replaced; may be NULL. */
+    enum dalcs_status (*heard)(void *user, const char *word, const char *rest);
     /* After each run, while the session has its report; may be NULL. */
     void (*after_run)(void *user, struct dalcs_session *session, enum dalcs_status status);
 };
+
+struct dalcs_script;
+struct dalcs_vectors;
+
+/* For a host that gives lines as they come: variables, saved signals and options last from one call to the
+ * next. The host outlives the script, whose vectors it may read and set between calls. */
+enum dalcs_status dalcs_script_open(struct dalcs_script **script,
+                                    const struct dalcs_script_host *host) DALCS_MUST_CHECK;
+
+/* Reads lines `first` to `end` - 1 of the session's script. DALCS_E_NETLIST: an error in their words; nothing
+ * may be executed. */
+enum dalcs_status dalcs_script_read(struct dalcs_script *script, size_t first,
+                                    size_t end) DALCS_MUST_CHECK;
+
+/* Of which the host may set those that the lines name (dalcs_vectors_is_used). */
+struct dalcs_vectors *dalcs_script_vectors_of(struct dalcs_script *script);
+
+/* Of `set`; NULL: it is not set. */
+const char *dalcs_script_variable(const struct dalcs_script *script, const char *name);
+
+/* What was read. *quits, unless NULL: the script said so. */
+enum dalcs_status dalcs_script_execute(struct dalcs_script *script, bool *quits) DALCS_MUST_CHECK;
+
+/* Another circuit, or none: what was saved and set as an option is forgotten. */
+void dalcs_script_change_circuit(struct dalcs_script *script);
+
+/* Accepts NULL. */
+void dalcs_script_close(struct dalcs_script *script);
 
 /* *is_there: is there a block with anything in it, and which is the main analysis of those that it names itself?
  * *main is left as it is when there is none. */

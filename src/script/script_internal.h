@@ -18,6 +18,8 @@ struct dalcs_script {
     struct dalcs_arena arena; /* of the statement being executed */
     struct dalcs_arena kept;  /* texts of cards */
     bool has_cards;           /* analyses of the netlist, for run */
+    size_t n_signals;         /* in a row of the run at hand */
+    bool has_run;             /* an analysis, since the lines were read */
     bool quits, breaks, continues;
     bool is_silent; /* nothing is said: it is tried whether a text has a value yet */
 };

@@ -164,10 +164,10 @@ static enum dalcs_status squeeze(struct dalcs_statements *s) {
 }
 
 enum dalcs_status dalcs_statements_read(struct dalcs_statements *s,
-                                        const struct dalcs_session *session) {
-    size_t n = dalcs_session_n_script_lines(session);
+                                        const struct dalcs_session *session, size_t first,
+                                        size_t end) {
     enum dalcs_status status = DALCS_OK;
-    for (size_t k = 0; k < n && status == DALCS_OK; k++) {
+    for (size_t k = first; k < end && status == DALCS_OK; k++) {
         status = read_line(s, k, dalcs_session_script_line(session, k));
     }
     return status == DALCS_OK ? squeeze(s) : status;
@@ -222,13 +222,17 @@ static bool opens(enum dalcs_statement_kind kind) {
 }
 
 enum dalcs_status dalcs_statements_check(struct dalcs_statements *all,
-                                         struct dalcs_session *session) {
+                                         const struct dalcs_script_host *host) {
+    struct dalcs_session *session = host->session;
     size_t open[DEEPEST];
     size_t n_open = 0;
     bool failed = false;
     for (size_t k = 0; k < all->n; k++) {
         struct dalcs_statement *s = &all->statement[k];
         const bool is_else = s->kind == DALCS_STATEMENT_ELSE;
+        if (host->knows != NULL && host->knows(host->user, s->word)) {
+            s->kind = DALCS_STATEMENT_HOST;
+        }
         if (s->kind == DALCS_STATEMENT_UNKNOWN) {
             refuse_word(session, s);
             failed = true;

@@ -2,8 +2,8 @@
 #ifndef DALCS_STATEMENT_H
 #define DALCS_STATEMENT_H
 
-#include "dalcs.h"
 #include "memory.h"
+#include "script.h"
 
 #include <stdbool.h>
 
@@ -33,6 +33,7 @@ enum dalcs_statement_kind {
     DALCS_STATEMENT_BREAK,
     DALCS_STATEMENT_CONTINUE,
     DALCS_STATEMENT_QUIT,
+    DALCS_STATEMENT_HOST,    /* the host does it */
     DALCS_STATEMENT_SKIPPED, /* known, but not done here */
     DALCS_STATEMENT_UNKNOWN
 };
@@ -54,14 +55,15 @@ struct dalcs_statements {
     struct dalcs_arena arena;
 };
 
-/* Zero-initialise. Touches no message. */
+/* The session's lines `first` to `end` - 1. Zero-initialise. Touches no message. */
 enum dalcs_status dalcs_statements_read(struct dalcs_statements *statements,
-                                        const struct dalcs_session *session) DALCS_MUST_CHECK;
+                                        const struct dalcs_session *session, size_t first,
+                                        size_t end) DALCS_MUST_CHECK;
 
-/* Matches blocks with their ends; errors and warnings go to the session. DALCS_E_NETLIST: there were
- * errors. */
+/* Matches blocks with their ends, leaves to the host what it knows; errors and warnings go to its session.
+ * DALCS_E_NETLIST: there were errors. */
 enum dalcs_status dalcs_statements_check(struct dalcs_statements *statements,
-                                         struct dalcs_session *session) DALCS_MUST_CHECK;
+                                         const struct dalcs_script_host *host) DALCS_MUST_CHECK;
 
 /* Can the script go on without this statement? What says, shows and measures changes no later run. */
 bool dalcs_statement_may_be_left_out(const struct dalcs_statement *statement);

@@ -25,7 +25,7 @@ static bool was_reported(struct dalcs_script *script, const struct dalcs_stateme
 
 enum dalcs_status dalcs_script_refuse(struct dalcs_script *script, const struct dalcs_statement *s,
                                       const char *hint, const char *format, ...) {
-    const bool goes_on = dalcs_statement_may_be_left_out(s);
+    const bool goes_on = !script->host->is_strict && dalcs_statement_may_be_left_out(s);
     char text[400];
     if (script->is_silent || was_reported(script, s)) {
         return DALCS_E_NETLIST;

@@ -25,8 +25,7 @@ static const char *inside_of(const char *name, char *text, size_t size) {
     return text;
 }
 
-/* May the script ask for this signal? */
-static bool is_used(const struct dalcs_vectors *v, const char *name) {
+bool dalcs_vectors_is_used(const struct dalcs_vectors *v, const char *name) {
     char inside[256];
     return v->keeps_all || names(v, name) ||
            (inside_of(name, inside, sizeof inside)[0] != '\0' && names(v, inside));
@@ -130,7 +129,7 @@ enum dalcs_status dalcs_vectors_begin(struct dalcs_vectors *v, const struct dalc
         }
     }
     for (size_t i = 0; i < plot->n_signals; i++) {
-        if (is_point || is_used(v, plot->name[i])) {
+        if (is_point || dalcs_vectors_is_used(v, plot->name[i])) {
             enum dalcs_status status =
                 add(&v->plot, plot->name[i],
                     (struct dalcs_vector){.unit = plot->unit[i], .is_complex = plot->is_complex});
@@ -209,9 +208,14 @@ enum dalcs_status dalcs_vectors_let(struct dalcs_vectors *v, const char *name,
     return DALCS_OK;
 }
 
-void dalcs_vectors_finish(struct dalcs_vectors *v) {
+void dalcs_vectors_forget(struct dalcs_vectors *v) {
     forget(&v->plot);
     forget(&v->own);
+    v->has_plot = false;
+}
+
+void dalcs_vectors_finish(struct dalcs_vectors *v) {
+    dalcs_vectors_forget(v);
     free(v->column);
     *v = (struct dalcs_vectors){0};
 }

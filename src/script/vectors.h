@@ -43,6 +43,9 @@ enum dalcs_status dalcs_vectors_begin(struct dalcs_vectors *vectors, const struc
 enum dalcs_status dalcs_vectors_row(struct dalcs_vectors *vectors, double scale,
                                     const double *value);
 
+/* May the script ask for this signal? */
+bool dalcs_vectors_is_used(const struct dalcs_vectors *vectors, const char *name);
+
 /* By any of its names: v(out), out, i(l1), l1#branch, @l1[i], time; NULL: there is none. */
 const struct dalcs_vector *dalcs_vectors_find(const struct dalcs_vectors *vectors,
                                               const char *name);
@@ -57,6 +60,9 @@ const struct dalcs_vector *dalcs_vectors_scale(const struct dalcs_vectors *vecto
 /* Makes or replaces a vector in the present plot; copies. */
 enum dalcs_status dalcs_vectors_let(struct dalcs_vectors *vectors, const char *name,
                                     const struct dalcs_vector *value) DALCS_MUST_CHECK;
+
+/* All vectors. */
+void dalcs_vectors_forget(struct dalcs_vectors *vectors);
 
 void dalcs_vectors_finish(struct dalcs_vectors *vectors);
 

@@ -14,6 +14,39 @@ const char *dalcs_session_script_line(const struct dalcs_session *session, size_
                                                          : NULL;
 }
 
+/* As messages call the lines that are added. */
+static const char COMMANDS[] = "command";
+
+enum dalcs_status dalcs_session_add_script_line(struct dalcs_session *session, const char *text) {
+    struct dalcs_netlist *netlist = &session->netlist;
+    if (dalcs_session_n_script_lines(session) == 0) {
+        return DALCS_E_OPTION;
+    }
+    const struct dalcs_source_line last = netlist->script[netlist->n_script_lines - 1];
+    const struct dalcs_source *source = last.source;
+    int number = last.number + 1;
+    if (strcmp(source->name, COMMANDS) != 0) {
+        struct dalcs_source *made = dalcs_arena_alloc(&netlist->arena, 1, sizeof *made);
+        if (made == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        *made = (struct dalcs_source){.name = COMMANDS, .number = netlist->n_sources++};
+        source = made;
+        number = 1;
+    }
+    const char *own = dalcs_arena_copy(&netlist->arena, text, strlen(text));
+    if (own == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    /* the circuit of the last run may name places in the lines that move here: it is built again */
+    session->is_altered = true;
+    DALCS_TRY(dalcs_grow(&netlist->script, &netlist->script_capacity, netlist->n_script_lines + 1,
+                         sizeof *netlist->script));
+    netlist->script[netlist->n_script_lines++] =
+        (struct dalcs_source_line){.source = source, .text = own, .number = number};
+    return DALCS_OK;
+}
+
 void dalcs_session_script_message(struct dalcs_session *session, size_t line, size_t column,
                                   size_t length, enum dalcs_level level, const char *hint,
                                   const char *text) {
