@@ -231,7 +231,15 @@ static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
     return status;
 }
 
-static struct dalcs_run_options options_of(const struct dalcs_arguments *arguments,
+/* Does nobody look at a row? Measurements do not: they have the solution itself. A script may write them. */
+static bool needs_no_rows(const struct run *run, const struct dalcs_arguments *arguments) {
+    return arguments->no_waveforms && arguments->quiet && run->outputs.n_tables == 0 &&
+           run->outputs.report_path == NULL && arguments->plot == NULL && arguments->at == NULL &&
+           run->printed.out == NULL && !run->has_script;
+}
+
+static struct dalcs_run_options options_of(const struct run *run,
+                                           const struct dalcs_arguments *arguments,
                                            const struct dalcs_times *times) {
     struct dalcs_run_options options = dalcs_run_options_default();
     options.method = arguments->method;
@@ -258,6 +266,11 @@ static struct dalcs_run_options options_of(const struct dalcs_arguments *argumen
     options.loop = arguments->loop;
     options.sideband = (int)arguments->sideband;
     options.energy = arguments->report || arguments->energy;
+    if (needs_no_rows(run, arguments)) {
+        dalcs_run_options_set_times(&options, NULL, 0);
+        options.fill = options.compress = 0.0;
+        options.curve = NULL;
+    }
     return options;
 }
 
@@ -265,7 +278,7 @@ static struct dalcs_run_options options_of(const struct dalcs_arguments *argumen
 static enum dalcs_status run_session(struct run *run, struct dalcs_session *session,
                                      const struct dalcs_arguments *arguments,
                                      const struct dalcs_times *times, size_t *n_written) {
-    const struct dalcs_run_options options = options_of(arguments, times);
+    const struct dalcs_run_options options = options_of(run, arguments, times);
     const struct dalcs_sink sink = {
         .user = run, .begin = begin, .row = row, .end = end, .progress = progress, .rows = rows};
     run->session = session;
