@@ -16,7 +16,7 @@ import tempfile
 import time
 import unittest
 
-PROGRAM = sys.argv[1]
+PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 
 CIRCUIT = """a rectifier with loads that may be impossible
 .options dialect=ltspice
