@@ -110,8 +110,9 @@ class Table:
         import xarray  # pylint: disable=import-outside-toplevel,import-error
         signals = {name: (self.scale, np.array(self.values[:, k]), {"units": self.units[name]})
                    for k, name in enumerate(self.names)}
-        return xarray.Dataset(signals, {self.scale: np.array(self.t)},
-                              {"title": self.title, **self.parameters})
+        told: Dict[str, Any] = {"title": self.title}
+        told.update(self.parameters)
+        return xarray.Dataset(signals, {self.scale: np.array(self.t)}, told)
 
     def plot(self, *names: str, ax: Any = None) -> Any:
         """Draws signals, all without names, with matplotlib; returns the axes."""
