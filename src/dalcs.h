@@ -131,6 +131,14 @@ struct dalcs_request {
 };
 struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
 
+/* What .step sets in step number `step`, counted from 0: parameter number `index` ("rload", "dmod(vfwd)") and its
+ * value; NULL when either is too large. Of the netlist as it was read: ask a session that has not run. */
+const char *dalcs_session_step_parameter(const struct dalcs_session *session, size_t step,
+                                         size_t index, double *value);
+
+/* The names of .meas in the order in which a report has them; NULL when index is too large. */
+const char *dalcs_session_measure_name(const struct dalcs_session *session, size_t index);
+
 /* What a .print shows of a signal; the plain value of an .ac is complex. */
 enum dalcs_print_part {
     DALCS_PRINT_PLAIN,
@@ -358,6 +366,8 @@ struct dalcs_run_options {
     int bode_points;           /* in each decade; 0: those of .ac, else 20 */
     const char *loop; /* the V source in a loop whose gain is computed; NULL: .ac's, else none */
     int sideband;     /* as dalcs_report.response; 0: .ac's, else none */
+
+    size_t only_step; /* of .step: this one alone, counted from 1; 0: all */
 };
 
 enum { DALCS_MOST_SIDEBAND = 1000000 };

@@ -7,6 +7,7 @@
 #include "verb.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
@@ -200,6 +201,21 @@ enum dalcs_status dalcs_argument_plot(struct dalcs_arguments *arguments,
     arguments->plot = path;
     if (!dalcs_figure_can_write(path)) {
         dalcs_cli_error(cli, "--plot: unknown format of '%s': name it .svg, .png or .pdf", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_shard(struct dalcs_arguments *arguments,
+                                       const struct dalcs_cli *cli, const char *text) {
+    char end;
+    if (strspn(text, "0123456789/") != strlen(text) ||
+        sscanf(text, "%zu/%zu%c", &arguments->shard, &arguments->n_shards, &end) != 2 ||
+        arguments->shard < 1 || arguments->shard > arguments->n_shards) {
+        dalcs_cli_error(
+            cli,
+            "--shard: '%s' is not K/N with K from 1 to N; write 3/16 for the third of 16 parts",
+            text);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;

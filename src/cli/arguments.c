@@ -36,7 +36,10 @@ enum {
     LOOP,
     SIDEBAND,
     SET,
-    MEASURES
+    MEASURES,
+    SHARD,
+    RESUME,
+    JOBS
 };
 
 static const struct option option[] = {
@@ -68,6 +71,9 @@ static const struct option option[] = {
     {"sideband", required_argument, NULL, SIDEBAND},
     {"set", required_argument, NULL, SET},
     {"measures", required_argument, NULL, MEASURES},
+    {"shard", required_argument, NULL, SHARD},
+    {"resume", no_argument, NULL, RESUME},
+    {"jobs", required_argument, NULL, JOBS},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -163,6 +169,13 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return dalcs_argument_set(arguments, cli, optarg);
     case MEASURES:
         return dalcs_argument_measures(arguments, cli, optarg);
+    case SHARD:
+        return dalcs_argument_shard(arguments, cli, optarg);
+    case RESUME:
+        arguments->resume = true;
+        return DALCS_OK;
+    case JOBS:
+        return dalcs_verb_take_count(cli, "--jobs", optarg, &arguments->jobs);
     case PERIOD:
         return dalcs_argument_period(arguments, cli, optarg);
     case FROM:

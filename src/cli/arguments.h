@@ -21,6 +21,10 @@ struct dalcs_arguments {
     const char *curve; /* NULL: the netlist's */
     const char *at, *report, *plot, *measures;
     bool no_waveforms; /* -o none */
+    size_t shard,
+        n_shards; /* of the steps of .step: this part of so many, from 1 on; 0 of 0: all */
+    bool resume;  /* go on with the table of a run that was ended */
+    size_t jobs;  /* steps that run at a time; 0: as many as there are processors */
     const char *dump;
     char *default_output, *default_dump; /* NULL: not needed */
     bool quiet, all_signals, energy;

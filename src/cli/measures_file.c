@@ -1,7 +1,7 @@
 /* measures_file.c - of the list that a report has, all steps of an analysis before the next, to rows. */
 #include "measures_file.h"
 
-#include "decimal.h"
+#include "csv_cells.h"
 #include "memory.h"
 #include "settings.h"
 
@@ -45,33 +45,6 @@ enum dalcs_status dalcs_measures_file_plot(struct dalcs_measures_file *m,
 
 /* ---- Writing --------------------------------------------------------------------------------- */
 
-struct columns {
-    FILE *out;
-    struct dalcs_decimal decimal;
-    size_t n; /* in this line so far */
-};
-
-static void write_text(struct columns *c, const char *text, size_t length) {
-    fputs(c->n++ > 0 ? "," : "", c->out);
-    const bool quotes = memchr(text, ',', length) != NULL || memchr(text, '"', length) != NULL;
-    fputs(quotes ? "\"" : "", c->out);
-    for (size_t k = 0; k < length; k++) {
-        fputs(text[k] == '"' ? "\"" : "", c->out);
-        fputc(text[k], c->out);
-    }
-    fputs(quotes ? "\"" : "", c->out);
-}
-
-static void write_number(struct columns *c, double value) {
-    char text[DALCS_DECIMAL_SIZE];
-    write_text(c, text, dalcs_decimal_write(&c->decimal, value, text));
-}
-
-static void end_line(struct columns *c) {
-    fputc('\n', c->out);
-    c->n = 0;
-}
-
 /* How many measurements from `at` on are of one step of one analysis: they share the step's text. */
 static size_t block_at(const struct dalcs_report *report, size_t at) {
     size_t n = 1;
@@ -82,46 +55,55 @@ static size_t block_at(const struct dalcs_report *report, size_t at) {
     return n;
 }
 
-static void write_header(struct columns *c, const struct dalcs_measures_file *m,
+/* The last column of a table with several rows: here all went well. */
+static void end_row(struct dalcs_csv_cells *c, const struct dalcs_measures_file *m,
+                    const char *error) {
+    if (m->n_parameters > 0) {
+        dalcs_csv_text(c, error, strlen(error));
+    }
+    dalcs_csv_end(c);
+}
+
+static void write_header(struct dalcs_csv_cells *c, const struct dalcs_measures_file *m,
                          const struct dalcs_arguments *arguments,
                          const struct dalcs_report *report) {
     for (size_t k = 0; k < arguments->n_set; k++) {
         size_t length;
         dalcs_settings_value(arguments->set[k], &length);
-        write_text(c, arguments->set[k], length);
+        dalcs_csv_text(c, arguments->set[k], length);
     }
     for (size_t k = 0; k < m->n_parameters; k++) {
-        write_text(c, m->parameter[k], strlen(m->parameter[k]));
+        dalcs_csv_text(c, m->parameter[k], strlen(m->parameter[k]));
     }
     for (size_t at = 0; at < report->n_measurements;) {
         const size_t n = block_at(report, at);
         for (size_t k = at; k < at + n; k++) {
-            write_text(c, report->measurement[k].name, strlen(report->measurement[k].name));
+            dalcs_csv_text(c, report->measurement[k].name, strlen(report->measurement[k].name));
         }
         at += n * m->n_steps;
     }
-    end_line(c);
+    end_row(c, m, "error");
 }
 
-static void write_step(struct columns *c, const struct dalcs_measures_file *m,
+static void write_step(struct dalcs_csv_cells *c, const struct dalcs_measures_file *m,
                        const struct dalcs_arguments *arguments, const struct dalcs_report *report,
                        size_t step) {
     for (size_t k = 0; k < arguments->n_set; k++) {
         size_t length;
-        write_number(c, dalcs_settings_value(arguments->set[k], &length));
+        dalcs_csv_number(c, dalcs_settings_value(arguments->set[k], &length));
     }
     for (size_t k = 0; k < m->n_parameters; k++) {
-        write_number(c, m->value[step * m->n_parameters + k]);
+        dalcs_csv_number(c, m->value[step * m->n_parameters + k]);
     }
     for (size_t at = 0; at < report->n_measurements;) {
         const size_t n = block_at(report, at);
         for (size_t k = at + step * n; k < at + (step + 1) * n && k < report->n_measurements; k++) {
             const struct dalcs_measurement *found = &report->measurement[k];
-            write_number(c, found->found ? found->value : NAN);
+            dalcs_csv_number(c, found->found ? found->value : NAN);
         }
         at += n * m->n_steps;
     }
-    end_line(c);
+    end_row(c, m, "");
 }
 
 enum dalcs_status dalcs_measures_file_close(struct dalcs_measures_file *m,
@@ -131,8 +113,9 @@ enum dalcs_status dalcs_measures_file_close(struct dalcs_measures_file *m,
                                             enum dalcs_status run) {
     enum dalcs_status status = DALCS_OK;
     if (m->path != NULL && run == DALCS_OK && report != NULL) {
-        struct columns c = {.out = m->file.stream};
-        dalcs_decimal_init(&c.decimal);
+        struct dalcs_decimal decimal;
+        struct dalcs_csv_cells c = {.out = m->file.stream, .decimal = &decimal};
+        dalcs_decimal_init(&decimal);
         write_header(&c, m, arguments, report);
         for (size_t step = 0; step < m->n_steps; step++) {
             write_step(&c, m, arguments, report, step);

@@ -18,6 +18,7 @@
 #include "steady_lines.h"
 #include "summary.h"
 #include "times.h"
+#include "variants.h"
 #include "verb.h"
 
 #include <math.h>
@@ -231,7 +232,21 @@ static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
     return status;
 }
 
-static struct dalcs_run_options options_of(const struct dalcs_arguments *arguments,
+/* Does nobody look at a row? Measurements do not: they have the solution itself. A script may write them. */
+static bool needs_no_rows(const struct run *run, const struct dalcs_arguments *arguments) {
+    return arguments->no_waveforms && arguments->quiet && run->outputs.n_tables == 0 &&
+           run->outputs.report_path == NULL && arguments->plot == NULL && arguments->at == NULL &&
+           run->printed.out == NULL && !run->has_script;
+}
+
+static void leave_rows_out(struct dalcs_run_options *options) {
+    dalcs_run_options_set_times(options, NULL, 0);
+    options->fill = options->compress = 0.0;
+    options->curve = NULL;
+}
+
+static struct dalcs_run_options options_of(const struct run *run,
+                                           const struct dalcs_arguments *arguments,
                                            const struct dalcs_times *times) {
     struct dalcs_run_options options = dalcs_run_options_default();
     options.method = arguments->method;
@@ -258,6 +273,9 @@ static struct dalcs_run_options options_of(const struct dalcs_arguments *argumen
     options.loop = arguments->loop;
     options.sideband = (int)arguments->sideband;
     options.energy = arguments->report || arguments->energy;
+    if (needs_no_rows(run, arguments)) {
+        leave_rows_out(&options);
+    }
     return options;
 }
 
@@ -265,7 +283,7 @@ static struct dalcs_run_options options_of(const struct dalcs_arguments *argumen
 static enum dalcs_status run_session(struct run *run, struct dalcs_session *session,
                                      const struct dalcs_arguments *arguments,
                                      const struct dalcs_times *times, size_t *n_written) {
-    const struct dalcs_run_options options = options_of(arguments, times);
+    const struct dalcs_run_options options = options_of(run, arguments, times);
     const struct dalcs_sink sink = {
         .user = run, .begin = begin, .row = row, .end = end, .progress = progress, .rows = rows};
     run->session = session;
@@ -304,6 +322,19 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     return status == DALCS_OK ? files : status;
 }
 
+/* Several threads, so that nothing but the table is written. */
+static enum dalcs_status run_variants(const struct dalcs_cli *cli,
+                                      const struct dalcs_arguments *arguments,
+                                      const struct dalcs_session *session) {
+    const struct run run = {.cli = cli};
+    const struct dalcs_times times = {0};
+    struct dalcs_run_options options = options_of(&run, arguments, &times);
+    leave_rows_out(&options);
+    options.record = false;
+    options.dump_path = NULL;
+    return dalcs_variants_run(cli, arguments, session, &options);
+}
+
 static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
                                      const struct dalcs_arguments *arguments,
                                      struct dalcs_session *session) {
@@ -338,6 +369,11 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     if (status != DALCS_OK) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
         return status;
+    }
+    bool is_table;
+    DALCS_TRY(dalcs_variants_ask(cli, arguments, session, run.has_script, &is_table));
+    if (is_table) {
+        return run_variants(cli, arguments, session);
     }
     warn_unused(cli, arguments, &request, main);
     struct dalcs_times times = {0};

@@ -34,6 +34,9 @@
     "repeated\n"                                                                                   \
     "      --measures FILE write the results of .meas as a table, .csv: a row for each step of\n"  \
     "                      .step, or one; with -o none no waveforms are written\n"                 \
+    "      --shard K/N     with -o none: the steps of the K-th of N parts, K from 1 on\n"          \
+    "      --resume        with -o none: go on with the table of a run that was ended\n"           \
+    "      --jobs N        with -o none: steps that run at a time (default: all processors)\n"     \
     "      --report FILE   write what the run did as JSON\n"                                       \
     "      --plot FILE     draw the waveforms with gnuplot, .svg, .png or .pdf\n"                  \
     "      --dump FILE     where to leave a one-step problem that could not be solved (default:\n" \

@@ -150,8 +150,7 @@ enum dalcs_status dalcs_atomic_file_commit(struct dalcs_atomic_file *file) {
     return move_to(file, file->path);
 }
 
-/* "dir/out.csv" -> "dir/out.partial.csv" */
-static char *name_partial(const char *path) {
+char *dalcs_partial_name(const char *path) {
     static const char word[] = ".partial";
     const char *slash = strrchr(path, '/');
     const char *base = slash ? slash + 1 : path;
@@ -168,7 +167,7 @@ static char *name_partial(const char *path) {
 
 enum dalcs_status dalcs_atomic_file_keep(struct dalcs_atomic_file *file, char **left_at) {
     *left_at = NULL;
-    char *name = name_partial(file->path);
+    char *name = dalcs_partial_name(file->path);
     if (!name) {
         return fail(file, ENOMEM);
     }

@@ -30,6 +30,9 @@ enum dalcs_status dalcs_atomic_file_commit(struct dalcs_atomic_file *file) DALCS
 enum dalcs_status dalcs_atomic_file_keep(struct dalcs_atomic_file *file,
                                          char **left_at) DALCS_MUST_CHECK;
 
+/* "dir/out.csv" -> "dir/out.partial.csv"; NULL when out of memory; free() it. */
+char *dalcs_partial_name(const char *path);
+
 /* After a write that failed: what the system took of the stream so far, and no more, is at `descriptor`
  * (the file's own), `size` bytes from its start. */
 enum dalcs_status dalcs_atomic_file_recover(struct dalcs_atomic_file *file, int *descriptor,

@@ -254,6 +254,24 @@ bool dalcs_session_print(const struct dalcs_session *session, size_t card, int a
     return true;
 }
 
+const char *dalcs_session_measure_name(const struct dalcs_session *session, size_t index) {
+    static const enum dalcs_measured_analysis in_order[] = {DALCS_MEASURED_OP, DALCS_MEASURED_DC,
+                                                            DALCS_MEASURED_AC, DALCS_MEASURED_TRAN};
+    const struct dalcs_circuit *circuit = &session->circuit;
+    const bool asked[] = {[DALCS_MEASURED_OP] = circuit->operating_point,
+                          [DALCS_MEASURED_DC] = circuit->n_dc > 0,
+                          [DALCS_MEASURED_AC] = circuit->ac.n > 0,
+                          [DALCS_MEASURED_TRAN] = circuit->transient.present};
+    for (size_t a = 0; a < sizeof in_order / sizeof in_order[0]; a++) {
+        for (int k = 0; asked[in_order[a]] && k < circuit->n_measures; k++) {
+            if (circuit->measure[k].analysis == in_order[a] && index-- == 0) {
+                return circuit->measure[k].name;
+            }
+        }
+    }
+    return NULL;
+}
+
 const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session) {
     return session->has_report ? &session->report : NULL;
 }

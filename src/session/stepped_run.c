@@ -122,14 +122,22 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
                                     const struct dalcs_sink *sink) {
     struct dalcs_report sum = {0};
     struct measured measured = {0};
-    const size_t n_steps = dalcs_steps_count(&session->circuit);
+    const size_t n_all = dalcs_steps_count(&session->circuit);
+    const size_t only = options->only_step;
+    if (only > n_all) {
+        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, NULL,
+                       "there are %zu steps, and no step %zu", n_all, only);
+        return DALCS_E_OPTION;
+    }
+    const size_t first = only > 0 ? only - 1 : 0;
+    const size_t end = only > 0 ? only : n_all;
     bool asked[DALCS_N_IN_ORDER];
     for (size_t a = 0; a < DALCS_N_IN_ORDER; a++) {
         asked[a] = is_asked(&session->circuit, options, dalcs_analyses_in_order[a]);
     }
     enum dalcs_status status = DALCS_OK;
     for (size_t a = 0; a < DALCS_N_IN_ORDER && status == DALCS_OK; a++) {
-        for (size_t k = 0; asked[a] && k < n_steps && status == DALCS_OK; k++) {
+        for (size_t k = first; asked[a] && k < end && status == DALCS_OK; k++) {
             struct dalcs_plot step = {0};
             status = dalcs_session_take_step(session, k, &step);
             if (status == DALCS_OK) {

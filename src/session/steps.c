@@ -114,6 +114,20 @@ enum dalcs_status dalcs_session_rebuild(struct dalcs_session *session,
     return status;
 }
 
+const char *dalcs_session_step_parameter(const struct dalcs_session *session, size_t step,
+                                         size_t index, double *value) {
+    const struct dalcs_circuit *circuit = &session->circuit;
+    if (step >= dalcs_steps_count(circuit) || index >= (size_t)circuit->n_steps) {
+        return NULL;
+    }
+    for (size_t i = 0; i < index; i++) {
+        step /= (size_t)circuit->step[i].n;
+    }
+    const struct dalcs_sweep *sweep = &circuit->step[index];
+    *value = dalcs_sweep_value(sweep, (int)(step % (size_t)sweep->n));
+    return sweep->label;
+}
+
 enum dalcs_status dalcs_session_take_step(struct dalcs_session *session, size_t k,
                                           struct dalcs_plot *plot) {
     const struct dalcs_circuit *circuit = &session->circuit;

@@ -145,20 +145,47 @@ static void consider(const struct climb *c, double value, double time) {
     }
 }
 
-/* The zero of a slope that changes its sign once between x = -1 and 1. */
-static double flat_at(const double *slope) {
+/* The zero of a slope that changes its sign once between x = -1 and 1, and never bends back: Newton's method, and the
+ * middle of what is left where that would leave it. */
+static double flat_at(const double *slope, const double *bend) {
     double a = -1.0;
     double b = 1.0;
-    bool rises = dalcs_stretch_at(slope, a) < 0.0;
+    const bool rises = dalcs_stretch_at(slope, a) < 0.0;
+    double x = 0.0;
     for (int round = 0; round < MOST_ROUNDS && b - a > DBL_EPSILON; round++) {
-        double x = 0.5 * (a + b);
-        if ((dalcs_stretch_at(slope, x) < 0.0) == rises) {
+        const double value = dalcs_stretch_at(slope, x);
+        if ((value < 0.0) == rises) {
             a = x;
         } else {
             b = x;
         }
+        double next = x - value / dalcs_stretch_at(bend, x);
+        next = next > a && next < b ? next : 0.5 * (a + b);
+        const bool is_there = fabs(next - x) <= DBL_EPSILON;
+        x = next;
+        if (is_there) {
+            break;
+        }
     }
-    return 0.5 * (a + b);
+    return x;
+}
+
+/* Between x = -1 and 1 the slope changes its sign, if at all, once. What is sought is there only where the curve bends
+ * the right way, and not above the point where its tangents at both ends meet. */
+static void climb_bow(const struct climb *c, const struct dalcs_span *span, const double *slope,
+                      const double *bend, const double *end) {
+    const double first = c->sign * dalcs_stretch_at(slope, -1.0);
+    const double last = c->sign * dalcs_stretch_at(slope, 1.0);
+    if (!(first > 0.0 && last < 0.0)) {
+        return;
+    }
+    const double rise = c->sign * (end[1] - end[0]);
+    const double summit = c->sign * end[0] + first * (rise - 2.0 * last) / (first - last);
+    if (summit > c->sign * *c->best) {
+        const double x = flat_at(slope, bend);
+        consider(c, dalcs_stretch_at(span->coefficient, x),
+                 span->from + 0.5 * (1.0 + x) * (span->to - span->from));
+    }
 }
 
 static void climb(const struct climb *c, const struct dalcs_span *span, int depth) {
@@ -166,8 +193,10 @@ static void climb(const struct climb *c, const struct dalcs_span *span, int dept
     if (top <= c->sign * *c->best) {
         return;
     }
-    consider(c, dalcs_stretch_at(span->coefficient, -1.0), span->from);
-    consider(c, dalcs_stretch_at(span->coefficient, 1.0), span->to);
+    const double end[2] = {dalcs_stretch_at(span->coefficient, -1.0),
+                           dalcs_stretch_at(span->coefficient, 1.0)};
+    consider(c, end[0], span->from);
+    consider(c, end[1], span->to);
     double slope[N];
     double bend[N];
     dalcs_stretch_derive(span->coefficient, slope);
@@ -176,11 +205,7 @@ static void climb(const struct climb *c, const struct dalcs_span *span, int dept
     }
     dalcs_stretch_derive(slope, bend);
     if (fabs(bend[0]) >= dalcs_stretch_spread(bend) || depth == MOST_CUTS) {
-        if ((dalcs_stretch_at(slope, -1.0) < 0.0) != (dalcs_stretch_at(slope, 1.0) < 0.0)) {
-            double x = flat_at(slope);
-            consider(c, dalcs_stretch_at(span->coefficient, x),
-                     span->from + 0.5 * (1.0 + x) * (span->to - span->from));
-        }
+        climb_bow(c, span, slope, bend, end);
         return;
     }
     if (top <= c->sign * *c->best + rounding * c->scale) {

@@ -2,13 +2,14 @@
 #include "stretch.h"
 
 #include "extremes.h"
+#include "quads.h"
 #include "wide_vectors.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-enum { N = DALCS_STRETCH_NODES };
+enum { N = DALCS_STRETCH_NODES, ROOM = DALCS_STRETCH_ROOM, N_QUADS = ROOM / DALCS_QUAD };
 
 /* Last coefficients of this size over the formula's largest value are rounding. */
 static const double resolved = 4e-14;
@@ -56,20 +57,29 @@ void dalcs_stretch_rule_make(struct dalcs_stretch_rule *rule) {
         for (int k = 0; k < N; k++) {
             rule->expand[i][k] = (2 * k + 1) * rule->weight[i] * p[k];
         }
+        for (int k = N; k < ROOM; k++) {
+            rule->expand[i][k] = 0.0;
+        }
     }
 }
 
-/* sum[k] of expand[i][k] value[i]: node by node, so that coefficients are neighbours. */
+/* sum[ROOM], its k of expand[i][k] value[i]: node by node, so that coefficients are neighbours, and unrolled, so that the
+ * sums stay in registers. */
 DALCS_TWICE(void, sum_up,
             (const struct dalcs_stretch_rule *rule, const double *value, double *restrict sum),
             (rule, value, sum)) {
-    for (int k = 0; k < N; k++) {
-        sum[k] = 0.0;
-    }
+    dalcs_quad of[N_QUADS] = {{0.0}};
     for (int i = 0; i < N; i++) {
-        for (int k = 0; k < N; k++) {
-            sum[k] += rule->expand[i][k] * value[i];
+#pragma GCC unroll 5
+        for (int k = 0; k < N_QUADS; k++) {
+            dalcs_quad expand;
+            dalcs_quad_load(&expand, &rule->expand[i][DALCS_QUAD * k]);
+            of[k] += expand * value[i];
         }
+    }
+#pragma GCC unroll 5
+    for (int k = 0; k < N_QUADS; k++) {
+        dalcs_quad_store(sum + DALCS_QUAD * k, &of[k]);
     }
 }
 
@@ -84,7 +94,7 @@ static double largest_of(const double *value) {
 void dalcs_stretch_expand(const struct dalcs_stretch_rule *rule, const double *value,
                           double *coefficient) {
     double largest = largest_of(value);
-    double sum[N];
+    double sum[ROOM];
     sum_up(rule, value, sum);
     for (int k = 0; k < N; k++) {
         /* What rounding leaves is nothing: a constant must not look like one that wriggles. */
@@ -92,11 +102,15 @@ void dalcs_stretch_expand(const struct dalcs_stretch_rule *rule, const double *v
     }
 }
 
-/* Clenshaw's recurrence. */
+/* Clenshaw's recurrence, from the last coefficient that is not 0 on: those of polynomials are few. */
 double dalcs_stretch_at(const double *coefficient, double x) {
     double b1 = 0.0;
     double b2 = 0.0;
-    for (int k = N - 1; k > 0; k--) {
+    int degree = N - 1;
+    while (degree > 0 && coefficient[degree] == 0.0) {
+        degree--;
+    }
+    for (int k = degree; k > 0; k--) {
         double b = coefficient[k] + x * b1 * (2 * k + 1) / (k + 1) - b2 * (k + 1) / (k + 2);
         b2 = b1;
         b1 = b;

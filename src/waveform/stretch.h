@@ -10,12 +10,12 @@
 #include "signal_formula.h"
 #include "status.h"
 
-enum { DALCS_STRETCH_NODES = 18 };
+enum { DALCS_STRETCH_NODES = 18, DALCS_STRETCH_ROOM = 20 /* as many in whole quads */ };
 
 struct dalcs_stretch_rule {
-    double node[DALCS_STRETCH_NODES];                        /* in (-1, 1), ascending */
-    double weight[DALCS_STRETCH_NODES];                      /* their sum is 1 */
-    double expand[DALCS_STRETCH_NODES][DALCS_STRETCH_NODES]; /* [node][coefficient] */
+    double node[DALCS_STRETCH_NODES];                       /* in (-1, 1), ascending */
+    double weight[DALCS_STRETCH_NODES];                     /* their sum is 1 */
+    double expand[DALCS_STRETCH_NODES][DALCS_STRETCH_ROOM]; /* [node][coefficient], 0 beyond */
 };
 
 void dalcs_stretch_rule_make(struct dalcs_stretch_rule *rule);

@@ -408,13 +408,13 @@ class Results(Case):
         self.dalcs("run", "a.cir", "-q", "-o", "none", "--set", "c1=47u", "--measures", "m.csv")
         self.assertEqual(self.files(), ["a.cir", "m.csv"])
         rows = list(csv.reader(self.path("m.csv").read_text().splitlines()))
-        self.assertEqual(rows[0], ["c1", "load", "peak", "low", "x"])
+        self.assertEqual(rows[0], ["c1", "load", "peak", "low", "x", "error"])
         self.assertEqual([row[:2] for row in rows[1:]], [["4.7e-05", "500"], ["4.7e-05", "2000"]])
         for row in rows[1:]:
             self.dalcs("run", "a.cir", "-q", "-o", "none", "--set", "c1=47u", "--report", "r.json")
             found = json.loads(self.path("r.json").read_text())["measurements"]
             wanted = [entry["value"] for entry in found if entry["step"] == f"load = {row[1]}"]
-            self.assertEqual([float(row[2]), float(row[3]), row[4]], [wanted[0], wanted[1], "nan"])
+            self.assertEqual([float(row[2]), float(row[3]), *row[4:]], [wanted[0], wanted[1], "nan", ""])
 
     def test_measures_of_a_failed_run(self):
         self.write(IMPOSSIBLE.replace(".end", ".meas tran x max v(b)\n.end"))

@@ -3,7 +3,7 @@
 
 usage: examples.py SOURCE_FOLDER, with PYTHONPATH=build/src/python
 
-```pycon blocks of README.md and doc/python.md are one session for each page, in a folder of its own, where the
+```pycon blocks of README.md, doc/python.md and doc/sweeps.md are one session for each page, in a folder of its own, where the
 netlists that the page saves "as `NAME`:" are, and the folder netlists.
 """
 
@@ -19,7 +19,7 @@ import tempfile
 import dalcs
 
 SOURCE = pathlib.Path(sys.argv[1])
-PAGES = ("README.md", "doc/python.md")
+PAGES = ("README.md", "doc/python.md", "doc/sweeps.md")
 BLOCK = re.compile(r"^```(.*)\n((?:.*\n)*?)```$", re.MULTILINE)
 SAVED = re.compile(r"\bas `([\w.-]+)`[^\n]*:\s*\Z")
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE

@@ -64,6 +64,37 @@ class Sweeps(unittest.TestCase):
         np.testing.assert_allclose(sweep["value"], [opens(ohm) for ohm in LOADS[:5]], atol=1e-11)
 
 
+    def test_effects(self):
+        """Of a table whose plane is known, in which a third parameter does not vary and one run failed."""
+        draw = np.random.default_rng(3)
+        points = [{"a": a, "b": b, "c": 2.0} for a, b in zip(draw.uniform(1, 3, 40), draw.normal(0, 1e-6, 40))]
+        kept = [{"y": 5 - 2 * p["a"] + 7e6 * p["b"]} for p in points]
+        kept[4] = ValueError("no")
+        table = dalcs.Sweep(points, kept)
+        well = [k for k in range(40) if k != 4]
+        effects = table.effects("y")
+        self.assertEqual(list(effects), ["b", "a"])
+        self.assertAlmostEqual(effects["a"], -2 * np.ptp(table["a"][well]), places=9)
+        self.assertAlmostEqual(effects["b"], 7e6 * np.ptp(table["b"][well]), places=9)
+        self.assertEqual([bar.get_width() for bar in table.tornado("y").patches], list(effects.values())[::-1])
+        self.assertEqual(sum(bar.get_height() for bar in table.hist("y").patches), 39)
+        with self.assertRaisesRegex(ValueError, "too few"):
+            dalcs.Sweep(points[:2], kept[:2]).effects("y")
+
+    def test_xarray(self):
+        try:
+            import xarray  # pylint: disable=import-outside-toplevel,unused-import
+        except ImportError:
+            self.skipTest("xarray is not there")
+        grid = dalcs.sweep(NETLIST, {"rload": [1e3, 2e3], "c1": [1e-6, 2e-6, 3e-6]})
+        data = grid.to_xarray()
+        self.assertEqual(dict(data.sizes), {"rload": 2, "c1": 3})
+        self.assertEqual(float(data["vlow"].sel(rload=2e3, c1=2e-6)), grid["vlow"][4])
+        self.assertEqual(dict(dalcs.Sweep([{"a": 1.0}, {"a": 1.0}], [2.0, 3.0]).to_xarray().sizes), {"run": 2})
+        rows = dalcs.run(NETLIST)
+        self.assertEqual(rows.to_xarray()["v(out)"].values.tobytes(), rows["v(out)"].tobytes())
+
+
 class Failures(unittest.TestCase):
     def test_a_bad_variant(self):
         for workers in 1, 2:

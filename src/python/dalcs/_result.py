@@ -102,6 +102,18 @@ class Table:
         index = pandas.Index(self.t, name=self.scale)
         return pandas.DataFrame(np.array(self.values), index=index, columns=list(self.names))
 
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset, one variable a signal with its unit in attrs; its coordinate is the scale.
+
+        What .step set is in the attrs of the Dataset. Two sides of a discontinuity have the same time.
+        """
+        import xarray  # pylint: disable=import-outside-toplevel,import-error
+        signals = {name: (self.scale, np.array(self.values[:, k]), {"units": self.units[name]})
+                   for k, name in enumerate(self.names)}
+        told: Dict[str, Any] = {"title": self.title}
+        told.update(self.parameters)
+        return xarray.Dataset(signals, {self.scale: np.array(self.t)}, told)
+
     def plot(self, *names: str, ax: Any = None) -> Any:
         """Draws signals, all without names, with matplotlib; returns the axes."""
         import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel

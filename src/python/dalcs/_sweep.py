@@ -57,6 +57,57 @@ class Sweep:
         import pandas  # pylint: disable=import-outside-toplevel
         return pandas.DataFrame(self.columns)
 
+    def _parameters(self) -> List[str]:
+        return list(dict.fromkeys(name for point in self.points for name in point))
+
+    def hist(self, name: str, bins: int = 30, ax: Any = None) -> Any:
+        """Draws a histogram of a column with matplotlib, what failed left out; returns the axes."""
+        import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
+        axes = plt.subplots()[1] if ax is None else ax
+        value = np.asarray(self[name], dtype=float)
+        axes.hist(value[np.isfinite(value)], bins=bins)
+        axes.set_xlabel(name)
+        axes.set_ylabel("runs")
+        return axes
+
+    def effects(self, name: str) -> Dict[str, float]:
+        """How far a column moves with each parameter from end to end of its values, the largest first.
+
+        The slope of the least-squares plane through all runs that are well, times the range of the
+        parameter: of runs in which everything varies at once, and of grids.
+        """
+        well = [k for k in range(len(self)) if k not in self.errors and np.isfinite(self[name][k])]
+        varying = [p for p in self._parameters() if np.ptp(np.asarray(self[p], dtype=float)[well]) > 0.0]
+        if len(well) <= len(varying):
+            raise ValueError(f"{len(well)} runs with {name!r} are too few for {len(varying)} parameters")
+        columns = [np.asarray(self[p], dtype=float)[well] for p in varying]
+        scaled = [(column - column.mean()) / np.ptp(column) for column in columns]
+        plane = np.column_stack([np.ones(len(well)), *scaled])
+        slopes = np.linalg.lstsq(plane, np.asarray(self[name], dtype=float)[well], rcond=None)[0][1:]
+        return dict(sorted(((p, float(slope)) for p, slope in zip(varying, slopes)),
+                           key=lambda item: -abs(item[1])))
+
+    def tornado(self, name: str, ax: Any = None) -> Any:
+        """Draws effects() as bars with matplotlib, the largest on top; returns the axes."""
+        import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
+        axes = plt.subplots()[1] if ax is None else ax
+        effects = self.effects(name)
+        axes.barh(list(effects)[::-1], list(effects.values())[::-1])
+        axes.axvline(0.0, color="black", linewidth=0.8)
+        axes.set_xlabel(f"change of {name} over the range of the parameter")
+        return axes
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset: over the grid, if all combinations were run, else over the number of the run."""
+        import xarray  # pylint: disable=import-outside-toplevel,import-error
+        names = self._parameters()
+        frame = self.to_pandas()
+        if names and len(frame.drop_duplicates(names)) == len(frame) == int(
+                np.prod([frame[name].nunique() for name in names])):
+            return frame.set_index(names).to_xarray()
+        frame.index.name = "run"
+        return xarray.Dataset.from_dataframe(frame)
+
     def __repr__(self) -> str:
         return f"<sweep of {len(self)} runs, {len(self.errors)} failed: {', '.join(self.columns)}>"
 

@@ -1,0 +1,301 @@
+/* variants_pool.c - threads that take the next step until there is none.
+ *
+ * What a step gives does not depend on who runs it, and a session that has failed is not used again. */
+#include "variants_pool.h"
+
+#include "csv_cells.h"
+#include "memory.h"
+#include "settings.h"
+#include "verb.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Steps that may be done before the one that is waited for, for each thread; steps of one session, whose names and
+ * messages grow with each. */
+enum { AHEAD = 64, MOST_OF_A_SESSION = 256, LEAST_WIDTH = 11 };
+
+struct crew {
+    const struct dalcs_variants_pool *pool;
+    pthread_mutex_t lock;
+    pthread_cond_t moved;       /* taken has */
+    size_t next, taken;         /* steps */
+    struct dalcs_variant *slot; /* [n_slots] of step k: k modulo n_slots */
+    size_t n_slots;
+    enum dalcs_status status; /* not DALCS_OK: all stop */
+};
+
+/* ---- One step -------------------------------------------------------------------------------- */
+
+static enum dalcs_status look(const struct crew *crew) {
+    return *crew->pool->cli->interrupted ? DALCS_E_CANCELLED : DALCS_OK;
+}
+
+static enum dalcs_status begin(void *crew, const struct dalcs_plot *plot) {
+    (void)plot;
+    return look(crew);
+}
+
+static enum dalcs_status progress(void *crew, double time, double stop) {
+    (void)time;
+    (void)stop;
+    return look(crew);
+}
+
+int dalcs_variant_width(const char *name) {
+    const int length = (int)strlen(name);
+    return length > LEAST_WIDTH ? length : LEAST_WIDTH;
+}
+
+static void write_begin(const struct dalcs_variants_pool *pool, size_t step,
+                        struct dalcs_csv_cells *cells) {
+    for (size_t k = 0; k < pool->arguments->n_set; k++) {
+        size_t length;
+        dalcs_csv_number(cells, dalcs_settings_value(pool->arguments->set[k], &length));
+    }
+    double value;
+    for (size_t k = 0; dalcs_session_step_parameter(pool->session, step, k, &value) != NULL; k++) {
+        dalcs_csv_number(cells, value);
+    }
+}
+
+char *dalcs_variant_begin(const struct dalcs_variants_pool *pool, size_t step) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (out == NULL) {
+        return NULL;
+    }
+    struct dalcs_csv_cells cells = {.out = out, .decimal = pool->decimal};
+    if (step < pool->end) {
+        write_begin(pool, step, &cells);
+        dalcs_csv_text(&cells, "", 0);
+    }
+    if (fclose(out) != 0) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+/* NAN: there is none. */
+static double measured(const struct dalcs_session *session, const char *name, size_t at) {
+    const struct dalcs_measurement *m = dalcs_session_measurement(session, at);
+    for (size_t k = 0; m == NULL || strcmp(m->name, name) != 0; k++) {
+        m = dalcs_session_measurement(session, k);
+        if (m == NULL) {
+            return NAN;
+        }
+    }
+    return m->found ? m->value : (double)NAN;
+}
+
+/* The sentence of the first error since message `first`, else the status in words. */
+static void find_reason(const struct dalcs_session *session, size_t first, enum dalcs_status status,
+                        const char **reason, size_t *length) {
+    static const char label[] = "error: ";
+    enum dalcs_level level;
+    *reason = dalcs_status_text(status);
+    for (size_t k = first; k < dalcs_session_n_messages(session); k++) {
+        const char *text = dalcs_session_message(session, k, &level);
+        if (level == DALCS_LEVEL_ERROR) {
+            const char *at = strstr(text, label);
+            *reason = at != NULL ? at + sizeof label - 1 : text;
+            break;
+        }
+    }
+    *length = strcspn(*reason, "\n");
+}
+
+static void write_values(const struct crew *crew, const struct dalcs_session *session, size_t step,
+                         struct dalcs_csv_cells *cells, FILE *line) {
+    const struct dalcs_session *whole = crew->pool->session;
+    const char *name;
+    double value;
+    write_begin(crew->pool, step, cells);
+    fputc(' ', line);
+    for (size_t k = 0; (name = dalcs_session_step_parameter(whole, step, k, &value)) != NULL; k++) {
+        fprintf(line, " %*.6g", dalcs_variant_width(name), value);
+    }
+    for (size_t k = 0; (name = dalcs_session_measure_name(whole, k)) != NULL; k++) {
+        value = measured(session, name, k);
+        dalcs_csv_number(cells, value);
+        fprintf(line, " %*.6g", dalcs_variant_width(name), value);
+    }
+}
+
+static void write_warnings(const struct dalcs_session *session, size_t first, FILE *out) {
+    enum dalcs_level level;
+    for (size_t k = first; k < dalcs_session_n_messages(session); k++) {
+        const char *text = dalcs_session_message(session, k, &level);
+        if (level == DALCS_LEVEL_WARNING) {
+            fwrite(text, 1, strlen(text) + 1, out);
+        }
+    }
+    fputc('\0', out);
+}
+
+static void finish_variant(struct dalcs_variant *v) {
+    free(v->row);
+    free(v->line);
+    free(v->warnings);
+    *v = (struct dalcs_variant){0};
+}
+
+/* What the step gave, after its run ended with `status`. */
+static enum dalcs_status write_variant(const struct crew *crew, const struct dalcs_session *session,
+                                       size_t step, size_t first, enum dalcs_status status,
+                                       struct dalcs_variant *v) {
+    size_t size[3];
+    FILE *row = open_memstream(&v->row, &size[0]);
+    FILE *line = open_memstream(&v->line, &size[1]);
+    FILE *warnings = open_memstream(&v->warnings, &size[2]);
+    if (row != NULL && line != NULL && warnings != NULL) {
+        struct dalcs_csv_cells cells = {.out = row, .decimal = crew->pool->decimal};
+        const char *reason = "";
+        size_t length = 0;
+        write_values(crew, session, step, &cells, line);
+        if (status != DALCS_OK) {
+            find_reason(session, first, status, &reason, &length);
+        }
+        dalcs_csv_text(&cells, reason, length);
+        dalcs_csv_end(&cells);
+        fprintf(line, "%s%.*s", length > 0 ? "  " : "", (int)length, reason);
+        write_warnings(session, first, warnings);
+        v->failed = status != DALCS_OK;
+    }
+    bool complete = row != NULL && line != NULL && warnings != NULL;
+    FILE *const file[] = {row, line, warnings};
+    for (size_t k = 0; k < sizeof file / sizeof file[0]; k++) {
+        complete = (file[k] == NULL || fclose(file[k]) == 0) && complete;
+    }
+    if (!complete) {
+        finish_variant(v);
+    }
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* ---- Threads --------------------------------------------------------------------------------- */
+
+struct worker {
+    struct crew *crew;
+    struct dalcs_session *session; /* NULL: a new one is due */
+    size_t n_run;                  /* of it */
+};
+
+static enum dalcs_status open_session(struct worker *w) {
+    const struct dalcs_arguments *arguments = w->crew->pool->arguments;
+    if (w->session != NULL && w->n_run < MOST_OF_A_SESSION) {
+        return DALCS_OK;
+    }
+    dalcs_session_destroy(w->session);
+    w->session = NULL;
+    w->n_run = 0;
+    DALCS_TRY(dalcs_session_create(&w->session));
+    if (arguments->n_set > 0) {
+        DALCS_TRY(dalcs_session_keep_netlist(w->session));
+    }
+    DALCS_TRY(dalcs_verb_read(w->session, arguments->netlist, arguments->dialect));
+    return dalcs_settings_apply(w->session, arguments);
+}
+
+static enum dalcs_status run_step(struct worker *w, size_t step, struct dalcs_variant *v) {
+    struct crew *crew = w->crew;
+    DALCS_TRY(open_session(w));
+    struct dalcs_run_options options = *crew->pool->options;
+    options.only_step = step + 1;
+    const struct dalcs_sink sink = {.user = crew, .begin = begin, .progress = progress};
+    const size_t first = dalcs_session_n_messages(w->session);
+    w->n_run++;
+    const enum dalcs_status status = dalcs_session_run(w->session, &options, &sink);
+    if (status == DALCS_E_CANCELLED) {
+        return status;
+    }
+    DALCS_TRY(write_variant(crew, w->session, step, first, status, v));
+    w->n_run = status == DALCS_OK ? w->n_run : MOST_OF_A_SESSION;
+    return DALCS_OK;
+}
+
+/* All that are done and next; under the lock. */
+static void take_ready(struct crew *crew) {
+    while (crew->status == DALCS_OK) {
+        struct dalcs_variant *v = &crew->slot[crew->taken % crew->n_slots];
+        if (v->row == NULL) {
+            break;
+        }
+        crew->status = crew->pool->take(crew->pool->user, v);
+        finish_variant(v);
+        crew->taken++;
+    }
+    pthread_cond_broadcast(&crew->moved);
+}
+
+static void *work(void *user) {
+    struct worker w = {.crew = user};
+    struct crew *crew = w.crew;
+    pthread_mutex_lock(&crew->lock);
+    for (;;) {
+        while (crew->status == DALCS_OK && crew->next < crew->pool->end &&
+               crew->next >= crew->taken + crew->n_slots) {
+            pthread_cond_wait(&crew->moved, &crew->lock);
+        }
+        if (crew->status != DALCS_OK || crew->next >= crew->pool->end) {
+            break;
+        }
+        const size_t step = crew->next++;
+        pthread_mutex_unlock(&crew->lock);
+        struct dalcs_variant v = {0};
+        enum dalcs_status status = look(crew);
+        status = status == DALCS_OK ? run_step(&w, step, &v) : status;
+        pthread_mutex_lock(&crew->lock);
+        crew->slot[step % crew->n_slots] = v;
+        crew->status = crew->status == DALCS_OK ? status : crew->status;
+        take_ready(crew);
+    }
+    pthread_mutex_unlock(&crew->lock);
+    dalcs_session_destroy(w.session);
+    return NULL;
+}
+
+static size_t count_threads(const struct dalcs_variants_pool *pool) {
+    size_t n = pool->arguments->jobs;
+    if (n == 0) {
+        const long here = sysconf(_SC_NPROCESSORS_ONLN);
+        n = here > 0 ? (size_t)here : 1;
+    }
+    const size_t steps = pool->end - pool->first;
+    return n < steps ? n : steps;
+}
+
+enum dalcs_status dalcs_variants_pool_run(const struct dalcs_variants_pool *pool) {
+    const size_t n = count_threads(pool);
+    struct crew crew = {.pool = pool,
+                        .lock = PTHREAD_MUTEX_INITIALIZER,
+                        .moved = PTHREAD_COND_INITIALIZER,
+                        .next = pool->first,
+                        .taken = pool->first,
+                        .n_slots = AHEAD * (n + 1)};
+    pthread_t *thread = dalcs_alloc(n, sizeof *thread);
+    crew.slot = dalcs_alloc(crew.n_slots, sizeof *crew.slot);
+    size_t n_started = 0;
+    if (thread != NULL && crew.slot != NULL) {
+        while (n_started + 1 < n && pthread_create(&thread[n_started], NULL, work, &crew) == 0) {
+            n_started++;
+        }
+        work(&crew); /* this thread, too */
+        for (size_t k = 0; k < n_started; k++) {
+            pthread_join(thread[k], NULL);
+        }
+    } else {
+        crew.status = DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; crew.slot != NULL && k < crew.n_slots; k++) {
+        finish_variant(&crew.slot[k]);
+    }
+    free(thread);
+    free(crew.slot);
+    return crew.status;
+}

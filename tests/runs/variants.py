@@ -1,0 +1,216 @@
+#!/usr/bin/env python3
+"""Checks tables of many variants: the same bytes for any number of threads and parts, what fails, what ends them early.
+
+usage: variants.py PROGRAM
+"""
+
+import csv
+import math
+import os
+import pathlib
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+
+CIRCUIT = """a rectifier with loads that may be impossible
+.options dialect=ltspice
+.param load=1 c=10u
+V1 in 0 SIN(0 10 50)
+D1 in out
+C1 out 0 {c}
+R1 out 0 {load}
+.tran 10u 40m uic
+.meas tran vlow min v(out) from=20m
+.meas tran top max v(out)
+.step param c list 10u 20u -1u
+.step param load list 100 0 1k 2k 10k
+.end
+"""
+
+MANY = CIRCUIT.replace("10u 20u -1u", "10u 20u").replace("list 100 0 1k 2k 10k", "1k 4k 0.5")
+SLOW = MANY.replace("10u 40m", "10u 4")
+
+
+class Variants(unittest.TestCase):
+    def setUp(self):
+        # pylint: disable-next=consider-using-with
+        self.kept = tempfile.TemporaryDirectory(prefix="dalcs-variants-")
+        self.addCleanup(self.kept.cleanup)
+        self.folder = pathlib.Path(self.kept.name)
+        self.write(CIRCUIT)
+
+    def write(self, text):
+        (self.folder / "a.cir").write_text(text)
+
+    def command(self, name, *more):
+        return [PROGRAM, "run", "a.cir", "-q", "-o", "none", "--measures", name, *more]
+
+    def run_it(self, name, *more, status=0, **how):
+        done = subprocess.run(self.command(name, *more), cwd=self.folder, capture_output=True, text=True,
+                              check=False, **how)
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done.stderr
+
+    def text(self, name):
+        return (self.folder / name).read_text()
+
+    def rows(self, name):
+        return list(csv.DictReader(self.text(name).splitlines()))
+
+    def test_failures_are_in_the_table(self):
+        said = self.run_it("m.csv", status=1)
+        rows = self.rows("m.csv")
+        self.assertEqual(list(rows[0]), ["c", "load", "vlow", "top", "error"])
+        self.assertEqual([(row["c"], row["load"]) for row in rows],
+                         [(c, load) for load in ("100", "0", "1000", "2000", "10000")
+                          for c in ("1e-05", "2e-05", "-1e-06")])
+        for row in rows:
+            wanted = "a capacitance cannot be negative" if row["c"].startswith("-") else \
+                "no solution exists" if row["load"] == "0" else ""
+            self.assertIn(wanted, row["error"])
+            self.assertEqual(wanted == "", row["error"] == "")
+            self.assertEqual(math.isnan(float(row["top"])), wanted != "")
+            if wanted == "":
+                self.assertAlmostEqual(float(row["top"]), 10.0, delta=1e-9)
+        self.assertIn("7 of 15 variants failed", said)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a.cir", "m.csv"])
+
+    def test_each_row_is_what_a_run_alone_gives(self):
+        self.run_it("m.csv", status=1)
+        for row in self.rows("m.csv"):
+            if row["error"] == "":
+                cards = [card for card in CIRCUIT.splitlines() if not card.startswith(".step")]
+                self.write("\n".join(cards))
+                self.run_it("one.csv", "--set", f"c={row['c']}", "--set", f"load={row['load']}")
+                one = self.rows("one.csv")[0]
+                self.assertEqual([row[name] for name in one], list(one.values()))
+
+    def test_threads_and_parts_change_no_byte(self):
+        self.run_it("m.csv", "--jobs", "1", status=1)
+        for jobs in "2", "5", "40":
+            self.run_it("n.csv", "--jobs", jobs, status=1)
+            self.assertEqual(self.text("n.csv"), self.text("m.csv"))
+        for parts in 1, 2, 4, 15, 20:
+            joined = ""
+            for k in range(1, parts + 1):
+                done = subprocess.run(self.command(f"p{k}.csv", "--shard", f"{k}/{parts}"), cwd=self.folder,
+                                      capture_output=True, check=False)
+                self.assertIn(done.returncode, (0, 1))
+                head, _, rest = self.text(f"p{k}.csv").partition("\n")
+                joined = joined or head + "\n"
+                joined += rest
+            self.assertEqual(joined, self.text("m.csv"))
+
+    def test_more_variants_than_one_session_takes(self):
+        self.write(MANY.replace("1k 4k 0.5", "1k 1.3k 1"))
+        self.run_it("one.csv", "--jobs", "1")
+        self.run_it("many.csv", "--jobs", "3")
+        self.assertEqual(len(self.rows("one.csv")), 602)
+        self.assertEqual(self.text("one.csv"), self.text("many.csv"))
+
+    def test_resume(self):
+        self.run_it("m.csv", status=1)
+        whole = self.text("m.csv").splitlines(keepends=True)
+        for n, more in (0, ""), (1, ""), (4, ""), (9, "1e-05,2"), (16, ""):
+            (self.folder / "n.csv").unlink(missing_ok=True)
+            (self.folder / "n.partial.csv").write_text("".join(whole[:n]) + more)
+            self.run_it("n.csv", "--resume", status=1)
+            self.assertEqual(self.text("n.csv"), "".join(whole))
+        before = (self.folder / "n.csv").stat().st_mtime_ns
+        self.run_it("n.csv", "--resume")
+        self.assertEqual((self.folder / "n.csv").stat().st_mtime_ns, before)
+
+    def test_rows_that_exist_are_not_run_again(self):
+        self.run_it("m.csv", status=1)
+        whole = self.text("m.csv").splitlines(keepends=True)
+        marked = whole[1].rsplit(",", 1)[0] + ",marked\n"
+        (self.folder / "n.partial.csv").write_text(whole[0] + marked)
+        self.run_it("n.csv", "--resume", status=1)
+        self.assertEqual(self.text("n.csv"), whole[0] + marked + "".join(whole[2:]))
+        (self.folder / "n.partial.csv").write_text(whole[0] + marked)
+        self.run_it("n.csv", status=1)  # without --resume all are run
+        self.assertEqual(self.text("n.csv"), "".join(whole))
+
+    def test_another_table_is_not_gone_on_with(self):
+        for text in ("c,load,other,error\n", "c,load,vlow,top,error\n1e-05,101,1,2,\n"):
+            (self.folder / "n.partial.csv").write_text(text)
+            said = self.run_it("n.csv", "--resume", status=2)
+            self.assertIn("'n.partial.csv' is a table of other variants", said)
+            self.assertEqual(self.text("n.partial.csv"), text)
+
+    def interrupt(self, number):
+        """Ends a run when its first rows are there; its partial table stays."""
+        with subprocess.Popen(self.command("n.csv", "--jobs", "2"), cwd=self.folder, stderr=subprocess.PIPE,
+                              text=True) as run:
+            partial = self.folder / "n.partial.csv"
+            while run.poll() is None and not (partial.exists() and partial.read_text().count("\n") > 3):
+                time.sleep(0.01)
+            run.send_signal(number)
+            said = run.communicate()[1]
+        self.assertFalse((self.folder / "n.csv").exists())
+        return said
+
+    def test_ended_from_outside(self):
+        for number in signal.SIGINT, signal.SIGTERM, signal.SIGKILL:
+            self.write(SLOW)
+            said = self.interrupt(number)
+            if number != signal.SIGKILL:
+                self.assertRegex(said, r"interrupted after \d+ of 12002 variants, which are in 'n.partial.csv'")
+            kept = self.text("n.partial.csv")
+            self.assertGreater(kept.count("\n"), 3)
+            lines = kept.splitlines(keepends=True)[:4]
+            # the rest takes too long: the last steps alone, of which the first rows are those
+            self.write(SLOW.replace("1k 4k 0.5", "1k 1002 0.5"))
+            (self.folder / "n.partial.csv").write_text("".join(lines))
+            self.run_it("n.csv", "--resume")
+            self.run_it("m.csv")
+            self.assertEqual(self.text("n.csv"), self.text("m.csv"))
+            (self.folder / "n.csv").unlink()
+
+    def test_a_full_disk(self):
+        """Here: a bound on the size of files."""
+        self.write(MANY.replace("1k 4k 0.5", "1k 1.3k 1"))
+        self.run_it("m.csv")
+
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (9999, 9999))
+
+        # pylint: disable-next=subprocess-popen-preexec-fn
+        said = self.run_it("n.csv", status=4, preexec_fn=limit)
+        self.assertIn("cannot write 'n.partial.csv': File too large", said)
+        self.assertIn("--resume goes on", said)
+        self.assertTrue(self.text("m.csv").startswith(self.text("n.partial.csv")))
+        self.run_it("n.csv", "--resume")
+        self.assertEqual(self.text("n.csv"), self.text("m.csv"))
+
+    def test_two_at_a_time(self):
+        self.write(SLOW)
+        with subprocess.Popen(self.command("n.csv"), cwd=self.folder, stderr=subprocess.DEVNULL) as first:
+            while not (self.folder / "n.partial.csv").exists() or not self.text("n.partial.csv"):
+                time.sleep(0.01)
+            self.assertIn("another run is writing 'n.partial.csv'", self.run_it("n.csv", status=4))
+            first.send_signal(signal.SIGINT)
+
+    def test_what_makes_no_sense(self):
+        for option, wanted in ((("--shard", "0/4"), "K from 1 to N"), (("--shard", "5/4"), "K from 1 to N"),
+                               (("--shard", "3"), "3/16"), (("--shard", "-1/2"), "3/16"),
+                               (("--jobs", "0"), "from 1 on"),
+                               (("--resume", "--report", "r.json"), "no other result"),
+                               (("--jobs", "2", "-o", "a.csv"), "no other result")):
+            self.assertIn(wanted, self.run_it("m.csv", *option, status=2))
+        self.assertIn("nowhere/m.partial.csv", self.run_it("nowhere/m.csv", status=4))
+        (self.folder / "folder.csv").mkdir()
+        self.assertIn("Is a directory", self.run_it("folder.csv", status=4))
+        self.write("\n".join(card for card in CIRCUIT.splitlines() if not card.startswith(".step")))
+        self.assertIn("has no .step", self.run_it("m.csv", "--shard", "1/2", status=2))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
