@@ -17,7 +17,8 @@ void dalcs_csv_text(struct dalcs_csv_cells *cells, const char *text, size_t leng
 
 void dalcs_csv_number(struct dalcs_csv_cells *cells, double value) {
     char text[DALCS_DECIMAL_SIZE];
-    dalcs_csv_text(cells, text, dalcs_decimal_write(cells->decimal, value, text));
+    const size_t length = dalcs_decimal_write(cells->decimal, value, text);
+    dalcs_csv_text(cells, text, length);
 }
 
 void dalcs_csv_end(struct dalcs_csv_cells *cells) {

@@ -35,6 +35,11 @@ def write_system(program, netlist, folder, kind):
     return (target if done.returncode == 0 else None), done
 
 
+def has_products(done):
+    """No file of matrices can hold these, and `equations` says so."""
+    return "a system file has no products and functions" in done.stderr
+
+
 def what_happened(run):
     report = run.report or {}
     return ([(event["time"], event["element"], event["state"]) for event in report.get("events", [])],
@@ -101,8 +106,8 @@ def read_back_exactly(program, checker, netlist, kinds, folder):
     wanted = dalcs_program.run(program, netlist, method=None)
     for kind in kinds:
         system, done = write_system(program, netlist, folder, kind)
-        if wanted.status == REFUSED:  # when it is read: there are no equations
-            checker.check(done.returncode == REFUSED, f"{name}: {done.stderr}")
+        if wanted.status == REFUSED or has_products(done):  # when it is read: there are no equations
+            checker.check(done.returncode not in (0, -6, -11), f"{name}: {done.stderr}")
         elif checker.check(system is not None, f"{name}, {kind}: {done.stderr}"):
             compare_exactly(checker, f"{name}, {kind}",
                             dalcs_program.run(program, system, method=None), wanted)
@@ -118,8 +123,8 @@ def read_back_reduced(program, checker, netlist, folder):
     options = {"method": None, "tolerance": LCS_TOLERANCE, "options": ["--fill", "none"]}
     wanted = dalcs_program.run(program, netlist, **options)
     system, done = write_system(program, netlist, folder, "lcs")
-    if wanted.status == REFUSED:
-        checker.check(done.returncode == REFUSED, f"{name}: {done.stderr}")
+    if wanted.status == REFUSED or has_products(done):
+        checker.check(done.returncode not in (0, -6, -11), f"{name}: {done.stderr}")
     elif checker.check(system is not None, f"{name}: {done.stderr}") and \
             "cannot be eliminated" not in done.stderr:
         compare_roughly(checker, name, dalcs_program.run(program, system, **options), wanted)

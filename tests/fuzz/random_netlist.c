@@ -323,9 +323,32 @@ static void transfer(struct draft *d, int n, const char *a, const char *b) {
     }
 }
 
+/* A coil by its flux, a capacitor by its charge, or a core. */
+static void storage(struct draft *d, int n, const char *a, const char *b) {
+    switch (pick(d, 3)) {
+    case 0:
+        put(d, "l%d %s %s flux=%s", 50 + n, a, b,
+            WORD(d, "1m*tanh(2*x)", "table(x,-2,-3m,-1,-2m,1,2m,2,3m)", "1m*x+1u*x**3", "2u*x",
+                 "limit(1m*x,-2m,2m)"));
+        break;
+    case 1:
+        put(d, "c%d %s %s q=%s", 50 + n, a, b,
+            WORD(d, "1u*x", "x*if(x<0,1u,3u)", "1n*asinh(x)", "10n*x+1n*x**3",
+                 "limit(1u*x,-5u,5u)"));
+        break;
+    default:
+        put(d, "l%d %s %s hc=16 bs=.44 br=.10 a=0.0000251 lm=0.0198 lg=%s n=%s", 50 + n, a, b,
+            WORD(d, "0.0006858", "0"), WORD(d, "1000", "10"));
+        break;
+    }
+    if (pick(d, 4) == 1) {
+        put(d, " ic=%s", volts(d));
+    }
+}
+
 /* One element between two nodes. */
 static void element(struct draft *d, const char *a, const char *b) {
-    static const char kinds[] = "rclvdiegfhbswrcdsdmat";
+    static const char kinds[] = "rclvdiegfhbswrcdsdmatn";
     char kind = d->n_elements == 0 ? 'v' : kinds[pick(d, (int)sizeof kinds - 1)];
     const int n = ++d->n_of[(int)kind];
     d->n_elements++;
@@ -369,6 +392,9 @@ static void element(struct draft *d, const char *a, const char *b) {
         break;
     case 't':
         transfer(d, n, a, b);
+        break;
+    case 'n':
+        storage(d, n, a, b);
         break;
     default:
         put(d, "w%d %s %s v%d %s", n, a, b, 1 + pick(d, d->n_sources), WORD(d, "wm0", "wm1"));
@@ -465,7 +491,7 @@ static void analyses(struct draft *d) {
         put(d, "iac 0 a AC 1\n.ac dec %s 10 100k\n", WORD(d, "1", "2"));
     }
     if (pick(d, 10) == 1) {
-        put(d, ".pss %s\n", WORD(d, "", "100u", "31u"));
+        put(d, ".pss %s\n", WORD(d, "", "100u", "31u", "auto", "100u periods=2"));
     }
     if (pick(d, 10) == 1) {
         put(d, ".losses\n");
