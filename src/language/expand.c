@@ -334,7 +334,11 @@ static void report_unknown(const struct call *call) {
     const struct dalcs_card *card = call->item->card;
     const struct dalcs_token *name = &card->token[call->name];
     struct dalcs_scope *owner;
-    const char *hint = NULL;
+    const char *missing = language->netlist->missing_library;
+    const char *hint =
+        missing != NULL
+            ? dalcs_language_text(language, "it may be in '%s', which is not here", missing)
+            : NULL;
     language->deck->hides_elements = true;
     language->deck->has_errors = true;
     if (language->netlist->misses_file || language->deck->hides_all) {
