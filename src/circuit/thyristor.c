@@ -20,6 +20,7 @@
  * told from rounding. Formulas that only read are in no loop with what they read: the circuit stays passive
  * (theory.md, section 10). */
 #include "builder.h"
+#include "formula_writer.h"
 
 #include <math.h>
 #include <string.h>
@@ -121,92 +122,17 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
 
 /* ---- The formula of the control ------------------------------------------------------------------------ */
 
-/* Makes parts of a formula, numbered as they are made: each after what it is made of. */
-struct writer {
-    struct dalcs_builder *builder;
-    const struct dalcs_token *element;
-    const struct dalcs_expression_text *text; /* what messages quote */
-    int n;
-};
-
-static struct dalcs_formula *make(struct writer *w, enum dalcs_formula_kind kind) {
-    struct dalcs_formula *f = dalcs_arena_alloc(&w->builder->scratch, 1, sizeof *f);
-    if (f == NULL) {
-        w->builder->out_of_memory = true;
-        return NULL;
-    }
-    *f = (struct dalcs_formula){.kind = kind,
-                                .where = dalcs_token_location(w->element),
-                                .text = w->text,
-                                .end = w->text->length};
-    return f;
-}
-
-static const struct dalcs_formula *finish(struct writer *w, struct dalcs_formula *f, int n,
-                                          const struct dalcs_formula *const *argument) {
-    const struct dalcs_formula **own =
-        dalcs_arena_alloc(&w->builder->scratch, 3, sizeof(const struct dalcs_formula *));
-    bool ok = f != NULL && own != NULL;
-    for (int k = 0; k < n && ok; k++) {
-        own[k] = argument[k];
-        ok = own[k] != NULL;
-    }
-    if (!ok) {
-        w->builder->out_of_memory = true;
-        return NULL;
-    }
-    f->n = n;
-    f->argument = own;
-    f->number_of = w->n++;
-    return f;
-}
-
-static const struct dalcs_formula *number(struct writer *w, double value) {
-    struct dalcs_formula *f = make(w, DALCS_FORMULA_NUMBER);
-    if (f != NULL) {
-        f->number = value;
-    }
-    return finish(w, f, 0, NULL);
-}
-
-static const struct dalcs_formula *signal(struct writer *w, enum dalcs_formula_kind kind,
-                                          const struct dalcs_token *a,
-                                          const struct dalcs_token *b) {
-    struct dalcs_formula *f = make(w, kind);
-    if (f != NULL) {
-        f->signal[0] = a;
-        f->signal[1] = b;
-    }
-    return finish(w, f, 0, NULL);
-}
-
-static const struct dalcs_formula *operation(struct writer *w, enum dalcs_operation_code code,
-                                             const struct dalcs_formula *a,
-                                             const struct dalcs_formula *b) {
-    struct dalcs_formula *f = make(w, DALCS_FORMULA_OPERATION);
-    if (f != NULL) {
-        f->code = code;
-    }
-    return finish(w, f, 2, (const struct dalcs_formula *const[]){a, b});
-}
-
-static const struct dalcs_formula *call(struct writer *w, const char *function, int n,
-                                        const struct dalcs_formula *const *argument) {
-    struct dalcs_formula *f = make(w, DALCS_FORMULA_CALL);
-    if (f != NULL) {
-        f->function = function;
-    }
-    return finish(w, f, n, argument);
-}
-
 /* factor x + offset, in [low, high] */
-static const struct dalcs_formula *cut(struct writer *w, double factor,
+static const struct dalcs_formula *cut(struct dalcs_formula_writer *w, double factor,
                                        const struct dalcs_formula *x, double offset, double low,
                                        double high) {
-    const struct dalcs_formula *line = operation(w, DALCS_MULTIPLY, number(w, factor), x);
-    line = operation(w, DALCS_ADD, line, number(w, offset));
-    return call(w, "limit", 3,
-                (const struct dalcs_formula *const[]){line, number(w, low), number(w, high)});
+    const struct dalcs_formula *line =
+        dalcs_formula_operation(w, DALCS_MULTIPLY, dalcs_formula_number(w, factor), x);
+    line = dalcs_formula_operation(w, DALCS_ADD, line, dalcs_formula_number(w, offset));
+    return dalcs_formula_call(w, "limit", 3,
+                              (const struct dalcs_formula *const[]){line,
+                                                                    dalcs_formula_number(w, low),
+                                                                    dalcs_formula_number(w, high)});
 }
 
 /* The names that a control reads. */
@@ -216,33 +142,36 @@ struct places {
     double direction; /* of the half: 1, or -1 where it is the back of a triac */
 };
 
-static const struct dalcs_formula *control(struct writer *w, const struct dalcs_thyristor *t,
-                                           const struct places *p) {
-    const struct dalcs_formula *v = signal(w, DALCS_FORMULA_VOLTAGE, p->gate, p->reference);
+static const struct dalcs_formula *
+control(struct dalcs_formula_writer *w, const struct dalcs_thyristor *t, const struct places *p) {
+    const struct dalcs_formula *v =
+        dalcs_formula_signal(w, DALCS_FORMULA_VOLTAGE, p->gate, p->reference);
     if (t->kind == TRIAC) {
-        v = call(w, "abs", 1, &v);
+        v = dalcs_formula_call(w, "abs", 1, &v);
     }
     const bool holds = t->holding > 0;
-    const struct dalcs_formula *i = signal(w, DALCS_FORMULA_CURRENT, p->self, NULL);
-    const struct dalcs_formula *u = signal(w, DALCS_FORMULA_VOLTAGE, p->anode, p->cathode);
+    const struct dalcs_formula *i = dalcs_formula_signal(w, DALCS_FORMULA_CURRENT, p->self, NULL);
+    const struct dalcs_formula *u =
+        dalcs_formula_signal(w, DALCS_FORMULA_VOLTAGE, p->anode, p->cathode);
     if (t->kind == TRIAC && !holds) {
-        const struct dalcs_formula *above = operation(w, DALCS_SUBTRACT, v, number(w, t->trigger));
-        const struct dalcs_formula *gate =
-            operation(w, DALCS_MULTIPLY, number(w, 4), call(w, "u", 1, &above));
+        const struct dalcs_formula *above =
+            dalcs_formula_operation(w, DALCS_SUBTRACT, v, dalcs_formula_number(w, t->trigger));
+        const struct dalcs_formula *gate = dalcs_formula_operation(
+            w, DALCS_MULTIPLY, dalcs_formula_number(w, 4), dalcs_formula_call(w, "u", 1, &above));
         const struct dalcs_formula *both =
-            operation(w, DALCS_ADD, gate, cut(w, 0.5 / t->reversed, u, 0, -1, 0));
+            dalcs_formula_operation(w, DALCS_ADD, gate, cut(w, 0.5 / t->reversed, u, 0, -1, 0));
         return t->drop >= t->reversed
                    ? both
-                   : operation(w, DALCS_ADD, both,
-                               cut(w, 0.5 * p->direction / t->other, i, 0, -1, 0));
+                   : dalcs_formula_operation(w, DALCS_ADD, both,
+                                             cut(w, 0.5 * p->direction / t->other, i, 0, -1, 0));
     }
     const struct dalcs_formula *sum =
         cut(w, (holds ? 2.5 : 1.5) / t->trigger, v, 0, 0, holds ? 3 : 2);
     const struct dalcs_formula *keep = holds ? cut(w, p->direction / t->holding, i, -1.5, -1, 0)
                                              : cut(w, 0.5 / t->reversed, u, 0, -1, 0);
-    sum = operation(w, DALCS_ADD, sum, keep);
+    sum = dalcs_formula_operation(w, DALCS_ADD, sum, keep);
     if (t->kind == GTO) {
-        sum = operation(w, DALCS_ADD, sum, cut(w, 0.5 / t->turn_off, v, 0, -3, 0));
+        sum = dalcs_formula_operation(w, DALCS_ADD, sum, cut(w, 0.5 / t->turn_off, v, 0, -3, 0));
     }
     return sum;
 }
@@ -281,7 +210,7 @@ static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token 
         builder->out_of_memory = true;
         return false;
     }
-    struct writer w = {builder, element, text, 0};
+    struct dalcs_formula_writer w = {builder, element, text, 0};
     struct dalcs_token *formula = make_token(builder, element, element->text);
     struct dalcs_token *name = make_token(builder, element, half->name);
     if (formula == NULL || name == NULL) {
