@@ -207,6 +207,14 @@ int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct da
     return node;
 }
 
+void dalcs_behavioural_add_formula(struct dalcs_builder *builder, const struct dalcs_device *device,
+                                   const struct dalcs_token *formula) {
+    struct dalcs_formula_source *source = add_source(builder, device);
+    if (source != NULL) {
+        source->token = formula;
+    }
+}
+
 void dalcs_behavioural_add_table(struct dalcs_builder *builder, const struct dalcs_device *device,
                                  const struct dalcs_piecewise *table) {
     struct dalcs_formula_source *source = add_source(builder, device);

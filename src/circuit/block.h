@@ -67,5 +67,7 @@ bool dalcs_block_has_ports(const struct dalcs_block_card *c, int n, int n_option
 bool dalcs_block_parse_logic(struct dalcs_block_card *c);
 /* gain, summer, limit, int, slew, pwl, aswitch: likewise. */
 bool dalcs_block_parse_analog(struct dalcs_block_card *c);
+/* mult, divide, s_xfer: likewise. */
+bool dalcs_block_parse_formula(struct dalcs_block_card *c);
 
 #endif

@@ -29,4 +29,8 @@ const struct dalcs_formula *dalcs_formula_operation(struct dalcs_formula_writer 
 const struct dalcs_formula *dalcs_formula_call(struct dalcs_formula_writer *w, const char *function,
                                                int n, const struct dalcs_formula *const *argument);
 
+/* What a device puts out: the formula of a token, as of a B source. */
+void dalcs_behavioural_add_formula(struct dalcs_builder *builder, const struct dalcs_device *device,
+                                   const struct dalcs_token *formula);
+
 #endif

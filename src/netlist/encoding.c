@@ -58,7 +58,7 @@ static unsigned code_of(unsigned char c) {
 static bool is_latin1(const unsigned char *p, size_t n) {
     bool found = false;
     for (size_t k = dalcs_eight_skip_ascii(p, n); k < n; k++) {
-        const bool is_sequence = p[k] >= 0xC2 && k + 1 < n && p[k + 1] >= 0x80 && p[k + 1] < 0xC0;
+        const bool is_sequence = p[k] >= 0xC0 && k + 1 < n && p[k + 1] >= 0x80 && p[k + 1] < 0xC0;
         if ((p[k] != 0 && code_of(p[k]) == 0) || is_sequence) {
             return false;
         }
