@@ -196,22 +196,8 @@ static bool read_current(struct dalcs_reader *reader) {
 
 /* Xyce prints the values of parameters and of those of elements and models, r1:r and dmod:is. */
 static bool is_value(const struct dalcs_builder *builder, const char *name) {
-    const char *colon = strrchr(name, ':');
-    const size_t n = colon != NULL ? (size_t)(colon - name) : 0;
-    char own[256];
-    if (dalcs_deck_has_parameter(builder->deck, name) || strcmp(name, "temp") == 0) {
-        return true;
-    }
-    if (n == 0 || n >= sizeof own) {
-        return false;
-    }
-    memcpy(own, name, n);
-    own[n] = '\0';
-    for (char *p = own; *p != '\0'; p++) {
-        *p = *p == ':' ? '.' : *p;
-    }
-    return dalcs_names_find(&builder->devices, own) >= 0 ||
-           dalcs_names_find(&builder->models, own) >= 0;
+    return strchr(name, ':') != NULL || strcmp(name, "temp") == 0 ||
+           dalcs_deck_has_parameter(builder->deck, name);
 }
 
 static void leave_out(struct dalcs_builder *builder, const struct dalcs_token *token) {

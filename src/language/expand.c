@@ -252,6 +252,9 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
             if (card->letter != '.') {
                 rename_token(language, scope, DALCS_ROLE_DEVICE, token);
             }
+        } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL &&
+                   dalcs_formula_reads_value(token[k].text)) {
+            token[k].kind = DALCS_TOKEN_WORD; /* no signal, as who reads the card says */
         } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL) {
             token[k].formula = dalcs_formula_make(language, scope, &card->token[k], 1);
             token[k].kind = token[k].formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;

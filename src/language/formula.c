@@ -555,6 +555,16 @@ static bool has_signal(const struct dalcs_card *card, int first, int n) {
     return has;
 }
 
+bool dalcs_formula_reads_value(const char *text) {
+    int depth = 0;
+    bool reads = false;
+    for (const char *p = text; *p != '\0' && !reads; p++) {
+        depth += (*p == '(') - (*p == ')');
+        reads = depth == 0 && *p == ':' && p > text && is_of_name(p[-1]) && is_of_name(p[1]);
+    }
+    return reads && strchr(text, '?') == NULL;
+}
+
 /* Rname a b R=formula, Rname a b {formula}: one of voltages and currents. A number is not for here. */
 static bool find_resistance(const struct dalcs_card *card, int *first, int *n) {
     static const char *const names[] = {"r", "resistance"};

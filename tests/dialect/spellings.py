@@ -611,6 +611,10 @@ NOTED = [
      ".op\n", "is left out"),
     ("a value on .print", "V1 a 0 1\nX1 a s\n.subckt s p\nR1 p 0 1\n.ends\n.print dc v(a) x1:r1:r\n"
      ".op\n", "is left out"),
+    ("a value on .print", "V1 a 0 1\nR1 a 0 1\n.print dc v(a) {r1:r} {2*r1:r+v(a)}\n.op\n", "is left out"),
+    ("a value on .print", "V1 a 0 1\nX1 a s\n.subckt s p\nR1 p q 1\nR2 q 0 1\n.ends\n"
+     ".print dc v(a) {x1:r1:r} {v(x1:q)*2}\n.op\n", "'x1:r1:r' is a value of the netlist"),
+    ("a value on .print", "V1 a 0 1\nD1 a 0 dm\n.model dm D(Ron=1)\n.print dc {dm:ron} v(a)\n.op\n", "left out"),
     ("a model of LTspice's", "V1 a 0 1\nD1 a b D\nR1 b 0 1\n.op\n", "exactly ideal"),
     ("words of a diode", "V1 a 0 1\nD1 a b d1 PJ=0.5 w=1u thermal\n.model d1 D(IS=1n CJSW=1p rth0=3 "
      "fv_max=2)\nR1 b 0 1\n.op\n", "ignored"),
