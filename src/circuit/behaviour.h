@@ -39,8 +39,12 @@ struct dalcs_levels {
     } * level;
 };
 
-/* exp(-decay t) sin(2 pi (frequency t + phase)) from `delay` on, 0 before */
+/* exp(-decay t) sin(2 pi (frequency t + phase)) from `delay` on, 0 before; or straight lines of the same frequency and
+ * phase, without decay and delay: from 0 up to 1 and there down at once, from 0 up to 1 and back. */
+enum dalcs_wave_shape { DALCS_SINE, DALCS_SAWTOOTH, DALCS_TRIANGLE };
+
 struct dalcs_wave {
+    enum dalcs_wave_shape shape;
     double decay, frequency, phase, delay; /* 1/s, Hz, cycles, s */
 };
 
@@ -170,15 +174,20 @@ void dalcs_gate_settle(struct dalcs_builder *builder, struct dalcs_gate_readers 
                        const struct dalcs_gate *gate);
 void dalcs_gate_readers_finish(struct dalcs_gate_readers *readers);
 
+/* ---- carrier.c ------------------------------------------------------------------------------------ */
+
+/* A sawtooth, a triangle or a staircase of time; NULL: something else, or out of memory. */
+const struct dalcs_form *dalcs_carrier(struct dalcs_compiler *c, const struct dalcs_formula *f);
+
 /* ---- wave.c: functions of time --------------------------------------------------------------------- */
 
 /* sin(2 pi (frequency t + phase)) exp(-decay t) as a value. */
 const struct dalcs_form *dalcs_wave_value(struct dalcs_compiler *c, const struct dalcs_wave *wave);
 
-/* The product of two waves, a sum of two others; false where one begins later than the other. */
+/* The product of two waves, a sum of two others; false where one begins later than the other or has lines. */
 bool dalcs_wave_multiply(struct dalcs_compiler *c, int a, int b, const struct dalcs_form **product);
 
-/* A wave that begins at a time; -1: a damped one, or out of memory. */
+/* A wave that begins at a time; -1: a damped one, one of lines, or out of memory. */
 int dalcs_wave_delayed(struct dalcs_compiler *c, int wave, double delay);
 
 /* Its number among those of the circuit; -1: out of memory. */

@@ -1,11 +1,12 @@
 /* behavioural.c - sources with a formula: B with V= or I=, E and G with VALUE or TABLE. */
 #include "behaviour.h"
+#include "formula_writer.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static const char USAGE[] =
-    "a behavioural source is: Bname node node V=expression, or I=expression";
+    "a behavioural source is: Bname node node V=expression, or I=, R=, P=expression";
 
 static struct dalcs_formula_source *add_source(struct dalcs_builder *builder,
                                                const struct dalcs_device *device) {
@@ -57,18 +58,80 @@ static bool skip_temperature(struct dalcs_reader *reader) {
     return true;
 }
 
-/* LTspice has B sources that are no sources. */
-static void refuse(struct dalcs_builder *builder, const struct dalcs_token *what) {
-    if (strcmp(what->text, "r") == 0) {
-        dalcs_builder_error(builder, what, "write Rname node node R={expression} for a number",
-                            "a resistance times its current is a product of signals, unless it is "
-                            "a number");
-    } else if (strcmp(what->text, "p") == 0) {
-        dalcs_builder_error(builder, what, "write a resistor, or a current source I= of a table",
-                            "a power over a voltage is no piecewise linear current");
-    } else {
-        dalcs_builder_error(builder, what, USAGE, "a behavioural source has no '%s='", what->text);
+/* The voltage or current of an element whose card has a formula of its voltage, current, resistance or power, n alike
+ * in parallel. */
+static const struct dalcs_token *of_element(struct dalcs_builder *builder,
+                                            const struct dalcs_card *card,
+                                            const struct dalcs_token *token, char quantity,
+                                            double n) {
+    const struct dalcs_formula *f = token->formula;
+    struct dalcs_formula_writer w = {builder, token, f->text, f->number_of + 1};
+    if (quantity == 'r') {
+        f = dalcs_formula_operation(
+            &w, DALCS_MULTIPLY, dalcs_formula_signal(&w, DALCS_FORMULA_CURRENT, card->token, NULL),
+            f);
+    } else if (quantity == 'p') {
+        f = dalcs_formula_operation(
+            &w, DALCS_DIVIDE, f,
+            dalcs_formula_signal(&w, DALCS_FORMULA_VOLTAGE, &card->token[1], &card->token[2]));
     }
+    const double factor = quantity == 'r' ? 1 / n : n;
+    if (n != 1) {
+        f = dalcs_formula_operation(&w, DALCS_MULTIPLY, dalcs_formula_number(&w, factor), f);
+    }
+    return dalcs_formula_token(&w, f);
+}
+
+/* The end of such a card. */
+static void add_element(struct dalcs_reader *reader, const struct dalcs_device *device,
+                        const struct dalcs_token *token, char quantity, double n) {
+    if (dalcs_reader_end(reader)) {
+        dalcs_behavioural_add_formula(
+            reader->builder, device, of_element(reader->builder, reader->card, token, quantity, n));
+    }
+}
+
+/* m= of ngspice and Xyce, n alike in parallel, of those that make a current. */
+static bool read_parallel(struct dalcs_reader *reader, double *n) {
+    const struct dalcs_token *name = dalcs_reader_peek(reader, 0);
+    if (name == NULL || strcmp(name->text, "m") != 0 ||
+        dalcs_reader_take_parameter(reader) == NULL) {
+        return true;
+    }
+    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number", n)) {
+        return false;
+    }
+    if (!(*n > 0)) {
+        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
+                            "a multiplier must be positive");
+    }
+    return *n > 0;
+}
+
+bool dalcs_behavioural_is_resistance(const struct dalcs_card *card) {
+    const bool has_name = card->n > 5 && card->token[4].kind == DALCS_TOKEN_EQUAL;
+    return card->n > 3 && card->token[has_name ? 5 : 3].kind == DALCS_TOKEN_FORMULA;
+}
+
+void dalcs_behavioural_parse_resistance(struct dalcs_builder *builder,
+                                        const struct dalcs_card *card) {
+    struct dalcs_reader reader = dalcs_reader_start(builder, card,
+                                                    "a resistor is: Rname node node "
+                                                    "ohms, or R={expression}");
+    struct dalcs_device *device = dalcs_builder_add_device(builder, DALCS_VCVS, card->token);
+    const struct dalcs_token *token;
+    double n = card->parallel > 0 ? card->parallel : 1;
+    double m = 1;
+    if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node)) {
+        return;
+    }
+    (void)dalcs_reader_take_parameter(&reader);
+    if (!read_formula(&reader, &token) || !skip_temperature(&reader) ||
+        !read_parallel(&reader, &m) || !skip_temperature(&reader)) {
+        return;
+    }
+    (void)dalcs_reader_take_word(&reader, "noiseless");
+    add_element(&reader, device, token, 'r', n * m);
 }
 
 void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -78,30 +141,30 @@ void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_c
         return;
     }
     const struct dalcs_token *what = dalcs_reader_take_parameter(&reader);
-    if (what == NULL || strlen(what->text) != 1 || strchr("vi", *what->text) == NULL) {
-        if (what != NULL) {
-            refuse(builder, what);
-        } else {
-            dalcs_reader_missing(&reader, "V= or I=");
-        }
+    if (what == NULL) {
+        dalcs_reader_missing(&reader, "V= or I=");
         return;
     }
-    struct dalcs_device *device = dalcs_builder_add_device(
-        builder, *what->text == 'v' ? DALCS_VCVS : DALCS_VCCS, card->token);
+    const char quantity = what->text[1] == '\0' ? what->text[0] : '?';
+    if (strchr("virp", quantity) == NULL) {
+        dalcs_builder_error(builder, what, USAGE, "a behavioural source has no '%s='", what->text);
+        return;
+    }
+    const bool makes_voltage = quantity == 'v' || quantity == 'r';
+    struct dalcs_device *device =
+        dalcs_builder_add_device(builder, makes_voltage ? DALCS_VCVS : DALCS_VCCS, card->token);
     const struct dalcs_token *token;
+    double m = 1;
     if (device == NULL) {
         return;
     }
     device->node[0] = node[0];
     device->node[1] = node[1];
     if (!read_formula(&reader, &token) || !skip_temperature(&reader) ||
-        !dalcs_reader_end(&reader)) {
+        (quantity != 'v' && !read_parallel(&reader, &m)) || !skip_temperature(&reader)) {
         return;
     }
-    struct dalcs_formula_source *source = add_source(builder, device);
-    if (source != NULL) {
-        source->token = token;
-    }
+    add_element(&reader, device, token, quantity, m);
 }
 
 int dalcs_behavioural_parse_control(struct dalcs_reader *reader,
@@ -210,14 +273,20 @@ void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_devi
     if (is_table && has_formula) {
         dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
     }
-    if (is_table ? !read_points(reader, &table)
-                 : !skip_temperature(reader) || !dalcs_reader_end(reader)) {
+    if (!is_table) {
+        double m = 1;
+        if (skip_temperature(reader) && (device->kind == DALCS_VCVS || read_parallel(reader, &m))) {
+            add_element(reader, device, token, device->kind == DALCS_VCVS ? 'v' : 'i', m);
+        }
+        return;
+    }
+    if (!read_points(reader, &table)) {
         return;
     }
     struct dalcs_formula_source *source = add_source(reader->builder, device);
     if (source != NULL) {
         source->token = token;
-        source->has_table = is_table;
+        source->has_table = true;
         source->table = table;
     }
 }

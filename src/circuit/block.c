@@ -43,8 +43,8 @@ static const struct {
     {"transformer", NULL, NULL},
     {"d_dt", "a derivative is not causal: a jump of its input has none",
      "write a capacitor and the current through it, or s/(1 + s*t) with LAPLACE"},
-    {"mult", "it is a product of signals", "a B source with one of them piecewise constant"},
-    {"divide", "it is a quotient of signals", "a B source with a number below"},
+    {"mult", NULL, NULL},
+    {"divide", NULL, NULL},
     {"climit", "its limits are signals", "a B source with min() and max() of them"},
     {"ilimit", "it is a limited source", "V with Ilimit=, or E and ideal diodes"},
     {"hyst", "its two branches are not decided by a switch", "S with Vh=, or SCHMITT"},
@@ -53,7 +53,7 @@ static const struct {
     {"square", "the phase is an integral of its input", "V with PULSE"},
     {"oneshot", "its width is a function of its input",
      "d_dff with set or reset by a d_buffer of that delay"},
-    {"s_xfer", "a transfer function is an element here", "write E1 out 0 LAPLACE {v(in)} = {...}"},
+    {"s_xfer", NULL, NULL},
     {"d_dlatch", "it follows its input while it is enabled", "write it of d_and and d_or"},
     {"d_srlatch", "it follows its inputs while it is enabled", "write it of d_and and d_or"},
     {"d_tristate", "an output that lets go has no bit", "write aswitch behind a dac_bridge"},
@@ -336,7 +336,8 @@ void dalcs_block_parse(struct dalcs_builder *builder, const struct dalcs_card *c
         }
         c.n_ports++;
     }
-    if (!ok || (!dalcs_block_parse_logic(&c) && !dalcs_block_parse_analog(&c))) {
+    if (!ok || (!dalcs_block_parse_logic(&c) && !dalcs_block_parse_analog(&c) &&
+                !dalcs_block_parse_formula(&c))) {
         builder->hidden |= DALCS_HIDDEN_ELEMENTS;
     }
 }

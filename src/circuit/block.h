@@ -71,5 +71,7 @@ void dalcs_transformer_parse(struct dalcs_builder *builder, const struct dalcs_c
 bool dalcs_block_parse_logic(struct dalcs_block_card *c);
 /* gain, summer, limit, int, slew, pwl, aswitch: likewise. */
 bool dalcs_block_parse_analog(struct dalcs_block_card *c);
+/* mult, divide, s_xfer: likewise. */
+bool dalcs_block_parse_formula(struct dalcs_block_card *c);
 
 #endif

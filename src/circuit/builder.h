@@ -354,6 +354,10 @@ void dalcs_parallel_scale(struct dalcs_builder *builder, struct dalcs_stimulus *
 /* Reports an element that cannot be multiplied; false where it can, or need not. */
 bool dalcs_parallel_is_refused(struct dalcs_builder *builder, const struct dalcs_card *card);
 
+/* The model D where no card has it, as LTspice writes it for a diode without a part: as without parameters. */
+bool dalcs_diode_take_default(struct dalcs_builder *builder, const struct dalcs_token *name,
+                              struct dalcs_diode_card *card, struct dalcs_diode_model *model);
+
 bool dalcs_parasitic_is_name(const char *name);
 /* The value, after `name =`; false when an error was reported. */
 bool dalcs_parasitic_read(struct dalcs_reader *reader, const struct dalcs_token *name,
@@ -370,6 +374,10 @@ void dalcs_parasitic_add_rser(struct dalcs_builder *builder, const struct dalcs_
 /* Coils that have no Rser and that no K card names get LTspice's, where the netlist is told to be one of
  * LTspice. */
 void dalcs_passive_add_default_rser(struct dalcs_builder *builder);
+/* A resistor whose value is a formula of voltages and currents: V=i(itself)*formula. */
+bool dalcs_behavioural_is_resistance(const struct dalcs_card *card);
+void dalcs_behavioural_parse_resistance(struct dalcs_builder *builder,
+                                        const struct dalcs_card *card);
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind);
 void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card *card);

@@ -109,6 +109,7 @@ struct dalcs_switch_model {
     double ron, roff, vt, vh; /* ohm, ohm, V or A, V or A */
     double lser, vser;        /* H, V; in series with each such switch, elements of their own */
     bool is_inverted;
+    bool is_exchanged; /* ON and OFF of a card mean open and closed */
 };
 
 /* Mutual inductance k sqrt(L1 L2) between inductor devices, |k| <= 1. */

@@ -355,6 +355,10 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
 
 static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
                                             const struct dalcs_formula *f) {
+    const struct dalcs_form *carrier = dalcs_carrier(c, f);
+    if (carrier != NULL) {
+        return carrier;
+    }
     const struct dalcs_form **argument =
         dalcs_arena_alloc(c->arena, (size_t)f->n + 1, sizeof(const struct dalcs_form *));
     if (argument == NULL) {

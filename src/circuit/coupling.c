@@ -93,6 +93,13 @@ static bool read_factor(struct dalcs_reader *reader, double *k) {
                             "a coupling factor of %g: its magnitude is at most 1", *k);
         return false;
     }
+    const struct dalcs_token *core = dalcs_reader_peek(reader, 0);
+    if (core != NULL && core->kind == DALCS_TOKEN_WORD) {
+        dalcs_builder_error(reader->builder, core,
+                            "the values of its coils are turns: write henries, and no core",
+                            "the core '%s' is not supported", core->text);
+        return false;
+    }
     return dalcs_reader_end(reader);
 }
 

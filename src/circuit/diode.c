@@ -38,14 +38,18 @@ static bool read_scale(struct dalcs_reader *reader, const struct dalcs_token *na
 
 static bool read_rest(struct dalcs_reader *reader, struct scale *scale) {
     static const char *const scales[] = {"m", "n", "area"};
-    static const char *const ignored[] = {"ic", "temp", "dtemp"};
+    static const char *const ignored[] = {"ic", "temp", "dtemp", "pj", "w", "l", "lm", "wm"};
+    static const char *const flags[] = {"off", "thermal"};
     struct dalcs_builder *builder = reader->builder;
     double value;
     while (!dalcs_reader_at_end(reader)) {
         const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
         const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
-        if (name == NULL && dalcs_reader_take_word(reader, "off")) {
-            dalcs_builder_note(builder, token, NULL, "'off' has no meaning here and is ignored");
+        if (name == NULL &&
+            dalcs_builder_is_one_of(token->text, flags, sizeof flags / sizeof flags[0])) {
+            reader->at++;
+            dalcs_builder_note(builder, token, NULL, "'%s' has no meaning here and is ignored",
+                               token->text);
         } else if (name == NULL && dalcs_reader_is_number(token)) {
             scale->place = token;
             if (!read_positive(reader, "an area", &scale->area)) {

@@ -49,10 +49,13 @@ enum { FIRST_BERKELEY = IS, MOST_IGNORED = 16 /* that a note names */ };
 
 /* Of the exponential diode, without a counterpart here. */
 static const char *const IGNORED[] = {
-    "jsw", "ns",    "ibvl", "nbvl", "cjo",  "cj0", "cj",   "cjp",  "vj",   "pb",   "m",
-    "mj",  "fc",    "fcs",  "tt",   "eg",   "xti", "kf",   "af",   "ik",   "ikf",  "ikr",
-    "isr", "nr",    "tbv",  "tbv1", "tbv2", "trs", "trs1", "trs2", "tikf", "tnom", "tref",
-    "vp",  "level", "area", "rsw",  "tcv",  "cta", "vjsw", "php",  "mjsw"};
+    "jsw",   "ns",     "ibvl",   "nbvl",   "cjo",    "cj0",    "cj",    "cjp",   "vj",
+    "pb",    "m",      "mj",     "fc",     "fcs",    "tt",     "eg",    "xti",   "kf",
+    "af",    "ik",     "ikf",    "ikr",    "isr",    "nr",     "tbv",   "tbv1",  "tbv2",
+    "trs",   "trs1",   "trs2",   "tikf",   "tnom",   "tref",   "vp",    "level", "area",
+    "rsw",   "tcv",    "cta",    "vjsw",   "php",    "mjsw",   "cjsw",  "ctp",   "tlev",
+    "tlevc", "tm1",    "tm2",    "ttt1",   "ttt2",   "w",      "l",     "pj",    "rth0",
+    "cth0",  "fv_max", "bv_max", "id_max", "te_max", "pd_max", "expli", "dcap",  "shrink"};
 
 /* Reports a parameter that a diode does not have; false for one that means nothing. */
 static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
@@ -250,6 +253,23 @@ bool dalcs_diode_take_part(struct dalcs_builder *builder, const struct dalcs_tok
     return true;
 }
 
+static void note_bare(struct dalcs_builder *builder, const struct dalcs_token *place) {
+    const struct dalcs_exponential spice = {.saturation = 1e-14, .voltage = THERMAL_VOLTAGE};
+    dalcs_builder_note(builder, place, "D(IS=1e-14) is SPICE's, D(Ron=0) this one",
+                       "a model without parameters is exactly ideal here; SPICE's default diode "
+                       "would drop %.4g V at %g A",
+                       dalcs_exponential_voltage(&spice, builder->diode_current),
+                       builder->diode_current);
+}
+
+bool dalcs_diode_take_default(struct dalcs_builder *builder, const struct dalcs_token *name,
+                              struct dalcs_diode_card *card, struct dalcs_diode_model *model) {
+    *card = (struct dalcs_diode_card){.ilimit = (double)INFINITY, .revilimit = (double)INFINITY};
+    *model = (struct dalcs_diode_model){.roff = (double)INFINITY, .vrev = (double)INFINITY};
+    note_bare(builder, name);
+    return true;
+}
+
 static bool check_berkeley(struct dalcs_builder *builder, struct dalcs_parameter *p) {
     static const int positive[] = {IS, JS, N, IBV, NBV};
     for (size_t k = 0; k < sizeof positive / sizeof positive[0]; k++) {
@@ -430,12 +450,7 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
         return set_berkeley(reader, type, parameter, card, model);
     }
     if (!is_block && is_bare(reader->card, type)) {
-        const struct dalcs_exponential spice = {.saturation = 1e-14, .voltage = THERMAL_VOLTAGE};
-        dalcs_builder_note(builder, type, "D(IS=1e-14) is SPICE's, D(Ron=0) this one",
-                           "a model without parameters is exactly ideal here; SPICE's default "
-                           "diode would drop %.4g V at %g A",
-                           dalcs_exponential_voltage(&spice, builder->diode_current),
-                           builder->diode_current);
+        note_bare(builder, type);
     }
     if (ignored[0] != '\0') {
         dalcs_builder_note(builder, type, NULL, "an idealised diode (LTspice)%s", ignored);

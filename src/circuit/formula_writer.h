@@ -12,7 +12,7 @@ struct dalcs_formula_writer {
     struct dalcs_builder *builder;
     const struct dalcs_token *element;
     const struct dalcs_expression_text *text; /* what messages quote */
-    int n;
+    int n; /* 0, or above the numbers of a formula that becomes a part */
 };
 
 /* False when out of memory. */
@@ -21,7 +21,7 @@ bool dalcs_formula_writer_start(struct dalcs_formula_writer *w, struct dalcs_bui
 
 const struct dalcs_formula *dalcs_formula_number(struct dalcs_formula_writer *w, double value);
 
-/* v(a,b) or i(a); b may be NULL. */
+/* v(a,b) or i(a), or the time; b may be NULL. */
 const struct dalcs_formula *dalcs_formula_signal(struct dalcs_formula_writer *w,
                                                  enum dalcs_formula_kind kind,
                                                  const struct dalcs_token *a,

@@ -63,8 +63,9 @@ static bool is_bound(const struct dalcs_card *card, int k) {
 /* Does a keyword stand at token k, which ends a formula before it? */
 static bool is_keyword(const struct dalcs_card *card, int k) {
     static const char *const alone[] = {"when", "trig", "targ"};
-    static const char *const with_value[] = {"from", "to",  "td",   "rise",   "fall",   "cross",
-                                             "at",   "val", "goal", "minval", "weight", "print"};
+    static const char *const with_value[] = {
+        "from", "to",     "td",     "rise",  "fall",      "cross",       "at",       "val",
+        "goal", "minval", "weight", "print", "failvalue", "default_val", "precision"};
     if (is_one_of(&card->token[k], alone, sizeof alone / sizeof alone[0])) {
         return true;
     }
@@ -276,6 +277,17 @@ static bool read_interval(struct reading *r) {
     return read_instant(r, &instant[1]);
 }
 
+/* What is for optimizers, and how Xyce prints. */
+static bool take_ignored(struct reading *r) {
+    static const char *const names[] = {"goal",      "minval",      "weight",
+                                        "failvalue", "default_val", "precision"};
+    bool taken = false;
+    for (size_t k = 0; k < sizeof names / sizeof names[0] && !taken; k++) {
+        taken = take(r, names[k]);
+    }
+    return taken;
+}
+
 /* FROM=, TO= and, for statistics, TRIG ... TARG; then nothing more. */
 static bool read_bounds(struct reading *r) {
     struct dalcs_measure_card *m = r->measure;
@@ -290,9 +302,10 @@ static bool read_bounds(struct reading *r) {
             if (!read_time(r, &m->to, &m->to_formula)) {
                 return false;
             }
-        } else if (take(r, "goal") || take(r, "minval") || take(r, "weight")) {
+        } else if (take_ignored(r)) {
             double unused;
-            dalcs_builder_note(r->builder, token, NULL, "%s is for optimizers and is ignored",
+            dalcs_builder_note(r->builder, token, NULL,
+                               "%s= of a measurement means nothing here and is ignored",
                                token->text);
             if (!read_constant(r, "a value", &unused)) {
                 return false;

@@ -272,14 +272,16 @@ static const char *wanted_type(enum dalcs_model_kind kind) {
     return kind == DALCS_MODEL_DIODE ? "D" : kind == DALCS_MODEL_SWITCH ? "SW" : "CSW";
 }
 
-/* A model that nothing defines, from the table of diodes; -1: it is not in there. */
+/* A model that nothing defines, from the table of diodes, or D; -1: it is neither. */
 static int add_part(struct dalcs_builder *builder, const struct dalcs_token *name) {
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_model *model = &builder->model[builder->n_models];
     const char *own = dalcs_arena_copy(&circuit->arena, name->text, strlen(name->text));
     struct dalcs_diode_card diode;
     struct dalcs_diode_model *lines = &circuit->diode_model[circuit->n_diode_models];
-    if (own == NULL || !dalcs_diode_take_part(builder, name, &diode, lines)) {
+    if (own == NULL ||
+        !(strcmp(own, "d") == 0 ? dalcs_diode_take_default(builder, name, &diode, lines)
+                                : dalcs_diode_take_part(builder, name, &diode, lines))) {
         builder->out_of_memory = builder->out_of_memory || own == NULL;
         return -1;
     }
@@ -315,7 +317,10 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
         if ((builder->hidden & DALCS_HIDDEN_MODELS) == 0) {
             dalcs_builder_error(
                 builder, name,
-                builder->n_models > 0
+                builder->netlist->missing_library != NULL
+                    ? dalcs_builder_hint(builder, "it may be in '%s', which is not here",
+                                         builder->netlist->missing_library)
+                : builder->n_models > 0
                     ? dalcs_builder_suggest(builder, &builder->models, name->text, "models")
                     : dalcs_builder_hint(builder, "add a line: .model %s %s", name->text,
                                          kind == DALCS_MODEL_DIODE    ? "D"

@@ -242,6 +242,10 @@ static void expand_storage(struct dalcs_builder *builder, const struct dalcs_car
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind) {
     const struct family *family = family_of(kind);
+    if (kind == DALCS_RESISTOR && dalcs_behavioural_is_resistance(card)) {
+        dalcs_behavioural_parse_resistance(builder, card);
+        return;
+    }
     struct dalcs_reader reader = dalcs_reader_start(builder, card, family->usage);
     struct dalcs_device *device = dalcs_builder_add_device(builder, kind, card->token);
     if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node)) {

@@ -19,4 +19,10 @@ struct dalcs_rational {
 bool dalcs_rational_make(struct dalcs_builder *builder, const struct dalcs_formula *formula,
                          struct dalcs_rational *r);
 
+/* The states of a ratio that is not improper, which `device`, of an element called `name`, puts out: of the voltage between
+ * two nodes. */
+void dalcs_transfer_expand(struct dalcs_builder *builder, const struct dalcs_token *name,
+                           struct dalcs_device *device, const struct dalcs_rational *r,
+                           const int *input);
+
 #endif

@@ -197,6 +197,17 @@ static bool read_current(struct dalcs_reader *reader) {
     return true;
 }
 
+/* Xyce prints the values of parameters and of those of elements and models, r1:r and dmod:is. */
+static bool is_value(const struct dalcs_builder *builder, const char *name) {
+    return strchr(name, ':') != NULL || strcmp(name, "temp") == 0 ||
+           dalcs_deck_has_parameter(builder->deck, name);
+}
+
+static void leave_out(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    dalcs_builder_warn(builder, token, "signals are: v(node) v(a,b) i(element)",
+                       "'%s' is a value of the netlist and no signal: it is left out", token->text);
+}
+
 /* A word without a parenthesis: in ngspice a node's voltage. */
 static bool read_plain_node(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
@@ -209,6 +220,11 @@ static bool read_plain_node(struct dalcs_reader *reader) {
     }
     const char *hint = USAGE;
     const char *nearest = dalcs_names_nearest(&builder->nodes, token->text);
+    if (is_value(builder, token->text)) {
+        reader->at++;
+        leave_out(builder, token);
+        return true;
+    }
     if (dalcs_names_find(&builder->devices, token->text) >= 0) {
         hint = dalcs_builder_hint(builder, "write i(%s)", token->text);
     } else if (nearest != NULL) {
@@ -377,14 +393,20 @@ static bool read_formula(struct dalcs_reader *reader) {
     return true;
 }
 
-/* p(r1), which KiCad writes for every part; w(r1) is PSpice's. */
-static void skip_power(struct dalcs_reader *reader) {
-    if (!reader->builder->noted_power) {
-        dalcs_builder_note(
-            reader->builder, dalcs_reader_peek(reader, 0), "a measurement may be of v(a,b)*i(r1)",
-            "powers are not recorded: %s(...) is left out", dalcs_reader_peek(reader, 0)->text);
+/* p(r1), which KiCad writes for every part, w(r1) of PSpice, n(d1:cd) of Xyce: what is inside of models or computed
+ * afterwards. */
+static void skip_inner(struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    struct dalcs_builder *builder = reader->builder;
+    if (strcmp(token->text, "n") == 0) {
+        dalcs_builder_warn(builder, token, NULL,
+                           "what is inside of a model is not recorded: "
+                           "n(...) is left out");
+    } else if (!builder->noted_power) {
+        dalcs_builder_note(builder, token, "a measurement may be of v(a,b)*i(r1)",
+                           "powers are not recorded: %s(...) is left out", token->text);
+        builder->noted_power = true;
     }
-    reader->builder->noted_power = true;
     int depth = 0;
     do {
         reader->at++;
@@ -395,6 +417,7 @@ static void skip_power(struct dalcs_reader *reader) {
 }
 
 static bool read_signal(struct dalcs_reader *reader) {
+    static const char *const within[] = {"p", "w", "n"};
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
@@ -435,8 +458,8 @@ static bool read_signal(struct dalcs_reader *reader) {
         }
         return token->text[0] == 'v' ? read_voltage(reader) : read_current(reader);
     }
-    if (strcmp(token->text, "p") == 0 || strcmp(token->text, "w") == 0) {
-        skip_power(reader);
+    if (dalcs_builder_is_one_of(token->text, within, sizeof within / sizeof within[0])) {
+        skip_inner(reader);
         return true;
     }
     const struct part_name *function = function_of(token->text);

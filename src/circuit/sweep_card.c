@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char DC_USAGE[] = ".dc source start stop step [source start stop step]";
+static const char DC_USAGE[] =
+    ".dc [lin|dec|oct] source start stop step [source start stop step], .dc source list value ...";
 static const char AC_USAGE[] = ".ac dec|oct|lin points fstart fstop, or .ac list frequency ...";
 static const char STEP_USAGE[] =
     ".step [lin|dec|oct] item start stop step; .step item list value value ...; .step item "
@@ -299,7 +300,13 @@ void dalcs_sweep_parse_dc(struct dalcs_builder *builder, const struct dalcs_card
     int n = 0;
     do {
         struct dalcs_sweep *sweep = &circuit->dc[n];
-        if (!read_item(&reader, "vir", sweep) || !read_range(&reader, DC_USAGE, sweep)) {
+        const bool is_spaced = take_spacing(&reader, &sweep->spacing);
+        if (!read_item(&reader, "vir", sweep)) {
+            return;
+        }
+        const bool is_list = !is_spaced && dalcs_reader_take_word(&reader, "list");
+        (void)take_spacing(&reader, &sweep->spacing);
+        if (is_list ? !read_list(&reader, sweep) : !read_range(&reader, DC_USAGE, sweep)) {
             return;
         }
         n++;

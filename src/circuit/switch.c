@@ -81,6 +81,9 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
                                       by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
     device->initially_on = dalcs_reader_take_word(&reader, "on");
     device->has_initial_state = device->initially_on || dalcs_reader_take_word(&reader, "off");
+    if (device->model >= 0 && builder->circuit->switch_model[device->model].is_exchanged) {
+        device->initially_on = !device->initially_on;
+    }
     const struct dalcs_token *control = by_formula ? dalcs_reader_peek(&reader, 0) : NULL;
     if (control != NULL && strcmp(control->text, "control") == 0 &&
         dalcs_reader_take_parameter(&reader) != NULL) {
@@ -204,15 +207,28 @@ static bool check_resistances(struct dalcs_builder *builder, const struct dalcs_
                             "Roff must be positive");
         return false;
     }
-    if (p[ROFF].value <= p[RON].value) {
-        dalcs_builder_error(
-            builder, p[ROFF].place,
-            "for a switch that is closed when off exchange Ron and Roff and the two "
-            "control nodes, and change the sign of Vt",
-            "Roff must be above Ron");
+    if (p[ROFF].value == p[RON].value) {
+        dalcs_builder_error(builder, p[ROFF].place, "write a resistor",
+                            "Roff and Ron are equal: this switches nothing");
         return false;
     }
     return true;
+}
+
+/* A switch whose Ron is the larger one is closed when it is off. */
+static void exchange(struct dalcs_builder *builder, const struct dalcs_token *place,
+                     struct dalcs_switch_model *model) {
+    const double ron = model->roff;
+    model->roff = model->ron;
+    model->ron = ron;
+    model->vt = -model->vt;
+    model->is_inverted = !model->is_inverted;
+    model->is_exchanged = true;
+    dalcs_builder_warn(
+        builder, place, NULL,
+        "Roff is below Ron: this switch is closed, with %g ohm, where its control is "
+        "low, and open, with %g ohm, where it is high",
+        model->ron, model->roff);
 }
 
 int dalcs_switch_add_model(struct dalcs_builder *builder, const struct dalcs_switch_model *model) {
@@ -301,6 +317,43 @@ static const struct dalcs_token *first_of(const struct dalcs_parameter *p) {
     return p[k].place;
 }
 
+/* The control at which it switches; what is not consistent is said. */
+static bool set_control(struct dalcs_reader *reader, const struct form *form,
+                        const struct dalcs_token *type, const struct dalcs_parameter *parameter,
+                        struct dalcs_switch_model *model) {
+    const bool has_ends = parameter[ON].place != NULL || parameter[OFF].place != NULL;
+    const bool is_spice = strcmp(form->type, "sw") == 0 || strcmp(form->type, "csw") == 0;
+    const bool has_hysteresis =
+        parameter[HYSTERESIS_ON].place != NULL || parameter[HYSTERESIS_OFF].place != NULL;
+    const struct dalcs_token *given = parameter[THRESHOLD].place != NULL
+                                          ? parameter[THRESHOLD].place
+                                          : parameter[HYSTERESIS].place;
+    const bool has_threshold = given != NULL && (is_spice || (!has_hysteresis && !has_ends));
+    const int n_kinds = (given != NULL) + has_ends + has_hysteresis;
+    if (n_kinds > 1) {
+        const int kept = has_threshold ? THRESHOLD : has_hysteresis ? HYSTERESIS_ON : ON;
+        dalcs_builder_warn(reader->builder, given != NULL ? given : first_of(parameter),
+                           form->usage,
+                           "a switch model has either %s and %s or %s and %s or %s and %s: here %s "
+                           "and %s count",
+                           form->name[THRESHOLD], form->name[HYSTERESIS], form->name[ON],
+                           form->name[OFF], form->name[HYSTERESIS_ON], form->name[HYSTERESIS_OFF],
+                           form->name[kept], form->name[kept + 1]);
+    } else if (is_spice && (has_ends || has_hysteresis)) {
+        dalcs_builder_warn(reader->builder, first_of(parameter), form->usage,
+                           "'%s' is PSpice's: this %s model is read as its %s; ngspice ignores the "
+                           "parameter",
+                           first_of(parameter)->text, type->text,
+                           form->quantity == DALCS_VOLTAGE ? "VSWITCH" : "ISWITCH");
+    }
+    if (has_threshold || (n_kinds == 0 && is_spice)) {
+        set_threshold(reader->builder, form, parameter, model);
+        return true;
+    }
+    return has_hysteresis ? set_hysteresis(reader->builder, form, parameter, model)
+                          : set_midpoint(reader->builder, form, type, parameter, model);
+}
+
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
                               struct dalcs_switch_model *model) {
     const struct form *form = form_of(type->text);
@@ -330,36 +383,11 @@ bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_to
     if (!check_resistances(reader->builder, parameter)) {
         return false;
     }
-    const bool has_ends = parameter[ON].place != NULL || parameter[OFF].place != NULL;
-    const bool is_spice = strcmp(form->type, "sw") == 0 || strcmp(form->type, "csw") == 0;
-    const bool has_hysteresis =
-        parameter[HYSTERESIS_ON].place != NULL || parameter[HYSTERESIS_OFF].place != NULL;
-    const struct dalcs_token *given = parameter[THRESHOLD].place != NULL
-                                          ? parameter[THRESHOLD].place
-                                          : parameter[HYSTERESIS].place;
-    if (is_spice && (has_ends || has_hysteresis)) {
-        dalcs_builder_warn(reader->builder, first_of(parameter), form->usage,
-                           "'%s' is PSpice's: this %s model is read as its %s; ngspice ignores the "
-                           "parameter",
-                           first_of(parameter)->text, type->text,
-                           form->quantity == DALCS_VOLTAGE ? "VSWITCH" : "ISWITCH");
-    }
-    if (!has_hysteresis && !has_ends && (is_spice || given != NULL)) {
-        set_threshold(reader->builder, form, parameter, model);
-        return true;
-    }
-    if (has_hysteresis && given == NULL && !has_ends) {
-        return set_hysteresis(reader->builder, form, parameter, model);
-    }
-    if (given != NULL || has_hysteresis) {
-        given = given != NULL                            ? given
-                : parameter[HYSTERESIS_ON].place != NULL ? parameter[HYSTERESIS_ON].place
-                                                         : parameter[HYSTERESIS_OFF].place;
-        dalcs_builder_error(reader->builder, given, form->usage,
-                            "a switch model has either %s and %s or %s and %s or %s and %s",
-                            form->name[THRESHOLD], form->name[HYSTERESIS], form->name[ON],
-                            form->name[OFF], form->name[HYSTERESIS_ON], form->name[HYSTERESIS_OFF]);
+    if (!set_control(reader, form, type, parameter, model)) {
         return false;
     }
-    return set_midpoint(reader->builder, form, type, parameter, model);
+    if (model->roff < model->ron) {
+        exchange(reader->builder, parameter[ROFF].place, model);
+    }
+    return true;
 }

@@ -204,3 +204,11 @@ void dalcs_transfer_parse(struct dalcs_reader *reader, struct dalcs_device *devi
         (void)expand(&t, device, m);
     }
 }
+
+void dalcs_transfer_expand(struct dalcs_builder *builder, const struct dalcs_token *name,
+                           struct dalcs_device *device, const struct dalcs_rational *r,
+                           const int *input) {
+    struct transfer t = {.builder = builder, .name = name, .input = {input[0], input[1]}};
+    normalize(r, &t);
+    (void)expand(&t, device, 1);
+}

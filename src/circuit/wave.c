@@ -10,8 +10,9 @@ static int add_wave(struct dalcs_compiler *c, struct dalcs_wave wave) {
     wave.phase -= floor(wave.phase);
     for (size_t k = 0; k < c->n_waves; k++) {
         const struct dalcs_wave *known = &c->wave[k];
-        if (known->decay == wave.decay && known->frequency == wave.frequency &&
-            known->phase == wave.phase && known->delay == wave.delay) {
+        if (known->shape == wave.shape && known->decay == wave.decay &&
+            known->frequency == wave.frequency && known->phase == wave.phase &&
+            known->delay == wave.delay) {
             return (int)k;
         }
     }
@@ -35,12 +36,12 @@ static double sin_of_cycles(double x) {
 const struct dalcs_form *dalcs_wave_value(struct dalcs_compiler *c, const struct dalcs_wave *wave) {
     struct dalcs_wave w = *wave;
     double sign = 1;
-    if (w.frequency < 0) { /* sin(-x) = -sin(x) */
+    if (w.shape == DALCS_SINE && w.frequency < 0) { /* sin(-x) = -sin(x) */
         w.frequency = -w.frequency;
         w.phase = -w.phase;
         sign = -1;
     }
-    if (w.frequency == 0) {
+    if (w.shape == DALCS_SINE && w.frequency == 0) {
         sign *= sin_of_cycles(w.phase);
         w.phase = 0.25;
     }
@@ -57,11 +58,13 @@ bool dalcs_wave_multiply(struct dalcs_compiler *c, int a, int b,
                          const struct dalcs_form **product) {
     const struct dalcs_wave x = c->wave[a];
     const struct dalcs_wave y = c->wave[b];
-    const struct dalcs_wave difference = {x.decay + y.decay, x.frequency - y.frequency,
-                                          x.phase - y.phase + 0.25, 0};
-    const struct dalcs_wave sum = {x.decay + y.decay, x.frequency + y.frequency,
-                                   x.phase + y.phase + 0.25, 0};
-    if (x.delay != 0 || y.delay != 0) {
+    const struct dalcs_wave difference = {.decay = x.decay + y.decay,
+                                          .frequency = x.frequency - y.frequency,
+                                          .phase = x.phase - y.phase + 0.25};
+    const struct dalcs_wave sum = {.decay = x.decay + y.decay,
+                                   .frequency = x.frequency + y.frequency,
+                                   .phase = x.phase + y.phase + 0.25};
+    if (x.shape != DALCS_SINE || y.shape != DALCS_SINE || x.delay != 0 || y.delay != 0) {
         return false;
     }
     *product = dalcs_form_scale(c, 0.5, dalcs_wave_value(c, &difference));
@@ -71,7 +74,7 @@ bool dalcs_wave_multiply(struct dalcs_compiler *c, int a, int b,
 
 int dalcs_wave_delayed(struct dalcs_compiler *c, int wave, double delay) {
     struct dalcs_wave later = c->wave[wave];
-    if (later.decay != 0) {
+    if (later.decay != 0 || later.shape != DALCS_SINE) {
         return -1;
     }
     later.delay = fmax(later.delay, delay);
@@ -92,7 +95,16 @@ int dalcs_compiler_add_stimulus(struct dalcs_compiler *c, const struct dalcs_sti
 int dalcs_wave_stimulus(struct dalcs_compiler *c, int wave) {
     const struct dalcs_wave *w = &c->wave[wave];
     struct dalcs_stimulus s = {.kind = DALCS_STIMULUS_SIN};
-    if (w->decay == 0) {
+    if (w->shape != DALCS_SINE) {
+        const double period = 1 / w->frequency;
+        const double rise = w->shape == DALCS_SAWTOOTH ? period : period / 2;
+        s = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_PULSE,
+                                    .u.pulse = {.high = 1,
+                                                .delay = -w->phase * period,
+                                                .rise = rise,
+                                                .fall = period - rise,
+                                                .period = period}};
+    } else if (w->decay == 0) {
         struct dalcs_tone *tone = dalcs_arena_alloc(&c->builder->circuit->arena, 1, sizeof *tone);
         if (tone == NULL) {
             c->builder->out_of_memory = true;

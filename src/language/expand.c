@@ -255,6 +255,9 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
             if (card->letter != '.') {
                 rename_token(language, scope, DALCS_ROLE_DEVICE, token);
             }
+        } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL &&
+                   dalcs_formula_reads_value(token[k].text)) {
+            token[k].kind = DALCS_TOKEN_WORD; /* no signal, as who reads the card says */
         } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL) {
             token[k].formula = dalcs_formula_make(language, scope, &card->token[k], 1);
             token[k].kind = token[k].formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
@@ -337,7 +340,11 @@ static void report_unknown(const struct call *call) {
     const struct dalcs_card *card = call->item->card;
     const struct dalcs_token *name = &card->token[call->name];
     struct dalcs_scope *owner;
-    const char *hint = NULL;
+    const char *missing = language->netlist->missing_library;
+    const char *hint =
+        missing != NULL
+            ? dalcs_language_text(language, "it may be in '%s', which is not here", missing)
+            : NULL;
     language->deck->hides_elements = true;
     language->deck->has_errors = true;
     if (language->netlist->misses_file || language->deck->hides_all) {

@@ -458,7 +458,7 @@ static bool is_kind(const struct dalcs_card *card, int k, enum dalcs_token_kind 
 
 /* B p n V=formula: its first token, card->n when there is none. */
 static int start_of_source(const struct dalcs_card *card) {
-    static const char *const quantities[] = {"v", "i"};
+    static const char *const quantities[] = {"v", "i", "r", "p"};
     int k = 2;
     while (k < card->n &&
            !(is_word(&card->token[k], quantities, sizeof quantities / sizeof quantities[0]) &&
@@ -520,15 +520,36 @@ bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n) {
     return *n > 0;
 }
 
-/* Does an expression read a voltage or a current? */
-static bool has_signal(const struct dalcs_token *token) {
-    const char *text = token->text;
+static bool is_of_name(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+           (c != '\0' && strchr("_.$#@", c) != NULL);
+}
+
+/* Does a text read the time, a voltage or a current? opens: a parenthesis follows it. */
+static bool text_has_signal(const char *text, bool opens) {
+    for (const char *p = text; *p != '\0';) {
+        const char *end = p;
+        while (is_of_name(*end)) {
+            end++;
+        }
+        const size_t n = (size_t)(end - p);
+        const char *next = end + strspn(end, " \t");
+        const bool is_call = *next == '(' || (*next == '\0' && opens);
+        if ((n == 4 && strncmp(p, "time", 4) == 0) ||
+            (n == 1 && is_call && (*p == 'v' || *p == 'i'))) {
+            return true;
+        }
+        p = n > 0 ? end : p + 1;
+    }
+    return false;
+}
+
+static bool has_signal(const struct dalcs_card *card, int first, int n) {
     bool has = false;
-    for (const char *p = strchr(text, '('); p != NULL && !has; p = strchr(p + 1, '(')) {
-        const bool is_alone =
-            p - text < 2 || (strchr("_.$#@", p[-2]) == NULL && !(p[-2] >= '0' && p[-2] <= '9') &&
-                             !(p[-2] >= 'a' && p[-2] <= 'z'));
-        has = p > text && (p[-1] == 'v' || p[-1] == 'i') && is_alone;
+    for (int k = first; k < first + n && !has; k++) {
+        const struct dalcs_token *token = &card->token[k];
+        has = (token->kind == DALCS_TOKEN_WORD || token->kind == DALCS_TOKEN_EXPRESSION) &&
+              text_has_signal(token->text, is_kind(card, k + 1, DALCS_TOKEN_OPEN));
     }
     return has;
 }
@@ -545,7 +566,7 @@ static int start_of_storage(const struct dalcs_card *card) {
             return k;
         }
         if (card->token[k].kind == DALCS_TOKEN_EXPRESSION && (is_assigned || k == 3) &&
-            has_signal(&card->token[k])) {
+            has_signal(card, k, 1)) {
             return k;
         }
         k++;
@@ -553,8 +574,38 @@ static int start_of_storage(const struct dalcs_card *card) {
     return k;
 }
 
+bool dalcs_formula_reads_value(const char *text) {
+    int depth = 0;
+    bool reads = false;
+    for (const char *p = text; *p != '\0' && !reads; p++) {
+        depth += (*p == '(') - (*p == ')');
+        reads = depth == 0 && *p == ':' && p > text && is_of_name(p[-1]) && is_of_name(p[1]);
+    }
+    return reads && strchr(text, '?') == NULL;
+}
+
+/* Rname a b R=formula, Rname a b {formula}: one of voltages and currents. A number is not for here. */
+static bool find_resistance(const struct dalcs_card *card, int *first, int *n) {
+    static const char *const names[] = {"r", "resistance"};
+    const bool has_name =
+        card->n > 5 && is_word(&card->token[3], names, 2) && is_kind(card, 4, DALCS_TOKEN_EQUAL);
+    *first = has_name ? 5 : 3;
+    *n = 1;
+    if (card->n <= 3 || !(has_name || is_kind(card, 3, DALCS_TOKEN_EXPRESSION))) {
+        return false;
+    }
+    while (has_name && !is_kind(card, 5, DALCS_TOKEN_EXPRESSION) && *first + *n < card->n &&
+           !dalcs_assignment_starts(card, *first + *n)) {
+        ++*n;
+    }
+    return has_signal(card, *first, *n);
+}
+
 bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n) {
     bool is_table = false;
+    if (card->letter == 'r') {
+        return find_resistance(card, first, n);
+    }
     if (card->letter == 'l' || card->letter == 'c') {
         *first = start_of_storage(card);
     } else if (card->letter == 'b') {

@@ -33,6 +33,9 @@ struct dalcs_formula {
     int begin, end;
 };
 
+/* Does a formula hold the value of an element or a model, as Xyce writes it, x1:r1:r and dmod:is? */
+bool dalcs_formula_reads_value(const char *text);
+
 /* Where CONTROL= of a switch starts, whose formula makes the control; card->n when there is none. */
 int dalcs_formula_find_control(const struct dalcs_card *card);
 

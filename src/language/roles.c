@@ -180,7 +180,8 @@ static void raw_roles(const struct dalcs_card *card, unsigned char *role) {
                                 (k >= 2 && card->token[k - 1].kind == DALCS_TOKEN_EQUAL &&
                                  is_form(&card->token[k - 2])) ||
                                 is_form(&card->token[k - 1]);
-        if (card->token[k].kind == DALCS_TOKEN_EXPRESSION && is_formula) {
+        const bool is_multiplier = k >= 2 && is_word(&card->token[k - 2], "m");
+        if (card->token[k].kind == DALCS_TOKEN_EXPRESSION && is_formula && !is_multiplier) {
             role[k] = DALCS_ROLE_RAW;
         }
     }

@@ -1,4 +1,4 @@
-/* encoding.c - UTF-16 and Latin-1 to UTF-8. */
+/* encoding.c - UTF-16, Latin-1 and Windows-1252 to UTF-8. */
 #include "encoding.h"
 
 #include "eight_bytes.h"
@@ -43,28 +43,71 @@ static size_t put(char *to, unsigned code) {
     return n;
 }
 
-/* Text of old editors, where a byte is a character. That of any UTF-8 sequence is taken to be UTF-8, and
- * bytes that Latin-1 has no character for are no text at all. */
+/* The characters of Windows-1252 from 0x80 to 0x9F, where Latin-1 has none; 0: no character. */
+static const unsigned short WINDOWS[32] = {
+    0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+    0x2039, 0x0152, 0,      0x017D, 0,      0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+    0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
+
+static unsigned code_of(unsigned char c) {
+    return c >= 0x80 && c < 0xA0 ? WINDOWS[c - 0x80] : c;
+}
+
+/* A line of old editors, where a byte is a character of Latin-1 or Windows-1252. One with any UTF-8 sequence is taken
+ * to be UTF-8, and bytes that have no character are no text at all. */
 static bool is_latin1(const unsigned char *p, size_t n) {
     bool found = false;
     for (size_t k = dalcs_eight_skip_ascii(p, n); k < n; k++) {
-        const bool is_sequence = p[k] >= 0xC2 && k + 1 < n && p[k + 1] >= 0x80 && p[k + 1] < 0xC0;
-        if ((p[k] >= 0x80 && p[k] < 0xA0) || is_sequence) {
+        const bool is_sequence = p[k] >= 0xC0 && k + 1 < n && p[k + 1] >= 0x80 && p[k + 1] < 0xC0;
+        if ((p[k] != 0 && code_of(p[k]) == 0) || is_sequence) {
             return false;
         }
-        found = found || p[k] >= 0xA0;
+        found = found || p[k] >= 0x80;
     }
     return found;
 }
 
-static enum dalcs_status from_latin1(struct dalcs_arena *arena, const char **text, size_t *length) {
-    char *utf8 = dalcs_arena_alloc(arena, 2 * *length + 1, 1);
-    if (utf8 == NULL) {
-        return DALCS_E_NOMEM;
+static size_t line_length(const unsigned char *p, size_t n) {
+    const unsigned char *newline = memchr(p, '\n', n);
+    return newline != NULL ? (size_t)(newline - p) + 1 : n;
+}
+
+/* Where the first line of Latin-1 begins, n if there is none. */
+static size_t first_latin1(const unsigned char *p, size_t n) {
+    size_t at = dalcs_eight_skip_ascii(p, n);
+    while (at > 0 && p[at - 1] != '\n') {
+        at--;
     }
-    size_t n = 0;
-    for (size_t k = 0; k < *length; k++) {
-        n += put(utf8 + n, (unsigned char)(*text)[k]);
+    while (at < n) {
+        const size_t line = line_length(p + at, n - at);
+        if (is_latin1(p + at, line)) {
+            return at;
+        }
+        at += line;
+    }
+    return n;
+}
+
+/* Line by line: programs paste values in one encoding into text in another. */
+static enum dalcs_status from_latin1(struct dalcs_arena *arena, const char **text, size_t *length) {
+    const unsigned char *p = (const unsigned char *)*text;
+    size_t at = first_latin1(p, *length);
+    char *utf8 = at < *length ? dalcs_arena_alloc(arena, at + 3 * (*length - at) + 1, 1) : NULL;
+    if (utf8 == NULL) {
+        return at < *length ? DALCS_E_NOMEM : DALCS_OK;
+    }
+    memcpy(utf8, p, at);
+    size_t n = at;
+    while (at < *length) {
+        const size_t end = at + line_length(p + at, *length - at);
+        const bool latin1 = is_latin1(p + at, end - at);
+        for (; at < end; at++) {
+            if (latin1) {
+                n += put(utf8 + n, code_of(p[at]));
+            } else {
+                utf8[n++] = (char)p[at];
+            }
+        }
     }
     *text = utf8;
     *length = n;
@@ -79,7 +122,7 @@ enum dalcs_status dalcs_encoding_to_utf8(struct dalcs_arena *arena, const char *
     bool little;
     size_t k;
     if (!is_utf16(p, *length, &little, &k)) {
-        return is_latin1(p, *length) ? from_latin1(arena, text, length) : DALCS_OK;
+        return from_latin1(arena, text, length);
     }
     /* A unit of two bytes takes three at most. */
     char *utf8 = dalcs_arena_alloc(arena, *length + *length / 2 + 4, 1);

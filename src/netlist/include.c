@@ -3,17 +3,16 @@
  *     .include "file"       all of the file (also .inc, .incl, .lib file)
  *     .lib "file" section   what stands there between .lib section and .endl
  *
- * A name is relative to the file that includes; one without a folder that is not there may be a library's that is
- * installed. `.lib name` with one word begins a section when an
- * .endl follows before the next .lib; a section that nobody asks for is skipped. */
+ * library_path.c finds the file. `.lib name` with one word begins a section when an .endl follows before the next
+ * .lib; a section that nobody asks for is skipped. */
 #include "lexer.h"
+#include "library_path.h"
 #include "lower_case.h"
 #include "text_file.h"
 
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 /* Files that include nothing cost no bytes: they are counted too. */
@@ -35,35 +34,6 @@ static const char *file_name(struct dalcs_lexer *lexer, const struct dalcs_token
     const int quotes = token->kind == DALCS_TOKEN_WORD ? 0 : 1;
     return dalcs_arena_copy(&lexer->netlist->arena, text + quotes,
                             (size_t)(token->length - 2 * quotes));
-}
-
-/* A file of that name in the folder DALCS_LIBRARIES of the environment, else among the libraries that are installed with
- * dalcs, else in the source tree that it was built from; `path` where the netlist has such a file itself, or nobody. */
-static const char *installed(struct dalcs_lexer *lexer, const char *name, const char *path) {
-    const char *const folder[] = {getenv("DALCS_LIBRARIES"), DALCS_LIBRARIES,
-                                  DALCS_SOURCE_LIBRARIES};
-    if (path == NULL || strchr(name, '/') != NULL || access(path, R_OK) == 0) {
-        return path;
-    }
-    for (size_t k = 0; k < sizeof folder / sizeof *folder; k++) {
-        const char *found =
-            folder[k] != NULL ? dalcs_arena_printf(&lexer->netlist->arena, "%s/%s", folder[k], name)
-                              : path;
-        if (found == NULL || access(found, R_OK) == 0) {
-            return found;
-        }
-    }
-    return path;
-}
-
-/* `name` in the folder of the file that includes it. */
-static const char *path_of(struct dalcs_lexer *lexer, const char *name) {
-    const char *slash = strrchr(lexer->source->name, '/');
-    if (name[0] == '/' || slash == NULL) {
-        return name;
-    }
-    const int folder = (int)(slash - lexer->source->name) + 1;
-    return dalcs_arena_printf(&lexer->netlist->arena, "%.*s%s", folder, lexer->source->name, name);
 }
 
 static bool is_cycle(struct dalcs_lexer *lexer, const struct dalcs_source *source,
@@ -101,38 +71,22 @@ static enum dalcs_status make_source(struct dalcs_lexer *lexer, const struct dal
     return DALCS_OK;
 }
 
-/* What LTspice writes into every netlist with a diode or a transistor: its own libraries, wherever it is
- * installed. */
-static bool is_of_ltspice(const char *path) {
-    static const char *const names[] = {"standard.dio", "standard.bjt", "standard.mos",
-                                        "standard.jft", "standard.cap", "standard.ind",
-                                        "standard.res", "standard.bead"};
-    const size_t n = strlen(path);
-    bool found = false;
-    for (size_t k = 0; k < sizeof names / sizeof names[0] && !found; k++) {
-        const size_t length = strlen(names[k]);
-        found = n >= length && strcasecmp(path + n - length, names[k]) == 0;
-    }
-    return found;
-}
-
-/* The rest of the line behind .lib, where it is the path of such a library, whose blanks and brackets LTspice does
- * not quote; NULL: it is something else. */
-static const char *library_path(struct dalcs_lexer *lexer, const struct dalcs_card *card) {
-    const struct dalcs_token *first = &card->token[1];
-    const struct dalcs_token *last = &card->token[card->n - 1];
-    if (card->n < 2 || first->kind != DALCS_TOKEN_WORD || last->line != first->line) {
-        return NULL;
-    }
-    const size_t end = (size_t)last->offset + last->length;
-    const char *path = dalcs_arena_copy(&lexer->netlist->arena, first->line->text + first->offset,
-                                        end - (size_t)first->offset);
-    return path != NULL && is_of_ltspice(path) ? path : NULL;
+/* A library that is not here: what it has may not be needed, and what is needed and nowhere is an error at the
+ * element that names it. */
+static void leave_out(struct dalcs_lexer *lexer, const struct dalcs_token *token,
+                      const char *name) {
+    const struct dalcs_location where = dalcs_token_location(token);
+    dalcs_diag_add(lexer->diag, DALCS_WARNING, &where,
+                   "the models and subcircuits of the elements must be in the netlist",
+                   "the library '%s' is not here: it is left out", name);
+    lexer->netlist->missing_library = name;
 }
 
 static enum dalcs_status include(struct dalcs_lexer *lexer, const struct dalcs_token *token,
-                                 const struct dalcs_token *section) {
+                                 const char *name, const struct dalcs_token *section,
+                                 bool is_library) {
     struct dalcs_netlist *netlist = lexer->netlist;
+    const struct dalcs_location where = dalcs_token_location(token);
     if (netlist->no_includes || netlist->n_sources >= MOST_SOURCES) {
         dalcs_lexer_report(lexer, token, NULL, "%s",
                            netlist->no_includes ? "no other file can be read from here"
@@ -140,17 +94,23 @@ static enum dalcs_status include(struct dalcs_lexer *lexer, const struct dalcs_t
         netlist->misses_file = true;
         return DALCS_OK;
     }
-    const char *name = file_name(lexer, token);
-    const char *path = name != NULL ? installed(lexer, name, path_of(lexer, name)) : NULL;
+    bool elsewhere = false;
+    const char *path = name != NULL ? dalcs_library_path(lexer, name, &elsewhere) : NULL;
     struct dalcs_source *source;
     if (path == NULL) {
         return DALCS_E_NOMEM;
+    }
+    if (section == NULL && is_library && access(path, F_OK) != 0) {
+        leave_out(lexer, token, name);
+        return DALCS_OK;
+    }
+    if (elsewhere) {
+        dalcs_diag_add(lexer->diag, DALCS_NOTE, &where, NULL, "'%s' is read in its place", path);
     }
     DALCS_TRY(make_source(lexer, token, path, &source));
     if (is_cycle(lexer, source, token)) {
         return DALCS_OK;
     }
-    const struct dalcs_location where = dalcs_token_location(token);
     char *text;
     size_t length;
     enum dalcs_status status =
@@ -239,13 +199,9 @@ enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer, const struct dal
         lexer->netlist->misses_file = true;
         return DALCS_OK;
     }
-    const char *library = library_path(lexer, card);
-    if (library != NULL && access(library, R_OK) != 0) {
-        const struct dalcs_location where = dalcs_token_span(&token[1], &token[card->n - 1]);
-        dalcs_diag_add(lexer->diag, DALCS_WARNING, &where,
-                       "the models of the elements must be in the netlist",
-                       "LTspice's library '%s' is not here: it is left out", library);
-        return DALCS_OK;
+    const char *library = dalcs_library_with_blanks(lexer, card);
+    if (library != NULL) {
+        return include(lexer, &token[1], library, NULL, true);
     }
     if (card->n > (is_lib ? 3 : 2)) {
         dalcs_lexer_report(lexer, &token[is_lib ? 3 : 2], "put quotes around a name with blanks",
@@ -258,7 +214,9 @@ enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer, const struct dal
         lexer->skipping = true;
         return DALCS_OK;
     }
-    return include(lexer, &token[1], card->n == 3 ? &token[2] : NULL);
+    const char *name = file_name(lexer, &token[1]);
+    return include(lexer, &token[1], name, card->n == 3 ? &token[2] : NULL,
+                   is_lib || (name != NULL && dalcs_library_is_name(name)));
 }
 
 /* The word that starts at p, lower case, in the arena. */

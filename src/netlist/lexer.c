@@ -412,10 +412,11 @@ static bool is_language(const struct dalcs_token *name) {
     return false;
 }
 
-/* B sources, E, G and S with name=expression, L with Flux=, C with Q=: formulas need no braces. */
+/* B sources, E, G, S and R with name=expression, L with Flux=, C with Q=: formulas need no braces. */
 static bool may_have_formula(const struct dalcs_card *card) {
     bool may = card->letter == 'b';
-    const bool has_forms = card->letter == 'e' || card->letter == 'g' || card->letter == 's';
+    const bool has_forms = card->letter == 'e' || card->letter == 'g' || card->letter == 's' ||
+                           (card->letter == 'r' && card->n > 6);
     for (int k = 3; k < card->n && has_forms && !may; k++) {
         may = card->token[k].kind == DALCS_TOKEN_EQUAL;
     }

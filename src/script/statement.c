@@ -54,20 +54,21 @@ enum { N_WORDS = sizeof WORDS / sizeof WORDS[0] };
 
 /* Of ngspice; they show, ask or compute what dalcs does elsewhere or not at all. */
 static const char *const SKIPPED[] = {
-    "display",   "setplot", "gnuplot",  "asciiplot", "iplot",   "rusage",     "settype",
-    "setscale",  "destroy", "remcirc",  "source",    "listing", "linearize",  "fourier",
-    "fft",       "psd",     "spec",     "noise",     "pz",      "sens",       "tf",
-    "disto",     "sp",      "pss",      "status",    "show",    "showmod",    "version",
-    "shell",     "history", "help",     "alias",     "unalias", "define",     "undefine",
-    "unlet",     "load",    "edit",     "resume",    "step",    "stop",       "trace",
-    "iplot",     "where",   "delete",   "bug",       "cd",      "circbyline", "compose",
-    "cross",     "deftype", "diff",     "dump",      "eprint",  "eprvcd",     "fopen",
-    "fread",     "fclose",  "getcwd",   "inventory", "jobs",    "mc_source",  "mdump",
-    "mrdump",    "optran",  "rehash",   "reshape",   "rspice",  "setcirc",    "setcs",
-    "setseed",   "shift",   "snload",   "snsave",    "state",   "strcmp",     "strslice",
-    "strstr",    "sysinfo", "tutorial", "wrnodev",   "wrs2p",   "xgraph",     "aspice",
-    "codemodel", "devhelp", "unset",    "bltplot",   "pause",   "label",      "goto",
-    "wrspice",   "esave",   "cutout",   "pre_osdi",  "cdump"};
+    "display",   "setplot", "gnuplot",    "asciiplot", "iplot",   "rusage",        "settype",
+    "setscale",  "destroy", "remcirc",    "source",    "listing", "linearize",     "fourier",
+    "fft",       "psd",     "spec",       "noise",     "pz",      "sens",          "tf",
+    "disto",     "sp",      "pss",        "status",    "show",    "showmod",       "version",
+    "shell",     "history", "help",       "alias",     "unalias", "define",        "undefine",
+    "unlet",     "load",    "edit",       "resume",    "step",    "stop",          "trace",
+    "iplot",     "where",   "delete",     "bug",       "cd",      "circbyline",    "compose",
+    "cross",     "deftype", "diff",       "dump",      "eprint",  "eprvcd",        "fopen",
+    "fread",     "fclose",  "getcwd",     "inventory", "jobs",    "mc_source",     "mdump",
+    "mrdump",    "optran",  "rehash",     "reshape",   "rspice",  "setcirc",       "setcs",
+    "setseed",   "shift",   "snload",     "snsave",    "state",   "strcmp",        "strslice",
+    "strstr",    "sysinfo", "tutorial",   "wrnodev",   "wrs2p",   "xgraph",        "aspice",
+    "codemodel", "devhelp", "unset",      "bltplot",   "pause",   "label",         "goto",
+    "wrspice",   "esave",   "cutout",     "pre_osdi",  "cdump",   "pre_codemodel", "remzerovec",
+    "rempar",    "setdcop", "print_cirs", "use",       "osdi",    "tranop",        "prompt"};
 
 static bool is_skipped(const char *word) {
     for (size_t k = 0; k < sizeof SKIPPED / sizeof SKIPPED[0]; k++) {

@@ -242,7 +242,25 @@ MODELS = [
              "W1 a b Vg s\nG1 0 h g 0 1\nVg h 0\n.model s CSW(Ron=10 IHon=0.6 IHoff=0.4)",
              "W1 a b Vg s\nG1 0 h g 0 1\nVg h 0\n.model s ISWITCH(Ron=10 Ion=0.6 Ioff=0.4)",
              "X1 a b g q\n.subckt q p n c\nS1 p n c 0 s\n.model s SW(Ron=10 Von=0.6 Voff=0.4)\n.ends",
-         ], [("S1 a b g 0 s\n.model s SW(Ron=10 Von=1 Vt=0.5)", "either")]),
+              "S1 a b g 0 s\n.model s SW(Ron=10 Von=7 Vt=0.5)",
+             "S1 a b g 0 s\n.model s VSWITCH(Ron=10 Von=0.6 Voff=0.4 Vh=-0.5)",
+             "S1 a b g 0 s\n.model s VSWITCH(Ron=10 Von=7 Voff=5 VHon=0.6 VHoff=0.4)",
+             "S1 a b g 0 s\n.model s VSWITCH(Ron=10 Vt=3 VHon=0.6 VHoff=0.4)",
+        ], [("S1 a b g 0 s\n.model s VSWITCH(Ron=10 Vt=0.5 VHon=0.6)", "has vhon and vhoff")]),
+    Kind("closed when off", SWITCHED, "S1 a b g 0 s\n.model s SW(Ron=10 Roff=1G Vt=0.5)", "v(b)",
+         RON, [
+             "S1 a b q 0 s\nE9 q 0 0 g 1\n.model s SW(Ron=1G Roff=10 Vt=-0.5)",
+             "S1 a b q 0 s\nE9 q 0 0 g 1\n.model s SW(Roff=10 Ron=1G Vt=-0.5 Vh=0.2)",
+             "S1 a b q 0 s OFF\nE9 q 0 0 g 1\n.model s SW(Roff=10 Ron=1G Vt=-0.5 Vh=0.2)",
+             "S1 a b q 0 s ON\nE9 q 0 0 g 1\n.model s SW(Roff=10 Ron=1G Vt=-0.5 Vh=0.2)",
+             "S1 a b q 0 s\nE9 q 0 0 g 1\n.model s VSWITCH(Roff=10 Ron=1G Von=-0.4 Voff=-0.6)",
+             "S1 a b g 0 s\n.model s VSWITCH(Roff=10 Ron=1G Von=0.4 Voff=0.6)",
+             "S1 a b g 0 s\n.model s VSWITCH(Roff=10 Ron=1G VHon=0.4 VHoff=0.6)",
+             "S1 a b g 0 s\n.model s VSWITCH(Roff=10 Ron=1G VHoff=0.6 VHon=0.4 Von=9)",
+             "X1 a b g u\n.subckt u p n c\nE9 q 0 0 c 1\nS1 p n q 0 s\n"
+             ".model s SW(Ron=1G Roff=10 Vt=-0.5)\n.ends",
+             "W1 a b Vs s\nG1 0 h g 0 -1\nVs h 0\n.model s CSW(Ron=1G Roff=10 It=-0.5)",
+         ], [("S1 a b g 0 s\n.model s SW(Ron=10 Roff=10 Vt=0.5)", "switches nothing")]),
     Kind("CONTROL and its models", SWITCHED, "S1 a b s CONTROL={v(g)}\n.model s SW(Ron=10 Vt=0.5)",
          "v(b)", RON, [
              "S1 a b s CONTROL={v(g)}\n.model s SWITCH(ON=0.6 OFF=0.4 RON=10 ROFF=inf)",
@@ -445,7 +463,163 @@ ANALYSES = [
     ], [(".tran 0.5m steady", "not supported")]),
 ]
 
+# ---- Formulas in place of values -------------------------------------------------------------------
+
+OHMS = """
+V1 a 0 10
+Vc c 0 2
+@
+R9 b 0 1k
+.op
+"""
+WATTS = """
+V1 a 0 10
+R1 a b 100
+Vc c 0 0.2
+@
+.op
+"""
+# i = 0.2/v at 10 - 100 i = v: the larger of the two.
+ON_WATTS = 5 + math.sqrt(25 - 20)
+DOUBLED = """
+V1 a 0 10
+R1 a b 1k
+@
+.op
+"""
+FORMULAS = [
+    Kind("a resistance that is a formula", OHMS, "B1 a b V={i(b1)*1k*v(c)}", "v(b)", 10 / 3, [
+        "R1 a b R={1k*v(c)}",
+        "R1 a b {1k*v(c)}",
+        "R1 a b '1k*v(c)'",
+        "R1 a b r='v(c) * 1000'",
+        "R1 a b R=1k*v(c)",
+        "R1 a b R=1k*(v(c,0))",
+        "R1 a b R={v(c) > 1 ? 2k : 1G}",
+        "R1 a b R=if(v(c) > 1, 2k, 1G)",
+        "R1 a b R={table(v(c), 0,1k, 4,3k)} tc1=0.1 tc2=0.2",
+        "R1 a b R={sqrt(v(c)*2)*1k}",
+        "R1 a b R={4k*(v(c)-1)} m=2",
+        "R1 a b {1k*v(c)} noiseless",
+        "B1 a b R={1k*v(c)}",
+        "B1 a b R=1k*v(c)",
+        "R1 a b R={2k + 0*time}",
+        "X1 a b c s\n.subckt s p q g\n.param k=1k\nR1 p q R={k*v(g)}\n.ends",
+        "X1 a b c s k=2k m=2\n.subckt s p q g k=1\nR1 p q R={k*v(g)}\n.ends",
+        "Vs c2 0 2m\nR1 a b R={1e6*v(c2)}",
+        "Fs 0 c2 V1 -200\nR8 c2 0 1\nR1 a b R={2k + 0*i(v1)}",
+    ], [("R1 a b R={1k*v(nowhere)}", "nowhere"),
+        ("R1 a b R={1k*v(c)} m=-1", "must be positive")]),
+    Kind("a power that is a formula", WATTS, "B1 b 0 I={v(c)/v(b)}", "v(b)", ON_WATTS, [
+        "B1 b 0 P={v(c)}",
+        "B1 b 0 P=v(c)",
+        "B1 b 0 P=0.2",
+        "B1 0 b P={v(c)}",
+        "B1 b 0 P={v(c)/2} m=2",
+        "B1 b 0 P={0.1*v(c)*10}",
+        "X1 b c s\n.subckt s p g\nB1 p 0 P={v(g)}\n.ends",
+        "X1 b s w=0.2\n.subckt s p w=1\nB1 p 0 P={w}\n.ends",
+        "B1 b 0 P=0.1\nB2 b 0 P=v(c)/2",
+        "B1 b 0 P={max(v(c),0)}",
+    ], [("B1 b 0 Q={v(c)}", "has no 'q='")]),
+    Kind("sources in parallel", DOUBLED, "B1 b 0 I={2m*v(b)}", "v(b)", 10 / 3, [
+        "B1 b 0 I={1m*v(b)} m=2",
+        "B1 b 0 I=1m*v(b) m=2",
+        "B1 b 0 I=0.5m*v(b) M=4",
+        "B1 b 0 I={1m*v(b)} m={1+1}",
+        "B1 b 0 I={1m*v(b)} tc1=0 m=2",
+        "B1 b 0 I={1m*v(b)} m=2 tc1=0",
+        "G1 b 0 VALUE={1m*v(b)} m=2",
+        "G1 b 0 VALUE {1m*v(b)} M=2",
+        "G1 b 0 cur='1m*v(b)' m=2",
+        "X1 b s\n.subckt s p\nB1 p 0 I={1m*v(p)} m=2\n.ends",
+    ], [("B1 b 0 I={1m*v(b)} m=0", "must be positive"),
+        ("B1 b 0 V={1m*v(b)} m=2", "did not expect")]),
+]
+
+# ---- Carriers: at 0.73 ms of a period of 1 ms ------------------------------------------------------
+
+OVER_TIME = """
+.param f=1k
+B1 a 0 V={@}
+R1 a 0 1
+.tran 10u 0.73m
+"""
+FOUR = """
+.param f=1k
+B1 a 0 V={@}
+R1 a 0 1
+.tran 10u 3.73m
+"""
+CARRIERS = [
+    Kind("a sawtooth", OVER_TIME, "f*time", "v(a)", 0.73, [
+        "time*f-floor(time*f)",
+        "f*time - floor(f*time)",
+        "(time % 1m)/1m",
+        "fmod(time, 1m)*f",
+        "fmod(time*f, 1)",
+        "time*f - int(time*f)",
+        "1 - (-f*time - floor(-f*time))",
+        "f*(time+2m) - floor(f*(time+2m))",
+        "atan(tan(pi*f*time - pi/2))/pi + 0.5",
+        "f*time + 1 - ceil(f*time)",
+        "f*time - round(f*time) + 1",
+    ], [("v(a) - floor(v(a)) + 1", "steps without end")]),
+    Kind("the same four periods later", FOUR, "f*time - 3", "v(a)", 0.73, [
+        "time*f-floor(time*f)",
+        "(time % 1m)/1m",
+        "fmod(time, 1m)*f",
+        "time*f - int(time*f)",
+        "1 - (-f*time - floor(-f*time))",
+        "f*(time+2m) - floor(f*(time+2m))",
+        "atan(tan(pi*f*time - pi/2))/pi + 0.5",
+        "f*time + 1 - ceil(f*time)",
+        "f*time - round(f*time) + 1",
+        "f*time - 3*(floor(f*time) > 2.5 ? 1 : 0)",
+    ]),
+    Kind("a triangle", FOUR, "4*f*time - 16 + 0.08 + 0", "v(a)", -1.0, [
+        "2/pi*asin(sin(2*pi*f*time)) - 0.08",
+        "2/pi*arcsin(sin(2*pi*f*time)) - 0.08",
+        "2/pi*asin(sin(2*pi*f*(time-2m))) - 0.08",
+        "2/pi*asin(cos(2*pi*f*time - pi/2)) - 0.08",
+        "1 - 2/pi*acos(sin(2*pi*f*time)) - 0.08",
+        "1 - 2/pi*acos(cos(2*pi*f*time - pi/2)) - 0.08",
+        "1 - 2/pi*arccos(cos(pi/2 - 2*pi*f*time)) - 0.08",
+        "1 - 4*abs(f*time - 0.25 - floor(f*time + 0.25)) - 0.08",
+        "-2/pi*asin(sin(-2*pi*f*time))*1 - 0.08",
+        "4*abs(f*time + 0.25 - round(f*time + 0.25)) - 1.08",
+    ]),
+    Kind("a comparator with a carrier", FOUR, "1", "v(a)", 1.0, [
+        "0.5 > 2/pi*asin(sin(2*pi*f*time)) ? 1 : 0",
+        "0.5 > time*f - floor(time*f) ? 0 : 1",
+        "u(0.5 - 2/pi*asin(sin(2*pi*f*time)))",
+        "(time*f - floor(time*f)) > 0.7",
+        "!(2/pi*asin(sin(2*pi*f*time)) > sin(2*pi*10*time))",
+        "buf(time*f - floor(time*f))",
+        "if(fmod(time,1m) < 0.72m, 0, 1)",
+        "(time*f - floor(time*f) > 0.7 && time > 1m) ? 1 : 0",
+        "floor(2*f*time) - 2*floor(f*time)",
+        "floor(time*f)/3",
+    ]),
+]
+
 NOTED = [
+    ("a value on .print", "V1 a 0 1\nR1 a 0 1\n.print dc v(a) r1:r\n.op\n", "no signal: it is left out"),
+    ("a value on .print", "V1 a 0 1\nR1 a 0 1\n.param q=2\n.print dc q v(a)\n.op\n", "is left out"),
+    ("a value on .print", "V1 a 0 1\nR1 a 0 1\n.print dc v(a) temp\n.op\n", "is left out"),
+    ("a value on .print", "V1 a 0 1\nD1 a 0 dm\n.model dm D(Ron=1)\n.print dc v(a) dm:ron n(d1:cd)\n"
+     ".op\n", "is left out"),
+    ("a value on .print", "V1 a 0 1\nX1 a s\n.subckt s p\nR1 p 0 1\n.ends\n.print dc v(a) x1:r1:r\n"
+     ".op\n", "is left out"),
+    ("a value on .print", "V1 a 0 1\nR1 a 0 1\n.print dc v(a) {r1:r} {2*r1:r+v(a)}\n.op\n", "is left out"),
+    ("a value on .print", "V1 a 0 1\nX1 a s\n.subckt s p\nR1 p q 1\nR2 q 0 1\n.ends\n"
+     ".print dc v(a) {x1:r1:r} {v(x1:q)*2}\n.op\n", "'x1:r1:r' is a value of the netlist"),
+    ("a value on .print", "V1 a 0 1\nD1 a 0 dm\n.model dm D(Ron=1)\n.print dc {dm:ron} v(a)\n.op\n", "left out"),
+    ("a model of LTspice's", "V1 a 0 1\nD1 a b D\nR1 b 0 1\n.op\n", "exactly ideal"),
+    ("words of a diode", "V1 a 0 1\nD1 a b d1 PJ=0.5 w=1u thermal\n.model d1 D(IS=1n CJSW=1p rth0=3 "
+     "fv_max=2)\nR1 b 0 1\n.op\n", "ignored"),
+    ("words of .measure", "V1 a 0 1\nR1 a 0 1\n.tran 1m\n.measure tran m max v(a) failvalue=1u\n",
+     "means nothing here"),
     ("reltol", "V1 a 0 1\nR1 a 0 1\n.options reltol=0.2\n.op\n", "a tolerance of 0.2 is cut to 0.1"),
     ("reltol", "V1 a 0 1\nR1 a 0 1\n.options abstol=0.2 reltol=0.5\n.op\n", "is cut to 0.1"),
     ("a power", "V1 a 0 1\nR1 a 0 1\n.print op v(a) P(r1) W(r1)\n.op\n", "p(...) is left out"),
@@ -481,7 +655,8 @@ def check_table(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("spellings")
-    for kind in ELEMENTS + DIODES + MODELS + SOURCES + PARAMETERS + ANALYSES:
+    for kind in (ELEMENTS + DIODES + MODELS + SOURCES + PARAMETERS + ANALYSES + FORMULAS +
+                 CARRIERS):
         check(checker, program, kind)
     check_notes(checker, program)
     check_table(checker, program)

@@ -206,9 +206,68 @@ def states(checker, program):
         checker.close(done.at("v(q)", 15e-3), 2.5, 1e-6, "a switch the other way round")
 
 
+def products(checker, program):
+    """mult and divide with all their parameters, of sines and of a ramp, against the numbers."""
+    for scale, rate in ((1, 50), (1e-3, 1e3), (1e4, 0.2), (20, 1e6), (0.3, 7)):
+        what = f"products of {scale} V at {rate} Hz"
+        cards = [f"v1 a 0 sin(0 {scale!r} {rate!r})", f"v2 b 0 sin({3 * scale!r} {scale!r} {2 * rate!r})", f"v3 g 0 {0.5 * scale!r}",
+                 "a1 [a b] m mm", ".model mm mult", "a2 [a b g] n nm",
+                 f".model nm mult(in_offset=[{0.1 * scale!r} 0 {scale!r}] in_gain=[2 -1 0.5] out_gain=3 out_offset={scale!r})",
+                 "a3 a b d dm", ".model dm divide", "a4 %vd(a g) %vd(b 0) q qm",
+                 f".model qm divide(num_offset={scale!r} num_gain=2 den_offset={scale!r} den_gain=-4 out_gain=0.5 out_offset=1 "
+                 "den_lower_limit=1u den_domain=1u fraction=false)",
+                 "r1 m 0 1k", "r2 n 0 1k", "r3 d 0 1k", "r4 q 0 1k", f".tran {0.01 / rate!r} {1 / rate!r}"]
+        done = run_cards(program, what, cards)
+        if not runs(checker, done, what):
+            continue
+        for t, m, n, d, q in zip(done.time, *(done.column(f"v({x})") for x in "mndq")):
+            a = scale * math.sin(2 * math.pi * rate * t)
+            b = 3 * scale + scale * math.sin(4 * math.pi * rate * t)
+            g = 0.5 * scale
+            checker.close(m, a * b, 1e-8 * scale ** 2, f"{what}: a b at {t}")
+            checker.close(n, 3 * 2 * (a + 0.1 * scale) * -b * 0.5 * (g + scale) + scale, 1e-7 * (scale ** 3 + scale),
+                          f"{what}: three at {t}")
+            checker.close(d, a / b, 1e-8, f"{what}: a/b at {t}")
+            checker.close(q, 0.5 * 2 * (a - g + scale) / (-4 * (b + scale)) + 1, 1e-8, f"{what}: a quotient at {t}")
+
+
+def transfers(checker, program):
+    """s_xfer against LAPLACE with the same ratio, in steps and with offset and frequency, and against a closed form."""
+    cases = (("num_coeff=[1] den_coeff=[1m 1]", "1/(1 + s*1m)"),
+             ("num_coeff=[1 0] den_coeff=[1u 2m 1]", "s/(1u*s*s + 2m*s + 1)"),
+             ("num_coeff=[2 3] den_coeff=[1 4] denormalized_freq=1k", "(2*s/1k + 3)/(s/1k + 4)"),
+             ("num_coeff=[1] den_coeff=[1 0.5 1] denormalized_freq=6283.2 gain=5", "5/(s*s/6283.2**2 + 0.5*s/6283.2 + 1)"),
+             ("num_coeff=[1 2 1] den_coeff=[1 3 3 1] denormalized_freq=500", "(s*s/250k + 2*s/500 + 1)/(s**3/500**3 + 3*s*s/250k + 3*s/500 + 1)"),
+             ("num_coeff=[-1] den_coeff=[-1u -1]", "1/(1 + s*1u)"),
+             ("num_coeff=[0 0 7] den_coeff=[1m 2] int_ic=[0]", "7/(2 + s*1m)"),
+             ("num_coeff=[3] den_coeff=[2]", "1.5"),
+             ("gain=-2 num_coeff=[1m 1] den_coeff=[4m 1] int_ic=[0 0]", "-2*(1m*s + 1)/(4m*s + 1)"),
+             ("num_coeff=[1 100] den_coeff=[1 10 0] denormalized_freq=100", "(s/100 + 100)/(s*(s/100 + 10)/100)"))
+    for model, ratio in cases:
+        word = " uic" if "10 0]" in model else ""
+        cards = ["v1 in 0 pulse(0 1 0.1m 0 0 3m 10m)", "a1 in o m", f".model m s_xfer({model})",
+                 f"e1 p 0 laplace {{v(in)}} = {{{ratio}}}" if "s" in ratio else f"e1 p 0 in 0 {ratio}",
+                 "a2 in q n", f".model n s_xfer({model} in_offset=0.25)", "v2 shifted in 0.25",
+                 f"e2 u 0 laplace {{v(shifted)}} = {{{ratio}}}" if "s" in ratio else f"e2 u 0 shifted 0 {ratio}",
+                 "r1 o 0 1k", "r2 p 0 1k", "r3 q 0 1k", "r4 u 0 1k", f".tran 50u 5m{word}"]
+        done = run_cards(program, model, cards)
+        if runs(checker, done, model):
+            for mine, plain in (("v(o)", "v(p)"), ("v(q)", "v(u)")):
+                size = max(map(abs, done.column(plain)))
+                worst = max(abs(x - y) for x, y in zip(done.column(mine), done.column(plain)))
+                checker.check(size > 0 and worst <= 1e-9 * size, f"{model}: {mine} is off by {worst} of {size}")
+    done = run_cards(program, "a low pass", ["v1 in 0 pulse(0 2 1m 0 0 1 2)", "a1 in o m",
+                                             ".model m s_xfer(num_coeff=[1] den_coeff=[0.5m 1])", "r1 o 0 1k", ".tran 0.1m 3m"])
+    if runs(checker, done, "a low pass"):
+        checker.close(done.at("v(o)", 3e-3), 2 * (1 - math.exp(-4)), 1e-8, "a low pass")
+
+
 def refused(checker, program):
     cases = (("a1 a o m", ".model m d_dt(gain=1)", "d_dt is not supported: a derivative is not causal"),
-             ("a1 [a b] o m", ".model m mult", "mult is not supported: it is a product"),
+             ("a1 a o m", ".model m s_xfer(num_coeff=[1 0 0] den_coeff=[1 1])", "improper: of degree 2 over 1"),
+             ("a1 a o m", ".model m s_xfer(num_coeff=[1])", "den_coeff has from 1 to 11 numbers"),
+             ("a1 a o m", ".model m s_xfer(num_coeff=[1] den_coeff=[1 1] int_ic=[2])", "begin at rest"),
+             ("a1 a o m", ".model m divide(num_gain=2)", "'a1' has 2 ports, divide has 3"),
              ("a1 a o m", ".model m hyst(in_low=0)", "hyst is not supported"),
              ("a1 %i(a) o m", ".model m gain(gain=2)", "ports of type '%i' are not supported"),
              ("a1 a o m", ".model m gain(gian=2)", "gain has no parameter 'gian'"),
@@ -227,7 +286,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("code_models")
-    for part in (truth, ring, flip_flops, bridges, lines, states, refused):
+    for part in (truth, ring, flip_flops, bridges, lines, states, products, transfers, refused):
         part(checker, program)
     return checker.finish()
 

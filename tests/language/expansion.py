@@ -279,6 +279,27 @@ def encodings(program, checker):
             checker.check(run.output == wanted.output, f"{codec}: differs from UTF-8")
 
 
+def mixed_encodings(program, checker):
+    """Lines of Latin-1, Windows-1252 and UTF-8 in one file, as programs paste them."""
+    micro = RC.replace("470n", "0.47\u00b5")
+    wanted = dalcs_program.run(program, micro, method=None).output
+    lines = micro.split("\n")
+    windows = ("* 5 \u2013 \u201cr\u201d", "; \u20ac 3", "* \u00fc\u00df \u2019 \u2026")
+    latin = ("* \u00b5", "; \u00fc\u00df", "* \u00b1 5 %")
+    for codecs, comments in ((("latin-1", "utf-8"), latin), (("utf-8", "latin-1"), latin),
+                             (("cp1252", "cp1252"), windows), (("cp1252", "utf-8"), windows),
+                             (("utf-8", "cp1252"), windows)):
+        for comment in comments:
+            data = b"\n".join(line.encode(codecs[k % 2]) for k, line in
+                              enumerate([lines[0]] + [comment] + lines[1:]))
+            with tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder) / "main.cir"
+                path.write_bytes(data)
+                run = dalcs_program.run(program, path, method=None)
+            checker.check(run.status == 0 and run.output == wanted,
+                          f"{codecs}, {comment!r}: {run.status}\n{run.stderr}")
+
+
 def names(program, checker):
     run = dalcs_program.run(program, NAMES, method=None)
     checker.check(run.status == 0, run.stderr)
@@ -349,7 +370,7 @@ def large(program, checker):
 
 def main():
     checker = dalcs_program.Checker("expansion")
-    for test in (same_bits, encodings, names, closed_form, untouched, joined, large):
+    for test in (same_bits, encodings, mixed_encodings, names, closed_form, untouched, joined, large):
         test(sys.argv[1], checker)
     return checker.finish()
 

@@ -200,7 +200,7 @@ START_TEST(test_errors) {
         {"t\nR1 a 0 'x\nR2 b 0 1\n", "r1 a 0 !<x> ", 2, 8},
         {"t\nR1 a 0 {x{y}\nR2 b 0 1\n", "r1 a 0 !<x{y}> ", 2, 8},
         {"t\nR1 a\x01 0\nR2 b 0 1\n", NULL, 2, 4},
-        {"t\nR1 a \x85 0\nR2 b 0 1\n", NULL, 2, 6},
+        {"t\nR1 a \x81 0\nR2 b 0 1\n", NULL, 2, 6},
         {"t\nR1 a \xC0\x80 0\nR2 b 0 1\n", NULL, 2, 6},
         {"t\nR1 a \xED\xA0\x80 0\nR2 b 0 1\n", NULL, 2, 6},
         {"t\nR1 a \xF4\x90\x80\x80\nR2 b 0 1\n", NULL, 2, 6},
