@@ -313,6 +313,19 @@ bool dalcs_block_has_ports(const struct dalcs_block_card *c, int n, int n_option
     return false;
 }
 
+bool dalcs_block_has_nodes(const struct dalcs_block_card *c, const char *usage) {
+    for (int k = 0; k < c->n_ports; k++) {
+        for (int i = 0; i < c->port[k].n; i++) {
+            if (c->port[k].end[i].is_null || c->port[k].end[i].is_inverted) {
+                dalcs_builder_error(c->builder, c->card->token, usage,
+                                    "a port of '%s' must be a node", c->card->token->text);
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 void dalcs_block_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                        const struct dalcs_block *block) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);

@@ -62,6 +62,8 @@ bool dalcs_block_has_only(const struct dalcs_block_card *c, const char *const *l
 /* Reports another number of ports than that; optional ones may be left out. */
 bool dalcs_block_has_ports(const struct dalcs_block_card *c, int n, int n_optional,
                            const char *usage);
+/* Reports a port that is null or inverted: one of a voltage must be a node. */
+bool dalcs_block_has_nodes(const struct dalcs_block_card *c, const char *usage);
 
 /* An A card whose model is a transformer. */
 void dalcs_transformer_parse(struct dalcs_builder *builder, const struct dalcs_card *card,

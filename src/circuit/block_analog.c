@@ -43,19 +43,8 @@ static void control(struct dalcs_device *device, const struct dalcs_block_end *b
 
 static bool check(const struct dalcs_block_card *c, const char *const *names, size_t n, int ports,
                   const char *usage) {
-    if (!dalcs_block_has_only(c, names, n) || !dalcs_block_has_ports(c, ports, 0, usage)) {
-        return false;
-    }
-    for (int k = 0; k < c->n_ports; k++) {
-        for (int i = 0; i < c->port[k].n; i++) {
-            if (c->port[k].end[i].is_null || c->port[k].end[i].is_inverted) {
-                dalcs_builder_error(c->builder, c->card->token, usage,
-                                    "a port of '%s' must be a node", c->card->token->text);
-                return false;
-            }
-        }
-    }
-    return true;
+    return dalcs_block_has_only(c, names, n) && dalcs_block_has_ports(c, ports, 0, usage) &&
+           dalcs_block_has_nodes(c, usage);
 }
 
 /* ---- Without memory ------------------------------------------------------------------------------------------- */

@@ -9,19 +9,6 @@
 /* States of s_xfer: each takes two elements, for which a card has room. */
 enum { MOST_STATES = 10 };
 
-static bool has_nodes(const struct dalcs_block_card *c, const char *usage) {
-    for (int k = 0; k < c->n_ports; k++) {
-        for (int i = 0; i < c->port[k].n; i++) {
-            if (c->port[k].end[i].is_null || c->port[k].end[i].is_inverted) {
-                dalcs_builder_error(c->builder, c->card->token, usage,
-                                    "a port of '%s' must be a node", c->card->token->text);
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
 static struct dalcs_device *add_output(const struct dalcs_block_card *c,
                                        const struct dalcs_block_end *out) {
     struct dalcs_device *device = dalcs_builder_add_device(c->builder, DALCS_VCVS, c->card->token);
@@ -76,7 +63,8 @@ static void parse_product(const struct dalcs_block_card *c) {
     static const char usage[] = "a multiplier is: Aname [in in ...] out model";
     struct dalcs_formula_writer w;
     if (!dalcs_block_has_only(c, names, 4) || !dalcs_block_has_ports(c, 2, 0, usage) ||
-        !has_nodes(c, usage) || !dalcs_formula_writer_start(&w, c->builder, c->card->token)) {
+        !dalcs_block_has_nodes(c, usage) ||
+        !dalcs_formula_writer_start(&w, c->builder, c->card->token)) {
         return;
     }
     const struct dalcs_formula *product = NULL;
@@ -97,7 +85,8 @@ static void parse_quotient(const struct dalcs_block_card *c) {
     static const char usage[] = "a divider is: Aname above below out model";
     struct dalcs_formula_writer w;
     if (!dalcs_block_has_only(c, names, 9) || !dalcs_block_has_ports(c, 3, 0, usage) ||
-        !has_nodes(c, usage) || !dalcs_formula_writer_start(&w, c->builder, c->card->token)) {
+        !dalcs_block_has_nodes(c, usage) ||
+        !dalcs_formula_writer_start(&w, c->builder, c->card->token)) {
         return;
     }
     const struct dalcs_formula *above =
@@ -172,7 +161,7 @@ static void parse_transfer(const struct dalcs_block_card *c) {
     static const char usage[] = "a transfer function is: Aname in out model";
     struct dalcs_rational r;
     if (!dalcs_block_has_only(c, names, 7) || !dalcs_block_has_ports(c, 2, 0, usage) ||
-        !has_nodes(c, usage) || !starts_at_rest(c)) {
+        !dalcs_block_has_nodes(c, usage) || !starts_at_rest(c)) {
         return;
     }
     const double unit = dalcs_block_number(c->block, "denormalized_freq", 1);

@@ -110,6 +110,9 @@ class Reference:
             for s in circuit.signals:
                 self.scale[s] = max((abs(x) for x in self.rows.column(s)), default=0.0)
                 largest[s[0]] = max(largest[s[0]], self.scale[s])
+            for e in circuit.of("l"):  # which hold a flux, though every voltage may be 0
+                flux = abs(e.value) * max(map(abs, self.rows.column(("i", e.name))), default=0.0)
+                largest["v"] = max(largest["v"], flux / circuit.stop)
             self.least = {s: 0.0 if x > NOTHING * largest[s[0]] else FLOOR * largest[s[0]]
                           for s, x in self.scale.items()}
             self.scale = {s: max(x, 1e-5 * largest[s[0]]) for s, x in self.scale.items()}

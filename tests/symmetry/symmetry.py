@@ -12,6 +12,7 @@ import argparse
 import pathlib
 import random
 import sys
+import zlib
 
 import random_netlists
 import shrinking
@@ -78,12 +79,13 @@ class Session:
         a = self.arguments
         return not (a.long or a.files or a.seeds is not None or a.only or a.change)
 
-    def chosen(self, number):
-        """Those that are the turn of the netlist of this number."""
+    def chosen(self, name):
+        """Those that are the turn of the netlist of this name, whatever other netlists there are."""
         if not self.short():
             return list(self.changes)
         names = list(self.changes)
-        return [names[(OF_EACH * number + k) % len(names)] for k in range(OF_EACH)]
+        first = zlib.crc32(name.encode())
+        return [names[(first + k) % len(names)] for k in range(OF_EACH)]
 
     def compare(self, name, circuit, reference, change_name):
         change = self.changes[change_name](circuit, random.Random(f"{name} {change_name}"))
@@ -107,7 +109,7 @@ class Session:
             self.bad += 1
             print(f"FAIL {name} {change_name}: passes, take it out of known.txt", flush=True)
 
-    def netlist(self, number, name, circuit):
+    def netlist(self, name, circuit):
         if isinstance(circuit, str):
             self.count["skipped"] += 1
             print(f"skip {name}: {circuit}")
@@ -120,7 +122,7 @@ class Session:
             self.bad += 1
             print(f"FAIL {name}: {crash}")
             return
-        for change_name in self.chosen(number):
+        for change_name in self.chosen(name):
             self.compare(name, circuit, reference, change_name)
 
     def finish(self):
@@ -146,8 +148,8 @@ def main():
     parser.add_argument("--keep")
     parser.add_argument("files", nargs="*")
     session = Session(parser.parse_args())
-    for number, (name, circuit) in enumerate(netlists(session.arguments)):
-        session.netlist(number, name, circuit)
+    for name, circuit in netlists(session.arguments):
+        session.netlist(name, circuit)
     return session.finish()
 
 
