@@ -15,8 +15,10 @@ static enum dalcs_status fail(const struct dalcs_cli *cli, const char *path, int
     return DALCS_E_IO;
 }
 
-static bool is_ended(const char *line, ssize_t length) {
-    return length > 0 && line[length - 1] == '\n';
+/* The next line, which getline() may move: false where it has no end. */
+static bool read_line(FILE *from, char **line, size_t *capacity, ssize_t *length) {
+    *length = getline(line, capacity, from);
+    return *length > 0 && (*line)[*length - 1] == '\n';
 }
 
 /* Is the last cell empty? */
@@ -40,13 +42,12 @@ static enum dalcs_status take_rows(struct dalcs_variants_file *f, const struct d
     size_t capacity = 0;
     off_t end = 0;
     enum dalcs_status status = DALCS_OK;
-    ssize_t length = getline(&line, &capacity, f->stream);
-    if (length > 0 && is_ended(line, length)) {
+    ssize_t length;
+    if (read_line(f->stream, &line, &capacity, &length)) {
         status = strcmp(line, header) == 0 ? DALCS_OK : refuse_rows(cli, f->partial);
         end = length;
     }
-    while (end > 0 && status == DALCS_OK &&
-           is_ended(line, length = getline(&line, &capacity, f->stream))) {
+    while (end > 0 && status == DALCS_OK && read_line(f->stream, &line, &capacity, &length)) {
         char *begin = begins(user, f->n_rows);
         if (begin == NULL) {
             status = DALCS_E_NOMEM;
