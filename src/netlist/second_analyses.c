@@ -1,7 +1,8 @@
 /* second_analyses.c - more than one .tran, .op, .dc or .ac: a script of the first and the others.
  *
  * A circuit has one analysis of each kind. ngspice runs them all: so does the script `run`, `tran ...`, of
- * which the second is written here, in place of the second card. */
+ * which the second is written here, in place of the second card. Between .if and .endif nobody knows yet which
+ * of them there are: those stay cards. */
 #include "netlist.h"
 
 #include <string.h>
@@ -37,13 +38,21 @@ static const char *command_of(struct dalcs_netlist *netlist, const struct dalcs_
     return text;
 }
 
+/* By how much a card is deeper in .if than the one before. */
+static int deeper(const struct dalcs_card *card) {
+    const char *text = card->letter == '.' ? card->token[0].text : "";
+    return strcmp(text, ".if") == 0 ? 1 : strcmp(text, ".endif") == 0 ? -1 : 0;
+}
+
 enum dalcs_status dalcs_second_analyses(struct dalcs_netlist *netlist, struct dalcs_diag *diag) {
     bool has[4] = {false, false, false, false};
     size_t n = 0;
+    int depth = 0;
     const size_t n_cards = netlist->n_script_lines == 0 ? netlist->n_cards : 0;
     for (size_t k = 0; k < n_cards; k++) {
         const struct dalcs_card *card = &netlist->card[k];
-        const int kind = kind_of(card);
+        depth += deeper(card);
+        const int kind = depth > 0 ? -1 : kind_of(card);
         const bool is_second = kind >= 0 && has[kind];
         if (kind >= 0) {
             has[kind] = true;

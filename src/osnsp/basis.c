@@ -140,7 +140,7 @@ enum dalcs_status dalcs_basis_prefer(struct dalcs_osnsp *p, const double *u, dou
     bool sources_clash;
     memcpy(p->mode, p->tied_mode, bytes);
     memcpy(y, p->tied_answer, (size_t)dalcs_system_n_columns(p->system) * sizeof(*y));
-    dalcs_certificate_evaluate_with_states(p, u, y, &sources_clash);
+    dalcs_certificate_evaluate_either(p, u, y, &sources_clash);
     p->least_norm = true;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
     e->tie = tie;

@@ -203,6 +203,14 @@ void dalcs_certificate_evaluate_with_states(struct dalcs_osnsp *p, const double 
     p->keeps_states = false;
 }
 
+void dalcs_certificate_evaluate_either(struct dalcs_osnsp *p, const double *u, double *y,
+                                       bool *sources_clash) {
+    dalcs_certificate_evaluate_with_states(p, u, y, sources_clash);
+    if (!dalcs_certificate_holds(p, *sources_clash)) {
+        dalcs_certificate_evaluate(p, u, y, sources_clash);
+    }
+}
+
 void dalcs_osnsp_find_ties(struct dalcs_osnsp *p, const double *u, const double *y,
                            double scale[2]) {
     const double *lambda = y + dalcs_system_n_equations(p->system);

@@ -11,10 +11,7 @@ enum { ROUNDS_AT_ONCE = 10 };
 void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole, const double *u,
                           double *y, bool *sources_clash) {
     dalcs_whole_solve(whole, u, NULL, y);
-    dalcs_certificate_evaluate_with_states(p, u, y, sources_clash);
-    if (!dalcs_certificate_holds(p, *sources_clash)) {
-        dalcs_certificate_evaluate(p, u, y, sources_clash);
-    }
+    dalcs_certificate_evaluate_either(p, u, y, sources_clash);
 }
 
 /* The factors of p->mode with its choices; a singular mode keeps them, for its next problem. */

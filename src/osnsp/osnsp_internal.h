@@ -97,6 +97,10 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
 void dalcs_certificate_evaluate_with_states(struct dalcs_osnsp *p, const double *u, double *y,
                                             bool *sources_clash);
 
+/* With its states, or, where they do not hold, with those that its other values give. */
+void dalcs_certificate_evaluate_either(struct dalcs_osnsp *p, const double *u, double *y,
+                                       bool *sources_clash);
+
 /* Was the answer evaluated last one? */
 static inline bool dalcs_certificate_holds(const struct dalcs_osnsp *p, bool sources_clash) {
     return p->n_violating == 0 && !sources_clash &&

@@ -92,9 +92,11 @@ CHOICE = """choice
 .param mode=2 big={mode > 1}
 .if (mode == 1)
 .param r=1k
+.tran 5u 1m
 .model dx d(vfwd=1)
 .elseif (big && mode < 3)
 .param r={mode*1k}
+.tran 5u 2m
 .model dx d(vfwd=0.5 ron=1)
 .if (r == 2k)
 R9 b 0 9k
@@ -107,7 +109,6 @@ R9 b 0 8k
 V1 a 0 SIN(0 5 1k)
 R1 a b {r}
 D1 b 0 dx
-.tran 5u 2m
 .end
 """
 CHOICE_FLAT = """choice
