@@ -132,7 +132,8 @@ static bool is_expected(const char *text) {
                                            "is a follower",
                                            "division by 0",
                                            "is not finite",
-                                           "is not a number"};
+                                           "is not a number",
+                                           "a power of"};
     for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
         if (strstr(text, expected[k]) != NULL) {
             return true;
