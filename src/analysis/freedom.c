@@ -87,6 +87,8 @@ static void add_device(struct dalcs_view *view, int device) {
         add(view, device, DALCS_VOLTAGE_FIXED, d->value == 0.0);
         break;
     case DALCS_VSOURCE:
+    case DALCS_VCVS: /* controlled ones do not act on what they read: for what that is now they are sources */
+    case DALCS_CCVS:
         add(view, device, DALCS_VOLTAGE_FIXED, true);
         break;
     case DALCS_CAPACITOR:
@@ -113,10 +115,6 @@ static void add_device(struct dalcs_view *view, int device) {
         add(view, device, holds ? DALCS_VOLTAGE_FIXED : DALCS_VOLTAGE_ANY, closed && m->ron == 0.0);
         break;
     }
-    case DALCS_VCVS: /* controlled ones do not act on what they read: for what that is now they are sources */
-    case DALCS_CCVS:
-        add(view, device, DALCS_VOLTAGE_FIXED, true);
-        break;
     default: /* current sources */
         add(view, device, DALCS_VOLTAGE_ANY, false);
         view->freedom[view->n - 1].is_source = true;

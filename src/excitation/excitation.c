@@ -42,8 +42,8 @@ static void add_wave(struct dalcs_excitation *excitation, int input,
     excitation->n_terms += wave->piece.n_terms;
     wave->is_curved = wave->piece.n_terms > 0;
     excitation->is_curved = excitation->is_curved || wave->is_curved;
-    const bool has_others =
-        isfinite(wave->piece.to); /* pieces, with a level; those of a sum with a slope */
+    /* Later pieces may have a level, and those of a sum a slope, where this one has none. */
+    const bool has_others = isfinite(wave->piece.to);
     wave->has_ramp = !wave->is_curved || wave->piece.slope != 0.0 ||
                      (has_others && stimulus->kind == DALCS_STIMULUS_FORMULA);
     wave->has_level = wave->has_ramp || has_others || wave->piece.level != 0.0;

@@ -30,10 +30,6 @@ static int rank_of(enum dalcs_analysis analysis) {
     return rank[analysis];
 }
 
-enum dalcs_analysis dalcs_table_main_analysis(enum dalcs_analysis a, enum dalcs_analysis b) {
-    return rank_of(a) >= rank_of(b) ? a : b;
-}
-
 enum dalcs_status dalcs_table_init_as(struct dalcs_table *table, const char *path,
                                       const struct dalcs_table_format *format,
                                       enum dalcs_analysis main) {

@@ -42,9 +42,6 @@ struct dalcs_table {
 /* The format for a file name, by its extension in any case; NULL when there is none. */
 const struct dalcs_table_format *dalcs_table_find_format(const char *path);
 
-/* The main one of two analyses: of .tran, .ac, .dc and .op the one that comes first in this order. */
-enum dalcs_analysis dalcs_table_main_analysis(enum dalcs_analysis a, enum dalcs_analysis b);
-
 /* Touches no file: that waits for the first row of results. main: the main analysis that will come; a
  * format with room for one plot leaves the others out. */
 enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,

@@ -124,13 +124,15 @@ static enum dalcs_analysis telling_analysis(const struct dalcs_circuit *c) {
                                 : DALCS_OPERATING_POINT;
 }
 
-/* The diodes' currents are what rows show. Behind them are the signals that gates sample. */
+/* The diodes' currents are what rows show. Behind them are the measured signals where there are gates, which may sample
+ * some of them. */
 static enum dalcs_status list_signals(struct dalcs_arena *arena, struct dalcs_circuit *c, int n) {
     const struct dalcs_signal *all = c->signal;
     const int *measured = c->measured;
+    const int n_measured = c->n_gates > 0 ? c->n_measured : 0;
     struct dalcs_signal *signal =
-        dalcs_arena_alloc(arena, (size_t)(n + c->n_measured), sizeof *signal);
-    int *place = dalcs_arena_alloc(arena, (size_t)c->n_measured, sizeof *place);
+        dalcs_arena_alloc(arena, (size_t)(n + n_measured), sizeof *signal);
+    int *place = dalcs_arena_alloc(arena, (size_t)n_measured, sizeof *place);
     if (signal == NULL || place == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -142,7 +144,7 @@ static enum dalcs_status list_signals(struct dalcs_arena *arena, struct dalcs_ci
         }
     }
     c->n_shown = c->n_signals;
-    for (int k = 0; k < c->n_measured; k++) {
+    for (int k = 0; k < n_measured; k++) {
         place[k] = c->n_signals;
         signal[c->n_signals++] = all[measured[k]];
     }

@@ -242,7 +242,7 @@ MODELS = [
              "W1 a b Vg s\nG1 0 h g 0 1\nVg h 0\n.model s CSW(Ron=10 IHon=0.6 IHoff=0.4)",
              "W1 a b Vg s\nG1 0 h g 0 1\nVg h 0\n.model s ISWITCH(Ron=10 Ion=0.6 Ioff=0.4)",
              "X1 a b g q\n.subckt q p n c\nS1 p n c 0 s\n.model s SW(Ron=10 Von=0.6 Voff=0.4)\n.ends",
-              "S1 a b g 0 s\n.model s SW(Ron=10 Von=7 Vt=0.5)",
+             "S1 a b g 0 s\n.model s SW(Ron=10 Von=7 Vt=0.5)",
              "S1 a b g 0 s\n.model s VSWITCH(Ron=10 Von=0.6 Voff=0.4 Vh=-0.5)",
              "S1 a b g 0 s\n.model s VSWITCH(Ron=10 Von=7 Voff=5 VHon=0.6 VHoff=0.4)",
              "S1 a b g 0 s\n.model s VSWITCH(Ron=10 Vt=3 VHon=0.6 VHoff=0.4)",
