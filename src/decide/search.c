@@ -190,12 +190,14 @@ static enum dalcs_status ask_from(struct dalcs_radau *r, struct dalcs_radau_part
 
 /* Of the first step of a mode, with an error so many times what is allowed: may it be that the state has to
  * jump, or only that the step is too long? A shorter one is tried first: it may show a transient that a
- * micro-step passes over, with the events in it, and costs less. Where every state is what it likes none jumps. */
+ * micro-step passes over, with the events in it, and costs less. Where the mode constrains no state none jumps, nor
+ * where only slopes of sources do: a state that the mode allowed just before it allows. */
 static bool is_worth_asking(const struct dalcs_radau_part *part, const struct dalcs_search *search,
                             double ratio) {
     bool has_free_states =
         part->segment.rounding == 1.0 && search->states_free && part->component->system->n_x > 0;
-    bool may_jump = has_free_states ? isinf(ratio) : !(ratio < most_projected);
+    bool stays = has_free_states || (part->guards.bends && search->flips == 0);
+    bool may_jump = stays ? isinf(ratio) : !(ratio < most_projected);
     return search->fixed || search->stuck > 0 || may_jump;
 }
 

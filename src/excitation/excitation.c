@@ -152,12 +152,17 @@ void dalcs_excitation_finish(struct dalcs_excitation *excitation) {
 }
 
 void dalcs_excitation_enter(struct dalcs_excitation *excitation, double t) {
+    const double edge = excitation->next_edge;
     excitation->next_edge = INFINITY;
+    excitation->jumps = false;
     for (int k = 0; k < excitation->n_waves; k++) {
         struct dalcs_excitation_wave *wave = &excitation->wave[k];
         if (wave->smooth >= 0) {
             continue;
         }
+        bool ends = wave->piece.to <= fmax(t, edge);
+        excitation->jumps =
+            excitation->jumps || (ends && dalcs_stimulus_jumps_at(wave->stimulus, wave->piece.to));
         dalcs_stimulus_piece_at(wave->stimulus, t, &wave->piece);
         wave->from = t;
         excitation->next_edge = fmin(excitation->next_edge, wave->piece.to);

@@ -60,6 +60,7 @@ struct dalcs_excitation {
     bool is_curved;           /* any wave is */
     double shortest_period;   /* s, of the oscillations; INFINITY without */
     double next_edge;         /* s, of the waves */
+    bool jumps;               /* the value of any did, at the edge that was entered last */
     struct dalcs_arena arena; /* all arrays */
 };
 

@@ -160,6 +160,8 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
             return DALCS_NOT_CONVERGED;
         }
     }
+    bool goes_on = !part->segment.by_euler && part->guards.n_crossed == 0;
+    part->guards.bends = false;
     part->guards.fresh =
         part->guards.fresh || part->segment.end != 1.0; /* the next step starts inside this one */
     if (r->base->observer != NULL) {
@@ -177,6 +179,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     if (part->excitation.next_edge <= part->segment.t + r->resolution) {
         dalcs_excitation_enter(&part->excitation, part->segment.t);
         part->guards.fresh = true;
+        part->guards.bends = goes_on && !part->excitation.jumps;
     }
     bool commanded = part->commands.next <= part->segment.t + r->resolution &&
                      dalcs_commands_obey(&part->commands, part->segment.t);
@@ -184,6 +187,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         obey_commands(part);
         part->guards.fresh = true;
         part->guards.flipped = true;
+        part->guards.bends = false;
     }
     if (part->segment.t >= r->options.stop) {
         return DALCS_OK;
@@ -225,6 +229,7 @@ static enum dalcs_status begin_again(struct dalcs_radau *r, struct dalcs_radau_p
         part->guards.flipped = true;
     }
     part->guards.fresh = true;
+    part->guards.bends = false;
     part->guards.n_crossed = 0;
     part->segment.late = NULL;
     part->segment.brief = NULL;

@@ -168,7 +168,7 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
         dalcs_step_judge(r, part, *entry, end, q);
         q->ratio = search->spared ? q->own : q->ratio;
         means_something = q->ratio == q->ratio && !dalcs_step_clashes(part, *entry, end, q->unit);
-        if (is_first && !search->fixed && is_outsized(part, q)) {
+        if (is_first && !search->fixed && !part->guards.bends && is_outsized(part, q)) {
             q->ratio = q->own = INFINITY;
         }
     }

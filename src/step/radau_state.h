@@ -85,6 +85,7 @@ struct dalcs_part_scales {
 struct dalcs_part_guards {
     bool fresh;    /* something just happened at t: nothing is known of how pairs start */
     bool flipped;  /* and it is that pairs changed sides */
+    bool bends;    /* and it is no more than an edge at which sources go on with other slopes */
     bool *armed;   /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
     double *bound; /* [n_pairs + n_watched] in whole quads: none is below it in the present step */
     bool
