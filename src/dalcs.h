@@ -715,7 +715,8 @@ struct dalcs_report {
     struct {
         bool present;
         double time;      /* s */
-        const char *kind; /* "loop", "cutset", "mode": no mode of a circuit that is not passive, or
+        const char *kind; /* "loop", "cutset", "mode": no mode of a circuit that is not passive,
+                             "equations": those of its elements contradict each other, or
                              "derivative": states would jump by the derivative of an impulse */
         size_t n_elements;
         const char *const *element; /* a loop's in its order, from the source that drives on */

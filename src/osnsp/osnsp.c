@@ -207,6 +207,7 @@ void dalcs_osnsp_finish(struct dalcs_osnsp *p) {
     dalcs_partition_finish(&p->partition);
     dalcs_arena_finish(&p->arena);
     free(p->witness.element);
+    free(p->weighed.element);
     *p = (struct dalcs_osnsp){0};
 }
 

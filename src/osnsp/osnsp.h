@@ -51,6 +51,7 @@ struct dalcs_witness {
         DALCS_WITNESS_LOOP,      /* currents around voltage sources, diodes, closed switches */
         DALCS_WITNESS_CUTSET,    /* voltages across current sources, diodes, open switches */
         DALCS_WITNESS_MODE,      /* no mode of a system that is not passive fits */
+        DALCS_WITNESS_EQUATIONS, /* weights of these equations and signs refute them, not passive */
         DALCS_WITNESS_DERIVATIVE /* the states would need more than an impulse to jump */
     } kind;
 
@@ -80,6 +81,8 @@ struct dalcs_osnsp {
     struct dalcs_certificate certificate;
     struct dalcs_osnsp_counters counters;
     struct dalcs_witness witness;
+    struct dalcs_witness
+        weighed;     /* of a system that is not passive: by verified weights, 0 names without any */
     bool least_norm; /* the last answer is the least-norm one of several */
     bool refines;    /* set by the caller: each answer of a regular mode is refined once, for small
                         currents next to large ones, which the certificate lets be off */

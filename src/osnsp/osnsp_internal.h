@@ -240,6 +240,11 @@ void dalcs_witness_from_modes(struct dalcs_osnsp *p);
  * tree of capacitors, others of the tree are relative to its root. */
 double dalcs_witness_weight(const struct dalcs_witness *w, const struct dalcs_system *s, int row);
 
+/* p->weighed. Of weights v[dalcs_claim_n_rows()] that refute a problem (farkas.h): whose equations and signs they are. Of
+ * a problem of which several cases are refuted: its pairs. */
+void dalcs_witness_from_weights(struct dalcs_osnsp *p, const double *v);
+void dalcs_witness_from_cases(struct dalcs_osnsp *p);
+
 /* What it names becomes what p->witness names; the ray is not copied. */
 void dalcs_witness_copy(struct dalcs_osnsp *p, const struct dalcs_witness *from);
 

@@ -367,10 +367,17 @@ static enum dalcs_status runs_away(struct dalcs_osnsp *p, double sigma, const do
     return status < DALCS_OK ? status : DALCS_OK;
 }
 
-/* Where there is but one case, and no state, its weights are a ray of the witness. */
-static void keep_weights(struct dalcs_osnsp *p, const double *v) {
+/* A ray of a system that is not passive tells of another problem, the transposed one, and names nothing for certain; the
+ * weights do where there is but one case. Of several, each has its own. Without states and pairs they are a ray. */
+static void keep_weights(struct dalcs_osnsp *p, const struct refutation *r) {
     const struct dalcs_system *s = p->system;
-    if (s->n_x == 0 && s->n_pairs == 0) {
+    const double *v = r->proof;
+    if (!s->monotone && r->n_cases == 1) {
+        dalcs_witness_from_weights(p, v);
+    } else if (!s->monotone) {
+        dalcs_witness_from_cases(p);
+    }
+    if (!p->witness.has_ray && s->n_x == 0 && s->n_pairs == 0) {
         for (int row = 0; row < s->n_z; row++) {
             p->witness.ray[s->dual[row]] = v[row];
         }
@@ -381,14 +388,15 @@ static void keep_weights(struct dalcs_osnsp *p, const double *v) {
 enum dalcs_status dalcs_osnsp_refute(struct dalcs_osnsp *p, double sigma, const double *u,
                                      bool *is_certain) {
     *is_certain = false;
+    p->weighed.n_elements = 0;
     if (p->witness.kind == DALCS_WITNESS_DERIVATIVE) {
         return runs_away(p, sigma, u, is_certain);
     }
     struct refutation r;
     enum dalcs_status status = setup(&r, p, sigma, u);
     status = status == DALCS_OK ? refute(&r, is_certain) : status;
-    if (*is_certain && !p->witness.has_ray) {
-        keep_weights(p, r.proof);
+    if (*is_certain && r.n_cases > 0) {
+        keep_weights(p, &r);
     }
     dalcs_arena_finish(&r.work);
     return status;

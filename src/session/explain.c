@@ -105,8 +105,8 @@ static const double shorter = 1024.0;
 /* Has the problem no answer for certain? What a step sees of a circuit that is not passive is no more than that where
  * shorter ones see something else. */
 static enum dalcs_status find_certainty(struct dalcs_component *c, bool is_from, bool *is_certain) {
-    bool is_mode = c->osnsp.witness.kind == DALCS_WITNESS_MODE;
     DALCS_TRY(dalcs_osnsp_refute(&c->osnsp, c->failed_sigma, c->failed_u, is_certain));
+    bool is_mode = c->osnsp.witness.kind == DALCS_WITNESS_MODE || c->osnsp.weighed.n_elements > 0;
     if (*is_certain && is_from && is_mode && c->failed_sigma > 0.0) {
         DALCS_TRY(
             dalcs_osnsp_refute(&c->osnsp, shorter * c->failed_sigma, c->failed_u, is_certain));
@@ -123,6 +123,7 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
     static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
                                        [DALCS_WITNESS_CUTSET] = "cutset",
                                        [DALCS_WITNESS_MODE] = "mode",
+                                       [DALCS_WITNESS_EQUATIONS] = "equations",
                                        [DALCS_WITNESS_DERIVATIVE] = "derivative"};
     size_t n_devices = (size_t)s->circuit.n_devices;
     size_t n_stimuli = (size_t)s->circuit.n_stimuli;

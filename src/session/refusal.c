@@ -120,12 +120,48 @@ static void order_as_netlist(struct dalcs_refusal *r) {
     r->element = n == r->n_elements ? name : r->element;
 }
 
+/* Of a circuit that is not passive, where no loop and no part is found that explains it: the elements whose equations
+ * have verified weights, or the pairs that each case of the proof is about, in the order of the netlist. Returns whether
+ * there are any. */
+static bool say_equations(struct dalcs_refusal *r) {
+    const struct dalcs_witness *w = &r->osnsp->weighed;
+    const char **name = room_for_names(r, (size_t)w->n_elements);
+    size_t n = 0;
+    if (w->n_elements == 0 || name == NULL) {
+        return false;
+    }
+    for (int i = -1; i < r->circuit->n_devices; i++) {
+        for (int k = 0; k < w->n_elements; k++) {
+            bool is_device = dalcs_place_of(r->circuit, w->element[k]) != NULL;
+            bool is_next = i < 0 ? !is_device /* a node, whose KCL cannot be met */
+                                 : strcmp(w->element[k], r->circuit->device[i].name) == 0;
+            if (is_next) {
+                name[n++] = w->element[k];
+            }
+        }
+    }
+    r->kind = w->kind;
+    r->element = name;
+    r->n_elements = n;
+    if (w->kind == DALCS_WITNESS_MODE) {
+        r->because = explain_modes(r);
+        return true;
+    }
+    r->because = plain_list(r, n == 1 ? "its equation cannot be met, whatever else happens"
+                                      : "their equations contradict each other, whatever else "
+                                        "happens");
+    return true;
+}
+
 static void say_loop(struct dalcs_refusal *r) {
     size_t most = 2 * (r->n_elements + (size_t)r->circuit->n_initial_conditions) + 1;
     struct dalcs_loop_arc *arc = dalcs_arena_alloc(&r->s->arena, most, sizeof(*arc));
     const char **name = room_for_names(r, most);
     int n = 0;
     if (arc == NULL || name == NULL || dalcs_driven_loop_find(r, arc, &n) != DALCS_OK) {
+        return;
+    }
+    if (n == 0 && say_equations(r)) {
         return;
     }
     if (n == 0) {
@@ -144,6 +180,7 @@ static void say_loop(struct dalcs_refusal *r) {
 static void say_part(struct dalcs_refusal *r) {
     struct dalcs_fed_part part;
     if (dalcs_fed_part_find(r, &part) != DALCS_OK || !part.found) {
+        (void)say_equations(r);
         return;
     }
     const char **name = room_for_names(r, (size_t)(part.n_sources + part.n_blockers));
@@ -171,6 +208,7 @@ static const char *explain_system(const struct dalcs_refusal *r) {
         [DALCS_WITNESS_LOOP] = "no multipliers and unknowns of these names fulfil the equations",
         [DALCS_WITNESS_CUTSET] = "no values of these names fulfil the equations",
         [DALCS_WITNESS_MODE] = "no combination of w = 0 and lambda = 0 fits",
+        [DALCS_WITNESS_EQUATIONS] = "their equations contradict each other",
     };
     return r->kind == DALCS_WITNESS_DERIVATIVE ? explain_derivative(r)
                                                : plain_list(r, why[r->kind]);

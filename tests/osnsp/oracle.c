@@ -168,34 +168,77 @@ static void search(struct tree *t, int pair) {
     set_pair(t, pair, PAIR_UNDECIDED);
 }
 
-struct oracle_answer oracle_solve(const struct dalcs_system *system, double sigma, const double *u,
-                                  const bool *closed) {
+static void setup(struct tree *t, const struct dalcs_system *system, double sigma, const double *u,
+                  const bool *closed) {
     int n_equations = dalcs_system_n_equations(system);
     int n_columns = dalcs_system_n_columns(system);
-    struct tree t = {.s = system, .lp = glp_create_prob(), .closed = closed};
-    t.offset = calloc((size_t)system->n_pairs + 1, sizeof(*t.offset));
-    t.answer.y = calloc((size_t)n_columns + 1, sizeof(*t.answer.y));
-    must_be(t.offset != NULL && t.answer.y != NULL, "out of memory");
+    *t = (struct tree){.s = system, .lp = glp_create_prob(), .closed = closed};
+    t->offset = calloc((size_t)system->n_pairs + 1, sizeof(*t->offset));
+    t->answer.y = calloc((size_t)n_columns + 1, sizeof(*t->answer.y));
+    must_be(t->offset != NULL && t->answer.y != NULL, "out of memory");
     glp_term_out(GLP_OFF);
-    glp_init_smcp(&t.parameters);
-    t.parameters.tol_bnd = 1e-9;
-    t.parameters.tol_dj = 1e-9;
+    glp_init_smcp(&t->parameters);
+    t->parameters.tol_bnd = 1e-9;
+    t->parameters.tol_dj = 1e-9;
     if (n_columns > 0) {
-        glp_add_rows(t.lp, n_equations + system->n_pairs);
-        glp_add_cols(t.lp, n_columns);
-        write_rows(&t, sigma, u);
+        glp_add_rows(t->lp, n_equations + system->n_pairs);
+        glp_add_cols(t->lp, n_columns);
+        write_rows(t, sigma, u);
     }
     for (int c = 0; c < n_equations; c++) {
         bool zero = system->column[c].kind == DALCS_LABEL_REFERENCE;
-        glp_set_col_bnds(t.lp, c + 1, zero ? GLP_FX : GLP_FR, 0.0, 0.0);
+        glp_set_col_bnds(t->lp, c + 1, zero ? GLP_FX : GLP_FR, 0.0, 0.0);
     }
     for (int d = 0; d < system->n_pairs; d++) {
         bool is_switch = system->pair[d].kind == DALCS_PAIR_SWITCH;
-        set_pair(&t, d, !is_switch ? PAIR_UNDECIDED : closed[d] ? PAIR_CLOSED : PAIR_OPEN);
+        set_pair(t, d, !is_switch ? PAIR_UNDECIDED : closed[d] ? PAIR_CLOSED : PAIR_OPEN);
     }
-    glp_std_basis(t.lp);
+    glp_std_basis(t->lp);
+}
+
+static void finish(struct tree *t) {
+    glp_delete_prob(t->lp);
+    free(t->offset);
+}
+
+struct oracle_answer oracle_solve(const struct dalcs_system *system, double sigma, const double *u,
+                                  const bool *closed) {
+    struct tree t;
+    setup(&t, system, sigma, u, closed);
     search(&t, 0);
-    glp_delete_prob(t.lp);
-    free(t.offset);
+    finish(&t);
     return t.answer;
+}
+
+static bool is_among(const char *name, const char *const *element, int n_elements) {
+    bool is = false;
+    for (int k = 0; k < n_elements && !is; k++) {
+        is = strcmp(name, element[k]) == 0;
+    }
+    return is;
+}
+
+bool oracle_contradicts(const struct dalcs_system *system, double sigma, const double *u,
+                        const bool *closed, const char *const *element, int n_elements) {
+    int n_equations = dalcs_system_n_equations(system);
+    struct tree t;
+    setup(&t, system, sigma, u, closed);
+    for (int row = 0; row < n_equations; row++) {
+        bool is_law = system->row[row].kind == DALCS_LABEL_BRANCH ||
+                      system->row[row].kind == DALCS_LABEL_STATE;
+        if (is_law && !is_among(system->row[row].element, element, n_elements)) {
+            glp_set_row_bnds(t.lp, row + 1, GLP_FR, 0.0, 0.0);
+        }
+    }
+    for (int d = 0; d < system->n_pairs; d++) {
+        if (!is_among(system->pair[d].element, element, n_elements)) {
+            glp_set_row_bnds(t.lp, n_equations + d + 1, GLP_FR, 0.0, 0.0);
+            glp_set_col_bnds(t.lp, n_equations + d + 1, GLP_FR, 0.0, 0.0);
+        }
+    }
+    bool bounded;
+    bool has_answer = solve(&t, &bounded);
+    finish(&t);
+    free(t.answer.y);
+    return !has_answer;
 }

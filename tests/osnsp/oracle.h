@@ -26,4 +26,9 @@ struct oracle_answer {
 struct oracle_answer oracle_solve(const struct dalcs_system *system, double sigma, const double *u,
                                   const bool *closed);
 
+/* Do KCL at all nodes and the equations, signs and sides of these elements alone, without a law of any other element,
+ * contradict each other? */
+bool oracle_contradicts(const struct dalcs_system *system, double sigma, const double *u,
+                        const bool *closed, const char *const *element, int n_elements);
+
 #endif

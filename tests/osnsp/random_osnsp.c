@@ -90,10 +90,12 @@ struct engine_answer {
     uint64_t mode;
     double worst;
     bool least_norm;
+    bool is_one_case;
     bool is_refuted; /* by weights that farkas.c confirms */
     enum dalcs_witness_kind kind;
-    int n_elements;
+    int n_elements, n_weighed;
     const char *element[SKETCH_MAX_ELEMENTS];
+    const char *weighed[2 * SKETCH_MAX_ELEMENTS]; /* nodes among them */
 };
 
 static void setup(const struct problem *p, struct dalcs_osnsp *osnsp, size_t cache_bytes) {
@@ -113,14 +115,19 @@ static struct engine_answer solve_afresh(const struct problem *p, size_t cache_b
     a.mode = osnsp.n_words > 0 ? osnsp.mode[0] : 0;
     a.worst = osnsp.certificate.worst;
     a.least_norm = osnsp.least_norm;
+    must_be(dalcs_osnsp_refute(&osnsp, p->sigma, p->u, &a.is_refuted) == DALCS_OK, "no memory");
     if (a.status == DALCS_INFEASIBLE) {
         a.kind = osnsp.witness.kind;
         a.n_elements = osnsp.witness.n_elements;
         for (int k = 0; k < a.n_elements; k++) {
             a.element[k] = osnsp.witness.element[k];
         }
+        a.is_one_case = osnsp.weighed.kind == DALCS_WITNESS_EQUATIONS;
+        a.n_weighed = osnsp.weighed.n_elements;
+        for (int k = 0; k < a.n_weighed; k++) {
+            a.weighed[k] = osnsp.weighed.element[k];
+        }
     }
-    must_be(dalcs_osnsp_refute(&osnsp, p->sigma, p->u, &a.is_refuted) == DALCS_OK, "no memory");
     dalcs_osnsp_finish(&osnsp);
     return a;
 }
@@ -288,6 +295,16 @@ static void check_witness(const struct problem *p, const struct engine_answer *a
     if (a->kind == DALCS_WITNESS_MODE) {
         if (system_of(p)->monotone) {
             fail(p, "a witness of modes for a passive circuit", 0);
+        }
+        return;
+    }
+    if (a->n_weighed > 0) {
+        if (system_of(p)->monotone) {
+            fail(p, "weights name no loop and no cutset of a passive circuit", 0);
+        }
+        if (a->is_one_case && !oracle_contradicts(system_of(p), p->sigma, p->u, p->closed,
+                                                  a->weighed, a->n_weighed)) {
+            fail(p, "the equations of these do not contradict each other", a->n_weighed);
         }
         return;
     }
