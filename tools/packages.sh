@@ -14,6 +14,7 @@ packages_of() {
         latex) echo texlive-latex-base ;;
         browser) echo chromium chromium-driver python3-selenium ;;
         crosscheck) echo libngspice0-dev ngspice python3 ;;
+        kicad) echo kicad kicad-demos openbox xdotool xvfb ;;
         ci) echo clang libclang-rt-14-dev llvm valgrind clang-format codespell cppcheck shellcheck fish zsh ;;
         *)
             echo "packages.sh: no package group '$1'" >&2
