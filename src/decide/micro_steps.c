@@ -202,3 +202,22 @@ enum dalcs_status dalcs_micro_steps(struct dalcs_radau *r, struct dalcs_radau_pa
                                     double h) {
     return dalcs_micro_pair(r, part, h, h);
 }
+
+/* Where a source jumps, as on a steep flank: a switch that remembers and opens on it does so before a state has jumped
+ * through it. */
+enum dalcs_status dalcs_micro_leap(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                   const uint64_t *before) {
+    struct dalcs_component *c = part->component;
+    const size_t bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
+    memcpy(c->osnsp.mode, before, bytes);
+    dalcs_micro_positions(part, true);
+    enum dalcs_status status = dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1);
+    if (status < DALCS_OK) {
+        return status;
+    }
+    if (status != DALCS_OK || !c->positions.settled) { /* they turn behind the jump */
+        part->guards.slides = false;
+        memcpy(c->osnsp.mode, before, bytes);
+    }
+    return dalcs_micro_steps(r, part, h);
+}

@@ -27,6 +27,11 @@ enum dalcs_status dalcs_micro_pair(struct dalcs_radau *r, struct dalcs_radau_par
 enum dalcs_status dalcs_micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                     double h) DALCS_MUST_CHECK;
 
+/* The same, where they saw a state jump with the sources: with the positions of all switches, from the mode before, that
+ * agree with what has jumped behind them, if there are any. */
+enum dalcs_status dalcs_micro_leap(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                   const uint64_t *before) DALCS_MUST_CHECK;
+
 /* The states just after part->segment.t from y1 and y2, into after[n_x]. Does any jump, and *noticeable: by more than
  * the error that the state of an event has? A fast transient moves in both micro-steps and is left to be stepped
  * through. It may hide a jump, or the mode that it is in: *closer is how short micro-steps that show it are, over

@@ -304,7 +304,12 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         *is_off = false;
     }
     double h = 0.0;
-    part->guards.slides = false;
+    bool leaps = part->guards.leaps && part->component->positions.n > 0;
+    part->guards.slides = part->guards.leaps = false;
+    if (leaps) {
+        memcpy(part->work.mode_before, part->component->osnsp.mode,
+               (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
+    }
     for (int k = 0; k < LONGER_TRIES && status > DALCS_OK; k++) {
         h = dalcs_radau_micro_length(r, part, longer + k);
         status = dalcs_micro_steps(r, part, h);
@@ -318,6 +323,10 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     bool jumps = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
     if (closer < 1.0 && !noticeable && closer * h >= 64.0 * r->resolution) {
         DALCS_TRY(look_closer(r, part, closer, &h, &jumps, &noticeable));
+    }
+    if (leaps && noticeable) {
+        DALCS_TRY(dalcs_micro_leap(r, part, h, part->work.mode_before));
+        jumps = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
     }
     bool moves_little = jumps && !noticeable;
     if (noticeable) {

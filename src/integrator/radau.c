@@ -161,7 +161,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         }
     }
     bool goes_on = !part->segment.by_euler && part->guards.n_crossed == 0;
-    part->guards.bends = false;
+    part->guards.bends = part->guards.leaps = false;
     part->guards.fresh =
         part->guards.fresh || part->segment.end != 1.0; /* the next step starts inside this one */
     if (r->base->observer != NULL) {
@@ -180,6 +180,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         dalcs_excitation_enter(&part->excitation, part->segment.t);
         part->guards.fresh = true;
         part->guards.bends = goes_on && !part->excitation.jumps;
+        part->guards.leaps = part->excitation.jumps;
     }
     bool commanded = part->commands.next <= part->segment.t + r->resolution &&
                      dalcs_commands_obey(&part->commands, part->segment.t);
@@ -229,7 +230,7 @@ static enum dalcs_status begin_again(struct dalcs_radau *r, struct dalcs_radau_p
         part->guards.flipped = true;
     }
     part->guards.fresh = true;
-    part->guards.bends = false;
+    part->guards.bends = part->guards.leaps = false;
     part->guards.n_crossed = 0;
     part->segment.late = NULL;
     part->segment.brief = NULL;

@@ -86,6 +86,7 @@ struct dalcs_part_guards {
     bool fresh;    /* something just happened at t: nothing is known of how pairs start */
     bool flipped;  /* and it is that pairs changed sides */
     bool bends;    /* and it is no more than an edge at which sources go on with other slopes */
+    bool leaps;    /* or an edge at which sources jump */
     bool *armed;   /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
     double *bound; /* [n_pairs + n_watched] in whole quads: none is below it in the present step */
     bool
@@ -138,7 +139,8 @@ struct dalcs_part_work {
     double *out_tried;                /* a step put aside while the state is projected */
     double *before; /* [n_x] the state before a jump, while the one behind is looked for */
     uint64_t *mode_tied, *mode_turned;
-    uint64_t *mode_first; /* of the first of two micro-steps */
+    uint64_t *mode_first;  /* of the first of two micro-steps */
+    uint64_t *mode_before; /* of a jump of sources */
 };
 
 struct dalcs_radau_part {
