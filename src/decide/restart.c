@@ -128,17 +128,19 @@ static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_par
 }
 
 /* part->work.after becomes the limit of what micro-steps of length h and h/2 see, `whole` of the former; *is_near: what is
- * left of it is of second order, and so the square of what they differ by over its scale: no more than the tolerance. */
+ * left of it is of second order: the square of what they differ by over the jump, no more than the tolerance of its scale. A
+ * small change that is no jump differs by half of itself. */
 static void extrapolate_lengths(const struct dalcs_radau_part *part, const double *whole,
                                 bool *is_near) {
     double *after = part->work.after;
     *is_near = true;
     for (int x = 0; x < part->component->system->n_x; x++) {
-        double scale = fmax(dalcs_step_scale(part, x, part->scales.unit),
-                            fmax(fabs(part->x[x]), fabs(after[x])));
+        double most = part->inner_tolerance *
+                      fmax(dalcs_step_scale(part, x, part->scales.unit),
+                           fmax(fabs(part->x[x]), fabs(after[x])));
         double differ = after[x] - whole[x];
-        *is_near = *is_near && differ * differ <= part->inner_tolerance * scale * scale;
         after[x] += differ;
+        *is_near = *is_near && differ * differ <= most * fmax(fabs(after[x] - part->x[x]), most);
     }
 }
 
@@ -198,6 +200,9 @@ static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_rada
     move_first(r, part);
     enum dalcs_status status = find_limit(r, part, &last, &is_seen);
     memcpy(part->x, part->work.before, bytes);
+    if (status == DALCS_OK && !is_seen && !r->base->jump.is_first) { /* it was a fast transient */
+        return dalcs_micro_steps(r, part, last);
+    }
     if (status == DALCS_OK && (is_seen || r->base->jump.is_first)) {
         DALCS_TRY(find_jump(r, part, 0.5 * last));
     }
