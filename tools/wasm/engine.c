@@ -109,6 +109,6 @@ static enum dalcs_status take(void *user, const char *suffix, const char *start,
 EMSCRIPTEN_KEEPALIVE const char *engine_equations(void) {
     const char *answer = "";
     const struct dalcs_equations_options options = {
-        .form = DALCS_EQUATIONS_TEXT, .stem = "netlist", .user = &answer, .file = take};
+        .format = DALCS_EQUATIONS_TEXT, .stem = "netlist", .user = &answer, .file = take};
     return dalcs_session_equations(session, &options) == DALCS_OK ? answer : "";
 }
