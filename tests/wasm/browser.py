@@ -125,7 +125,11 @@ class Page(unittest.TestCase):
         self.assertEqual([(event["element"], event["state"]) for event in events],
                          [(event["element"], event["state"]) for event in wanted], name)
         for event, same in zip(events, wanted):
-            self.assertLessEqual(abs(event["time"] - same["time"]), EVENT * stop, f"{name}: {same}")
+            if abs(event["time"] - same["time"]) > EVENT * stop:  # a diode without a current may be on either side
+                current = numpy.abs(run.column(f"i({same['element']})"))
+                low, high = sorted((event["time"], same["time"]))
+                between = [i for t, i in zip(run.time, current) if low + EVENT * stop < t < high - EVENT * stop]
+                self.assertTrue(between and max(between) <= WAVEFORM * max(current), f"{name}: {event} and {same}")
 
     def test_results_are_those_of_the_program(self):
         for name in LESSONS:

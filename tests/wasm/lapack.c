@@ -10,25 +10,30 @@
 
 #define MOST 12
 
-lapack_int own_dgetrf(int layout, lapack_int m, lapack_int n, double *a, lapack_int lda, lapack_int *pivot);
-lapack_int own_dgetrs(int layout, char trans, lapack_int n, lapack_int n_right, const double *a, lapack_int lda,
-                      const lapack_int *pivot, double *b, lapack_int ldb);
-lapack_int own_dgecon(int layout, char norm, lapack_int n, const double *a, lapack_int lda, double anorm,
-                      double *rcond);
-lapack_int own_zgesv(int layout, lapack_int n, lapack_int n_right, lapack_complex_double *a, lapack_int lda,
-                     lapack_int *pivot, lapack_complex_double *b, lapack_int ldb);
+lapack_int own_dgetrf(int layout, lapack_int m, lapack_int n, double *a, lapack_int lda,
+                      lapack_int *pivot);
+lapack_int own_dgetrs(int layout, char trans, lapack_int n, lapack_int n_right, const double *a,
+                      lapack_int lda, const lapack_int *pivot, double *b, lapack_int ldb);
+lapack_int own_dgecon(int layout, char norm, lapack_int n, const double *a, lapack_int lda,
+                      double anorm, double *rcond);
+lapack_int own_zgesv(int layout, lapack_int n, lapack_int n_right, lapack_complex_double *a,
+                     lapack_int lda, lapack_int *pivot, lapack_complex_double *b, lapack_int ldb);
 lapack_int own_dpotrf(int layout, char uplo, lapack_int n, double *a, lapack_int lda);
-lapack_int own_dpstrf(int layout, char uplo, lapack_int n, double *a, lapack_int lda, lapack_int *pivot,
-                      lapack_int *rank, double tol);
-lapack_int own_zheev(int layout, char job, char uplo, lapack_int n, lapack_complex_double *a, lapack_int lda,
-                     double *value);
-lapack_int own_dsyevd(int layout, char job, char uplo, lapack_int n, double *a, lapack_int lda, double *value);
-lapack_int own_dgesvd(int layout, char job_u, char job_vt, lapack_int m, lapack_int n, double *a, lapack_int lda,
-                      double *s, double *u, lapack_int ldu, double *vt, lapack_int ldvt, double *superb);
-lapack_int own_dgelss(int layout, lapack_int m, lapack_int n, lapack_int n_right, double *a, lapack_int lda, double *b,
-                      lapack_int ldb, double *s, double rcond, lapack_int *rank);
-lapack_int own_dgeev(int layout, char job_left, char job_right, lapack_int n, double *a, lapack_int lda, double *re,
-                     double *im, double *left, lapack_int ld_left, double *right, lapack_int ld_right);
+lapack_int own_dpstrf(int layout, char uplo, lapack_int n, double *a, lapack_int lda,
+                      lapack_int *pivot, lapack_int *rank, double tol);
+lapack_int own_zheev(int layout, char job, char uplo, lapack_int n, lapack_complex_double *a,
+                     lapack_int lda, double *value);
+lapack_int own_dsyevd(int layout, char job, char uplo, lapack_int n, double *a, lapack_int lda,
+                      double *value);
+lapack_int own_dgesvd(int layout, char job_u, char job_vt, lapack_int m, lapack_int n, double *a,
+                      lapack_int lda, double *s, double *u, lapack_int ldu, double *vt,
+                      lapack_int ldvt, double *superb);
+lapack_int own_dgelss(int layout, lapack_int m, lapack_int n, lapack_int n_right, double *a,
+                      lapack_int lda, double *b, lapack_int ldb, double *s, double rcond,
+                      lapack_int *rank);
+lapack_int own_dgeev(int layout, char job_left, char job_right, lapack_int n, double *a,
+                     lapack_int lda, double *re, double *im, double *left, lapack_int ld_left,
+                     double *right, lapack_int ld_right);
 
 static unsigned state = 1;
 static int n_wrong, n_looked_at;
@@ -66,7 +71,8 @@ static double entry(const double *a, int layout, int ld, int i, int j) {
 }
 
 static void solves(int n, int layout) {
-    double a[MOST * MOST], b[MOST * 2], lu[MOST * MOST], x[MOST * 2], off = 0.0, anorm = 0.0, wanted, found;
+    double a[MOST * MOST], b[MOST * 2], lu[MOST * MOST], x[MOST * 2], off = 0.0, anorm = 0.0,
+                                                                      wanted, found;
     lapack_int pivot[MOST];
     const int ldb = layout == LAPACK_ROW_MAJOR ? 2 : n;
     fill(a, n, n, n);
@@ -80,7 +86,8 @@ static void solves(int n, int layout) {
             for (int c = 0; c < 2; c++) {
                 double rest = entry(b, layout, ldb, i, c);
                 for (int k = 0; k < n; k++) {
-                    rest -= (t ? entry(a, layout, n, k, i) : entry(a, layout, n, i, k)) * entry(x, layout, ldb, k, c);
+                    rest -= (t ? entry(a, layout, n, k, i) : entry(a, layout, n, i, k)) *
+                            entry(x, layout, ldb, k, c);
                 }
                 off = fmax(off, fabs(rest));
             }
@@ -192,12 +199,21 @@ static void positive(int n, int r) {
     look(off, 1e-9, "dpstrf", n);
 }
 
-static void singular(int m, int n, int r, int layout) {
-    double a[MOST * MOST], b[MOST * MOST], s[MOST], t[MOST], u[MOST * MOST], vt[MOST * MOST], work[MOST];
+static void singular(int m, int n, int r, int layout, int spread) {
+    double a[MOST * MOST], b[MOST * MOST], s[MOST], t[MOST], u[MOST * MOST], vt[MOST * MOST],
+        work[MOST];
     const int ld = layout == LAPACK_ROW_MAJOR ? n : m;
     const int k_most = m < n ? m : n;
     double off = 0.0;
     fill(a, m, n, r);
+    for (int k = 0; spread > 0 && k < m * n;
+         k++) { /* columns of volts and amperes; entries up to 1 */
+        a[k] *= pow(10.0, -spread * (k / m % 4));
+    }
+    for (int k = 0; spread < 0 && k < m * n;
+         k++) { /* as circuits have them: few entries, alike, many ranks lost */
+        a[k] = draw() < 0.4 ? 0.0 : draw() < -0.3 ? 2000.0 : a[k] > 0.0 ? 1.0 : -1.0;
+    }
     memcpy(b, a, sizeof(a));
     look(own_dgesvd(layout, 'A', 'A', m, n, b, ld, s, u, m, vt, n, work), 0.0, "dgesvd", m);
     for (int i = 0; i < m; i++) {
@@ -206,7 +222,7 @@ static void singular(int m, int n, int r, int layout) {
             for (int k = 0; k < k_most; k++) {
                 rest -= entry(u, layout, m, i, k) * s[k] * entry(vt, layout, n, k, j);
             }
-            off = fmax(off, fabs(rest));
+            off = fmax(off, fabs(rest) / fmax(1.0, s[0]));
         }
     }
     for (int i = 0; i < m; i++) {
@@ -230,7 +246,7 @@ static void singular(int m, int n, int r, int layout) {
     memcpy(b, a, sizeof(a));
     LAPACKE_dgesvd(layout, 'N', 'N', m, n, b, ld, t, u, m, vt, n, work);
     for (int k = 0; k < k_most; k++) {
-        off = fmax(off, fabs(s[k] - t[k]));
+        off = fmax(off, fabs(s[k] - t[k]) / fmax(1.0, s[0]));
     }
     look(off, 2e-13, "dgesvd", m);
     if (m >= n && layout == LAPACK_COL_MAJOR) {
@@ -242,7 +258,7 @@ static void singular(int m, int n, int r, int layout) {
             for (int k = 0; k < n; k++) {
                 rest -= b[k * m + i % m] * s[k] * vt[i / m * n + k];
             }
-            off = fmax(off, fabs(rest));
+            off = fmax(off, fabs(rest) / fmax(1.0, s[0]));
         }
         look(off, 2e-13, "dgesvd in place", m);
     }
@@ -267,14 +283,16 @@ static void least_squares(int n, int r) {
 
 /* scale: how far apart the units of states are */
 static void eigen(int n, int kind) {
-    double a[MOST * MOST], b[MOST * MOST], re[MOST], im[MOST], wr[MOST], wi[MOST], right[MOST * MOST], off = 0.0;
+    double a[MOST * MOST], b[MOST * MOST], re[MOST], im[MOST], wr[MOST], wi[MOST],
+        right[MOST * MOST], off = 0.0;
     fill(a, n, n, n);
     for (int k = 0; k < n * n; k++) {
         a[k] *= kind == 1 ? pow(1e3, k % n - k / n) : 1.0;
         a[k] -= kind == 2 ? a[k] - (k / n == k % n ? 2.0 : 0.0) : 0.0; /* twice the unit matrix */
     }
     memcpy(b, a, sizeof(a));
-    look(own_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, b, n, re, im, NULL, 1, right, n), 0.0, "dgeev", n);
+    look(own_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, b, n, re, im, NULL, 1, right, n), 0.0, "dgeev",
+         n);
     for (int k = 0; k < n; k++) {
         const double *x = right + k * n;
         const double *y = im[k] != 0.0 ? x + n : NULL;
@@ -318,7 +336,9 @@ int main(void) {
         solves_complex(n);
         symmetric(n, r);
         positive(n, r);
-        singular(m, n, r, layout);
+        singular(m, n, r, layout, 0);
+        singular(m, n, r, layout, 1 + round % 5);
+        singular(m, n, r, layout, -1);
         least_squares(n, r);
         eigen(n, round % 4);
     }

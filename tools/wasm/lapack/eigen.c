@@ -67,8 +67,8 @@ static double reflection(double *x, int m) {
 }
 
 /* Rows k to k + m of columns from..n, then columns k to k + m of rows 0..to. */
-static void reflect(lapack_int n, double *h, const double *v, double beta, lapack_int k, int m, lapack_int from,
-                    lapack_int to) {
+static void reflect(lapack_int n, double *h, const double *v, double beta, lapack_int k, int m,
+                    lapack_int from, lapack_int to) {
     for (lapack_int j = from; j < n; j++) {
         double sum = 0.0;
         for (int i = 0; i < m; i++) {
@@ -204,8 +204,8 @@ static void normalise(lapack_int n, lapack_complex_double *x) {
 }
 
 /* The eigenvector of a for value, in x. Each k starts from other numbers: values that repeat get vectors apart. */
-static int find_vector(lapack_int n, const double *a, lapack_complex_double value, int k, lapack_complex_double *x,
-                       lapack_complex_double *work, lapack_int *pivot) {
+static int find_vector(lapack_int n, const double *a, lapack_complex_double value, int k,
+                       lapack_complex_double *x, lapack_complex_double *work, lapack_int *pivot) {
     const size_t N = (size_t)n;
     lapack_complex_double *y = x + N;
     double size = 0.0;
@@ -234,8 +234,9 @@ static int find_vector(lapack_int n, const double *a, lapack_complex_double valu
     return done == 2;
 }
 
-static int find_vectors(lapack_int n, const double *a, const double *scale, const double *re, const double *im,
-                        double *right, lapack_int ld, lapack_complex_double *work, lapack_int *pivot) {
+static int find_vectors(lapack_int n, const double *a, const double *scale, const double *re,
+                        const double *im, double *right, lapack_int ld, lapack_complex_double *work,
+                        lapack_int *pivot) {
     lapack_complex_double *x = work + (size_t)n * (size_t)n;
     for (lapack_int k = 0; k < n; k++) {
         if (!find_vector(n, a, re[k] + im[k] * I, k, x, work, pivot)) {
@@ -258,9 +259,9 @@ static int find_vectors(lapack_int n, const double *a, const double *scale, cons
 }
 
 /* By columns, without left vectors; the rest of a column of lda is not looked at. */
-lapack_int LAPACKE_dgeev(int layout, char job_left, char job_right, lapack_int n, double *a, lapack_int lda,
-                         double *re, double *im, double *left, lapack_int ld_left, double *right,
-                         lapack_int ld_right) {
+lapack_int LAPACKE_dgeev(int layout, char job_left, char job_right, lapack_int n, double *a,
+                         lapack_int lda, double *re, double *im, double *left, lapack_int ld_left,
+                         double *right, lapack_int ld_right) {
     (void)layout, (void)job_left, (void)lda, (void)left, (void)ld_left;
     const size_t N = (size_t)n;
     double *h = malloc((N * N + 1) * sizeof(*h));

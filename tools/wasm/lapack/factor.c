@@ -9,13 +9,15 @@
 
 /* Where entry (i, j) is. */
 static size_t at(int layout, lapack_int ld, lapack_int i, lapack_int j) {
-    return layout == LAPACK_ROW_MAJOR ? (size_t)i * (size_t)ld + (size_t)j : (size_t)j * (size_t)ld + (size_t)i;
+    return layout == LAPACK_ROW_MAJOR ? (size_t)i * (size_t)ld + (size_t)j
+                                      : (size_t)j * (size_t)ld + (size_t)i;
 }
 
 #define A(i, j) a[at(layout, lda, i, j)]
 #define B(i, j) b[at(layout, ldb, i, j)]
 
-lapack_int LAPACKE_dgetrf(int layout, lapack_int m, lapack_int n, double *a, lapack_int lda, lapack_int *pivot) {
+lapack_int LAPACKE_dgetrf(int layout, lapack_int m, lapack_int n, double *a, lapack_int lda,
+                          lapack_int *pivot) {
     lapack_int info = 0;
     for (lapack_int k = 0; k < m && k < n; k++) {
         lapack_int p = k;
@@ -42,7 +44,8 @@ lapack_int LAPACKE_dgetrf(int layout, lapack_int m, lapack_int n, double *a, lap
     return info;
 }
 
-static void swap_rows(int layout, lapack_int n_right, double *b, lapack_int ldb, lapack_int i, lapack_int p) {
+static void swap_rows(int layout, lapack_int n_right, double *b, lapack_int ldb, lapack_int i,
+                      lapack_int p) {
     for (lapack_int c = 0; p != i && c < n_right; c++) {
         double swap = B(i, c);
         B(i, c) = B(p, c);
@@ -51,8 +54,8 @@ static void swap_rows(int layout, lapack_int n_right, double *b, lapack_int ldb,
 }
 
 /* trans is 'N' or 'T'. */
-lapack_int LAPACKE_dgetrs(int layout, char trans, lapack_int n, lapack_int n_right, const double *a, lapack_int lda,
-                          const lapack_int *pivot, double *b, lapack_int ldb) {
+lapack_int LAPACKE_dgetrs(int layout, char trans, lapack_int n, lapack_int n_right, const double *a,
+                          lapack_int lda, const lapack_int *pivot, double *b, lapack_int ldb) {
     const int is_transposed = trans != 'N';
     for (lapack_int i = 0; !is_transposed && i < n; i++) {
         swap_rows(layout, n_right, b, ldb, i, pivot[i] - 1);
@@ -77,16 +80,16 @@ lapack_int LAPACKE_dgetrs(int layout, char trans, lapack_int n, lapack_int n_rig
     return 0;
 }
 
-lapack_int LAPACKE_dgesv(int layout, lapack_int n, lapack_int n_right, double *a, lapack_int lda, lapack_int *pivot,
-                         double *b, lapack_int ldb) {
+lapack_int LAPACKE_dgesv(int layout, lapack_int n, lapack_int n_right, double *a, lapack_int lda,
+                         lapack_int *pivot, double *b, lapack_int ldb) {
     lapack_int info = LAPACKE_dgetrf(layout, n, n, a, lda, pivot);
     return info != 0 ? info : LAPACKE_dgetrs(layout, 'N', n, n_right, a, lda, pivot, b, ldb);
 }
 
 /* Of the 1-norm, from the inverse itself instead of an estimate. Pivots move rows of the matrix, and so columns of the
  * inverse: its 1-norm does not need them. */
-lapack_int LAPACKE_dgecon(int layout, char norm, lapack_int n, const double *a, lapack_int lda, double anorm,
-                          double *rcond) {
+lapack_int LAPACKE_dgecon(int layout, char norm, lapack_int n, const double *a, lapack_int lda,
+                          double anorm, double *rcond) {
     (void)norm;
     double *column = malloc(((size_t)n + 1) * sizeof(*column));
     lapack_int *in_place = malloc(((size_t)n + 1) * sizeof(*in_place));
@@ -111,8 +114,9 @@ lapack_int LAPACKE_dgecon(int layout, char norm, lapack_int n, const double *a, 
     return has_memory ? 0 : LAPACK_WORK_MEMORY_ERROR;
 }
 
-lapack_int LAPACKE_zgesv(int layout, lapack_int n, lapack_int n_right, lapack_complex_double *a, lapack_int lda,
-                         lapack_int *pivot, lapack_complex_double *b, lapack_int ldb) {
+lapack_int LAPACKE_zgesv(int layout, lapack_int n, lapack_int n_right, lapack_complex_double *a,
+                         lapack_int lda, lapack_int *pivot, lapack_complex_double *b,
+                         lapack_int ldb) {
     for (lapack_int k = 0; k < n; k++) {
         lapack_int p = k;
         for (lapack_int i = k + 1; i < n; i++) {
@@ -168,8 +172,8 @@ lapack_int LAPACKE_dpotrf(int layout, char uplo, lapack_int n, double *a, lapack
 }
 
 /* Of a symmetric matrix whose both halves are given; uplo is 'U'. */
-lapack_int LAPACKE_dpstrf(int layout, char uplo, lapack_int n, double *a, lapack_int lda, lapack_int *pivot,
-                          lapack_int *rank, double tol) {
+lapack_int LAPACKE_dpstrf(int layout, char uplo, lapack_int n, double *a, lapack_int lda,
+                          lapack_int *pivot, lapack_int *rank, double tol) {
     (void)uplo;
     double stop = tol;
     for (lapack_int i = 0; i < n; i++) {

@@ -12,6 +12,10 @@
 
 static const int most_sweeps = 60; /* six to ten do */
 
+/* A column that is shorter than this part of the longest one is what two rotations leave of one that depends on the
+ * others: it has no direction of its own. */
+static const double negligible = DBL_EPSILON * DBL_EPSILON;
+
 /* tan of the angle that makes [a c; c b] diagonal, the smaller one. */
 static double rotation(double a, double b, double c) {
     double tau = (b - a) / (2.0 * c);
@@ -21,8 +25,8 @@ static double rotation(double a, double b, double c) {
 /* ---- Hermitian matrices, by columns ---- */
 
 /* One rotation, unless entry (p, q) is no more than `least`. */
-static int turn(lapack_int n, lapack_complex_double *a, lapack_complex_double *v, lapack_int p, lapack_int q,
-                double least) {
+static int turn(lapack_int n, lapack_complex_double *a, lapack_complex_double *v, lapack_int p,
+                lapack_int q, double least) {
     const size_t N = (size_t)n;
     lapack_complex_double c = a[(size_t)q * N + (size_t)p];
     double size = cabs(c);
@@ -101,14 +105,15 @@ static lapack_int hermitian(lapack_int n, lapack_complex_double *a, double *valu
 }
 
 /* uplo is 'L', vectors are always found; the rest of a row of lda is not looked at. */
-lapack_int LAPACKE_zheev(int layout, char job, char uplo, lapack_int n, lapack_complex_double *a, lapack_int lda,
-                         double *value) {
+lapack_int LAPACKE_zheev(int layout, char job, char uplo, lapack_int n, lapack_complex_double *a,
+                         lapack_int lda, double *value) {
     (void)layout, (void)job, (void)uplo, (void)lda;
     return hermitian(n, a, value);
 }
 
 /* uplo is 'L' by columns; by rows both halves are given, and vectors are not asked for. */
-lapack_int LAPACKE_dsyev(int layout, char job, char uplo, lapack_int n, double *a, lapack_int lda, double *value) {
+lapack_int LAPACKE_dsyev(int layout, char job, char uplo, lapack_int n, double *a, lapack_int lda,
+                         double *value) {
     (void)layout, (void)job, (void)uplo;
     const size_t N = (size_t)n;
     lapack_complex_double *b = malloc((N * N + 1) * sizeof(*b));
@@ -126,7 +131,8 @@ lapack_int LAPACKE_dsyev(int layout, char job, char uplo, lapack_int n, double *
     return info;
 }
 
-lapack_int LAPACKE_dsyevd(int layout, char job, char uplo, lapack_int n, double *a, lapack_int lda, double *value) {
+lapack_int LAPACKE_dsyevd(int layout, char job, char uplo, lapack_int n, double *a, lapack_int lda,
+                          double *value) {
     return LAPACKE_dsyev(layout, job, uplo, n, a, lda, value);
 }
 
@@ -150,6 +156,10 @@ static void turn_columns(double *x, double *y, size_t m, double cosine, double s
 
 /* Makes the columns of w[n][m] orthogonal; w = U S and v[n][n], its columns, with a v = w. */
 static int orthogonalise(size_t m, size_t n, double *w, double *v) {
+    double longest = 0.0;
+    for (size_t k = 0; k < n; k++) {
+        longest = fmax(longest, sqrt(product(w + k * m, w + k * m, m)));
+    }
     int moved = 1;
     for (int sweep = 0; moved && sweep < most_sweeps; sweep++) {
         moved = 0;
@@ -158,7 +168,8 @@ static int orthogonalise(size_t m, size_t n, double *w, double *v) {
                 double a = product(w + p * m, w + p * m, m);
                 double b = product(w + q * m, w + q * m, m);
                 double c = product(w + p * m, w + q * m, m);
-                if (!(fabs(c) > DBL_EPSILON * (double)m * sqrt(a) * sqrt(b)) || fabs(c) < DBL_MIN) {
+                if (!(fabs(c) > DBL_EPSILON * (double)m * sqrt(a) * sqrt(b)) ||
+                    !(sqrt(fmin(a, b)) > negligible * longest)) {
                     continue;
                 }
                 double t = rotation(a, b, c);
@@ -238,7 +249,7 @@ static lapack_int tall(size_t m, size_t n, double *w, double *v, double *s) {
     }
     sort_columns(m, n, w, v, s);
     size_t full = 0;
-    while (full < n && s[full] > DBL_MIN) {
+    while (full < n && s[full] > negligible * s[0]) {
         for (size_t i = 0; i < m; i++) {
             w[full * m + i] /= s[full];
         }
@@ -249,8 +260,9 @@ static lapack_int tall(size_t m, size_t n, double *w, double *v, double *s) {
 }
 
 /* job_u is 'A', 'O' or 'N', job_vt is 'A' or 'N'. */
-lapack_int LAPACKE_dgesvd(int layout, char job_u, char job_vt, lapack_int m, lapack_int n, double *a, lapack_int lda,
-                          double *s, double *u, lapack_int ldu, double *vt, lapack_int ldvt, double *superb) {
+lapack_int LAPACKE_dgesvd(int layout, char job_u, char job_vt, lapack_int m, lapack_int n,
+                          double *a, lapack_int lda, double *s, double *u, lapack_int ldu,
+                          double *vt, lapack_int ldvt, double *superb) {
     (void)superb;
     const int by_rows = layout == LAPACK_ROW_MAJOR;
     const int is_wide = m < n; /* then of the transpose, whose U is V */
@@ -288,14 +300,16 @@ lapack_int LAPACKE_dgesvd(int layout, char job_u, char job_vt, lapack_int m, lap
 }
 
 /* job is 'A' or 'N'. */
-lapack_int LAPACKE_dgesdd(int layout, char job, lapack_int m, lapack_int n, double *a, lapack_int lda, double *s,
-                          double *u, lapack_int ldu, double *vt, lapack_int ldvt) {
+lapack_int LAPACKE_dgesdd(int layout, char job, lapack_int m, lapack_int n, double *a,
+                          lapack_int lda, double *s, double *u, lapack_int ldu, double *vt,
+                          lapack_int ldvt) {
     return LAPACKE_dgesvd(layout, job, job, m, n, a, lda, s, u, ldu, vt, ldvt, NULL);
 }
 
 /* One right side, m = n, by columns; rcond < 0 stands for the rounding of a double. */
-lapack_int LAPACKE_dgelss(int layout, lapack_int m, lapack_int n, lapack_int n_right, double *a, lapack_int lda,
-                          double *b, lapack_int ldb, double *s, double rcond, lapack_int *rank) {
+lapack_int LAPACKE_dgelss(int layout, lapack_int m, lapack_int n, lapack_int n_right, double *a,
+                          lapack_int lda, double *b, lapack_int ldb, double *s, double rcond,
+                          lapack_int *rank) {
     (void)n_right, (void)ldb;
     const size_t N = (size_t)n;
     double *u = malloc((N * N + 1) * sizeof(*u));
@@ -306,7 +320,8 @@ lapack_int LAPACKE_dgelss(int layout, lapack_int m, lapack_int n, lapack_int n_r
         info = LAPACKE_dgesvd(layout, 'A', 'A', m, n, a, lda, s, u, n, vt, n, NULL);
     }
     *rank = 0;
-    for (size_t k = 0; info == 0 && k < N && s[k] > (rcond < 0.0 ? DBL_EPSILON : rcond) * s[0]; k++) {
+    for (size_t k = 0; info == 0 && k < N && s[k] > (rcond < 0.0 ? DBL_EPSILON : rcond) * s[0];
+         k++) {
         double part = product(u + k * N, b, N) / s[k];
         for (size_t i = 0; i < N; i++) {
             x[i] += part * vt[i * N + k];
