@@ -192,7 +192,7 @@ class Page(unittest.TestCase):
         self.open(LESSONS[0])
         first = self.picture()
         good = self.script("return document.getElementById('netlist').value;")
-        self.type(good.replace("1k", "1x2"))
+        self.type(good.replace(".tran", "Rwrong 1\n.tran"))
         self.assertRegex(self.script("return document.getElementById('messages').textContent;"), r"netlist:\d+:\d+: error")
         self.assertIn("stale", self.script("return document.getElementById('results').className;"))
         self.type(good)

@@ -164,7 +164,7 @@ function update() {
             euler = simulate(netlist, 'euler', step);
             byId('messages').textContent += euler.status ? `\nimplicit Euler: ${euler.messages}` : '';
         }
-        byId('stepsize').textContent = `${steps} steps, h = ${written(step)}s`;
+        byId('stepsize').textContent = `${steps} steps, h = ${+(step / prefixFor(step)[0]).toPrecision(3)} ${prefixFor(step)[1]}s`;
         showWaveforms(result, euler && euler.status === 0 ? euler : null);
         play.later = setTimeout(() => {
             call('engine_read', 'number', netlist); // without the signals that the picture needs
@@ -183,7 +183,10 @@ function addSlider({label, unit, card, from, to, log, value}) {
     const range = Object.assign(document.createElement('input'), {type: 'range', min: 0, max: 1000, step: 1});
     const toPlace = (v) => 1000 * (log ? Math.log(v / from) / Math.log(to / from) : (v - from) / (to - from));
     const valueAt = (place) => log ? from * (to / from) ** (place / 1000) : from + (to - from) * place / 1000;
-    const show = (v) => { shown.textContent = `${written(v)} ${unit}`; };
+    const show = (v) => {
+        const [factor, prefix] = prefixFor(Math.abs(v));
+        shown.textContent = `${+(v / factor).toPrecision(3)} ${prefix}${unit}`;
+    };
     range.value = toPlace(value);
     show(value);
     range.addEventListener('input', () => {
