@@ -188,6 +188,14 @@ class Page(unittest.TestCase):
                           "return Math.max(...w.map((x, k) => Math.min(Math.abs(x), 100 * Math.abs(i[k]))));")
         self.assertLess(off, 1e-9)
 
+    def test_what_happened(self):
+        """A jump and a steady state in words, with the numbers of closed forms."""
+        for name, words in (("19-sweeping-process", "At 15 ms: l1 jumps from 1 A to 2 A, flux of d1 1 mWb; 500 µJ are lost."),
+                            ("17-subharmonics", "Its factors: -1.66667.")):
+            if name in LESSONS:
+                self.open(name)
+                self.assertIn(words, self.script("return document.getElementById('happenings').textContent;"))
+
     def test_mistakes_and_back(self):
         self.open(LESSONS[0])
         first = self.picture()

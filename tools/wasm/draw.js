@@ -12,6 +12,12 @@ function prefixFor(largest) {
     return PREFIXES.find(([factor]) => largest >= 0.9995 * factor) || [1, ''];
 }
 
+/** "4.7 mA" */
+function quantity(value, unit, digits = 4) {
+    const [factor, prefix] = prefixFor(Math.abs(value));
+    return `${+(value / factor).toPrecision(digits)} ${prefix}${unit}`;
+}
+
 /** Round numbers from low to high, about `count` of them. */
 function ticks(low, high, count) {
     const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));

@@ -111,6 +111,26 @@ function modesOf(bodies, start, stop) {
     return [...found.values()].sort((a, b) => b.share - a.share);
 }
 
+/** Jumps of states, and what is known of the steady state, in words. */
+function happenings({jumps = [], steady}) {
+    const lines = jumps.slice(0, 12).map(({time, states, impulses, energy_lost: lost}) => {
+        const changes = Object.entries(states).map(([name, {before, after}]) => {
+            const unit = name[0] === 'l' ? 'A' : 'V';
+            return `${name} jumps from ${quantity(before, unit)} to ${quantity(after, unit)}`;
+        });
+        const passed = Object.entries(impulses).map(([name, {charge, flux}]) =>
+            charge === undefined ? `flux of ${name} ${quantity(flux, 'Wb')}` : `charge of ${name} ${quantity(charge, 'C')}`);
+        return `At ${quantity(time, 's')}: ${[...changes, ...passed].join(', ')}; ${quantity(lost, 'J')} are lost.`;
+    });
+    if (jumps.length > 12) lines.push(`${jumps.length - 12} more jumps.`);
+    if (steady) {
+        const factors = steady.multipliers.map(({re, im}) => +re.toPrecision(6) + (im ? ` ${im < 0 ? '-' : '+'} ${Math.abs(+im.toPrecision(6))}j` : ''));
+        lines.push(`The steady state, of period ${quantity(steady.period, 's')}, is ${steady.verdict}.`,
+            factors.length ? `Its factors: ${factors.join(', ')}.` : 'It has no factor other than 0.');
+    }
+    return lines;
+}
+
 // ---- What is shown -------------------------------------------------------------------------------
 
 function showWaveforms(result, euler) {
@@ -134,6 +154,8 @@ function showWaveforms(result, euler) {
         const w = column(result, `v(${cathode},${anode})`), lambda = result.signals[`i(${name})`];
         return w && lambda ? plane(name, w, lambda) : '';
     }).join('');
+    byId('planes').parentElement.hidden = byId('planes').innerHTML === '';
+    byId('happenings').innerHTML = happenings(result.report).map((line) => `<p>${escapeText(line)}</p>`).join('');
     byId('modes').innerHTML = '<tr><th>conducts</th><th>times</th><th>of the time</th></tr>' +
         modesOf(bodies, time[0], time[time.length - 1]).slice(0, 16).map(({mode, visits, share}) =>
             `<tr><td>${escapeText(mode)}</td><td>${visits}</td><td>${(100 * share).toFixed(1)} %</td></tr>`).join('');
@@ -161,10 +183,10 @@ function update() {
         const step = (result.time[result.time.length - 1] - result.time[0]) / steps;
         let euler = null;
         if (byId('euler').checked) {
-            euler = simulate(netlist, 'euler', step);
+            euler = simulate(netlist.replace(/^\.pss\b.*$/gim, '*'), 'euler', step); // fixed steps find no steady state
             byId('messages').textContent += euler.status ? `\nimplicit Euler: ${euler.messages}` : '';
         }
-        byId('stepsize').textContent = `${steps} steps, h = ${+(step / prefixFor(step)[0]).toPrecision(3)} ${prefixFor(step)[1]}s`;
+        byId('stepsize').textContent = `${steps} steps, h = ${quantity(step, 's', 3)}`;
         showWaveforms(result, euler && euler.status === 0 ? euler : null);
         play.later = setTimeout(() => {
             call('engine_read', 'number', netlist); // without the signals that the picture needs
@@ -183,10 +205,7 @@ function addSlider({label, unit, card, from, to, log, value}) {
     const range = Object.assign(document.createElement('input'), {type: 'range', min: 0, max: 1000, step: 1});
     const toPlace = (v) => 1000 * (log ? Math.log(v / from) / Math.log(to / from) : (v - from) / (to - from));
     const valueAt = (place) => log ? from * (to / from) ** (place / 1000) : from + (to - from) * place / 1000;
-    const show = (v) => {
-        const [factor, prefix] = prefixFor(Math.abs(v));
-        shown.textContent = `${+(v / factor).toPrecision(3)} ${prefix}${unit}`;
-    };
+    const show = (v) => { shown.textContent = quantity(v, unit, 3); };
     range.value = toPlace(value);
     show(value);
     range.addEventListener('input', () => {

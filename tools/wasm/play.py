@@ -33,8 +33,8 @@ FORM = """<aside id="play"><h2>Play</h2><div id="sliders"></div>
 <input type="range" id="steps" min="10" max="2000" value="100"> <span id="stepsize"></span></p>
 <textarea id="netlist" rows="10" spellcheck="false" aria-label="netlist"></textarea>
 <p><button id="again">as it was</button> <span id="millis"></span></p><pre id="messages"></pre><div id="results">
-<div id="waveforms"></div><h2>Each diode in the plane of its rule: reverse voltage w, current λ</h2><div id="planes"></div>
-<h2>Modes</h2><table id="modes"></table><h2>Equations</h2><pre id="equations"></pre>
+<div id="waveforms"></div><div id="happenings"></div><section><h2>Each diode in the plane of its rule: reverse voltage w,
+current λ</h2><div id="planes"></div></section><h2>Modes</h2><table id="modes"></table><h2>Equations</h2><pre id="equations"></pre>
 <h2>What <code>dalcs check</code> says</h2><div id="check"></div></div></aside>"""
 
 
