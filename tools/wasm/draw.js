@@ -133,6 +133,7 @@ function bars(elements, from, to) {
 function plane(name, w, lambda) {
     const size = 190, edge = 26;
     const [, wHigh] = rangeOf([w]), [, lHigh] = rangeOf([lambda]);
+    const shown = (high, factor) => high > 1e-12 ? (high / 1.06 / factor).toPrecision(3) : '0'; // what rounding leaves
     const wLow = -0.12 * wHigh, lLow = -0.12 * lHigh;
     const x = (v) => edge + (size - 2 * edge) * (v - wLow) / (wHigh - wLow);
     const y = (v) => size - edge - (size - 2 * edge) * (v - lLow) / (lHigh - lLow);
@@ -142,8 +143,8 @@ function plane(name, w, lambda) {
     let out = `<path d="M${x(wHigh)} ${y(0)}H${x(0)}V${y(lHigh)}" class="rule"/>`;
     for (const dot of dots.keys()) out += `<path d="M${dot}h0" class="dot"/>`;
     out += textAt(x(wHigh), y(0) + 16, 'end', `w (${wPrefix}V)`) + textAt(x(0) + 8, 20, 'start', `λ (${lPrefix}A)`);
-    out += textAt(x(wHigh), y(0) - 6, 'end', (wHigh / 1.06 / wFactor).toPrecision(3));
-    out += textAt(x(0) + 8, y(lHigh) + 14, 'start', (lHigh / 1.06 / lFactor).toPrecision(3));
+    out += textAt(x(wHigh), y(0) - 6, 'end', shown(wHigh, wFactor));
+    out += textAt(x(0) + 8, y(lHigh) + 14, 'start', shown(lHigh, lFactor));
     out += textAt(size - 4, 14, 'end', name, 'font-weight="bold"');
     return `<svg viewBox="0 0 ${size} ${size}" class="plane" role="img">${out}</svg>`;
 }

@@ -156,7 +156,7 @@ function showWaveforms(result, euler) {
     }).join('');
     byId('planes').parentElement.hidden = byId('planes').innerHTML === '';
     byId('happenings').innerHTML = happenings(result.report).map((line) => `<p>${escapeText(line)}</p>`).join('');
-    byId('modes').innerHTML = '<tr><th>conducts</th><th>times</th><th>of the time</th></tr>' +
+    byId('modes').innerHTML = '<tr><th>conducts, or is on</th><th>times</th><th>of the time</th></tr>' +
         modesOf(bodies, time[0], time[time.length - 1]).slice(0, 16).map(({mode, visits, share}) =>
             `<tr><td>${escapeText(mode)}</td><td>${visits}</td><td>${(100 * share).toFixed(1)} %</td></tr>`).join('');
 }
