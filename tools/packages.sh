@@ -13,6 +13,7 @@ packages_of() {
         plot) echo gnuplot-nox ;;
         latex) echo texlive-latex-base ;;
         browser) echo chromium chromium-driver python3-selenium ;;
+        wasm) echo emscripten dpkg-dev ;;
         crosscheck) echo libngspice0-dev ngspice python3 ;;
         kicad) echo kicad kicad-demos openbox xdotool xvfb ;;
         ci) echo clang libclang-rt-14-dev llvm valgrind clang-format codespell cppcheck shellcheck fish zsh ;;

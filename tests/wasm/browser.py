@@ -1,0 +1,246 @@
+#!/usr/bin/env python3
+"""Each lesson in a browser without a screen: what its panel shows is what the program computes.
+
+usage: browser.py DALCS ENGINE SITE
+ENGINE is what tools/wasm/build made; SITE is tools/site. Status 77 (skipped) where ENGINE, Debian's chromium,
+chromium-driver or python3-selenium are not there. DALCS_LESSONS names lessons, else all are looked at.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+SKIPPED = 77
+TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "tests" / "support"))
+DALCS, ENGINE, SITE = (pathlib.Path(name).resolve() for name in sys.argv[1:4])
+LARGEST_PAGE = 2_500_000  # bytes, with the engine
+WAVEFORM, EVENT = 1e-9, 1e-9  # over the largest value; over the stop time
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+    import numpy
+except ImportError:
+    # Debian's packages are for Debian's Python, which need not be the first in PATH.
+    DEBIANS = "/usr/bin/python3"
+    if pathlib.Path(DEBIANS).exists() and "--debian" not in sys.argv:
+        os.execv(DEBIANS, [DEBIANS, *sys.argv, "--debian"])
+    print("python3-selenium or python3-numpy is not installed")
+    sys.exit(SKIPPED)
+import dalcs_program  # noqa: E402  pylint: disable=wrong-import-position,import-error
+
+LESSONS = os.environ.get("DALCS_LESSONS", "").split() or sorted(
+    path.stem for path in (TOP / "doc/lessons/src").glob("[0-9]*.txt"))
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.site = pathlib.Path(cls.folder.name) / "site"
+        subprocess.run([SITE, "--engine", ENGINE, cls.site], check=True, stdout=subprocess.DEVNULL)
+        options = webdriver.ChromeOptions()
+        for argument in ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                         "--window-size=1500,900"]:
+            options.add_argument(argument)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        cls.driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+        cls.millis = []
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.driver.quit()
+        cls.folder.cleanup()
+        if cls.millis:
+            print(f"answers to sliders: median {numpy.median(cls.millis):.0f} ms, longest {max(cls.millis):.0f} ms")
+
+    def script(self, text, *arguments):
+        return self.driver.execute_script(text, *arguments)
+
+    def wait(self, condition):
+        for _ in range(1200):
+            if self.script("return " + condition):
+                return
+            time.sleep(0.05)
+        self.fail(f"did not come true: {condition}")
+
+    def open(self, name):
+        self.driver.get((self.site / "lessons" / f"{name}.html").as_uri())
+        self.wait("document.body.dataset.ready === 'yes'")
+
+    def move(self, slider, place):
+        """Moves a slider to a place from 0 to 1000, and gives the picture."""
+        self.script("const r = document.querySelectorAll('#sliders input')[arguments[0]]; r.value = arguments[1];"
+                    "r.dispatchEvent(new Event('input'));", slider, place)
+        self.millis.append(self.script("return play.millis;"))
+        return self.picture()
+
+    def picture(self):
+        return self.script("return document.getElementById('waveforms').innerHTML;")
+
+    def type(self, netlist):
+        self.script("document.body.dataset.ready = 'no'; const n = document.getElementById('netlist');"
+                    "n.value = arguments[0]; n.dispatchEvent(new Event('input'));", netlist)
+        self.wait("document.body.dataset.ready === 'yes'")
+
+    def compare(self, name):
+        """The engine's result against the program's, of the netlist that the page has.
+
+        Without rows that are added where curves bend: rounding decides whether there is one more."""
+        netlist, status, shown = self.script(
+            "window.plain = withCard(document.getElementById('netlist').value, '.options fill=none');"
+            "window.result = simulate(plain);"
+            "return [withAllSignals(plain), play.result.status, document.getElementById('messages').textContent];")
+        run = dalcs_program.run(DALCS, netlist, method=None)
+        self.assertEqual(status != 0, run.status != 0, f"{name}: {shown}{run.stderr}\n{netlist}")
+        if status != 0:
+            return
+        at, signals, events = self.script(
+            "return [[...result.time], Object.entries(result.signals).map(([n, v]) => [n, [...v]]),"
+            "result.report.events];")
+        self.assertEqual(sorted(signal for signal, _ in signals), sorted(run.names[1:]), name)
+        stop = run.time[-1]
+        here, there = numpy.array(at), numpy.array(run.time)
+        for event in run.report["events"]:  # a row of the grid may coincide with one
+            here, there = (numpy.where(abs(times - event["time"]) < EVENT * stop, numpy.nan, times)
+                           for times in (here, there))
+        self.assertEqual(numpy.isfinite(here).sum(), numpy.isfinite(there).sum(), f"{name}: number of rows")
+        self.assertGreater(numpy.isfinite(here).sum(), 9, name)
+        for signal, values in signals:
+            wanted = numpy.array(run.column(signal))
+            scale = max(numpy.abs(wanted).max(), 1e-12)
+            found, wanted = numpy.array(values)[numpy.isfinite(here)], wanted[numpy.isfinite(there)]
+            self.assertLessEqual(numpy.abs(found - wanted).max(), WAVEFORM * scale, f"{name}: {signal}")
+        here, there = here[numpy.isfinite(here)], there[numpy.isfinite(there)]
+        self.assertLessEqual(numpy.abs(here - there).max(), EVENT * stop, name)
+        # those of one instant are in no order
+        events, wanted = (sorted(list_of, key=lambda event: event["element"]) for list_of in (events, run.report["events"]))
+        self.assertEqual([(event["element"], event["state"]) for event in events],
+                         [(event["element"], event["state"]) for event in wanted], name)
+        for event, same in zip(events, wanted):
+            if abs(event["time"] - same["time"]) > EVENT * stop:  # a diode without a current may be on either side
+                current = numpy.abs(run.column(f"i({same['element']})"))
+                low, high = sorted((event["time"], same["time"]))
+                between = [i for t, i in zip(run.time, current) if low + EVENT * stop < t < high - EVENT * stop]
+                self.assertTrue(between and max(between) <= WAVEFORM * max(current), f"{name}: {event} and {same}")
+
+    def test_results_are_those_of_the_program(self):
+        for name in LESSONS:
+            self.open(name)
+            self.compare(name)
+            count = self.script("return document.querySelectorAll('#sliders input').length;")
+            self.assertIn(count, (2, 3, 4), name)
+            for slider in range(count):
+                before = self.picture()
+                self.assertTrue(self.move(slider, 900) != before, f"{name}: slider {slider} moves nothing")
+                self.compare(f"{name}, slider {slider}")
+
+    def test_theory_is_that_of_the_program(self):
+        for name in LESSONS:
+            self.open(name)
+            self.wait("document.body.dataset.theory === 'yes'")
+            netlist = pathlib.Path(self.folder.name) / "netlist"
+            netlist.write_text(self.script("return document.getElementById('netlist').value;"), encoding="utf-8")
+            for command, place in (["equations"], "equations"), (["check"], "check"):
+                done = subprocess.run([DALCS, *command, netlist], capture_output=True, text=True, check=True,
+                                      env={**os.environ, "COLUMNS": "1000"})
+                shown = self.script(f"return document.getElementById('{place}').textContent;")
+                if place == "check":
+                    summary = re.search(r"\n\n((?:  .*\n)+?)\n", done.stdout)[1]
+                    self.assertIn(" ".join(summary.split()), " ".join(shown.split()), name)
+                else:
+                    self.assertEqual(shown.strip(), done.stdout.strip(), name)
+
+    def test_pages_are_small_and_load_nothing_else(self):
+        files = sum((self.site / "lessons" / name).stat().st_size for name in ("dalcs-engine.js", "draw.js", "play.js"))
+        for name in LESSONS:
+            pictures = sum(path.stat().st_size for path in (self.site / "lessons/pictures").glob(f"{name}*"))
+            size = files + pictures + (self.site / "lessons" / f"{name}.html").stat().st_size
+            self.assertLess(size, LARGEST_PAGE, name)
+        self.driver.get_log("performance"), self.driver.get_log("browser")
+        self.open(LESSONS[0])
+        requests = [entry["message"] for entry in self.driver.get_log("performance")
+                    if "Network.requestWillBeSent\"" in entry["message"]]
+        self.assertTrue(requests)
+        for request in requests:
+            self.assertRegex(request, r'"url":"(file|data):')
+        self.assertEqual([entry for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"], [])
+
+    def test_modes_and_planes(self):
+        """The rectifier conducts for the time that the closed form says, and stays on the corner of its rule."""
+        if "02-ideal-diode" not in LESSONS:
+            self.skipTest("not asked for")
+        self.open("02-ideal-diode")
+        rows = self.script("return [...document.querySelectorAll('#modes tr')].map((r) => "
+                           "[...r.children].map((c) => c.textContent));")
+        on = dict((row[0], row) for row in rows)["d1"]
+        # from 0 to 5.50239 ms, then four times from 21.46634 ms to 25.50239 ms, of 100 ms
+        self.assertEqual(on[1:], ["5", f"{5.50239 + 4 * (25.50239 - 21.46634):.1f} %"])
+        self.assertEqual(self.script("return document.querySelectorAll('#planes svg').length;"), 1)
+        off = self.script("const r = play.result, w = column(r, 'v(out,in)'), i = r.signals['i(d1)'];"
+                          "return Math.max(...w.map((x, k) => Math.min(Math.abs(x), 100 * Math.abs(i[k]))));")
+        self.assertLess(off, 1e-9)
+
+    def test_what_happened(self):
+        """A jump and a steady state in words, with the numbers of closed forms."""
+        for name, words in (("19-sweeping-process", "At 15 ms: l1 jumps from 1 A to 2 A, flux of d1 1 mWb; 500 µJ are lost."),
+                            ("17-subharmonics", "Its factors: -1.66667.")):
+            if name in LESSONS:
+                self.open(name)
+                self.assertIn(words, self.script("return document.getElementById('happenings').textContent;"))
+
+    def test_mistakes_and_back(self):
+        self.open(LESSONS[0])
+        first = self.picture()
+        good = self.script("return document.getElementById('netlist').value;")
+        self.type(good.replace(".tran", "Rwrong 1\n.tran"))
+        self.assertRegex(self.script("return document.getElementById('messages').textContent;"), r"netlist:\d+:\d+: error")
+        self.assertIn("stale", self.script("return document.getElementById('results').className;"))
+        self.type(good)
+        self.assertNotIn("stale", self.script("return document.getElementById('results').className;"))
+        self.move(0, 100)
+        self.script("document.getElementById('again').click();")
+        self.assertTrue(self.picture() == first)
+
+    def test_implicit_euler_besides(self):
+        if "08-implicit-euler" not in LESSONS:
+            self.skipTest("not asked for")
+        self.open("08-implicit-euler")
+        self.script("const s = document.getElementById('steps'); s.value = 1000; s.dispatchEvent(new Event('input'));")
+        dashed = self.script("return document.querySelectorAll('.curve[stroke-dasharray]').length;")
+        self.assertEqual(dashed, 3)
+        last = self.script("const r = simulate(document.getElementById('netlist').value, 'euler', 5e-6);"
+                           "const v = r.signals['v(1)']; return v[v.length - 1];")
+        run = dalcs_program.run(DALCS, TOP / "netlists/tanks/lc_bridge.cir", method="euler", options=["--step", "5u"])
+        self.assertAlmostEqual(last, run.column("v(1)")[-1], delta=1e-9)
+
+    def test_narrow(self):
+        self.driver.set_window_size(500, 900)
+        try:
+            self.open(LESSONS[0])
+            self.assertLessEqual(*self.script("return [document.documentElement.scrollWidth, window.innerWidth];"))
+        finally:
+            self.driver.set_window_size(1500, 900)
+
+
+def main():
+    if not ENGINE.is_file():
+        print(f"there is no {ENGINE}: tools/wasm/build makes it")
+        return SKIPPED
+    for program in ["chromium", "chromedriver"]:
+        if not shutil.which(program):
+            print(f"{program} is not installed")
+            return SKIPPED
+    unittest.main(argv=sys.argv[:1])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
