@@ -218,7 +218,7 @@ static double fill_of(const struct dalcs_arguments *arguments) {
 static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
                                      const struct dalcs_arguments *arguments,
                                      const struct dalcs_report *report) {
-    char message[DALCS_GNUPLOT_MESSAGE] = "there is no .tran";
+    char message[DALCS_GNUPLOT_MESSAGE] = "there is no .tran and no .pss";
     enum dalcs_status status = DALCS_E_IO;
     if (report->n_losses > 0) {
         status = dalcs_losses_chart_draw(&report->losses[0], report->title, arguments->losses_plot,

@@ -155,8 +155,8 @@ enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) {
     return DALCS_OK;
 }
 
-/* One period is short: every segment of it is audited, unless none is to be. */
-static enum dalcs_status run_period(struct dalcs_steady *st) {
+/* One period is short: every segment of it is audited, unless none is to be. is_silent: nobody asks for its losses. */
+static enum dalcs_status run_period(struct dalcs_steady *st, bool is_silent) {
     struct dalcs_run *r = st->run;
     const struct dalcs_run_options *options = r->options;
     struct dalcs_run_options all = *options;
@@ -164,7 +164,18 @@ static enum dalcs_status run_period(struct dalcs_steady *st) {
     r->options = &all;
     r->orbit = &st->at;
     r->orbit_end = &st->then;
+    struct dalcs_losses_card *losses = r->s->circuit.losses;
+    const struct dalcs_losses_card of_tran =
+        losses != NULL ? *losses : (struct dalcs_losses_card){0};
+    if (losses != NULL) { /* the window is all of it */
+        losses->from = 0.0;
+        losses->to = INFINITY;
+        losses->present = losses->present && !is_silent;
+    }
     enum dalcs_status status = dalcs_transient_run_thinned(r);
+    if (losses != NULL) {
+        *losses = of_tran;
+    }
     r->orbit = NULL;
     r->orbit_end = NULL;
     r->options = options;
@@ -278,7 +289,7 @@ enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     struct kept kept;
     DALCS_TRY(keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
-    status = status == DALCS_OK ? run_period(&st) : status;
+    status = status == DALCS_OK ? run_period(&st, false) : status;
     put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
@@ -313,7 +324,7 @@ static enum dalcs_status check_period(struct dalcs_steady *st) {
                                       .end = no_end,
                                       .progress = sink->progress};
     r->sink = &silent;
-    const enum dalcs_status status = run_period(st);
+    const enum dalcs_status status = run_period(st, true);
     r->sink = sink;
     return status;
 }
