@@ -177,6 +177,16 @@ void dalcs_steady_copy_point(const struct dalcs_steady *st, struct dalcs_orbit_p
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
                                       bool *endless) DALCS_MUST_CHECK;
 
+/* ---- steady_anchor.c --------------------------------------------------------------------------- */
+
+/* What st has found is kept, if its step is an anchor; the last pass is with M. leaves: for a .tran from there. */
+enum dalcs_status dalcs_steady_anchor_keep(struct dalcs_steady *st, bool leaves) DALCS_MUST_CHECK;
+
+/* As dalcs_steady_search, from the anchor of the step, if it has one; else, and where that leads to nothing that counts,
+ * not *found, and st is as before. */
+enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves,
+                                          bool *found) DALCS_MUST_CHECK;
+
 /* ---- periodic_ac.c ----------------------------------------------------------------------------- */
 
 /* .ac around the orbit through st->at, into the run's sink. */

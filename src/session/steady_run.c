@@ -231,7 +231,7 @@ static bool is_subharmonic(const struct dalcs_report *report) {
 static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dalcs_steady *st) {
     const struct dalcs_circuit *c = &r->s->circuit;
     double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
-    bool found;
+    bool found = false;
     bool endless;
     bool is_fixed = r->method != DALCS_METHOD_AUTO && r->options->step > 0.0;
     if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0 || is_fixed) {
@@ -256,13 +256,17 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
         DALCS_TRY(n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK);
         take_period(r, st->period, uic);
     } else {
-        DALCS_TRY(dalcs_steady_search(st, &found, &endless));
+        endless = false;
+        DALCS_TRY(n_periods == 1.0 ? dalcs_steady_anchor_try(st, leaves, &found) : DALCS_OK);
+        DALCS_TRY(found ? DALCS_OK : dalcs_steady_search(st, &found, &endless));
         if (!found) {
             return tell_failure(st, endless);
         }
         DALCS_TRY(n_periods > 1.0 ? dalcs_steady_replace(st, one, (int)n_periods) : DALCS_OK);
     }
-    if (r->s->report.steady.present) { /* its .pss has told */
+    DALCS_TRY(is_free ? DALCS_OK : dalcs_steady_anchor_keep(st, leaves));
+    if (r->s->anchor.is_sought ||
+        r->s->report.steady.present) { /* nobody asks, or its .pss has told */
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_steady_next_step(st)); /* how far it may be off, and what is conserved */
@@ -289,7 +293,7 @@ enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     struct kept kept;
     DALCS_TRY(keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
-    status = status == DALCS_OK ? run_period(&st, false) : status;
+    status = status == DALCS_OK && !r->s->anchor.is_sought ? run_period(&st, false) : status;
     put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
@@ -340,8 +344,10 @@ enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
     const bool is_checked = r->s->report.steady.present;
     DALCS_TRY(keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
-    status = status == DALCS_OK && !is_checked ? check_period(&st) : status;
-    status = status == DALCS_OK ? dalcs_periodic_ac_walk(&st) : status;
+    if (status == DALCS_OK && !r->s->anchor.is_sought) {
+        status = is_checked ? DALCS_OK : check_period(&st);
+        status = status == DALCS_OK ? dalcs_periodic_ac_walk(&st) : status;
+    }
     put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
@@ -354,7 +360,7 @@ enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) {
     DALCS_TRY(keep(r, &kept));
     enum dalcs_status status = find_orbit(r, true, &st);
     put_back(r, &kept, false);
-    if (status == DALCS_OK) {
+    if (status == DALCS_OK && !r->s->anchor.is_sought) {
         r->orbit = &st.at;
         r->leaves_orbit = true;
         status = dalcs_transient_run_thinned(r);
