@@ -765,6 +765,16 @@ struct dalcs_report {
             flow; /* its multiplier along the orbit, 1 but for rounding, which is none of those above */
     } steady;
 
+    /* Of .env. */
+    struct {
+        bool present;
+        double period;         /* s, of the sources */
+        long periods;          /* from the start to the end */
+        long run;              /* of them, those that were run to find the others */
+        long leaps, rejected;  /* over periods that were not; tried in vain, for the error */
+        double worst, allowed; /* the largest error of a leap, over each state's largest value */
+    } envelope;
+
     /* Of .ac around it (doc/bode.md). */
     struct {
         bool present;

@@ -179,6 +179,9 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
 
     for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
         const struct dalcs_plot *plot = run->outputs.measure[shown[i]].plot;
+        if (report->envelope.present && shown[i] == DALCS_TRANSIENT) {
+            continue; /* rows at the beginnings of periods have no averages of them */
+        }
         if (plot != NULL && plot->n_steps > 1) {
             dalcs_step_lines_write(out, &run->outputs.steps, shown[i]);
         } else {

@@ -210,6 +210,9 @@ enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 /* Runs the .tran that starts on such an orbit. */
 enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) DALCS_MUST_CHECK;
 
+/* Runs .env into r->sink. */
+enum dalcs_status dalcs_envelope_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
 /* Runs .tran into r->sink. */
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 

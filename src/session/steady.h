@@ -192,6 +192,20 @@ enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves,
 /* .ac around the orbit through st->at, into the run's sink. */
 enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
+/* ---- steady_run.c: what the circuit and the run are while a period of it is run ------------------ */
+
+struct dalcs_steady_kept {
+    struct dalcs_transient transient;
+    struct dalcs_stimulus *stimulus; /* [n_stimuli] heap */
+    double h, max_step;
+};
+
+enum dalcs_status dalcs_steady_keep(struct dalcs_run *r,
+                                    struct dalcs_steady_kept *kept) DALCS_MUST_CHECK;
+
+/* all: else the sources that repeat stay what they are behind their delays. */
+void dalcs_steady_put_back(struct dalcs_run *r, const struct dalcs_steady_kept *kept, bool all);
+
 /* ---- steady_run.c ------------------------------------------------------------------------------ */
 
 /* Is a run of a period that has just ended, in st->then, where it began? Else DALCS_NOT_CONVERGED and a message. */

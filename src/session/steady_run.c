@@ -16,13 +16,6 @@ static const double most_defect = 1e-10;
 /* That a message names. */
 enum { MOST_STATES = 8 };
 
-/* What the circuit and the run are while a period of it is run. */
-struct kept {
-    struct dalcs_transient transient;
-    struct dalcs_stimulus *stimulus; /* [n_stimuli] */
-    double h, max_step;
-};
-
 static enum dalcs_status refuse(struct dalcs_run *r, const char *hint, const char *text) {
     dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, hint, "%s", text);
     return DALCS_E_OPTION;
@@ -184,9 +177,10 @@ static enum dalcs_status run_period(struct dalcs_steady *st, bool is_silent) {
 
 /* ---- What the circuit is meanwhile --------------------------------------------------------------- */
 
-static enum dalcs_status keep(struct dalcs_run *r, struct kept *kept) {
+enum dalcs_status dalcs_steady_keep(struct dalcs_run *r, struct dalcs_steady_kept *kept) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    *kept = (struct kept){.transient = c->transient, .h = r->h, .max_step = r->max_step};
+    *kept =
+        (struct dalcs_steady_kept){.transient = c->transient, .h = r->h, .max_step = r->max_step};
     kept->stimulus = dalcs_alloc((size_t)c->n_stimuli, sizeof(*kept->stimulus));
     for (int i = 0; i < c->n_stimuli && kept->stimulus != NULL; i++) {
         kept->stimulus[i] = c->stimulus[i];
@@ -194,8 +188,7 @@ static enum dalcs_status keep(struct dalcs_run *r, struct kept *kept) {
     return kept->stimulus != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-/* all: else the sources that repeat stay what they are behind their delays. */
-static void put_back(struct dalcs_run *r, const struct kept *kept, bool all) {
+void dalcs_steady_put_back(struct dalcs_run *r, const struct dalcs_steady_kept *kept, bool all) {
     struct dalcs_circuit *c = &r->s->circuit;
     for (int i = 0; i < c->n_stimuli; i++) {
         if (all || c->stimulus[i].kind != kept->stimulus[i].kind) {
@@ -290,11 +283,11 @@ enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) {
 
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     struct dalcs_steady st = {0};
-    struct kept kept;
-    DALCS_TRY(keep(r, &kept));
+    struct dalcs_steady_kept kept;
+    DALCS_TRY(dalcs_steady_keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
     status = status == DALCS_OK && !r->s->anchor.is_sought ? run_period(&st, false) : status;
-    put_back(r, &kept, true);
+    dalcs_steady_put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
     return status;
@@ -340,15 +333,15 @@ enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
                       "products or functions");
     }
     struct dalcs_steady st = {0};
-    struct kept kept;
+    struct dalcs_steady_kept kept;
     const bool is_checked = r->s->report.steady.present;
-    DALCS_TRY(keep(r, &kept));
+    DALCS_TRY(dalcs_steady_keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
     if (status == DALCS_OK && !r->s->anchor.is_sought) {
         status = is_checked ? DALCS_OK : check_period(&st);
         status = status == DALCS_OK ? dalcs_periodic_ac_walk(&st) : status;
     }
-    put_back(r, &kept, true);
+    dalcs_steady_put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
     return status;
@@ -356,10 +349,10 @@ enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
 
 enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) {
     struct dalcs_steady st = {0};
-    struct kept kept;
-    DALCS_TRY(keep(r, &kept));
+    struct dalcs_steady_kept kept;
+    DALCS_TRY(dalcs_steady_keep(r, &kept));
     enum dalcs_status status = find_orbit(r, true, &st);
-    put_back(r, &kept, false);
+    dalcs_steady_put_back(r, &kept, false);
     if (status == DALCS_OK && !r->s->anchor.is_sought) {
         r->orbit = &st.at;
         r->leaves_orbit = true;
@@ -367,7 +360,7 @@ enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) {
         r->orbit = NULL;
         r->leaves_orbit = false;
     }
-    put_back(r, &kept, true);
+    dalcs_steady_put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
     return status;
