@@ -60,10 +60,10 @@ RECTIFIER = "V1 a 0 SIN(0 17 50)\nR1 a b 1\nD1 b out\nC1 out 0 1\nR2 out 0 100\n
 
 def circuits():
     """(name, netlist, period, how many, periods of the full run for each that is run at least)."""
-    yield "boost, slow output", BOOST, 1e-5, 100000, 100
-    yield "rectifier, 1 F", RECTIFIER, 0.02, 5000, 8
-    yield "soft start", BUCK + "Vref ref 0 PWL(0 0 50m 5)\n", 1e-5, 10000, 5
-    yield "thermal ladder", THERMAL, 1e-5, 100000, 300
+    yield "boost, slow output", BOOST, 1e-5, 100000, 430
+    yield "rectifier, 1 F", RECTIFIER, 0.02, 5000, 13
+    yield "soft start", BUCK + "Vref ref 0 PWL(0 0 50m 5)\n", 1e-5, 10000, 10
+    yield "thermal ladder", THERMAL, 1e-5, 100000, 1500
     yield "delayed clock", BOOST.replace("PULSE(0 1 0 ", "PULSE(0 1 33u "), 1e-5, 20000, 20
     load = "Iload out 0 PWL(0 0 50m 0 50m 0.1 80m 0.1 90m 0.02)\n"
     yield "corners", BOOST.replace("10m", "1m", 1) + load, 1e-5, 15000, 3
@@ -160,7 +160,7 @@ def main():
         for of in dalcs_program.some_of(circuits()):
             case.look_at(*of, 1e-6)
         case.look_at("coarse", BOOST, 1e-5, 50000, 100, 1e-3)
-        case.look_at("fine", BOOST, 1e-5, 50000, 30, 1e-8)
+        case.look_at("fine", BOOST, 1e-5, 50000, 150, 1e-8)
         written(case)
         refused(case)
         return case.checker.finish()
