@@ -159,6 +159,10 @@ enum dalcs_status dalcs_steady_oscillation(struct dalcs_steady *st, double guess
 /* st->step of Newton's method from the last pass, and st->longer. */
 enum dalcs_status dalcs_steady_next_step(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
+/* Is the last pass, which is with M, that of an orbit from which st->at is off by `distance` over the scales, and
+ * st->period by that part of itself where it is free? A bound, but for terms of second order. */
+bool dalcs_steady_comes_back(const struct dalcs_steady *st, double distance);
+
 /* A burst of Newton's method from st->at. A run that fails on the way ends it, no more. */
 enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) DALCS_MUST_CHECK;
 
