@@ -62,4 +62,60 @@ enum dalcs_status dalcs_envelope_sources_take(struct dalcs_envelope_sources *s,
 /* The first period from n on in which one of them turns a corner. */
 long dalcs_envelope_sources_next_corner(const struct dalcs_envelope_sources *s, long n);
 
+/* The run. */
+struct dalcs_envelope {
+    struct dalcs_run *run;
+    struct dalcs_steady st;
+    struct dalcs_envelope_sources sources;
+    bool has_pass; /* st.at to st.then is the period at n */
+    double tolerance;
+    long n, n_all; /* periods: where st.at is; the last one, which is written */
+    long n_G;  /* the second of the two periods that G is of; 0: it is not known since a corner */
+    int level; /* the next leap is over 2^level periods */
+    struct dalcs_envelope_leap *leap; /* [n_systems] */
+    double *M;                        /* of the first of two periods */
+    bool *closed;                     /* [n_pairs] at the base */
+
+    struct dalcs_envelope_rows {
+        const struct dalcs_sink *to;
+        struct dalcs_sink sink; /* of the run of one period */
+        bool has_begun;
+        double offset, stop; /* s */
+    } rows;
+
+    struct { /* [n_x] each */
+        double *F, *G, *g, *h, *expected, *off, *error, *scale;
+        double *base; /* where a leap begins */
+    } at;
+
+    struct dalcs_arena arena;
+};
+
+/* ---- envelope_rows.c ---------------------------------------------------------------------------- */
+
+/* What the run of one period hands its rows to. */
+void dalcs_envelope_rows_setup(struct dalcs_envelope *e);
+
+/* The run of one period from there, or of what is left of the last one; with all its rows, or that at its beginning.
+ * from NULL: the beginning, which e->st.at is the end of. */
+enum dalcs_status dalcs_envelope_write(struct dalcs_envelope *e, double duration, bool all,
+                                       const struct dalcs_orbit_point *from) DALCS_MUST_CHECK;
+
+/* ---- envelope_leaps.c --------------------------------------------------------------------------- */
+
+/* The map of period n from st.at. *fails: its run does. */
+enum dalcs_status dalcs_envelope_pass(struct dalcs_envelope *e, long n,
+                                      bool *fails) DALCS_MUST_CHECK;
+
+/* Has every switch come back to where it was before the last pass? */
+bool dalcs_envelope_returns(const struct dalcs_envelope *e);
+
+/* The last pass is the first one of those that leaps are made of, or another one behind it. */
+void dalcs_envelope_note(struct dalcs_envelope *e, bool is_first);
+
+/* From st.at at period n, whose pass is the last one that was noted: over no more than `most` periods. *by: 0, none is
+ * made. */
+enum dalcs_status dalcs_envelope_try_leaps(struct dalcs_envelope *e, long n, long most,
+                                           long *by) DALCS_MUST_CHECK;
+
 #endif

@@ -196,7 +196,7 @@ enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves,
 /* .ac around the orbit through st->at, into the run's sink. */
 enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
-/* ---- steady_run.c: what the circuit and the run are while a period of it is run ------------------ */
+/* ---- steady_kept.c: what the circuit and the run are while a period of it is run ----------------- */
 
 struct dalcs_steady_kept {
     struct dalcs_transient transient;
