@@ -97,7 +97,8 @@ static enum dalcs_status check(struct dalcs_run *r) {
         return refuse(r, "leave the method, or the step, to the program",
                       ".env needs steps whose error is controlled");
     }
-    bool measures = c->n_fouriers > 0 || (c->losses != NULL && c->losses->present);
+    bool measures = c->n_fouriers > 0;
+    measures = measures || (c->losses != NULL && c->losses->present && !c->periodic.present);
     for (int k = 0; k < c->n_measures; k++) {
         measures = measures || c->measure[k].analysis == DALCS_MEASURED_TRAN;
     }

@@ -46,7 +46,15 @@ enum dalcs_status dalcs_envelope_write(struct dalcs_envelope *e, double duration
     r->orbit = from;
     r->orbit_end = from == NULL ? &e->st.at : NULL;
     r->leaves_orbit = true;
-    enum dalcs_status status = dalcs_transient_run_thinned(r);
+    struct dalcs_losses_card *losses = r->s->circuit.losses;
+    const bool is_asked = losses != NULL && losses->present; /* of a .pss beside it */
+    if (losses != NULL) {
+        losses->present = false;
+    }
+    const enum dalcs_status status = dalcs_transient_run_thinned(r);
+    if (losses != NULL) {
+        losses->present = is_asked;
+    }
     r->orbit = NULL;
     r->orbit_end = NULL;
     r->leaves_orbit = false;

@@ -142,6 +142,16 @@ def written(case):
         case.checker.check(n >= 100, f"{n} rows from {at}")
 
 
+def beside(case):
+    """An orbit beside it has its losses; each step of .step is a run of its own."""
+    done = case.run(f"* beside\n{BOOST}.env 0.01 uic\n.pss uic\n.losses\n.step r1 list 50 100\n")
+    case.checker.check(done.returncode == 0, done.stderr)
+    losses = case.report().get("losses", [])
+    case.checker.check([loss["analysis"] for loss in losses] == ["pss", "pss"], f"losses: {losses}")
+    starts = [float(row["time"]) for row in case.rows()].count(0.0)
+    case.checker.check(starts >= 2, f"{starts} runs")
+
+
 def refused(case):
     case.refuses(f"* r\n{BOOST}.env 0.1 uic\n.meas tran m max v(out)\n", 3, "measurements, losses and --at", "c.cir:10:1")
     case.refuses(f"* r\n{BOOST}.env 0.1\n.tran 1u 1m\n", 3, "a second .tran, the first at")
@@ -162,6 +172,7 @@ def main():
         case.look_at("coarse", BOOST, 1e-5, 50000, 100, 1e-3)
         case.look_at("fine", BOOST, 1e-5, 50000, 150, 1e-8)
         written(case)
+        beside(case)
         refused(case)
         return case.checker.finish()
 
