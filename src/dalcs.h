@@ -89,7 +89,7 @@ enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) DALCS_
 /* The same of the response around a steady state (dalcs_run_options.bode). */
 enum dalcs_status dalcs_session_ask_response(struct dalcs_session *session) DALCS_MUST_CHECK;
 
-/* Asks, before a netlist is read, for the losses of its .tran from one time to another (s; `to` may be
+/* Asks, before a netlist is read, for the losses of its steady state, if it has one, and of its .tran from one time to another (s; `to` may be
  * INFINITY, the end of the run), or, where `from` is not a number, over the window of its .losses card, else
  * over all of the run. */
 enum dalcs_status dalcs_session_ask_losses(struct dalcs_session *session, double from,
@@ -588,9 +588,10 @@ struct dalcs_element_losses {
     double thd; /* rms of what is neither constant nor fundamental, over the fundamental's */
 };
 
-/* Where the power of a .tran went, between two times. */
+/* Where the power went, of a .tran between two times or of all of an orbit. */
 struct dalcs_losses {
     const char *step; /* as of a measurement */
+    bool of_orbit;    /* .pss; else .tran */
     double from, to;  /* s */
     size_t n_elements;
     const struct dalcs_element_losses *element;
@@ -687,7 +688,7 @@ struct dalcs_report {
     const struct dalcs_measurement *measurement;
     size_t n_fourier;
     const struct dalcs_fourier *fourier;
-    size_t n_losses; /* one for each .tran that was asked for its losses */
+    size_t n_losses; /* one for each .pss and .tran that was asked for its losses */
     const struct dalcs_losses *losses;
 
     /* J, over .tran: sources = resistors + diodes + jumps + stored_change + method + balance */
@@ -764,6 +765,16 @@ struct dalcs_report {
         double
             flow; /* its multiplier along the orbit, 1 but for rounding, which is none of those above */
     } steady;
+
+    /* Of .env. */
+    struct {
+        bool present;
+        double period;         /* s, of the sources */
+        long periods;          /* from the start to the end */
+        long run;              /* of them, those that were run to find the others */
+        long leaps, rejected;  /* over periods that were not; tried in vain, for the error */
+        double worst, allowed; /* the largest error of a leap, over each state's largest value */
+    } envelope;
 
     /* Of .ac around it (doc/bode.md). */
     struct {

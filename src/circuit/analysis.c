@@ -4,6 +4,7 @@
 #include <math.h>
 
 static const char PSS_USAGE[] = ".pss [period | auto] [periods=n] [step=tstep] [osc] [uic]";
+static const char ENV_USAGE[] = ".env tstop [at=t,...] [tol=x] [step=tstep] [uic]";
 static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic]";
 
 enum { TSTEP, TSTOP, TSTART, TMAX, N_TIMES };
@@ -190,6 +191,87 @@ void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_
         ok = false;
     }
     periodic->present = ok;
+}
+
+/* Times behind at=, with commas between. */
+static bool read_at(struct dalcs_reader *reader, struct dalcs_envelope_card *card) {
+    struct dalcs_builder *builder = reader->builder;
+    card->at = dalcs_arena_alloc(&builder->circuit->arena, (size_t)reader->card->n, sizeof(double));
+    builder->out_of_memory = builder->out_of_memory || card->at == NULL;
+    while (card->at != NULL && !dalcs_reader_at_end(reader) &&
+           dalcs_reader_is_number(dalcs_reader_peek(reader, 0))) {
+        if (!dalcs_reader_list_number(reader, DALCS_SECOND, "a time", &card->at[card->n_at++])) {
+            return false;
+        }
+    }
+    if (card->n_at == 0) {
+        dalcs_reader_missing(reader, "a time");
+    }
+    return card->n_at > 0;
+}
+
+static bool read_env_word(struct dalcs_reader *reader, struct dalcs_builder *builder) {
+    struct dalcs_envelope_card *card = &builder->circuit->envelope;
+    if (dalcs_reader_take_word(reader, "uic")) {
+        builder->circuit->transient.use_initial_conditions = true;
+        return true;
+    }
+    const bool is_at = dalcs_reader_take_word(reader, "at");
+    double *value = is_at                                    ? NULL
+                    : dalcs_reader_take_word(reader, "step") ? &card->step
+                    : dalcs_reader_take_word(reader, "tol")  ? &card->tolerance
+                                                             : NULL;
+    if (!is_at && value == NULL) {
+        dalcs_reader_unexpected(reader);
+        return false;
+    }
+    if (!dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
+        dalcs_reader_missing(reader, "'='");
+        return false;
+    }
+    if (is_at) {
+        return read_at(reader, card);
+    }
+    const struct dalcs_token *place = dalcs_reader_peek(reader, 0);
+    if (!dalcs_reader_list_number(reader, value == &card->step ? DALCS_SECOND : DALCS_PLAIN,
+                                  "a number", value)) {
+        return false;
+    }
+    if (!(*value > 0.0) || (value == &card->tolerance && *value > 0.1)) {
+        dalcs_builder_error(builder, place, ENV_USAGE, "%s is a positive number%s",
+                            value == &card->step ? "step" : "tol",
+                            value == &card->step ? "" : ", at most 0.1");
+        return false;
+    }
+    return true;
+}
+
+void dalcs_analysis_parse_env(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_transient *transient = &builder->circuit->transient;
+    struct dalcs_envelope_card *envelope = &builder->circuit->envelope;
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, ENV_USAGE);
+    if (!dalcs_analysis_is_first(builder, card, &builder->tran)) {
+        return;
+    }
+    transient->where = dalcs_builder_keep_location(builder, card->token);
+    const struct dalcs_token *place = dalcs_reader_peek(&reader, 0);
+    bool ok = dalcs_reader_number(&reader, DALCS_SECOND, "a stop time", &transient->stop);
+    if (ok && !(transient->stop > 0.0)) {
+        dalcs_builder_error(builder, place, ENV_USAGE, "the stop time must be positive");
+        return;
+    }
+    while (ok && !dalcs_reader_at_end(&reader)) {
+        ok = read_env_word(&reader, builder);
+    }
+    for (int k = 0; k < envelope->n_at && ok; k++) {
+        if (!(envelope->at[k] >= 0.0 && envelope->at[k] < transient->stop)) {
+            dalcs_builder_error(builder, card->token, ENV_USAGE,
+                                "at=%g lies outside of the run, which ends at %g s",
+                                envelope->at[k], transient->stop);
+            ok = false;
+        }
+    }
+    envelope->present = transient->present = ok;
 }
 
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card) {

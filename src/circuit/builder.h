@@ -497,6 +497,7 @@ int dalcs_model_find_switch(struct dalcs_builder *builder, const struct dalcs_to
 /* Takes the name of a model of R, L or C (letter), if one follows: nothing depends on it. False after
  * an error. */
 bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter);
+void dalcs_analysis_parse_env(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card);

@@ -35,6 +35,7 @@ static const struct dot_card DOT_CARDS[] = {
     {".model", DALCS_CARD_MODEL, NULL, NULL, NOTHING, NULL},
     {".tran", DALCS_CARD_TRAN, NULL, NULL, NOTHING, NULL},
     {".pss", DALCS_CARD_PSS, NULL, NULL, NOTHING, NULL},
+    {".env", DALCS_CARD_ENV, NULL, NULL, NOTHING, NULL},
     {".op", DALCS_CARD_OP, NULL, NULL, NOTHING, NULL},
     {".dc", DALCS_CARD_DC, NULL, NULL, NOTHING, NULL},
     {".ac", DALCS_CARD_AC, NULL, NULL, NOTHING, NULL},

@@ -11,6 +11,7 @@ enum dalcs_card_class {
     DALCS_CARD_MODEL,
     DALCS_CARD_TRAN,
     DALCS_CARD_PSS,
+    DALCS_CARD_ENV,
     DALCS_CARD_OP,
     DALCS_CARD_DC,
     DALCS_CARD_AC,

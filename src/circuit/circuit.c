@@ -145,6 +145,7 @@ static const struct {
     [DALCS_CARD_MODEL] = {MODELS, dalcs_model_parse},
     [DALCS_CARD_TRAN] = {MODELS, dalcs_analysis_parse_tran},
     [DALCS_CARD_PSS] = {MODELS, dalcs_analysis_parse_pss},
+    [DALCS_CARD_ENV] = {MODELS, dalcs_analysis_parse_env},
     [DALCS_CARD_OP] = {MODELS, dalcs_analysis_parse_op},
     [DALCS_CARD_ELEMENT] = {ELEMENTS, read_element},
     [DALCS_CARD_COUPLING] = {REFERENCES, dalcs_coupling_parse},

@@ -147,6 +147,15 @@ struct dalcs_transient {
     struct dalcs_location where;
 };
 
+/* What .env asks for; times in s. Beside it is a .tran of the same length. */
+struct dalcs_envelope_card {
+    bool present;
+    double step;      /* of rows in periods that are written; 0: the period/100 */
+    double tolerance; /* 0: that of the run */
+    int n_at;
+    double *at; /* [n_at] times whose periods are written */
+};
+
 /* What .ac asks for around a periodic orbit. */
 struct dalcs_orbit_ac_card {
     const char *loop; /* the V source in a loop whose gain is asked for; NULL: none */
@@ -198,6 +207,7 @@ struct dalcs_circuit {
     struct dalcs_fourier_card *fourier; /* .four, one for each signal */
     struct dalcs_losses_card *losses;   /* NULL: not asked for */
     struct dalcs_transient transient;
+    struct dalcs_envelope_card envelope;
     struct dalcs_periodic_card periodic;
     bool operating_point; /* .op */
     int n_prints;

@@ -61,12 +61,22 @@ static bool read_time(struct dalcs_reader *reader, const char *name, double *tim
     return true;
 }
 
+/* Is there a waveform whose losses may be asked for? */
+static bool has_waveform(const struct dalcs_builder *builder) {
+    return builder->tran != NULL || builder->pss != NULL || builder->netlist->asks_steady;
+}
+
 /* Of a window within the run. */
 static void check_window(struct dalcs_builder *builder, const struct dalcs_token *from,
                          const struct dalcs_token *to) {
     const struct dalcs_losses_card *card = builder->circuit->losses;
     const double stop = builder->circuit->transient.stop;
-    if (to != NULL && card->to > stop) {
+    const struct dalcs_token *either = from != NULL ? from : to;
+    if (builder->tran == NULL && either != NULL) {
+        dalcs_builder_error(builder, either, "leave from= and to= out",
+                            "there is no .tran for this window: the losses of a steady state are "
+                            "of all of its orbit");
+    } else if (to != NULL && card->to > stop) {
         dalcs_builder_error(builder, to, USAGE, "the window ends at %g s, the run at %g s",
                             card->to, stop);
     } else if (from != NULL && !(card->from < fmin(card->to, stop))) {
@@ -102,8 +112,9 @@ void dalcs_losses_parse(struct dalcs_builder *builder, const struct dalcs_card *
         dalcs_builder_error(builder, card->token, NULL, "a second .losses: there is one window");
         return;
     }
-    if (builder->tran == NULL) {
-        dalcs_builder_note(builder, card->token, NULL, "there is no .tran: this is left out");
+    if (!has_waveform(builder)) {
+        dalcs_builder_note(builder, card->token, NULL,
+                           "there is no .tran and no .pss: this is left out");
         return;
     }
     losses->present = true;
@@ -146,7 +157,7 @@ static bool is_of_a_comparator(const struct dalcs_circuit *circuit, const struct
 /* What the command line wants instead. */
 static bool take_request(struct dalcs_builder *builder) {
     const struct dalcs_losses_request *request = &builder->netlist->losses;
-    if (!request->is_asked || builder->tran == NULL) {
+    if (!request->is_asked || !has_waveform(builder)) {
         return true;
     }
     struct dalcs_losses_card *losses = make_card(builder);
@@ -154,7 +165,12 @@ static bool take_request(struct dalcs_builder *builder) {
         return false;
     }
     losses->present = true;
-    if (request->has_window) {
+    if (request->has_window && builder->tran == NULL) {
+        const struct dalcs_location where = {.file = builder->netlist->name};
+        dalcs_builder_error_at(builder, &where, "write --losses",
+                               "--losses: there is no .tran for a window: the losses of a steady "
+                               "state are of all of its orbit");
+    } else if (request->has_window) {
         const struct dalcs_location where = {.file = builder->netlist->name};
         const double stop = builder->circuit->transient.stop;
         losses->from = request->from;

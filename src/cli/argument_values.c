@@ -138,8 +138,13 @@ enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
 /* FROM:TO, either of which may be left out; NULL: the netlist's window. */
 enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
-    if (arguments->steady || arguments->bode) {
-        dalcs_cli_error(cli, "--losses is one of 'dalcs run'");
+    if (arguments->bode) {
+        dalcs_cli_error(cli, "--losses is one of 'dalcs run' and 'dalcs steady'");
+        return DALCS_E_OPTION;
+    }
+    if (arguments->steady && text != NULL) {
+        dalcs_cli_error(
+            cli, "--losses: those of a steady state are of all of its orbit: leave the window out");
         return DALCS_E_OPTION;
     }
     arguments->losses = true;
@@ -172,8 +177,8 @@ enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_argument_losses_plot(struct dalcs_arguments *arguments,
                                              const struct dalcs_cli *cli, const char *path) {
-    if (arguments->steady || arguments->bode) {
-        dalcs_cli_error(cli, "--losses-plot is one of 'dalcs run'");
+    if (arguments->bode) {
+        dalcs_cli_error(cli, "--losses-plot is one of 'dalcs run' and 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     arguments->losses_plot = path;

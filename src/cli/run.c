@@ -179,6 +179,9 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
 
     for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
         const struct dalcs_plot *plot = run->outputs.measure[shown[i]].plot;
+        if (report->envelope.present && shown[i] == DALCS_TRANSIENT) {
+            continue; /* rows at the beginnings of periods have no averages of them */
+        }
         if (plot != NULL && plot->n_steps > 1) {
             dalcs_step_lines_write(out, &run->outputs.steps, shown[i]);
         } else {
@@ -218,7 +221,7 @@ static double fill_of(const struct dalcs_arguments *arguments) {
 static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
                                      const struct dalcs_arguments *arguments,
                                      const struct dalcs_report *report) {
-    char message[DALCS_GNUPLOT_MESSAGE] = "there is no .tran";
+    char message[DALCS_GNUPLOT_MESSAGE] = "there is no .tran and no .pss";
     enum dalcs_status status = DALCS_E_IO;
     if (report->n_losses > 0) {
         status = dalcs_losses_chart_draw(&report->losses[0], report->title, arguments->losses_plot,

@@ -17,7 +17,13 @@ const char dalcs_steady_help[] =
     "is stable, with its Floquet multipliers. Other analyses of the netlist are left out.\n"
     "\n"
     "      --period T      the period in s, a multiple of that of each source (default: the\n"
-    "                      smallest common one)\n" DALCS_RUN_OPTIONS "\n"
+    "                      smallest common one)\n" DALCS_RUN_OPTIONS
+    "      --losses        print what each element takes on average over the orbit, the "
+    "efficiency,\n"
+    "                      power factors and THD\n"
+    "      --losses-plot FILE\n"
+    "                      draw what each element loses as bars, .svg, .png or .pdf\n"
+    "\n"
     "examples:\n"
     "  dalcs steady buck.cir\n"
     "  dalcs steady buck.cir -o period.csv --report buck.json\n"
@@ -62,7 +68,20 @@ static void write_multipliers(FILE *out, const struct dalcs_report *report) {
     fputs(report->steady.exact ? "\n" : " (nearly: the mode is not known all the time)\n", out);
 }
 
+static void write_envelope(FILE *out, const struct dalcs_report *report) {
+    char period[DALCS_QUANTITY_SIZE];
+    fprintf(out,
+            "  envelope  %ld periods of %s: %ld run, %ld leaps over the others, each off by %.2g "
+            "at most\n",
+            report->envelope.periods,
+            dalcs_quantity_write(period, report->envelope.period, "s", DIGITS),
+            report->envelope.run, report->envelope.leaps, report->envelope.worst);
+}
+
 void dalcs_steady_lines_write(FILE *out, const struct dalcs_report *report) {
+    if (report->envelope.present) {
+        write_envelope(out, report);
+    }
     if (!report->steady.present) {
         return;
     }

@@ -18,6 +18,9 @@
  * messages grow with each. */
 enum { AHEAD = 64, MOST_OF_A_SESSION = 256, LEAST_WIDTH = 11 };
 
+/* Steps that a thread takes one after the other: steady states are looked for from one that is near (steady_anchor.c). */
+enum { MOST_IN_A_ROW = 8 };
+
 struct crew {
     const struct dalcs_variants_pool *pool;
     pthread_mutex_t lock;
@@ -25,6 +28,7 @@ struct crew {
     size_t next, taken;         /* steps */
     struct dalcs_variant *slot; /* [n_slots] of step k: k modulo n_slots */
     size_t n_slots;
+    size_t in_a_row;          /* that a thread takes at once, up to a multiple of MOST_IN_A_ROW */
     enum dalcs_status status; /* not DALCS_OK: all stop */
 };
 
@@ -233,6 +237,13 @@ static void take_ready(struct crew *crew) {
     pthread_cond_broadcast(&crew->moved);
 }
 
+/* Behind the last one of those that a thread takes from `first` on. */
+static size_t end_of_row(const struct crew *crew, size_t first) {
+    const size_t stretch = first - first % MOST_IN_A_ROW + MOST_IN_A_ROW;
+    size_t end = first + crew->in_a_row < stretch ? first + crew->in_a_row : stretch;
+    return end < crew->pool->end ? end : crew->pool->end;
+}
+
 static void *work(void *user) {
     struct worker w = {.crew = user};
     struct crew *crew = w.crew;
@@ -245,15 +256,19 @@ static void *work(void *user) {
         if (crew->status != DALCS_OK || crew->next >= crew->pool->end) {
             break;
         }
-        const size_t step = crew->next++;
-        pthread_mutex_unlock(&crew->lock);
-        struct dalcs_variant v = {0};
-        enum dalcs_status status = look(crew);
-        status = status == DALCS_OK ? run_step(&w, step, &v) : status;
-        pthread_mutex_lock(&crew->lock);
-        crew->slot[step % crew->n_slots] = v;
-        crew->status = crew->status == DALCS_OK ? status : crew->status;
-        take_ready(crew);
+        const size_t first = crew->next;
+        crew->next = end_of_row(crew, first);
+        const size_t end = crew->next;
+        for (size_t step = first; step < end && crew->status == DALCS_OK; step++) {
+            pthread_mutex_unlock(&crew->lock);
+            struct dalcs_variant v = {0};
+            enum dalcs_status status = look(crew);
+            status = status == DALCS_OK ? run_step(&w, step, &v) : status;
+            pthread_mutex_lock(&crew->lock);
+            crew->slot[step % crew->n_slots] = v;
+            crew->status = crew->status == DALCS_OK ? status : crew->status;
+            take_ready(crew);
+        }
     }
     pthread_mutex_unlock(&crew->lock);
     dalcs_session_destroy(w.session);
@@ -270,6 +285,13 @@ static size_t count_threads(const struct dalcs_variants_pool *pool) {
     return n < steps ? n : steps;
 }
 
+/* As many as leave work for all; one, unless there is an orbit to start from. */
+static size_t count_in_a_row(const struct dalcs_variants_pool *pool, size_t n_threads) {
+    const size_t share = (pool->end - pool->first) / (2 * n_threads);
+    const bool pays = dalcs_session_request(pool->session).periodic;
+    return !pays || share < 1 ? 1 : share < MOST_IN_A_ROW ? share : MOST_IN_A_ROW;
+}
+
 enum dalcs_status dalcs_variants_pool_run(const struct dalcs_variants_pool *pool) {
     const size_t n = count_threads(pool);
     struct crew crew = {.pool = pool,
@@ -277,7 +299,8 @@ enum dalcs_status dalcs_variants_pool_run(const struct dalcs_variants_pool *pool
                         .moved = PTHREAD_COND_INITIALIZER,
                         .next = pool->first,
                         .taken = pool->first,
-                        .n_slots = AHEAD * (n + 1)};
+                        .n_slots = AHEAD * (n + 1),
+                        .in_a_row = count_in_a_row(pool, n)};
     pthread_t *thread = dalcs_alloc(n, sizeof *thread);
     crew.slot = dalcs_alloc(crew.n_slots, sizeof *crew.slot);
     size_t n_started = 0;

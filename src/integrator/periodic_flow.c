@@ -259,16 +259,16 @@ static enum dalcs_status setup(struct dalcs_periodic_flow *flow, const double co
 
 enum dalcs_status dalcs_periodic_flow_setup(struct dalcs_periodic_flow *flow,
                                             const struct dalcs_orbit_part *orbit,
-                                            const double complex *source, double fastest,
-                                            double period) {
+                                            const struct dalcs_periodic_flow_asked *asked) {
     const struct dalcs_system *system = orbit->rates.part->component->system;
     *flow = (struct dalcs_periodic_flow){.orbit = orbit,
                                          .system = system,
-                                         .fastest = fastest,
-                                         .period = period,
+                                         .asked = *asked,
+                                         .fastest = asked->fastest,
+                                         .period = asked->period,
                                          .n_x = system->n_x,
                                          .unit = orbit->rates.unit};
-    enum dalcs_status status = setup(flow, source);
+    enum dalcs_status status = setup(flow, asked->source);
     if (status != DALCS_OK) {
         dalcs_periodic_flow_finish(flow);
     }

@@ -43,9 +43,18 @@ struct dalcs_flow_piece {
         *end; /* that ends with it, and something moves there; else NULL */
 };
 
+struct dalcs_periodic_flow_asked {
+    const double complex *source;           /* [n_inputs] of the small signals */
+    double fastest;                         /* rad/s, of them */
+    double period;                          /* s */
+    enum dalcs_status (*go_on)(void *user); /* asked for each span of a mode; else its status */
+    void *user;
+};
+
 struct dalcs_periodic_flow {
     const struct dalcs_orbit_part *orbit;
     const struct dalcs_system *system;
+    struct dalcs_periodic_flow_asked asked;
     double fastest; /* rad/s */
     double period;  /* s */
     int n_x;
@@ -65,11 +74,9 @@ struct dalcs_periodic_flow {
     struct dalcs_arena arena;
 };
 
-/* source[n_inputs]: of the small signals; none is faster than `fastest` (rad/s). */
-enum dalcs_status dalcs_periodic_flow_setup(struct dalcs_periodic_flow *flow,
-                                            const struct dalcs_orbit_part *orbit,
-                                            const double complex *source, double fastest,
-                                            double period) DALCS_MUST_CHECK;
+enum dalcs_status
+dalcs_periodic_flow_setup(struct dalcs_periodic_flow *flow, const struct dalcs_orbit_part *orbit,
+                          const struct dalcs_periodic_flow_asked *asked) DALCS_MUST_CHECK;
 void dalcs_periodic_flow_finish(struct dalcs_periodic_flow *flow);
 
 /* Elements of an answer at all nodes. */
@@ -84,7 +91,7 @@ enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
                                             const struct dalcs_orbit_span *span,
                                             const struct dalcs_flow_start **start) DALCS_MUST_CHECK;
 
-/* flow->piece and flow->M. */
+/* flow->piece and flow->M. DALCS_NOT_CONVERGED: polynomials do not carry what starts in one of the modes. */
 enum dalcs_status dalcs_periodic_pieces_make(struct dalcs_periodic_flow *flow) DALCS_MUST_CHECK;
 
 /* coefficient[n_nodes] of exp(j kappa theta), as the values at the nodes have them. */

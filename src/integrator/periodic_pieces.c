@@ -1,14 +1,16 @@
 /* periodic_pieces.c - spans of one mode cut into pieces that polynomials of a step can carry. */
 #include "periodic_flow.h"
 
+#include <float.h>
 #include <math.h>
 
 /* Last Legendre coefficients, over the size of what they are of. Integrals of products of two such polynomials, which
  * means over a period are, see the square of what is missing. */
 static const double resolved = 1e-10;
 
-/* A piece is at least this part of its span: what is still rough there is rounding. */
-enum { MOST_HALVINGS = 40 };
+/* A piece is at least this part of its span: what is still rough there has died away behind it, for the steps are
+ * L-stable. Where it has not after so many pieces the polynomials do not carry it, and a span would take 2^40 of them. */
+enum { MOST_HALVINGS = 40, MOST_ROUGH = 256 };
 
 /* What goes through the pieces as they are made: what starts from unit states, and with the fastest signal. */
 struct probe {
@@ -70,6 +72,26 @@ static double find_tail(struct probe *p, const struct dalcs_flow_map *map, doubl
     return tail;
 }
 
+/* What rounding leaves in states that sources drive, in the units of energies: of P x' = A y that of the sums over y,
+ * which cancel where a voltage source holds a capacitor. */
+static double rounding_of(const struct probe *p, const struct dalcs_flow_map *map) {
+    const struct dalcs_periodic_flow *flow = p->flow;
+    const struct dalcs_csr *A = &flow->system->A;
+    const size_t size = dalcs_periodic_flow_size(flow);
+    const size_t stride = (size_t)flow->stages.layout.stride;
+    double most = 0.0;
+    for (int x = 0; x < flow->n_x; x++) {
+        for (size_t i = 0; i < size; i += stride) {
+            double terms = 0.0;
+            for (int m = A->p[x]; m < A->p[x + 1]; m++) {
+                terms += fabs(A->x[m]) * cabs(map->drive[i + (size_t)A->j[m]]);
+            }
+            most = fmax(most, terms / flow->unit[x]);
+        }
+    }
+    return DBL_EPSILON * flow->stages.layout.n_nodes * map->h * most;
+}
+
 /* Does the piece carry all of them? *tail: the worst, over their sizes. */
 static void try_piece(struct probe *p, const struct dalcs_flow_map *map, double t, double *tail) {
     const struct dalcs_periodic_flow *flow = p->flow;
@@ -79,6 +101,7 @@ static void try_piece(struct probe *p, const struct dalcs_flow_map *map, double 
     for (int k = 0; k <= flow->n_x; k++) {
         double size;
         double of = find_tail(p, map, t, k, &size);
+        size = k == flow->n_x ? fmax(size, rounding_of(p, map) / resolved) : size;
         *tail = of > 0.0 ? fmax(*tail, of / size) : *tail;
     }
 }
@@ -129,6 +152,7 @@ static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span
     struct dalcs_periodic_flow *flow = p->flow;
     const double length = span->to - span->from;
     int level = 0;
+    int n_rough = 0;
     uint64_t at = 0; /* of 2^MOST_HALVINGS */
     while (at < (uint64_t)1 << MOST_HALVINGS) {
         struct dalcs_flow_map *map;
@@ -139,6 +163,10 @@ static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span
         if (tail > resolved && level < MOST_HALVINGS) {
             level++;
             continue;
+        }
+        n_rough += tail > resolved ? 1 : 0;
+        if (n_rough > MOST_ROUGH) {
+            return DALCS_NOT_CONVERGED;
         }
         flow->worst = fmax(flow->worst, tail);
         DALCS_TRY(add_piece(flow, map, t));
@@ -178,6 +206,7 @@ static enum dalcs_status cut_period(struct probe *p) {
         if (!(span->to > span->from)) {
             continue;
         }
+        DALCS_TRY(flow->asked.go_on(flow->asked.user));
         DALCS_TRY(dalcs_periodic_flow_start(flow, span, &start));
         begin_span(p, start, span->from);
         const int first = flow->n;

@@ -91,10 +91,14 @@ static void write_sources(FILE *out, const struct dalcs_losses *l) {
 
 void dalcs_losses_text_write(FILE *out, const struct dalcs_losses *l) {
     char text[2][DALCS_QUANTITY_SIZE];
-    fprintf(out, "\n  losses from %s to %s%s%s\n",
-            l->from == 0.0 ? "0" : dalcs_quantity_write(text[0], l->from, "s", 9),
-            dalcs_quantity_write(text[1], l->to, "s", 9), l->step != NULL ? ", " : "",
-            l->step != NULL ? l->step : "");
+    if (l->of_orbit) {
+        fprintf(out, "\n  losses of the orbit, %s", dalcs_quantity_write(text[0], l->to, "s", 9));
+    } else {
+        fprintf(out, "\n  losses from %s to %s",
+                l->from == 0.0 ? "0" : dalcs_quantity_write(text[0], l->from, "s", 9),
+                dalcs_quantity_write(text[1], l->to, "s", 9));
+    }
+    fprintf(out, "%s%s\n", l->step != NULL ? ", " : "", l->step != NULL ? l->step : "");
     write_elements(out, l);
     write_sums(out, l);
     write_switching(out, l);

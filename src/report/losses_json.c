@@ -41,6 +41,7 @@ void dalcs_losses_json_write(struct dalcs_json *json, const struct dalcs_losses 
     if (l->step != NULL) {
         dalcs_json_string(json, "step", l->step);
     }
+    dalcs_json_string(json, "analysis", l->of_orbit ? "pss" : "tran");
     dalcs_json_number(json, "from", l->from);
     dalcs_json_number(json, "to", l->to);
     dalcs_json_number(json, "sources", l->sources);

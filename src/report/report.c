@@ -326,6 +326,21 @@ static void write_fourier(struct dalcs_json *json, const struct dalcs_report *re
     dalcs_json_close(json, ']');
 }
 
+static void write_envelope(struct dalcs_json *json, const struct dalcs_report *report) {
+    if (!report->envelope.present) {
+        return;
+    }
+    dalcs_json_open(json, "envelope", '{', false);
+    dalcs_json_number(json, "period", report->envelope.period);
+    dalcs_json_integer(json, "periods", report->envelope.periods);
+    dalcs_json_integer(json, "run", report->envelope.run);
+    dalcs_json_integer(json, "leaps", report->envelope.leaps);
+    dalcs_json_integer(json, "rejected", report->envelope.rejected);
+    dalcs_json_number(json, "worst", report->envelope.worst);
+    dalcs_json_number(json, "allowed", report->envelope.allowed);
+    dalcs_json_close(json, '}');
+}
+
 static void write_losses(struct dalcs_json *json, const struct dalcs_report *report) {
     if (report->n_losses == 0) {
         return;
@@ -359,6 +374,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_nonunique(&json, report);
     write_measurements(&json, report);
     write_fourier(&json, report);
+    write_envelope(&json, report);
     write_losses(&json, report);
     write_energy(&json, report);
     write_steady(&json, report);

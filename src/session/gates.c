@@ -39,12 +39,13 @@ enum dalcs_status dalcs_refuse_gates(struct dalcs_run *r, const struct dalcs_log
 
 enum dalcs_status dalcs_check_gates(struct dalcs_run *r, enum dalcs_analysis analysis) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    const bool is_asked = analysis == DALCS_OPERATING_POINT ? c->operating_point
-                          : analysis == DALCS_DC_SWEEP      ? c->n_dc > 0
-                          : analysis == DALCS_AC            ? c->ac.n > 0 || r->options->bode
-                          : analysis == DALCS_PERIODIC
-                              ? c->periodic.present || r->options->steady
-                              : c->transient.present && c->transient.starts_steady;
+    const bool is_asked =
+        analysis == DALCS_OPERATING_POINT ? c->operating_point
+        : analysis == DALCS_DC_SWEEP      ? c->n_dc > 0
+        : analysis == DALCS_AC            ? c->ac.n > 0 || r->options->bode
+        : analysis == DALCS_PERIODIC
+            ? c->periodic.present || r->options->steady
+            : c->transient.present && (c->transient.starts_steady || c->envelope.present);
     if (c->n_gates == 0 || (!is_asked && r->method != DALCS_METHOD_EULER)) {
         return DALCS_OK;
     }

@@ -216,13 +216,24 @@ static void tell(const struct account *a) {
 enum dalcs_status dalcs_losses_run_report(struct dalcs_losses_run *losses, struct dalcs_run *r) {
     const struct dalcs_losses_sum *sum = &losses->sum;
     const struct dalcs_circuit *c = sum->circuit;
-    struct dalcs_losses *l = dalcs_arena_alloc(&r->s->arena, 1, sizeof(*l));
-    struct account a = {.r = r, .sum = sum, .losses = l, .length = sum->to - sum->from};
-    a.element = dalcs_arena_alloc(&r->s->arena, (size_t)c->n_devices, sizeof(*a.element));
-    if (l == NULL || a.element == NULL) {
+    struct dalcs_report *report = &r->s->report;
+    struct dalcs_losses *all = dalcs_arena_alloc(&r->s->arena, report->n_losses + 1, sizeof(*all));
+    if (all == NULL) {
         return DALCS_E_NOMEM;
     }
-    *l = (struct dalcs_losses){.from = sum->from, .to = sum->to, .element = a.element};
+    for (size_t k = 0; k < report->n_losses; k++) { /* of .pss before a .tran */
+        all[k] = report->losses[k];
+    }
+    struct dalcs_losses *l = &all[report->n_losses];
+    struct account a = {.r = r, .sum = sum, .losses = l, .length = sum->to - sum->from};
+    a.element = dalcs_arena_alloc(&r->s->arena, (size_t)c->n_devices, sizeof(*a.element));
+    if (a.element == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *l = (struct dalcs_losses){.of_orbit = r->orbit != NULL && !r->leaves_orbit,
+                               .from = sum->from,
+                               .to = sum->to,
+                               .element = a.element};
     for (int k = 0; k < c->n_devices; k++) {
         if (c->losses->device[k].voltage >= 0) {
             DALCS_TRY(add_element(&a, k));
@@ -234,7 +245,7 @@ enum dalcs_status dalcs_losses_run_report(struct dalcs_losses_run *losses, struc
                  l->stored_change;
     DALCS_TRY(judge_efficiency(&a));
     tell(&a);
-    r->s->report.losses = l;
-    r->s->report.n_losses = 1;
+    report->losses = all;
+    report->n_losses++;
     return DALCS_OK;
 }

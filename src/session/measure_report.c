@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Two that were written with nine digits. */
+/* A period and a frequency that were written with nine digits: each is off by up to 5e-9 of itself. */
 static const double same_frequency = 1e-8;
 
 /* A result on its way into the report. */

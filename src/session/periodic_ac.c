@@ -128,7 +128,7 @@ static enum dalcs_status walk(struct dalcs_periodic_ac *a) {
     a->margins = (struct dalcs_margins){.user = a, .at = gain_at};
     for (int k = 0; k < f->n; k++) {
         DALCS_TRY(put_row(a, dalcs_sweep_value(f, k)));
-        DALCS_TRY(r->sink->progress(r->sink->user, k + 1, f->n));
+        DALCS_TRY(dalcs_run_progress(r, k + 1, f->n));
     }
     DALCS_TRY(dalcs_measures_report(&a->measures, r, DALCS_OK));
     DALCS_TRY(dalcs_periodic_loop_report(a));
@@ -165,6 +165,22 @@ static double fastest_of(const struct dalcs_sweep *f) {
     return two_pi * fastest;
 }
 
+static enum dalcs_status go_on(void *user) {
+    const struct dalcs_periodic_ac *a = user;
+    return dalcs_run_progress(a->run, 0.0, a->sweep->n);
+}
+
+static enum dalcs_status refuse_rough(const struct dalcs_periodic_ac *a) {
+    struct dalcs_run *r = a->run;
+    dalcs_diag_add(
+        &r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
+        "elements that are nearly nothing or nearly ideal, such as a coupling next to 1, "
+        "may be left out; or inject a small sine in .tran",
+        "the response is not found: polynomials do not carry small signals through the "
+        "period, however short its pieces are");
+    return DALCS_NOT_CONVERGED;
+}
+
 static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, int k, double fastest) {
     struct dalcs_periodic_ac_part *p = &a->part[k];
     const struct dalcs_system *s = &a->run->s->network.system[k];
@@ -192,8 +208,16 @@ static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, int k, double f
         return DALCS_OK;
     }
     mark_read(a, k, is_read);
-    DALCS_TRY(
-        dalcs_periodic_flow_setup(&p->flow, &a->log.part[k], p->source, fastest, a->st->period));
+    const struct dalcs_periodic_flow_asked asked = {.source = p->source,
+                                                    .fastest = fastest,
+                                                    .period = a->st->period,
+                                                    .go_on = go_on,
+                                                    .user = a};
+    const enum dalcs_status status = dalcs_periodic_flow_setup(&p->flow, &a->log.part[k], &asked);
+    if (status == DALCS_NOT_CONVERGED) {
+        return refuse_rough(a);
+    }
+    DALCS_TRY(status);
     return dalcs_periodic_response_setup(&p->response, &p->flow, is_read);
 }
 

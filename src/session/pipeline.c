@@ -220,6 +220,9 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
         if (!circuit->transient.present) {
             return DALCS_OK;
         }
+        if (circuit->envelope.present) {
+            return dalcs_envelope_run(r);
+        }
         if (circuit->transient.starts_steady) {
             return dalcs_steady_leave(r);
         }

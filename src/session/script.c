@@ -223,6 +223,7 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
     if (!session->has_netlist) {
         return DALCS_E_OPTION;
     }
+    dalcs_steady_anchor_forget(session);
     if (is_parameter) {
         override.kind = DALCS_OVERRIDE_PARAMETER;
         found = has_parameter(&session->netlist, name, like);

@@ -38,6 +38,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
         return;
     }
     dalcs_session_forget_run(session);
+    dalcs_steady_anchor_forget(session);
     if (session->has_network) {
         dalcs_network_finish(&session->network);
     }
@@ -256,10 +257,12 @@ bool dalcs_session_print(const struct dalcs_session *session, size_t card, int a
 
 const char *dalcs_session_measure_name(const struct dalcs_session *session, size_t index) {
     static const enum dalcs_measured_analysis in_order[] = {DALCS_MEASURED_OP, DALCS_MEASURED_DC,
-                                                            DALCS_MEASURED_AC, DALCS_MEASURED_TRAN};
+                                                            DALCS_MEASURED_PSS, DALCS_MEASURED_AC,
+                                                            DALCS_MEASURED_TRAN};
     const struct dalcs_circuit *circuit = &session->circuit;
     const bool asked[] = {[DALCS_MEASURED_OP] = circuit->operating_point,
                           [DALCS_MEASURED_DC] = circuit->n_dc > 0,
+                          [DALCS_MEASURED_PSS] = circuit->periodic.present,
                           [DALCS_MEASURED_AC] = circuit->ac.n > 0,
                           [DALCS_MEASURED_TRAN] = circuit->transient.present};
     for (size_t a = 0; a < sizeof in_order / sizeof in_order[0]; a++) {

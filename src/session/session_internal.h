@@ -17,6 +17,21 @@ struct dalcs_orbit_point;
 struct dalcs_radau;
 struct dalcs_radau_options;
 
+/* Steps that share an anchor: it costs a search more in so many, and what is searched lies no farther away. */
+enum { DALCS_STEPS_OF_AN_ANCHOR = 8 };
+
+/* The orbit that steps of .step start their search from (steady_anchor.c). */
+struct dalcs_steady_anchor {
+    bool is_known;  /* that of `step`; where that has none, it does not serve */
+    bool serves;    /* stable, and the only one nearby */
+    bool leaves;    /* of a .tran that starts on it */
+    bool is_sought; /* by a run of which nobody is to see anything */
+    size_t step;
+    int n_x, n_pairs;
+    double *x; /* heap */
+    bool *closed;
+};
+
 struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
@@ -41,7 +56,9 @@ struct dalcs_session {
         is_cancelled; /* by another thread or a signal handler, which may do nothing else here */
     char *document;   /* the last one handed out as text; heap */
     double *start, *final;
-    struct dalcs_nonunique *nonunique; /* of the report */
+    struct dalcs_steady_anchor anchor;
+    struct dalcs_run_options anchor_options; /* that it was looked for with */
+    struct dalcs_nonunique *nonunique;       /* of the report */
     size_t n_nonunique, nonunique_capacity;
     struct dalcs_spice_names spice; /* made when first asked for */
     struct dalcs_arena arena;       /* names of the report and of the plots */
@@ -170,6 +187,17 @@ struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, do
 /* For a netlist that has asked for no waveforms: its network with what an audit reads. */
 enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) DALCS_MUST_CHECK;
 
+/* Before step `step` of .step is built: the orbit of its anchor, if the analysis asks for one that is not there yet. */
+enum dalcs_status dalcs_steady_anchor_prepare(struct dalcs_session *s,
+                                              const struct dalcs_run_options *options,
+                                              const struct dalcs_sink *sink,
+                                              enum dalcs_analysis analysis,
+                                              size_t step) DALCS_MUST_CHECK;
+void dalcs_steady_anchor_forget(struct dalcs_session *s);
+
+/* Before a run with these options: an anchor of other ones is none. */
+void dalcs_steady_anchor_enter(struct dalcs_session *s, const struct dalcs_run_options *options);
+
 /* Runs .pss into r->sink. */
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
@@ -181,6 +209,9 @@ enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
 /* Runs the .tran that starts on such an orbit. */
 enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* Runs .env into r->sink. */
+enum dalcs_status dalcs_envelope_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
 /* Runs .tran into r->sink. */
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;

@@ -43,6 +43,26 @@ static void go_by(struct dalcs_steady *st, const double *from, const double *ste
     memcpy(st->at.closed, st->then.closed, (size_t)st->layout.n_pairs * sizeof(bool));
 }
 
+bool dalcs_steady_comes_back(const struct dalcs_steady *st, double distance) {
+    const double off = fmax(distance, good);
+    bool does = true;
+    for (int k = 0; k < st->layout.n_systems; k++) {
+        const int first = st->layout.first[k];
+        const int n = st->layout.first[k + 1] - first;
+        const double *M = st->M + st->layout.first_of_M[k];
+        for (int x = 0; x < n; x++) {
+            const double *scale = st->scale + first;
+            double most = off * scale[x]; /* M - 1 of what the states are off by */
+            for (int i = 0; i < n; i++) {
+                most += off * fabs(M[i * n + x]) * scale[i];
+            }
+            most += st->is_free ? off * st->period * fabs(st->last[first + x]) : 0.0;
+            does = does && fabs(st->then.x[first + x] - st->at.x[first + x]) <= most;
+        }
+    }
+    return does;
+}
+
 enum dalcs_status dalcs_steady_next_step(struct dalcs_steady *st) {
     st->longer = 0.0;
     return st->is_free ? dalcs_steady_newton_free(st, &st->longer) : dalcs_steady_newton(st);

@@ -159,6 +159,10 @@ enum dalcs_status dalcs_steady_oscillation(struct dalcs_steady *st, double guess
 /* st->step of Newton's method from the last pass, and st->longer. */
 enum dalcs_status dalcs_steady_next_step(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
+/* Is the last pass, which is with M, that of an orbit from which st->at is off by `distance` over the scales, and
+ * st->period by that part of itself where it is free? A bound, but for terms of second order. */
+bool dalcs_steady_comes_back(const struct dalcs_steady *st, double distance);
+
 /* A burst of Newton's method from st->at. A run that fails on the way ends it, no more. */
 enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) DALCS_MUST_CHECK;
 
@@ -177,10 +181,34 @@ void dalcs_steady_copy_point(const struct dalcs_steady *st, struct dalcs_orbit_p
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
                                       bool *endless) DALCS_MUST_CHECK;
 
+/* ---- steady_anchor.c --------------------------------------------------------------------------- */
+
+/* What st has found is kept, if its step is an anchor; the last pass is with M. leaves: for a .tran from there. */
+enum dalcs_status dalcs_steady_anchor_keep(struct dalcs_steady *st, bool leaves) DALCS_MUST_CHECK;
+
+/* As dalcs_steady_search, from the anchor of the step, if it has one; else, and where that leads to nothing that counts,
+ * not *found, and st is as before. */
+enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves,
+                                          bool *found) DALCS_MUST_CHECK;
+
 /* ---- periodic_ac.c ----------------------------------------------------------------------------- */
 
 /* .ac around the orbit through st->at, into the run's sink. */
 enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* ---- steady_kept.c: what the circuit and the run are while a period of it is run ----------------- */
+
+struct dalcs_steady_kept {
+    struct dalcs_transient transient;
+    struct dalcs_stimulus *stimulus; /* [n_stimuli] heap */
+    double h, max_step;
+};
+
+enum dalcs_status dalcs_steady_keep(struct dalcs_run *r,
+                                    struct dalcs_steady_kept *kept) DALCS_MUST_CHECK;
+
+/* all: else the sources that repeat stay what they are behind their delays. */
+void dalcs_steady_put_back(struct dalcs_run *r, const struct dalcs_steady_kept *kept, bool all);
 
 /* ---- steady_run.c ------------------------------------------------------------------------------ */
 

@@ -10,26 +10,26 @@
 /* Periods of the sources that a run takes before each burst, after those before. */
 static const long waits[] = {60, 240, 960};
 
-/* An orbit repeats earlier if it comes back but for this, over the scales: far above the rounding of one that does, as
- * its states are known to 1e-10, and far below what tells two orbits apart that are worth two names. */
-static const double repeats_within = 1e-7;
-
 /* By such a part of the scale the run starts beside the orbit. */
 static const double beside = 1e-2;
 
-/* Does the orbit of n periods through st->at come back after fewer of them? */
+/* Does the orbit of n periods through st->at come back after fewer of them? Two orbits that part where a multiplier
+ * passes -1 by d are sqrt(d) apart, which is far more than what st->at is off by. */
 static enum dalcs_status repeats_earlier(struct dalcs_steady *st, double one, int n, bool *it) {
     const double whole = st->period;
+    const double distance = st->distance;
     enum dalcs_status status = DALCS_OK;
     *it = false;
     for (int k = 1; k < n && !*it && status == DALCS_OK; k++) {
         if (n % k == 0) {
             st->period = k * one;
-            status = dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN);
-            *it = st->residual <= repeats_within;
+            status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+            *it = status == DALCS_OK && dalcs_steady_comes_back(st, distance);
+            status = status < DALCS_OK ? status : DALCS_OK; /* a run that fails is none of it */
         }
     }
     st->period = whole;
+    st->distance = distance;
     return status;
 }
 
@@ -57,6 +57,8 @@ static enum dalcs_status look_for(struct dalcs_steady *st, double one, int n, bo
         st->period = n * one;
         DALCS_TRY(dalcs_steady_burst(st, found));
         if (*found) {
+            const enum dalcs_status status = dalcs_steady_next_step(st); /* how far it is off */
+            DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
             DALCS_TRY(repeats_earlier(st, one, n, &is_shorter));
         }
         *found = *found && !is_shorter;

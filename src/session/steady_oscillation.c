@@ -104,6 +104,7 @@ static int repetitions(const struct dalcs_steady_watch *watch, int from, int to)
 /* Of an orbit that was found by a guess of n periods of it: the period that is its shortest one. */
 static enum dalcs_status shorten(struct dalcs_steady *st, int n) {
     const double period = st->period;
+    const double distance = st->distance;
     for (int parts = n; parts > 1; parts--) {
         if (n % parts != 0) {
             continue;
@@ -111,7 +112,7 @@ static enum dalcs_status shorten(struct dalcs_steady *st, int n) {
         st->period = period / parts;
         enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        if (status == DALCS_OK && st->residual <= 1e-9) {
+        if (status == DALCS_OK && dalcs_steady_comes_back(st, distance)) {
             return DALCS_OK;
         }
     }
@@ -131,6 +132,7 @@ static enum dalcs_status try_period(struct search *s, int from, int to, bool *fo
     s->bursts++;
     DALCS_TRY(dalcs_steady_burst(st, found));
     if (*found) {
+        DALCS_TRY(dalcs_steady_refine(st, &s->run));
         DALCS_TRY(shorten(st, n));
         return dalcs_steady_refine(st, &s->run);
     }

@@ -5,6 +5,7 @@
 #include "radau.h"
 #include "steady_means.h"
 #include "steady_watch.h"
+#include "transient.h"
 #include "variation.h"
 
 #include <math.h>
@@ -54,8 +55,10 @@ void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *po
 static enum dalcs_status go(struct dalcs_radau *radau, const struct dalcs_run *r,
                             struct dalcs_steady_means *means,
                             const struct dalcs_steady_watch *watch) {
+    const long interval = dalcs_transient_progress_interval(&r->s->network);
     double t = 0.0;
     long n = 0;
+    DALCS_TRY(dalcs_run_progress(r, t, radau->options.stop)); /* passes are short, and many */
     while (t < radau->options.stop && (watch == NULL || !dalcs_steady_watch_is_full(watch))) {
         bool happens;
         t = fmin(dalcs_radau_next_stop(radau, &happens), radau->options.stop);
@@ -65,7 +68,7 @@ static enum dalcs_status go(struct dalcs_radau *radau, const struct dalcs_run *r
             DALCS_TRY(dalcs_radau_evaluate(radau, t, DALCS_LEFT));
         }
         DALCS_TRY(dalcs_radau_pass(radau, t));
-        if (++n % 4096 == 0) {
+        if (++n % interval == 0) {
             DALCS_TRY(dalcs_run_progress(r, t, radau->options.stop));
         }
     }

@@ -16,13 +16,6 @@ static const double most_defect = 1e-10;
 /* That a message names. */
 enum { MOST_STATES = 8 };
 
-/* What the circuit and the run are while a period of it is run. */
-struct kept {
-    struct dalcs_transient transient;
-    struct dalcs_stimulus *stimulus; /* [n_stimuli] */
-    double h, max_step;
-};
-
 static enum dalcs_status refuse(struct dalcs_run *r, const char *hint, const char *text) {
     dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, hint, "%s", text);
     return DALCS_E_OPTION;
@@ -155,8 +148,8 @@ enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) {
     return DALCS_OK;
 }
 
-/* One period is short: every segment of it is audited, unless none is to be. */
-static enum dalcs_status run_period(struct dalcs_steady *st) {
+/* One period is short: every segment of it is audited, unless none is to be. is_silent: nobody asks for its losses. */
+static enum dalcs_status run_period(struct dalcs_steady *st, bool is_silent) {
     struct dalcs_run *r = st->run;
     const struct dalcs_run_options *options = r->options;
     struct dalcs_run_options all = *options;
@@ -164,37 +157,25 @@ static enum dalcs_status run_period(struct dalcs_steady *st) {
     r->options = &all;
     r->orbit = &st->at;
     r->orbit_end = &st->then;
+    struct dalcs_losses_card *losses = r->s->circuit.losses;
+    const struct dalcs_losses_card of_tran =
+        losses != NULL ? *losses : (struct dalcs_losses_card){0};
+    if (losses != NULL) { /* the window is all of it */
+        losses->from = 0.0;
+        losses->to = INFINITY;
+        losses->present = losses->present && !is_silent;
+    }
     enum dalcs_status status = dalcs_transient_run_thinned(r);
+    if (losses != NULL) {
+        *losses = of_tran;
+    }
     r->orbit = NULL;
     r->orbit_end = NULL;
     r->options = options;
     return status == DALCS_OK ? dalcs_steady_find_defect(st) : status;
 }
 
-/* ---- What the circuit is meanwhile --------------------------------------------------------------- */
-
-static enum dalcs_status keep(struct dalcs_run *r, struct kept *kept) {
-    const struct dalcs_circuit *c = &r->s->circuit;
-    *kept = (struct kept){.transient = c->transient, .h = r->h, .max_step = r->max_step};
-    kept->stimulus = dalcs_alloc((size_t)c->n_stimuli, sizeof(*kept->stimulus));
-    for (int i = 0; i < c->n_stimuli && kept->stimulus != NULL; i++) {
-        kept->stimulus[i] = c->stimulus[i];
-    }
-    return kept->stimulus != NULL ? DALCS_OK : DALCS_E_NOMEM;
-}
-
-/* all: else the sources that repeat stay what they are behind their delays. */
-static void put_back(struct dalcs_run *r, const struct kept *kept, bool all) {
-    struct dalcs_circuit *c = &r->s->circuit;
-    for (int i = 0; i < c->n_stimuli; i++) {
-        if (all || c->stimulus[i].kind != kept->stimulus[i].kind) {
-            c->stimulus[i] = kept->stimulus[i];
-        }
-    }
-    c->transient = kept->transient;
-    r->h = kept->h;
-    r->max_step = kept->max_step;
-}
+/* ---- A period as a .tran --------------------------------------------------------------------------- */
 
 static void take_period(struct dalcs_run *r, double period, bool uic) {
     struct dalcs_circuit *c = &r->s->circuit;
@@ -220,7 +201,7 @@ static bool is_subharmonic(const struct dalcs_report *report) {
 static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dalcs_steady *st) {
     const struct dalcs_circuit *c = &r->s->circuit;
     double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
-    bool found;
+    bool found = false;
     bool endless;
     bool is_fixed = r->method != DALCS_METHOD_AUTO && r->options->step > 0.0;
     if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0 || is_fixed) {
@@ -245,13 +226,17 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
         DALCS_TRY(n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK);
         take_period(r, st->period, uic);
     } else {
-        DALCS_TRY(dalcs_steady_search(st, &found, &endless));
+        endless = false;
+        DALCS_TRY(n_periods == 1.0 ? dalcs_steady_anchor_try(st, leaves, &found) : DALCS_OK);
+        DALCS_TRY(found ? DALCS_OK : dalcs_steady_search(st, &found, &endless));
         if (!found) {
             return tell_failure(st, endless);
         }
         DALCS_TRY(n_periods > 1.0 ? dalcs_steady_replace(st, one, (int)n_periods) : DALCS_OK);
     }
-    if (r->s->report.steady.present) { /* its .pss has told */
+    DALCS_TRY(is_free ? DALCS_OK : dalcs_steady_anchor_keep(st, leaves));
+    if (r->s->anchor.is_sought ||
+        r->s->report.steady.present) { /* nobody asks, or its .pss has told */
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_steady_next_step(st)); /* how far it may be off, and what is conserved */
@@ -275,11 +260,11 @@ enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) {
 
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     struct dalcs_steady st = {0};
-    struct kept kept;
-    DALCS_TRY(keep(r, &kept));
+    struct dalcs_steady_kept kept;
+    DALCS_TRY(dalcs_steady_keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
-    status = status == DALCS_OK ? run_period(&st) : status;
-    put_back(r, &kept, true);
+    status = status == DALCS_OK && !r->s->anchor.is_sought ? run_period(&st, false) : status;
+    dalcs_steady_put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
     return status;
@@ -313,7 +298,7 @@ static enum dalcs_status check_period(struct dalcs_steady *st) {
                                       .end = no_end,
                                       .progress = sink->progress};
     r->sink = &silent;
-    const enum dalcs_status status = run_period(st);
+    const enum dalcs_status status = run_period(st, true);
     r->sink = sink;
     return status;
 }
@@ -325,13 +310,15 @@ enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
                       "products or functions");
     }
     struct dalcs_steady st = {0};
-    struct kept kept;
+    struct dalcs_steady_kept kept;
     const bool is_checked = r->s->report.steady.present;
-    DALCS_TRY(keep(r, &kept));
+    DALCS_TRY(dalcs_steady_keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
-    status = status == DALCS_OK && !is_checked ? check_period(&st) : status;
-    status = status == DALCS_OK ? dalcs_periodic_ac_walk(&st) : status;
-    put_back(r, &kept, true);
+    if (status == DALCS_OK && !r->s->anchor.is_sought) {
+        status = is_checked ? DALCS_OK : check_period(&st);
+        status = status == DALCS_OK ? dalcs_periodic_ac_walk(&st) : status;
+    }
+    dalcs_steady_put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
     return status;
@@ -339,18 +326,18 @@ enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
 
 enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) {
     struct dalcs_steady st = {0};
-    struct kept kept;
-    DALCS_TRY(keep(r, &kept));
+    struct dalcs_steady_kept kept;
+    DALCS_TRY(dalcs_steady_keep(r, &kept));
     enum dalcs_status status = find_orbit(r, true, &st);
-    put_back(r, &kept, false);
-    if (status == DALCS_OK) {
+    dalcs_steady_put_back(r, &kept, false);
+    if (status == DALCS_OK && !r->s->anchor.is_sought) {
         r->orbit = &st.at;
         r->leaves_orbit = true;
         status = dalcs_transient_run_thinned(r);
         r->orbit = NULL;
         r->leaves_orbit = false;
     }
-    put_back(r, &kept, true);
+    dalcs_steady_put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
     return status;

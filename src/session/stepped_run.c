@@ -129,6 +129,7 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
                        "there are %zu steps, and no step %zu", n_all, only);
         return DALCS_E_OPTION;
     }
+    dalcs_steady_anchor_enter(session, options);
     const size_t first = only > 0 ? only - 1 : 0;
     const size_t end = only > 0 ? only : n_all;
     bool asked[DALCS_N_IN_ORDER];
@@ -139,7 +140,11 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
     for (size_t a = 0; a < DALCS_N_IN_ORDER && status == DALCS_OK; a++) {
         for (size_t k = first; asked[a] && k < end && status == DALCS_OK; k++) {
             struct dalcs_plot step = {0};
-            status = dalcs_session_take_step(session, k, &step);
+            status =
+                dalcs_steady_anchor_prepare(session, options, sink, dalcs_analyses_in_order[a], k);
+            if (status == DALCS_OK) {
+                status = dalcs_session_take_step(session, k, &step);
+            }
             if (status == DALCS_OK) {
                 status = dalcs_operating_currents(session, options, sink);
             }

@@ -337,6 +337,22 @@ Ra x 0 1
 .ac dec 1 1k 100k loop=vl sideband=1
 .end
 """, 0),
+    "envelope": ("""Periods that are leapt over, a source that is a ramp, and the losses of an orbit
+Vin in 0 12
+Vg g 0 PULSE(0 1 0 0 0 3u 10u)
+S1 in sw g 0 sm
+D1 0 sw
+L1 sw out 10u
+C1 out 0 10u
+R1 out 0 50
+Iload out 0 PWL(0 0 100u 0.1)
+.model sm SW(Ron=0 Vt=0.5)
+.save v(out)
+.env 80u tol=0.1 step=5u uic
+.pss step=5u uic
+.losses
+.end
+""", 0),
     "refused": ("""A diode across a source
 V1 1 0 PWL(0 -1 1m 1)
 D1 1 0

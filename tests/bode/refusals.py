@@ -104,6 +104,20 @@ def refused(case):
     case.refuses(gates, 3, verb="bode")
 
 
+def held(case):
+    """Sources hold what capacitors store and coils carry: what is left of small signals in them is rounding, at every
+    length of the pieces. Other pieces of the program would take minutes for each."""
+    for k in range(10):
+        volts, store, ohms = 10.0 ** (k - 4), 10.0 ** -(2 + (7 * k) % 11), 10.0 ** ((3 * k) % 8 - 2)
+        period = 10.0 ** -((5 * k) % 7 + 1)
+        cell = (f"V1 a 0 SIN({volts} {volts / 7} {3 / period!r})\nC1 a 0 {store!r}\nIac 0 a AC 1\n" if k % 2 else
+                f"I1 0 a SIN({volts} {volts / 7} {3 / period!r})\nL1 a 0 {store!r}\nI2 0 a AC 1\n")
+        load = f"D1 a b\nR1 b 0 {ohms!r}\n" + (f"C2 b 0 {period / ohms!r}\n" if k % 3 else "")
+        clock = f"Vg g 0 PULSE(0 1 0 0 0 {0.3 * period!r} {period!r})\nS1 b x g 0 sm\nRx x 0 {ohms!r}\n"
+        case.takes(f"Held {k}\n{cell}{load}{clock}.model sm SW(Vt=0.5)\n.pss uic\n"
+                   f".ac dec 2 {1e-3 / period!r} {10 / period!r}\n", options=["-q"])
+
+
 def said(case):
     """The answer around an unstable orbit is one, with a warning."""
     case.takes(PEAK + AC + ".pss uic\n", "the orbit is unstable", "no analyser would show", "two periods")
@@ -115,7 +129,7 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as folder:
         case = Case(program, folder)
-        for look in (commanded, refused, said):
+        for look in (commanded, refused, held, said):
             look(case)
         return case.checker.finish()
 

@@ -85,12 +85,36 @@ def look_at(program, folder, checker, volts):
     settled(program, folder, checker, volts, two)
 
 
+def near_the_border(program, folder, checker):
+    """The orbit of two periods leaves that of one as the root of what the supply is beyond the border. As little as they
+    are apart, they are two; before the border they are one."""
+    border = 24.516572832815474  # V: the multiplier is -1
+    apart = []
+    for beyond in (1e-5, 1e-4, 1e-3):
+        done, report = run(program, folder, border + beyond, ".pss uic")
+        one = report.get("steady", {})
+        checker.check(done.returncode == 0 and one["doubled"]["stable"], f"{beyond} V beyond: {done.stderr}, {one}")
+        done, report = run(program, folder, border + beyond, ".pss periods=2 uic")
+        two = report.get("steady", {})
+        checker.check(done.returncode == 0 and two["stable"], f"{beyond} V beyond, two: {done.stderr}, {two}")
+        apart.append(max(abs(two["states"][x] - one["states"][x]) for x in one["states"]))
+        done, report = run(program, folder, border - beyond, ".pss periods=2 uic")
+        two = report.get("steady", {})
+        checker.check(done.returncode == 0 and two["stable"], f"{beyond} V before, two: {done.stderr}, {two}")
+        done, report = run(program, folder, border - beyond, ".pss uic")
+        off = max(abs(two["states"][x] - report["steady"]["states"][x]) for x in two["states"])
+        checker.check(off < 1e-2 * apart[-1], f"{beyond} V before: {off} apart, not {apart[-1]} as beyond")
+    for small, large in zip(apart, apart[1:]):
+        checker.close(large / small, math.sqrt(10.0), 0.05, f"{apart} apart")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("doubling")
     with tempfile.TemporaryDirectory() as name:
         for volts in (18.0, 20.5, 22.0, 23.4, 24.2, 25.0, 25.7, 26.5, 27.3, 28.0, 29.1, 30.0):
             look_at(program, pathlib.Path(name), checker, volts)
+        near_the_border(program, pathlib.Path(name), checker)
     return checker.finish()
 
 

@@ -1,0 +1,138 @@
+/* steady_anchor.c - .step goes from one steady state to the next.
+ *
+ * Steps that follow each other are near to each other, and so are their orbits. All steps of a stretch of fixed length
+ * start their search on the orbit of its first one, the anchor; the anchor starts as any run does. So what a step gives
+ * depends on its number alone: not on the steps that were run before it, nor on threads, shards or a run that goes on
+ * with a table. A run that begins within a stretch looks for the anchor's orbit first.
+ *
+ * What is found from there counts only where the usual search could have found nothing else nearby: both orbits are
+ * stable, and nothing is conserved. All else is looked for as if there were no anchor. */
+#include "pipeline.h"
+#include "steady.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Where a step's search starts; SIZE_MAX: as any run does. */
+static size_t anchor_of(const struct dalcs_run *r) {
+    const struct dalcs_plot *step = r->step;
+    return step != NULL && step->n_steps > 1 ? step->step - step->step % DALCS_STEPS_OF_AN_ANCHOR
+                                             : SIZE_MAX;
+}
+
+static bool is_anchor(const struct dalcs_run *r) {
+    return r->step != NULL && anchor_of(r) == r->step->step;
+}
+
+/* May an orbit stand for others nearby? The last pass is of it. */
+static bool serves(struct dalcs_steady *st) {
+    return st->n_conserved == 0 && dalcs_steady_largest_multiplier(st) < 1.0;
+}
+
+void dalcs_steady_anchor_forget(struct dalcs_session *s) {
+    free(s->anchor.x);
+    free(s->anchor.closed);
+    s->anchor = (struct dalcs_steady_anchor){0};
+}
+
+void dalcs_steady_anchor_enter(struct dalcs_session *s, const struct dalcs_run_options *options) {
+    struct dalcs_run_options all = *options;
+    all.only_step = 0;
+    if (memcmp(&all, &s->anchor_options, sizeof all) != 0 || options->only_step == 0) {
+        dalcs_steady_anchor_forget(s);
+    }
+    memcpy(&s->anchor_options, &all, sizeof all);
+}
+
+enum dalcs_status dalcs_steady_anchor_keep(struct dalcs_steady *st, bool leaves) {
+    struct dalcs_session *s = st->run->s;
+    const struct dalcs_steady_layout *l = &st->layout;
+    if (!is_anchor(st->run)) {
+        return DALCS_OK;
+    }
+    dalcs_steady_anchor_forget(s);
+    s->anchor.is_known = true;
+    s->anchor.step = st->run->step->step;
+    s->anchor.leaves = leaves;
+    s->anchor.x = dalcs_alloc((size_t)l->n_x, sizeof(double));
+    s->anchor.closed = dalcs_alloc((size_t)l->n_pairs, sizeof(bool));
+    if (s->anchor.x == NULL || s->anchor.closed == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    s->anchor.n_x = l->n_x;
+    s->anchor.n_pairs = l->n_pairs;
+    s->anchor.serves = serves(st);
+    memcpy(s->anchor.x, st->at.x, (size_t)l->n_x * sizeof(double));
+    memcpy(s->anchor.closed, st->at.closed, (size_t)l->n_pairs * sizeof(bool));
+    return DALCS_OK;
+}
+
+static bool is_of(const struct dalcs_steady_anchor *anchor, const struct dalcs_run *r,
+                  bool leaves) {
+    return anchor->is_known && anchor->step == anchor_of(r) && anchor->leaves == leaves;
+}
+
+enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves, bool *found) {
+    const struct dalcs_steady_anchor *a = &st->run->s->anchor;
+    struct dalcs_orbit_point best;
+    *found = false;
+    if (is_anchor(st->run) || !is_of(a, st->run, leaves) || !a->serves ||
+        a->n_x != st->layout.n_x || a->n_pairs != st->layout.n_pairs) {
+        return DALCS_OK;
+    }
+    if (!dalcs_steady_make_point(st, &best)) {
+        return DALCS_E_NOMEM;
+    }
+    memcpy(st->at.x, a->x, (size_t)a->n_x * sizeof(double));
+    memcpy(st->at.closed, a->closed, (size_t)a->n_pairs * sizeof(bool));
+    st->has_point = true;
+    DALCS_TRY(dalcs_steady_burst(st, found));
+    DALCS_TRY(*found ? dalcs_steady_refine(st, &best) : DALCS_OK);
+    DALCS_TRY(*found ? dalcs_steady_next_step(st) : DALCS_OK);
+    *found = *found && serves(st);
+    st->has_point = *found;
+    return DALCS_OK;
+}
+
+/* ---- A run that begins within a stretch ---------------------------------------------------------- */
+
+static enum dalcs_status find_anchor(struct dalcs_session *s,
+                                     const struct dalcs_run_options *options,
+                                     const struct dalcs_sink *sink, enum dalcs_analysis analysis,
+                                     size_t step) {
+    struct dalcs_plot plot;
+    s->anchor.is_sought = true;
+    enum dalcs_status status = dalcs_session_take_step(s, step, &plot);
+    status = status == DALCS_OK ? dalcs_operating_currents(s, options, sink) : status;
+    status =
+        status == DALCS_OK ? dalcs_run_analyses(s, options, sink, &plot, &analysis, 1) : status;
+    s->anchor.is_sought = false;
+    return status;
+}
+
+enum dalcs_status dalcs_steady_anchor_prepare(struct dalcs_session *s,
+                                              const struct dalcs_run_options *options,
+                                              const struct dalcs_sink *sink,
+                                              enum dalcs_analysis analysis, size_t step) {
+    const struct dalcs_circuit *c = &s->circuit;
+    const bool leaves = analysis == DALCS_TRANSIENT;
+    const size_t anchor = step - step % DALCS_STEPS_OF_AN_ANCHOR;
+    const bool asks = (leaves && c->transient.starts_steady) || analysis == DALCS_PERIODIC ||
+                      (analysis == DALCS_AC && (c->periodic.present || options->bode));
+    if (!asks || anchor == step ||
+        (s->anchor.is_known && s->anchor.step == anchor && s->anchor.leaves == leaves)) {
+        return DALCS_OK;
+    }
+    const struct dalcs_diag diag = s->diag; /* what the anchor says is not of this step */
+    s->diag = (struct dalcs_diag){0};
+    const enum dalcs_status status = find_anchor(s, options, sink, analysis, anchor);
+    dalcs_diag_finish(&s->diag);
+    s->diag = diag;
+    if (status != DALCS_OK) {
+        dalcs_steady_anchor_forget(s);
+        s->anchor.is_known = true; /* that there is none */
+        s->anchor.step = anchor;
+        s->anchor.leaves = leaves;
+    }
+    return status == DALCS_E_NOMEM || status == DALCS_E_CANCELLED ? status : DALCS_OK;
+}

@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""Slow starts by .env against runs of all periods: within the tolerance, and far fewer periods.
+
+usage: envelope.py PROGRAM
+"""
+
+import csv
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import dalcs_program  # pylint: disable=wrong-import-position,import-error
+import kinds  # pylint: disable=import-error
+
+BUCK = """Vin in 0 12
+E1 cmp 0 ctl tri 1
+S1 in sw cmp 0 sm
+D1 0 sw
+L1 sw out 47u
+C1 out esr 100u
+Resr esr 0 0.1
+R1 out 0 2.5
+G1 0 ctl ref out 1m
+Rz ctl z 1.3k
+Cz z 0 82n
+Vtri tri 0 PULSE(0 1 0 10u 0 0 10u)
+.model sm SW(Ron=0 Vt=0)
+"""
+THERMAL = """Vin in 0 12
+Vg g 0 PULSE(0 1 0 0 0 4u 10u)
+S1 in sw g 0 sm
+D1 0 sw
+L1 sw out 50u
+C1 out 0 20u
+R1 out 0 2
+.model sm SW(Ron=50m Vt=0.5)
+Bp 0 j I=5*abs(v(in,sw))
+Ct1 j 0 1m
+Rt1 j k 1
+Ct2 k 0 50m
+Rt2 k l 2
+Ct3 l 0 500m
+Rt3 l 0 3
+"""
+BOOST = """Vin in 0 12
+Vg g 0 PULSE(0 1 0 0 0 4u 10u)
+L1 in sw 50u
+S1 sw 0 g 0 sm
+D1 sw out
+C1 out 0 10m
+R1 out 0 100
+.model sm SW(Ron=10m Vt=0.5)
+"""
+RECTIFIER = "V1 a 0 SIN(0 17 50)\nR1 a b 1\nD1 b out\nC1 out 0 1\nR2 out 0 100\n"
+
+
+def circuits():
+    """(name, netlist, period, how many, periods of the full run for each that is run at least)."""
+    yield "boost, slow output", BOOST, 1e-5, 100000, 430
+    yield "rectifier, 1 F", RECTIFIER, 0.02, 5000, 13
+    yield "soft start", BUCK + "Vref ref 0 PWL(0 0 50m 5)\n", 1e-5, 10000, 10
+    yield "thermal ladder", THERMAL, 1e-5, 100000, 1500
+    yield "delayed clock", BOOST.replace("PULSE(0 1 0 ", "PULSE(0 1 33u "), 1e-5, 20000, 20
+    load = "Iload out 0 PWL(0 0 50m 0 50m 0.1 80m 0.1 90m 0.02)\n"
+    yield "corners", BOOST.replace("10m", "1m", 1) + load, 1e-5, 15000, 3
+    for kind in ("buck_ccm", "buck_dcm", "boost_dcm", "slow_rectifier", "six_pulse", "coupled", "llc", "multiplier",
+                 "hard_edges"):
+        name, body = list(kinds.KINDS[kind]())[3]
+        yield name, body, None, 300, 0
+
+
+class Case:
+    def __init__(self, program, folder):
+        self.program, self.folder = program, pathlib.Path(folder)
+        self.checker = dalcs_program.Checker("envelope")
+
+    def run(self, netlist, *options):
+        (self.folder / "c.cir").write_text(netlist)
+        return subprocess.run([self.program, "run", "c.cir", "-q", "-o", "c.csv", "--report", "c.json", *options],
+                              cwd=self.folder, capture_output=True, text=True, check=False)
+
+    def rows(self):
+        with open(self.folder / "c.csv", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def report(self):
+        return json.loads((self.folder / "c.json").read_text())
+
+    def period_of(self, netlist):
+        self.run(f"* period\n{netlist}.pss uic\n")
+        return self.report()["steady"]["period"]
+
+    def look_at(self, name, netlist, period, n, ratio, tolerance):
+        period = period or self.period_of(netlist)
+        stop = n * period
+        head = f"* {name}\n{netlist}"
+        done = self.run(f"{head}.env {stop!r} uic tol={tolerance}\n")
+        if not self.checker.check(done.returncode == 0, f"{name}: {done.stderr}"):
+            return
+        rows, envelope = self.rows(), self.report()["envelope"]
+        times = [float(row["time"]) for row in rows]
+        self.checker.check(times == sorted(times) and abs(times[-1] - stop) <= 1e-9 * stop, f"{name}: times {times[-3:]}")
+        self.checker.check(envelope["periods"] == n, f"{name}: {envelope}")
+        self.checker.check(envelope["run"] * ratio <= n, f"{name}: {envelope['run']} periods of {n} were run")
+        self.checker.check(envelope["worst"] <= tolerance and envelope["allowed"] == tolerance, f"{name}: {envelope}")
+        # at beginnings of periods, but for those where a source jumps just then
+        first = {}
+        for row, time in zip(rows, times):
+            if abs(time / period - round(time / period)) < 1e-7 and time < stop:
+                first.setdefault(round(time / period), row)
+        (self.folder / "at.txt").write_text("".join(f"{k * period!r}\n" for k in sorted(first)))
+        states = [s for s in rows[0] if re.match(r"v\((out|j|k|l|ctl|z|esr|cl)\)|i\(l", s)]
+        done = self.run(f"{head}.tran {period!r} {stop!r} uic\n", "--at", "at.txt", "--tol", "1e-10")
+        self.checker.check(done.returncode == 0, f"{name}: {done.stderr}")
+        full = {round(float(row["time"]) / period): row for row in self.rows()}
+        for signal in states:
+            scale = max(abs(float(row[s])) for row in full.values() for s in states if s[0] == signal[0])
+            for k, row in first.items():
+                if not self.checker.check(abs(float(row[signal]) - float(full[k][signal])) <= tolerance * scale,
+                                          f"{name}, tol {tolerance}: {signal} = {row[signal]} at period {k}, "
+                                          f"not {full[k][signal]}; scale {scale}"):
+                    break
+
+    def refuses(self, netlist, status, *words):
+        done = self.run(netlist)
+        self.checker.check(done.returncode == status, f"{netlist}: status {done.returncode}, {done.stderr}")
+        for word in words:
+            self.checker.check(word in done.stderr, f"{netlist}: nothing of {word!r} in {done.stderr!r}")
+
+
+def written(case):
+    """Periods that are asked for have all their rows, those of a .tran."""
+    done = case.run(f"* at\n{BOOST}.env 0.1 uic at=1.234m,50m\n")
+    case.checker.check(done.returncode == 0, done.stderr)
+    times = [float(row["time"]) for row in case.rows()]
+    for at in (1.23e-3, 50e-3):
+        n = sum(1 for time in times if at - 1e-9 <= time < at + 1e-5 - 1e-9)
+        case.checker.check(n >= 100, f"{n} rows from {at}")
+
+
+def beside(case):
+    """An orbit beside it has its losses; each step of .step is a run of its own."""
+    done = case.run(f"* beside\n{BOOST}.env 0.01 uic\n.pss uic\n.losses\n.step r1 list 50 100\n")
+    case.checker.check(done.returncode == 0, done.stderr)
+    losses = case.report().get("losses", [])
+    case.checker.check([loss["analysis"] for loss in losses] == ["pss", "pss"], f"losses: {losses}")
+    starts = [float(row["time"]) for row in case.rows()].count(0.0)
+    case.checker.check(starts >= 2, f"{starts} runs")
+
+
+def refused(case):
+    case.refuses(f"* r\n{BOOST}.env 0.1 uic\n.meas tran m max v(out)\n", 3, "measurements, losses and --at", "c.cir:10:1")
+    case.refuses(f"* r\n{BOOST}.env 0.1\n.tran 1u 1m\n", 3, "a second .tran, the first at")
+    case.refuses(f"* r\n{BOOST}.env\n", 3, "a stop time is missing")
+    case.refuses(f"* r\n{BOOST}.env -1\n", 3, "the stop time must be positive")
+    case.refuses(f"* r\n{BOOST}.env 0.1 tol=0\n", 3, "tol is a positive number")
+    case.refuses(f"* r\n{BOOST}.env 0.1 at=0.2\n", 3, "lies outside of the run")
+    case.refuses(f"* r\n{BOOST}V2 x 0 EXP(0 1 1m 1m)\nR9 x 0 1\n.env 0.1 uic\n", 2, "'v2' neither repeats nor is a PWL")
+    case.refuses("* r\nV1 a 0 1\nR1 a b 1\nC1 b 0 1u\n.env 0.1 uic\n", 3, "no source repeats")
+    case.refuses(f"* r\n{BOOST}.env 0.1 uic\n.options method=euler\n", 3, ".env needs steps whose error is controlled")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        case = Case(pathlib.Path(sys.argv[1]).resolve(), folder)
+        for of in dalcs_program.some_of(circuits()):
+            case.look_at(*of, 1e-6)
+        case.look_at("coarse", BOOST, 1e-5, 50000, 100, 1e-3)
+        case.look_at("fine", BOOST, 1e-5, 50000, 150, 1e-8)
+        written(case)
+        beside(case)
+        refused(case)
+        return case.checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
