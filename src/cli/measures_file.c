@@ -31,8 +31,8 @@ enum dalcs_status dalcs_measures_file_plot(struct dalcs_measures_file *m,
     }
     if (m->value == NULL) {
         m->n_steps = plot->n_steps;
-        m->n_parameters = plot->n_parameters;
-        m->value = dalcs_alloc(plot->n_steps * plot->n_parameters, sizeof *m->value);
+        m->n_parameters = plot->n_parameters + plot->n_drawn;
+        m->value = dalcs_alloc(plot->n_steps * m->n_parameters, sizeof *m->value);
     }
     if (m->value == NULL) {
         return DALCS_E_NOMEM;

@@ -9,7 +9,7 @@
 struct dalcs_measures_file {
     const char *path; /* NULL: none, and nothing else does anything */
     struct dalcs_atomic_file file;
-    size_t n_parameters, n_steps; /* of .step */
+    size_t n_parameters, n_steps; /* of .step, random values with the former */
     const char *const *parameter; /* [n_parameters] the session's */
     double *value;                /* [n_steps * n_parameters]; heap */
 };

@@ -264,6 +264,7 @@ static struct dalcs_run_options options_of(const struct run *run,
         options.max_events = SHOWN_EVENTS;
     }
     options.audit = arguments->audit;
+    options.only_step = arguments->only;
     options.steady = arguments->steady;
     options.period = arguments->period;
     options.bode = arguments->bode;
@@ -351,6 +352,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     }
     if (status == DALCS_OK && arguments->n_set > 0) {
         status = dalcs_session_keep_netlist(session);
+    }
+    if (status == DALCS_OK && !isnan(arguments->seed)) {
+        status = dalcs_session_set_seed(session, arguments->seed);
     }
     status = status != DALCS_OK ? status
                                 : dalcs_verb_read(session, arguments->netlist, arguments->dialect);

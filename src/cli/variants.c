@@ -37,7 +37,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                           !arguments->steady && !arguments->bode && !arguments->batch;
     const bool can_read = strcmp(arguments->netlist, "-") != 0;
     const bool is_asked = arguments->n_shards > 0 || arguments->resume || arguments->jobs > 0;
-    *wanted = has_steps && is_table && can_read && !has_script;
+    *wanted = has_steps && is_table && can_read && !has_script && arguments->only == 0;
     if (*wanted || !is_asked) {
         return DALCS_OK;
     }
@@ -45,6 +45,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                     !is_table ? "write -o none --measures FILE.csv, and no other result"
                     : !can_read
                         ? "each thread reads the netlist, so give the name of a file in place of -"
+                    : arguments->only > 0 ? "--only is one of them"
                     : has_script ? "a .control block says what is run here, one run after the other"
                                  : "the netlist has no .step");
     return DALCS_E_OPTION;
@@ -55,7 +56,7 @@ static char *begin_of(void *user, size_t row) {
     return dalcs_variant_begin(&v->pool, v->pool.first + row);
 }
 
-/* Names of --set, of .step, of .meas, and "error". */
+/* Names of --set, of .step, of what is drawn, of .meas, and "error". */
 static char *write_header(const struct variants *v) {
     const struct dalcs_session *session = v->pool.session;
     char *text = NULL;
@@ -73,6 +74,9 @@ static char *write_header(const struct variants *v) {
         dalcs_csv_text(&cells, v->arguments->set[k], length);
     }
     for (size_t k = 0; (name = dalcs_session_step_parameter(session, 0, k, &value)) != NULL; k++) {
+        dalcs_csv_text(&cells, name, strlen(name));
+    }
+    for (size_t k = 0; (name = dalcs_session_drawn(session, k, &value)) != NULL; k++) {
         dalcs_csv_text(&cells, name, strlen(name));
     }
     for (size_t k = 0; (name = dalcs_session_measure_name(session, k)) != NULL; k++) {

@@ -93,6 +93,16 @@ static double measured(const struct dalcs_session *session, const char *name, si
     return m->found ? m->value : (double)NAN;
 }
 
+/* The same of a random value; in nearly all netlists all steps draw the same ones. */
+static double drawn(const struct dalcs_session *session, const char *name, size_t at) {
+    double value;
+    const char *found = dalcs_session_drawn(session, at, &value);
+    for (size_t k = 0; found != NULL && strcmp(found, name) != 0; k++) {
+        found = dalcs_session_drawn(session, k, &value);
+    }
+    return found != NULL ? value : (double)NAN;
+}
+
 /* The sentence of the first error since message `first`, else the status in words. */
 static void find_reason(const struct dalcs_session *session, size_t first, enum dalcs_status status,
                         const char **reason, size_t *length) {
@@ -119,6 +129,9 @@ static void write_values(const struct crew *crew, const struct dalcs_session *se
     fputc(' ', line);
     for (size_t k = 0; (name = dalcs_session_step_parameter(whole, step, k, &value)) != NULL; k++) {
         fprintf(line, " %*.6g", dalcs_variant_width(name), value);
+    }
+    for (size_t k = 0; (name = dalcs_session_drawn(whole, k, &value)) != NULL; k++) {
+        dalcs_csv_number(cells, drawn(session, name, k));
     }
     for (size_t k = 0; (name = dalcs_session_measure_name(whole, k)) != NULL; k++) {
         value = measured(session, name, k);
@@ -197,6 +210,9 @@ static enum dalcs_status open_session(struct worker *w) {
     DALCS_TRY(dalcs_session_create(&w->session));
     if (arguments->n_set > 0) {
         DALCS_TRY(dalcs_session_keep_netlist(w->session));
+    }
+    if (!isnan(arguments->seed)) {
+        DALCS_TRY(dalcs_session_set_seed(w->session, arguments->seed));
     }
     DALCS_TRY(dalcs_verb_read(w->session, arguments->netlist, arguments->dialect));
     return dalcs_settings_apply(w->session, arguments);

@@ -92,9 +92,12 @@ static void evaluate_token(struct dalcs_language *language, struct dalcs_scope *
             return;
         }
     }
+    const struct dalcs_draw_place before = dalcs_drawn_enter(
+        language, (struct dalcs_draw_place){.scope = scope, .card = item->card, .at = k});
     const bool ok = dalcs_scope_compile(language, scope, &item->card->token[k], 1, NULL,
                                         &item->expression[k]) &&
                     dalcs_scope_evaluate(language, scope, item->expression[k], &token->value);
+    dalcs_drawn_leave(language, before, ok ? &token->value : NULL);
     token->kind = ok ? DALCS_TOKEN_NUMBER : DALCS_TOKEN_BAD;
 }
 
@@ -175,10 +178,13 @@ static int put_formula(struct dalcs_language *language, struct dalcs_scope *scop
     int n_transfer;
     const bool is_transfer = dalcs_transfer_find(card, &transfer, &n_transfer) && transfer == first;
     const bool is_storage = card->letter == 'l' || card->letter == 'c';
+    const struct dalcs_draw_place before = dalcs_drawn_enter(
+        language, (struct dalcs_draw_place){.scope = scope, .card = card, .at = first});
     place->formula = dalcs_formula_make_of(language, scope, &card->token[first], n,
                                            is_transfer  ? "s"
                                            : is_storage ? "x"
                                                         : NULL);
+    dalcs_drawn_leave(language, before, NULL);
     place->kind = place->formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
     if (last->line == place->line) {
         place->length = last->offset + last->length - place->offset;
@@ -259,7 +265,10 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
                    dalcs_formula_reads_value(token[k].text)) {
             token[k].kind = DALCS_TOKEN_WORD; /* no signal, as who reads the card says */
         } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL) {
+            const struct dalcs_draw_place before = dalcs_drawn_enter(
+                language, (struct dalcs_draw_place){.scope = scope, .card = card, .at = k});
             token[k].formula = dalcs_formula_make(language, scope, &card->token[k], 1);
+            dalcs_drawn_leave(language, before, NULL);
             token[k].kind = token[k].formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
         } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] != DALCS_ROLE_RAW) {
             evaluate_token(language, scope, item, k, &token[k]);
@@ -456,6 +465,7 @@ static bool give_parameters(const struct call *call, struct dalcs_scope *inner) 
                                       .n_tokens = at - value_at,
                                       .expression = &item->expression[value_at],
                                       .where = call->scope,
+                                      .owner = inner,
                                       .is_given = true};
     }
     return true;
@@ -621,6 +631,7 @@ static enum dalcs_status begin(struct dalcs_deck *deck, const struct dalcs_netli
     language->netlist = netlist;
     language->diag = diag;
     language->arena = &deck->arena;
+    dalcs_drawn_start(language);
     DALCS_TRY(dalcs_definition_collect(language));
     language->top = dalcs_scope_make(language, &language->root, NULL, NULL);
     return language->top != NULL ? dalcs_override_parameters(language) : DALCS_E_NOMEM;
@@ -715,6 +726,7 @@ void dalcs_deck_finish(struct dalcs_deck *deck) {
     }
     dalcs_names_finish(&deck->instances);
     free(deck->own);
+    free(deck->drawn);
     dalcs_arena_finish(&deck->arena);
     *deck = (struct dalcs_deck){0};
 }

@@ -8,7 +8,8 @@
 enum dalcs_override_kind {
     DALCS_OVERRIDE_PARAMETER, /* of .param, outside of subcircuits */
     DALCS_OVERRIDE_ELEMENT,   /* the value of R, L, C, V, I (DC) or the gain of E, F, G, H */
-    DALCS_OVERRIDE_MODEL      /* a parameter of a .model */
+    DALCS_OVERRIDE_MODEL,     /* a parameter of a .model */
+    DALCS_OVERRIDE_RUN /* the number of the run, from 1: random values are those of it; 0: in the middle */
 };
 
 struct dalcs_override {

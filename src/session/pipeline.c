@@ -60,6 +60,7 @@ enum dalcs_status dalcs_run_announce(struct dalcs_run *r, const struct dalcs_plo
         plot->step = r->step->step;
         plot->n_steps = r->step->n_steps;
         plot->n_parameters = r->step->n_parameters;
+        plot->n_drawn = r->step->n_drawn;
         plot->parameter = r->step->parameter;
         plot->parameter_value = r->step->parameter_value;
     }
@@ -293,7 +294,8 @@ static enum dalcs_status run_all(struct dalcs_session *session,
         session->circuit.periodic.present = true; /* as if there were a .pss */
         DALCS_TRY(dalcs_steady_prepare(session));
     }
-    if (session->circuit.n_steps > 0) {
+    DALCS_TRY(dalcs_steps_find(session));
+    if (session->steps.n > 0) {
         return dalcs_stepped_run(session, options, &complete);
     }
     DALCS_TRY(dalcs_operating_currents(session, options, &complete));

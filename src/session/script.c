@@ -260,6 +260,8 @@ void dalcs_session_reset(struct dalcs_session *session) {
             session->override[n++] = session->override[k];
         }
     }
-    session->is_altered = session->is_altered || n < session->n_altered;
+    const bool draws = session->has_circuit && session->circuit.is_random;
+    session->is_altered = session->is_altered || n < session->n_altered || draws;
     session->n_altered = n;
+    session->n_resets += draws ? 1 : 0; /* as ngspice, whose .param are evaluated again */
 }

@@ -17,6 +17,16 @@ struct dalcs_orbit_point;
 struct dalcs_radau;
 struct dalcs_radau_options;
 
+/* What .step and .mc step, of the netlist with what alter said. The circuit of a step is no place to read this from:
+ * its values may be others there. */
+struct dalcs_steps {
+    bool is_known;
+    int n;
+    struct dalcs_sweep *sweep; /* [n] the innermost first */
+    size_t n_drawn;
+    const char **drawn; /* [n_drawn] the values that are drawn, by name */
+};
+
 struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
@@ -31,8 +41,14 @@ struct dalcs_session {
     struct dalcs_netlist netlist; /* kept where the circuit may have to be built again */
     bool has_netlist;
     bool is_altered;                 /* the circuit is not the netlist's with what alter said */
-    struct dalcs_override *override; /* what alter said, then what this step is; heap */
+    struct dalcs_override *override; /* what alter said; heap */
     size_t n_altered, override_capacity;
+    struct dalcs_override *own; /* of the present step; heap */
+    size_t n_own;
+    struct dalcs_steps steps;
+    size_t n_resets; /* of a circuit with random values: each draws them anew */
+    bool has_seed;
+    uint64_t seed;
     struct dalcs_recorder recorder; /* owns the report's events and jumps */
     struct dalcs_report report;
     bool has_report;
@@ -123,8 +139,11 @@ enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
 
 /* ---- steps.c: one circuit after the other ------------------------------------------------------ */
 
-/* How often .step has everything run; 1 without. */
-size_t dalcs_steps_count(const struct dalcs_circuit *circuit);
+/* The steps of the session's circuit, if they are not known yet: it is that of no step then. */
+enum dalcs_status dalcs_steps_find(struct dalcs_session *session) DALCS_MUST_CHECK;
+
+/* How often .step and .mc have everything run; 1 without. */
+size_t dalcs_steps_count(const struct dalcs_session *session);
 
 /* A circuit and its network from the session's netlist, with what alter says and the overrides behind
  * that. Messages that the session has not said yet go to it. On failure nothing is left to free. */
