@@ -280,7 +280,6 @@ struct dalcs_plot {
     size_t n_parameters;           /* that .step changes, the innermost first */
     const char *const *parameter;  /* [n_parameters] "rload", "v1", "dmod(vfwd)" */
     const double *parameter_value; /* [n_parameters] in this step */
-    size_t n_drawn;                /* random values, which follow the parameters in both arrays */
 };
 
 /* Receives results while they are made: for each analysis begin, rows, end, in this order: .op, .dc,

@@ -76,7 +76,7 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
     run->progress.counts = plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
-    enum dalcs_status status = dalcs_measures_file_plot(&run->measures, plot);
+    enum dalcs_status status = dalcs_measures_file_plot(&run->measures, run->session, plot);
     if (status == DALCS_OK) {
         status = dalcs_print_table_begin(&run->printed, run->session, plot);
     }

@@ -60,7 +60,6 @@ enum dalcs_status dalcs_run_announce(struct dalcs_run *r, const struct dalcs_plo
         plot->step = r->step->step;
         plot->n_steps = r->step->n_steps;
         plot->n_parameters = r->step->n_parameters;
-        plot->n_drawn = r->step->n_drawn;
         plot->parameter = r->step->parameter;
         plot->parameter_value = r->step->parameter_value;
     }

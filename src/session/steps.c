@@ -232,47 +232,31 @@ static size_t run_of(const struct dalcs_steps *steps, size_t k) {
     return k + 1;
 }
 
-/* Names and values of the step's parameters, with room behind them for what will be drawn. */
+/* Names and values of the step's parameters. */
 static enum dalcs_status describe_step(struct dalcs_session *session, size_t k,
-                                       struct dalcs_plot *plot, double **values) {
-    const struct dalcs_steps *steps = &session->steps;
-    const size_t n_sweeps = (size_t)steps->n;
-    const size_t room = n_sweeps + steps->n_drawn;
-    const char **name = dalcs_arena_alloc(&session->arena, room, sizeof *name);
-    double *value = dalcs_arena_alloc(&session->arena, room, sizeof *value);
+                                       struct dalcs_plot *plot) {
+    const size_t n = (size_t)session->steps.n;
+    const char **name = dalcs_arena_alloc(&session->arena, n, sizeof *name);
+    double *value = dalcs_arena_alloc(&session->arena, n, sizeof *value);
     if (name == NULL || value == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (size_t i = 0; i < n_sweeps; i++) {
+    for (size_t i = 0; i < n; i++) {
         name[i] = dalcs_session_step_parameter(session, k, i, &value[i]);
     }
     *plot = (struct dalcs_plot){.step = k,
                                 .n_steps = dalcs_steps_count(session),
-                                .n_parameters = n_sweeps,
+                                .n_parameters = n,
                                 .parameter = name,
                                 .parameter_value = value};
-    *values = value;
-    for (size_t i = 0; i < steps->n_drawn; i++) {
-        name[n_sweeps + i] = steps->drawn[i];
-        value[n_sweeps + i] = NAN;
-    }
     return DALCS_OK;
-}
-
-/* The same of what was drawn, once the circuit is there. */
-static void add_drawn(const struct dalcs_session *session, struct dalcs_plot *plot, double *value) {
-    for (size_t i = 0; i < session->steps.n_drawn; i++) {
-        (void)dalcs_session_drawn(session, i, &value[plot->n_parameters + i]);
-    }
-    plot->n_drawn = session->steps.n_drawn;
 }
 
 enum dalcs_status dalcs_session_take_step(struct dalcs_session *session, size_t k,
                                           struct dalcs_plot *plot) {
     const struct dalcs_steps *steps = &session->steps;
     DALCS_TRY(dalcs_steps_find(session));
-    double *values;
-    DALCS_TRY(describe_step(session, k, plot, &values));
+    DALCS_TRY(describe_step(session, k, plot));
     struct dalcs_override *override = dalcs_alloc((size_t)steps->n + 1, sizeof *override);
     if (override == NULL) {
         return DALCS_E_NOMEM;
@@ -287,8 +271,5 @@ enum dalcs_status dalcs_session_take_step(struct dalcs_session *session, size_t 
     }
     const enum dalcs_status status = dalcs_session_rebuild(session, override, n);
     free(override);
-    if (status == DALCS_OK) {
-        add_drawn(session, plot, values);
-    }
     return status;
 }

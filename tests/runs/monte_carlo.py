@@ -9,6 +9,7 @@ Seeds are fixed: a test of a distribution fails always or never.
 import csv
 import math
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -146,6 +147,20 @@ class MonteCarlo(unittest.TestCase):
             self.assertEqual(self.table(DIVIDER, "--only", str(k), name="one.csv"), head + lines[k - 1])
         (self.folder / "r.partial.csv").write_text(head + "".join(lines[:7]))
         self.assertEqual(self.table(DIVIDER, "--resume", name="r.csv"), whole)
+
+    def test_moments_are_printed(self):
+        (self.folder / "a.cir").write_text(DIVIDER)
+        done = subprocess.run([PROGRAM, "run", "a.cir", "-o", "none", "--measures", "m.csv"], cwd=self.folder,
+                              capture_output=True, text=True, check=True)
+        head, first, second = done.stdout.splitlines()[-5:-2]
+        self.assertEqual(head.split(), ["40", "runs", "mean", "sigma", "least", "largest"])
+        rows = list(csv.DictReader((self.folder / "m.csv").read_text().splitlines()))
+        for line in first, second:
+            name, *numbers = line.split()
+            value = [float(row[name]) for row in rows]
+            wanted = [statistics.mean(value), statistics.stdev(value), min(value), max(value)]
+            for got, exact in zip(numbers, wanted):
+                self.assertAlmostEqual(float(got), exact, delta=1e-5 * abs(exact))
 
     def test_waveforms_change_no_value(self):
         whole = self.table(DIVIDER)

@@ -140,11 +140,12 @@ class Result(Table):
     report    dict, as `dalcs run --report` writes it (doc/report.schema.json)
     """
 
-    def __init__(self, session: Session, tables: Optional[Tables]) -> None:
+    def __init__(self, session: Session, tables: Optional[Tables], is_alone: bool = False) -> None:
         found = [] if tables is None else list(tables)
         super().__init__(tables, found[-1] if found else None)
         self._others = [(tables, item) for item in found[:-1]]
         self._session = session  # which keeps what is asked for later
+        self._is_alone = is_alone  # one step of several
 
     @functools.cached_property
     def messages(self) -> Tuple[str, ...]:
@@ -186,9 +187,14 @@ class Result(Table):
         entries = self._session.measurements()
         for name, _, value in entries:
             found.setdefault(name, []).append(value)
-        if any(is_step for _, is_step, _ in entries):
+        if any(is_step for _, is_step, _ in entries) and not self._is_alone:
             return {name: np.array(values) for name, values in found.items()}
         return {name: values[-1] for name, values in found.items()}
+
+    @functools.cached_property
+    def drawn(self) -> Dict[str, float]:
+        """What random values of the netlist were in this run (of .step and .mc: the last), by parameter or element."""
+        return self._session.drawn()
 
     @property
     def steady(self) -> Optional[Dict[str, Any]]:
