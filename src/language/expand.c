@@ -594,12 +594,20 @@ static bool is_too_large(struct dalcs_language *language, struct dalcs_scope *sc
     return true;
 }
 
+/* A step has its values, which the cards need not say again: with as many values as runs that would take the square of
+ * their number. */
+static bool is_of_steps(const struct dalcs_language *language, const struct dalcs_item *item) {
+    const char *text = item->card->token->text;
+    return language->is_step && item->card->letter == '.' &&
+           (strcmp(text, ".step") == 0 || strcmp(text, ".mc") == 0);
+}
+
 static enum dalcs_status expand_scope(struct dalcs_language *language, struct dalcs_scope *scope) {
     struct dalcs_definition *definition = scope->definition;
     dalcs_scope_settle(language, scope);
     for (size_t k = 0; k < definition->n_items; k++) {
         struct dalcs_item *item = &definition->item[k];
-        if (!dalcs_scope_is_active(scope, (int)k)) {
+        if (!dalcs_scope_is_active(scope, (int)k) || is_of_steps(language, item)) {
             continue;
         }
         if (is_too_large(language, scope, item)) {

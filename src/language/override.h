@@ -3,6 +3,7 @@
 #ifndef DALCS_OVERRIDE_H
 #define DALCS_OVERRIDE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 enum dalcs_override_kind {
@@ -17,6 +18,7 @@ struct dalcs_override {
     const char *name;  /* flat, lower case: "x1.r1" */
     const char *field; /* of a model: "vfwd"; else NULL */
     double value;
+    bool is_step; /* of a run: one of .step or .mc */
 };
 
 #endif

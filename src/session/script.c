@@ -217,7 +217,8 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
                                       const char **nearest) {
     const char *unused = NULL;
     const char **like = nearest != NULL ? nearest : &unused;
-    struct dalcs_override override = {DALCS_OVERRIDE_ELEMENT, name, field, value};
+    struct dalcs_override override = {
+        .kind = DALCS_OVERRIDE_ELEMENT, .name = name, .field = field, .value = value};
     bool found;
     *like = NULL;
     if (!session->has_netlist) {

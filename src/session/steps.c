@@ -78,7 +78,8 @@ bool dalcs_override_of(const struct dalcs_sweep *sweep, double value,
     if (sweep->target == DALCS_SWEEP_TEMPERATURE || sweep->target == DALCS_SWEEP_RUN) {
         return false;
     }
-    *override = (struct dalcs_override){kind[sweep->target], sweep->name, sweep->field, value};
+    *override = (struct dalcs_override){
+        .kind = kind[sweep->target], .name = sweep->name, .field = sweep->field, .value = value};
     return true;
 }
 
@@ -116,8 +117,8 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
         all[n++] = session->override[k];
     }
     if (session->n_resets > 0) {
-        all[n++] =
-            (struct dalcs_override){DALCS_OVERRIDE_RUN, "", NULL, (double)session->n_resets + 1};
+        all[n++] = (struct dalcs_override){
+            .kind = DALCS_OVERRIDE_RUN, .name = "", .value = (double)session->n_resets + 1};
     }
     for (size_t k = 0; k < session->n_own; k++) {
         all[n++] = session->own[k];
@@ -265,10 +266,8 @@ enum dalcs_status dalcs_session_take_step(struct dalcs_session *session, size_t 
     for (size_t i = 0; i < plot->n_parameters; i++) {
         n += dalcs_override_of(&steps->sweep[i], plot->parameter_value[i], &override[n]) ? 1 : 0;
     }
-    if (session->netlist.has_language) {
-        override[n++] =
-            (struct dalcs_override){DALCS_OVERRIDE_RUN, "", NULL, (double)run_of(steps, k)};
-    }
+    override[n++] = (struct dalcs_override){
+        .kind = DALCS_OVERRIDE_RUN, .name = "", .value = (double)run_of(steps, k), .is_step = true};
     const enum dalcs_status status = dalcs_session_rebuild(session, override, n);
     free(override);
     return status;
