@@ -4,9 +4,11 @@
 #include "page.h"
 #include "plot_arguments.h"
 #include "report_reader.h"
+#include "spectrum.h"
 #include "text_plot.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -25,6 +27,9 @@ static const char help[] =
     "                      'v(out),v(a,b)' 'v(out)*i(r1)' 'db(v(out))'; may be repeated: each\n"
     "                      list gets panels of its own (default: all, the most telling first)\n"
     "      --from T, --to T  the range of the time axis, SPICE suffixes allowed: 1m\n"
+    "      --spectrum F    amplitudes over frequency up to F Hz, of the range from --from to "
+    "--to:\n"
+    "                      take whole periods\n"
     "      --report FILE   take the events from what dalcs run --report wrote; without it\n"
     "                      conduction is read off the currents i(d1), i(s1) in FILE\n"
     "      --events        mark events and jumps with lines\n"
@@ -48,8 +53,8 @@ struct drawing {
     const struct dalcs_cli *cli;
     const struct dalcs_plot_arguments *arguments;
     struct dalcs_diag diag;
-    size_t n_written; /* messages */
-    struct dalcs_waveforms waveforms;
+    size_t n_written;                           /* messages */
+    struct dalcs_waveforms waveforms, spectrum; /* the latter empty but with --spectrum */
     struct dalcs_selection selection;
     struct dalcs_conduction conduction;
     const char *title;
@@ -86,6 +91,19 @@ static enum dalcs_status choose_run(struct drawing *drawing) {
     return DALCS_OK;
 }
 
+/* The selection becomes one of the spectrum, which has its names. */
+static enum dalcs_status find_spectrum(struct drawing *drawing) {
+    const struct dalcs_plot_arguments *arguments = drawing->arguments;
+    struct dalcs_selection over_frequency;
+    DALCS_TRY(dalcs_spectrum_make(&drawing->spectrum, &drawing->selection, arguments->spectrum,
+                                  &drawing->diag));
+    DALCS_TRY(dalcs_selection_make(&over_frequency, &drawing->spectrum, NULL, 0, NAN, NAN,
+                                   &drawing->diag));
+    dalcs_selection_finish(&drawing->selection);
+    drawing->selection = over_frequency;
+    return DALCS_OK;
+}
+
 static enum dalcs_status read_file(struct drawing *drawing) {
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
     struct dalcs_waveforms *waveforms = &drawing->waveforms;
@@ -104,6 +122,9 @@ static enum dalcs_status read_file(struct drawing *drawing) {
     DALCS_TRY(dalcs_selection_make(&drawing->selection, waveforms, arguments->group,
                                    arguments->n_groups, arguments->from, arguments->to,
                                    &drawing->diag));
+    if (arguments->spectrum > 0.0) {
+        return find_spectrum(drawing);
+    }
     if (arguments->report) {
         DALCS_TRY(
             dalcs_report_reader_read(arguments->report, &drawing->conduction, &drawing->diag));
@@ -260,6 +281,7 @@ static enum dalcs_status draw(const struct dalcs_cli *cli,
     }
     dalcs_conduction_finish(&drawing.conduction);
     dalcs_selection_finish(&drawing.selection);
+    dalcs_waveforms_finish(&drawing.spectrum);
     dalcs_waveforms_finish(&drawing.waveforms);
     dalcs_diag_finish(&drawing.diag);
     return status;

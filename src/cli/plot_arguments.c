@@ -11,21 +11,16 @@
 #include <string.h>
 #include <strings.h>
 
-enum { FROM = 256, TO, REPORT, EVENTS, NO_BARS, THEME, PLOT, RUN };
+enum { FROM = 256, TO, SPECTRUM, REPORT, EVENTS, NO_BARS, THEME, PLOT, RUN };
 
-static const struct option option[] = {{"signals", required_argument, NULL, 's'},
-                                       {"from", required_argument, NULL, FROM},
-                                       {"to", required_argument, NULL, TO},
-                                       {"output", required_argument, NULL, 'o'},
-                                       {"report", required_argument, NULL, REPORT},
-                                       {"events", no_argument, NULL, EVENTS},
-                                       {"no-bars", no_argument, NULL, NO_BARS},
-                                       {"theme", required_argument, NULL, THEME},
-                                       {"plot", required_argument, NULL, PLOT},
-                                       {"run", required_argument, NULL, RUN},
-                                       {"quiet", no_argument, NULL, 'q'},
-                                       {"help", no_argument, NULL, 'h'},
-                                       {NULL, 0, NULL, 0}};
+static const struct option option[] = {
+    {"signals", required_argument, NULL, 's'}, {"from", required_argument, NULL, FROM},
+    {"to", required_argument, NULL, TO},       {"spectrum", required_argument, NULL, SPECTRUM},
+    {"output", required_argument, NULL, 'o'},  {"report", required_argument, NULL, REPORT},
+    {"events", no_argument, NULL, EVENTS},     {"no-bars", no_argument, NULL, NO_BARS},
+    {"theme", required_argument, NULL, THEME}, {"plot", required_argument, NULL, PLOT},
+    {"run", required_argument, NULL, RUN},     {"quiet", no_argument, NULL, 'q'},
+    {"help", no_argument, NULL, 'h'},          {NULL, 0, NULL, 0}};
 
 static enum dalcs_status parse_number(const struct dalcs_cli *cli, const char *name,
                                       const char *text, double *value) {
@@ -58,6 +53,8 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
         return parse_number(cli, "--from", optarg, &arguments->from);
     case TO:
         return parse_number(cli, "--to", optarg, &arguments->to);
+    case SPECTRUM:
+        return dalcs_verb_take_positive(cli, "--spectrum", optarg, &arguments->spectrum);
     case 'o':
         return parse_output(arguments, cli, optarg);
     case REPORT:
@@ -114,6 +111,11 @@ enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *argume
         } else {
             dalcs_cli_error(cli, "one file at a time: '%s' is one too many", argv[argc - 1]);
         }
+        status = DALCS_E_OPTION;
+    }
+    if (status == DALCS_OK && arguments->spectrum > 0.0 &&
+        (arguments->report || arguments->marks)) {
+        dalcs_cli_error(cli, "--spectrum is over frequency: leave out --report and --events");
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && arguments->is_page && arguments->theme == &dalcs_theme_print) {
