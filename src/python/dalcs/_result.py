@@ -33,6 +33,10 @@ def _texts(pointer: Any, count: int) -> Tuple[str, ...]:
     return tuple(pointer[k].decode("utf-8", "replace") for k in range(count))
 
 
+def _scale_label(scale: str) -> str:
+    return {"time": "time (s)", "frequency": "frequency (Hz)"}.get(scale, scale)
+
+
 class Table:
     """The rows of one analysis, n of them, m signals.
 
@@ -123,8 +127,7 @@ class Table:
             value = self[name]
             axes.plot(self.t, abs(value) if np.iscomplexobj(value) else value, label=name)
         units = sorted({self.units.get(name.lower(), "") for name in chosen} - {""})
-        axes.set_xlabel({"time": "time (s)", "frequency": "frequency (Hz)"}.get(self.scale,
-                                                                             self.scale))
+        axes.set_xlabel(_scale_label(self.scale))
         axes.set_ylabel(", ".join(units))
         axes.legend()
         return axes
@@ -156,6 +159,32 @@ class Result(Table):
     def tables(self) -> List[Table]:
         """All tables, this one last."""
         return [Table(owner, item) for owner, item in self._others] + [self]
+
+    def overlay(self, name: str, by: Optional[str] = None, ax: Any = None) -> Any:
+        """Draws a signal of all steps of .step or .mc over each other with matplotlib; returns the axes.
+
+        by    the parameter that colours them; None: the first one. A bar beside the axes has its values
+        """
+        import matplotlib as mpl  # pylint: disable=import-outside-toplevel
+        import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
+        runs = [table for table in self.tables if table.analysis == self.analysis]
+        by = next(iter(self.parameters), "") if by is None else by
+        if by not in self.parameters:
+            raise KeyError(f"no parameter {by!r} among {', '.join(self.parameters) or 'none'}")
+        axes = plt.subplots()[1] if ax is None else ax
+        values = [table.parameters[by] for table in runs]
+        widest = max(max(values) - min(values), 1e-300)
+        logarithmic = min(values) > 0.0 and max(values) > 30.0 * min(values)
+        scale = (mpl.colors.LogNorm if logarithmic else mpl.colors.Normalize)(min(values), min(values) + widest)
+        colours = mpl.cm.ScalarMappable(scale, "viridis")
+        for table, value in zip(runs, values):
+            found = table[name]
+            axes.plot(table.t, np.abs(found) if np.iscomplexobj(found) else found,
+                      color=colours.to_rgba(value), linewidth=1.0)
+        axes.set_xlabel(_scale_label(self.scale))
+        axes.set_ylabel(f"{name} ({self.units[name.lower()]})")
+        axes.figure.colorbar(colours, ax=axes, label=by)
+        return axes
 
     @functools.cached_property
     def report(self) -> Dict[str, Any]:
