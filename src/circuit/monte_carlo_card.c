@@ -109,5 +109,9 @@ enum dalcs_status dalcs_monte_carlo_collect(struct dalcs_builder *builder) {
     }
     circuit->n_drawn = (int)deck->n_drawn;
     circuit->is_random = deck->n_drawn > 0 || deck->has_random_formula;
+    if (circuit->is_random && circuit->n_steps == 0 && !deck->is_step) {
+        dalcs_diag_add(builder->diag, DALCS_NOTE, NULL, ".mc 100 runs it with 100 of them",
+                       "random values are drawn once");
+    }
     return DALCS_OK;
 }

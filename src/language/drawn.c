@@ -44,7 +44,7 @@ void dalcs_drawn_start(struct dalcs_language *language) {
     for (size_t k = 0; k < deck->n_overrides; k++) {
         if (deck->override[k].kind == DALCS_OVERRIDE_RUN) {
             language->run = (uint32_t)deck->override[k].value;
-            language->is_step = deck->override[k].is_step;
+            language->deck->is_step = deck->override[k].is_step;
         }
     }
 }

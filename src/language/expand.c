@@ -598,7 +598,7 @@ static bool is_too_large(struct dalcs_language *language, struct dalcs_scope *sc
  * their number. */
 static bool is_of_steps(const struct dalcs_language *language, const struct dalcs_item *item) {
     const char *text = item->card->token->text;
-    return language->is_step && item->card->letter == '.' &&
+    return language->deck->is_step && item->card->letter == '.' &&
            (strcmp(text, ".step") == 0 || strcmp(text, ".mc") == 0);
 }
 

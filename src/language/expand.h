@@ -32,6 +32,7 @@ struct dalcs_deck {
 
     struct dalcs_drawn *drawn; /* [n_drawn] in the order of their evaluation; heap */
     size_t n_drawn, drawn_capacity;
+    bool is_step;            /* of .step or .mc */
     bool has_random_formula; /* or condition: a value was drawn that is none of these */
 };
 

@@ -157,7 +157,6 @@ struct dalcs_language {
 
     struct dalcs_draw_place place; /* what is being evaluated */
     uint64_t seed;
-    bool is_step; /* of .step or .mc, whose values are in the overrides */
     uint32_t run; /* number of the run, from 1; 0: every draw is in the middle */
 };
 

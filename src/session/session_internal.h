@@ -46,6 +46,8 @@ struct dalcs_session {
     struct dalcs_override *own; /* of the present step; heap */
     size_t n_own;
     struct dalcs_steps steps;
+    struct dalcs_drawn_value *unbuilt; /* [n_unbuilt] drawn for a step that could not be built */
+    size_t n_unbuilt;
     size_t n_resets; /* of a circuit with random values: each draws them anew */
     bool has_seed;
     uint64_t seed;
@@ -151,6 +153,11 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
                                       const struct dalcs_override *more, size_t n_more,
                                       struct dalcs_circuit *circuit,
                                       struct dalcs_network *network) DALCS_MUST_CHECK;
+
+/* What was drawn with these overrides, for a circuit that is none; DALCS_E_NETLIST, or DALCS_E_NOMEM. */
+enum dalcs_status dalcs_drawn_keep_unbuilt(struct dalcs_session *session,
+                                           const struct dalcs_override *override,
+                                           size_t n_overrides) DALCS_MUST_CHECK;
 
 /* Builds the session's circuit again that way. */
 enum dalcs_status dalcs_session_rebuild(struct dalcs_session *session,

@@ -5,7 +5,6 @@
 
 #include "source_conflicts.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -102,32 +101,41 @@ static void take_messages(struct dalcs_session *s, const struct dalcs_diag *diag
     s->diag.out_of_memory = s->diag.out_of_memory || diag->out_of_memory;
 }
 
+/* What alter said, what the present step is, and `more`; heap, NULL: out of memory. */
+static struct dalcs_override *all_overrides(const struct dalcs_session *session,
+                                            const struct dalcs_override *more, size_t n_more,
+                                            size_t *n_all) {
+    struct dalcs_override *all =
+        dalcs_alloc(session->n_altered + session->n_own + n_more + 1, sizeof *all);
+    size_t n = 0;
+    for (size_t k = 0; all != NULL && k < session->n_altered; k++) {
+        all[n++] = session->override[k];
+    }
+    if (all != NULL && session->n_resets > 0) {
+        all[n++] = (struct dalcs_override){
+            .kind = DALCS_OVERRIDE_RUN, .name = "", .value = (double)session->n_resets + 1};
+    }
+    for (size_t k = 0; all != NULL && k < session->n_own; k++) {
+        all[n++] = session->own[k];
+    }
+    for (size_t k = 0; all != NULL && k < n_more; k++) {
+        all[n++] = more[k];
+    }
+    *n_all = n;
+    return all;
+}
+
 enum dalcs_status dalcs_session_build(struct dalcs_session *session,
                                       const struct dalcs_override *more, size_t n_more,
                                       struct dalcs_circuit *circuit,
                                       struct dalcs_network *network) {
     struct dalcs_diag diag = {0};
-    struct dalcs_override *all =
-        dalcs_alloc(session->n_altered + session->n_own + n_more + 1, sizeof *all);
-    size_t n = 0;
+    size_t n;
+    struct dalcs_override *all = all_overrides(session, more, n_more, &n);
     if (all == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (size_t k = 0; k < session->n_altered; k++) {
-        all[n++] = session->override[k];
-    }
-    if (session->n_resets > 0) {
-        all[n++] = (struct dalcs_override){
-            .kind = DALCS_OVERRIDE_RUN, .name = "", .value = (double)session->n_resets + 1};
-    }
-    for (size_t k = 0; k < session->n_own; k++) {
-        all[n++] = session->own[k];
-    }
-    for (size_t k = 0; k < n_more; k++) {
-        all[n++] = more[k];
-    }
     enum dalcs_status status = dalcs_circuit_build_with(circuit, &session->netlist, all, n, &diag);
-    free(all);
     if (status == DALCS_OK) {
         status = dalcs_source_conflicts(circuit, &diag);
         if (status == DALCS_OK) {
@@ -140,6 +148,10 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
             dalcs_circuit_finish(circuit);
         }
     }
+    if (status == DALCS_E_NETLIST && circuit == &session->circuit) {
+        status = dalcs_drawn_keep_unbuilt(session, all, n);
+    }
+    free(all);
     take_messages(session, &diag);
     dalcs_diag_finish(&diag);
     return status;
@@ -168,6 +180,7 @@ static enum dalcs_status keep_own(struct dalcs_session *session, const struct da
 enum dalcs_status dalcs_session_rebuild(struct dalcs_session *session,
                                         const struct dalcs_override *more, size_t n_more) {
     dalcs_session_forget_run(session);
+    session->n_unbuilt = 0;
     DALCS_TRY(keep_own(session, more, n_more));
     if (session->has_network) {
         dalcs_network_finish(&session->network);
@@ -197,27 +210,6 @@ const char *dalcs_session_step_parameter(const struct dalcs_session *session, si
     }
     *value = dalcs_sweep_value(&sweep[index], (int)(step % (size_t)sweep[index].n));
     return sweep[index].label;
-}
-
-const char *dalcs_session_drawn(const struct dalcs_session *session, size_t index, double *value) {
-    const struct dalcs_steps *steps = &session->steps;
-    const struct dalcs_circuit *circuit = &session->circuit;
-    const size_t n = (size_t)circuit->n_drawn;
-    if (!steps->is_known) {
-        *value = index < n ? circuit->drawn[index].value : NAN;
-        return index < n ? circuit->drawn[index].name : NULL;
-    }
-    if (index >= steps->n_drawn) {
-        return NULL;
-    }
-    /* nearly always at its place: a condition may have chosen other cards in this step */
-    const char *name = steps->drawn[index];
-    size_t k = index < n && strcmp(circuit->drawn[index].name, name) == 0 ? index : 0;
-    while (k < n && strcmp(circuit->drawn[k].name, name) != 0) {
-        k++;
-    }
-    *value = k < n ? circuit->drawn[k].value : NAN;
-    return name;
 }
 
 /* The run of step k: that of .mc, so that all other steps meet the same draws, else one for each step. */

@@ -253,6 +253,7 @@ class MonteCarlo(unittest.TestCase):
         for row in failed:
             self.assertEqual(row["vout"], "nan")
             self.assertIn("negative", row["error"])
+            self.assertEqual(row["c7"], "-1e-06")
 
     def test_reset_of_a_script_draws_anew(self):
         text = DIVIDER.replace(".mc 40", ".control\nrepeat 3\nrun\nprint gain\nreset\nend\n.endc")
@@ -266,6 +267,21 @@ class MonteCarlo(unittest.TestCase):
         self.assertEqual(len(printed), 3, done.stdout)
         for got, value in zip(printed, wanted):
             self.assertAlmostEqual(float(got), value, delta=1e-7)
+
+    def test_a_single_run_is_run_1(self):
+        text = DIVIDER.replace(".mc 40\n", "")
+        (self.folder / "a.cir").write_text(text)
+        done = subprocess.run([PROGRAM, "run", "a.cir", "-o", "none", "--measures", "m.csv"], cwd=self.folder,
+                              capture_output=True, text=True, check=True)
+        self.assertEqual(done.stderr.count("random values are drawn once"), 1, done.stderr)
+        alone = list(csv.DictReader((self.folder / "m.csv").read_text().splitlines()))[0]
+        self.assertEqual(alone["vout"], self.rows(DIVIDER)[0]["vout"])
+        for cards in ".mc 3", ".options dialect=ltspice\n.step param run 1 3 1":
+            (self.folder / "a.cir").write_text(text.replace(".end\n", cards + "\n.end\n"))
+            for more in (), ("--jobs", "1"), ("--only", "2"):
+                done = subprocess.run([PROGRAM, "run", "a.cir", "-o", "none", "--measures", "m.csv", *more],
+                                      cwd=self.folder, capture_output=True, text=True, check=True)
+                self.assertEqual(done.stderr, "")
 
     def test_messages(self):
         cards = {
