@@ -15,6 +15,7 @@ struct dalcs_plot_arguments {
     double spectrum; /* Hz, up to there; 0: waveforms are drawn as they are */
     const struct dalcs_theme *theme;
     size_t plot, run; /* from 1; 0: not given */
+    bool histogram;
     bool marks, no_bars, quiet, help;
 };
 
