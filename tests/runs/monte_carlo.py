@@ -18,7 +18,7 @@ import unittest
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 
 DIVIDER = """a divider of parts with tolerances
-.param c={mc(10u, 0.05)} tol=3
+.param c={mc(10u, 0.05)*one} tol=3 one=1
 .func part(x) {agauss(x, x*0.05, tol)}
 V1 in 0 10
 R1 in out {part(1k)}
@@ -179,6 +179,7 @@ class MonteCarlo(unittest.TestCase):
             "\n".join([lines[0], *lines[13:16], *lines[8:13], *lines[1:8], *lines[16:]]) + "\n",
             DIVIDER.replace("tol=3", "tol={1+2*u(5)} d={gauss(1)}"),
             DIVIDER.replace(".mc 40", ".mc 40\n.options reltol=1e-4"),
+            DIVIDER.replace(" one=1", "").replace(".param", ".param one=1"),  # it waits no longer
         )
         for text in others:
             rows = self.rows(text)
@@ -243,6 +244,13 @@ class MonteCarlo(unittest.TestCase):
         for row in rows:
             self.assertLess(abs(float(row["r"]) - (10.0 if float(row["p"]) < 0.5 else 20.0)), 1.0)
         self.assertGreater(len({float(row["p"]) < 0.5 for row in rows}), 1)
+        # its own draw is the same whether it has to wait for a parameter or not
+        text = ("t\n.param one=1\n*first\n.if (rand()*one < 0.5)\nR1 a 0 10\n.else\nR2 a 0 20\n.endif\n"
+                "I1 0 a 1\n.op\n.meas op r max v(a)\n.mc 30\n.end\n")
+        known = text.replace("*first", ".if (one == 2)\nR3 a 0 1\n.endif")
+        value = self.column(text, "r")
+        self.assertEqual(value, self.column(known, "r"))
+        self.assertEqual(set(value), {10.0, 20.0})
 
     def test_a_variant_that_fails_keeps_its_row(self):
         text = DIVIDER.replace("part(1k)}\nR2", "part(1k)}\nC7 in 0 {limit(0,1u)}\nR2")
