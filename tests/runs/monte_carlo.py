@@ -276,6 +276,16 @@ class MonteCarlo(unittest.TestCase):
         for got, value in zip(printed, wanted):
             self.assertAlmostEqual(float(got), value, delta=1e-7)
 
+    def test_a_command_of_a_script_runs_once(self):
+        """As without .mc, and as .step is left out there."""
+        text = DIVIDER.replace(".end\n", ".control\ntran 1u 3u\nprint v(out)[2]\n.endc\n.end\n")
+        (self.folder / "a.cir").write_text(text)
+        done = subprocess.run([PROGRAM, "run", "a.cir"], cwd=self.folder, capture_output=True, text=True,
+                              check=True)
+        printed = [line for line in done.stdout.splitlines() if line.startswith("v(out)[2]")]
+        self.assertEqual(len(printed), 1, done.stdout)
+        self.assertAlmostEqual(float(printed[0].split("=")[1]), self.column(DIVIDER, "vout")[0], delta=1e-6)
+
     def test_a_single_run_is_run_1(self):
         text = DIVIDER.replace(".mc 40\n", "")
         (self.folder / "a.cir").write_text(text)
