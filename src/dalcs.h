@@ -76,6 +76,10 @@ void dalcs_session_destroy(struct dalcs_session *session);
 /* The simulators whose netlists are known by name, ngspice first; NULL when index is too large. */
 const char *dalcs_dialect_name(size_t index);
 
+/* Before a netlist is read: the seed of its random values, a whole number, whatever .options seed= says. */
+enum dalcs_status dalcs_session_set_seed(struct dalcs_session *session,
+                                         double seed) DALCS_MUST_CHECK;
+
 /* Says, before a netlist is read, for which of them it was written; NULL: what the netlist says or shows,
  * else ngspice. What this changes is in doc/netlist.md. DALCS_E_OPTION: there is no such dialect (a message
  * names them), or a netlist was read. */
@@ -135,6 +139,10 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
  * value; NULL when either is too large. Of the netlist as it was read: ask a session that has not run. */
 const char *dalcs_session_step_parameter(const struct dalcs_session *session, size_t step,
                                          size_t index, double *value);
+
+/* What gauss, mc and the like made of the circuit that was read or run last: the name of the place ("c" of .param,
+ * "r1", "dmod(vfwd)") and its value, NAN where this step has no such place; NULL when index is too large. */
+const char *dalcs_session_drawn(const struct dalcs_session *session, size_t index, double *value);
 
 /* The names of .meas in the order in which a report has them; NULL when index is too large. */
 const char *dalcs_session_measure_name(const struct dalcs_session *session, size_t index);

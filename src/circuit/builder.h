@@ -509,6 +509,18 @@ void dalcs_sweep_parse_dc(struct dalcs_builder *builder, const struct dalcs_card
 void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_sweep_check(struct dalcs_builder *builder);
+
+/* Behind those before it; false after a message, or out of memory. */
+bool dalcs_sweep_add_step(struct dalcs_builder *builder, const struct dalcs_card *card,
+                          const struct dalcs_sweep *sweep);
+
+void dalcs_monte_carlo_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+
+/* The number behind seed=, which who expands the netlist has read: says what is wrong with it. */
+bool dalcs_monte_carlo_read_seed(struct dalcs_reader *reader);
+
+/* What was drawn, into the circuit. */
+enum dalcs_status dalcs_monte_carlo_collect(struct dalcs_builder *builder) DALCS_MUST_CHECK;
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* v(node) at the start of a .tran, as by .ic. */
 void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place, int node,

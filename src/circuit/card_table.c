@@ -40,6 +40,7 @@ static const struct dot_card DOT_CARDS[] = {
     {".dc", DALCS_CARD_DC, NULL, NULL, NOTHING, NULL},
     {".ac", DALCS_CARD_AC, NULL, NULL, NOTHING, NULL},
     {".step", DALCS_CARD_STEP, NULL, NULL, NOTHING, NULL},
+    {".mc", DALCS_CARD_MC, NULL, NULL, NOTHING, NULL},
     {".nodeset", DALCS_CARD_NODESET, NULL, NULL, NOTHING, NULL},
     {".control", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
     {".endc", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
@@ -63,6 +64,14 @@ static const struct dot_card DOT_CARDS[] = {
      "write .step param name list value value ...", NOTHING, ".enddata"},
     {".enddata", DALCS_CARD_NONE, "tables of parameters", NULL, NOTHING, NULL},
     {".wave", DALCS_CARD_NONE, "sound files", NULL, NOTHING, NULL},
+    {".wcase", DALCS_CARD_NONE, "worst cases",
+     "write limit(nominal, tolerance), which is one of both ends, and .mc 1000", NOTHING, NULL},
+    {".distribution", DALCS_CARD_NONE, "distributions by tables",
+     "write table(rand(), 0, smallest, ..., 1, largest) in a .param", NOTHING, NULL},
+    {".sampling", DALCS_CARD_NONE, "Xyce's samplings",
+     "write agauss, aunif, ... in expressions, and .mc with the number of runs", NOTHING, NULL},
+    {".embeddedsampling", DALCS_CARD_NONE, "Xyce's samplings",
+     "write agauss, aunif, ... in expressions, and .mc with the number of runs", NOTHING, NULL},
     {".alter", DALCS_CARD_NONE, "altered runs", "write .step, or alter in a .control block",
      NOTHING, NULL},
 };
@@ -71,9 +80,8 @@ static const struct dot_card DOT_CARDS[] = {
 static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot", ".preprocess"};
 
 /* Analyses that this simulator will not have. */
-static const char *const NEVER[] = {".noise",   ".pz",   ".disto",  ".tf",      ".sens",
-                                    ".sp",      ".hb",   ".net",    ".mc",      ".wcase",
-                                    ".machine", ".stab", ".ferret", ".sampling"};
+static const char *const NEVER[] = {".noise", ".pz",  ".disto",   ".tf",   ".sens",  ".sp",
+                                    ".hb",    ".net", ".machine", ".stab", ".ferret"};
 
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {

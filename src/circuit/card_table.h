@@ -16,6 +16,7 @@ enum dalcs_card_class {
     DALCS_CARD_DC,
     DALCS_CARD_AC,
     DALCS_CARD_STEP,
+    DALCS_CARD_MC,
     DALCS_CARD_NODESET,
     DALCS_CARD_OPTIONS,
     DALCS_CARD_IC,

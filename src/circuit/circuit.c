@@ -155,6 +155,7 @@ static const struct {
     [DALCS_CARD_DC] = {REFERENCES, dalcs_sweep_parse_dc},
     [DALCS_CARD_AC] = {REFERENCES, dalcs_sweep_parse_ac},
     [DALCS_CARD_STEP] = {REFERENCES, dalcs_sweep_parse_step},
+    [DALCS_CARD_MC] = {REFERENCES, dalcs_monte_carlo_parse},
     [DALCS_CARD_MEASURE] = {MEASURES, dalcs_measure_parse},
     [DALCS_CARD_FOURIER] = {MEASURES, dalcs_fourier_parse},
     [DALCS_CARD_LOSSES] = {MEASURES, dalcs_losses_parse},
@@ -250,6 +251,7 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
     for (size_t k = 0; k < builder->n_initial_conditions; k++) {
         circuit->initial_condition[k] = builder->initial_condition[k];
     }
+    DALCS_TRY(dalcs_monte_carlo_collect(builder));
     DALCS_TRY(collect_prints(builder));
     return dalcs_measured_collect(builder);
 }

@@ -216,8 +216,11 @@ struct dalcs_circuit {
     struct dalcs_sweep dc[DALCS_MOST_DC];
     struct dalcs_sweep ac; /* frequencies of .ac in Hz; n is 0 without one */
     struct dalcs_orbit_ac_card orbit_ac;
-    int n_steps; /* of .step, the innermost first */
+    int n_steps; /* of .step and .mc, the innermost first */
     struct dalcs_sweep *step;
+    int n_drawn; /* values that random functions had a part in */
+    struct dalcs_drawn_value *drawn;
+    bool is_random; /* these, or formulas with random values */
 
     struct dalcs_circuit_options {
         double reltol, abstol, vntol;          /* 0: not given; the last two in A, V */
@@ -235,6 +238,11 @@ struct dalcs_circuit {
         struct dalcs_location compress_where, fill_where;
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */
+};
+
+struct dalcs_drawn_value {
+    const char *name; /* "c", "x1.tol", "r1", "dmod(vfwd)" */
+    double value;
 };
 
 struct dalcs_print_card {

@@ -11,6 +11,7 @@ enum dalcs_sweep_target {
     DALCS_SWEEP_ELEMENT,   /* the value of R, L, C, V, I or the gain of E, F, G, H */
     DALCS_SWEEP_PARAMETER, /* of .param */
     DALCS_SWEEP_MODEL,     /* a parameter of a .model */
+    DALCS_SWEEP_RUN,       /* the number of the run, of .mc */
     DALCS_SWEEP_TEMPERATURE
 };
 

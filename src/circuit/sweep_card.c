@@ -57,7 +57,7 @@ static bool set_parameter(struct dalcs_builder *builder, const struct dalcs_toke
             "there is no parameter '%s'", token->text);
         return false;
     }
-    if (!dalcs_deck_uses_parameter(builder->deck, token->text)) {
+    if (builder->deck->n_drawn == 0 && !dalcs_deck_uses_parameter(builder->deck, token->text)) {
         const char *nearest = dalcs_deck_nearest_parameter(builder->deck, token->text);
         const bool is_other = nearest != NULL && strcmp(nearest, token->text) != 0;
         dalcs_builder_warn(builder, token,
@@ -450,22 +450,35 @@ void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card
     f->n = 0;
 }
 
-void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_card *card) {
+bool dalcs_sweep_add_step(struct dalcs_builder *builder, const struct dalcs_card *card,
+                          const struct dalcs_sweep *sweep) {
     struct dalcs_circuit *circuit = builder->circuit;
-    struct dalcs_reader reader = dalcs_reader_start(builder, card, STEP_USAGE);
-    struct dalcs_sweep sweep = {.spacing = DALCS_LINEAR};
     if (circuit->step == NULL) {
         circuit->step = dalcs_arena_alloc(&circuit->arena, MOST_NESTED, sizeof *circuit->step);
         builder->out_of_memory = builder->out_of_memory || circuit->step == NULL;
     }
     if (builder->out_of_memory) {
-        return;
+        return false;
     }
     if (circuit->n_steps == MOST_NESTED) {
         dalcs_builder_error(builder, card->token, NULL, "more than %d .step cards",
                             (int)MOST_NESTED);
-        return;
+        return false;
     }
+    for (int k = 0; k < circuit->n_steps; k++) {
+        if (strcmp(circuit->step[k].label, sweep->label) == 0) {
+            dalcs_builder_error(builder, card->token, NULL, "a second %s of '%s'",
+                                card->token->text, sweep->label);
+            return false;
+        }
+    }
+    circuit->step[circuit->n_steps++] = *sweep;
+    return true;
+}
+
+void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, STEP_USAGE);
+    struct dalcs_sweep sweep = {.spacing = DALCS_LINEAR};
     bool is_spaced = take_spacing(&reader, &sweep.spacing);
     if (!read_item(&reader, "vircleghf", &sweep)) {
         return;
@@ -483,13 +496,7 @@ void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_ca
     } else if (!read_range(&reader, STEP_USAGE, &sweep) || !dalcs_reader_end(&reader)) {
         return;
     }
-    for (int k = 0; k < circuit->n_steps; k++) {
-        if (strcmp(circuit->step[k].label, sweep.label) == 0) {
-            dalcs_builder_error(builder, card->token, NULL, "a second .step of '%s'", sweep.label);
-            return;
-        }
-    }
-    circuit->step[circuit->n_steps++] = sweep;
+    (void)dalcs_sweep_add_step(builder, card, &sweep);
 }
 
 void dalcs_sweep_check(struct dalcs_builder *builder) {

@@ -226,6 +226,16 @@ enum dalcs_status dalcs_argument_shard(struct dalcs_arguments *arguments,
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_argument_seed(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    if (strspn(text, "0123456789") != strlen(text) || strlen(text) > 15 ||
+        dalcs_parse_number(text, &arguments->seed) != DALCS_OK) {
+        dalcs_cli_error(cli, "--seed: '%s' is no whole number of up to 15 digits", text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_argument_measures(struct dalcs_arguments *arguments,
                                           const struct dalcs_cli *cli, const char *path) {
     arguments->measures = path;

@@ -51,6 +51,9 @@ enum dalcs_status dalcs_argument_shard(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_measures(struct dalcs_arguments *arguments,
                                           const struct dalcs_cli *cli,
                                           const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_seed(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli,
+                                      const char *text) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_argument_set(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                                      const char *text) DALCS_MUST_CHECK;
 

@@ -39,7 +39,9 @@ enum {
     MEASURES,
     SHARD,
     RESUME,
-    JOBS
+    JOBS,
+    SEED,
+    ONLY
 };
 
 static const struct option option[] = {
@@ -74,6 +76,8 @@ static const struct option option[] = {
     {"shard", required_argument, NULL, SHARD},
     {"resume", no_argument, NULL, RESUME},
     {"jobs", required_argument, NULL, JOBS},
+    {"seed", required_argument, NULL, SEED},
+    {"only", required_argument, NULL, ONLY},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -176,6 +180,10 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return DALCS_OK;
     case JOBS:
         return dalcs_verb_take_count(cli, "--jobs", optarg, &arguments->jobs);
+    case SEED:
+        return dalcs_argument_seed(arguments, cli, optarg);
+    case ONLY:
+        return dalcs_verb_take_count(cli, "--only", optarg, &arguments->only);
     case PERIOD:
         return dalcs_argument_period(arguments, cli, optarg);
     case FROM:
@@ -245,6 +253,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc, char **argv) {
     *arguments = (struct dalcs_arguments){.steady = strcmp(argv[0], "steady") == 0,
                                           .bode = strcmp(argv[0], "bode") == 0,
+                                          .seed = NAN,
                                           .losses_from = NAN,
                                           .losses_to = INFINITY};
     arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);

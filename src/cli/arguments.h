@@ -25,6 +25,8 @@ struct dalcs_arguments {
         n_shards; /* of the steps of .step: this part of so many, from 1 on; 0 of 0: all */
     bool resume;  /* go on with the table of a run that was ended */
     size_t jobs;  /* steps that run at a time; 0: as many as there are processors */
+    double seed;  /* of random values; NAN: the netlist's */
+    size_t only;  /* this step of .step alone, from 1 on; 0: all */
     const char *dump;
     char *default_output, *default_dump; /* NULL: not needed */
     bool quiet, all_signals, energy;

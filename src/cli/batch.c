@@ -14,6 +14,7 @@
 
 #include <errno.h>
 #include <getopt.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -183,7 +184,7 @@ static enum dalcs_status run_into_log(const struct dalcs_cli *cli, const struct 
 
 static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **argv,
                                 bool is_ngspice) {
-    struct batch b = {.arguments = {.batch = true}, .is_ngspice = is_ngspice};
+    struct batch b = {.arguments = {.batch = true, .seed = NAN}, .is_ngspice = is_ngspice};
     b.arguments.output = dalcs_alloc(1, sizeof *b.arguments.output);
     if (!b.arguments.output) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));

@@ -25,21 +25,33 @@ enum dalcs_status dalcs_measures_file_open(struct dalcs_measures_file *m,
 }
 
 enum dalcs_status dalcs_measures_file_plot(struct dalcs_measures_file *m,
+                                           const struct dalcs_session *session,
                                            const struct dalcs_plot *plot) {
+    double drawn;
     if (m->path == NULL || plot->n_parameters == 0) {
         return DALCS_OK;
     }
     if (m->value == NULL) {
         m->n_steps = plot->n_steps;
         m->n_parameters = plot->n_parameters;
-        m->value = dalcs_alloc(plot->n_steps * plot->n_parameters, sizeof *m->value);
+        while (dalcs_session_drawn(session, m->n_drawn, &drawn) != NULL) {
+            m->n_drawn++;
+        }
+        const size_t n = m->n_parameters + m->n_drawn;
+        m->name = dalcs_alloc(n, sizeof *m->name);
+        m->value = dalcs_alloc(plot->n_steps * n, sizeof *m->value);
     }
-    if (m->value == NULL) {
+    if (m->value == NULL || m->name == NULL) {
         return DALCS_E_NOMEM;
     }
-    m->parameter = plot->parameter;
-    memcpy(m->value + plot->step * m->n_parameters, plot->parameter_value,
-           m->n_parameters * sizeof *m->value);
+    double *value = m->value + plot->step * (m->n_parameters + m->n_drawn);
+    for (size_t k = 0; k < m->n_parameters; k++) {
+        m->name[k] = plot->parameter[k];
+        value[k] = plot->parameter_value[k];
+    }
+    for (size_t k = 0; k < m->n_drawn; k++) {
+        m->name[m->n_parameters + k] = dalcs_session_drawn(session, k, &value[m->n_parameters + k]);
+    }
     return DALCS_OK;
 }
 
@@ -72,8 +84,8 @@ static void write_header(struct dalcs_csv_cells *c, const struct dalcs_measures_
         dalcs_settings_value(arguments->set[k], &length);
         dalcs_csv_text(c, arguments->set[k], length);
     }
-    for (size_t k = 0; k < m->n_parameters; k++) {
-        dalcs_csv_text(c, m->parameter[k], strlen(m->parameter[k]));
+    for (size_t k = 0; k < m->n_parameters + m->n_drawn; k++) {
+        dalcs_csv_text(c, m->name[k], strlen(m->name[k]));
     }
     for (size_t at = 0; at < report->n_measurements;) {
         const size_t n = block_at(report, at);
@@ -92,8 +104,9 @@ static void write_step(struct dalcs_csv_cells *c, const struct dalcs_measures_fi
         size_t length;
         dalcs_csv_number(c, dalcs_settings_value(arguments->set[k], &length));
     }
-    for (size_t k = 0; k < m->n_parameters; k++) {
-        dalcs_csv_number(c, m->value[step * m->n_parameters + k]);
+    const size_t n_values = m->n_parameters + m->n_drawn;
+    for (size_t k = 0; k < n_values; k++) {
+        dalcs_csv_number(c, m->value[step * n_values + k]);
     }
     for (size_t at = 0; at < report->n_measurements;) {
         const size_t n = block_at(report, at);
@@ -127,7 +140,9 @@ enum dalcs_status dalcs_measures_file_close(struct dalcs_measures_file *m,
         }
     }
     dalcs_atomic_file_discard(&m->file);
+    free(m->name);
     free(m->value);
+    m->name = NULL;
     m->value = NULL;
     return status;
 }

@@ -9,9 +9,10 @@
 struct dalcs_measures_file {
     const char *path; /* NULL: none, and nothing else does anything */
     struct dalcs_atomic_file file;
-    size_t n_parameters, n_steps; /* of .step */
-    const char *const *parameter; /* [n_parameters] the session's */
-    double *value;                /* [n_steps * n_parameters]; heap */
+    size_t n_steps;
+    size_t n_parameters, n_drawn; /* of .step; random values */
+    const char **name;            /* [n_parameters + n_drawn] of both, the session's; heap */
+    double *value;                /* [n_steps * (n_parameters + n_drawn)]; heap */
 };
 
 /* Opens it, so that a path which cannot be written ends the run before it starts. */
@@ -19,8 +20,9 @@ enum dalcs_status dalcs_measures_file_open(struct dalcs_measures_file *m,
                                            const struct dalcs_cli *cli,
                                            const char *path) DALCS_MUST_CHECK;
 
-/* Keeps what a step is. */
+/* Keeps what a step is, and what was drawn for it. */
 enum dalcs_status dalcs_measures_file_plot(struct dalcs_measures_file *m,
+                                           const struct dalcs_session *session,
                                            const struct dalcs_plot *plot) DALCS_MUST_CHECK;
 
 /* Columns: what --set and .step set, then the measurements; "nan" where nothing was found. Under its name when the

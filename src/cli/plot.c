@@ -1,12 +1,15 @@
 /* plot.c - `dalcs plot`: read a file of waveforms, choose, draw. */
 #include "cli.h"
 
+#include "histogram.h"
 #include "page.h"
 #include "plot_arguments.h"
 #include "report_reader.h"
+#include "spectrum.h"
 #include "text_plot.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -25,6 +28,10 @@ static const char help[] =
     "                      'v(out),v(a,b)' 'v(out)*i(r1)' 'db(v(out))'; may be repeated: each\n"
     "                      list gets panels of its own (default: all, the most telling first)\n"
     "      --from T, --to T  the range of the time axis, SPICE suffixes allowed: 1m\n"
+    "      --spectrum F    amplitudes over frequency up to F Hz, of the range from --from to "
+    "--to:\n"
+    "                      take whole periods\n"
+    "      --histogram     how often each value of one signal occurs, of a table with a row a run\n"
     "      --report FILE   take the events from what dalcs run --report wrote; without it\n"
     "                      conduction is read off the currents i(d1), i(s1) in FILE\n"
     "      --events        mark events and jumps with lines\n"
@@ -48,8 +55,8 @@ struct drawing {
     const struct dalcs_cli *cli;
     const struct dalcs_plot_arguments *arguments;
     struct dalcs_diag diag;
-    size_t n_written; /* messages */
-    struct dalcs_waveforms waveforms;
+    size_t n_written;                       /* messages */
+    struct dalcs_waveforms waveforms, made; /* the latter of --spectrum and --histogram */
     struct dalcs_selection selection;
     struct dalcs_conduction conduction;
     const char *title;
@@ -86,6 +93,20 @@ static enum dalcs_status choose_run(struct drawing *drawing) {
     return DALCS_OK;
 }
 
+/* The selection becomes one of the table that is made of it. */
+static enum dalcs_status remake(struct drawing *drawing) {
+    const struct dalcs_plot_arguments *arguments = drawing->arguments;
+    struct dalcs_selection of_made;
+    DALCS_TRY(arguments->histogram
+                  ? dalcs_histogram_make(&drawing->made, &drawing->selection, &drawing->diag)
+                  : dalcs_spectrum_make(&drawing->made, &drawing->selection, arguments->spectrum,
+                                        &drawing->diag));
+    DALCS_TRY(dalcs_selection_make(&of_made, &drawing->made, NULL, 0, NAN, NAN, &drawing->diag));
+    dalcs_selection_finish(&drawing->selection);
+    drawing->selection = of_made;
+    return DALCS_OK;
+}
+
 static enum dalcs_status read_file(struct drawing *drawing) {
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
     struct dalcs_waveforms *waveforms = &drawing->waveforms;
@@ -104,6 +125,9 @@ static enum dalcs_status read_file(struct drawing *drawing) {
     DALCS_TRY(dalcs_selection_make(&drawing->selection, waveforms, arguments->group,
                                    arguments->n_groups, arguments->from, arguments->to,
                                    &drawing->diag));
+    if (arguments->spectrum > 0.0 || arguments->histogram) {
+        return remake(drawing);
+    }
     if (arguments->report) {
         DALCS_TRY(
             dalcs_report_reader_read(arguments->report, &drawing->conduction, &drawing->diag));
@@ -260,6 +284,7 @@ static enum dalcs_status draw(const struct dalcs_cli *cli,
     }
     dalcs_conduction_finish(&drawing.conduction);
     dalcs_selection_finish(&drawing.selection);
+    dalcs_waveforms_finish(&drawing.made);
     dalcs_waveforms_finish(&drawing.waveforms);
     dalcs_diag_finish(&drawing.diag);
     return status;

@@ -11,11 +11,12 @@
 #include <string.h>
 #include <strings.h>
 
-enum { FROM = 256, TO, REPORT, EVENTS, NO_BARS, THEME, PLOT, RUN };
+enum { FROM = 256, TO, SPECTRUM, HISTOGRAM, REPORT, EVENTS, NO_BARS, THEME, PLOT, RUN };
 
 static const struct option option[] = {{"signals", required_argument, NULL, 's'},
                                        {"from", required_argument, NULL, FROM},
                                        {"to", required_argument, NULL, TO},
+                                       {"spectrum", required_argument, NULL, SPECTRUM},
                                        {"output", required_argument, NULL, 'o'},
                                        {"report", required_argument, NULL, REPORT},
                                        {"events", no_argument, NULL, EVENTS},
@@ -24,6 +25,7 @@ static const struct option option[] = {{"signals", required_argument, NULL, 's'}
                                        {"plot", required_argument, NULL, PLOT},
                                        {"run", required_argument, NULL, RUN},
                                        {"quiet", no_argument, NULL, 'q'},
+                                       {"histogram", no_argument, NULL, HISTOGRAM},
                                        {"help", no_argument, NULL, 'h'},
                                        {NULL, 0, NULL, 0}};
 
@@ -58,6 +60,11 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
         return parse_number(cli, "--from", optarg, &arguments->from);
     case TO:
         return parse_number(cli, "--to", optarg, &arguments->to);
+    case SPECTRUM:
+        return dalcs_verb_take_positive(cli, "--spectrum", optarg, &arguments->spectrum);
+    case HISTOGRAM:
+        arguments->histogram = true;
+        return DALCS_OK;
     case 'o':
         return parse_output(arguments, cli, optarg);
     case REPORT:
@@ -114,6 +121,16 @@ enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *argume
         } else {
             dalcs_cli_error(cli, "one file at a time: '%s' is one too many", argv[argc - 1]);
         }
+        status = DALCS_E_OPTION;
+    }
+    const bool has_time = arguments->spectrum == 0.0 && !arguments->histogram;
+    if (status == DALCS_OK && !has_time && (arguments->report || arguments->marks)) {
+        dalcs_cli_error(cli, "--%s is not over time: leave out --report and --events",
+                        arguments->histogram ? "histogram" : "spectrum");
+        status = DALCS_E_OPTION;
+    }
+    if (status == DALCS_OK && arguments->spectrum > 0.0 && arguments->histogram) {
+        dalcs_cli_error(cli, "--spectrum or --histogram, not both");
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && arguments->is_page && arguments->theme == &dalcs_theme_print) {

@@ -12,8 +12,10 @@ struct dalcs_plot_arguments {
     const char **group;                 /* [n_groups], each a list of signals */
     size_t n_groups;
     double from, to; /* NAN: not given */
+    double spectrum; /* Hz, up to there; 0: waveforms are drawn as they are */
     const struct dalcs_theme *theme;
     size_t plot, run; /* from 1; 0: not given */
+    bool histogram;
     bool marks, no_bars, quiet, help;
 };
 

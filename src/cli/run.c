@@ -76,7 +76,7 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
     run->progress.counts = plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
-    enum dalcs_status status = dalcs_measures_file_plot(&run->measures, plot);
+    enum dalcs_status status = dalcs_measures_file_plot(&run->measures, run->session, plot);
     if (status == DALCS_OK) {
         status = dalcs_print_table_begin(&run->printed, run->session, plot);
     }
@@ -267,6 +267,7 @@ static struct dalcs_run_options options_of(const struct run *run,
         options.max_events = SHOWN_EVENTS;
     }
     options.audit = arguments->audit;
+    options.only_step = arguments->only;
     options.steady = arguments->steady;
     options.period = arguments->period;
     options.bode = arguments->bode;
@@ -354,6 +355,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     }
     if (status == DALCS_OK && arguments->n_set > 0) {
         status = dalcs_session_keep_netlist(session);
+    }
+    if (status == DALCS_OK && !isnan(arguments->seed)) {
+        status = dalcs_session_set_seed(session, arguments->seed);
     }
     status = status != DALCS_OK ? status
                                 : dalcs_verb_read(session, arguments->netlist, arguments->dialect);

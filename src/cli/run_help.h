@@ -32,6 +32,8 @@
     "      --at FILE       print at exactly the times in FILE, one a line\n"                       \
     "      --set NAME=X    another value: of a parameter, an element or \"dmod(vfwd)\"; may be "   \
     "repeated\n"                                                                                   \
+    "      --seed N        of random values (default: .options seed, else 1)\n"                    \
+    "      --only K        of the runs of .step and .mc number K alone\n"                          \
     "      --measures FILE write the results of .meas as a table, .csv: a row for each step of\n"  \
     "                      .step, or one; with -o none no waveforms are written\n"                 \
     "      --shard K/N     with -o none: the steps of the K-th of N parts, K from 1 on\n"          \

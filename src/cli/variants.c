@@ -3,6 +3,7 @@
 
 #include "csv_cells.h"
 #include "memory.h"
+#include "run_statistics.h"
 #include "settings.h"
 #include "variants_file.h"
 #include "variants_pool.h"
@@ -20,6 +21,7 @@ struct variants {
     struct dalcs_variants_pool pool;
     struct dalcs_variants_file file;
     size_t n_done, n_failed; /* in this run */
+    struct dalcs_run_statistics statistics;
     char *said[MOST_WARNINGS];
     size_t n_said, n_unsaid;
     int error; /* of the disk, errno */
@@ -37,7 +39,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                           !arguments->steady && !arguments->bode && !arguments->batch;
     const bool can_read = strcmp(arguments->netlist, "-") != 0;
     const bool is_asked = arguments->n_shards > 0 || arguments->resume || arguments->jobs > 0;
-    *wanted = has_steps && is_table && can_read && !has_script;
+    *wanted = has_steps && is_table && can_read && !has_script && arguments->only == 0;
     if (*wanted || !is_asked) {
         return DALCS_OK;
     }
@@ -45,6 +47,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                     !is_table ? "write -o none --measures FILE.csv, and no other result"
                     : !can_read
                         ? "each thread reads the netlist, so give the name of a file in place of -"
+                    : arguments->only > 0 ? "--only is one of them"
                     : has_script ? "a .control block says what is run here, one run after the other"
                                  : "the netlist has no .step");
     return DALCS_E_OPTION;
@@ -55,7 +58,7 @@ static char *begin_of(void *user, size_t row) {
     return dalcs_variant_begin(&v->pool, v->pool.first + row);
 }
 
-/* Names of --set, of .step, of .meas, and "error". */
+/* Names of --set, of .step, of what is drawn, of .meas, and "error". */
 static char *write_header(const struct variants *v) {
     const struct dalcs_session *session = v->pool.session;
     char *text = NULL;
@@ -73,6 +76,9 @@ static char *write_header(const struct variants *v) {
         dalcs_csv_text(&cells, v->arguments->set[k], length);
     }
     for (size_t k = 0; (name = dalcs_session_step_parameter(session, 0, k, &value)) != NULL; k++) {
+        dalcs_csv_text(&cells, name, strlen(name));
+    }
+    for (size_t k = 0; (name = dalcs_session_drawn(session, k, &value)) != NULL; k++) {
         dalcs_csv_text(&cells, name, strlen(name));
     }
     for (size_t k = 0; (name = dalcs_session_measure_name(session, k)) != NULL; k++) {
@@ -132,6 +138,7 @@ static enum dalcs_status take(void *user, const struct dalcs_variant *variant) {
     if (!v->arguments->quiet && v->n_done < MOST_LINES) {
         fprintf(v->cli->out, "%s\n", variant->line);
     }
+    dalcs_run_statistics_add(&v->statistics, variant->value);
     v->n_done++;
     v->n_failed += variant->failed ? 1 : 0;
     return tell_warnings(v, variant->warnings);
@@ -165,6 +172,12 @@ static void tell_rest(const struct variants *v, enum dalcs_status status) {
     tell_failed(v, v->file.partial);
 }
 
+/* A mean over values that somebody has chosen says nothing. */
+static bool is_random(const struct variants *v) {
+    double value;
+    return dalcs_session_drawn(v->pool.session, 0, &value) != NULL && v->n_done > 1;
+}
+
 static enum dalcs_status run_rest(struct variants *v) {
     if (!v->arguments->quiet) {
         print_header(v);
@@ -186,6 +199,9 @@ static enum dalcs_status run_rest(struct variants *v) {
     if (!v->arguments->quiet) {
         if (v->n_done > MOST_LINES) {
             fprintf(v->cli->out, "  ... and %zu more\n", v->n_done - MOST_LINES);
+        }
+        if (is_random(v)) {
+            dalcs_run_statistics_write(v->cli->out, &v->statistics, v->pool.session);
         }
         fprintf(v->cli->out, "  wrote     %s\n\n", v->file.path);
     }
@@ -214,11 +230,14 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
         .end = n / n_shards * shard + n % n_shards * shard / n_shards,
         .take = take,
         .user = &v};
+    while (dalcs_session_measure_name(session, v.pool.n_measures) != NULL) {
+        v.pool.n_measures++;
+    }
     char *header = write_header(&v);
-    enum dalcs_status status =
-        header == NULL
-            ? DALCS_E_NOMEM
-            : dalcs_variants_file_open(&v.file, cli, header, arguments->resume, begin_of, &v);
+    enum dalcs_status status = dalcs_run_statistics_begin(&v.statistics, v.pool.n_measures);
+    status = status != DALCS_OK || header == NULL
+                 ? DALCS_E_NOMEM
+                 : dalcs_variants_file_open(&v.file, cli, header, arguments->resume, begin_of, &v);
     if (status == DALCS_E_NOMEM) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     } else if (status == DALCS_OK && v.file.is_complete) {
@@ -229,6 +248,7 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
         status = run_rest(&v);
     }
     free(header);
+    dalcs_run_statistics_finish(&v.statistics);
     dalcs_variants_file_finish(&v.file);
     for (size_t k = 0; k < v.n_said; k++) {
         free(v.said[k]);

@@ -97,6 +97,16 @@ static double measured(const struct dalcs_session *session, const char *name, si
     return m->found ? m->value : (double)NAN;
 }
 
+/* The same of a random value; in nearly all netlists all steps draw the same ones. */
+static double drawn(const struct dalcs_session *session, const char *name, size_t at) {
+    double value;
+    const char *found = dalcs_session_drawn(session, at, &value);
+    for (size_t k = 0; found != NULL && strcmp(found, name) != 0; k++) {
+        found = dalcs_session_drawn(session, k, &value);
+    }
+    return found != NULL ? value : (double)NAN;
+}
+
 /* The sentence of the first error since message `first`, else the status in words. */
 static void find_reason(const struct dalcs_session *session, size_t first, enum dalcs_status status,
                         const char **reason, size_t *length) {
@@ -115,7 +125,7 @@ static void find_reason(const struct dalcs_session *session, size_t first, enum 
 }
 
 static void write_values(const struct crew *crew, const struct dalcs_session *session, size_t step,
-                         struct dalcs_csv_cells *cells, FILE *line) {
+                         struct dalcs_csv_cells *cells, FILE *line, double *values) {
     const struct dalcs_session *whole = crew->pool->session;
     const char *name;
     double value;
@@ -124,8 +134,11 @@ static void write_values(const struct crew *crew, const struct dalcs_session *se
     for (size_t k = 0; (name = dalcs_session_step_parameter(whole, step, k, &value)) != NULL; k++) {
         fprintf(line, " %*.6g", dalcs_variant_width(name), value);
     }
+    for (size_t k = 0; (name = dalcs_session_drawn(whole, k, &value)) != NULL; k++) {
+        dalcs_csv_number(cells, drawn(session, name, k));
+    }
     for (size_t k = 0; (name = dalcs_session_measure_name(whole, k)) != NULL; k++) {
-        value = measured(session, name, k);
+        value = values[k] = measured(session, name, k);
         dalcs_csv_number(cells, value);
         fprintf(line, " %*.6g", dalcs_variant_width(name), value);
     }
@@ -146,6 +159,7 @@ static void finish_variant(struct dalcs_variant *v) {
     free(v->row);
     free(v->line);
     free(v->warnings);
+    free(v->value);
     *v = (struct dalcs_variant){0};
 }
 
@@ -157,11 +171,12 @@ static enum dalcs_status write_variant(const struct crew *crew, const struct dal
     FILE *row = open_memstream(&v->row, &size[0]);
     FILE *line = open_memstream(&v->line, &size[1]);
     FILE *warnings = open_memstream(&v->warnings, &size[2]);
-    if (row != NULL && line != NULL && warnings != NULL) {
+    v->value = dalcs_alloc(crew->pool->n_measures, sizeof *v->value);
+    if (row != NULL && line != NULL && warnings != NULL && v->value != NULL) {
         struct dalcs_csv_cells cells = {.out = row, .decimal = crew->pool->decimal};
         const char *reason = "";
         size_t length = 0;
-        write_values(crew, session, step, &cells, line);
+        write_values(crew, session, step, &cells, line, v->value);
         if (status != DALCS_OK) {
             find_reason(session, first, status, &reason, &length);
         }
@@ -171,7 +186,7 @@ static enum dalcs_status write_variant(const struct crew *crew, const struct dal
         write_warnings(session, first, warnings);
         v->failed = status != DALCS_OK;
     }
-    bool complete = row != NULL && line != NULL && warnings != NULL;
+    bool complete = row != NULL && line != NULL && warnings != NULL && v->value != NULL;
     FILE *const file[] = {row, line, warnings};
     for (size_t k = 0; k < sizeof file / sizeof file[0]; k++) {
         complete = (file[k] == NULL || fclose(file[k]) == 0) && complete;
@@ -201,6 +216,9 @@ static enum dalcs_status open_session(struct worker *w) {
     DALCS_TRY(dalcs_session_create(&w->session));
     if (arguments->n_set > 0) {
         DALCS_TRY(dalcs_session_keep_netlist(w->session));
+    }
+    if (!isnan(arguments->seed)) {
+        DALCS_TRY(dalcs_session_set_seed(w->session, arguments->seed));
     }
     DALCS_TRY(dalcs_verb_read(w->session, arguments->netlist, arguments->dialect));
     return dalcs_settings_apply(w->session, arguments);

@@ -10,6 +10,7 @@ struct dalcs_variant {
     char *row;      /* of the table, with its newline */
     char *line;     /* for people, without */
     char *warnings; /* one after the other, each with a NUL behind it, and one more at the end */
+    double *value;  /* of the measurements; heap */
     bool failed;
 };
 
@@ -19,6 +20,7 @@ struct dalcs_variants_pool {
     const struct dalcs_session *session; /* has read the netlist and does not run */
     const struct dalcs_run_options *options;
     const struct dalcs_decimal *decimal;
+    size_t n_measures; /* of a step */
     size_t first, end; /* steps, from 0 on */
     /* Called for each step in its order, by one thread at a time. */
     enum dalcs_status (*take)(void *user, const struct dalcs_variant *variant);

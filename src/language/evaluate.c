@@ -161,24 +161,43 @@ static const char *suggest_function(const struct run *r, const char *name) {
     return nearest != NULL ? dalcs_language_text(r->language, "did you mean '%s'?", nearest) : NULL;
 }
 
+/* A random value. */
+static enum dalcs_outcome draw(const struct run *r, const struct dalcs_operation *o,
+                               dalcs_draw *function) {
+    struct dalcs_language *language = r->language;
+    const double *x = &language->stack[language->n_stack - (size_t)o->count];
+    const double value = dalcs_drawn_next(language, function, x, o->count);
+    if (!isfinite(value)) {
+        report(r, o, dalcs_draw_usage(o->u.name), "a value of %s is not finite", o->u.name);
+        return DALCS_OUTCOME_WRONG;
+    }
+    language->n_stack -= (size_t)o->count;
+    return outcome_of(push(language, value));
+}
+
 static enum dalcs_outcome call(const struct run *r, const struct dalcs_operation *o) {
     struct dalcs_language *language = r->language;
     struct dalcs_user_function *user = dalcs_scope_find_function(r->scope, o->u.name);
+    bool is_random;
+    dalcs_draw *drawn = dalcs_draw_find(o->u.name, o->count, &is_random);
     if (user != NULL) {
         return call_user(r, o, user);
+    }
+    if (drawn != NULL) {
+        return draw(r, o, drawn);
     }
     const struct dalcs_function *function =
         dalcs_function_find(o->u.name, language->netlist->dialect.name);
     if (function == NULL && hides_names(language)) {
         return DALCS_OUTCOME_WRONG;
     }
-    if (function == NULL) {
-        report(r, o, suggest_function(r, o->u.name), "there is no function '%s'", o->u.name);
+    if (function == NULL && is_random) {
+        report(r, o, dalcs_draw_usage(o->u.name), "'%s' does not take %d argument%s", o->u.name,
+               o->count, o->count == 1 ? "" : "s");
         return DALCS_OUTCOME_WRONG;
     }
-    if (strcmp(o->u.name, "limit") == 0 && o->count == 2) {
-        report(r, o, "limit(x, low, high) keeps x between two values",
-               "limit of 2 arguments is random in ngspice: random values are not supported");
+    if (function == NULL) {
+        report(r, o, suggest_function(r, o->u.name), "there is no function '%s'", o->u.name);
         return DALCS_OUTCOME_WRONG;
     }
     if (!check_count(r, o, function->least, function->most)) {
@@ -205,7 +224,7 @@ static enum dalcs_outcome call(const struct run *r, const struct dalcs_operation
     return outcome_of(push(language, value));
 }
 
-/* Before the arguments of v(...), gauss(...) and the like, unless the netlist has such a function. */
+/* Before the arguments of v(...), white(...) and the like, unless the netlist has such a function. */
 static enum dalcs_outcome check_call(const struct run *r, const struct dalcs_operation *o) {
     if (dalcs_scope_find_function(r->scope, o->u.name) != NULL) {
         return DALCS_OUTCOME_VALUE;
@@ -367,11 +386,14 @@ static enum dalcs_outcome run(struct run *r) {
 enum dalcs_outcome dalcs_evaluate(struct dalcs_language *language, struct dalcs_scope *scope,
                                   const struct dalcs_expression *expression, double *value) {
     const size_t base = language->n_stack;
+    const uint32_t n_drawn = language->place.n;
     struct run r = {language, scope, expression, base};
     language->operations = 0;
     const enum dalcs_outcome outcome = run(&r);
     if (outcome == DALCS_OUTCOME_VALUE) {
         *value = language->stack[base];
+    } else {
+        language->place.n = n_drawn; /* it is evaluated again, or for nothing */
     }
     language->n_stack = base;
     return outcome;

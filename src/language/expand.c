@@ -92,9 +92,12 @@ static void evaluate_token(struct dalcs_language *language, struct dalcs_scope *
             return;
         }
     }
+    const struct dalcs_draw_place before = dalcs_drawn_enter(
+        language, (struct dalcs_draw_place){.scope = scope, .card = item->card, .at = k});
     const bool ok = dalcs_scope_compile(language, scope, &item->card->token[k], 1, NULL,
                                         &item->expression[k]) &&
                     dalcs_scope_evaluate(language, scope, item->expression[k], &token->value);
+    dalcs_drawn_leave(language, before, ok ? &token->value : NULL);
     token->kind = ok ? DALCS_TOKEN_NUMBER : DALCS_TOKEN_BAD;
 }
 
@@ -175,10 +178,13 @@ static int put_formula(struct dalcs_language *language, struct dalcs_scope *scop
     int n_transfer;
     const bool is_transfer = dalcs_transfer_find(card, &transfer, &n_transfer) && transfer == first;
     const bool is_storage = card->letter == 'l' || card->letter == 'c';
+    const struct dalcs_draw_place before = dalcs_drawn_enter(
+        language, (struct dalcs_draw_place){.scope = scope, .card = card, .at = first});
     place->formula = dalcs_formula_make_of(language, scope, &card->token[first], n,
                                            is_transfer  ? "s"
                                            : is_storage ? "x"
                                                         : NULL);
+    dalcs_drawn_leave(language, before, NULL);
     place->kind = place->formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
     if (last->line == place->line) {
         place->length = last->offset + last->length - place->offset;
@@ -259,7 +265,10 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
                    dalcs_formula_reads_value(token[k].text)) {
             token[k].kind = DALCS_TOKEN_WORD; /* no signal, as who reads the card says */
         } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL) {
+            const struct dalcs_draw_place before = dalcs_drawn_enter(
+                language, (struct dalcs_draw_place){.scope = scope, .card = card, .at = k});
             token[k].formula = dalcs_formula_make(language, scope, &card->token[k], 1);
+            dalcs_drawn_leave(language, before, NULL);
             token[k].kind = token[k].formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
         } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] != DALCS_ROLE_RAW) {
             evaluate_token(language, scope, item, k, &token[k]);
@@ -456,6 +465,7 @@ static bool give_parameters(const struct call *call, struct dalcs_scope *inner) 
                                       .n_tokens = at - value_at,
                                       .expression = &item->expression[value_at],
                                       .where = call->scope,
+                                      .owner = inner,
                                       .is_given = true};
     }
     return true;
@@ -584,12 +594,20 @@ static bool is_too_large(struct dalcs_language *language, struct dalcs_scope *sc
     return true;
 }
 
+/* A step has its values, which the cards need not say again: with as many values as runs that would take the square of
+ * their number. */
+static bool is_of_steps(const struct dalcs_language *language, const struct dalcs_item *item) {
+    const char *text = item->card->token->text;
+    return language->deck->is_step && item->card->letter == '.' &&
+           (strcmp(text, ".step") == 0 || strcmp(text, ".mc") == 0);
+}
+
 static enum dalcs_status expand_scope(struct dalcs_language *language, struct dalcs_scope *scope) {
     struct dalcs_definition *definition = scope->definition;
     dalcs_scope_settle(language, scope);
     for (size_t k = 0; k < definition->n_items; k++) {
         struct dalcs_item *item = &definition->item[k];
-        if (!dalcs_scope_is_active(scope, (int)k)) {
+        if (!dalcs_scope_is_active(scope, (int)k) || is_of_steps(language, item)) {
             continue;
         }
         if (is_too_large(language, scope, item)) {
@@ -621,6 +639,7 @@ static enum dalcs_status begin(struct dalcs_deck *deck, const struct dalcs_netli
     language->netlist = netlist;
     language->diag = diag;
     language->arena = &deck->arena;
+    dalcs_drawn_start(language);
     DALCS_TRY(dalcs_definition_collect(language));
     language->top = dalcs_scope_make(language, &language->root, NULL, NULL);
     return language->top != NULL ? dalcs_override_parameters(language) : DALCS_E_NOMEM;
@@ -715,6 +734,7 @@ void dalcs_deck_finish(struct dalcs_deck *deck) {
     }
     dalcs_names_finish(&deck->instances);
     free(deck->own);
+    free(deck->drawn);
     dalcs_arena_finish(&deck->arena);
     *deck = (struct dalcs_deck){0};
 }

@@ -29,6 +29,18 @@ struct dalcs_deck {
     struct dalcs_card *own; /* heap */
     size_t own_capacity;
     struct dalcs_names instances; /* "x1.x2" */
+
+    struct dalcs_drawn *drawn; /* [n_drawn] in the order of their evaluation; heap */
+    size_t n_drawn, drawn_capacity;
+    bool is_step;            /* of .step or .mc */
+    bool has_random_formula; /* or condition: a value was drawn that is none of these */
+};
+
+/* A value that random functions had a part in: of a parameter, or on a card. */
+struct dalcs_drawn {
+    const char *name; /* "c", "x1.tol", "r1", "dmod(vfwd)": the place, as a person calls it */
+    const struct dalcs_card *card; /* or NULL */
+    double value;
 };
 
 /* Errors go to diag and set has_errors. Fails with DALCS_E_NOMEM only. */

@@ -299,7 +299,12 @@ static void call(struct work *w, const struct frame *f, const struct dalcs_opera
         dalcs_function_find(o->u.name, w->language->netlist->dialect.name);
     const bool is_wrong =
         function == NULL || o->count < function->least || o->count > function->most;
-    if (is_wrong || are_numbers(w, o->count)) {
+    bool is_random;
+    const bool draws = dalcs_draw_find(o->u.name, o->count, &is_random) != NULL;
+    if (draws && !are_numbers(w, o->count)) {
+        fail(w, f, o, "a random value is drawn once, before the run: its arguments are numbers",
+             "'%s' of a voltage, a current or the time", o->u.name);
+    } else if (is_wrong || are_numbers(w, o->count)) {
         fold(w, f, o, o->count);
     } else {
         push_over(w, f, o, DALCS_FORMULA_CALL, o->count);

@@ -220,12 +220,11 @@ const char *dalcs_function_nearest(const char *name) {
 }
 
 const char *dalcs_function_refusal(const char *name) {
-    static const char *const random[] = {"gauss", "agauss", "unif",   "aunif", "mc",
-                                         "flat",  "rand",   "random", "rnd",   "white"};
+    static const char *const random[] = {"random", "rnd", "white"};
     static const char *const signal[] = {"v", "i", "ddt", "idt", "sdt", "delay", "time"};
     for (size_t k = 0; k < sizeof random / sizeof random[0]; k++) {
         if (strcmp(name, random[k]) == 0) {
-            return "random values are not supported: write the number";
+            return "flat(x) draws a value between -x and x, once a run";
         }
     }
     for (size_t k = 0; k < sizeof signal / sizeof signal[0]; k++) {

@@ -6,6 +6,7 @@
 #ifndef DALCS_LANGUAGE_H
 #define DALCS_LANGUAGE_H
 
+#include "draws.h"
 #include "expand.h"
 #include "expression.h"
 #include "formula.h"
@@ -96,6 +97,7 @@ struct dalcs_value {
     int n_tokens;
     struct dalcs_expression **expression;
     struct dalcs_scope *where; /* the scope that its expression is evaluated in */
+    struct dalcs_scope *owner; /* the scope that has it; NULL: the same */
     enum dalcs_value_state state;
     double value;
     bool is_used;
@@ -115,6 +117,15 @@ struct dalcs_scope {
     bool *active;                         /* [n_items] in a branch that counts; NULL: all are */
     const struct dalcs_source_line *line; /* the last line copied, */
     struct dalcs_source_line *copy;       /* and its copy */
+};
+
+/* Where random values are drawn: a parameter, or token `at` of a card. */
+struct dalcs_draw_place {
+    const struct dalcs_scope *scope;
+    const struct dalcs_card *card; /* NULL: */
+    const char *parameter;
+    int at;
+    uint32_t n; /* values drawn there */
 };
 
 struct dalcs_language {
@@ -143,6 +154,10 @@ struct dalcs_language {
     size_t n_sought, sought_capacity;
     struct dalcs_scope **scope; /* every instance, by its place in deck->instances: heap */
     size_t n_scopes, scope_capacity;
+
+    struct dalcs_draw_place place; /* what is being evaluated */
+    uint64_t seed;
+    uint32_t run; /* number of the run, from 1; 0: every draw is in the middle */
 };
 
 /* ---- language.c: messages ---------------------------------------------------------------------- */
@@ -228,6 +243,22 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) DAL
 
 /* Those of elements and models, in the deck's flat cards. */
 enum dalcs_status dalcs_override_cards(struct dalcs_language *language) DALCS_MUST_CHECK;
+
+/* ---- drawn.c: random values ---------------------------------------------------------------------- */
+
+/* The netlist's seed, else the usual one, and the number of this run. */
+void dalcs_drawn_start(struct dalcs_language *language);
+
+/* The next value of the place that is being evaluated. */
+double dalcs_drawn_next(struct dalcs_language *language, dalcs_draw *draw, const double *x, int n);
+
+/* What is evaluated now is at `place`; returns the place before. */
+struct dalcs_draw_place dalcs_drawn_enter(struct dalcs_language *language,
+                                          struct dalcs_draw_place place);
+
+/* It had this value: kept if it was drawn. And back to the place before; value NULL: it has none. */
+void dalcs_drawn_leave(struct dalcs_language *language, struct dalcs_draw_place before,
+                       const double *value);
 
 /* ---- evaluate.c -------------------------------------------------------------------------------- */
 

@@ -234,7 +234,8 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
 enum dalcs_status dalcs_override_cards(struct dalcs_language *language) {
     const struct dalcs_deck *deck = language->deck;
     for (size_t k = 0; k < deck->n_overrides; k++) {
-        if (deck->override[k].kind != DALCS_OVERRIDE_PARAMETER) {
+        const enum dalcs_override_kind kind = deck->override[k].kind;
+        if (kind == DALCS_OVERRIDE_ELEMENT || kind == DALCS_OVERRIDE_MODEL) {
             DALCS_TRY(apply(language, &deck->override[k]));
         }
     }

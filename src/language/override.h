@@ -3,12 +3,14 @@
 #ifndef DALCS_OVERRIDE_H
 #define DALCS_OVERRIDE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 enum dalcs_override_kind {
     DALCS_OVERRIDE_PARAMETER, /* of .param, outside of subcircuits */
     DALCS_OVERRIDE_ELEMENT,   /* the value of R, L, C, V, I (DC) or the gain of E, F, G, H */
-    DALCS_OVERRIDE_MODEL      /* a parameter of a .model */
+    DALCS_OVERRIDE_MODEL,     /* a parameter of a .model */
+    DALCS_OVERRIDE_RUN /* the number of the run, from 1: random values are those of it; 0: in the middle */
 };
 
 struct dalcs_override {
@@ -16,6 +18,7 @@ struct dalcs_override {
     const char *name;  /* flat, lower case: "x1.r1" */
     const char *field; /* of a model: "vfwd"; else NULL */
     double value;
+    bool is_step; /* of a run: one of .step or .mc */
 };
 
 #endif

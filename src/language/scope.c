@@ -139,7 +139,14 @@ static enum dalcs_outcome try_value(struct dalcs_language *language, struct dalc
                              value->expression)) {
         return DALCS_OUTCOME_WRONG;
     }
-    return dalcs_evaluate(language, value->where, *value->expression, &value->value);
+    const struct dalcs_draw_place before = dalcs_drawn_enter(
+        language,
+        (struct dalcs_draw_place){.scope = value->owner != NULL ? value->owner : value->where,
+                                  .parameter = value->name->text});
+    const enum dalcs_outcome outcome =
+        dalcs_evaluate(language, value->where, *value->expression, &value->value);
+    dalcs_drawn_leave(language, before, outcome == DALCS_OUTCOME_VALUE ? &value->value : NULL);
+    return outcome;
 }
 
 /* `value` waits for itself: says by which way, and makes all on it wrong. */
@@ -241,7 +248,12 @@ static bool holds(struct dalcs_language *language, struct dalcs_scope *scope,
                              dalcs_scope_compile(language, scope, card->token + 1, card->n - 1,
                                                  NULL, &item->expression[0]);
     language->is_condition = false;
-    if (!is_compiled || !dalcs_scope_evaluate(language, scope, item->expression[0], &value)) {
+    const struct dalcs_draw_place before = dalcs_drawn_enter(
+        language, (struct dalcs_draw_place){.scope = scope, .card = card, .at = card->n});
+    const bool is_known =
+        is_compiled && dalcs_scope_evaluate(language, scope, item->expression[0], &value);
+    dalcs_drawn_leave(language, before, NULL);
+    if (!is_known) {
         /* What would have been chosen is not known. */
         language->deck->hides_all = true;
         return false;

@@ -12,6 +12,8 @@
 #include "diag.h"
 #include "dialect.h"
 
+#include <stdint.h>
+
 struct dalcs_formula;
 
 enum dalcs_token_kind {
@@ -74,7 +76,7 @@ struct dalcs_losses_request {
     double from, to; /* s; INFINITY: the end of the run */
 };
 
-/* Zero-initialise, set the first five if wanted, read, then finish. */
+/* Zero-initialise, set the first seven if wanted, read, then finish. */
 struct dalcs_netlist {
     bool no_includes;             /* refuse .include and .lib: no other file is read */
     size_t most_cards;            /* that subcircuit calls may expand to; 0: DALCS_MOST_CARDS */
@@ -83,6 +85,8 @@ struct dalcs_netlist {
     bool
         asks_steady; /* a steady state is asked for beside the netlist, which need not ask for anything */
     bool asks_response; /* and the response around it */
+    bool has_seed;      /* the next is told, whatever .options seed= says */
+    uint64_t seed;      /* of random values */
 
     const char *name; /* the file's path, or what read_text was told */
     const char *title;

@@ -158,9 +158,23 @@ static bool read_number(struct reader *reader, double *value) {
     return found;
 }
 
-static bool read_row(struct reader *reader, double *cell, struct dalcs_digits *digits, size_t n) {
+/* A table of many runs says in its last column why one failed. */
+static bool has_reasons(const struct dalcs_waveforms *waveforms) {
+    return strcmp(waveforms->name[waveforms->n_columns - 1], "error") == 0;
+}
+
+static bool read_row(struct reader *reader, double *cell, const struct dalcs_waveforms *waveforms) {
+    const size_t n = waveforms->n_columns;
+    struct dalcs_digits *digits = waveforms->digits;
     for (size_t i = 0; i < n; i++) {
         const char *from = reader->at;
+        if (i > 0 && i + 1 == n && has_reasons(waveforms)) {
+            cell[i] = NAN;
+            while (!at_line_end(reader)) {
+                reader->at++;
+            }
+            break;
+        }
         if (!read_number(reader, &cell[i])) {
             return false;
         }
@@ -193,7 +207,7 @@ enum dalcs_status dalcs_waveforms_read_csv(struct dalcs_waveforms *waveforms, co
         }
         DALCS_TRY(dalcs_grow(&waveforms->value, &capacity, (waveforms->n_rows + 1) * n,
                              sizeof *waveforms->value));
-        if (read_row(&reader, waveforms->value + waveforms->n_rows * n, waveforms->digits, n)) {
+        if (read_row(&reader, waveforms->value + waveforms->n_rows * n, waveforms)) {
             waveforms->n_rows++;
         } else if (!unended) { /* a last line without its end may be cut short */
             return refuse(&reader, path, diag);

@@ -306,15 +306,20 @@ function valueAt(signal, time) {
   return signal.value[row - 1] + part * (signal.value[row] - signal.value[row - 1]);
 }
 
-/* The mean of straight lines between rows. */
-function mean(signal, from, to) {
-  let sum = 0, time = from, value = valueAt(signal, from);
-  for (let row = rowOf(from); row < at.length && at[row] < to; row++) {
-    sum += 0.5 * (at[row] - time) * (signal.value[row] + value);
-    time = at[row];
-    value = signal.value[row];
-  }
-  return (sum + 0.5 * (to - time) * (valueAt(signal, to) + value)) / (to - from);
+/* Of straight lines between rows: mean, rms, least and largest value. */
+function between(signal, from, to) {
+  let sum = 0, squares = 0, time = from, value = valueAt(signal, from), least = value, largest = value;
+  const go = (next, other) => {
+    sum += 0.5 * (next - time) * (other + value);
+    squares += (next - time) * (value * value + value * other + other * other) / 3;
+    least = Math.min(least, other);
+    largest = Math.max(largest, other);
+    time = next;
+    value = other;
+  };
+  for (let row = rowOf(from); row < at.length && at[row] < to; row++) go(at[row], signal.value[row]);
+  go(to, valueAt(signal, to));
+  return [sum / (to - from), Math.sqrt(squares / (to - from)), least, largest];
 }
 
 function cell(row, text, kind = "td", name = "") {
@@ -336,7 +341,7 @@ function writeTable() {
   if (both) {
     const rate = unit === "s" ? ` (${quantity(1 / Math.abs(b - a), "Hz", 4)})` : "";
     cell(head, `B \u2212 A ${quantity(b - a, unit, 6)}${rate}`, "th");
-    cell(head, "mean", "th");
+    for (const name of ["mean", "rms", "min", "max"]) cell(head, name, "th");
   }
   for (const signal of run.signals.filter((one) => one.shown)) {
     const row = table.insertRow(), of = panels[signal.panel].unit;
@@ -345,7 +350,8 @@ function writeTable() {
     if (b !== null) cell(row, quantity(valueAt(signal, b), of));
     if (both) {
       cell(row, quantity(valueAt(signal, b) - valueAt(signal, a), of));
-      cell(row, quantity(mean(signal, Math.min(a, b), Math.max(a, b)), of));
+      const found = between(signal, Math.min(a, b), Math.max(a, b));
+      for (const value of found) cell(row, quantity(value, of));
     }
   }
 }

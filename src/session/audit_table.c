@@ -13,13 +13,14 @@ static enum dalcs_status refuse(struct dalcs_session *s, const char *what) {
 /* The circuit of a step of .step. */
 static enum dalcs_status take_run(struct dalcs_session *s, size_t run) {
     struct dalcs_plot plot;
-    if (run >= dalcs_steps_count(&s->circuit)) {
+    if (run >= dalcs_steps_count(s)) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL,
                        "the file has a run number %zu, and the netlist has %zu", run + 1,
-                       dalcs_steps_count(&s->circuit));
+                       dalcs_steps_count(s));
         return DALCS_E_OPTION;
     }
-    return s->circuit.n_steps > 0 ? dalcs_session_take_step(s, run, &plot) : DALCS_OK;
+    DALCS_TRY(dalcs_steps_find(s));
+    return s->steps.n > 0 ? dalcs_session_take_step(s, run, &plot) : DALCS_OK;
 }
 
 enum dalcs_status dalcs_session_audit_table(struct dalcs_session *s,

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum kind { METHOD, CURVE, AUDIT, REAL, WHOLE, YES_OR_NO };
+enum kind { METHOD, CURVE, AUDIT, REAL, WHOLE, COUNT, YES_OR_NO };
 
 static const struct {
     const char *name;
@@ -20,6 +20,7 @@ static const struct {
     {"compress", REAL, AT(compress)},  {"record", YES_OR_NO, AT(record)},
     {"energy", YES_OR_NO, AT(energy)}, {"audit", AUDIT, AT(audit)},
     {"steady", YES_OR_NO, AT(steady)}, {"period", REAL, AT(period)},
+    {"only", COUNT, AT(only_step)},
 #undef AT
 };
 
@@ -81,7 +82,14 @@ static enum dalcs_status set_number(enum kind kind, void *field, const char *tex
     if (value != rint(value) || !(fabs(value) < 1e9)) {
         return DALCS_E_OPTION;
     }
-    *(int *)field = (int)value;
+    if (kind == COUNT && !(value >= 0.0)) {
+        return DALCS_E_OPTION;
+    }
+    if (kind == COUNT) {
+        *(size_t *)field = (size_t)value;
+    } else {
+        *(int *)field = (int)value;
+    }
     return DALCS_OK;
 }
 
@@ -102,7 +110,7 @@ enum dalcs_status dalcs_run_options_set(struct dalcs_run_options *options, const
     if (kind == METHOD || kind == CURVE) {
         return kind == METHOD ? set_method(field, text) : set_word(field, curves, text);
     }
-    if (kind == REAL || kind == WHOLE) {
+    if (kind == REAL || kind == WHOLE || kind == COUNT) {
         return set_number(kind, field, text);
     }
     const int k = find_word(kind == AUDIT ? audits : answers, text);

@@ -296,7 +296,8 @@ static enum dalcs_status run_all(struct dalcs_session *session,
         session->circuit.periodic.present = true; /* as if there were a .pss */
         DALCS_TRY(dalcs_steady_prepare(session));
     }
-    if (session->circuit.n_steps > 0) {
+    DALCS_TRY(dalcs_steps_find(session));
+    if (session->steps.n > 0) {
         return dalcs_stepped_run(session, options, &complete);
     }
     DALCS_TRY(dalcs_operating_currents(session, options, &complete));

@@ -67,7 +67,7 @@ void dalcs_session_script_message(struct dalcs_session *session, size_t line, si
 /* ---- Runs with cards of their own ------------------------------------------------------------- */
 
 static bool is_analysis(const struct dalcs_card *card) {
-    static const char *const name[] = {".tran", ".op", ".dc", ".ac", ".step"};
+    static const char *const name[] = {".tran", ".op", ".dc", ".ac", ".step", ".mc"};
     for (size_t k = 0; k < sizeof name / sizeof name[0]; k++) {
         if (strcmp(card->token->text, name[k]) == 0) {
             return true;
@@ -217,7 +217,8 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
                                       const char **nearest) {
     const char *unused = NULL;
     const char **like = nearest != NULL ? nearest : &unused;
-    struct dalcs_override override = {DALCS_OVERRIDE_ELEMENT, name, field, value};
+    struct dalcs_override override = {
+        .kind = DALCS_OVERRIDE_ELEMENT, .name = name, .field = field, .value = value};
     bool found;
     *like = NULL;
     if (!session->has_netlist) {
@@ -261,6 +262,8 @@ void dalcs_session_reset(struct dalcs_session *session) {
             session->override[n++] = session->override[k];
         }
     }
-    session->is_altered = session->is_altered || n < session->n_altered;
+    const bool draws = session->has_circuit && session->circuit.is_random;
+    session->is_altered = session->is_altered || n < session->n_altered || draws;
     session->n_altered = n;
+    session->n_resets += draws ? 1 : 0; /* as ngspice, whose .param are evaluated again */
 }

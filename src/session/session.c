@@ -2,6 +2,7 @@
 #include "session_internal.h"
 
 #include "description.h"
+#include "draws.h"
 #include "netlist.h"
 #include "number.h"
 #include "source_conflicts.h"
@@ -49,6 +50,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
         dalcs_netlist_finish(&session->netlist);
     }
     free(session->override);
+    free(session->own);
     free(session->document);
     dalcs_spice_names_finish(&session->spice);
     dalcs_diag_finish(&session->diag);
@@ -131,6 +133,20 @@ enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session, const
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_session_set_seed(struct dalcs_session *session, double seed) {
+    if (session->name != NULL) {
+        return DALCS_E_OPTION; /* it is read */
+    }
+    if (!(seed >= 0.0 && seed <= DALCS_MOST_SEED) || seed != (double)(uint64_t)seed) {
+        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, NULL,
+                       "a seed is a whole number from 0 to 2^53, not %.17g", seed);
+        return DALCS_E_OPTION;
+    }
+    session->seed = (uint64_t)seed;
+    session->has_seed = true;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_session_ask_losses(struct dalcs_session *session, double from, double to) {
     if (session->name != NULL) {
         return DALCS_E_OPTION; /* it is read */
@@ -168,7 +184,9 @@ enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const c
     struct dalcs_netlist netlist = {.dialect = session->dialect,
                                     .losses = session->losses,
                                     .asks_steady = session->asks_steady,
-                                    .asks_response = session->asks_response};
+                                    .asks_response = session->asks_response,
+                                    .has_seed = session->has_seed,
+                                    .seed = session->seed};
     const bool is_system = dalcs_description_is_text(text, length);
     const enum dalcs_status status =
         is_system ? read_system(session, path, text, length)
@@ -186,7 +204,9 @@ enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const c
     struct dalcs_netlist netlist = {.dialect = session->dialect,
                                     .losses = session->losses,
                                     .asks_steady = session->asks_steady,
-                                    .asks_response = session->asks_response};
+                                    .asks_response = session->asks_response,
+                                    .has_seed = session->has_seed,
+                                    .seed = session->seed};
     return build(session, &netlist,
                  dalcs_netlist_read_text(&netlist, name, text, length, &session->diag));
 }
@@ -220,7 +240,7 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session) 
                                   .transient = t->present,
                                   .dc_sweep = session->circuit.n_dc > 0,
                                   .ac = session->circuit.ac.n > 0,
-                                  .n_steps = dalcs_steps_count(&session->circuit),
+                                  .n_steps = dalcs_steps_count(session),
                                   .step = t->step,
                                   .stop = t->stop,
                                   .start = t->start,

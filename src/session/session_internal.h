@@ -32,6 +32,16 @@ struct dalcs_steady_anchor {
     bool *closed;
 };
 
+/* What .step and .mc step, of the netlist with what alter said. The circuit of a step is no place to read this from:
+ * its values may be others there. */
+struct dalcs_steps {
+    bool is_known;
+    int n;
+    struct dalcs_sweep *sweep; /* [n] the innermost first */
+    size_t n_drawn;
+    const char **drawn; /* [n_drawn] the values that are drawn, by name */
+};
+
 struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
@@ -46,8 +56,16 @@ struct dalcs_session {
     struct dalcs_netlist netlist; /* kept where the circuit may have to be built again */
     bool has_netlist;
     bool is_altered;                 /* the circuit is not the netlist's with what alter said */
-    struct dalcs_override *override; /* what alter said, then what this step is; heap */
+    struct dalcs_override *override; /* what alter said; heap */
     size_t n_altered, override_capacity;
+    struct dalcs_override *own; /* of the present step; heap */
+    size_t n_own;
+    struct dalcs_steps steps;
+    struct dalcs_drawn_value *unbuilt; /* [n_unbuilt] drawn for a step that could not be built */
+    size_t n_unbuilt;
+    size_t n_resets; /* of a circuit with random values: each draws them anew */
+    bool has_seed;
+    uint64_t seed;
     struct dalcs_recorder recorder; /* owns the report's events and jumps */
     struct dalcs_report report;
     bool has_report;
@@ -140,8 +158,11 @@ enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
 
 /* ---- steps.c: one circuit after the other ------------------------------------------------------ */
 
-/* How often .step has everything run; 1 without. */
-size_t dalcs_steps_count(const struct dalcs_circuit *circuit);
+/* The steps of the session's circuit, if they are not known yet: it is that of no step then. */
+enum dalcs_status dalcs_steps_find(struct dalcs_session *session) DALCS_MUST_CHECK;
+
+/* How often .step and .mc have everything run; 1 without. */
+size_t dalcs_steps_count(const struct dalcs_session *session);
 
 /* A circuit and its network from the session's netlist, with what alter says and the overrides behind
  * that. Messages that the session has not said yet go to it. On failure nothing is left to free. */
@@ -149,6 +170,11 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
                                       const struct dalcs_override *more, size_t n_more,
                                       struct dalcs_circuit *circuit,
                                       struct dalcs_network *network) DALCS_MUST_CHECK;
+
+/* What was drawn with these overrides, for a circuit that is none; DALCS_E_NETLIST, or DALCS_E_NOMEM. */
+enum dalcs_status dalcs_drawn_keep_unbuilt(struct dalcs_session *session,
+                                           const struct dalcs_override *override,
+                                           size_t n_overrides) DALCS_MUST_CHECK;
 
 /* Builds the session's circuit again that way. */
 enum dalcs_status dalcs_session_rebuild(struct dalcs_session *session,

@@ -31,10 +31,10 @@ static const char *step_text(struct dalcs_session *s, const struct dalcs_plot *s
 }
 
 /* Names the step that failed. */
-static void blame_step(struct dalcs_session *s, const struct dalcs_plot *step) {
+static void blame_step(struct dalcs_session *s, const struct dalcs_plot *step, size_t k) {
     const char *values = step_text(s, step);
-    dalcs_diag_add(&s->diag, DALCS_NOTE, NULL, NULL, "this was step %zu of %zu: %s", step->step + 1,
-                   step->n_steps, values != NULL ? values : "");
+    dalcs_diag_add(&s->diag, DALCS_NOTE, NULL, NULL, "this was step %zu of %zu: %s", k + 1,
+                   dalcs_steps_count(s), values != NULL ? values : "");
 }
 
 /* What was measured in all steps. */
@@ -122,7 +122,7 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
                                     const struct dalcs_sink *sink) {
     struct dalcs_report sum = {0};
     struct measured measured = {0};
-    const size_t n_all = dalcs_steps_count(&session->circuit);
+    const size_t n_all = dalcs_steps_count(session);
     const size_t only = options->only_step;
     if (only > n_all) {
         dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, NULL,
@@ -145,6 +145,10 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
             if (status == DALCS_OK) {
                 status = dalcs_session_take_step(session, k, &step);
             }
+            if (only > 0) {
+                step.step = 0;
+                step.n_steps = 1; /* what follows is of one run */
+            }
             if (status == DALCS_OK) {
                 status = dalcs_operating_currents(session, options, sink);
             }
@@ -156,7 +160,7 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
                 status = status == DALCS_OK ? kept : status;
             }
             if (status > DALCS_OK || status == DALCS_E_NETLIST) {
-                blame_step(session, &step);
+                blame_step(session, &step, k);
             }
         }
     }

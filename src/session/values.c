@@ -128,6 +128,7 @@ enum dalcs_status dalcs_session_set_value(struct dalcs_session *session, const c
 enum dalcs_status dalcs_session_apply_values(struct dalcs_session *session) {
     if (session->is_altered) {
         session->is_altered = false;
+        session->steps.is_known = false;
         DALCS_TRY(dalcs_session_rebuild(session, NULL, 0));
     }
     return session->has_network ? DALCS_OK : DALCS_E_NETLIST;

@@ -477,6 +477,26 @@ V2 lim 0 1
 .print ac vdb(out)
 .end
 """, 0),
+    "random": ("""Random values in every place, two runs
+.param c={mc(1u, 0.1)}
+.func part(x) {agauss(x, x/20, 3)}
+V1 in 0 DC 2
+X1 in out leg r={part(1k)}
+.subckt leg a b r=1
+R1 a b {r}
+.ends
+C1 out 0 {c}
+B1 x 0 V=v(out)*gauss(1)
+R2 x 0 {limit(1k, 10)}
+.if (rand() < 2)
+R3 out 0 1k
+.endif
+.op
+.save v(out)
+.options seed=3
+.mc 2
+.end
+""", 0),
     "script": ("""A control block
 .param r=1k
 V1 in 0 DC 2 AC 1

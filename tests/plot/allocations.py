@@ -21,6 +21,7 @@ DRAWINGS = {
     "terminal": ["-s", "v(a)*i(d1),v(a)-v(a,b)", "--from", "2.5"],
     "page": ["-o", "a.html"],
     "report": ["-o", "a.html", "--report", "a.json", "--events"],
+    "spectrum": ["-o", "a.html", "-s", "v(a),i(d1)", "--spectrum", "2"],
     "mistake": ["-s", "v(aa)"],
 }
 

@@ -196,12 +196,16 @@ class Page(unittest.TestCase):
         cells = [[cell.text for cell in row.find_elements(By.CSS_SELECTOR, "td, th")]
                  for row in self.driver.find_elements(By.CSS_SELECTOR, "#cursors tr")]
         self.assertEqual([row[0] for row in cells], ["time", "v(out)", "v(<in>)", "i(l1)", "i(d1)"])
-        self.assertEqual(len(cells[0]), 5)
+        self.assertEqual(cells[0][4:], ["mean", "rms", "min", "max"])
         for text, at in [(cells[3][1], a), (cells[3][2], b)]:
             self.assertAlmostEqual(float(text.split()[0]) * (1e-3 if "m" in text else 1.0),
                                    2 + math.sin(6e4 * at), delta=1e-3)
         mean = (2 * (b - a) - (math.cos(6e4 * b) - math.cos(6e4 * a)) / 6e4) / (b - a)
         self.assertAlmostEqual(float(cells[3][4].split()[0]), mean, delta=1e-3)
+        sine = (math.cos(6e4 * a) - math.cos(6e4 * b)) / 6e4 / (b - a)
+        half = 0.5 - (math.sin(12e4 * b) - math.sin(12e4 * a)) / 24e4 / (b - a)
+        for text, wanted in zip(cells[3][5:], (math.sqrt(4 + 4 * sine + half), 1, 3)):
+            self.assertAlmostEqual(float(text.split()[0]), wanted, delta=1e-3)
 
     def test_list_of_signals(self):
         boxes = self.driver.find_elements(By.CSS_SELECTOR, "#signals input")

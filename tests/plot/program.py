@@ -188,6 +188,27 @@ class Plot(unittest.TestCase):
         self.assertIn("has 2 runs: there is no run 3", self.refused("two.raw", "--run", "3"))
         self.assertIn("there is no plot 3", self.refused("two.raw", "--plot", "3"))
 
+    def test_spectrum(self):
+        self.plot("buck.raw", "-s", "v(sw)", "--from", "0.9m", "--spectrum", "1meg", "-o", "spectrum.svg", "-q")
+        texts = self.texts("spectrum.svg")
+        self.assertIn("v(sw)", texts)
+        self.assertTrue(any(text.startswith("frequency (") for text in texts), texts)
+        self.assertIn("Hz", self.plot("buck.csv", "--spectrum", "1meg").stdout)
+        self.assertIn("the lowest frequency of this range is",
+                      self.refused("buck.raw", "--spectrum", "1", "-o", "x.svg"))
+        self.assertIn("more than 20000 frequencies", self.refused("buck.raw", "--spectrum", "1t", "-o", "x.svg"))
+        self.assertIn("leave out --report", self.refused("buck.raw", "--spectrum", "1meg", "--events"))
+
+    def test_histogram(self):
+        (self.folder / "runs.csv").write_text("run,ripple,error\n" + "".join(f"{k},{k * k},\n" for k in range(99)) +
+                                              '99,nan,"from t = 0 on no solution exists, ""d1"""\n')
+        self.plot("runs.csv", "-s", "ripple", "--histogram", "-o", "histogram.svg", "-q")
+        texts = self.texts("histogram.svg")
+        self.assertIn("runs", texts)
+        self.assertTrue(any(text.startswith("ripple") for text in texts), texts)
+        self.assertIn("not of waveforms", self.refused("buck.raw", "-s", "v(out)", "--histogram", "-o", "x.svg"))
+        self.assertIn("not both", self.refused("runs.csv", "--histogram", "--spectrum", "1k"))
+
     def test_refusals(self):
         for arguments, status, message in [
                 (["buck.raw", "-s", "v(ot)"], USAGE, "no signal 'v(ot)'; did you mean 'v(out)'?"),

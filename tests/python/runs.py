@@ -158,6 +158,24 @@ class Rows(unittest.TestCase):
         self.assertEqual([line.get_label() for line in axes.get_lines()], ["v(in)", "v(out)"])
         self.assertEqual(axes.get_ylabel(), "V")
 
+    @unittest.skipUnless(has("matplotlib"), "no matplotlib")
+    def test_overlay(self):
+        """Each step is a curve, of a colour that follows its parameter; a bar has the values."""
+        result = dalcs.run(NETLIST + ".step param rload list 1k 3k 2k\n")
+        axes = result.overlay("v(out)")
+        lines = axes.get_lines()
+        self.assertEqual([line.get_ydata().tobytes() for line in lines],
+                         [table["v(out)"].tobytes() for table in result.tables])
+        green = [line.get_color()[1] for line in lines]
+        self.assertTrue(green[0] < green[2] < green[1], green)
+        bar = axes.figure.axes[1]
+        self.assertEqual((axes.get_ylabel(), bar.get_ylabel()), ("v(out) (V)", "rload"))
+        np.testing.assert_allclose(bar.get_ylim(), (1e3, 3e3))
+        with self.assertRaisesRegex(KeyError, "no parameter 'c1' among rload"):
+            result.overlay("v(out)", by="c1")
+        with self.assertRaises(KeyError):
+            dalcs.run(NETLIST).overlay("v(out)")
+
 
 class Errors(unittest.TestCase):
     def failure(self, kind, *arguments, **more):

@@ -53,6 +53,25 @@ class Sweeps(unittest.TestCase):
                         for n in (1, 2))
             self.assertEqual(bytes_of(one), bytes_of(two), name)
 
+    def test_variants_are_the_netlists_own_runs(self):
+        text = NETLIST + ".param tol={mc(1, 0.2)}\nR9 out 0 {tol*1Meg}\n.mc 30\n"
+        whole = dalcs.run(text, rows=False).measures["vlow"]
+        one, two = (dalcs.variants(text, workers=n) for n in (1, 2))
+        self.assertEqual(bytes_of(one), bytes_of(two))
+        self.assertEqual(list(one)[:2], ["run", "tol"])
+        self.assertEqual(one["vlow"].tobytes(), whole.tobytes())
+        self.assertEqual(len(set(one["tol"])), 30)
+        alone = dalcs.run(text, only=17)
+        self.assertEqual((alone.drawn["tol"], alone.measures["vlow"]), (one["tol"][16], one["vlow"][16]))
+        self.assertEqual(list(one.effects("vlow")), ["tol"])
+        self.assertFalse(set(one["tol"]) & set(dalcs.variants(text, seed=2)["tol"]))
+        with self.assertRaises(ValueError):
+            dalcs.variants(NETLIST)
+        with self.assertRaises(dalcs.OptionError):
+            dalcs.run(text, seed=-1)
+        failing = dalcs.variants(text.replace(".mc 30", "C9 out 0 {limit(0, 1u)}\n.mc 30"))
+        self.assertTrue(0 < len(failing.errors) < 30)
+
     def test_order_of_points(self):
         sweep = dalcs.sweep(NETLIST, {"rload": [1e3, 2e3], "c1": [1e-6, 2e-6, 3e-6]}, workers=2)
         self.assertEqual(sweep["rload"].tolist(), [1e3] * 3 + [2e3] * 3)

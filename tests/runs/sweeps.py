@@ -345,6 +345,18 @@ def check_step(case):
     case.checker.check(plots[-1].fields["Title"] == "a filter: r = 2000 c1 = 2e-06",
                        plots[-1].fields["Title"])
 
+    # .dc builds the circuit again at each point, with the values of the step
+    case.run("""a divider
+.param a=1 b=1
+V1 in 0 10
+R1 in out {a*1k}
+R2 out 0 {b*1k}
+.dc param b 1 3 2
+.step param a list 1 4
+.end
+""")
+    case.near(case.column("v(out)"), [10 / (1 + a / b) for a in (1, 4) for b in (1, 3)], 1e-13, ".dc in .step")
+
     for card, label, wanted in (
             (".step dec param r 10 1k 1", "r", [10, 100, 1000]),
             (".step oct R9 1 8 1", "r9", [1, 2, 4, 8]),

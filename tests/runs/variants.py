@@ -107,6 +107,23 @@ class Variants(unittest.TestCase):
                 joined += rest
             self.assertEqual(joined, self.text("m.csv"))
 
+    def test_steps_of_steps(self):
+        """Values that follow from another stepped parameter are those of the netlist, in every thread and part."""
+        cards = ".param load=1k c=10u top={3*load}\n"
+        self.write(MANY.replace(".param load=1 c=10u\n", cards).replace("1k 4k 0.5", "{load} {top} {load}"))
+        self.run_it("m.csv", "--jobs", "1")
+        rows = self.rows("m.csv")
+        self.assertEqual([(row["c"], row["load"]) for row in rows],
+                         [(c, load) for load in ("1000", "2000", "3000") for c in ("1e-05", "2e-05")])
+        for jobs in "2", "4":
+            self.run_it("n.csv", "--jobs", jobs)
+            self.assertEqual(self.text("n.csv"), self.text("m.csv"))
+        for k in range(1, 7):
+            self.run_it("p.csv", "--shard", f"{k}/6")
+            self.assertEqual(self.text("p.csv").splitlines()[1], self.text("m.csv").splitlines()[k])
+        self.run_it("w.csv", "--only", "6")
+        self.assertEqual(self.text("w.csv").splitlines()[1], self.text("m.csv").splitlines()[6])
+
     def test_more_variants_than_one_session_takes(self):
         self.write(MANY.replace("1k 4k 0.5", "1k 1.3k 1"))
         self.run_it("one.csv", "--jobs", "1")

@@ -36,7 +36,7 @@ from ._sweep import Grid, Sweep
 
 __version__: str = _library.lib.dalcs_version().decode()
 __all__ = ["Cancelled", "Circuit", "Error", "NetlistError", "NoSolution", "OptionError", "Result",
-           "Sweep", "System", "Table", "check", "equations", "run", "steady", "sweep"]
+           "Sweep", "System", "Table", "check", "equations", "run", "steady", "sweep", "variants"]
 
 
 def run(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *,
@@ -56,6 +56,12 @@ def sweep(netlist: Netlist, grid: Grid, *, workers: Optional[int] = None,
           **options: Any) -> Sweep:
     """Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, **options)"""
     return Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, **options)
+
+
+def variants(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *,
+             dialect: Optional[str] = None, **more: Any) -> Sweep:
+    """Circuit(netlist, dialect).variants(values, **more)"""
+    return Circuit(netlist, dialect).variants(values, **more)
 
 
 def check(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *, step: float = 0.0,

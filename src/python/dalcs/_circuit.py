@@ -12,7 +12,7 @@ from . import _library as c
 from ._equations import System, systems_of
 from ._result import Result
 from ._session import Netlist, Options, Session, Window
-from ._sweep import Grid, Sweep, sweep_of
+from ._sweep import Grid, Sweep, sweep_of, variants_of
 
 
 class Circuit:
@@ -23,13 +23,15 @@ class Circuit:
         self.dialect = dialect
 
     def _read(self, losses: Window = False, steady: bool = False,
-              values: Optional[Mapping[str, float]] = None) -> Session:
-        session = Session(self.netlist, self.dialect, losses, steady)
+              values: Optional[Mapping[str, float]] = None,
+              seed: Optional[int] = None) -> Session:
+        session = Session(self.netlist, self.dialect, losses, steady, seed)
         session.set_values(values or {})
         return session
 
     def run(self, values: Optional[Mapping[str, float]] = None, *,
             at: Optional[Sequence[float]] = None, losses: Window = False, rows: bool = True,
+            seed: Optional[int] = None,
             progress: Optional[Callable[[float, float], Any]] = None, **more: Any) -> Result:
         """Runs its .op, .dc, .ac, .pss and .tran.
 
@@ -37,9 +39,11 @@ class Circuit:
         at        times of rows in s, ascending, in place of those of .tran
         losses    True: also where the power went; (from, to): in this window, s
         rows      False: events and measurements only
+        seed      of random values, in place of the netlist's
         progress  called as progress(time, stop) now and then; what it raises ends the run
         more      options as on the command line: tol, method, stages, step (s), fill, curve, compress,
-                  audit, energy, record; any other name is one of `values`
+                  audit, energy, record, only (of .step and .mc this run alone, from 1 on);
+                  any other name is one of `values`
 
         Raises NetlistError, OptionError, NoSolution. Ctrl-C ends the run.
         """
@@ -50,9 +54,9 @@ class Circuit:
             options = {name: value for name, value in options.items()
                        if name not in ("fill", "curve", "compress")}
         own = {name: value for name, value in more.items() if name not in c.OPTIONS}
-        session = self._read(losses, bool(options.get("steady")), {**(values or {}), **own})
+        session = self._read(losses, bool(options.get("steady")), {**(values or {}), **own}, seed)
         chosen = Options(options, at)
-        return Result(session, session.run(chosen, progress, rows))
+        return Result(session, session.run(chosen, progress, rows), bool(options.get("only")))
 
     def steady(self, values: Optional[Mapping[str, float]] = None, *,
                period: Optional[float] = None, **more: Any) -> Result:
@@ -78,6 +82,19 @@ class Circuit:
         A run that fails loses none of the others: its row has its message in the column "error".
         """
         return sweep_of(self.run, grid, workers, each, options)
+
+    def variants(self, values: Optional[Mapping[str, float]] = None, *, seed: Optional[int] = None,
+                 workers: Optional[int] = None, each: Optional[Callable[[Result], Any]] = None,
+                 **options: Any) -> Sweep:
+        """The runs of the netlist's .step and .mc, in several threads.
+
+        The table has what is stepped, what random functions gave, and the measurements. Other arguments
+        are those of sweep() and run().
+        """
+        points = self._read(values=values, seed=seed).steps()
+        if not points:
+            raise ValueError("the netlist has neither .step nor .mc")
+        return variants_of(self.run, points, workers, each, {**options, "values": values, "seed": seed})
 
     def check(self, values: Optional[Mapping[str, float]] = None, *,
               step: float = 0.0) -> Dict[str, Any]:

@@ -33,6 +33,10 @@ def _texts(pointer: Any, count: int) -> Tuple[str, ...]:
     return tuple(pointer[k].decode("utf-8", "replace") for k in range(count))
 
 
+def _scale_label(scale: str) -> str:
+    return {"time": "time (s)", "frequency": "frequency (Hz)"}.get(scale, scale)
+
+
 class Table:
     """The rows of one analysis, n of them, m signals.
 
@@ -123,8 +127,7 @@ class Table:
             value = self[name]
             axes.plot(self.t, abs(value) if np.iscomplexobj(value) else value, label=name)
         units = sorted({self.units.get(name.lower(), "") for name in chosen} - {""})
-        axes.set_xlabel({"time": "time (s)", "frequency": "frequency (Hz)"}.get(self.scale,
-                                                                             self.scale))
+        axes.set_xlabel(_scale_label(self.scale))
         axes.set_ylabel(", ".join(units))
         axes.legend()
         return axes
@@ -140,11 +143,12 @@ class Result(Table):
     report    dict, as `dalcs run --report` writes it (doc/report.schema.json)
     """
 
-    def __init__(self, session: Session, tables: Optional[Tables]) -> None:
+    def __init__(self, session: Session, tables: Optional[Tables], is_alone: bool = False) -> None:
         found = [] if tables is None else list(tables)
         super().__init__(tables, found[-1] if found else None)
         self._others = [(tables, item) for item in found[:-1]]
         self._session = session  # which keeps what is asked for later
+        self._is_alone = is_alone  # one step of several
 
     @functools.cached_property
     def messages(self) -> Tuple[str, ...]:
@@ -155,6 +159,32 @@ class Result(Table):
     def tables(self) -> List[Table]:
         """All tables, this one last."""
         return [Table(owner, item) for owner, item in self._others] + [self]
+
+    def overlay(self, name: str, by: Optional[str] = None, ax: Any = None) -> Any:
+        """Draws a signal of all steps of .step or .mc over each other with matplotlib; returns the axes.
+
+        by    the parameter that colours them; None: the first one. A bar beside the axes has its values
+        """
+        import matplotlib as mpl  # pylint: disable=import-outside-toplevel
+        import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
+        runs = [table for table in self.tables if table.analysis == self.analysis]
+        by = next(iter(self.parameters), "") if by is None else by
+        if by not in self.parameters:
+            raise KeyError(f"no parameter {by!r} among {', '.join(self.parameters) or 'none'}")
+        axes = plt.subplots()[1] if ax is None else ax
+        values = [table.parameters[by] for table in runs]
+        widest = max(max(values) - min(values), 1e-300)
+        logarithmic = min(values) > 0.0 and max(values) > 30.0 * min(values)
+        scale = (mpl.colors.LogNorm if logarithmic else mpl.colors.Normalize)(min(values), min(values) + widest)
+        colours = mpl.cm.ScalarMappable(scale, "viridis")
+        for table, value in zip(runs, values):
+            found = table[name]
+            axes.plot(table.t, np.abs(found) if np.iscomplexobj(found) else found,
+                      color=colours.to_rgba(value), linewidth=1.0)
+        axes.set_xlabel(_scale_label(self.scale))
+        axes.set_ylabel(f"{name} ({self.units[name.lower()]})")
+        axes.figure.colorbar(colours, ax=axes, label=by)
+        return axes
 
     @functools.cached_property
     def report(self) -> Dict[str, Any]:
@@ -186,9 +216,14 @@ class Result(Table):
         entries = self._session.measurements()
         for name, _, value in entries:
             found.setdefault(name, []).append(value)
-        if any(is_step for _, is_step, _ in entries):
+        if any(is_step for _, is_step, _ in entries) and not self._is_alone:
             return {name: np.array(values) for name, values in found.items()}
         return {name: values[-1] for name, values in found.items()}
+
+    @functools.cached_property
+    def drawn(self) -> Dict[str, float]:
+        """What random values of the netlist were in this run (of .step and .mc: the last), by parameter or element."""
+        return self._session.drawn()
 
     @property
     def steady(self) -> Optional[Dict[str, Any]]:

@@ -42,12 +42,14 @@ class Session:
     """A netlist, read; raises what is wrong with it."""
 
     def __init__(self, netlist: Netlist, dialect: Optional[str] = None, losses: Window = False,
-                 steady: bool = False) -> None:
+                 steady: bool = False, seed: Optional[int] = None) -> None:
         self.handle = ctypes.c_void_p()
         self._check(c.lib.dalcs_session_create(ctypes.byref(self.handle)))
         self._check(c.lib.dalcs_session_keep_netlist(self.handle))
         if dialect is not None:
             self._check(c.lib.dalcs_session_set_dialect(self.handle, dialect.encode()))
+        if seed is not None:
+            self._check(c.lib.dalcs_session_set_seed(self.handle, float(seed)))
         if steady:
             self._check(c.lib.dalcs_session_ask_steady(self.handle))
         if losses is not False:
@@ -82,6 +84,27 @@ class Session:
     def set_values(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             self._check(c.lib.dalcs_session_set_value(self.handle, name.encode(), float(value)))
+
+    def _values(self, call: Callable[..., Optional[bytes]], *arguments: int) -> dict[str, float]:
+        """All names and values that a call gives by index."""
+        found: dict[str, float] = {}
+        value, index = ctypes.c_double(math.nan), 0
+        while (name := call(self.handle, *arguments, index, ctypes.byref(value))) is not None:
+            found[name.decode("utf-8", "replace")] = value.value
+            index += 1
+        return found
+
+    def drawn(self) -> dict[str, float]:
+        """What random functions gave in the circuit that was read or run last."""
+        return self._values(c.lib.dalcs_session_drawn)
+
+    def steps(self) -> list[dict[str, float]]:
+        """What .step and .mc set in each step; none: an empty list."""
+        self._check(c.lib.dalcs_session_apply_values(self.handle))
+        found: list[dict[str, float]] = []
+        while step := self._values(c.lib.dalcs_session_step_parameter, len(found)):
+            found.append(step)
+        return found
 
     def cancel(self) -> None:
         """May be called in any thread, and in a handler of a signal."""

@@ -60,6 +60,10 @@ class Sweep:
     def _parameters(self) -> List[str]:
         return list(dict.fromkeys(name for point in self.points for name in point))
 
+    def _causes(self) -> List[str]:
+        """Parameters, but for the number of the run."""
+        return [name for name in self._parameters() if name != "run"]
+
     def hist(self, name: str, bins: int = 30, ax: Any = None) -> Any:
         """Draws a histogram of a column with matplotlib, what failed left out; returns the axes."""
         import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
@@ -77,7 +81,7 @@ class Sweep:
         parameter: of runs in which everything varies at once, and of grids.
         """
         well = [k for k in range(len(self)) if k not in self.errors and np.isfinite(self[name][k])]
-        varying = [p for p in self._parameters() if np.ptp(np.asarray(self[p], dtype=float)[well]) > 0.0]
+        varying = [p for p in self._causes() if np.ptp(np.asarray(self[p], dtype=float)[well]) > 0.0]
         if len(well) <= len(varying):
             raise ValueError(f"{len(well)} runs with {name!r} are too few for {len(varying)} parameters")
         columns = [np.asarray(self[p], dtype=float)[well] for p in varying]
@@ -168,15 +172,13 @@ class _Workers:
         return self.kept
 
 
-def sweep_of(run: Callable[..., Result], grid: Grid, workers: Optional[int],
-             each: Optional[Callable[[Result], Any]], options: Mapping[str, Any]) -> Sweep:
-    """What Circuit.sweep does, by this function that runs one point."""
-    points = _points_of(grid)
+def _table_of(run: Callable[..., Result], points: List[Dict[str, float]], workers: Optional[int],
+              each: Optional[Callable[[Result], Any]], options: Mapping[str, Any],
+              keep: Callable[[int, Result], None]) -> Sweep:
+    """run(k, ...) is point k, of which `keep` may write more into the points."""
     asked = dict(options)
     if each is None:
         asked = {"rows": False, "record": False, **asked}
-    fixed = dict(asked.pop("values", None) or {})
-
     told = asked.pop("progress", None)
     stopped = threading.Event()
 
@@ -187,10 +189,28 @@ def sweep_of(run: Callable[..., Result], grid: Grid, workers: Optional[int],
             told(time, stop)
 
     def task(index: int) -> Any:
-        result = run({**fixed, **points[index]}, progress=progress, **asked)
+        result = run(index, progress=progress, **asked)
+        keep(index, result)
         kept = result.measures if each is None else each(result)
         return kept if isinstance(kept, Mapping) else {"value": kept}
 
     if workers is None:
         workers = len(os.sched_getaffinity(0))
     return Sweep(points, _Workers(task, len(points), stopped).run(min(workers, len(points))))
+
+
+def sweep_of(run: Callable[..., Result], grid: Grid, workers: Optional[int],
+             each: Optional[Callable[[Result], Any]], options: Mapping[str, Any]) -> Sweep:
+    """What Circuit.sweep does, by this function that runs one point."""
+    points = _points_of(grid)
+    asked = dict(options)
+    fixed = dict(asked.pop("values", None) or {})
+    return _table_of(lambda index, **more: run({**fixed, **points[index]}, **more), points, workers, each,
+                     asked, lambda index, result: None)
+
+
+def variants_of(run: Callable[..., Result], points: List[Dict[str, float]], workers: Optional[int],
+                each: Optional[Callable[[Result], Any]], options: Mapping[str, Any]) -> Sweep:
+    """What Circuit.variants does: point k is step k of the netlist, and gets what was drawn."""
+    return _table_of(lambda index, **more: run(only=index + 1, **more), points, workers, each, options,
+                     lambda index, result: points[index].update(result.drawn))

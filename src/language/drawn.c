@@ -1,0 +1,136 @@
+/* drawn.c - what is drawn in one run of the netlist, and where. */
+#include "language.h"
+#include "number.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { USUAL_SEED = 1 };
+
+static bool is_word(const struct dalcs_card *card, int k, const char *word) {
+    return k < card->n && card->token[k].kind == DALCS_TOKEN_WORD &&
+           strcmp(card->token[k].text, word) == 0;
+}
+
+/* .options seed=17; what is no whole number, its reader says. */
+static void read_seed(const struct dalcs_card *card, uint64_t *seed) {
+    for (int k = 1; k + 1 < card->n; k++) {
+        const int at = card->token[k + 1].kind == DALCS_TOKEN_EQUAL ? k + 2 : k + 1;
+        struct dalcs_number number;
+        if (is_word(card, k, "seed") && at < card->n &&
+            dalcs_number_parse(card->token[at].text, &number) == DALCS_NUMBER_OK &&
+            number.value >= 0 && number.value <= DALCS_MOST_SEED) {
+            *seed = (uint64_t)number.value;
+        }
+    }
+}
+
+void dalcs_drawn_start(struct dalcs_language *language) {
+    const struct dalcs_netlist *netlist = language->netlist;
+    const struct dalcs_deck *deck = language->deck;
+    language->seed = netlist->has_seed ? netlist->seed : USUAL_SEED;
+    language->run = 1;
+    for (size_t k = 0; k < netlist->n_cards; k++) {
+        const struct dalcs_card *card = &netlist->card[k];
+        const bool is_mc = is_word(card, 0, ".mc");
+        if (!netlist->has_seed && (is_mc || is_word(card, 0, ".options") ||
+                                   is_word(card, 0, ".option") || is_word(card, 0, ".opt"))) {
+            read_seed(card, &language->seed);
+        }
+        if (is_mc || is_word(card, 0, ".step")) {
+            language->run = 0; /* what all runs have in common may not fail for a draw of one */
+        }
+    }
+    for (size_t k = 0; k < deck->n_overrides; k++) {
+        if (deck->override[k].kind == DALCS_OVERRIDE_RUN) {
+            language->run = (uint32_t)deck->override[k].value;
+            language->deck->is_step = deck->override[k].is_step;
+        }
+    }
+}
+
+/* Of an element its name and which word; of another card all that is before it, as there is no name. */
+static uint64_t key_of(const struct dalcs_draw_place *p) {
+    uint64_t hash = dalcs_draw_hash(dalcs_draw_hash_start, p->scope->name);
+    if (p->card == NULL) {
+        return dalcs_draw_hash(dalcs_draw_hash(hash, ".param"), p->parameter);
+    }
+    const bool has_name = p->card->letter != '.';
+    for (int k = 0; k < (has_name ? 1 : p->at); k++) {
+        hash = dalcs_draw_hash(hash, p->card->token[k].text);
+    }
+    const char at[] = {(char)('0' + (p->at >> 12 & 63)), (char)('0' + (p->at >> 6 & 63)),
+                       (char)('0' + (p->at & 63)), '\0'};
+    return has_name ? dalcs_draw_hash(hash, at) : hash;
+}
+
+double dalcs_drawn_next(struct dalcs_language *language, dalcs_draw *draw, const double *x, int n) {
+    const double u = language->run == 0
+                         ? 0.5
+                         : dalcs_draw_uniform(language->seed, language->run,
+                                              key_of(&language->place), language->place.n);
+    language->place.n++;
+    return draw(x, n, u);
+}
+
+struct dalcs_draw_place dalcs_drawn_enter(struct dalcs_language *language,
+                                          struct dalcs_draw_place place) {
+    const struct dalcs_draw_place before = language->place;
+    language->place = place;
+    return before;
+}
+
+/* "r1", "l1(rser)", "dmod(vfwd)", ".ic(a)": the word before = says what it is. */
+static const char *name_of(struct dalcs_language *language, const struct dalcs_draw_place *p) {
+    const char *field = NULL;
+    if (p->card == NULL) {
+        return dalcs_scope_flat_name(language, p->scope, false, p->parameter);
+    }
+    for (int k = p->at - 1; k > 0 && field == NULL; k--) {
+        const bool is_set = p->card->token[k].kind == DALCS_TOKEN_EQUAL;
+        field = is_set && p->card->token[k - 1].kind == DALCS_TOKEN_WORD
+                    ? p->card->token[k - 1].text
+                    : NULL;
+        if (!is_set && p->card->token[k].kind != DALCS_TOKEN_OPEN) {
+            break;
+        }
+    }
+    const int named = p->card->letter == '.' && is_word(p->card, 0, ".model") ? 1 : 0;
+    const char *name = dalcs_scope_flat_name(language, p->scope, false, p->card->token[named].text);
+    const bool is_value = field != NULL && field[0] == p->card->letter && field[1] == '\0';
+    return name == NULL || field == NULL || is_value
+               ? name
+               : dalcs_language_text(language, "%s(%s)", name, field);
+}
+
+/* A card that draws several values has several of its name. */
+static const char *tell_apart(struct dalcs_language *language, const struct dalcs_card *card,
+                              const char *name) {
+    const struct dalcs_deck *deck = language->deck;
+    int n = 1;
+    for (size_t k = deck->n_drawn; card != NULL && k > 0 && deck->drawn[k - 1].card == card; k--) {
+        const size_t length = strlen(name);
+        const char *known = deck->drawn[k - 1].name;
+        n += strncmp(known, name, length) == 0 && (known[length] == '\0' || known[length] == ':');
+    }
+    return n > 1 ? dalcs_language_text(language, "%s:%d", name, n) : name;
+}
+
+void dalcs_drawn_leave(struct dalcs_language *language, struct dalcs_draw_place before,
+                       const double *value) {
+    const struct dalcs_draw_place place = language->place;
+    struct dalcs_deck *deck = language->deck;
+    language->place = before;
+    deck->has_random_formula = deck->has_random_formula || place.n > 0;
+    if (place.n == 0 || value == NULL) {
+        return;
+    }
+    const char *name = name_of(language, &place);
+    name = name != NULL ? tell_apart(language, place.card, name) : NULL;
+    if (name == NULL || dalcs_grow(&deck->drawn, &deck->drawn_capacity, deck->n_drawn + 1,
+                                   sizeof *deck->drawn) != DALCS_OK) {
+        language->out_of_memory = true;
+        return;
+    }
+    deck->drawn[deck->n_drawn++] = (struct dalcs_drawn){name, place.card, *value};
+}

@@ -1,0 +1,55 @@
+/* drawn_values.c - what random functions gave in the session's circuit, also in one that could not be built: which
+ * values those were is what a person wants to know first. */
+#include "expand.h"
+#include "session_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct dalcs_drawn_value *drawn_of(const struct dalcs_session *session, size_t *n) {
+    *n = session->has_circuit ? (size_t)session->circuit.n_drawn : session->n_unbuilt;
+    return session->has_circuit ? session->circuit.drawn : session->unbuilt;
+}
+
+const char *dalcs_session_drawn(const struct dalcs_session *session, size_t index, double *value) {
+    const struct dalcs_steps *steps = &session->steps;
+    size_t n;
+    const struct dalcs_drawn_value *drawn = drawn_of(session, &n);
+    if (!steps->is_known) {
+        *value = index < n ? drawn[index].value : (double)NAN;
+        return index < n ? drawn[index].name : NULL;
+    }
+    if (index >= steps->n_drawn) {
+        return NULL;
+    }
+    /* nearly always at its place: a condition may have chosen other cards in this step */
+    const char *name = steps->drawn[index];
+    size_t k = index < n && strcmp(drawn[index].name, name) == 0 ? index : 0;
+    while (k < n && strcmp(drawn[k].name, name) != 0) {
+        k++;
+    }
+    *value = k < n ? drawn[k].value : (double)NAN;
+    return name;
+}
+
+enum dalcs_status dalcs_drawn_keep_unbuilt(struct dalcs_session *session,
+                                           const struct dalcs_override *override,
+                                           size_t n_overrides) {
+    struct dalcs_deck deck = {.override = override, .n_overrides = n_overrides};
+    struct dalcs_diag unheard = {0}; /* all of it has been said */
+    struct dalcs_arena *arena = &session->arena;
+    enum dalcs_status status = dalcs_deck_expand(&deck, &session->netlist, &unheard);
+    bool complete = status == DALCS_OK;
+    session->unbuilt = dalcs_arena_alloc(arena, deck.n_drawn, sizeof *session->unbuilt);
+    complete = complete && session->unbuilt != NULL;
+    for (size_t k = 0; k < deck.n_drawn && complete; k++) {
+        const char *name = deck.drawn[k].name;
+        session->unbuilt[k] = (struct dalcs_drawn_value){
+            dalcs_arena_copy(arena, name, strlen(name)), deck.drawn[k].value};
+        complete = session->unbuilt[k].name != NULL;
+    }
+    session->n_unbuilt = complete ? deck.n_drawn : 0;
+    dalcs_deck_finish(&deck);
+    dalcs_diag_finish(&unheard);
+    return complete ? DALCS_E_NETLIST : DALCS_E_NOMEM;
+}
