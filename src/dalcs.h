@@ -364,8 +364,9 @@ struct dalcs_run_options {
     bool bode; /* .ac around the periodic steady state and nothing else, as if there were a .pss */
     double bode_from, bode_to; /* Hz; 0: those of .ac, else 1e-4 and 1/2 of the orbit's frequency */
     int bode_points;           /* in each decade; 0: those of .ac, else 20 */
-    const char *loop; /* the V source in a loop whose gain is computed; NULL: .ac's, else none */
-    int sideband;     /* as dalcs_report.response; 0: .ac's, else none */
+    const char *loop;    /* the V source in a loop whose gain is computed; NULL: .ac's, else none */
+    bool loop_is_loaded; /* it is injected a current besides, as where the loop goes on takes one */
+    int sideband;        /* as dalcs_report.response; 0: .ac's, else none */
 
     size_t only_step; /* of .step: this one alone, counted from 1; 0: all */
 };
@@ -772,7 +773,8 @@ struct dalcs_report {
         bool
             exact; /* no step of implicit Euler, nothing slides, no commands at one time that move apart */
         double tail; /* what polynomials of its pieces leave out at most, over what they are of */
-        const char *loop; /* the source in the loop; NULL: none was asked for */
+        const char *loop;    /* the source in the loop; NULL: none was asked for */
+        bool loop_is_loaded; /* by a voltage and a current */
         size_t n_crossovers, n_reversals;
 
         const struct dalcs_margin {

@@ -150,6 +150,7 @@ struct dalcs_transient {
 /* What .ac asks for around a periodic orbit. */
 struct dalcs_orbit_ac_card {
     const char *loop; /* the V source in a loop whose gain is asked for; NULL: none */
+    bool is_loaded;   /* by a current as well: what the loop goes on to takes one */
     int sideband;     /* rows are of the components so many frequencies of the orbit higher */
 };
 

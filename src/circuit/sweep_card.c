@@ -356,6 +356,17 @@ static bool read_loop(struct dalcs_reader *reader) {
     return true;
 }
 
+/* voltage or both */
+static bool read_injection(struct dalcs_reader *reader) {
+    bool *is_loaded = &reader->builder->circuit->orbit_ac.is_loaded;
+    *is_loaded = dalcs_reader_take_word(reader, "both");
+    if (*is_loaded || dalcs_reader_take_word(reader, "voltage")) {
+        return true;
+    }
+    dalcs_reader_missing(reader, "'voltage' or 'both'");
+    return false;
+}
+
 static bool read_sideband(struct dalcs_reader *reader) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     double value;
@@ -373,18 +384,21 @@ static bool read_sideband(struct dalcs_reader *reader) {
     return true;
 }
 
-/* loop=NAME, sideband=K, or nothing more. False after a message. */
+/* loop=NAME, injection=voltage|both, sideband=K, or nothing more. False after a message. */
 static bool read_orbit_words(struct dalcs_reader *reader) {
     for (bool ok = true; ok;) {
         const bool is_loop = dalcs_reader_take_word(reader, "loop");
-        if (!is_loop && !dalcs_reader_take_word(reader, "sideband")) {
+        const bool is_injection = !is_loop && dalcs_reader_take_word(reader, "injection");
+        if (!is_loop && !is_injection && !dalcs_reader_take_word(reader, "sideband")) {
             return true;
         }
         if (!dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
             dalcs_reader_missing(reader, "'='");
             return false;
         }
-        ok = is_loop ? read_loop(reader) : read_sideband(reader);
+        ok = is_loop        ? read_loop(reader)
+             : is_injection ? read_injection(reader)
+                            : read_sideband(reader);
     }
     return false;
 }

@@ -34,6 +34,7 @@ enum {
     TO,
     POINTS,
     LOOP,
+    INJECTION,
     SIDEBAND,
     SET,
     MEASURES,
@@ -68,6 +69,7 @@ static const struct option option[] = {
     {"to", required_argument, NULL, TO},
     {"points", required_argument, NULL, POINTS},
     {"loop", required_argument, NULL, LOOP},
+    {"injection", required_argument, NULL, INJECTION},
     {"sideband", required_argument, NULL, SIDEBAND},
     {"set", required_argument, NULL, SET},
     {"measures", required_argument, NULL, MEASURES},
@@ -86,6 +88,16 @@ static enum dalcs_status parse_sideband(struct dalcs_arguments *arguments,
         arguments->sideband != rint(arguments->sideband)) {
         dalcs_cli_error(cli, "--sideband: '%s' is no whole number, at most %d of them away", text,
                         (int)DALCS_MOST_SIDEBAND);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_injection(struct dalcs_arguments *arguments,
+                                         const struct dalcs_cli *cli, const char *text) {
+    arguments->loop_is_loaded = strcmp(text, "both") == 0;
+    if (!arguments->loop_is_loaded && strcmp(text, "voltage") != 0) {
+        dalcs_cli_error(cli, "--injection: '%s' is neither voltage nor both", text);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
@@ -112,6 +124,8 @@ static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const stru
     case LOOP:
         arguments->loop = optarg;
         return DALCS_OK;
+    case INJECTION:
+        return parse_injection(arguments, cli, optarg);
     default:
         return parse_sideband(arguments, cli, optarg);
     }
@@ -182,6 +196,7 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case TO:
     case POINTS:
     case LOOP:
+    case INJECTION:
     case SIDEBAND:
         return take_bode(arguments, cli, code);
     case ASCII:

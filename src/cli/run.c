@@ -271,6 +271,7 @@ static struct dalcs_run_options options_of(const struct run *run,
     options.bode_to = arguments->bode_to;
     options.bode_points = (int)arguments->bode_points;
     options.loop = arguments->loop;
+    options.loop_is_loaded = arguments->loop_is_loaded;
     options.sideband = (int)arguments->sideband;
     options.energy = arguments->report || arguments->energy;
     if (needs_no_rows(run, arguments)) {

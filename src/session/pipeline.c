@@ -232,6 +232,7 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
                                      const struct dalcs_sink *sink, const struct dalcs_plot *step,
                                      const enum dalcs_analysis *analysis, size_t n) {
     dalcs_session_forget_run(session);
+    DALCS_TRY(dalcs_periodic_loop_prepare(session, options));
     struct dalcs_run r = {.s = session, .options = options, .sink = sink, .step = step};
     double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     double wall = seconds(CLOCK_MONOTONIC);

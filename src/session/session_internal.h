@@ -170,6 +170,11 @@ struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, do
 /* For a netlist that has asked for no waveforms: its network with what an audit reads. */
 enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) DALCS_MUST_CHECK;
 
+/* Before a run that asks for the gain of a loop by a current as well: the circuit gets the source of it. */
+enum dalcs_status
+dalcs_periodic_loop_prepare(struct dalcs_session *session,
+                            const struct dalcs_run_options *options) DALCS_MUST_CHECK;
+
 /* Runs .pss into r->sink. */
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 

@@ -334,7 +334,7 @@ Va x 0 1
 Ra x 0 1
 .save v(out) v(x)
 .pss step=1u uic
-.ac dec 1 1k 100k loop=vl sideband=1
+.ac dec 1 1k 100k loop=vl injection=both sideband=1
 .end
 """, 0),
     "refused": ("""A diode across a source
