@@ -86,6 +86,9 @@ enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session,
  * any analysis itself. DALCS_E_OPTION: a netlist was read. */
 enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) DALCS_MUST_CHECK;
 
+/* The same, and of how its measurements depend on the values of elements, as if there were a .sens. */
+enum dalcs_status dalcs_session_ask_sensitivities(struct dalcs_session *session) DALCS_MUST_CHECK;
+
 /* The same of the response around a steady state (dalcs_run_options.bode). */
 enum dalcs_status dalcs_session_ask_response(struct dalcs_session *session) DALCS_MUST_CHECK;
 
@@ -783,6 +786,26 @@ struct dalcs_report {
         } * crossover,        /* [n_crossovers] */
             *reversal;        /* [n_reversals] */
     } response;
+
+    /* Of .sens behind .pss: what the measurements of the orbit change by with a value (doc/steady.md). */
+    struct {
+        bool present;
+        size_t n_parameters, n_results;
+
+        const struct dalcs_sensitivity_parameter {
+            const char *name; /* "l1", "duty", "dmod(vfwd)" */
+            double value;
+        } * parameter; /* [n_parameters] */
+
+        const struct dalcs_sensitivity_result {
+            const char *name; /* "v(out)", "ripple" */
+            const char
+                *kind; /* "average", "rms", "measurement", "magnitude", "phase", "thd", "period" */
+            int harmonic; /* of magnitude and phase */
+            double value;
+            const double *derivative; /* [n_parameters] by the value; not a number: there is none */
+        } * result;                   /* [n_results] */
+    } sensitivity;
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

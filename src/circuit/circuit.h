@@ -154,6 +154,13 @@ struct dalcs_orbit_ac_card {
     int sideband;     /* rows are of the components so many frequencies of the orbit higher */
 };
 
+/* What .sens asks for. */
+struct dalcs_sensitivity_card {
+    bool present;
+    int n;
+    struct dalcs_sweep *item; /* [n] whose start is the value that it has */
+};
+
 /* What .pss asks for; times in s. */
 struct dalcs_periodic_card {
     bool present;
@@ -207,6 +214,7 @@ struct dalcs_circuit {
     struct dalcs_sweep dc[DALCS_MOST_DC];
     struct dalcs_sweep ac; /* frequencies of .ac in Hz; n is 0 without one */
     struct dalcs_orbit_ac_card orbit_ac;
+    struct dalcs_sensitivity_card sensitivity;
     int n_steps; /* of .step, the innermost first */
     struct dalcs_sweep *step;
 

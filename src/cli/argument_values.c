@@ -135,6 +135,16 @@ enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
     return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
 }
 
+enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
+                                             const struct dalcs_cli *cli) {
+    arguments->sensitivity = true;
+    if (!arguments->steady) {
+        dalcs_cli_error(cli, "--sensitivity is one of 'dalcs steady'");
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 /* FROM:TO, either of which may be left out; NULL: the netlist's window. */
 enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {

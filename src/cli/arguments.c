@@ -33,6 +33,7 @@ enum {
     FROM,
     TO,
     POINTS,
+    SENSITIVITY,
     LOOP,
     INJECTION,
     SIDEBAND,
@@ -68,6 +69,7 @@ static const struct option option[] = {
     {"from", required_argument, NULL, FROM},
     {"to", required_argument, NULL, TO},
     {"points", required_argument, NULL, POINTS},
+    {"sensitivity", no_argument, NULL, SENSITIVITY},
     {"loop", required_argument, NULL, LOOP},
     {"injection", required_argument, NULL, INJECTION},
     {"sideband", required_argument, NULL, SIDEBAND},
@@ -192,6 +194,8 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return dalcs_verb_take_count(cli, "--jobs", optarg, &arguments->jobs);
     case PERIOD:
         return dalcs_argument_period(arguments, cli, optarg);
+    case SENSITIVITY:
+        return dalcs_argument_sensitivity(arguments, cli);
     case FROM:
     case TO:
     case POINTS:

@@ -42,6 +42,7 @@ struct dalcs_arguments {
     double bode_from, bode_to; /* Hz; 0: the netlist's, else those that the orbit has */
     size_t bode_points;        /* in a decade; 0: likewise */
     const char *loop;          /* NULL: the netlist's, else none */
+    bool sensitivity;          /* of dalcs steady: as if there were a .sens */
     bool loop_is_loaded;       /* by a voltage and a current */
     double sideband;           /* 0: likewise */
     bool split_steps;          /* of .step into several plots of a raw file */

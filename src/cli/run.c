@@ -14,6 +14,7 @@
 #include "quantity.h"
 #include "run_help.h"
 #include "script.h"
+#include "sensitivity_lines.h"
 #include "settings.h"
 #include "steady_lines.h"
 #include "summary.h"
@@ -196,6 +197,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     if (!run->has_script) {
         dalcs_measurements_write(out, report);
     }
+    dalcs_sensitivity_lines_write(out, report);
     fputc('\n', out);
 }
 
@@ -349,6 +351,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     }
     if (status == DALCS_OK && arguments->bode) {
         status = dalcs_session_ask_response(session);
+    }
+    if (status == DALCS_OK && arguments->sensitivity) {
+        status = dalcs_session_ask_sensitivities(session);
     }
     if (status == DALCS_OK && arguments->n_set > 0) {
         status = dalcs_session_keep_netlist(session);

@@ -14,6 +14,7 @@
 struct dalcs_logic_run;
 struct dalcs_losses_run;
 struct dalcs_orbit_point;
+struct dalcs_steady_near;
 struct dalcs_radau;
 struct dalcs_radau_options;
 
@@ -21,8 +22,9 @@ struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
     struct dalcs_losses_request losses;
-    bool asks_steady, asks_response;
-    bool keeps_netlist; /* it may be run with other values */
+    bool asks_steady, asks_response, asks_sensitivities;
+    struct dalcs_steady_near *near; /* where the search for an orbit begins; NULL: as it does */
+    bool keeps_netlist;             /* it may be run with other values */
     struct dalcs_diag diag;
     struct dalcs_circuit circuit;
     bool has_circuit;
@@ -114,6 +116,11 @@ double dalcs_run_tolerance(const struct dalcs_run_options *options,
 enum dalcs_status dalcs_operating_currents(struct dalcs_session *session,
                                            const struct dalcs_run_options *options,
                                            const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
+/* The same circuit with another value has its tangents at the same currents. *any: its network is to be built again. */
+enum dalcs_status dalcs_operating_currents_keep(struct dalcs_circuit *to,
+                                                const struct dalcs_circuit *from,
+                                                bool *any) DALCS_MUST_CHECK;
 
 /* One analysis of the session's circuit as it is. */
 enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,

@@ -1,6 +1,8 @@
 /* steady_run.c - .pss: the period, the search, then one period as the .tran that it is. */
 #include "steady.h"
 
+#include "sensitivity.h"
+
 #include "quantity.h"
 
 #include <math.h>
@@ -239,7 +241,10 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     const bool uic = c->transient.use_initial_conditions || c->periodic.use_initial_conditions;
     take_period(r, period, uic);
     DALCS_TRY(dalcs_steady_setup(st, r, period));
-    if (is_free) {
+    if (r->s->near != NULL) {
+        DALCS_TRY(dalcs_steady_from_near(st, is_free, r->s->near));
+        take_period(r, st->period, uic);
+    } else if (is_free) {
         DALCS_TRY(find_oscillation(st, period));
         st->period *= n_periods;
         DALCS_TRY(n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK);
@@ -257,8 +262,9 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     DALCS_TRY(dalcs_steady_next_step(st)); /* how far it may be off, and what is conserved */
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
     DALCS_TRY(dalcs_steady_report(st));
-    return period == one && is_subharmonic(&r->s->report) ? dalcs_steady_look_for_double(st)
-                                                          : DALCS_OK;
+    return period == one && r->s->near == NULL && is_subharmonic(&r->s->report)
+               ? dalcs_steady_look_for_double(st)
+               : DALCS_OK;
 }
 
 enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) {
@@ -281,6 +287,9 @@ enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     status = status == DALCS_OK ? run_period(&st) : status;
     put_back(r, &kept, true);
     free(kept.stimulus);
+    if (status == DALCS_OK && r->s->circuit.sensitivity.present && r->s->near == NULL) {
+        status = dalcs_sensitivities_run(&st);
+    }
     dalcs_steady_finish(&st);
     return status;
 }
