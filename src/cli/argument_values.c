@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *path) {
@@ -135,6 +136,21 @@ enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
     return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
 }
 
+enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *arguments,
+                                                  const struct dalcs_cli *cli, const char *path) {
+    arguments->multipliers_plot = path;
+    if (!arguments->steady) {
+        dalcs_cli_error(cli, "--multipliers-plot is one of 'dalcs steady'");
+        return DALCS_E_OPTION;
+    }
+    if (!dalcs_figure_can_write(path)) {
+        dalcs_cli_error(
+            cli, "--multipliers-plot: unknown format of '%s': name it .svg, .png or .pdf", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
                                              const struct dalcs_cli *cli) {
     arguments->sensitivity = true;
@@ -208,9 +224,13 @@ enum dalcs_status dalcs_argument_set(struct dalcs_arguments *arguments, const st
 
 enum dalcs_status dalcs_argument_plot(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *path) {
+    const char *dot = strrchr(path, '.');
+    const bool may_be_page = arguments->steady || arguments->bode;
+    const bool is_page = dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
     arguments->plot = path;
-    if (!dalcs_figure_can_write(path)) {
-        dalcs_cli_error(cli, "--plot: unknown format of '%s': name it .svg, .png or .pdf", path);
+    if (!dalcs_figure_can_write(path) && !(is_page && may_be_page)) {
+        dalcs_cli_error(cli, "--plot: unknown format of '%s': name it %s", path,
+                        may_be_page ? ".svg, .png, .pdf or .html" : ".svg, .png or .pdf");
         return DALCS_E_OPTION;
     }
     return DALCS_OK;

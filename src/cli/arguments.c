@@ -34,6 +34,7 @@ enum {
     TO,
     POINTS,
     SENSITIVITY,
+    MULTIPLIERS_PLOT,
     LOOP,
     INJECTION,
     SIDEBAND,
@@ -70,6 +71,7 @@ static const struct option option[] = {
     {"to", required_argument, NULL, TO},
     {"points", required_argument, NULL, POINTS},
     {"sensitivity", no_argument, NULL, SENSITIVITY},
+    {"multipliers-plot", required_argument, NULL, MULTIPLIERS_PLOT},
     {"loop", required_argument, NULL, LOOP},
     {"injection", required_argument, NULL, INJECTION},
     {"sideband", required_argument, NULL, SIDEBAND},
@@ -196,6 +198,8 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return dalcs_argument_period(arguments, cli, optarg);
     case SENSITIVITY:
         return dalcs_argument_sensitivity(arguments, cli);
+    case MULTIPLIERS_PLOT:
+        return dalcs_argument_multipliers_plot(arguments, cli, optarg);
     case FROM:
     case TO:
     case POINTS:

@@ -30,6 +30,7 @@ struct dalcs_arguments {
     bool quiet, all_signals, energy;
     bool losses;
     const char *losses_plot;       /* NULL: none */
+    const char *multipliers_plot;  /* likewise */
     double losses_from, losses_to; /* s; the first NAN: the netlist's window */
     enum dalcs_audit_mode audit;
     bool ascii; /* raw files as text */

@@ -7,8 +7,10 @@
 #include "losses_text.h"
 #include "measurements.h"
 #include "measures_file.h"
+#include "multipliers_chart.h"
 #include "outputs.h"
 #include "paths.h"
+#include "plot.h"
 #include "print_table.h"
 #include "progress.h"
 #include "quantity.h"
@@ -130,9 +132,7 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
         const bool is_of_steps = i < 3; /* which the search for an orbit takes, too */
         if (is_plot && (arguments->steady || arguments->bode)) {
-            fprintf(cli->err,
-                    "dalcs: warning: --plot has no effect: write a file with -o, and draw "
-                    "that with 'dalcs plot'\n");
+            continue; /* it draws the file that is written */
         } else if (option[i].given && arguments->bode && !is_of_steps) {
             fprintf(cli->err, "dalcs: warning: %s is of waveforms: it has no effect\n",
                     option[i].name);
@@ -214,6 +214,34 @@ static void tell_measured(void *user, struct dalcs_session *session, enum dalcs_
 static double fill_of(const struct dalcs_arguments *arguments) {
     bool prints_tables = arguments->batch && arguments->n_outputs == 0;
     return prints_tables ? (double)INFINITY : arguments->fill;
+}
+
+/* The orbit, or the response: of the first file that can be read again. */
+static enum dalcs_status draw_orbit(const struct dalcs_cli *cli,
+                                    const struct dalcs_arguments *arguments,
+                                    const struct dalcs_report *report) {
+    for (size_t k = 0; k < arguments->n_outputs; k++) {
+        const char *file = arguments->output[k];
+        if (arguments->steady || dalcs_table_find_format(file) == &dalcs_raw_format) {
+            return dalcs_cli_draw_file(cli, file, arguments->plot, report, arguments->quiet);
+        }
+    }
+    dalcs_cli_error(cli, "--plot draws a .raw file: write one with -o besides");
+    return DALCS_E_OPTION;
+}
+
+static enum dalcs_status draw_multipliers(const struct dalcs_cli *cli,
+                                          const struct dalcs_arguments *arguments,
+                                          const struct dalcs_report *report) {
+    char message[DALCS_GNUPLOT_MESSAGE];
+    const char *path = arguments->multipliers_plot;
+    const enum dalcs_status status = dalcs_multipliers_chart_draw(report, path, message);
+    if (status != DALCS_OK) {
+        dalcs_cli_error(cli, "cannot draw '%s': %s", path, message);
+    } else if (!arguments->quiet) {
+        fprintf(cli->out, "  wrote     %s\n", path);
+    }
+    return status;
 }
 
 /* Of the first run that has any. */
@@ -318,6 +346,13 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
         &run->outputs, run->cli, arguments->quiet ? NULL : run->cli->out, report, status);
     if (status == DALCS_OK && arguments->losses_plot != NULL) {
         status = draw_losses(run->cli, arguments, report);
+    }
+    if (status == DALCS_OK && files == DALCS_OK && arguments->multipliers_plot != NULL) {
+        status = draw_multipliers(run->cli, arguments, report);
+    }
+    if (status == DALCS_OK && files == DALCS_OK && arguments->plot != NULL &&
+        (arguments->steady || arguments->bode)) {
+        status = draw_orbit(run->cli, arguments, report);
     }
     const enum dalcs_status measures =
         dalcs_measures_file_close(&run->measures, run->cli, arguments, report, status);
