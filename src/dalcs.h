@@ -363,6 +363,9 @@ struct dalcs_run_options {
 
     bool steady; /* the periodic steady state and nothing else, as if .pss were the only analysis */
     double period; /* s, of it; 0: that of .pss, else it follows from the sources */
+    int samples; /* with steady, for each value of .step: rows are not a period, but the states once
+                      in each of so many periods of a run, and the orbit of one period; 0: no */
+    int settle;  /* periods that such a run takes before */
 
     bool bode; /* .ac around the periodic steady state and nothing else, as if there were a .pss */
     double bode_from, bode_to; /* Hz; 0: those of .ac, else 1e-4 and 1/2 of the orbit's frequency */

@@ -35,6 +35,9 @@ enum {
     POINTS,
     SENSITIVITY,
     MULTIPLIERS_PLOT,
+    BIFURCATION,
+    SAMPLES,
+    SETTLE,
     LOOP,
     INJECTION,
     SIDEBAND,
@@ -71,6 +74,9 @@ static const struct option option[] = {
     {"to", required_argument, NULL, TO},
     {"points", required_argument, NULL, POINTS},
     {"sensitivity", no_argument, NULL, SENSITIVITY},
+    {"bifurcation", required_argument, NULL, BIFURCATION},
+    {"samples", required_argument, NULL, SAMPLES},
+    {"settle", required_argument, NULL, SETTLE},
     {"multipliers-plot", required_argument, NULL, MULTIPLIERS_PLOT},
     {"loop", required_argument, NULL, LOOP},
     {"injection", required_argument, NULL, INJECTION},
@@ -198,6 +204,12 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return dalcs_argument_period(arguments, cli, optarg);
     case SENSITIVITY:
         return dalcs_argument_sensitivity(arguments, cli);
+    case BIFURCATION:
+        return dalcs_argument_bifurcation(arguments, cli, optarg);
+    case SAMPLES:
+        return dalcs_argument_samples(arguments, cli, "--samples", optarg, &arguments->samples);
+    case SETTLE:
+        return dalcs_argument_samples(arguments, cli, "--settle", optarg, &arguments->settle);
     case MULTIPLIERS_PLOT:
         return dalcs_argument_multipliers_plot(arguments, cli, optarg);
     case FROM:
@@ -291,6 +303,12 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
     }
     if (status == DALCS_OK && !arguments->help && arguments->at && arguments->fill > 0.0) {
         dalcs_cli_error(cli, "--fill adds rows, --at prints only its own times: choose one");
+        status = DALCS_E_OPTION;
+    }
+    if (status == DALCS_OK && !arguments->help && arguments->samples > 0 &&
+        (arguments->plot || arguments->multipliers_plot)) {
+        dalcs_cli_error(cli, "--bifurcation and --samples are of many orbits, not with --plot or "
+                             "--multipliers-plot");
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help) {

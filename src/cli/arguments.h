@@ -31,6 +31,8 @@ struct dalcs_arguments {
     bool losses;
     const char *losses_plot;       /* NULL: none */
     const char *multipliers_plot;  /* likewise */
+    const char *bifurcation;       /* likewise */
+    size_t samples, settle;        /* periods, of a run looked at once in each; 0: none is */
     double losses_from, losses_to; /* s; the first NAN: the netlist's window */
     enum dalcs_audit_mode audit;
     bool ascii; /* raw files as text */

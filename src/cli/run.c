@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "arguments.h"
+#include "bifurcation_chart.h"
 #include "bode_lines.h"
 #include "losses_chart.h"
 #include "losses_text.h"
@@ -40,6 +41,8 @@ struct run {
     struct dalcs_progress progress;
     double time;     /* s, how far the run has come */
     bool has_script; /* a .control block says what is run */
+    bool is_collected;
+    struct dalcs_bifurcation_chart bifurcation;
 };
 
 static const char help[] =
@@ -83,6 +86,9 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     if (status == DALCS_OK) {
         status = dalcs_print_table_begin(&run->printed, run->session, plot);
     }
+    if (run->is_collected) {
+        dalcs_bifurcation_chart_begin(&run->bifurcation, plot);
+    }
     return status != DALCS_OK ? status : dalcs_outputs_begin(&run->outputs, plot);
 }
 
@@ -92,6 +98,10 @@ static enum dalcs_status rows(void *user, size_t n, const double *time, const do
     for (size_t k = 0; k < n && run->printed.out != NULL; k++) {
         const double *of_row = value + k * run->printed.plot->n_signals;
         DALCS_TRY(dalcs_print_table_row(&run->printed, time[k], of_row));
+    }
+    for (size_t k = 0; k < n && run->is_collected; k++) {
+        DALCS_TRY(dalcs_bifurcation_chart_row(&run->bifurcation,
+                                              value + k * run->bifurcation.plot->n_signals));
     }
     DALCS_TRY(dalcs_outputs_rows(&run->outputs, n, time, value));
     return check_interrupt(run);
@@ -244,6 +254,19 @@ static enum dalcs_status draw_multipliers(const struct dalcs_cli *cli,
     return status;
 }
 
+static enum dalcs_status draw_bifurcation(struct run *run,
+                                          const struct dalcs_arguments *arguments) {
+    char message[DALCS_GNUPLOT_MESSAGE];
+    const char *path = arguments->bifurcation;
+    const enum dalcs_status status = dalcs_bifurcation_chart_draw(&run->bifurcation, path, message);
+    if (status != DALCS_OK) {
+        dalcs_cli_error(run->cli, "cannot draw '%s': %s", path, message);
+    } else if (!arguments->quiet) {
+        fprintf(run->cli->out, "  wrote     %s\n", path);
+    }
+    return status;
+}
+
 /* Of the first run that has any. */
 static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
                                      const struct dalcs_arguments *arguments,
@@ -295,6 +318,8 @@ static struct dalcs_run_options options_of(const struct run *run,
     }
     options.audit = arguments->audit;
     options.steady = arguments->steady;
+    options.samples = (int)arguments->samples;
+    options.settle = (int)arguments->settle;
     options.period = arguments->period;
     options.bode = arguments->bode;
     options.bode_from = arguments->bode_from;
@@ -346,6 +371,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
         &run->outputs, run->cli, arguments->quiet ? NULL : run->cli->out, report, status);
     if (status == DALCS_OK && arguments->losses_plot != NULL) {
         status = draw_losses(run->cli, arguments, report);
+    }
+    if (status == DALCS_OK && files == DALCS_OK && run->is_collected) {
+        status = draw_bifurcation(run, arguments);
     }
     if (status == DALCS_OK && files == DALCS_OK && arguments->multipliers_plot != NULL) {
         status = draw_multipliers(run->cli, arguments, report);
@@ -405,7 +433,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     }
     const struct dalcs_request request = dalcs_session_request(session);
     enum dalcs_analysis main = main_analysis(&request, arguments);
-    struct run run = {.cli = cli};
+    struct run run = {.cli = cli, .is_collected = arguments->bifurcation != NULL};
     status = dalcs_script_look(session, &run.has_script, &main);
     if (status != DALCS_OK) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
@@ -442,6 +470,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     }
     dalcs_outputs_finish(&run.outputs);
+    dalcs_bifurcation_chart_finish(&run.bifurcation);
     dalcs_times_finish(&times);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "pipeline.h"
 
 #include "gates.h"
+#include "stroboscope.h"
 
 #include "thinning.h"
 
@@ -215,6 +216,9 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
         return circuit->periodic.present || r->options->bode ? dalcs_periodic_ac_run(r)
                                                              : dalcs_small_signal_run(r);
     case DALCS_PERIODIC:
+        if (r->s->stroboscope != NULL) {
+            return dalcs_stroboscope_run(r);
+        }
         return circuit->periodic.present || r->options->steady ? dalcs_steady_run(r) : DALCS_OK;
     default:
         if (!circuit->transient.present) {
@@ -285,6 +289,24 @@ enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
     return dalcs_run_analyses(session, options, &complete, NULL, &analysis, 1);
 }
 
+/* .step as a bifurcation diagram. */
+static enum dalcs_status run_stroboscope(struct dalcs_session *session,
+                                         const struct dalcs_run_options *options,
+                                         const struct dalcs_sink *sink) {
+    struct dalcs_stroboscope stroboscope = {0};
+    if (session->circuit.n_steps == 0 || !options->steady) {
+        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL,
+                       "write a card such as: .step param load 1 10 0.1",
+                       "samples are of one value after the other, and the netlist has no .step");
+        return DALCS_E_OPTION;
+    }
+    session->stroboscope = &stroboscope;
+    const enum dalcs_status status = dalcs_stepped_run(session, options, sink);
+    session->stroboscope = NULL;
+    dalcs_stroboscope_finish(&stroboscope);
+    return status;
+}
+
 static enum dalcs_status run_all(struct dalcs_session *session,
                                  const struct dalcs_run_options *options,
                                  const struct dalcs_sink *sink) {
@@ -293,6 +315,9 @@ static enum dalcs_status run_all(struct dalcs_session *session,
     if (options->steady || options->bode) {
         session->circuit.periodic.present = true; /* as if there were a .pss */
         DALCS_TRY(dalcs_steady_prepare(session));
+    }
+    if (options->samples > 0) {
+        return run_stroboscope(session, options, &complete);
     }
     if (session->circuit.n_steps > 0) {
         return dalcs_stepped_run(session, options, &complete);

@@ -15,6 +15,7 @@ struct dalcs_logic_run;
 struct dalcs_losses_run;
 struct dalcs_orbit_point;
 struct dalcs_steady_near;
+struct dalcs_stroboscope;
 struct dalcs_radau;
 struct dalcs_radau_options;
 
@@ -23,6 +24,7 @@ struct dalcs_session {
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
     struct dalcs_losses_request losses;
     bool asks_steady, asks_response, asks_sensitivities;
+    struct dalcs_stroboscope *stroboscope; /* while .step is looked at with it; else NULL */
     struct dalcs_steady_near *near; /* where the search for an orbit begins; NULL: as it does */
     bool keeps_netlist;             /* it may be run with other values */
     struct dalcs_diag diag;

@@ -2,6 +2,7 @@
 #include "steady.h"
 
 #include "sensitivity.h"
+#include "stroboscope.h"
 
 #include "quantity.h"
 
@@ -290,6 +291,35 @@ enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     if (status == DALCS_OK && r->s->circuit.sensitivity.present && r->s->near == NULL) {
         status = dalcs_sensitivities_run(&st);
     }
+    dalcs_steady_finish(&st);
+    return status;
+}
+
+static enum dalcs_status look_at(struct dalcs_run *r,
+                                 enum dalcs_status (*look)(struct dalcs_steady *st),
+                                 struct dalcs_steady *st) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
+    bool is_free;
+    DALCS_TRY(dalcs_steady_find_period(r, period, false, &period, &is_free));
+    if (is_free) {
+        return refuse(r, "give the circuit a clock",
+                      "samples are taken once in each period, and no source repeats");
+    }
+    take_period(r, period,
+                c->transient.use_initial_conditions || c->periodic.use_initial_conditions);
+    DALCS_TRY(dalcs_steady_setup(st, r, period));
+    return look(st);
+}
+
+enum dalcs_status dalcs_steady_look(struct dalcs_run *r,
+                                    enum dalcs_status (*look)(struct dalcs_steady *st)) {
+    struct dalcs_steady st = {0};
+    struct kept kept;
+    DALCS_TRY(keep(r, &kept));
+    const enum dalcs_status status = look_at(r, look, &st);
+    put_back(r, &kept, true);
+    free(kept.stimulus);
     dalcs_steady_finish(&st);
     return status;
 }
