@@ -358,11 +358,6 @@ static enum dalcs_status check_period(struct dalcs_steady *st) {
 }
 
 enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
-    if (r->s->circuit.n_smooth > 0) { /* its maps are linear (periodic_flow.h) */
-        return refuse(r, "inject a small sine in .tran instead",
-                      "the response around a periodic orbit is not available where formulas have "
-                      "products or functions");
-    }
     struct dalcs_steady st = {0};
     struct kept kept;
     const bool is_checked = r->s->report.steady.present;
