@@ -317,6 +317,15 @@ C3 m 0 1u
 .pss step=1u uic
 .end
 """, 0),
+    "sensitive": ("""A sensitivity
+V1 g 0 PULSE(0 1 0 0 0 1u 3u)
+R1 g a 10
+C1 a 0 1u
+.pss step=1u uic
+.sens r1
+.meas pss mean avg v(a)
+.end
+""", 0),
     "response": ("""The gain of a loop around an orbit in discontinuous conduction, and a part without memory
 Vin in 0 12
 Vtri tri 0 PULSE(0 1 0 10u 0 0 10u)
