@@ -79,7 +79,8 @@ enum dalcs_status dalcs_periodic_loop_prepare(struct dalcs_session *s,
     struct dalcs_circuit *c = &s->circuit;
     const char *asked = asked_loop(s, options);
     const bool is_loaded = options->loop_is_loaded || c->orbit_ac.is_loaded;
-    const bool is_asked = c->periodic.present && (options->bode || c->ac.n > 0) && is_loaded;
+    const bool is_asked =
+        is_loaded && (options->bode || (c->periodic.present && c->ac.n > 0)) && c->n_devices > 0;
     const int device = is_asked && asked != NULL ? find_device(c, asked) : -1;
     if (device < 0 || c->device[device].kind != DALCS_VSOURCE ||
         is_probe(&c->device[c->n_devices - 1])) {

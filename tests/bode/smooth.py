@@ -191,7 +191,7 @@ Iac 0 out 0 AC 1
 
 
 def check_same(checker, program, folder):
-    """A load that is a function on paper only: the logarithm of an exponential. Events whose times move are on these orbits."""
+    """A load that is a function on paper only, the logarithm of an exponential. Events move on these orbits."""
     for name, text in CONVERTERS.items():
         card = ".pss uic\n.save v(out) i(l1)\n.ac dec 7 100 130k\n"
         found = []

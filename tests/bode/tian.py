@@ -199,6 +199,11 @@ def check_words(checker, program, folder):
         said = done.stderr.strip()
         checker.check(done.returncode == code, f"{options}: {done.returncode} {said}")
         checker.check(said == "" if words is None else words in said, f"{options}: {said}")
+    stepped = text.replace(".pss uic\n", ".tran 1u 1m uic\n.options dialect=ltspice\n.step Rb 9 11 1\n")
+    done, _, _ = response(program, folder, stepped, "bode", ["--loop", "vcut2", "--injection", "both", "--report",
+                                                           "c.json", "--from", "1k", "--to", "10k"])
+    found = json.loads((folder / "c.json").read_text())["response"]
+    checker.check(done.returncode == 0 and found["injection"] == "both", f"steps: {done.stderr} {found}")
     card = ".ac dec 5 1k 10k loop=vcut2 injection=tian\n"
     done, _, _ = response(program, folder, text + card)
     checker.check(done.returncode == 3 and "'voltage' or 'both'" in done.stderr, f"{card}: {done.stderr}")
