@@ -90,6 +90,9 @@ enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session,
  * any analysis itself. DALCS_E_OPTION: a netlist was read. */
 enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) DALCS_MUST_CHECK;
 
+/* The same, and of how its measurements depend on the values of elements, as if there were a .sens. */
+enum dalcs_status dalcs_session_ask_sensitivities(struct dalcs_session *session) DALCS_MUST_CHECK;
+
 /* The same of the response around a steady state (dalcs_run_options.bode). */
 enum dalcs_status dalcs_session_ask_response(struct dalcs_session *session) DALCS_MUST_CHECK;
 
@@ -368,12 +371,16 @@ struct dalcs_run_options {
 
     bool steady; /* the periodic steady state and nothing else, as if .pss were the only analysis */
     double period; /* s, of it; 0: that of .pss, else it follows from the sources */
+    int samples; /* with steady, for each value of .step: rows are not a period, but the states once
+                      in each of so many periods of a run, and the orbit of one period; 0: no */
+    int settle;  /* periods that such a run takes before */
 
     bool bode; /* .ac around the periodic steady state and nothing else, as if there were a .pss */
     double bode_from, bode_to; /* Hz; 0: those of .ac, else 1e-4 and 1/2 of the orbit's frequency */
     int bode_points;           /* in each decade; 0: those of .ac, else 20 */
-    const char *loop; /* the V source in a loop whose gain is computed; NULL: .ac's, else none */
-    int sideband;     /* as dalcs_report.response; 0: .ac's, else none */
+    const char *loop;    /* the V source in a loop whose gain is computed; NULL: .ac's, else none */
+    bool loop_is_loaded; /* it is injected a current besides, as where the loop goes on takes one */
+    int sideband;        /* as dalcs_report.response; 0: .ac's, else none */
 
     size_t only_step; /* of .step: this one alone, counted from 1; 0: all */
 };
@@ -792,7 +799,8 @@ struct dalcs_report {
         bool
             exact; /* no step of implicit Euler, nothing slides, no commands at one time that move apart */
         double tail; /* what polynomials of its pieces leave out at most, over what they are of */
-        const char *loop; /* the source in the loop; NULL: none was asked for */
+        const char *loop;    /* the source in the loop; NULL: none was asked for */
+        bool loop_is_loaded; /* by a voltage and a current */
         size_t n_crossovers, n_reversals;
 
         const struct dalcs_margin {
@@ -801,6 +809,26 @@ struct dalcs_report {
         } * crossover,        /* [n_crossovers] */
             *reversal;        /* [n_reversals] */
     } response;
+
+    /* Of .sens behind .pss: what the measurements of the orbit change by with a value (doc/steady.md). */
+    struct {
+        bool present;
+        size_t n_parameters, n_results;
+
+        const struct dalcs_sensitivity_parameter {
+            const char *name; /* "l1", "duty", "dmod(vfwd)" */
+            double value;
+        } * parameter; /* [n_parameters] */
+
+        const struct dalcs_sensitivity_result {
+            const char *name; /* "v(out)", "ripple" */
+            const char
+                *kind; /* "average", "rms", "measurement", "magnitude", "phase", "thd", "period" */
+            int harmonic; /* of magnitude and phase */
+            double value;
+            const double *derivative; /* [n_parameters] by the value; not a number: there is none */
+        } * result;                   /* [n_results] */
+    } sensitivity;
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

@@ -108,8 +108,9 @@ struct dalcs_builder {
     const struct dalcs_token *pss;  /* so with .pss */
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
     const struct dalcs_token *op;
-    const struct dalcs_token *startup;       /* LTspice's word on .tran, or NULL */
-    const struct dalcs_token *dc, *ac;       /* the same of these */
+    const struct dalcs_token *startup; /* LTspice's word on .tran, or NULL */
+    const struct dalcs_token *dc, *ac; /* the same of these */
+    const struct dalcs_token *sens;
     const struct dalcs_token *initial_state; /* the first IC= or .ic i(...), NULL before */
 
     struct dalcs_names initial_pairs; /* "0 4": index of the condition on nodes 0 and 4 */
@@ -521,6 +522,14 @@ bool dalcs_monte_carlo_read_seed(struct dalcs_reader *reader);
 
 /* What was drawn, into the circuit. */
 enum dalcs_status dalcs_monte_carlo_collect(struct dalcs_builder *builder) DALCS_MUST_CHECK;
+
+/* An element whose first letter is among `letters`, param name or model(field). False after a message. */
+bool dalcs_sweep_read_item(struct dalcs_reader *reader, const char *letters,
+                           struct dalcs_sweep *sweep);
+
+/* .sens; and which values it is of, once all cards are read. */
+void dalcs_sensitivity_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_sensitivity_check(struct dalcs_builder *builder);
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* v(node) at the start of a .tran, as by .ic. */
 void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place, int node,

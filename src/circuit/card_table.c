@@ -39,6 +39,7 @@ static const struct dot_card DOT_CARDS[] = {
     {".op", DALCS_CARD_OP, NULL, NULL, NOTHING, NULL},
     {".dc", DALCS_CARD_DC, NULL, NULL, NOTHING, NULL},
     {".ac", DALCS_CARD_AC, NULL, NULL, NOTHING, NULL},
+    {".sens", DALCS_CARD_SENS, NULL, NULL, NOTHING, NULL},
     {".step", DALCS_CARD_STEP, NULL, NULL, NOTHING, NULL},
     {".mc", DALCS_CARD_MC, NULL, NULL, NOTHING, NULL},
     {".nodeset", DALCS_CARD_NODESET, NULL, NULL, NOTHING, NULL},
@@ -80,7 +81,7 @@ static const struct dot_card DOT_CARDS[] = {
 static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot", ".preprocess"};
 
 /* Analyses that this simulator will not have. */
-static const char *const NEVER[] = {".noise", ".pz",  ".disto",   ".tf",   ".sens",  ".sp",
+static const char *const NEVER[] = {".noise", ".pz", ".disto",   ".tf",   ".sp",
                                     ".hb",    ".net", ".machine", ".stab", ".ferret"};
 
 /* Elements by letter that are not supported. */

@@ -15,6 +15,7 @@ enum dalcs_card_class {
     DALCS_CARD_OP,
     DALCS_CARD_DC,
     DALCS_CARD_AC,
+    DALCS_CARD_SENS,
     DALCS_CARD_STEP,
     DALCS_CARD_MC,
     DALCS_CARD_NODESET,

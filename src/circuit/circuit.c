@@ -154,6 +154,7 @@ static const struct {
     [DALCS_CARD_NODESET] = {REFERENCES, dalcs_initial_parse_nodeset},
     [DALCS_CARD_DC] = {REFERENCES, dalcs_sweep_parse_dc},
     [DALCS_CARD_AC] = {REFERENCES, dalcs_sweep_parse_ac},
+    [DALCS_CARD_SENS] = {REFERENCES, dalcs_sensitivity_parse},
     [DALCS_CARD_STEP] = {REFERENCES, dalcs_sweep_parse_step},
     [DALCS_CARD_MC] = {REFERENCES, dalcs_monte_carlo_parse},
     [DALCS_CARD_MEASURE] = {MEASURES, dalcs_measure_parse},
@@ -287,6 +288,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
         dalcs_topology_check(builder);
         dalcs_initial_check(builder);
         dalcs_sweep_check(builder);
+        dalcs_sensitivity_check(builder);
         dalcs_own_resistance_replace(builder);
     }
     return builder->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;

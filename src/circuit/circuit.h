@@ -159,7 +159,15 @@ struct dalcs_envelope_card {
 /* What .ac asks for around a periodic orbit. */
 struct dalcs_orbit_ac_card {
     const char *loop; /* the V source in a loop whose gain is asked for; NULL: none */
+    bool is_loaded;   /* by a current as well: what the loop goes on to takes one */
     int sideband;     /* rows are of the components so many frequencies of the orbit higher */
+};
+
+/* What .sens asks for. */
+struct dalcs_sensitivity_card {
+    bool present;
+    int n;
+    struct dalcs_sweep *item; /* [n] whose start is the value that it has */
 };
 
 /* What .pss asks for; times in s. */
@@ -216,6 +224,7 @@ struct dalcs_circuit {
     struct dalcs_sweep dc[DALCS_MOST_DC];
     struct dalcs_sweep ac; /* frequencies of .ac in Hz; n is 0 without one */
     struct dalcs_orbit_ac_card orbit_ac;
+    struct dalcs_sensitivity_card sensitivity;
     int n_steps; /* of .step and .mc, the innermost first */
     struct dalcs_sweep *step;
     int n_drawn; /* values that random functions had a part in */

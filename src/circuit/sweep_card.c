@@ -94,9 +94,12 @@ static bool set_model(struct dalcs_builder *builder, const struct dalcs_token *m
     return true;
 }
 
-/* The next two or three tokens: `name ( parameter )`, after the type of the model if that is there. */
+/* The next two or three tokens: `name ( parameter )`, after the type of the model if that is there; an element's name
+ * is none. */
 static bool is_model(const struct dalcs_reader *reader, int *at) {
-    for (*at = 0; *at <= 1; ++*at) {
+    const struct dalcs_token *first = dalcs_reader_peek(reader, 0);
+    const bool is_element = dalcs_names_find(&reader->builder->devices, first->text) >= 0;
+    for (*at = 0; *at <= (is_element ? 0 : 1); ++*at) {
         const struct dalcs_token *word = dalcs_reader_peek(reader, *at);
         const struct dalcs_token *open = dalcs_reader_peek(reader, *at + 1);
         const struct dalcs_token *field = dalcs_reader_peek(reader, *at + 2);
@@ -110,7 +113,8 @@ static bool is_model(const struct dalcs_reader *reader, int *at) {
 }
 
 /* The item of a .step, or the source of a .dc; letters: of the elements that may be swept. */
-static bool read_item(struct dalcs_reader *reader, const char *letters, struct dalcs_sweep *sweep) {
+bool dalcs_sweep_read_item(struct dalcs_reader *reader, const char *letters,
+                           struct dalcs_sweep *sweep) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     int at;
@@ -301,7 +305,7 @@ void dalcs_sweep_parse_dc(struct dalcs_builder *builder, const struct dalcs_card
     do {
         struct dalcs_sweep *sweep = &circuit->dc[n];
         const bool is_spaced = take_spacing(&reader, &sweep->spacing);
-        if (!read_item(&reader, "vir", sweep)) {
+        if (!dalcs_sweep_read_item(&reader, "vir", sweep)) {
             return;
         }
         const bool is_list = !is_spaced && dalcs_reader_take_word(&reader, "list");
@@ -356,6 +360,17 @@ static bool read_loop(struct dalcs_reader *reader) {
     return true;
 }
 
+/* voltage or both */
+static bool read_injection(struct dalcs_reader *reader) {
+    bool *is_loaded = &reader->builder->circuit->orbit_ac.is_loaded;
+    *is_loaded = dalcs_reader_take_word(reader, "both");
+    if (*is_loaded || dalcs_reader_take_word(reader, "voltage")) {
+        return true;
+    }
+    dalcs_reader_missing(reader, "'voltage' or 'both'");
+    return false;
+}
+
 static bool read_sideband(struct dalcs_reader *reader) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     double value;
@@ -373,18 +388,21 @@ static bool read_sideband(struct dalcs_reader *reader) {
     return true;
 }
 
-/* loop=NAME, sideband=K, or nothing more. False after a message. */
+/* loop=NAME, injection=voltage|both, sideband=K, or nothing more. False after a message. */
 static bool read_orbit_words(struct dalcs_reader *reader) {
     for (bool ok = true; ok;) {
         const bool is_loop = dalcs_reader_take_word(reader, "loop");
-        if (!is_loop && !dalcs_reader_take_word(reader, "sideband")) {
+        const bool is_injection = !is_loop && dalcs_reader_take_word(reader, "injection");
+        if (!is_loop && !is_injection && !dalcs_reader_take_word(reader, "sideband")) {
             return true;
         }
         if (!dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
             dalcs_reader_missing(reader, "'='");
             return false;
         }
-        ok = is_loop ? read_loop(reader) : read_sideband(reader);
+        ok = is_loop        ? read_loop(reader)
+             : is_injection ? read_injection(reader)
+                            : read_sideband(reader);
     }
     return false;
 }
@@ -480,7 +498,7 @@ void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_ca
     struct dalcs_reader reader = dalcs_reader_start(builder, card, STEP_USAGE);
     struct dalcs_sweep sweep = {.spacing = DALCS_LINEAR};
     bool is_spaced = take_spacing(&reader, &sweep.spacing);
-    if (!read_item(&reader, "vircleghf", &sweep)) {
+    if (!dalcs_sweep_read_item(&reader, "vircleghf", &sweep)) {
         return;
     }
     is_spaced = take_spacing(&reader, &sweep.spacing) || is_spaced;

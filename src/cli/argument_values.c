@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *path) {
@@ -135,6 +136,72 @@ enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
     return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
 }
 
+static bool is_page(const char *path) {
+    const char *dot = strrchr(path, '.');
+    return dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
+}
+
+/* Samples, where no others are asked for, and periods before them. */
+enum { SAMPLES = 64, SETTLE = 256, MOST_SAMPLES = 1000000 };
+
+static enum dalcs_status take_samples(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli) {
+    if (!arguments->steady) {
+        dalcs_cli_error(cli, "--bifurcation, --samples and --settle are of 'dalcs steady'");
+        return DALCS_E_OPTION;
+    }
+    arguments->samples = arguments->samples > 0 ? arguments->samples : SAMPLES;
+    arguments->settle = arguments->settle > 0 ? arguments->settle : SETTLE;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_bifurcation(struct dalcs_arguments *arguments,
+                                             const struct dalcs_cli *cli, const char *path) {
+    arguments->bifurcation = path;
+    if (!dalcs_figure_can_write(path) && !is_page(path)) {
+        dalcs_cli_error(
+            cli, "--bifurcation: unknown format of '%s': name it .svg, .png, .pdf or .html", path);
+        return DALCS_E_OPTION;
+    }
+    return take_samples(arguments, cli);
+}
+
+enum dalcs_status dalcs_argument_samples(struct dalcs_arguments *arguments,
+                                         const struct dalcs_cli *cli, const char *name,
+                                         const char *text, size_t *count) {
+    DALCS_TRY(dalcs_verb_take_count(cli, name, text, count));
+    if (*count > MOST_SAMPLES) {
+        dalcs_cli_error(cli, "%s: more than %d periods", name, (int)MOST_SAMPLES);
+        return DALCS_E_OPTION;
+    }
+    return take_samples(arguments, cli);
+}
+
+enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *arguments,
+                                                  const struct dalcs_cli *cli, const char *path) {
+    arguments->multipliers_plot = path;
+    if (!arguments->steady) {
+        dalcs_cli_error(cli, "--multipliers-plot is one of 'dalcs steady'");
+        return DALCS_E_OPTION;
+    }
+    if (!dalcs_figure_can_write(path)) {
+        dalcs_cli_error(
+            cli, "--multipliers-plot: unknown format of '%s': name it .svg, .png or .pdf", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
+                                             const struct dalcs_cli *cli) {
+    arguments->sensitivity = true;
+    if (!arguments->steady) {
+        dalcs_cli_error(cli, "--sensitivity is one of 'dalcs steady'");
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 /* FROM:TO, either of which may be left out; NULL: the netlist's window. */
 enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
@@ -203,9 +270,11 @@ enum dalcs_status dalcs_argument_set(struct dalcs_arguments *arguments, const st
 
 enum dalcs_status dalcs_argument_plot(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *path) {
+    const bool may_be_page = arguments->steady || arguments->bode;
     arguments->plot = path;
-    if (!dalcs_figure_can_write(path)) {
-        dalcs_cli_error(cli, "--plot: unknown format of '%s': name it .svg, .png or .pdf", path);
+    if (!dalcs_figure_can_write(path) && !(is_page(path) && may_be_page)) {
+        dalcs_cli_error(cli, "--plot: unknown format of '%s': name it %s", path,
+                        may_be_page ? ".svg, .png, .pdf or .html" : ".svg, .png or .pdf");
         return DALCS_E_OPTION;
     }
     return DALCS_OK;

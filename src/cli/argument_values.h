@@ -32,6 +32,17 @@ enum dalcs_status dalcs_argument_compress(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_audit(struct dalcs_arguments *arguments,
                                        const struct dalcs_cli *cli,
                                        const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_bifurcation(struct dalcs_arguments *arguments,
+                                             const struct dalcs_cli *cli,
+                                             const char *path) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_samples(struct dalcs_arguments *arguments,
+                                         const struct dalcs_cli *cli, const char *name,
+                                         const char *text, size_t *count) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *arguments,
+                                                  const struct dalcs_cli *cli,
+                                                  const char *path) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
+                                             const struct dalcs_cli *cli) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli,
                                         const char *text) DALCS_MUST_CHECK;

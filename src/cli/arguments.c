@@ -33,7 +33,13 @@ enum {
     FROM,
     TO,
     POINTS,
+    SENSITIVITY,
+    MULTIPLIERS_PLOT,
+    BIFURCATION,
+    SAMPLES,
+    SETTLE,
     LOOP,
+    INJECTION,
     SIDEBAND,
     SET,
     MEASURES,
@@ -69,7 +75,13 @@ static const struct option option[] = {
     {"from", required_argument, NULL, FROM},
     {"to", required_argument, NULL, TO},
     {"points", required_argument, NULL, POINTS},
+    {"sensitivity", no_argument, NULL, SENSITIVITY},
+    {"bifurcation", required_argument, NULL, BIFURCATION},
+    {"samples", required_argument, NULL, SAMPLES},
+    {"settle", required_argument, NULL, SETTLE},
+    {"multipliers-plot", required_argument, NULL, MULTIPLIERS_PLOT},
     {"loop", required_argument, NULL, LOOP},
+    {"injection", required_argument, NULL, INJECTION},
     {"sideband", required_argument, NULL, SIDEBAND},
     {"set", required_argument, NULL, SET},
     {"measures", required_argument, NULL, MEASURES},
@@ -90,6 +102,16 @@ static enum dalcs_status parse_sideband(struct dalcs_arguments *arguments,
         arguments->sideband != rint(arguments->sideband)) {
         dalcs_cli_error(cli, "--sideband: '%s' is no whole number, at most %d of them away", text,
                         (int)DALCS_MOST_SIDEBAND);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_injection(struct dalcs_arguments *arguments,
+                                         const struct dalcs_cli *cli, const char *text) {
+    arguments->loop_is_loaded = strcmp(text, "both") == 0;
+    if (!arguments->loop_is_loaded && strcmp(text, "voltage") != 0) {
+        dalcs_cli_error(cli, "--injection: '%s' is neither voltage nor both", text);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
@@ -116,6 +138,8 @@ static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const stru
     case LOOP:
         arguments->loop = optarg;
         return DALCS_OK;
+    case INJECTION:
+        return parse_injection(arguments, cli, optarg);
     default:
         return parse_sideband(arguments, cli, optarg);
     }
@@ -186,10 +210,21 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return dalcs_verb_take_count(cli, "--only", optarg, &arguments->only);
     case PERIOD:
         return dalcs_argument_period(arguments, cli, optarg);
+    case SENSITIVITY:
+        return dalcs_argument_sensitivity(arguments, cli);
+    case BIFURCATION:
+        return dalcs_argument_bifurcation(arguments, cli, optarg);
+    case SAMPLES:
+        return dalcs_argument_samples(arguments, cli, "--samples", optarg, &arguments->samples);
+    case SETTLE:
+        return dalcs_argument_samples(arguments, cli, "--settle", optarg, &arguments->settle);
+    case MULTIPLIERS_PLOT:
+        return dalcs_argument_multipliers_plot(arguments, cli, optarg);
     case FROM:
     case TO:
     case POINTS:
     case LOOP:
+    case INJECTION:
     case SIDEBAND:
         return take_bode(arguments, cli, code);
     case ASCII:
@@ -277,6 +312,12 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
     }
     if (status == DALCS_OK && !arguments->help && arguments->at && arguments->fill > 0.0) {
         dalcs_cli_error(cli, "--fill adds rows, --at prints only its own times: choose one");
+        status = DALCS_E_OPTION;
+    }
+    if (status == DALCS_OK && !arguments->help && arguments->samples > 0 &&
+        (arguments->plot || arguments->multipliers_plot)) {
+        dalcs_cli_error(cli, "--bifurcation and --samples are of many orbits, not with --plot or "
+                             "--multipliers-plot");
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help) {

@@ -32,6 +32,9 @@ struct dalcs_arguments {
     bool quiet, all_signals, energy;
     bool losses;
     const char *losses_plot;       /* NULL: none */
+    const char *multipliers_plot;  /* likewise */
+    const char *bifurcation;       /* likewise */
+    size_t samples, settle;        /* periods, of a run looked at once in each; 0: none is */
     double losses_from, losses_to; /* s; the first NAN: the netlist's window */
     enum dalcs_audit_mode audit;
     bool ascii; /* raw files as text */
@@ -44,6 +47,8 @@ struct dalcs_arguments {
     double bode_from, bode_to; /* Hz; 0: the netlist's, else those that the orbit has */
     size_t bode_points;        /* in a decade; 0: likewise */
     const char *loop;          /* NULL: the netlist's, else none */
+    bool sensitivity;          /* of dalcs steady: as if there were a .sens */
+    bool loop_is_loaded;       /* by a voltage and a current */
     double sideband;           /* 0: likewise */
     bool split_steps;          /* of .step into several plots of a raw file */
     bool help;                 /* asked for: nothing else is set */

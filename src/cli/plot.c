@@ -1,7 +1,8 @@
 /* plot.c - `dalcs plot`: read a file of waveforms, choose, draw. */
-#include "cli.h"
+#include "plot.h"
 
 #include "histogram.h"
+#include "margin_lines.h"
 #include "page.h"
 #include "plot_arguments.h"
 #include "report_reader.h"
@@ -12,6 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -32,7 +34,9 @@ static const char help[] =
     "--to:\n"
     "                      take whole periods\n"
     "      --histogram     how often each value of one signal occurs, of a table with a row a run\n"
-    "      --report FILE   take the events from what dalcs run --report wrote; without it\n"
+    "      --report FILE   take the events from what dalcs run --report wrote, or the margins "
+    "from\n"
+    "                      what dalcs bode --loop --report wrote; without it\n"
     "                      conduction is read off the currents i(d1), i(s1) in FILE\n"
     "      --events        mark events and jumps with lines\n"
     "      --no-bars       leave out when diodes and switches conduct\n"
@@ -59,6 +63,8 @@ struct drawing {
     struct dalcs_waveforms waveforms, made; /* the latter of --spectrum and --histogram */
     struct dalcs_selection selection;
     struct dalcs_conduction conduction;
+    struct dalcs_margin_lines lines;
+    const struct dalcs_report *run; /* that has just written the file; NULL: none has */
     const char *title;
 };
 
@@ -107,6 +113,46 @@ static enum dalcs_status remake(struct drawing *drawing) {
     return DALCS_OK;
 }
 
+/* What is known beside the file. */
+static enum dalcs_status read_report(struct drawing *drawing) {
+    const char *report = drawing->arguments->report;
+    if (drawing->run) {
+        DALCS_TRY(dalcs_conduction_add_report(&drawing->conduction, drawing->run));
+        return dalcs_margin_lines_add_report(&drawing->lines, drawing->run);
+    }
+    if (report) {
+        DALCS_TRY(dalcs_report_reader_read(report, &drawing->conduction, &drawing->diag));
+        DALCS_TRY(dalcs_report_reader_margins(report, &drawing->lines, &drawing->diag));
+    }
+    return DALCS_OK;
+}
+
+/* Without signals of the caller's choice, the gain of a loop with its margins. */
+static enum dalcs_status select_signals(struct drawing *drawing) {
+    const struct dalcs_plot_arguments *arguments = drawing->arguments;
+    const char *group[2] = {NULL, NULL};
+    const bool of_loop = drawing->lines.loop && arguments->n_groups == 0;
+    for (int k = 0; k < 2 && of_loop; k++) {
+        group[k] = dalcs_arena_printf(&drawing->lines.arena, "%s(loop(%s))",
+                                      k == 0 ? "db" : "phase", drawing->lines.loop);
+        if (!group[k]) {
+            return DALCS_E_NOMEM;
+        }
+    }
+    if (!of_loop) {
+        drawing->lines.n = 0;
+    }
+    DALCS_TRY(dalcs_selection_make(
+        &drawing->selection, &drawing->waveforms, of_loop ? group : arguments->group,
+        of_loop ? 2 : arguments->n_groups, arguments->from, arguments->to, &drawing->diag));
+    drawing->selection.continues = of_loop;
+    if (drawing->waveforms
+            .complex_values) { /* events are of the orbit, and the axis of frequencies */
+        dalcs_conduction_finish(&drawing->conduction);
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status read_file(struct drawing *drawing) {
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
     struct dalcs_waveforms *waveforms = &drawing->waveforms;
@@ -122,16 +168,14 @@ static enum dalcs_status read_file(struct drawing *drawing) {
     drawing->title = waveforms->title[strspn(waveforms->title, "* ")] ? waveforms->title
                      : slash                                          ? slash + 1
                                                                       : arguments->file;
-    DALCS_TRY(dalcs_selection_make(&drawing->selection, waveforms, arguments->group,
-                                   arguments->n_groups, arguments->from, arguments->to,
-                                   &drawing->diag));
     if (arguments->spectrum > 0.0 || arguments->histogram) {
+        DALCS_TRY(dalcs_selection_make(&drawing->selection, waveforms, arguments->group,
+                                       arguments->n_groups, arguments->from, arguments->to,
+                                       &drawing->diag));
         return remake(drawing);
     }
-    if (arguments->report) {
-        DALCS_TRY(
-            dalcs_report_reader_read(arguments->report, &drawing->conduction, &drawing->diag));
-    }
+    DALCS_TRY(read_report(drawing));
+    DALCS_TRY(select_signals(drawing));
     return dalcs_selection_add_conduction(&drawing->selection, &drawing->conduction);
 }
 
@@ -151,6 +195,8 @@ static enum dalcs_status compose(struct drawing *drawing, struct dalcs_figure *f
     figure->conduction = &drawing->conduction;
     figure->bars = !arguments->no_bars;
     figure->marks = arguments->marks;
+    figure->line = drawing->lines.line;
+    figure->n_lines = drawing->lines.n;
     DALCS_TRY(dalcs_figure_begin_panels(figure, drawing->title, selection->name, selection->panel,
                                         selection->n_panels));
     return dalcs_selection_each_row(selection, add_row, figure);
@@ -192,8 +238,8 @@ static enum dalcs_status draw_page(struct drawing *drawing) {
     if (status == DALCS_OK) {
         status = dalcs_page_write(file.stream, &drawing->selection,
                                   arguments->no_bars ? &none : &drawing->conduction,
-                                  drawing->title + strspn(drawing->title, "* "), arguments->theme,
-                                  arguments->marks, &drawing->diag);
+                                  &drawing->lines, drawing->title + strspn(drawing->title, "* "),
+                                  arguments->theme, arguments->marks, &drawing->diag);
     }
     if (status == DALCS_OK && ferror(file.stream)) {
         int error = errno != 0 ? errno : EIO;
@@ -263,8 +309,9 @@ static enum dalcs_status check_paths(const struct dalcs_cli *cli,
 }
 
 static enum dalcs_status draw(const struct dalcs_cli *cli,
-                              const struct dalcs_plot_arguments *arguments) {
-    struct drawing drawing = {.cli = cli, .arguments = arguments};
+                              const struct dalcs_plot_arguments *arguments,
+                              const struct dalcs_report *run) {
+    struct drawing drawing = {.cli = cli, .arguments = arguments, .run = run};
     enum dalcs_status status = check_paths(cli, arguments);
     if (status == DALCS_OK) {
         status = read_file(&drawing);
@@ -282,12 +329,32 @@ static enum dalcs_status draw(const struct dalcs_cli *cli,
     if (status == DALCS_OK && arguments->output && !arguments->quiet) {
         fprintf(cli->out, "wrote %s\n", arguments->output);
     }
+    dalcs_margin_lines_finish(&drawing.lines);
     dalcs_conduction_finish(&drawing.conduction);
     dalcs_selection_finish(&drawing.selection);
     dalcs_waveforms_finish(&drawing.made);
     dalcs_waveforms_finish(&drawing.waveforms);
     dalcs_diag_finish(&drawing.diag);
     return status;
+}
+
+enum dalcs_status dalcs_cli_draw_file(const struct dalcs_cli *cli, const char *file,
+                                      const char *output, const struct dalcs_report *report,
+                                      bool quiet) {
+    const char *dot = strrchr(output, '.');
+    const struct dalcs_plot_arguments arguments = {.file = file,
+                                                   .output = output,
+                                                   .is_page = strcasecmp(dot, ".html") == 0 ||
+                                                              strcasecmp(dot, ".htm") == 0,
+                                                   .from = NAN,
+                                                   .to = NAN,
+                                                   .theme = &dalcs_theme_light,
+                                                   .quiet = true};
+    DALCS_TRY(draw(cli, &arguments, report));
+    if (!quiet) {
+        fprintf(cli->out, "  wrote     %s\n", output);
+    }
+    return DALCS_OK;
 }
 
 enum dalcs_exit dalcs_cli_plot(const struct dalcs_cli *cli, int argc, char **argv) {
@@ -299,7 +366,7 @@ enum dalcs_exit dalcs_cli_plot(const struct dalcs_cli *cli, int argc, char **arg
     if (arguments.help) {
         fputs(help, cli->out);
     } else {
-        status = draw(cli, &arguments);
+        status = draw(cli, &arguments, NULL);
     }
     dalcs_plot_arguments_finish(&arguments);
     return dalcs_cli_exit(status);

@@ -2,18 +2,22 @@
 #include "run.h"
 
 #include "arguments.h"
+#include "bifurcation_chart.h"
 #include "bode_lines.h"
 #include "losses_chart.h"
 #include "losses_text.h"
 #include "measurements.h"
 #include "measures_file.h"
+#include "multipliers_chart.h"
 #include "outputs.h"
 #include "paths.h"
+#include "plot.h"
 #include "print_table.h"
 #include "progress.h"
 #include "quantity.h"
 #include "run_help.h"
 #include "script.h"
+#include "sensitivity_lines.h"
 #include "settings.h"
 #include "steady_lines.h"
 #include "summary.h"
@@ -37,6 +41,8 @@ struct run {
     struct dalcs_progress progress;
     double time;     /* s, how far the run has come */
     bool has_script; /* a .control block says what is run */
+    bool is_collected;
+    struct dalcs_bifurcation_chart bifurcation;
 };
 
 static const char help[] =
@@ -80,6 +86,9 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     if (status == DALCS_OK) {
         status = dalcs_print_table_begin(&run->printed, run->session, plot);
     }
+    if (run->is_collected) {
+        dalcs_bifurcation_chart_begin(&run->bifurcation, plot);
+    }
     return status != DALCS_OK ? status : dalcs_outputs_begin(&run->outputs, plot);
 }
 
@@ -89,6 +98,10 @@ static enum dalcs_status rows(void *user, size_t n, const double *time, const do
     for (size_t k = 0; k < n && run->printed.out != NULL; k++) {
         const double *of_row = value + k * run->printed.plot->n_signals;
         DALCS_TRY(dalcs_print_table_row(&run->printed, time[k], of_row));
+    }
+    for (size_t k = 0; k < n && run->is_collected; k++) {
+        DALCS_TRY(dalcs_bifurcation_chart_row(&run->bifurcation,
+                                              value + k * run->bifurcation.plot->n_signals));
     }
     DALCS_TRY(dalcs_outputs_rows(&run->outputs, n, time, value));
     return check_interrupt(run);
@@ -129,9 +142,7 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
         const bool is_of_steps = i < 3; /* which the search for an orbit takes, too */
         if (is_plot && (arguments->steady || arguments->bode)) {
-            fprintf(cli->err,
-                    "dalcs: warning: --plot has no effect: write a file with -o, and draw "
-                    "that with 'dalcs plot'\n");
+            continue; /* it draws the file that is written */
         } else if (option[i].given && arguments->bode && !is_of_steps) {
             fprintf(cli->err, "dalcs: warning: %s is of waveforms: it has no effect\n",
                     option[i].name);
@@ -199,6 +210,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     if (!run->has_script) {
         dalcs_measurements_write(out, report);
     }
+    dalcs_sensitivity_lines_write(out, report);
     fputc('\n', out);
 }
 
@@ -215,6 +227,47 @@ static void tell_measured(void *user, struct dalcs_session *session, enum dalcs_
 static double fill_of(const struct dalcs_arguments *arguments) {
     bool prints_tables = arguments->batch && arguments->n_outputs == 0;
     return prints_tables ? (double)INFINITY : arguments->fill;
+}
+
+/* The orbit, or the response: of the first file that can be read again. */
+static enum dalcs_status draw_orbit(const struct dalcs_cli *cli,
+                                    const struct dalcs_arguments *arguments,
+                                    const struct dalcs_report *report) {
+    for (size_t k = 0; k < arguments->n_outputs; k++) {
+        const char *file = arguments->output[k];
+        if (arguments->steady || dalcs_table_find_format(file) == &dalcs_raw_format) {
+            return dalcs_cli_draw_file(cli, file, arguments->plot, report, arguments->quiet);
+        }
+    }
+    dalcs_cli_error(cli, "--plot draws a .raw file: write one with -o besides");
+    return DALCS_E_OPTION;
+}
+
+static enum dalcs_status draw_multipliers(const struct dalcs_cli *cli,
+                                          const struct dalcs_arguments *arguments,
+                                          const struct dalcs_report *report) {
+    char message[DALCS_GNUPLOT_MESSAGE];
+    const char *path = arguments->multipliers_plot;
+    const enum dalcs_status status = dalcs_multipliers_chart_draw(report, path, message);
+    if (status != DALCS_OK) {
+        dalcs_cli_error(cli, "cannot draw '%s': %s", path, message);
+    } else if (!arguments->quiet) {
+        fprintf(cli->out, "  wrote     %s\n", path);
+    }
+    return status;
+}
+
+static enum dalcs_status draw_bifurcation(struct run *run,
+                                          const struct dalcs_arguments *arguments) {
+    char message[DALCS_GNUPLOT_MESSAGE];
+    const char *path = arguments->bifurcation;
+    const enum dalcs_status status = dalcs_bifurcation_chart_draw(&run->bifurcation, path, message);
+    if (status != DALCS_OK) {
+        dalcs_cli_error(run->cli, "cannot draw '%s': %s", path, message);
+    } else if (!arguments->quiet) {
+        fprintf(run->cli->out, "  wrote     %s\n", path);
+    }
+    return status;
 }
 
 /* Of the first run that has any. */
@@ -269,12 +322,15 @@ static struct dalcs_run_options options_of(const struct run *run,
     options.audit = arguments->audit;
     options.only_step = arguments->only;
     options.steady = arguments->steady;
+    options.samples = (int)arguments->samples;
+    options.settle = (int)arguments->settle;
     options.period = arguments->period;
     options.bode = arguments->bode;
     options.bode_from = arguments->bode_from;
     options.bode_to = arguments->bode_to;
     options.bode_points = (int)arguments->bode_points;
     options.loop = arguments->loop;
+    options.loop_is_loaded = arguments->loop_is_loaded;
     options.sideband = (int)arguments->sideband;
     options.energy = arguments->report || arguments->energy;
     if (needs_no_rows(run, arguments)) {
@@ -320,6 +376,16 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     if (status == DALCS_OK && arguments->losses_plot != NULL) {
         status = draw_losses(run->cli, arguments, report);
     }
+    if (status == DALCS_OK && files == DALCS_OK && run->is_collected) {
+        status = draw_bifurcation(run, arguments);
+    }
+    if (status == DALCS_OK && files == DALCS_OK && arguments->multipliers_plot != NULL) {
+        status = draw_multipliers(run->cli, arguments, report);
+    }
+    if (status == DALCS_OK && files == DALCS_OK && arguments->plot != NULL &&
+        (arguments->steady || arguments->bode)) {
+        status = draw_orbit(run->cli, arguments, report);
+    }
     const enum dalcs_status measures =
         dalcs_measures_file_close(&run->measures, run->cli, arguments, report, status);
     files = files == DALCS_OK ? measures : files;
@@ -353,6 +419,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     if (status == DALCS_OK && arguments->bode) {
         status = dalcs_session_ask_response(session);
     }
+    if (status == DALCS_OK && arguments->sensitivity) {
+        status = dalcs_session_ask_sensitivities(session);
+    }
     if (status == DALCS_OK && arguments->n_set > 0) {
         status = dalcs_session_keep_netlist(session);
     }
@@ -371,7 +440,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     }
     const struct dalcs_request request = dalcs_session_request(session);
     enum dalcs_analysis main = main_analysis(&request, arguments);
-    struct run run = {.cli = cli};
+    struct run run = {.cli = cli, .is_collected = arguments->bifurcation != NULL};
     status = dalcs_script_look(session, &run.has_script, &main);
     if (status != DALCS_OK) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
@@ -408,6 +477,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     }
     dalcs_outputs_finish(&run.outputs);
+    dalcs_bifurcation_chart_finish(&run.bifurcation);
     dalcs_times_finish(&times);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "quads.h"
 #include "recurrence.h"
 #include "segments_observer.h"
+#include "smooth_newton.h"
 #include "step_error.h"
 
 #include <math.h>
@@ -140,8 +141,27 @@ static struct dalcs_orbit_span *add_span(struct dalcs_orbit_part *p, const uint6
     return span;
 }
 
+/* Where there are smooth sources each segment is a span, with what they read in it. */
+static enum dalcs_status note_arguments(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span) {
+    const struct dalcs_radau_part *part = p->rates.part;
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    span->h = part->segment.h;
+    span->argument = dalcs_arena_alloc(&p->log->arena, (size_t)l->n_nodes * (size_t)s->n_smooth,
+                                       sizeof *span->argument);
+    if (span->argument == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int node = 0; node < l->n_nodes; node++) {
+        dalcs_smooth_arguments(s, part->segment.out + node * l->stride,
+                               span->argument + node * s->n_smooth);
+    }
+    return DALCS_OK;
+}
+
 static bool goes_on(const struct dalcs_orbit_part *p, const uint64_t *mode) {
-    const struct dalcs_orbit_span *last = p->n > 0 ? &p->span[p->n - 1] : NULL;
+    const struct dalcs_orbit_span *last =
+        p->n > 0 && p->rates.part->smooth == NULL ? &p->span[p->n - 1] : NULL;
     return last != NULL && last->df == NULL &&
            dalcs_mode_is(last->mode, mode, p->rates.part->stages.n_words);
 }
@@ -162,6 +182,9 @@ static enum dalcs_status take_segment(struct dalcs_orbit_part *p) {
     }
     span->from = goes ? span->from : part->segment.t;
     span->to = part->segment.t_end;
+    if (part->smooth != NULL) {
+        DALCS_TRY(note_arguments(p, span));
+    }
     p->log->is_exact = p->log->is_exact && !part->segment.by_euler;
     if (!part->segment.by_euler && part->guards.n_crossed > 0) {
         int row = dalcs_orbit_guard_row(part, part->guards.crossed[0]);

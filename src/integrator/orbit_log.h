@@ -16,9 +16,11 @@ struct dalcs_orbit_span {
     int row;         /* of the guard in an answer that ends it; -1: none does */
     double rate;     /* of it, by time */
     double moved
-        [2]; /* s, re and im: how a command that ends it moves with the AC values of its sources */
-    double *df; /* [n_x] f- - f+; NULL: nothing moves where it ends */
-    double *dy; /* [n_columns] y- - y+ */
+        [2];  /* s, re and im: how a command that ends it moves with the AC values of its sources */
+    double h; /* s, of the step that it is, where there are smooth sources */
+    double (*argument)[2]; /* [n_nodes][n_smooth] what they read at its nodes */
+    double *df;            /* [n_x] f- - f+; NULL: nothing moves where it ends */
+    double *dy;            /* [n_columns] y- - y+ */
 };
 
 struct dalcs_orbit_part {

@@ -1,6 +1,8 @@
 /* periodic_flow.c - a period cut into pieces with a map each. */
 #include "periodic_flow.h"
 
+#include "periodic_smooth.h"
+
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -41,18 +43,26 @@ static enum dalcs_status ask(struct dalcs_periodic_flow *flow, struct dalcs_stag
                              int column) {
     memset(flow->in, 0, (size_t)flow->stages.n_in * sizeof(double));
     flow->in[column] = 1.0;
-    return dalcs_stages_apply(&flow->stages, entry, flow->in, flow->out);
+    DALCS_TRY(dalcs_stages_apply(&flow->stages, entry, flow->in, flow->out));
+    if (flow->smooth != NULL) {
+        dalcs_flow_smooth_vary(flow, flow->out);
+    }
+    return DALCS_OK;
 }
 
-static enum dalcs_status fill_map(struct dalcs_periodic_flow *flow, struct dalcs_flow_map *map) {
+static enum dalcs_status fill_map(struct dalcs_periodic_flow *flow,
+                                  const struct dalcs_orbit_span *span, struct dalcs_flow_map *map) {
     const size_t size = dalcs_periodic_flow_size(flow);
     struct dalcs_stage_entry *entry;
     DALCS_TRY(dalcs_stages_get(&flow->stages, map->mode, map->h, &entry));
+    if (flow->smooth != NULL) {
+        DALCS_TRY(dalcs_flow_smooth_begin(flow, entry, span, map->t, map->h));
+    }
     for (int x = 0; x < flow->n_x; x++) {
         DALCS_TRY(ask(flow, entry, x));
         memcpy(map->state + (size_t)x * size, flow->out, size * sizeof(double));
     }
-    for (int f = 0; f < flow->excitation.n_functions; f++) {
+    for (int f = 0; f < flow->n_driven; f++) {
         const struct dalcs_excitation_function *function = &flow->excitation.function[f];
         const double complex source = flow->source[function->input];
         double complex *drive = map->drive + (size_t)function->degree * size;
@@ -64,13 +74,15 @@ static enum dalcs_status fill_map(struct dalcs_periodic_flow *flow, struct dalcs
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow, const uint64_t *mode,
-                                          double h, struct dalcs_flow_map **found) {
+enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
+                                          const struct dalcs_orbit_span *span, double t, double h,
+                                          struct dalcs_flow_map **found) {
     const size_t size = dalcs_periodic_flow_size(flow);
     const size_t n_x = (size_t)flow->n_x;
     const size_t n_nodes = (size_t)flow->stages.layout.n_nodes;
     for (struct dalcs_flow_map *m = flow->map; m != NULL; m = m->next) {
-        if (m->h == h && dalcs_mode_is(m->mode, mode, flow->stages.n_words)) {
+        if (m->h == h && (flow->smooth == NULL || m->t == t) &&
+            dalcs_mode_is(m->mode, span->mode, flow->stages.n_words)) {
             *found = m;
             return DALCS_OK;
         }
@@ -79,14 +91,15 @@ enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow, cons
     if (map == NULL) {
         return DALCS_E_NOMEM;
     }
-    *map = (struct dalcs_flow_map){.mode = mode, .h = h, .next = flow->map, .stamp = -1};
+    *map =
+        (struct dalcs_flow_map){.mode = span->mode, .h = h, .t = t, .next = flow->map, .stamp = -1};
     map->state = dalcs_arena_alloc(&flow->arena, n_x * size, sizeof(double));
     map->drive = dalcs_arena_alloc(&flow->arena, n_nodes * size, sizeof(double complex));
     map->driven = dalcs_arena_alloc(&flow->arena, size, sizeof(double complex));
     if (map->state == NULL || map->drive == NULL || map->driven == NULL) {
         return DALCS_E_NOMEM;
     }
-    DALCS_TRY(fill_map(flow, map));
+    DALCS_TRY(fill_map(flow, span, map));
     flow->map = map;
     *found = map;
     return DALCS_OK;
@@ -142,7 +155,7 @@ static enum dalcs_status make_start(struct dalcs_periodic_flow *flow,
     double h = (span->to - span->from) * briefer;
     for (int k = 0; k < MOST_BRIEFER; k++, h *= briefer) {
         struct dalcs_flow_map *map;
-        DALCS_TRY(dalcs_periodic_flow_map(flow, span->mode, h, &map));
+        DALCS_TRY(dalcs_periodic_flow_map(flow, span, span->from, h, &map));
         extrapolate(flow, map, start);
         if (k > 0 && differ(flow, start->P, before) <= same_projection) {
             break;
@@ -156,7 +169,7 @@ static enum dalcs_status make_start(struct dalcs_periodic_flow *flow,
 enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
                                             const struct dalcs_orbit_span *span,
                                             const struct dalcs_flow_start **found) {
-    struct dalcs_flow_start *start = flow->start;
+    struct dalcs_flow_start *start = flow->smooth == NULL ? flow->start : NULL;
     while (start != NULL && !dalcs_mode_is(start->mode, span->mode, flow->stages.n_words)) {
         start = start->next;
     }
@@ -175,7 +188,17 @@ enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
 
 /* ---- Set up -------------------------------------------------------------------------------------- */
 
-/* Waves of the sources with a small signal, along Legendre polynomials; all else is no small signal. */
+static void add_wave(struct dalcs_excitation *e, int input, int n_nodes) {
+    e->wave[e->n_waves++] = (struct dalcs_excitation_wave){
+        .input = input, .first = e->n_functions, .n_functions = n_nodes, .has_level = true};
+    for (int degree = 0; degree < n_nodes; degree++) {
+        e->function[e->n_functions++] = (struct dalcs_excitation_function){
+            .input = input, .shape = DALCS_EXCITATION_LEGENDRE, .degree = degree};
+    }
+}
+
+/* Waves of the sources with a small signal, along Legendre polynomials, and of smooth sources; all else is no small
+ * signal. */
 static enum dalcs_status drive_setup(struct dalcs_periodic_flow *flow, int n_nodes) {
     struct dalcs_excitation *e = &flow->excitation;
     const size_t n = (size_t)flow->system->n_inputs;
@@ -188,15 +211,13 @@ static enum dalcs_status drive_setup(struct dalcs_periodic_flow *flow, int n_nod
         return DALCS_E_NOMEM;
     }
     for (int k = 1; k < flow->system->n_inputs; k++) {
-        if (flow->source[k] == 0.0) {
-            continue;
+        if (flow->source[k] != 0.0) {
+            add_wave(e, k, n_nodes);
         }
-        e->wave[e->n_waves++] = (struct dalcs_excitation_wave){
-            .input = k, .first = e->n_functions, .n_functions = n_nodes, .has_level = true};
-        for (int degree = 0; degree < n_nodes; degree++) {
-            e->function[e->n_functions++] = (struct dalcs_excitation_function){
-                .input = k, .shape = DALCS_EXCITATION_LEGENDRE, .degree = degree};
-        }
+    }
+    flow->n_driven = e->n_functions;
+    for (int k = 0; k < flow->system->n_smooth; k++) {
+        add_wave(e, flow->system->smooth[k].input, n_nodes);
     }
     return DALCS_OK;
 }
@@ -253,6 +274,9 @@ static enum dalcs_status setup(struct dalcs_periodic_flow *flow, const double co
     flow->out = dalcs_arena_alloc(&flow->arena, n_out, sizeof(double));
     if (flow->M == NULL || flow->in == NULL || flow->out == NULL) {
         return DALCS_E_NOMEM;
+    }
+    if (flow->system->n_smooth > 0) {
+        DALCS_TRY(dalcs_flow_smooth_setup(flow, flow->n_driven));
     }
     return dalcs_periodic_pieces_make(flow);
 }

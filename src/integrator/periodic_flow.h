@@ -12,10 +12,12 @@
 
 #include <complex.h>
 
-/* A step of length h in one mode. Answers are laid out as those of the stages, their open pairs 0. */
+struct dalcs_flow_smooth;
+
+/* A step of length h in one mode, where there are smooth sources from t on. Answers are laid out as those of the stages, their open pairs 0. */
 struct dalcs_flow_map {
     const uint64_t *mode;
-    double h;
+    double h, t;
     double *state; /* [n_x][n_nodes * stride] of unit states */
     double complex
         *drive; /* [n_nodes][n_nodes * stride] of the sources along a Legendre polynomial each */
@@ -63,8 +65,10 @@ struct dalcs_periodic_flow {
     double legendre[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* coefficient k of the values at nodes */
     struct dalcs_excitation excitation;
     struct dalcs_stages stages;
-    struct dalcs_flow_map *map;     /* all of them */
-    struct dalcs_flow_start *start; /* likewise */
+    int n_driven;                     /* excitation functions of the small signals */
+    struct dalcs_flow_smooth *smooth; /* NULL: no smooth sources */
+    struct dalcs_flow_map *map;       /* all of them */
+    struct dalcs_flow_start *start;   /* likewise */
     int n;
     size_t capacity;
     struct dalcs_flow_piece *piece; /* [n] */
@@ -82,9 +86,10 @@ void dalcs_periodic_flow_finish(struct dalcs_periodic_flow *flow);
 /* Elements of an answer at all nodes. */
 size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow);
 
-/* The map of (mode, h), made now if it is new. */
-enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow, const uint64_t *mode,
-                                          double h, struct dalcs_flow_map **map) DALCS_MUST_CHECK;
+/* The map of the span's mode and h, from t on, made now if it is new. */
+enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
+                                          const struct dalcs_orbit_span *span, double t, double h,
+                                          struct dalcs_flow_map **map) DALCS_MUST_CHECK;
 
 /* How the mode of a span begins; NULL: with the states as they are. */
 enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,

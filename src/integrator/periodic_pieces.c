@@ -158,7 +158,7 @@ static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span
         struct dalcs_flow_map *map;
         double t = span->from + ldexp((double)at, -MOST_HALVINGS) * length;
         double tail;
-        DALCS_TRY(dalcs_periodic_flow_map(flow, span->mode, ldexp(length, -level), &map));
+        DALCS_TRY(dalcs_periodic_flow_map(flow, span, t, ldexp(length, -level), &map));
         try_piece(p, map, t, &tail);
         if (tail > resolved && level < MOST_HALVINGS) {
             level++;
@@ -200,6 +200,7 @@ static void begin_span(struct probe *p, const struct dalcs_flow_start *start, do
 static enum dalcs_status cut_period(struct probe *p) {
     struct dalcs_periodic_flow *flow = p->flow;
     const struct dalcs_orbit_part *orbit = flow->orbit;
+    const struct dalcs_orbit_span *before = NULL;
     for (int k = 0; k < orbit->n; k++) {
         const struct dalcs_orbit_span *span = &orbit->span[k];
         const struct dalcs_flow_start *start = NULL;
@@ -207,7 +208,11 @@ static enum dalcs_status cut_period(struct probe *p) {
             continue;
         }
         DALCS_TRY(flow->asked.go_on(flow->asked.user));
-        DALCS_TRY(dalcs_periodic_flow_start(flow, span, &start));
+        if (flow->smooth == NULL || before == NULL ||
+            !dalcs_mode_is(before->mode, span->mode, flow->stages.n_words)) {
+            DALCS_TRY(dalcs_periodic_flow_start(flow, span, &start));
+        }
+        before = span;
         begin_span(p, start, span->from);
         const int first = flow->n;
         DALCS_TRY(cut_span(p, span));

@@ -56,6 +56,10 @@ const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name);
 
 /* The value of one of the netlist's own parameters; false when there is none of that name. */
 bool dalcs_deck_parameter(const struct dalcs_deck *deck, const char *name, double *value);
+/* The number that an override would replace; false: it stands nowhere. */
+bool dalcs_deck_value(const struct dalcs_deck *deck, const struct dalcs_override *override,
+                      enum dalcs_dialect_name dialect, double *value);
+
 /* Is there a parameter of this name outside of subcircuits, does anything use it, and which is the one most like it (NULL:
  * none)? */
 bool dalcs_deck_has_parameter(const struct dalcs_deck *deck, const char *name);

@@ -3,6 +3,7 @@
  * A card that an override names is copied with a NUMBER in the place of its value. The reader of its
  * family then finds a card like any other, so a resistance of 0 is a short here too. */
 #include "language.h"
+#include "number.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -134,6 +135,38 @@ static enum dalcs_status apply(struct dalcs_language *language,
         return edit(language, card, at, is_there, NULL, override->value);
     }
     return DALCS_OK;
+}
+
+bool dalcs_deck_value(const struct dalcs_deck *deck, const struct dalcs_override *override,
+                      enum dalcs_dialect_name dialect, double *value) {
+    const bool is_model = override->kind == DALCS_OVERRIDE_MODEL;
+    if (override->kind == DALCS_OVERRIDE_PARAMETER) {
+        return dalcs_deck_parameter(deck, override->name, value);
+    }
+    for (size_t k = 0; k < deck->n_cards; k++) {
+        const struct dalcs_card *card = &deck->card[k];
+        const int name = is_model ? 1 : 0;
+        if (is_model != is_word(card->token, ".model") || name >= card->n ||
+            !is_word(&card->token[name], override->name)) {
+            continue;
+        }
+        bool is_there = true;
+        const int at =
+            is_model ? find_assigned(card, 3, override->field) : place_of_value(card, &is_there);
+        const struct dalcs_token *token =
+            at > 0 && at < card->n && is_there ? &card->token[at] : NULL;
+        struct dalcs_number number = {0};
+        if (token != NULL && token->kind == DALCS_TOKEN_NUMBER) {
+            *value = token->value;
+            return true;
+        }
+        const bool is_value =
+            token != NULL && token->kind == DALCS_TOKEN_WORD &&
+            dalcs_number_parse_as(token->text, dialect, &number) == DALCS_NUMBER_OK;
+        *value = number.value;
+        return is_value;
+    }
+    return false;
 }
 
 /* ---- Parameters ------------------------------------------------------------------------------ */

@@ -84,9 +84,10 @@ struct dalcs_netlist {
     struct dalcs_losses_request losses;
     bool
         asks_steady; /* a steady state is asked for beside the netlist, which need not ask for anything */
-    bool asks_response; /* and the response around it */
-    bool has_seed;      /* the next is told, whatever .options seed= says */
-    uint64_t seed;      /* of random values */
+    bool asks_response;      /* and the response around it */
+    bool asks_sensitivities; /* or how it depends on values */
+    bool has_seed;           /* the next is told, whatever .options seed= says */
+    uint64_t seed;           /* of random values */
 
     const char *name; /* the file's path, or what read_text was told */
     const char *title;

@@ -200,6 +200,17 @@ static enum dalcs_status add_end(struct dalcs_figure *figure) {
     return status;
 }
 
+static void widen_by_levels(const struct dalcs_figure *figure, struct dalcs_figure_view *view,
+                            int p) {
+    for (int k = 0; k < figure->n_lines; k++) {
+        const struct dalcs_figure_line *line = &figure->line[k];
+        if (line->is_level && line->panel == p) {
+            view->low[p] = fmin(view->low[p], line->at);
+            view->high[p] = fmax(view->high[p], line->at);
+        }
+    }
+}
+
 /* Impulses last a step whatever its length, so their height says nothing: they do not count for the
  * range where they would dwarf all the rest. */
 static void find_ranges(const struct dalcs_figure *figure, struct dalcs_figure_view *view,
@@ -232,6 +243,7 @@ static void find_ranges(const struct dalcs_figure *figure, struct dalcs_figure_v
         if (view->low[p] > view->high[p]) {
             view->low[p] = view->high[p] = 0.0;
         }
+        widen_by_levels(figure, view, p);
         double largest = fmax(fabs(view->low[p]), fabs(view->high[p]));
         if (largest < NOTHING) {
             largest = view->low[p] = view->high[p] = 0.0;

@@ -25,6 +25,14 @@ struct dalcs_figure_axis {
     bool logarithmic;
 };
 
+/* One that is drawn through panels whatever the curves. */
+struct dalcs_figure_line {
+    int panel;     /* that it, or its text, is in */
+    bool is_level; /* else across all panels, at a place of the axis */
+    double at;
+    const char *text; /* borrowed; NULL: none */
+};
+
 /* All panels from start to stop. */
 struct dalcs_figure_view {
     double start, stop;
@@ -43,6 +51,8 @@ struct dalcs_figure {
     const struct dalcs_theme *theme;
     const struct dalcs_conduction *conduction; /* borrowed; NULL: no bars, no marks */
     bool bars, marks; /* of conduction: bars below the panels, lines through them at events */
+    int n_lines;
+    const struct dalcs_figure_line *line; /* [n_lines] borrowed */
     size_t n_rows;
     int n_panels;
     struct dalcs_figure_panel panel[DALCS_FIGURE_MAX_PANELS]; /* some may be empty */

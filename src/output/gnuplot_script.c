@@ -109,6 +109,33 @@ static double choose_width(const struct dalcs_figure *figure, const struct dalcs
     return width;
 }
 
+enum { FIRST_LINE = 500 };
+
+static void write_lines(FILE *stream, const struct dalcs_figure *figure,
+                        const struct dalcs_gnuplot_page *page, int p) {
+    for (int k = 0; k < figure->n_lines; k++) {
+        const struct dalcs_figure_line *line = &figure->line[k];
+        const double at = line->at / (line->is_level ? 1.0 : page->time_scale);
+        if (line->is_level && line->panel == p) {
+            fprintf(stream, "set arrow %d from graph 0, first %.12g to graph 1, first %.12g",
+                    FIRST_LINE + k, at, at);
+        } else if (!line->is_level) {
+            fprintf(stream, "set arrow %d from first %.12g, graph 0 to first %.12g, graph 1",
+                    FIRST_LINE + k, at, at);
+        } else {
+            fprintf(stream, "unset arrow %d\n", FIRST_LINE + k);
+            continue;
+        }
+        fprintf(stream, " nohead back lw 1 dt (4,4) lc rgb '%s'\n", figure->theme->text);
+        if (line->text && line->panel == p) {
+            fprintf(stream, "set label %d ", FIRST_LINE + k);
+            dalcs_gnuplot_write_quoted(stream, line->text, MAX_TITLE);
+            fprintf(stream, " at first %.12g, graph %.3f right offset -0.6,0 textcolor rgb '%s'\n",
+                    at, 0.93 - 0.07 * (k % 3), figure->theme->text);
+        }
+    }
+}
+
 /* Panel k of the page. */
 static void write_panel(FILE *stream, const struct dalcs_figure *figure,
                         const struct dalcs_gnuplot_page *page, int v, int k) {
@@ -137,6 +164,7 @@ static void write_panel(FILE *stream, const struct dalcs_figure *figure,
                 "right textcolor rgb '%s'\n",
                 figure->theme->quiet_text);
     }
+    write_lines(stream, figure, page, p);
     for (int i = 0; i < panel->n; i++) {
         fprintf(stream, "%s $v%dp%dc%d using 1:2 with lines lw %.1f lc rgb '%s' ",
                 i == 0 ? "plot" : ",", v, p, i, choose_width(figure, view, p, i),

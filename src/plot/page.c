@@ -160,9 +160,23 @@ static void write_conduction(FILE *stream, const struct dalcs_conduction *conduc
     fputs("]", stream);
 }
 
+static void write_lines(FILE *stream, const struct dalcs_margin_lines *lines) {
+    fputs(",\n\"lines\": [", stream);
+    for (int k = 0; k < lines->n; k++) {
+        const struct dalcs_figure_line *line = &lines->line[k];
+        fprintf(stream, "%s{\"panel\": %d, \"level\": %s, \"at\": ", k > 0 ? ", " : "", line->panel,
+                line->is_level ? "true" : "false");
+        write_number(stream, line->at);
+        fputs(", \"text\": ", stream);
+        write_string(stream, line->text ? line->text : "");
+        fputs("}", stream);
+    }
+    fputs("]", stream);
+}
+
 static void write_run(FILE *stream, const struct dalcs_selection *selection,
                       const struct columns *columns, const struct dalcs_conduction *conduction,
-                      bool marks) {
+                      const struct dalcs_margin_lines *lines, bool marks) {
     bool exact = columns->n_signals * columns->n_rows <= MAX_EXACT;
     fputs("{\"axis\": {\"name\": ", stream);
     write_string(stream, selection->axis.quantity);
@@ -176,6 +190,7 @@ static void write_run(FILE *stream, const struct dalcs_selection *selection,
     write_panels(stream, selection);
     write_signals(stream, selection, columns, exact);
     write_conduction(stream, conduction);
+    write_lines(stream, lines);
     fputs("}", stream);
 }
 
@@ -209,7 +224,8 @@ bool dalcs_page_is_available(void) {
 }
 
 enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
-                                   const struct dalcs_conduction *conduction, const char *title,
+                                   const struct dalcs_conduction *conduction,
+                                   const struct dalcs_margin_lines *lines, const char *title,
                                    const struct dalcs_theme *theme, bool marks,
                                    struct dalcs_diag *diag) {
     struct columns columns = {.n_signals = selection->n,
@@ -238,7 +254,7 @@ enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *s
         } else if (strncmp(name, "title", length) == 0) {
             write_text(stream, title);
         } else if (strncmp(name, "run", length) == 0) {
-            write_run(stream, selection, &columns, conduction, marks);
+            write_run(stream, selection, &columns, conduction, lines, marks);
         } else if (strncmp(name, "page.css", length) == 0) {
             fputs(dalcs_embedded_page_css, stream);
         } else if (strncmp(name, "page.js", length) == 0) {
@@ -261,12 +277,14 @@ bool dalcs_page_is_available(void) {
 }
 
 enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
-                                   const struct dalcs_conduction *conduction, const char *title,
+                                   const struct dalcs_conduction *conduction,
+                                   const struct dalcs_margin_lines *lines, const char *title,
                                    const struct dalcs_theme *theme, bool marks,
                                    struct dalcs_diag *diag) {
     (void)stream;
     (void)selection;
     (void)conduction;
+    (void)lines;
     (void)title;
     (void)theme;
     (void)marks;

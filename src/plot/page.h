@@ -3,6 +3,7 @@
 #ifndef DALCS_PAGE_H
 #define DALCS_PAGE_H
 
+#include "margin_lines.h"
 #include "selection.h"
 
 #include <stdio.h>
@@ -13,7 +14,8 @@ bool dalcs_page_is_available(void);
 /* All signals of the selection are in the page; those of its panels are shown at first. Errors of the
  * stream stay there. DALCS_E_LIMIT comes with a message: too many values for one page. */
 enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
-                                   const struct dalcs_conduction *conduction, const char *title,
+                                   const struct dalcs_conduction *conduction,
+                                   const struct dalcs_margin_lines *lines, const char *title,
                                    const struct dalcs_theme *theme, bool marks,
                                    struct dalcs_diag *diag) DALCS_MUST_CHECK;
 

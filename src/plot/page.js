@@ -229,7 +229,28 @@ function line(context, area, x, color, dash) {
   context.stroke();
 }
 
-function drawUnderlay(context, area) {
+/* A level of one panel, or a place of the axis; its text is in one panel. */
+function drawLine(context, area, graph, mark, index, here) {
+  context.fillStyle = css("--text");
+  if (mark.level) {
+    const y = Math.round(graph.toDomYCoord(mark.at)) + 0.5;
+    if (!here || y < area.y || y > area.y + area.h) return;
+    context.strokeStyle = css("--text");
+    context.setLineDash([4, 4]);
+    context.beginPath();
+    context.moveTo(area.x, y);
+    context.lineTo(area.x + area.w, y);
+    context.stroke();
+  } else if (mark.at >= view.from && mark.at <= view.to) {
+    const x = Math.round(area.x + area.w * partOf(view.from, view.to, mark.at)) + 0.5;
+    line(context, area, x, css("--text"), [4, 4]);
+    context.textAlign = x > area.x + area.w / 2 ? "right" : "left";
+    const beside = context.textAlign === "right" ? -5 : 5;
+    if (here) context.fillText(mark.text, x + beside, area.y + 14 + 14 * (index % 3));
+  }
+}
+
+function drawUnderlay(context, area, graph, panel) {
   const xOf = (time) => Math.round(area.x + area.w * partOf(view.from, view.to, time)) + 0.5;
   const visible = (time) => time >= view.from && time <= view.to;
   context.save();
@@ -241,6 +262,8 @@ function drawUnderlay(context, area) {
     }
     for (const time of run.jumps.filter(visible)) line(context, area, xOf(time), css("--text"), []);
   }
+  run.lines.forEach((mark, k) =>
+    drawLine(context, area, graph, mark, k, mark.panel === panels.indexOf(panel)));
   for (const name of ["a", "b"]) {
     const time = view.cursor[name];
     if (time !== null && visible(time)) line(context, area, xOf(time), css(`--${name}`), []);
@@ -382,7 +405,7 @@ function makeGraph(panel) {
         axisLabelWidth: 76,
       },
     },
-    underlayCallback: drawUnderlay,
+    underlayCallback: (context, area, graph) => drawUnderlay(context, area, graph, panel),
     drawCallback: (graph) => {
       const [from, to] = graph.xAxisRange();
       if (!drawing && (from !== view.from || to !== view.to)) show(from, to);

@@ -39,8 +39,7 @@ static enum dalcs_status add_jumps(const json_t *list, struct dalcs_conduction *
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_report_reader_read(const char *path, struct dalcs_conduction *conduction,
-                                           struct dalcs_diag *diag) {
+static enum dalcs_status load(const char *path, json_t **report, struct dalcs_diag *diag) {
     FILE *file = fopen(path, "rb");
     if (!file) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "cannot read '%s': %s", path,
@@ -48,16 +47,56 @@ enum dalcs_status dalcs_report_reader_read(const char *path, struct dalcs_conduc
         return DALCS_E_IO;
     }
     json_error_t error;
-    json_t *report = json_loadf(file, 0, &error);
+    *report = json_loadf(file, 0, &error);
     fclose(file);
-    if (!report && json_error_code(&error) == json_error_out_of_memory) {
+    if (!*report && json_error_code(&error) == json_error_out_of_memory) {
         return DALCS_E_NOMEM;
     }
-    if (!report) {
+    if (!*report) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "'%s' is no report of dalcs run: line %d: %s",
                        path, error.line, error.text);
         return DALCS_E_OPTION;
     }
+    return DALCS_OK;
+}
+
+static enum dalcs_status add_margins(const json_t *list, bool of_phase,
+                                     struct dalcs_margin_lines *lines) {
+    const char *const key = of_phase ? "phase_margin" : "gain_margin";
+    size_t i;
+    json_t *margin;
+    json_array_foreach(list, i, margin) {
+        const json_t *frequency = json_object_get(margin, "frequency");
+        const json_t *value = json_object_get(margin, key);
+        if (json_is_number(frequency) && json_is_number(value)) {
+            DALCS_TRY(dalcs_margin_lines_add(lines, of_phase, json_number_value(frequency),
+                                             json_number_value(value)));
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_report_reader_margins(const char *path, struct dalcs_margin_lines *lines,
+                                              struct dalcs_diag *diag) {
+    json_t *report;
+    DALCS_TRY(load(path, &report, diag));
+    const json_t *response = json_object_get(report, "response");
+    const char *loop = json_string_value(json_object_get(response, "loop"));
+    enum dalcs_status status = loop ? dalcs_margin_lines_begin(lines, loop) : DALCS_OK;
+    if (status == DALCS_OK && loop) {
+        status = add_margins(json_object_get(response, "crossovers"), true, lines);
+    }
+    if (status == DALCS_OK && loop) {
+        status = add_margins(json_object_get(response, "reversals"), false, lines);
+    }
+    json_decref(report);
+    return status;
+}
+
+enum dalcs_status dalcs_report_reader_read(const char *path, struct dalcs_conduction *conduction,
+                                           struct dalcs_diag *diag) {
+    json_t *report;
+    DALCS_TRY(load(path, &report, diag));
     const json_t *events = json_object_get(report, "events");
     enum dalcs_status status = json_is_array(events)
                                    ? add_events(events, path, conduction, diag)
@@ -75,6 +114,14 @@ enum dalcs_status dalcs_report_reader_read(const char *path, struct dalcs_conduc
 }
 
 #else
+
+enum dalcs_status dalcs_report_reader_margins(const char *path, struct dalcs_margin_lines *lines,
+                                              struct dalcs_diag *diag) {
+    (void)path;
+    (void)lines;
+    (void)diag;
+    return DALCS_OK; /* the other one says why there is none */
+}
 
 enum dalcs_status dalcs_report_reader_read(const char *path, struct dalcs_conduction *conduction,
                                            struct dalcs_diag *diag) {

@@ -240,6 +240,18 @@ static void evaluate_row(const struct dalcs_selection *selection, size_t row, do
     }
 }
 
+/* Each angle is the one of its like that is nearest to the one before. */
+static void continue_angles(const struct dalcs_selection *selection, double *value,
+                            double *before) {
+    for (size_t i = 0; i < selection->n && selection->continues; i++) {
+        if (selection->signal[i].dimension.degree) {
+            const double turns = rint((value[i] - before[i]) / 360.0);
+            value[i] -= isfinite(turns) && isfinite(before[i]) ? 360.0 * turns : 0.0;
+            before[i] = isfinite(value[i]) ? value[i] : before[i];
+        }
+    }
+}
+
 /* The values at `at`, between a row and the next one. */
 static void interpolate(const struct dalcs_selection *selection, size_t row, double at,
                         double *value, double *other) {
@@ -271,20 +283,24 @@ enum dalcs_status dalcs_selection_each_row(const struct dalcs_selection *selecti
                                            enum dalcs_status (*row)(void *user, double at,
                                                                     const double *value),
                                            void *user) {
-    double *value = dalcs_alloc(2 * selection->n, sizeof *value);
+    double *value = dalcs_alloc(3 * selection->n, sizeof *value);
     enum dalcs_status status = value ? DALCS_OK : DALCS_E_NOMEM;
+    double *last = value ? value + 2 * selection->n : NULL;
     for (size_t k = 0; status == DALCS_OK && k < selection->waveforms->n_rows; k++) {
         double at = *row_of(selection, k), before = k > 0 ? *row_of(selection, k - 1) : at;
         if (before < selection->start && at > selection->start) {
             interpolate(selection, k - 1, selection->start, value, value + selection->n);
+            continue_angles(selection, value, last);
             status = row(user, selection->start, value);
         }
         if (status == DALCS_OK && is_within(selection, k)) {
             evaluate_row(selection, k, value);
+            continue_angles(selection, value, last);
             status = row(user, at, value);
         }
         if (status == DALCS_OK && before < selection->stop && at > selection->stop) {
             interpolate(selection, k - 1, selection->stop, value, value + selection->n);
+            continue_angles(selection, value, last);
             status = row(user, selection->stop, value);
         }
     }

@@ -15,6 +15,7 @@ struct dalcs_selection {
     struct dalcs_figure_panel panel[DALCS_FIGURE_MAX_PANELS]; /* of the signals above */
     struct dalcs_figure_axis axis;
     double start, stop; /* of the axis */
+    bool continues;     /* an angle goes on beyond half a turn instead of coming back */
     struct dalcs_arena arena;
 };
 

@@ -2,6 +2,7 @@
  * changing one. SI units throughout. */
 #include "report.h"
 #include "response_json.h"
+#include "sensitivity_json.h"
 
 #include "json.h"
 #include "losses_json.h"
@@ -379,6 +380,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_energy(&json, report);
     write_steady(&json, report);
     dalcs_response_json_write(&json, report);
+    dalcs_sensitivity_json_write(&json, report);
     write_infeasible(&json, report);
     dalcs_json_close(&json, '}');
 }

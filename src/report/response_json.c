@@ -24,6 +24,7 @@ void dalcs_response_json_write(struct dalcs_json *json, const struct dalcs_repor
     dalcs_json_number(json, "tail", report->response.tail);
     if (report->response.loop != NULL) {
         dalcs_json_string(json, "loop", report->response.loop);
+        dalcs_json_string(json, "injection", report->response.loop_is_loaded ? "both" : "voltage");
         write_margins(json, "crossovers", true, report->response.n_crossovers,
                       report->response.crossover);
         write_margins(json, "reversals", false, report->response.n_reversals,

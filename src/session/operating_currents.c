@@ -112,6 +112,27 @@ static enum dalcs_status part_models(struct dalcs_circuit *c, int n) {
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_operating_currents_keep(struct dalcs_circuit *to,
+                                                const struct dalcs_circuit *from, bool *any) {
+    int n = 0;
+    for (int k = 0; k < to->n_devices; k++) {
+        n += exponential_of(to, k) != NULL ? 1 : 0;
+    }
+    *any = n > 0 && from->n_devices == to->n_devices;
+    if (!*any) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(part_models(to, n));
+    for (int k = 0; k < to->n_devices; k++) {
+        const struct dalcs_exponential *was =
+            exponential_of(to, k) != NULL ? exponential_of(from, k) : NULL;
+        if (was != NULL) {
+            dalcs_exponential_take(&to->diode_model[to->device[k].model], was->at, was->back_at);
+        }
+    }
+    return DALCS_OK;
+}
+
 /* Which of the analyses shows what the diodes carry. */
 static enum dalcs_analysis telling_analysis(const struct dalcs_circuit *c) {
     bool sweeps_sources = c->n_dc > 0;

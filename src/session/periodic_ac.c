@@ -37,25 +37,30 @@ static enum dalcs_status refuse_frequency(const struct dalcs_periodic_ac *a, dou
     return DALCS_SINGULAR;
 }
 
-static enum dalcs_status solve(struct dalcs_periodic_ac *a, double frequency) {
-    for (int k = 0; k < a->n_parts; k++) {
-        struct dalcs_periodic_ac_part *p = &a->part[k];
-        if (p->rests) {
-            continue;
-        }
-        const enum dalcs_status status =
-            dalcs_periodic_response_at(&p->response, two_pi * frequency, a->sideband);
-        if (status == DALCS_SINGULAR) {
-            return refuse_frequency(a, frequency);
-        }
-        DALCS_TRY(status);
-        for (int m = 0; m < p->response.n_read; m++) {
-            const int column = p->response.read[m];
-            p->y[0][column] = creal(p->response.y[column]);
-            p->y[1][column] = cimag(p->response.y[column]);
-        }
+static enum dalcs_status solve_part(struct dalcs_periodic_ac *a, struct dalcs_periodic_ac_part *p,
+                                    double frequency) {
+    if (p->rests) {
+        return DALCS_OK;
+    }
+    const enum dalcs_status status =
+        dalcs_periodic_response_at(&p->response, two_pi * frequency, a->sideband);
+    if (status == DALCS_SINGULAR) {
+        return refuse_frequency(a, frequency);
+    }
+    DALCS_TRY(status);
+    for (int m = 0; m < p->response.n_read; m++) {
+        const int column = p->response.read[m];
+        p->y[0][column] = creal(p->response.y[column]);
+        p->y[1][column] = cimag(p->response.y[column]);
     }
     return DALCS_OK;
+}
+
+static enum dalcs_status solve(struct dalcs_periodic_ac *a, double frequency) {
+    for (int k = 0; k < a->n_parts; k++) {
+        DALCS_TRY(solve_part(a, &a->part[k], frequency));
+    }
+    return a->loop.is_loaded ? solve_part(a, &a->by_current, frequency) : DALCS_OK;
 }
 
 static enum dalcs_status gain_at(void *user, double frequency, double complex *gain) {
@@ -150,10 +155,8 @@ static void mark_read(const struct dalcs_periodic_ac *a, int system, bool *is_re
         mark_probe(&network->output[i].plus, system, is_read);
         mark_probe(&network->output[i].minus, system, is_read);
     }
-    for (int k = 0; k < 2 && a->loop.device >= 0 && a->loop.system == system; k++) {
-        if (a->loop.column[k] >= 0) {
-            is_read[a->loop.column[k]] = true;
-        }
+    if (a->loop.device >= 0 && a->loop.system == system) {
+        dalcs_periodic_loop_mark(a, is_read);
     }
 }
 
@@ -181,8 +184,9 @@ static enum dalcs_status refuse_rough(const struct dalcs_periodic_ac *a) {
     return DALCS_NOT_CONVERGED;
 }
 
-static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, int k, double fastest) {
-    struct dalcs_periodic_ac_part *p = &a->part[k];
+/* of: the device whose stimulus alone has a small signal; -1: the AC values of all. */
+static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, struct dalcs_periodic_ac_part *p,
+                                    int k, int of, double fastest) {
     const struct dalcs_system *s = &a->run->s->network.system[k];
     const size_t n_columns = (size_t)dalcs_system_n_columns(s);
     const size_t n_inputs = (size_t)s->n_inputs;
@@ -199,7 +203,7 @@ static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, int k, double f
     }
     p->rests = true;
     for (int i = 1; i < s->n_inputs; i++) {
-        p->source[i] = dalcs_periodic_loop_source(a, s->stimulus[i]);
+        p->source[i] = dalcs_periodic_loop_source(a, of, s->stimulus[i]);
         p->s[0][i] = a->sideband == 0 ? creal(p->source[i]) : 0.0;
         p->s[1][i] = a->sideband == 0 ? cimag(p->source[i]) : 0.0;
         p->rests = p->rests && p->source[i] == 0.0;
@@ -232,9 +236,10 @@ static enum dalcs_status setup(struct dalcs_periodic_ac *a) {
     }
     for (int k = 0; k < a->log.n_parts; k++) {
         a->n_parts = k + 1;
-        DALCS_TRY(part_setup(a, k, fastest));
+        DALCS_TRY(part_setup(a, &a->part[k], k, a->loop.device, fastest));
     }
-    return DALCS_OK;
+    return a->loop.is_loaded ? part_setup(a, &a->by_current, a->loop.system, a->loop.probe, fastest)
+                             : DALCS_OK;
 }
 
 /* The netlist's frequencies, or others that are asked for. */
@@ -308,6 +313,11 @@ static enum dalcs_status look_around(struct dalcs_periodic_ac *a) {
     return walk(a);
 }
 
+static void part_finish(struct dalcs_periodic_ac_part *p) {
+    dalcs_periodic_response_finish(&p->response);
+    dalcs_periodic_flow_finish(&p->flow);
+}
+
 enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) {
     struct dalcs_run *r = st->run;
     struct dalcs_periodic_ac a = {.st = st, .run = r};
@@ -315,9 +325,9 @@ enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) {
         dalcs_euler_setup(&a.euler, &r->s->circuit, &r->s->network, &r->osnsp, r->h, st->period));
     enum dalcs_status status = look_around(&a);
     for (int k = 0; k < a.n_parts; k++) {
-        dalcs_periodic_response_finish(&a.part[k].response);
-        dalcs_periodic_flow_finish(&a.part[k].flow);
+        part_finish(&a.part[k]);
     }
+    part_finish(&a.by_current);
     dalcs_margins_finish(&a.margins);
     dalcs_measures_finish(&a.measures);
     dalcs_orbit_log_finish(&a.log);

@@ -25,6 +25,8 @@ struct dalcs_periodic_ac {
     struct dalcs_periodic_loop { /* the source in a loop */
         int device;              /* -1: none is asked for */
         int system, column[2];   /* of its nodes; -1: ground */
+        bool is_loaded;          /* a current is injected as well, by the part below */
+        int probe;               /* the current source that does */
     } loop;
 
     struct dalcs_margins margins;
@@ -33,9 +35,10 @@ struct dalcs_periodic_ac {
     struct dalcs_orbit_log log;
     int n_parts;
     struct dalcs_periodic_ac_part *part;
-    double *row;       /* [2 n_outputs] */
-    double *shown;     /* [2 n_shown + 2] with the gain of the loop last */
-    const char **name; /* [n_shown + 1] likewise */
+    struct dalcs_periodic_ac_part by_current; /* of the loop's system */
+    double *row;                              /* [2 n_outputs] */
+    double *shown;                            /* [2 n_shown + 2] with the gain of the loop last */
+    const char **name;                        /* [n_shown + 1] likewise */
     enum dalcs_unit *unit;
     struct dalcs_measures measures;
     struct dalcs_arena arena;
@@ -46,10 +49,13 @@ struct dalcs_periodic_ac {
 /* Which sources have a small signal: those of the netlist, or that in the loop alone. */
 enum dalcs_status dalcs_periodic_loop_find(struct dalcs_periodic_ac *ac) DALCS_MUST_CHECK;
 
-/* The AC value of a source, by its stimulus. */
-double complex dalcs_periodic_loop_source(const struct dalcs_periodic_ac *ac, int stimulus);
+/* The small signal of a source, by its stimulus: its AC value, or 1 of the device `of` and 0 of others; of < 0: none. */
+double complex dalcs_periodic_loop_source(const struct dalcs_periodic_ac *ac, int of, int stimulus);
 
-/* Minus the voltage of its first node over that of its second one, of the frequency that was solved last. */
+/* Columns of the loop's system that its gain is made of. */
+void dalcs_periodic_loop_mark(const struct dalcs_periodic_ac *ac, bool *is_read);
+
+/* Of the frequency that was solved last. */
 double complex dalcs_periodic_loop_gain(const struct dalcs_periodic_ac *ac);
 
 /* Margins into the report. */

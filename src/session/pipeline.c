@@ -4,6 +4,7 @@
 #include "pipeline.h"
 
 #include "gates.h"
+#include "stroboscope.h"
 
 #include "thinning.h"
 
@@ -215,6 +216,9 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
         return circuit->periodic.present || r->options->bode ? dalcs_periodic_ac_run(r)
                                                              : dalcs_small_signal_run(r);
     case DALCS_PERIODIC:
+        if (r->s->stroboscope != NULL) {
+            return dalcs_stroboscope_run(r);
+        }
         return circuit->periodic.present || r->options->steady ? dalcs_steady_run(r) : DALCS_OK;
     default:
         if (!circuit->transient.present) {
@@ -235,6 +239,7 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
                                      const struct dalcs_sink *sink, const struct dalcs_plot *step,
                                      const enum dalcs_analysis *analysis, size_t n) {
     dalcs_session_forget_run(session);
+    DALCS_TRY(dalcs_periodic_loop_prepare(session, options));
     struct dalcs_run r = {.s = session, .options = options, .sink = sink, .step = step};
     double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     double wall = seconds(CLOCK_MONOTONIC);
@@ -287,6 +292,24 @@ enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
     return dalcs_run_analyses(session, options, &complete, NULL, &analysis, 1);
 }
 
+/* .step as a bifurcation diagram. */
+static enum dalcs_status run_stroboscope(struct dalcs_session *session,
+                                         const struct dalcs_run_options *options,
+                                         const struct dalcs_sink *sink) {
+    struct dalcs_stroboscope stroboscope = {0};
+    if (session->steps.n == 0 || !options->steady) {
+        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL,
+                       "write a card such as: .step param load 1 10 0.1",
+                       "samples are of one value after the other, and the netlist has no .step");
+        return DALCS_E_OPTION;
+    }
+    session->stroboscope = &stroboscope;
+    const enum dalcs_status status = dalcs_stepped_run(session, options, sink);
+    session->stroboscope = NULL;
+    dalcs_stroboscope_finish(&stroboscope);
+    return status;
+}
+
 static enum dalcs_status run_all(struct dalcs_session *session,
                                  const struct dalcs_run_options *options,
                                  const struct dalcs_sink *sink) {
@@ -297,6 +320,9 @@ static enum dalcs_status run_all(struct dalcs_session *session,
         DALCS_TRY(dalcs_steady_prepare(session));
     }
     DALCS_TRY(dalcs_steps_find(session));
+    if (options->samples > 0) {
+        return run_stroboscope(session, options, &complete);
+    }
     if (session->steps.n > 0) {
         return dalcs_stepped_run(session, options, &complete);
     }

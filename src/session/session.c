@@ -65,7 +65,8 @@ void dalcs_session_destroy(struct dalcs_session *session) {
 /* Steps, sweeps of what is no source, and scripts want other circuits of the same netlist. */
 static bool is_built_again(const struct dalcs_circuit *circuit, const struct dalcs_netlist *netlist,
                            bool is_kept) {
-    bool again = circuit->n_steps > 0 || netlist->n_script_lines > 0 || is_kept;
+    bool again = circuit->n_steps > 0 || circuit->sensitivity.present ||
+                 netlist->n_script_lines > 0 || is_kept;
     for (int k = 0; k < circuit->n_dc; k++) {
         const int device = circuit->dc[k].device;
         again = again || device < 0 || circuit->device[device].stimulus < 0;
@@ -168,6 +169,11 @@ enum dalcs_status dalcs_session_ask_response(struct dalcs_session *session) {
     return dalcs_session_ask_steady(session);
 }
 
+enum dalcs_status dalcs_session_ask_sensitivities(struct dalcs_session *session) {
+    session->asks_sensitivities = session->name == NULL;
+    return dalcs_session_ask_steady(session);
+}
+
 enum dalcs_status dalcs_session_keep_netlist(struct dalcs_session *session) {
     if (session->name != NULL) {
         return DALCS_E_OPTION; /* it is read */
@@ -185,6 +191,7 @@ enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const c
                                     .losses = session->losses,
                                     .asks_steady = session->asks_steady,
                                     .asks_response = session->asks_response,
+                                    .asks_sensitivities = session->asks_sensitivities,
                                     .has_seed = session->has_seed,
                                     .seed = session->seed};
     const bool is_system = dalcs_description_is_text(text, length);
@@ -205,6 +212,7 @@ enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const c
                                     .losses = session->losses,
                                     .asks_steady = session->asks_steady,
                                     .asks_response = session->asks_response,
+                                    .asks_sensitivities = session->asks_sensitivities,
                                     .has_seed = session->has_seed,
                                     .seed = session->seed};
     return build(session, &netlist,

@@ -14,6 +14,8 @@
 struct dalcs_logic_run;
 struct dalcs_losses_run;
 struct dalcs_orbit_point;
+struct dalcs_steady_near;
+struct dalcs_stroboscope;
 struct dalcs_radau;
 struct dalcs_radau_options;
 
@@ -46,8 +48,10 @@ struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
     struct dalcs_losses_request losses;
-    bool asks_steady, asks_response;
-    bool keeps_netlist; /* it may be run with other values */
+    bool asks_steady, asks_response, asks_sensitivities;
+    struct dalcs_stroboscope *stroboscope; /* while .step is looked at with it; else NULL */
+    struct dalcs_steady_near *near; /* where the search for an orbit begins; NULL: as it does */
+    bool keeps_netlist;             /* it may be run with other values */
     struct dalcs_diag diag;
     struct dalcs_circuit circuit;
     bool has_circuit;
@@ -150,6 +154,11 @@ enum dalcs_status dalcs_operating_currents(struct dalcs_session *session,
                                            const struct dalcs_run_options *options,
                                            const struct dalcs_sink *sink) DALCS_MUST_CHECK;
 
+/* The same circuit with another value has its tangents at the same currents. *any: its network is to be built again. */
+enum dalcs_status dalcs_operating_currents_keep(struct dalcs_circuit *to,
+                                                const struct dalcs_circuit *from,
+                                                bool *any) DALCS_MUST_CHECK;
+
 /* One analysis of the session's circuit as it is. */
 enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
                                              const struct dalcs_run_options *options,
@@ -223,6 +232,11 @@ void dalcs_steady_anchor_forget(struct dalcs_session *s);
 
 /* Before a run with these options: an anchor of other ones is none. */
 void dalcs_steady_anchor_enter(struct dalcs_session *s, const struct dalcs_run_options *options);
+
+/* Before a run that asks for the gain of a loop by a current as well: the circuit gets the source of it. */
+enum dalcs_status
+dalcs_periodic_loop_prepare(struct dalcs_session *session,
+                            const struct dalcs_run_options *options) DALCS_MUST_CHECK;
 
 /* Runs .pss into r->sink. */
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;

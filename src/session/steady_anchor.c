@@ -119,7 +119,7 @@ enum dalcs_status dalcs_steady_anchor_prepare(struct dalcs_session *s,
     const size_t anchor = step - step % DALCS_STEPS_OF_AN_ANCHOR;
     const bool asks = (leaves && c->transient.starts_steady) || analysis == DALCS_PERIODIC ||
                       (analysis == DALCS_AC && (c->periodic.present || options->bode));
-    if (!asks || anchor == step ||
+    if (!asks || s->stroboscope != NULL || anchor == step ||
         (s->anchor.is_known && s->anchor.step == anchor && s->anchor.leaves == leaves)) {
         return DALCS_OK;
     }

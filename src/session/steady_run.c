@@ -1,6 +1,9 @@
 /* steady_run.c - .pss: the period, the search, then one period as the .tran that it is. */
 #include "steady.h"
 
+#include "sensitivity.h"
+#include "stroboscope.h"
+
 #include "quantity.h"
 
 #include <math.h>
@@ -220,7 +223,10 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     const bool uic = c->transient.use_initial_conditions || c->periodic.use_initial_conditions;
     take_period(r, period, uic);
     DALCS_TRY(dalcs_steady_setup(st, r, period));
-    if (is_free) {
+    if (r->s->near != NULL) {
+        DALCS_TRY(dalcs_steady_from_near(st, is_free, r->s->near));
+        take_period(r, st->period, uic);
+    } else if (is_free) {
         DALCS_TRY(find_oscillation(st, period));
         st->period *= n_periods;
         DALCS_TRY(n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK);
@@ -242,8 +248,9 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     DALCS_TRY(dalcs_steady_next_step(st)); /* how far it may be off, and what is conserved */
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
     DALCS_TRY(dalcs_steady_report(st));
-    return period == one && is_subharmonic(&r->s->report) ? dalcs_steady_look_for_double(st)
-                                                          : DALCS_OK;
+    return period == one && r->s->near == NULL && is_subharmonic(&r->s->report)
+               ? dalcs_steady_look_for_double(st)
+               : DALCS_OK;
 }
 
 enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) {
@@ -264,6 +271,38 @@ enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     DALCS_TRY(dalcs_steady_keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
     status = status == DALCS_OK && !r->s->anchor.is_sought ? run_period(&st, false) : status;
+    dalcs_steady_put_back(r, &kept, true);
+    free(kept.stimulus);
+    if (status == DALCS_OK && r->s->circuit.sensitivity.present && r->s->near == NULL) {
+        status = dalcs_sensitivities_run(&st);
+    }
+    dalcs_steady_finish(&st);
+    return status;
+}
+
+static enum dalcs_status look_at(struct dalcs_run *r,
+                                 enum dalcs_status (*look)(struct dalcs_steady *st),
+                                 struct dalcs_steady *st) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
+    bool is_free;
+    DALCS_TRY(dalcs_steady_find_period(r, period, false, &period, &is_free));
+    if (is_free) {
+        return refuse(r, "give the circuit a clock",
+                      "samples are taken once in each period, and no source repeats");
+    }
+    take_period(r, period,
+                c->transient.use_initial_conditions || c->periodic.use_initial_conditions);
+    DALCS_TRY(dalcs_steady_setup(st, r, period));
+    return look(st);
+}
+
+enum dalcs_status dalcs_steady_look(struct dalcs_run *r,
+                                    enum dalcs_status (*look)(struct dalcs_steady *st)) {
+    struct dalcs_steady st = {0};
+    struct dalcs_steady_kept kept;
+    DALCS_TRY(dalcs_steady_keep(r, &kept));
+    const enum dalcs_status status = look_at(r, look, &st);
     dalcs_steady_put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
@@ -304,11 +343,6 @@ static enum dalcs_status check_period(struct dalcs_steady *st) {
 }
 
 enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
-    if (r->s->circuit.n_smooth > 0) { /* its maps are linear (periodic_flow.h) */
-        return refuse(r, "inject a small sine in .tran instead",
-                      "the response around a periodic orbit is not available where formulas have "
-                      "products or functions");
-    }
     struct dalcs_steady st = {0};
     struct dalcs_steady_kept kept;
     const bool is_checked = r->s->report.steady.present;

@@ -317,6 +317,15 @@ C3 m 0 1u
 .pss step=1u uic
 .end
 """, 0),
+    "sensitive": ("""A sensitivity
+V1 g 0 PULSE(0 1 0 0 0 1u 3u)
+R1 g a 10
+C1 a 0 1u
+.pss step=1u uic
+.sens r1
+.meas pss mean avg v(a)
+.end
+""", 0),
     "response": ("""The gain of a loop around an orbit in discontinuous conduction, and a part without memory
 Vin in 0 12
 Vtri tri 0 PULSE(0 1 0 10u 0 0 10u)
@@ -334,7 +343,7 @@ Va x 0 1
 Ra x 0 1
 .save v(out) v(x)
 .pss step=1u uic
-.ac dec 1 1k 100k loop=vl sideband=1
+.ac dec 1 1k 100k loop=vl injection=both sideband=1
 .end
 """, 0),
     "envelope": ("""Periods that are leapt over, a source that is a ramp, and the losses of an orbit

@@ -25,7 +25,7 @@ import sys
 
 USER_PAGES = [
     "README.md", "doc/accuracy.md", "doc/audit.md", "doc/bode.md", "doc/check.md", "doc/compare.md",
-    "doc/figures.md", "doc/first-circuit.md", "doc/install.md", "doc/library.md", "doc/lessons/*.md",
+    "doc/averaged.md", "doc/figures.md", "doc/first-circuit.md", "doc/install.md", "doc/library.md", "doc/lessons/*.md",
     "doc/methods.md", "doc/netlist.md", "doc/output.md", "doc/plots.md", "doc/python.md", "doc/steady.md",
     "doc/system-file.md",
 ]

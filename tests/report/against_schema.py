@@ -6,7 +6,8 @@ nothing to do.
 usage: against_schema.py PROGRAM SOURCE_ROOT
 
 The schema allows no key that it does not describe, and no word where a number belongs: a NaN in a
-report fails. What src/report/report.c, losses_json.c and response_json.c write must be all that the schema has, and nothing else.
+report fails. What src/report/report.c, losses_json.c, response_json.c and sensitivity_json.c write must be all that the schema
+has, and nothing else.
 """
 
 import json
@@ -177,7 +178,7 @@ def main():
     schema = json.loads((root / "doc" / "report.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     source = "".join((root / "src" / "report" / name).read_text(encoding="utf-8")
-                     for name in ("report.c", "losses_json.c", "response_json.c"))
+                     for name in ("report.c", "losses_json.c", "response_json.c", "sensitivity_json.c"))
     netlists = sorted((root / "netlists").glob("**/*.cir")) + sorted(
         (root / "tests" / "reference").glob("*.cir"))
     with tempfile.TemporaryDirectory() as name:
@@ -198,9 +199,11 @@ def main():
                 reports.run(netlist, "auto")
         loop = reports.folder / "loop.cir"
         text = (root / "tests" / "steady" / "cases" / "buck_vm.cir").read_text(encoding="utf-8")
-        loop.write_text(text.replace("\n.end", "\n.ac dec 5 100 500k loop=vinj\n"), encoding="utf-8")
-        report = reports.run(loop, "auto")[1].get("response", {})
-        check(report.get("crossovers"), f"no margins: {report}")
+        loop.write_text(text.replace("\n.end", "\n.ac dec 5 100 500k loop=vinj\n.sens\n.four 100k 3 v(out)\n"),
+                        encoding="utf-8")
+        report = reports.run(loop, "auto")[1]
+        check(report.get("response", {}).get("crossovers"), f"no margins: {report.get('response')}")
+        check(report.get("sensitivity", {}).get("results"), f"no sensitivities: {report.get('sensitivity')}")
         for name, (text, status, kind) in MADE.items():
             reports.made(name, text, status, kind)
         for method in METHODS:
