@@ -109,8 +109,8 @@ enum dalcs_status ng_take_vectors(struct ng_library *l) {
     for (size_t k = 0; k < from->own.n; k++) {
         DALCS_TRY(take_one(l, l->plots.plot[0], from->own.vector[k]));
     }
-    for (size_t k = 0; from->has_plot && k < from->plot.n; k++) {
-        DALCS_TRY(take_one(l, ng_plots_current(&l->plots), from->plot.vector[k]));
+    for (size_t k = 0; from->current != NULL && k < from->current->n; k++) {
+        DALCS_TRY(take_one(l, ng_plots_current(&l->plots), from->current->vector[k]));
     }
     return DALCS_OK;
 }
