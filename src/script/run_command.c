@@ -7,12 +7,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+void dalcs_script_name_plot(struct dalcs_script *script) {
+    const struct dalcs_script_host *host = script->host;
+    struct dalcs_plot_vectors *plot = script->vectors.current;
+    if (host->name_of_plot != NULL && plot != NULL) {
+        snprintf(plot->type, sizeof plot->type, "%.31s", host->name_of_plot(host->user));
+    }
+}
+
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct dalcs_script *script = user;
     const struct dalcs_sink *sink = script->host->sink;
     enum dalcs_status status = dalcs_vectors_begin(&script->vectors, plot);
     script->n_signals = plot->n_signals;
-    return status == DALCS_OK && sink->begin != NULL ? sink->begin(sink->user, plot) : status;
+    status = status == DALCS_OK && sink->begin != NULL ? sink->begin(sink->user, plot) : status;
+    if (status == DALCS_OK) {
+        dalcs_script_name_plot(script);
+    }
+    return status;
 }
 
 static enum dalcs_status row(void *user, double time, const double *value) {
@@ -100,20 +112,43 @@ static enum dalcs_status keep_measured(struct dalcs_script *script) {
     return DALCS_OK;
 }
 
-static enum dalcs_status run_session(struct dalcs_script *script) {
+/* The sink of a run. */
+static struct dalcs_sink sink_of(struct dalcs_script *script) {
+    return (struct dalcs_sink){.user = script,
+                               .begin = begin,
+                               .row = row,
+                               .end = end,
+                               .progress = progress,
+                               .rows = script->host->sink->rows != NULL ? rows : NULL};
+}
+
+/* What follows a run while the session has its report. */
+static enum dalcs_status end_run(struct dalcs_script *script, enum dalcs_status status) {
     const struct dalcs_script_host *host = script->host;
-    const struct dalcs_sink sink = {.user = script,
-                                    .begin = begin,
-                                    .row = row,
-                                    .end = end,
-                                    .progress = progress,
-                                    .rows = host->sink->rows != NULL ? rows : NULL};
-    const enum dalcs_status status =
-        dalcs_session_run_cards(host->session, script->card, script->n_cards, host->options, &sink);
     if (host->after_run != NULL) {
         host->after_run(host->user, host->session, status);
     }
     return status == DALCS_OK ? keep_measured(script) : status;
+}
+
+static enum dalcs_status run_session(struct dalcs_script *script) {
+    const struct dalcs_script_host *host = script->host;
+    const struct dalcs_sink sink = sink_of(script);
+    return end_run(script, dalcs_session_run_cards(host->session, script->card, script->n_cards,
+                                                   host->options, &sink));
+}
+
+/* The netlist's analyses, those of a kind that it has already one of last. Measurements are of the first. */
+static enum dalcs_status run_netlist(struct dalcs_script *script, size_t n_kept) {
+    const struct dalcs_script_host *host = script->host;
+    const struct dalcs_sink sink = sink_of(script);
+    const size_t n = dalcs_session_n_second_analyses(host->session);
+    DALCS_TRY(run_session(script));
+    for (size_t k = 0; k < n; k++) {
+        DALCS_TRY(end_run(script, dalcs_session_run_second(host->session, k, script->card, n_kept,
+                                                           host->options, &sink)));
+    }
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_script_run_analysis(struct dalcs_script *script, size_t index) {
@@ -129,7 +164,10 @@ enum dalcs_status dalcs_script_run_analysis(struct dalcs_script *script, size_t 
     }
     status = status == DALCS_OK ? dalcs_script_add_measurements(script, index + 1) : status;
     script->has_run = true;
-    status = status == DALCS_OK ? run_session(script) : status;
+    if (status == DALCS_OK) {
+        const bool is_netlist = strcmp(s->word, "run") == 0;
+        status = is_netlist ? run_netlist(script, n_kept) : run_session(script);
+    }
     script->n_cards = n_kept;
     return status;
 }
@@ -137,7 +175,7 @@ enum dalcs_status dalcs_script_run_analysis(struct dalcs_script *script, size_t 
 enum dalcs_status dalcs_script_run_cards(struct dalcs_script *script) {
     enum dalcs_status status =
         script->has_cards ? dalcs_script_add_measurements(script, 0) : DALCS_OK;
-    status = status == DALCS_OK && script->has_cards ? run_session(script) : status;
+    status = status == DALCS_OK && script->has_cards ? run_netlist(script, 0) : status;
     script->n_cards = 0;
     return status;
 }

@@ -101,6 +101,9 @@ enum dalcs_status dalcs_script_command(struct dalcs_script *script, size_t index
 enum dalcs_status dalcs_script_run_analysis(struct dalcs_script *script,
                                             size_t index) DALCS_MUST_CHECK;
 
+/* The current plot has just begun or was made: it is called as the host calls it. */
+void dalcs_script_name_plot(struct dalcs_script *script);
+
 /* A card for the next runs, without its dot. */
 enum dalcs_status dalcs_script_add_card(struct dalcs_script *script,
                                         const struct dalcs_statement *statement, const char *word,

@@ -57,6 +57,14 @@ static enum dalcs_status refuse_plot(struct dalcs_script *script, const struct d
                                s->word);
 }
 
+/* The current plot is made. */
+static enum dalcs_status tell_made(struct dalcs_script *script) {
+    const struct dalcs_script_host *host = script->host;
+    DALCS_TRY(host->made != NULL ? host->made(host->user, script->vectors.current) : DALCS_OK);
+    dalcs_script_name_plot(script);
+    return DALCS_OK;
+}
+
 /* linearize [v(out) ...] */
 enum dalcs_status dalcs_script_linearize(struct dalcs_script *script,
                                          const struct dalcs_statement *s) {
@@ -102,7 +110,7 @@ enum dalcs_status dalcs_script_linearize(struct dalcs_script *script,
                                              : DALCS_E_NOMEM);
         }
     }
-    return DALCS_OK;
+    return tell_made(script);
 }
 
 /* ---- Spectra ------------------------------------------------------------------------------------------ */
@@ -273,7 +281,7 @@ static enum dalcs_status make_spectrum(struct spectrum *p, const struct dalcs_ve
         DALCS_TRY(fill(p, vector[k], value));
         DALCS_TRY(dalcs_plot_set(to, vector[k]->name, &made));
     }
-    return DALCS_OK;
+    return tell_made(p->script);
 }
 
 /* The last rows, so many that the step of the frequencies has whole periods in them: what repeats with it then

@@ -93,17 +93,16 @@ static enum dalcs_status use_own_analyses(struct dalcs_session *s, size_t first)
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
-                                          const struct dalcs_extra_card *card, size_t n_cards,
-                                          const struct dalcs_run_options *options,
-                                          const struct dalcs_sink *sink) {
+/* A second analysis, where it is not NULL, and other cards beside the netlist's own. */
+static enum dalcs_status run_with(struct dalcs_session *session,
+                                  const struct dalcs_source_line *second,
+                                  const struct dalcs_extra_card *card, size_t n_cards,
+                                  const struct dalcs_run_options *options,
+                                  const struct dalcs_sink *sink) {
     for (size_t k = 0; k < n_cards; k++) {
         if (card[k].line >= dalcs_session_n_script_lines(session)) {
             return DALCS_E_OPTION;
         }
-    }
-    if (!session->has_netlist) {
-        return DALCS_E_OPTION;
     }
     struct dalcs_netlist *netlist = &session->netlist;
     const struct dalcs_netlist before = *netlist;
@@ -116,6 +115,9 @@ enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
     for (size_t k = 0; k < n_cards && status == DALCS_OK; k++) {
         status = dalcs_netlist_add_card(netlist, &netlist->script[card[k].line], card[k].text,
                                         &session->diag);
+    }
+    if (status == DALCS_OK && second != NULL) {
+        status = dalcs_netlist_add_card(netlist, second, second->text, &session->diag);
     }
     if (status == DALCS_OK) {
         status = use_own_analyses(session, before.n_cards);
@@ -131,6 +133,27 @@ enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
     session->is_altered = true;
     free(kept);
     return status;
+}
+
+enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
+                                          const struct dalcs_extra_card *card, size_t n_cards,
+                                          const struct dalcs_run_options *options,
+                                          const struct dalcs_sink *sink) {
+    return session->has_netlist ? run_with(session, NULL, card, n_cards, options, sink)
+                                : DALCS_E_OPTION;
+}
+
+size_t dalcs_session_n_second_analyses(const struct dalcs_session *session) {
+    return session->has_netlist ? session->netlist.n_second : 0;
+}
+
+enum dalcs_status dalcs_session_run_second(struct dalcs_session *session, size_t index,
+                                           const struct dalcs_extra_card *card, size_t n_cards,
+                                           const struct dalcs_run_options *options,
+                                           const struct dalcs_sink *sink) {
+    return index < dalcs_session_n_second_analyses(session)
+               ? run_with(session, &session->netlist.second[index], card, n_cards, options, sink)
+               : DALCS_E_OPTION;
 }
 
 /* ---- Other values ------------------------------------------------------------------------------ */

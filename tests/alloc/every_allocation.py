@@ -494,6 +494,40 @@ end
 .endc
 .end
 """, 0),
+    "plots": ("""Plots, spectra and functions of a control block
+V1 in 0 DC 2 AC 1 SIN(0 1 1k)
+R1 in out 1k
+C1 out 0 1u
+.tran 0.1m 1m
+.tran 0.1m 0.4m
+.control
+define twice(x) 2*x
+compose r values 1k 2k
+run
+linearize
+fft v(out)
+let line = twice(mag(v(out)[1]))
+setplot tran1
+spec 0 2k 1k v(out)
+set curplot = new
+set scratch = $curplot
+foreach x $&r
+  alter r1 = $x
+  op
+  let {$scratch}.out$x = v(out)
+end
+print {$scratch}.out1k tran1.v(out) > t.txt
+echo $plots $#plots $?nothing
+strcmp same $scratch a
+cross c 1 tran1.v(in) tran2.v(in)
+unlet c
+fourier 1k v(out)
+setplot
+display
+destroy all
+.endc
+.end
+""", 0),
     "mistaken": ("""Several mistakes
 R1 1 0 1kk2
 C1 1 0
