@@ -401,6 +401,7 @@ B2 0 y I=1m*sgn(v(in)) - clip(v(y)/1k, 1m) + 1m*sin(1000*time)*exp(-time) + u(ti
 B3 z 0 V=max(abs(v(in)), abs(v(out))) + i(R1) + (v(in) > 1 && v(out) > 2 ? 1 : 0)
 E4 w 0 TABLE {v(in)} = (-1,-2) (0,0) (1,1)
 R3 z w 1k
+.save v(y) {v(y)*i(r1)} w(r3) {v(in) > 0 ? abs(v(y)) : v(out) && 1}
 .tran 50u 0.2m
 .end
 """, 0),
