@@ -482,8 +482,7 @@ static bool read_signal(struct dalcs_reader *reader) {
         if (read_formula(reader)) {
             return true;
         }
-        dalcs_builder_error(builder, token,
-                            "{v(a)*i(r1)}; v(a,b) is v(a)-v(b)",
+        dalcs_builder_error(builder, token, "{v(a)*i(r1)}; v(a,b) is v(a)-v(b)",
                             "a formula stands in braces here");
         return false;
     }
