@@ -481,6 +481,11 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
                                       const char *name, const char *field, double value,
                                       const char **nearest) DALCS_MUST_CHECK;
 
+/* The same of the function of a V or I: "pulse", "sin", "exp", "pwl", "sffm" or "am" with its values in their order. */
+enum dalcs_status dalcs_session_alter_waveform(struct dalcs_session *session, const char *name,
+                                               const char *function, const double *value, size_t n,
+                                               const char **nearest) DALCS_MUST_CHECK;
+
 /* The value of a parameter of .param outside of subcircuits, as the next run has it. Lower case.
  * DALCS_E_OPTION: there is none of that name. Only for a netlist with a script. */
 enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, const char *name,

@@ -1,13 +1,24 @@
 /* alter_command.c - alter, altermod and alterparam: other values for later runs. */
 #include "script_internal.h"
 
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 /* The field of an element that is its value. */
 static bool is_value_field(const char *field) {
     static const char *const known[] = {"dc",         "r",    "c",     "l",          "resistance",
                                         "inductance", "gain", "value", "capacitance"};
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
+        if (strcmp(known[k], field) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The function of a V or I. */
+static bool is_waveform(const char *field) {
+    static const char *const known[] = {"pulse", "sin", "exp", "pwl", "sffm", "am"};
     for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
         if (strcmp(known[k], field) == 0) {
             return true;
@@ -30,16 +41,17 @@ static const char *split_left(struct dalcs_script *script, const struct dalcs_st
     const char *behind = rest;
     const char *field = dalcs_script_word(script, &rest);
     const bool has_field =
-        field != NULL && (s->kind == DALCS_STATEMENT_ALTER_MODEL ||
-                          (s->kind == DALCS_STATEMENT_ALTER && is_value_field(field)));
+        field != NULL &&
+        (s->kind == DALCS_STATEMENT_ALTER_MODEL ||
+         (s->kind == DALCS_STATEMENT_ALTER && (is_value_field(field) || is_waveform(field))));
     *value = has_field ? rest : behind;
     *value += strspn(*value, " \t");
     return name != NULL ? dalcs_arena_copy(&script->arena, text, (size_t)(*value - text)) : NULL;
 }
 
-/* "name = formula", "name field = formula", "@name[field] = formula". */
+/* "name = formula", "name field = formula", "@name[field] = formula"; *value: the text of the formula. */
 static enum dalcs_status split_alter(struct dalcs_script *script, const struct dalcs_statement *s,
-                                     const char **name, const char **field, double *value) {
+                                     const char **name, const char **field, const char **value) {
     const char *text;
     enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
     if (status != DALCS_OK) {
@@ -66,38 +78,68 @@ static enum dalcs_status split_alter(struct dalcs_script *script, const struct d
     if (*name == NULL) {
         return dalcs_script_refuse(script, s, NULL, "a name before '=' is missing");
     }
-    return dalcs_script_number(script, s, number, value);
+    *value = number;
+    return DALCS_OK;
+}
+
+static enum dalcs_status refuse_name(struct dalcs_script *script, const struct dalcs_statement *s,
+                                     const char *what, const char *name, const char *nearest) {
+    char hint[120];
+    snprintf(hint, sizeof hint, "did you mean '%.80s'?", nearest != NULL ? nearest : "");
+    return dalcs_script_refuse(script, s, nearest != NULL ? hint : NULL, "there is no %s '%s'",
+                               what, name);
+}
+
+/* alter @v1[pulse] = [ 0 5 0 1n 1n 5u 10u ] */
+static enum dalcs_status alter_waveform(struct dalcs_script *script,
+                                        const struct dalcs_statement *s, const char *name,
+                                        const char *function, const char *text) {
+    char *list = dalcs_arena_copy(&script->arena, text, strlen(text));
+    double *value = dalcs_arena_alloc(&script->arena, strlen(text) + 1, sizeof *value);
+    const char *nearest = NULL;
+    size_t n = 0;
+    if (list == NULL || value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (char *c = list; *c != '\0'; c++) {
+        *c = strchr("[]()", *c) != NULL ? ' ' : *c;
+    }
+    const char *rest = list;
+    for (const char *word; (word = dalcs_script_word(script, &rest)) != NULL;) {
+        DALCS_TRY(dalcs_script_number(script, s, word, &value[n++]));
+    }
+    if (n == 0) {
+        return dalcs_script_refuse(script, s, "alter @v1[pulse] = [ 0 5 0 1n 1n 5u 10u ]",
+                                   "the values of %s are missing", function);
+    }
+    const enum dalcs_status status =
+        dalcs_session_alter_waveform(script->host->session, name, function, value, n, &nearest);
+    return status == DALCS_E_OPTION ? refuse_name(script, s, "V or I", name, nearest) : status;
 }
 
 enum dalcs_status dalcs_script_alter(struct dalcs_script *script, const struct dalcs_statement *s) {
     const char *name = NULL;
     const char *field = NULL;
     const char *nearest = NULL;
-    char hint[120];
+    const char *text = "";
     double value;
     const bool is_parameter = s->kind == DALCS_STATEMENT_ALTER_PARAMETER;
-    enum dalcs_status status = split_alter(script, s, &name, &field, &value);
-    if (status != DALCS_OK) {
-        return status;
-    }
+    DALCS_TRY(split_alter(script, s, &name, &field, &text));
     const bool is_model = s->kind == DALCS_STATEMENT_ALTER_MODEL;
     if (is_model && field == NULL) {
         return dalcs_script_refuse(script, s, "altermod dmod vfwd = 0.7",
                                    "the parameter of the model is missing");
     }
+    if (s->kind == DALCS_STATEMENT_ALTER && field != NULL && is_waveform(field)) {
+        return alter_waveform(script, s, name, field, text);
+    }
     if (!is_model && field != NULL && !is_value_field(field)) {
         return dalcs_script_refuse(script, s, "write alter name = value",
                                    "'%s' of an element cannot be altered here", field);
     }
-    status = dalcs_session_alter(script->host->session, is_parameter, name, is_model ? field : NULL,
-                                 value, &nearest);
-    if (status == DALCS_E_OPTION) {
-        snprintf(hint, sizeof hint, "did you mean '%.80s'?", nearest != NULL ? nearest : "");
-        return dalcs_script_refuse(script, s, nearest != NULL ? hint : NULL, "there is no %s '%s'",
-                                   is_parameter ? "parameter"
-                                   : is_model   ? "model"
-                                                : "element",
-                                   name);
-    }
-    return status;
+    DALCS_TRY(dalcs_script_number(script, s, text, &value));
+    const enum dalcs_status status = dalcs_session_alter(script->host->session, is_parameter, name,
+                                                         is_model ? field : NULL, value, &nearest);
+    const char *what = is_parameter ? "parameter" : is_model ? "model" : "element";
+    return status == DALCS_E_OPTION ? refuse_name(script, s, what, name, nearest) : status;
 }

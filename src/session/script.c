@@ -160,6 +160,14 @@ enum dalcs_status dalcs_session_run_second(struct dalcs_session *session, size_t
 
 static enum dalcs_status keep_override(struct dalcs_session *s,
                                        const struct dalcs_override *override) {
+    double *list = NULL;
+    if (override->n_list > 0) {
+        list = dalcs_arena_alloc(&s->arena, override->n_list, sizeof *list);
+        if (list == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        memcpy(list, override->list, override->n_list * sizeof *list);
+    }
     s->is_altered = true;
     for (size_t k = 0; k < s->n_altered; k++) {
         struct dalcs_override *known = &s->override[k];
@@ -169,12 +177,15 @@ static enum dalcs_status keep_override(struct dalcs_session *s,
         if (known->kind == override->kind && strcmp(known->name, override->name) == 0 &&
             same_field) {
             known->value = override->value;
+            known->list = list;
+            known->n_list = override->n_list;
             return DALCS_OK;
         }
     }
     DALCS_TRY(
         dalcs_grow(&s->override, &s->override_capacity, s->n_altered + 1, sizeof *s->override));
     struct dalcs_override own = *override;
+    own.list = list;
     own.name = dalcs_arena_copy(&s->arena, override->name, strlen(override->name));
     if (override->field != NULL) {
         own.field = dalcs_arena_copy(&s->arena, override->field, strlen(override->field));
@@ -240,7 +251,8 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
                                       const char **nearest) {
     const char *unused = NULL;
     const char **like = nearest != NULL ? nearest : &unused;
-    struct dalcs_override override = {DALCS_OVERRIDE_ELEMENT, name, field, value};
+    struct dalcs_override override = {
+        .kind = DALCS_OVERRIDE_ELEMENT, .name = name, .field = field, .value = value};
     bool found;
     *like = NULL;
     if (!session->has_netlist) {
@@ -255,6 +267,27 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
     } else {
         found = (session->has_circuit && has_device(&session->circuit, name, like)) ||
                 has_card(&session->netlist, NULL, 0, name, like);
+    }
+    return found ? keep_override(session, &override) : DALCS_E_OPTION;
+}
+
+enum dalcs_status dalcs_session_alter_waveform(struct dalcs_session *session, const char *name,
+                                               const char *function, const double *value, size_t n,
+                                               const char **nearest) {
+    const char *unused = NULL;
+    const char **like = nearest != NULL ? nearest : &unused;
+    const struct dalcs_override override = {.kind = DALCS_OVERRIDE_WAVEFORM,
+                                            .name = name,
+                                            .field = function,
+                                            .list = value,
+                                            .n_list = n};
+    bool found = false;
+    *like = NULL;
+    for (int k = 0; session->has_circuit && k < session->circuit.n_devices; k++) {
+        const struct dalcs_device *d = &session->circuit.device[k];
+        const bool is_source = d->kind == DALCS_VSOURCE || d->kind == DALCS_ISOURCE;
+        found = found || (is_source && strcmp(d->name, name) == 0);
+        *like = is_source && *like == NULL ? dalcs_names_nearest_of(&d->name, 1, name) : *like;
     }
     return found ? keep_override(session, &override) : DALCS_E_OPTION;
 }

@@ -26,7 +26,8 @@ bool dalcs_override_of(const struct dalcs_sweep *sweep, double value,
     if (sweep->target == DALCS_SWEEP_TEMPERATURE) {
         return false;
     }
-    *override = (struct dalcs_override){kind[sweep->target], sweep->name, sweep->field, value};
+    *override = (struct dalcs_override){
+        .kind = kind[sweep->target], .name = sweep->name, .field = sweep->field, .value = value};
     return true;
 }
 

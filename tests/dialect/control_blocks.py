@@ -404,6 +404,25 @@ def equal_distances(checker, program):
     checker.check("tran2 Transient Analysis (linearized)" in done.stdout, done.stdout + done.stderr)
 
 
+def waveforms(checker, program):
+    """alter of the function of a source: its values at one instant."""
+    for source, line, wanted in (
+            ("SIN(0 1 1k)", "alter @v1[pulse] = [ 1 3 0 0 0 1 2 ]", 3.0),
+            ("PULSE(0 1 0 1u 1u 1m 2m) AC 1", "alter v1 sin = ( 2 3 1k 0 0 30 )", 2 + 3 * math.sin(math.pi / 3)),
+            ("DC 1", "let t = 1m\nalter @V1[PWL] = [ 0 0 $&t 8 ]", 8 / 12),
+            ("1", "alter @v1[exp] = [ 1 2 0 1m 5 1 ]", 2 - math.exp(-1 / 12)),
+            ("PWL(0 0 1 1) DC 2", "alter @v1[sin] = [ 0 1 1k ]\nalter @v1[sin] = [ 5 0 1k ]", 5.0),
+            ("SIN 0 1 1k AC 1", "alter @v1[sin] = [ 4 0 1k ]", 4.0)):
+        done, _ = run(program, f"x\nV1 a 0 {source}\nR1 a 0 1\n.control\n{line}\nset numdgt=14\ntran 1m 1m\n"
+                               f"meas tran m FIND v(a) AT={1e-3 / 12!r}\nprint m\n.endc\n.end\n")
+        checker.check(done.returncode == 0 and "warning" not in done.stderr, f"{line}: {done.stderr}")
+        close_all(checker, line, printed(done.stdout), {"m": wanted}, 1e-9)
+    done, _ = run(program, "x\nX1 a s\n.subckt s p\nV1 p 0 1\n.ends\nR1 a 0 1\n.control\n"
+                           "alter @x1.v1[pulse] = [ 0 2 0 0 0 1 2 ]\ntran 1m 1m\nprint v(a)[length(time)-1]\n"
+                           "reset\nop\nprint v(a)\n.endc\n.end\n")
+    close_all(checker, "in a subcircuit", printed(done.stdout), {"v(a)[length(time)-1]": 2.0, "v(a)": 1.0})
+
+
 def messages(checker, program):
     for block, words in (
             ("op\nsetplot tran1", "there is no plot 'tran1'"), ("op\nlinearize", "takes the rows of a transient"),
@@ -421,6 +440,8 @@ def messages(checker, program):
             ("compose x start=1 stop=0 step=1", "no values lie between"), ("cross x 5 v(out)\nop", "there is no vector"),
             ("goto nowhere", "there is no label 'nowhere'"), ("label a\ngoto a", "goto was done 1000000 times"),
             ("resume", "a run has no stops here"), ("source other.cir", "a netlist is one file"),
+            ("alter @v2[pulse] = [ 0 1 ]\nop", "there is no V or I 'v2'"), ("alter @v1[pulse] = [ ]\nop", "the values of pulse are"),
+            ("alter @r1[pulse] = [ 0 1 ]\nop", "there is no V or I 'r1'"),
             ("op\nshell ls", "starts no other programs"), ("set l = ( a b )\necho $l[3]", "has no word number 3"),
             ("op\nprint max(v(out), 1, 2)", "of so many arguments"), ("settype", "a type and vectors are missing"),
             ("op\nsetscale nothing", "has no vector 'nothing'"), ("strcmp a b", "a name and two texts"),
@@ -437,6 +458,7 @@ def main():
         compare(checker, program, sys.argv[2] if len(sys.argv) > 2 else None, what, block)
     spectra(checker, program)
     equal_distances(checker, program)
+    waveforms(checker, program)
     messages(checker, program)
     return checker.finish()
 
