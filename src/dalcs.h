@@ -480,6 +480,14 @@ enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
                                           const struct dalcs_run_options *options,
                                           const struct dalcs_sink *sink) DALCS_MUST_CHECK;
 
+/* A netlist's .tran, .op, .dc and .ac after the first of their kind: the runs above are without them. Each is a run of its
+ * own, with cards that are no analyses. DALCS_E_OPTION: index is too large. Only for a netlist with a script. */
+size_t dalcs_session_n_second_analyses(const struct dalcs_session *session);
+enum dalcs_status dalcs_session_run_second(struct dalcs_session *session, size_t index,
+                                           const struct dalcs_extra_card *card, size_t n_cards,
+                                           const struct dalcs_run_options *options,
+                                           const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
 /* Gives what the netlist names another value in all later runs: "r1", "v1" (its DC value),
  * "x1.c2", a parameter of a model ("dmod", field "vfwd") or, is_parameter, of .param. Lower case.
  * DALCS_E_OPTION: there is no such thing, *nearest (may be NULL) is the name most like it or NULL.
@@ -487,6 +495,11 @@ enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
 enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_parameter,
                                       const char *name, const char *field, double value,
                                       const char **nearest) DALCS_MUST_CHECK;
+
+/* The same of the function of a V or I: "pulse", "sin", "exp", "pwl", "sffm" or "am" with its values in their order. */
+enum dalcs_status dalcs_session_alter_waveform(struct dalcs_session *session, const char *name,
+                                               const char *function, const double *value, size_t n,
+                                               const char **nearest) DALCS_MUST_CHECK;
 
 /* The value of a parameter of .param outside of subcircuits, as the next run has it. Lower case.
  * DALCS_E_OPTION: there is none of that name. Only for a netlist with a script. */

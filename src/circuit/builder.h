@@ -123,6 +123,8 @@ struct dalcs_builder {
     size_t n_initial_conditions;
     size_t initial_condition_capacity;
 
+    struct dalcs_computed *computed; /* heap */
+    size_t n_computed, computed_capacity;
     struct dalcs_signal *measured; /* heap: what formulas name */
     size_t n_measured;
     size_t measured_capacity;
@@ -561,6 +563,14 @@ bool dalcs_signal_formula_difference(struct dalcs_builder *builder,
                                      const struct dalcs_signal_formula *left,
                                      const struct dalcs_signal_formula *right,
                                      struct dalcs_signal_formula *difference);
+/* A formula as a column of results; false: it has no steps as measurements have them, or an error was reported. */
+bool dalcs_computed_compile(struct dalcs_builder *builder, const struct dalcs_formula *f,
+                            struct dalcs_signal_formula *formula);
+/* Voltage times current of a device with two terminals; false: out of memory. */
+bool dalcs_computed_power(struct dalcs_builder *builder, int device,
+                          struct dalcs_signal_formula *formula);
+/* Is its power determined by one voltage and one current? */
+bool dalcs_signal_formula_has_power(const struct dalcs_builder *builder, int device);
 void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_losses_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_switchloss_count(struct dalcs_builder *builder, const struct dalcs_card *card);

@@ -244,7 +244,7 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
         circuit->node_name[k] = builder->node_name[k];
     }
     circuit->n_signals = (int)builder->n_signals;
-    circuit->n_shown = circuit->n_signals;
+    circuit->n_shown = circuit->n_named = circuit->n_signals;
     for (size_t k = 0; k < builder->n_signals; k++) {
         circuit->signal[k] = builder->signal[k];
     }
@@ -343,6 +343,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
     free(builder.measure);
     free(builder.print);
     free(builder.print_column);
+    free(builder.computed);
     free(builder.fourier);
     free(builder.initial_condition);
     free(builder.formula);

@@ -206,7 +206,10 @@ struct dalcs_circuit {
     int *comparator; /* [n_comparators] switches that nothing flows in: what gates read */
     int n_signals;   /* default: every node voltage, then currents of V, L, D, S, W, E, H */
     struct dalcs_signal *signal;
-    int n_shown; /* the first of them, which results have; the others are there to be measured */
+    int n_shown; /* the first of them, which rows have; the others are there to be measured */
+    int n_named; /* the first of these, which results have: all without computed columns */
+    int n_computed;
+    struct dalcs_computed *computed; /* columns of results that rows have no signal for */
     int n_measured;
     int *measured; /* [n_measured] signals that formulas name, by their number there */
     int n_measures;
@@ -252,6 +255,13 @@ struct dalcs_circuit {
 struct dalcs_drawn_value {
     const char *name; /* "c", "x1.tol", "r1", "dmod(vfwd)" */
     double value;
+};
+
+/* A column that is computed from the signals of a row; `formula` names them as measured ones. */
+struct dalcs_computed {
+    const char *name; /* "{v(a)*i(r1)}", "w(d1)" */
+    int at;           /* before which named signal it stands */
+    struct dalcs_signal_formula formula;
 };
 
 struct dalcs_print_card {

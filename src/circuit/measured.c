@@ -100,6 +100,17 @@ enum dalcs_status dalcs_measured_collect(struct dalcs_builder *builder) {
         }
         circuit->measured[k] = place;
     }
+    circuit->computed = dalcs_arena_alloc(arena, builder->n_computed, sizeof *circuit->computed);
+    if (circuit->computed == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    circuit->n_computed = (int)builder->n_computed;
+    for (size_t k = 0; k < builder->n_computed; k++) {
+        circuit->computed[k] = builder->computed[k];
+    }
+    if (builder->n_computed > 0) {
+        circuit->n_shown = circuit->n_signals; /* what they are computed from is in the rows */
+    }
     circuit->n_measures = (int)builder->n_measures;
     for (size_t k = 0; k < builder->n_measures; k++) {
         circuit->measure[k] = builder->measure[k];

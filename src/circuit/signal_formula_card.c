@@ -214,6 +214,16 @@ static bool find_with_function(const struct dalcs_signal_compilation *c, int k,
 }
 
 /* The voltage across an element and the current through it; -1 when an error was reported. */
+bool dalcs_signal_formula_has_power(const struct dalcs_builder *builder, int k) {
+    const struct dalcs_device *device = &builder->circuit->device[k];
+    bool has_two = strchr("rlcvidsw", device->letter) != NULL && builder->current_of[k] == k;
+    for (int end = 0; end < 2; end++) { /* other parts of the element are behind an inner node */
+        const int node = device->node[end];
+        has_two = has_two && (node == 0 || !dalcs_builder_is_inner(builder->node_name[node]));
+    }
+    return has_two;
+}
+
 static int find_power(struct dalcs_signal_compilation *c, const struct found *found, int *current) {
     struct dalcs_builder *builder = c->builder;
     struct dalcs_token name;
@@ -225,12 +235,7 @@ static int find_power(struct dalcs_signal_compilation *c, const struct found *fo
         return -1;
     }
     const struct dalcs_device *device = &builder->circuit->device[k];
-    bool has_two = strchr("rlcvidsw", device->letter) != NULL && builder->current_of[k] == k;
-    for (int end = 0; end < 2; end++) { /* other parts of the element are behind an inner node */
-        const int node = device->node[end];
-        has_two = has_two && (node == 0 || !dalcs_builder_is_inner(builder->node_name[node]));
-    }
-    if (!has_two) {
+    if (!dalcs_signal_formula_has_power(builder, k)) {
         report(c, found->begin, found->end - found->begin,
                "write the voltages and currents of its terminals, such as v(a,b)*i(x)",
                "'%s' is not determined by one voltage and one current", name.text);

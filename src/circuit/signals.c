@@ -350,17 +350,44 @@ static const char *formula_name(struct dalcs_builder *builder, const struct dalc
     return name;
 }
 
-/* A formula of signals: one that is affine is the voltage of a source that nothing loads. */
+/* A column that is computed, once for each name. */
+static void add_computed(struct dalcs_builder *builder, const char *name,
+                         const struct dalcs_signal_formula *formula) {
+    if (builder->is_print) {
+        add_column(builder, name);
+    }
+    if (dalcs_names_find(&builder->signals, name) >= 0) {
+        return;
+    }
+    if (dalcs_names_add(&builder->signals, name, 0) != DALCS_OK ||
+        dalcs_grow(&builder->computed, &builder->computed_capacity, builder->n_computed + 1,
+                   sizeof *builder->computed) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return;
+    }
+    builder->computed[builder->n_computed++] =
+        (struct dalcs_computed){name, (int)builder->n_signals, *formula};
+}
+
+/* A formula of signals: one that is affine is the voltage of a source that nothing loads, others are computed. */
 static void add_formula(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    const char *name = formula_name(builder, token->formula);
+    if (name == NULL) {
+        builder->out_of_memory = true;
+        return;
+    }
     if (!is_affine(token->formula)) {
-        dalcs_builder_warn(builder, token,
-                           ".meas has other formulas, and B1 x 0 V={formula} makes a node of one",
-                           "this is no sum of signals with constant factors: it is left out");
+        struct dalcs_signal_formula formula;
+        if (dalcs_computed_compile(builder, token->formula, &formula)) {
+            add_computed(builder, name, &formula);
+        } else if (!builder->failed && !builder->out_of_memory) {
+            dalcs_builder_warn(builder, token, "B1 x 0 V={formula} makes a node of it",
+                               "this formula cannot be computed from a row: it is left out");
+        }
         return;
     }
     struct dalcs_token *named = dalcs_arena_alloc(&builder->scratch, 1, sizeof *named);
-    const char *name = formula_name(builder, token->formula);
-    if (named == NULL || name == NULL) {
+    if (named == NULL) {
         builder->out_of_memory = true;
         return;
     }
@@ -393,18 +420,48 @@ static bool read_formula(struct dalcs_reader *reader) {
     return true;
 }
 
+/* w(r1) or p(r1) of an element with two terminals, whose power is that of its own voltage; false: of another. */
+static bool read_power(struct dalcs_reader *reader) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *letter = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *name = dalcs_reader_peek(reader, 2);
+    const struct dalcs_token *close = dalcs_reader_peek(reader, 3);
+    if (letter->text[0] == 'n' || name == NULL || close == NULL ||
+        close->kind != DALCS_TOKEN_CLOSE) {
+        return false;
+    }
+    const int device = dalcs_names_find(&builder->devices, name->text);
+    struct dalcs_signal_formula formula;
+    if (device < 0 || !dalcs_signal_formula_has_power(builder, device)) {
+        return false;
+    }
+    const char *own = dalcs_arena_printf(&builder->circuit->arena, "%c(%s)", letter->text[0],
+                                         builder->circuit->device[device].name);
+    builder->out_of_memory = builder->out_of_memory || own == NULL;
+    if (own != NULL && dalcs_computed_power(builder, device, &formula)) {
+        add_computed(builder, own, &formula);
+    }
+    reader->at += 4;
+    return true;
+}
+
 /* p(r1), which KiCad writes for every part, w(r1) of PSpice, n(d1:cd) of Xyce: what is inside of models or computed
  * afterwards. */
 static void skip_inner(struct dalcs_reader *reader) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     struct dalcs_builder *builder = reader->builder;
+    if (read_power(reader)) {
+        return;
+    }
     if (strcmp(token->text, "n") == 0) {
         dalcs_builder_warn(builder, token, NULL,
                            "what is inside of a model is not recorded: "
                            "n(...) is left out");
     } else if (!builder->noted_power) {
-        dalcs_builder_note(builder, token, "a measurement may be of v(a,b)*i(r1)",
-                           "powers are not recorded: %s(...) is left out", token->text);
+        dalcs_builder_note(builder, token, "{v(a,b)*i(x)} is that of two terminals",
+                           "a power that one voltage and one current do not make is not "
+                           "recorded: %s(...) is left out",
+                           token->text);
         builder->noted_power = true;
     }
     int depth = 0;
@@ -425,10 +482,8 @@ static bool read_signal(struct dalcs_reader *reader) {
         if (read_formula(reader)) {
             return true;
         }
-        dalcs_builder_error(builder, token,
-                            "v(a,b) is v(a)-v(b); .meas has formulas, and B1 x 0 V={formula} makes "
-                            "a node of one",
-                            "a formula is no signal: signals are recorded, not computed");
+        dalcs_builder_error(builder, token, "{v(a)*i(r1)}; v(a,b) is v(a)-v(b)",
+                            "a formula stands in braces here");
         return false;
     }
     if (token->kind != DALCS_TOKEN_WORD) {

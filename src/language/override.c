@@ -106,6 +106,69 @@ static enum dalcs_status edit(struct dalcs_language *language, struct dalcs_card
     return DALCS_OK;
 }
 
+static bool is_waveform(const struct dalcs_token *token) {
+    static const char *const name[] = {"pulse", "sin", "exp", "pwl", "sffm", "am"};
+    bool is = false;
+    for (size_t k = 0; k < sizeof name / sizeof name[0]; k++) {
+        is = is || is_word(token, name[k]);
+    }
+    return is;
+}
+
+/* Behind a function and its values, in parentheses or not. */
+static int end_of_waveform(const struct dalcs_card *card, int at) {
+    int k = at + 1;
+    int depth = 0;
+    while (k < card->n &&
+           (depth > 0 || card->token[k].kind != DALCS_TOKEN_WORD || is_number(&card->token[k]))) {
+        depth +=
+            (card->token[k].kind == DALCS_TOKEN_OPEN) - (card->token[k].kind == DALCS_TOKEN_CLOSE);
+        k++;
+    }
+    return k;
+}
+
+/* A copy of the card with this function behind all the rest, and no other. */
+static enum dalcs_status edit_waveform(struct dalcs_language *language, struct dalcs_card *card,
+                                       const struct dalcs_override *override) {
+    const size_t room = (size_t)card->n + override->n_list + 3;
+    struct dalcs_token *token = dalcs_arena_alloc(language->arena, room, sizeof *token);
+    if (token == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int n = 0;
+    for (int k = 0; k < card->n; k++) {
+        if (k > 2 && is_waveform(&card->token[k])) {
+            k = end_of_waveform(card, k) - 1;
+        } else {
+            token[n++] = card->token[k];
+        }
+    }
+    struct dalcs_token made = card->token[0];
+    made.after_comma = false;
+    made.kind = DALCS_TOKEN_WORD;
+    made.text = override->field;
+    token[n++] = made;
+    made.kind = DALCS_TOKEN_OPEN;
+    made.text = "(";
+    token[n++] = made;
+    for (size_t k = 0; k < override->n_list; k++) {
+        struct dalcs_token number = made;
+        number.kind = DALCS_TOKEN_NUMBER;
+        number.value = override->list[k];
+        number.text = dalcs_language_text(language, "%.12g", override->list[k]);
+        if (number.text == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        token[n++] = number;
+    }
+    made.kind = DALCS_TOKEN_CLOSE;
+    made.text = ")";
+    token[n++] = made;
+    *card = (struct dalcs_card){token, n, card->letter, card->parallel};
+    return DALCS_OK;
+}
+
 static enum dalcs_status edit_model(struct dalcs_language *language, struct dalcs_card *card,
                                     const struct dalcs_override *override) {
     const int at = find_assigned(card, 3, override->field);
@@ -129,6 +192,9 @@ static enum dalcs_status apply(struct dalcs_language *language,
         }
         if (is_model) {
             return edit_model(language, card, override);
+        }
+        if (override->kind == DALCS_OVERRIDE_WAVEFORM) {
+            return edit_waveform(language, card, override);
         }
         bool is_there;
         const int at = place_of_value(card, &is_there);

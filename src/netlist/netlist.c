@@ -258,6 +258,7 @@ enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const c
 void dalcs_netlist_finish(struct dalcs_netlist *netlist) {
     free(netlist->card);
     free(netlist->script);
+    free(netlist->second);
     dalcs_arena_finish(&netlist->arena);
     *netlist = (struct dalcs_netlist){0};
 }

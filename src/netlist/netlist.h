@@ -97,6 +97,8 @@ struct dalcs_netlist {
     size_t capacity;
     struct dalcs_source_line *script; /* the lines between .control and .endc, as written */
     size_t n_script_lines, script_capacity;
+    struct dalcs_source_line *second; /* analyses of a kind that was there before, as commands */
+    size_t n_second, second_capacity;
     bool has_errors;  /* of spelling: a circuit cannot be built, but may be looked at for more */
     bool misses_file; /* one that it includes could not be read: much may be undefined */
     const char *missing_library; /* the last one that is left out because it is not here; or NULL */
@@ -128,7 +130,7 @@ enum dalcs_status dalcs_netlist_add_card(struct dalcs_netlist *netlist,
                                          const struct dalcs_source_line *line, const char *text,
                                          struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
-/* Once all is read: a second .tran, .op, .dc or .ac becomes a line of the script. */
+/* Once all is read: a second .tran, .op, .dc or .ac is no card of the circuit, but is kept for `run`. */
 enum dalcs_status dalcs_second_analyses(struct dalcs_netlist *netlist,
                                         struct dalcs_diag *diag) DALCS_MUST_CHECK;
 

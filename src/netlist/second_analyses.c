@@ -1,8 +1,7 @@
-/* second_analyses.c - more than one .tran, .op, .dc or .ac: a script of the first and the others.
+/* second_analyses.c - more than one .tran, .op, .dc or .ac.
  *
- * A circuit has one analysis of each kind. ngspice runs them all: so does the script `run`, `tran ...`, of
- * which the second is written here, in place of the second card. Between .if and .endif nobody knows yet which
- * of them there are: those stay cards. */
+ * A circuit has one analysis of each kind. ngspice runs them all: so does the script's `run`, which has the others
+ * as commands. Between .if and .endif nobody knows yet which of them there are: those stay cards. */
 #include "netlist.h"
 
 #include <string.h>
@@ -17,11 +16,10 @@ static int kind_of(const struct dalcs_card *card) {
     return -1;
 }
 
-static enum dalcs_status add_line(struct dalcs_netlist *netlist, const struct dalcs_token *place,
-                                  const char *text) {
-    DALCS_TRY(dalcs_grow(&netlist->script, &netlist->script_capacity, netlist->n_script_lines + 1,
-                         sizeof *netlist->script));
-    netlist->script[netlist->n_script_lines++] = (struct dalcs_source_line){
+static enum dalcs_status add_line(struct dalcs_source_line **lines, size_t *n, size_t *capacity,
+                                  const struct dalcs_token *place, const char *text) {
+    DALCS_TRY(dalcs_grow(lines, capacity, *n + 1, sizeof **lines));
+    (*lines)[(*n)++] = (struct dalcs_source_line){
         .source = place->line->source, .text = text, .number = place->line->number};
     return DALCS_OK;
 }
@@ -48,7 +46,7 @@ enum dalcs_status dalcs_second_analyses(struct dalcs_netlist *netlist, struct da
     bool has[4] = {false, false, false, false};
     size_t n = 0;
     int depth = 0;
-    const size_t n_cards = netlist->n_script_lines == 0 ? netlist->n_cards : 0;
+    const size_t n_cards = netlist->n_cards;
     for (size_t k = 0; k < n_cards; k++) {
         const struct dalcs_card *card = &netlist->card[k];
         depth += deeper(card);
@@ -68,11 +66,13 @@ enum dalcs_status dalcs_second_analyses(struct dalcs_netlist *netlist, struct da
         if (text == NULL) {
             return DALCS_E_NOMEM;
         }
+        DALCS_TRY(add_line(&netlist->second, &netlist->n_second, &netlist->second_capacity,
+                           card->token, text));
         if (netlist->n_script_lines == 0) {
-            DALCS_TRY(add_line(netlist, card->token, "run"));
+            DALCS_TRY(add_line(&netlist->script, &netlist->n_script_lines,
+                               &netlist->script_capacity, card->token, "run"));
         }
-        DALCS_TRY(add_line(netlist, card->token, text));
     }
-    netlist->n_cards = n_cards > 0 ? n : netlist->n_cards;
+    netlist->n_cards = n;
     return DALCS_OK;
 }

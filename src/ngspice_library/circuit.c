@@ -100,6 +100,13 @@ enum dalcs_status ng_circuit_read(struct ng_circuit **circuit, const char *name,
     ng_lines_finish(&all);
     const size_t n = status == DALCS_OK ? dalcs_session_n_script_lines(c->session) : 0;
     c->n_control = n > 0 ? n - 1 : 0; /* the last one is ours */
+    if (status == DALCS_OK) {
+        const struct dalcs_request asked = dalcs_session_request(c->session);
+        c->is_asked[DALCS_OPERATING_POINT] = asked.operating_point;
+        c->is_asked[DALCS_TRANSIENT] = asked.transient;
+        c->is_asked[DALCS_DC_SWEEP] = asked.dc_sweep;
+        c->is_asked[DALCS_AC] = asked.ac;
+    }
     return status;
 }
 
@@ -128,15 +135,6 @@ static const char *const ANALYSIS[] = {[DALCS_OPERATING_POINT] = "op",
 
 enum { N_WORDS = sizeof ANALYSIS / sizeof ANALYSIS[0] };
 
-static bool is_asked(const struct ng_circuit *c, int analysis) {
-    const struct dalcs_request asked = dalcs_session_request(c->session);
-    const bool by_card[] = {[DALCS_OPERATING_POINT] = asked.operating_point,
-                            [DALCS_TRANSIENT] = asked.transient,
-                            [DALCS_DC_SWEEP] = asked.dc_sweep,
-                            [DALCS_AC] = asked.ac};
-    return by_card[analysis];
-}
-
 /* The analysis with all that was set for it. */
 static enum dalcs_status keep_run(struct ng_circuit *c, int analysis, const char *command) {
     struct ng_lines *run = &c->run[analysis];
@@ -158,7 +156,7 @@ enum dalcs_status ng_circuit_hear(struct ng_circuit *c, const char *word, const 
     for (int k = 0; k < N_WORDS && status == DALCS_OK; k++) {
         const bool is_it = strcmp(word, ANALYSIS[k]) == 0;
         is_analysis = is_analysis || is_it;
-        if (is_it || (is_run && is_asked(c, k))) {
+        if (is_it || (is_run && c->is_asked[k])) {
             status = keep_run(c, k, command.text);
         }
     }

@@ -16,12 +16,13 @@ void ng_lines_finish(struct ng_lines *lines);
 
 struct ng_circuit {
     struct dalcs_session *session;
-    bool is_none;             /* it stands for none, so that there is something to compute with */
-    char *name;               /* as messages call it; files that it includes lie beside it */
-    struct ng_lines source;   /* as it was sent */
-    struct ng_lines cards;    /* the same up to .end, without .control blocks */
-    size_t n_control;         /* lines of its .control blocks */
-    struct ng_lines settings; /* commands since: alter, option, save, reset */
+    bool is_none;           /* it stands for none, so that there is something to compute with */
+    char *name;             /* as messages call it; files that it includes lie beside it */
+    struct ng_lines source; /* as it was sent */
+    struct ng_lines cards;  /* the same up to .end, without .control blocks */
+    bool is_asked[DALCS_N_ANALYSES]; /* by its cards */
+    size_t n_control;                /* lines of its .control blocks */
+    struct ng_lines settings;        /* commands since: alter, option, save, reset */
     struct ng_lines
         run[DALCS_N_ANALYSES]; /* to repeat the last run of a kind: the settings of then, and the
                                               analysis itself as the last line */

@@ -2,6 +2,7 @@
 #include "library.h"
 
 #include "lower_case.h"
+#include "signal_name.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -35,7 +36,9 @@ static enum dalcs_status setplot(struct ng_library *l, const char *rest) {
         return DALCS_OK;
     }
     DALCS_TRY(ng_take_vectors(l));
-    if (!ng_plots_choose(&l->plots, word)) {
+    if (strcmp(word, "new") == 0) {
+        DALCS_TRY(ng_plots_make(&l->plots, "unknown", "Anonymous", "Anonymous"));
+    } else if (!ng_plots_choose(&l->plots, word)) {
         ng_talk_fail(&l->talk, "setplot: there is no plot '%s'", word);
         return fail(l);
     }
@@ -50,12 +53,7 @@ enum dalcs_status ng_commands_hear_set(struct ng_library *l, const char *rest) {
     }
     equal++;
     next_word(&equal, word, sizeof word);
-    if (strcmp(word, "new") != 0) {
-        return setplot(l, word);
-    }
-    DALCS_TRY(ng_take_vectors(l));
-    DALCS_TRY(ng_plots_make(&l->plots));
-    return ng_lend_vectors(l);
+    return setplot(l, word);
 }
 
 static enum dalcs_status destroy(struct ng_library *l, const char *rest) {
@@ -71,6 +69,18 @@ static enum dalcs_status destroy(struct ng_library *l, const char *rest) {
             ng_talk_warn(&l->talk, "destroy: there is no plot '%s'", word);
         }
     } while (next_word(&rest, word, sizeof word)[0] != '\0');
+    return ng_lend_vectors(l);
+}
+
+static enum dalcs_status unlet(struct ng_library *l, const char *rest) {
+    char word[NG_NAME_SIZE];
+    DALCS_TRY(ng_take_vectors(l));
+    while (next_word(&rest, word, sizeof word)[0] != '\0') {
+        if (!ng_plots_unlet(&l->plots, ng_plots_current(&l->plots), word)) {
+            ng_talk_fail(&l->talk, "unlet: there is no vector '%s'", word);
+            return fail(l);
+        }
+    }
     return ng_lend_vectors(l);
 }
 
@@ -148,10 +158,10 @@ static enum dalcs_status nothing(struct ng_library *l, const char *rest) {
 static const struct {
     const char *word;
     enum dalcs_status (*function)(struct ng_library *l, const char *rest);
-} COMMAND[] = {{"setplot", setplot}, {"destroy", destroy},   {"display", display},
-               {"listing", listing}, {"version", version},   {"status", status_of},
-               {"rusage", rusage},   {"codemodel", nothing}, {"esave", nothing},
-               {"delete", nothing},  {"setcirc", nothing}};
+} COMMAND[] = {{"setplot", setplot},  {"destroy", destroy}, {"unlet", unlet},
+               {"display", display},  {"listing", listing}, {"version", version},
+               {"status", status_of}, {"rusage", rusage},   {"codemodel", nothing},
+               {"esave", nothing},    {"delete", nothing},  {"setcirc", nothing}};
 
 enum { N_COMMANDS = sizeof COMMAND / sizeof COMMAND[0] };
 

@@ -36,7 +36,13 @@ static enum dalcs_status hear(void *user, const char *word, const char *rest) {
     if (strcmp(word, "set") == 0) {
         return ng_commands_hear_set(l, rest);
     }
+    static const char *const plots[] = {"linearize", "fft", "psd", "spec"};
     DALCS_TRY(ng_take_vectors(l)); /* what was made belongs to the plot before the run */
+    for (size_t k = 0; k < sizeof plots / sizeof plots[0]; k++) {
+        if (strcmp(word, plots[k]) == 0) {
+            return DALCS_OK; /* no run is another one for it */
+        }
+    }
     return ng_circuit_hear(l->circuit, word, rest);
 }
 
@@ -50,11 +56,16 @@ static enum dalcs_status open_script(struct ng_library *l) {
     l->host.execute = ng_commands_execute;
     l->host.measure = ng_measure;
     l->host.heard = hear;
+    l->host.made = ng_take_plot;
+    l->host.name_of_plot = ng_name_of_plot;
     ng_receive_open(l);
     return dalcs_script_open(&l->script, &l->host);
 }
 
 enum dalcs_status ng_library_open(struct ng_library *l) {
+    if (l->is_open) { /* a reset that found no memory has left it without a script */
+        return open_script(l);
+    }
     DALCS_TRY(ng_talk_open(&l->talk));
     DALCS_TRY(ng_plots_open(&l->plots));
     DALCS_TRY(ng_background_open(&l->background));
@@ -76,6 +87,9 @@ void ng_library_close(struct ng_library *l) {
     ng_receive_close(l);
     free(l->input_path);
     ng_talk_close(&l->talk);
+    l->script = NULL; /* a later call opens all of it again */
+    l->circuit = NULL;
+    l->input_path = NULL;
     l->is_open = false;
 }
 

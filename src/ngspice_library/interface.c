@@ -13,7 +13,7 @@
 struct ng_library ng_the;
 
 bool ng_is_ready(void) {
-    if (!ng_the.is_open && ng_library_open(&ng_the) != DALCS_OK) {
+    if ((!ng_the.is_open || ng_the.script == NULL) && ng_library_open(&ng_the) != DALCS_OK) {
         ng_library_close(&ng_the);
         return false;
     }

@@ -91,6 +91,10 @@ bool ng_forget_circuit(struct ng_library *library);
 enum dalcs_status ng_lend_vectors(struct ng_library *library) DALCS_MUST_CHECK;
 enum dalcs_status ng_take_vectors(struct ng_library *library) DALCS_MUST_CHECK;
 
+/* A plot that the interpreter has made becomes the current one. */
+enum dalcs_status ng_take_plot(void *user, const struct dalcs_plot_vectors *made);
+const char *ng_name_of_plot(void *user);
+
 /* ---- commands.c ----------------------------------------------------------------------------------- */
 
 bool ng_commands_know(void *user, const char *word);

@@ -180,12 +180,13 @@ enum dalcs_status ng_plots_begin(struct ng_plots *plots, const struct dalcs_plot
     return status;
 }
 
-enum dalcs_status ng_plots_make(struct ng_plots *plots) {
+enum dalcs_status ng_plots_make(struct ng_plots *plots, const char *word, const char *kind,
+                                const char *title) {
     char type[24];
     struct ng_plot *plot = NULL;
-    choose_type(plots, "unknown", type, sizeof type);
+    choose_type(plots, word, type, sizeof type);
     pthread_mutex_lock(&plots->lock);
-    const enum dalcs_status status = add_plot(plots, type, "Anonymous", "Anonymous", &plot);
+    const enum dalcs_status status = add_plot(plots, type, kind, title, &plot);
     if (status == DALCS_OK) {
         plot->analysis = DALCS_OPERATING_POINT; /* of which a plot has no scale */
         plots->current = plots->n - 1;
@@ -302,6 +303,23 @@ void ng_plots_destroy_all(struct ng_plots *plots) {
     plots->current = 0;
     plots->number = 0;
     pthread_mutex_unlock(&plots->lock);
+}
+
+bool ng_plots_unlet(struct ng_plots *plots, struct ng_plot *plot, const char *name) {
+    struct ng_vector *v = ng_plot_vector(plot, name);
+    size_t k = 0;
+    while (k < plot->n && plot->vector[k] != v) {
+        k++;
+    }
+    if (v == NULL || (k == 0 && plot->has_scale)) {
+        return false;
+    }
+    pthread_mutex_lock(&plots->lock);
+    memmove(&plot->vector[k], &plot->vector[k + 1], (plot->n - k - 1) * sizeof(struct ng_vector *));
+    plot->n--;
+    ng_vector_destroy(v);
+    pthread_mutex_unlock(&plots->lock);
+    return true;
 }
 
 enum dalcs_status ng_plots_set(struct ng_plots *plots, struct ng_plot *plot, const char *name,

@@ -9,15 +9,17 @@
 #include "memory.h"
 #include "ngspice_abi.h"
 #include "vector.h"
+#include "vectors.h"
 
 #include <pthread.h>
 
 struct ng_plot {
     enum dalcs_analysis analysis;
-    char *type;         /* "tran1" */
-    const char *kind;   /* "Transient Analysis" */
-    char *title, *date; /* of the circuit, of its beginning */
-    bool has_scale;     /* vector[0] */
+    char *type;             /* "tran1" */
+    const char *kind;       /* "Transient Analysis" */
+    char *title, *date;     /* of the circuit, of its beginning */
+    bool has_scale;         /* vector[0] */
+    struct dalcs_grid grid; /* of a transient */
     struct ng_vector **vector;
     size_t n, capacity;
 };
@@ -41,8 +43,9 @@ void ng_plots_close(struct ng_plots *plots);
 enum dalcs_status ng_plots_begin(struct ng_plots *plots,
                                  const struct dalcs_plot *about) DALCS_MUST_CHECK;
 
-/* An empty one without a scale, for what let makes. */
-enum dalcs_status ng_plots_make(struct ng_plots *plots) DALCS_MUST_CHECK;
+/* An empty one without a scale, for what let makes ("unknown") and others. kind is borrowed for good. */
+enum dalcs_status ng_plots_make(struct ng_plots *plots, const char *word, const char *kind,
+                                const char *title) DALCS_MUST_CHECK;
 
 /* Rows for the current plot, as a sink gets them. */
 enum dalcs_status ng_plots_add_rows(struct ng_plots *plots, size_t n, const double *scale,
@@ -65,6 +68,9 @@ struct ng_vector *ng_plots_vector(const struct ng_plots *plots, const char *name
 
 /* Of that plot, by its own name or its signal's. */
 struct ng_vector *ng_plot_vector(const struct ng_plot *plot, const char *name);
+
+/* Takes one of its vectors away; false: there is none. */
+bool ng_plots_unlet(struct ng_plots *plots, struct ng_plot *plot, const char *name);
 
 /* Makes or replaces one that is no signal of a run. */
 enum dalcs_status ng_plots_set(struct ng_plots *plots, struct ng_plot *plot, const char *name,

@@ -110,6 +110,10 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *about) {
     struct ng_library *l = user;
     DALCS_TRY(ng_plots_begin(&l->plots, about));
     struct ng_plot *plot = ng_plots_current(&l->plots);
+    const struct dalcs_request asked = dalcs_session_request(l->host.session);
+    plot->grid = about->analysis == DALCS_TRANSIENT
+                     ? (struct dalcs_grid){asked.start, asked.step, asked.stop}
+                     : (struct dalcs_grid){0};
     if (l->tell.data != NULL) {
         DALCS_TRY(prepare_rows(l, plot));
     }

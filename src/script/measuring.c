@@ -11,6 +11,7 @@
 #include "names.h"
 #include "script_internal.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -370,40 +371,75 @@ static void put_card_word(struct rewriting *r, const char *as_written, size_t n)
     r->expects_vector = takes_vector;
 }
 
+/* The next word of a card, or what stands between two. is_free: it is none of the script's names. */
+static void rewrite_next(struct rewriting *r, bool is_free) {
+    const char *p = r->at;
+    const char first = dalcs_lower(*p);
+    size_t n = 1;
+    if (is_letter(first)) {
+        while (p[n] != '\0' && strchr(" \t,=()+-*/%^<>!&|{}'?@[]~", p[n]) == NULL) {
+            n++;
+        }
+        const size_t n_blanks = strspn(p + n, " \t");
+        if (is_free) {
+            put(r, p, n);
+        } else {
+            put_card_word(r, p, n);
+        }
+        r->at += n;
+        /* the names in v(...) are none of the script's */
+        if (p[n + n_blanks] == '(' && (first == 'v' || first == 'i') && n <= 3) {
+            const size_t m = parenthesis_length(p + n + n_blanks);
+            put(r, p + n + n_blanks, m);
+            r->at += m > 0 ? n_blanks + m : 0;
+        }
+        return;
+    }
+    if (is_digit(*p)) {
+        n = strcspn(p, " \t,=()*/%^<>!&|{}'?");
+    } else if (*p == '@') {
+        n = strcspn(p, "]");
+        n += p[n] == ']';
+    }
+    put(r, p, n);
+    r->at += n;
+}
+
 /* The card of a measurement, whose analysis and name are its first two words. */
 static void rewrite_card(struct rewriting *r) {
     int n_words = 0;
     while (*r->at != '\0' && r->cause == NULL && !r->all->out_of_memory) {
-        const char *p = r->at;
-        const char first = dalcs_lower(*p);
-        size_t n = 1;
-        if (is_letter(first)) {
-            while (p[n] != '\0' && strchr(" \t,=()+-*/%^<>!&|{}'?@[]~", p[n]) == NULL) {
-                n++;
-            }
-            const size_t n_blanks = strspn(p + n, " \t");
-            if (++n_words <= 2) {
-                put(r, p, n);
-            } else {
-                put_card_word(r, p, n);
-            }
-            r->at += n;
-            /* the names in v(...) are none of the script's */
-            if (p[n + n_blanks] == '(' && (first == 'v' || first == 'i') && n <= 3) {
-                const size_t m = parenthesis_length(p + n + n_blanks);
-                put(r, p + n + n_blanks, m);
-                r->at += m > 0 ? n_blanks + m : 0;
-            }
-            continue;
-        }
-        if (is_digit(*p)) {
-            n = strcspn(p, " \t,=()*/%^<>!&|{}'?");
-        } else if (*p == '@') {
-            n = strcspn(p, "]");
-            n += p[n] == ']';
-        }
-        put(r, p, n);
-        r->at += n;
+        n_words += is_letter(dalcs_lower(*r->at));
+        rewrite_next(r, n_words <= 2);
+    }
+}
+
+/* A whole number that is set; otherwise what is usual. */
+static long number_set(const struct dalcs_script *script, const char *name, long usual) {
+    const char *text = dalcs_variables_get(&script->variables, name);
+    const long n = text != NULL ? strtol(text, NULL, 10) : usual;
+    return n >= 1 && n <= 10000 ? n : usual;
+}
+
+/* `fourier 50 v(out)`: the card has the numbers of harmonics and of periods besides, which here are set. ngspice's
+ * nfreqs counts the constant. */
+static void rewrite_fourier(struct rewriting *r) {
+    const struct dalcs_script *script = r->all->script;
+    char numbers[64];
+    const size_t n = strcspn(r->at, " \t");
+    const long n_harmonics = number_set(script, "nfreqs", 10) - 1;
+    put(r, r->at, n);
+    r->at += n;
+    snprintf(numbers, sizeof numbers, " %ld %ld", n_harmonics > 0 ? n_harmonics : 1,
+             number_set(script, "nperiods", 1));
+    put_text(r, numbers);
+    r->expects_vector = true;
+    while (*r->at != '\0' && r->cause == NULL && !r->all->out_of_memory) {
+        const size_t n_blanks = strspn(r->at, " \t,");
+        put_text(r, n_blanks > 0 ? " " : "");
+        r->at += n_blanks;
+        r->expects_vector = true;
+        rewrite_next(r, false);
     }
 }
 
@@ -428,8 +464,13 @@ static enum dalcs_status take_measurement(struct meanings *all, const struct dal
     if (status != DALCS_OK) {
         return status == DALCS_E_NETLIST ? DALCS_OK : status; /* a warning has told */
     }
+    const bool is_fourier = strcmp(s->word, "fourier") == 0;
     DALCS_TRY(start(&r, all, text));
-    rewrite_card(&r);
+    if (is_fourier) {
+        rewrite_fourier(&r);
+    } else {
+        rewrite_card(&r);
+    }
     if (all->out_of_memory) {
         return DALCS_E_NOMEM;
     }
@@ -438,8 +479,8 @@ static enum dalcs_status take_measurement(struct meanings *all, const struct dal
                                   "a vector of `let` cannot be measured: %s", r.cause);
         return DALCS_OK;
     }
-    DALCS_TRY(dalcs_script_add_card(script, s, "meas", r.text));
-    return add_result(all, text);
+    DALCS_TRY(dalcs_script_add_card(script, s, is_fourier ? "four" : "meas", r.text));
+    return is_fourier ? DALCS_OK : add_result(all, text);
 }
 
 static bool ends_run(const struct dalcs_statement *s) {

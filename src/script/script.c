@@ -6,15 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_ROUNDS = 1000000 };
-
 static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size_t end);
 
 /* The body of a loop once; *stops: it is over. */
 static enum dalcs_status execute_body(struct dalcs_script *script, size_t loop, bool *stops) {
     const struct dalcs_statement *s = &script->statements.statement[loop];
     const enum dalcs_status status = execute(script, loop + 1, s->end);
-    *stops = script->breaks || script->quits;
+    *stops = script->breaks || script->quits || script->goes_to != NULL;
     script->breaks = script->continues = false;
     return status;
 }
@@ -48,20 +46,21 @@ static enum dalcs_status execute_foreach(struct dalcs_script *script, size_t loo
 static enum dalcs_status refuse_endless(struct dalcs_script *script,
                                         const struct dalcs_statement *s) {
     return dalcs_script_refuse(script, s, NULL, "this loop has gone round %d times",
-                               (int)MOST_ROUNDS);
+                               (int)DALCS_MOST_ROUNDS);
 }
 
 static enum dalcs_status execute_repeat(struct dalcs_script *script, size_t loop) {
     const struct dalcs_statement *s = &script->statements.statement[loop];
     const char *text;
-    double n = MOST_ROUNDS + 1.0; /* without a number: until break */
+    double n = DALCS_MOST_ROUNDS + 1.0; /* without a number: until break */
     bool stops = false;
     enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
     if (status == DALCS_OK && text[0] != '\0') {
         status = dalcs_script_number(script, s, text, &n);
     }
     for (long k = 0; status == DALCS_OK && (double)k < n && !stops; k++) {
-        status = k < MOST_ROUNDS ? execute_body(script, loop, &stops) : refuse_endless(script, s);
+        status =
+            k < DALCS_MOST_ROUNDS ? execute_body(script, loop, &stops) : refuse_endless(script, s);
     }
     return status;
 }
@@ -84,7 +83,8 @@ static enum dalcs_status execute_while(struct dalcs_script *script, size_t loop)
     bool yes = true;
     enum dalcs_status status = s->kind == DALCS_STATEMENT_WHILE ? holds(script, s, &yes) : DALCS_OK;
     for (long k = 0; status == DALCS_OK && yes && !stops; k++) {
-        status = k < MOST_ROUNDS ? execute_body(script, loop, &stops) : refuse_endless(script, s);
+        status =
+            k < DALCS_MOST_ROUNDS ? execute_body(script, loop, &stops) : refuse_endless(script, s);
         if (status == DALCS_OK && !stops) {
             status = holds(script, s, &yes);
         }
@@ -113,10 +113,31 @@ static enum dalcs_status execute_if(struct dalcs_script *script, size_t k) {
     return has_else ? execute(script, s->end + 1, end_of(all, k)) : DALCS_OK;
 }
 
+/* The statement in front of the label that is gone to, in this block; end: it is not here. */
+static size_t find_label(const struct dalcs_script *script, size_t begin, size_t end) {
+    const struct dalcs_statements *all = &script->statements;
+    for (size_t k = begin; k < end; k++) {
+        const struct dalcs_statement *s = &all->statement[k];
+        if (s->kind == DALCS_STATEMENT_LABEL && strcmp(s->rest, script->goes_to) == 0) {
+            return k;
+        }
+        k = s->end > k ? end_of(all, k) : k; /* not into a block */
+    }
+    return end;
+}
+
 static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size_t end) {
     const struct dalcs_statements *all = &script->statements;
     enum dalcs_status status = DALCS_OK;
     for (size_t k = begin; k < end && status == DALCS_OK; k++) {
+        if (script->goes_to != NULL) {
+            k = find_label(script, begin, end);
+            if (k == end) {
+                return DALCS_OK; /* the block around this one may have it */
+            }
+            script->goes_to = NULL;
+            continue;
+        }
         if (script->quits || script->breaks || script->continues) {
             return DALCS_OK;
         }
@@ -147,25 +168,63 @@ static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size
             dalcs_arena_finish(&script->arena);
             break;
         }
+        if (script->goes_to != NULL && k + 1 >= end) {
+            k = begin - 1; /* the label may stand before this, the last statement */
+        }
     }
     return status;
 }
 
 /* ---- From outside --------------------------------------------------------------------------------- */
 
+/* A word for several vectors: all, allv, alli, ally, tran1.all. */
+static bool names_all(const char *text) {
+    for (const char *p = strstr(text, "all"); p != NULL; p = strstr(p + 1, "all")) {
+        const bool begins = p == text || strchr(" \t,.", p[-1]) != NULL;
+        const char *end = p + 3 + (p[3] != '\0' && strchr("viy", p[3]) != NULL);
+        if (begins && (*end == '\0' || strchr(" \t,", *end) != NULL)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Does it work with all vectors? */
+static bool takes_all(const struct dalcs_statement *s) {
+    const bool has_file = s->kind == DALCS_STATEMENT_WRITE || s->kind == DALCS_STATEMENT_WRDATA ||
+                          strcmp(s->word, "hardcopy") == 0;
+    const bool takes = has_file || s->kind == DALCS_STATEMENT_PRINT ||
+                       s->kind == DALCS_STATEMENT_DRAW || s->kind == DALCS_STATEMENT_LINEARIZE ||
+                       s->kind == DALCS_STATEMENT_FFT;
+    const char *rest = s->rest + (has_file ? strcspn(s->rest, " \t") : 0);
+    rest += strspn(rest, " \t");
+    return s->kind == DALCS_STATEMENT_DISPLAY || (takes && (*rest == '\0' || names_all(rest)));
+}
+
 /* Is there a statement whose vectors are not named in the text of the script? */
 static bool keeps_all(const struct dalcs_statements *all) {
     bool found = strstr(all->text, "($") != NULL || strstr(all->text, ",$") != NULL;
     for (size_t k = 0; k < all->n && !found; k++) {
-        const struct dalcs_statement *s = &all->statement[k];
-        const char *rest = s->rest;
-        const bool writes = s->kind == DALCS_STATEMENT_WRITE || s->kind == DALCS_STATEMENT_WRDATA ||
-                            strcmp(s->word, "hardcopy") == 0;
-        rest += writes ? strcspn(rest, " \t") : 0;
-        rest += strspn(rest, " \t");
-        const size_t n = strlen(rest);
-        found = (writes || s->kind == DALCS_STATEMENT_PRINT || s->kind == DALCS_STATEMENT_DRAW) &&
-                (n == 0 || (n >= 3 && strcmp(rest + n - 3, "all") == 0));
+        found = takes_all(&all->statement[k]);
+    }
+    return found;
+}
+
+/* Does it look back at plots before the newest? "tran1.v(out)", "{$dc}.out", setplot, $curplot, destroy. */
+static bool keeps_plots(const struct dalcs_statements *all) {
+    static const char *const type[] = {"tran", "ac", "dc", "op", "pss", "sp", "unknown"};
+    bool found = strstr(all->text, "curplot") != NULL || strstr(all->text, "$plots") != NULL ||
+                 strstr(all->text, "}.") != NULL;
+    for (size_t k = 0; k < all->n && !found; k++) {
+        found = all->statement[k].kind == DALCS_STATEMENT_SETPLOT ||
+                all->statement[k].kind == DALCS_STATEMENT_DESTROY;
+    }
+    for (size_t k = 0; k < sizeof type / sizeof type[0]; k++) {
+        const size_t n = strlen(type[k]);
+        for (const char *p = strstr(all->text, type[k]); p != NULL && !found;
+             p = strstr(p + n, type[k])) {
+            found = p[n + strspn(p + n, "0123456789")] == '.';
+        }
     }
     return found;
 }
@@ -229,6 +288,7 @@ enum dalcs_status dalcs_script_read(struct dalcs_script *script, size_t first, s
     DALCS_TRY(dalcs_statements_read(&script->statements, host->session, first, end));
     script->vectors.text = script->statements.text;
     script->vectors.keeps_all = keeps_all(&script->statements);
+    script->vectors.keeps_plots = keeps_plots(&script->statements);
     return dalcs_statements_check(&script->statements, host);
 }
 
@@ -241,7 +301,12 @@ const char *dalcs_script_variable(const struct dalcs_script *script, const char 
 }
 
 enum dalcs_status dalcs_script_execute(struct dalcs_script *script, bool *quits) {
-    const enum dalcs_status status = execute(script, 0, script->statements.n);
+    enum dalcs_status status = execute(script, 0, script->statements.n);
+    if (status == DALCS_OK && script->goes_to != NULL) {
+        status = dalcs_script_refuse(script, script->gone_from, "label name",
+                                     "there is no label '%s' around this", script->goes_to);
+    }
+    script->goes_to = NULL;
     if (quits != NULL) {
         *quits = script->quits;
     }
@@ -262,6 +327,7 @@ void dalcs_script_close(struct dalcs_script *script) {
     dalcs_arena_finish(&script->kept);
     dalcs_vectors_finish(&script->vectors);
     dalcs_variables_finish(&script->variables);
+    dalcs_definitions_finish(&script->definitions);
     dalcs_statements_finish(&script->statements);
     free(script->card);
     free(script);

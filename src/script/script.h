@@ -12,6 +12,8 @@
 
 #include <stdio.h>
 
+struct dalcs_plot_vectors;
+
 /* What the script works with; borrowed. */
 struct dalcs_script_host {
     struct dalcs_session *session;
@@ -28,6 +30,10 @@ struct dalcs_script_host {
     enum dalcs_status (*measure)(void *user, const char *rest);
     /* Before what sets, makes or alters something, or runs, with variables replaced; may be NULL. */
     enum dalcs_status (*heard)(void *user, const char *word, const char *rest);
+    /* A command has made a plot of vectors, which is the current one now: linearize, fft. May be NULL. */
+    enum dalcs_status (*made)(void *user, const struct dalcs_plot_vectors *plot);
+    /* What the host calls the plot that has just begun, or that was made; NULL: the script names them. */
+    const char *(*name_of_plot)(void *user);
     /* After each run, while the session has its report; may be NULL. */
     void (*after_run)(void *user, struct dalcs_session *session, enum dalcs_status status);
 };

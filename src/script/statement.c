@@ -25,7 +25,35 @@ static const struct {
     {"echo", DALCS_STATEMENT_ECHO},
     {"let", DALCS_STATEMENT_LET},
     {"set", DALCS_STATEMENT_SET},
+    {"pre_set", DALCS_STATEMENT_SET},
     {"unset", DALCS_STATEMENT_UNSET},
+    {"fourier", DALCS_STATEMENT_MEASURE},
+    {"unlet", DALCS_STATEMENT_UNLET},
+    {"compose", DALCS_STATEMENT_COMPOSE},
+    {"cross", DALCS_STATEMENT_CROSS},
+    {"define", DALCS_STATEMENT_DEFINE},
+    {"undefine", DALCS_STATEMENT_UNDEFINE},
+    {"strcmp", DALCS_STATEMENT_STRCMP},
+    {"setplot", DALCS_STATEMENT_SETPLOT},
+    {"destroy", DALCS_STATEMENT_DESTROY},
+    {"display", DALCS_STATEMENT_DISPLAY},
+    {"setscale", DALCS_STATEMENT_SETSCALE},
+    {"settype", DALCS_STATEMENT_SETTYPE},
+    {"linearize", DALCS_STATEMENT_LINEARIZE},
+    {"fft", DALCS_STATEMENT_FFT},
+    {"psd", DALCS_STATEMENT_PSD},
+    {"spec", DALCS_STATEMENT_SPEC},
+    {"label", DALCS_STATEMENT_LABEL},
+    {"goto", DALCS_STATEMENT_GOTO},
+    {"rusage", DALCS_STATEMENT_RUSAGE},
+    {"remzerovec", DALCS_STATEMENT_NOTHING},
+    {"esave", DALCS_STATEMENT_NOTHING},
+    {"optran", DALCS_STATEMENT_NOTHING},
+    {"setcs", DALCS_STATEMENT_NOTHING},
+    {"stop", DALCS_STATEMENT_REFUSED},
+    {"step", DALCS_STATEMENT_REFUSED},
+    {"resume", DALCS_STATEMENT_REFUSED},
+    {"source", DALCS_STATEMENT_REFUSED},
     {"alter", DALCS_STATEMENT_ALTER},
     {"alterparam", DALCS_STATEMENT_ALTER_PARAMETER},
     {"altermod", DALCS_STATEMENT_ALTER_MODEL},
@@ -54,21 +82,45 @@ enum { N_WORDS = sizeof WORDS / sizeof WORDS[0] };
 
 /* Of ngspice; they show, ask or compute what dalcs does elsewhere or not at all. */
 static const char *const SKIPPED[] = {
-    "display",   "setplot", "gnuplot",    "asciiplot", "iplot",   "rusage",        "settype",
-    "setscale",  "destroy", "remcirc",    "source",    "listing", "linearize",     "fourier",
-    "fft",       "psd",     "spec",       "noise",     "pz",      "sens",          "tf",
-    "disto",     "sp",      "pss",        "status",    "show",    "showmod",       "version",
-    "shell",     "history", "help",       "alias",     "unalias", "define",        "undefine",
-    "unlet",     "load",    "edit",       "resume",    "step",    "stop",          "trace",
-    "iplot",     "where",   "delete",     "bug",       "cd",      "circbyline",    "compose",
-    "cross",     "deftype", "diff",       "dump",      "eprint",  "eprvcd",        "fopen",
-    "fread",     "fclose",  "getcwd",     "inventory", "jobs",    "mc_source",     "mdump",
-    "mrdump",    "optran",  "rehash",     "reshape",   "rspice",  "setcirc",       "setcs",
-    "setseed",   "shift",   "snload",     "snsave",    "state",   "strcmp",        "strslice",
-    "strstr",    "sysinfo", "tutorial",   "wrnodev",   "wrs2p",   "xgraph",        "aspice",
-    "codemodel", "devhelp", "unset",      "bltplot",   "pause",   "label",         "goto",
-    "wrspice",   "esave",   "cutout",     "pre_osdi",  "cdump",   "pre_codemodel", "remzerovec",
-    "rempar",    "setdcop", "print_cirs", "use",       "osdi",    "tranop",        "prompt"};
+    "gnuplot",    "asciiplot",  "iplot",    "remcirc",   "listing",   "noise",         "pz",
+    "sens",       "tf",         "disto",    "sp",        "pss",       "status",        "show",
+    "showmod",    "version",    "shell",    "history",   "help",      "alias",         "unalias",
+    "load",       "edit",       "trace",    "where",     "delete",    "bug",           "cd",
+    "circbyline", "deftype",    "diff",     "dump",      "eprint",    "eprvcd",        "fopen",
+    "fread",      "fclose",     "getcwd",   "inventory", "jobs",      "mc_source",     "mdump",
+    "mrdump",     "rehash",     "reshape",  "rspice",    "setcirc",   "setseed",       "shift",
+    "snload",     "snsave",     "state",    "strslice",  "strstr",    "sysinfo",       "tutorial",
+    "wrnodev",    "wrs2p",      "xgraph",   "aspice",    "codemodel", "devhelp",       "bltplot",
+    "pause",      "wrspice",    "cutout",   "pre_osdi",  "cdump",     "pre_codemodel", "rempar",
+    "setdcop",    "print_cirs", "use",      "osdi",      "tranop",    "prompt",        "edisplay",
+    "pyplot",     "pre_set",    "sndparam", "sndprint",  "transpose"};
+
+/* Why some of them are not done, where a reader would wonder. */
+static const struct {
+    const char *word, *reason;
+} REASON[] = {
+    {"shell", "a netlist starts no other programs here: run what follows outside"},
+    {"load", "results are read by: dalcs plot FILE, or Python"},
+    {"stop", "a run has no stops here: a second tran, or a switch or PWL source for what changes"},
+    {"step", "a run has no stops here: a second tran, or a switch or PWL source for what changes"},
+    {"resume",
+     "a run has no stops here: a second tran, or a switch or PWL source for what changes"},
+    {"source", "a netlist is one file: .include the other one, or run dalcs on it"},
+    {"noise", "it is no analysis of circuits with ideal diodes"},
+    {"pz", "it is no analysis of circuits with ideal diodes"},
+    {"sens", "it is no analysis of circuits with ideal diodes"},
+    {"disto", "it is no analysis of circuits with ideal diodes"},
+    {"tf", "op or ac with a source of 1 gives it"},
+};
+
+static const char *reason_of(const char *word) {
+    for (size_t k = 0; k < sizeof REASON / sizeof REASON[0]; k++) {
+        if (strcmp(REASON[k].word, word) == 0) {
+            return REASON[k].reason;
+        }
+    }
+    return NULL;
+}
 
 static bool is_skipped(const char *word) {
     for (size_t k = 0; k < sizeof SKIPPED / sizeof SKIPPED[0]; k++) {
@@ -197,6 +249,13 @@ static void refuse_word(struct dalcs_session *session, const struct dalcs_statem
     say(session, s, DALCS_LEVEL_ERROR, nearest != NULL ? hint : NULL, text);
 }
 
+/* What would be simulated is another thing without it. */
+static void refuse_change(struct dalcs_session *session, const struct dalcs_statement *s) {
+    char text[120];
+    snprintf(text, sizeof text, "'%.60s' is not done here", s->word);
+    say(session, s, DALCS_LEVEL_ERROR, reason_of(s->word), text);
+}
+
 /* Each skipped word once. */
 static void warn_of_skipped(struct dalcs_session *session, const struct dalcs_statements *all,
                             size_t at) {
@@ -212,8 +271,8 @@ static void warn_of_skipped(struct dalcs_session *session, const struct dalcs_st
              is_card ? "'%.60s' is a card, no command: it is skipped, as ngspice does"
                      : "'%.60s' is not done here and skipped",
              s->word);
-    say(session, s, DALCS_LEVEL_WARNING, is_card ? "put it outside of the .control block" : NULL,
-        text);
+    say(session, s, DALCS_LEVEL_WARNING,
+        is_card ? "put it outside of the .control block" : reason_of(s->word), text);
 }
 
 static bool opens(enum dalcs_statement_kind kind) {
@@ -236,6 +295,9 @@ enum dalcs_status dalcs_statements_check(struct dalcs_statements *all,
         }
         if (s->kind == DALCS_STATEMENT_UNKNOWN) {
             refuse_word(session, s);
+            failed = true;
+        } else if (s->kind == DALCS_STATEMENT_REFUSED) {
+            refuse_change(session, s);
             failed = true;
         } else if (s->kind == DALCS_STATEMENT_SKIPPED) {
             warn_of_skipped(session, all, k);
@@ -272,7 +334,8 @@ bool dalcs_statement_may_be_left_out(const struct dalcs_statement *s) {
     return s->kind == DALCS_STATEMENT_LET || s->kind == DALCS_STATEMENT_PRINT ||
            s->kind == DALCS_STATEMENT_ECHO || s->kind == DALCS_STATEMENT_MEASURE ||
            s->kind == DALCS_STATEMENT_WRDATA || s->kind == DALCS_STATEMENT_WRITE ||
-           s->kind == DALCS_STATEMENT_DRAW;
+           s->kind == DALCS_STATEMENT_DRAW ||
+           (s->kind >= DALCS_STATEMENT_UNLET && s->kind <= DALCS_STATEMENT_SPEC);
 }
 
 void dalcs_statements_finish(struct dalcs_statements *s) {

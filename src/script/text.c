@@ -97,7 +97,7 @@ static enum dalcs_status append_vector(struct growing *g, const struct dalcs_sta
         return DALCS_E_NOMEM;
     }
     DALCS_TRY(dalcs_script_vectors(script, s, dalcs_lower_text(name), &vector, &n_vectors));
-    for (size_t k = 0; n_vectors == 1 && k < vector[0]->n; k++) {
+    for (size_t k = 0; n_vectors == 1 && k < vector[0]->n && !g->failed; k++) {
         append(g, " ", 1);
         append_number(g, creal(vector[0]->value[k]));
     }
@@ -138,35 +138,150 @@ static enum dalcs_status append_braces(struct growing *g, const struct dalcs_sta
     return DALCS_OK;
 }
 
-/* After a `$` at *p: $name, ${name} or $&vector. */
-static enum dalcs_status append_variable(struct growing *g, const struct dalcs_statement *s,
-                                         const char **p) {
-    const char *begin = *p;
-    const bool is_vector = *begin == '&';
-    const bool has_brace = *begin == '{';
-    begin += is_vector || has_brace ? 1 : 0;
-    const char *end = begin;
-    while (is_name_character(*end) || (is_vector && *end != '\0' && strchr(".#@", *end) != NULL)) {
-        end++;
+/* What `set` did not make, but the plots have; NULL: it is none of these. */
+static const char *variable_of_plots(struct dalcs_script *script, const char *name) {
+    const struct dalcs_vectors *all = &script->vectors;
+    const struct dalcs_plot_vectors *plot = dalcs_plots_current(all);
+    if (strcmp(name, "curplot") == 0) {
+        return plot == &all->own ? "const" : plot->type;
     }
-    *p = end + (has_brace && *end == '}' ? 1 : 0);
-    if (is_vector && s->kind == DALCS_STATEMENT_FOREACH) {
-        return append_vector(g, s, begin, (size_t)(end - begin));
+    if (strcmp(name, "curplotname") == 0) {
+        return plot->kind != NULL ? plot->kind : "constants";
     }
-    if (is_vector) {
-        return append_formula(g, s, begin, (size_t)(end - begin));
+    if (strcmp(name, "curplottitle") == 0) {
+        return plot->title != NULL ? plot->title : "Constant values";
     }
-    char *name = dalcs_arena_copy(&g->script->arena, begin, (size_t)(end - begin));
-    if (name == NULL) {
-        return DALCS_E_NOMEM;
+    if (strcmp(name, "plots") != 0) {
+        return NULL;
     }
-    const char *value = dalcs_variables_get(&g->script->variables, dalcs_lower_text(name));
+    const char *list = "const";
+    for (size_t k = 0; k < all->n && list != NULL; k++) {
+        list = dalcs_arena_printf(&script->arena, "%s %s", list, all->plot[k]->type);
+    }
+    return list;
+}
+
+static const char *variable_of(struct dalcs_script *script, const char *name) {
+    const char *value = dalcs_variables_get(&script->variables, name);
+    return value != NULL ? value : variable_of_plots(script, name);
+}
+
+static size_t count_words(struct dalcs_script *script, const char *text) {
+    size_t n = 0;
+    while (dalcs_script_word(script, &text) != NULL) {
+        n++;
+    }
+    return n;
+}
+
+/* The words number `first` to `last`, from 1, of a list. */
+static enum dalcs_status append_words(struct growing *g, const struct dalcs_statement *s,
+                                      const char *name, const char *list, long first, long last) {
+    const char *word = dalcs_script_word(g->script, &list);
+    long k = 1;
+    for (; word != NULL && k <= last; k++) {
+        if (k > first) {
+            append(g, " ", 1);
+        }
+        if (k >= first) {
+            append(g, word, strlen(word));
+        }
+        word = dalcs_script_word(g->script, &list);
+    }
+    return k > last && first >= 1 && first <= last
+               ? DALCS_OK
+               : dalcs_script_refuse(g->script, s, NULL, "the variable '%s' has no word number %ld",
+                                     name, k > last ? first : last);
+}
+
+/* The value, or of an index behind the name, [2] or [2-3], these words of it. */
+static enum dalcs_status append_value(struct growing *g, const struct dalcs_statement *s,
+                                      const char *name, const char **p) {
+    const char *value = variable_of(g->script, name);
     if (value == NULL) {
         return dalcs_script_refuse(g->script, s, "set it: set name=value",
                                    "there is no variable '%s'", name);
     }
-    append(g, value, strlen(value));
+    const char *close = **p == '[' ? strchr(*p, ']') : NULL;
+    if (close == NULL) {
+        append(g, value, strlen(value));
+        return DALCS_OK;
+    }
+    struct dalcs_statement inside = *s;
+    const char *text;
+    inside.rest = dalcs_arena_copy(&g->script->arena, *p + 1, (size_t)(close - *p - 1));
+    *p = close + 1;
+    if (inside.rest == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_script_expand(g->script, &inside, &text));
+    char *end;
+    const long first = strtol(text, &end, 10);
+    const long last = *end == '-' ? strtol(end + 1, &end, 10) : first;
+    return append_words(g, s, name, value, first, last);
+}
+
+/* $&vector, $&v(out): its value, in the list of a foreach all of them; $&vector[2]. */
+static enum dalcs_status append_vector_value(struct growing *g, const struct dalcs_statement *s,
+                                             const char **p) {
+    const char *begin = *p;
+    const char *end = begin;
+    while (is_name_character(*end) || (*end != '\0' && strchr(".#@", *end) != NULL)) {
+        end++;
+    }
+    const bool is_signal = *end == '(' && end - begin <= 3 &&
+                           (*begin == 'v' || *begin == 'i' || *begin == 'V' || *begin == 'I');
+    const char *close = is_signal ? strchr(end, ')') : NULL;
+    end = close != NULL ? close + 1 : end;
+    close = *end == '[' ? strchr(end, ']') : NULL;
+    end = close != NULL ? close + 1 : end;
+    *p = end;
+    return s->kind == DALCS_STATEMENT_FOREACH ? append_vector(g, s, begin, (size_t)(end - begin))
+                                              : append_formula(g, s, begin, (size_t)(end - begin));
+}
+
+/* After a `$` at *p: $name, ${name}, $?name (is it set?), $#name (how many words?) or $&vector. */
+static enum dalcs_status append_variable(struct growing *g, const struct dalcs_statement *s,
+                                         const char **p) {
+    const char sign = **p;
+    const char *begin = *p + (sign == '{' || sign == '?' || sign == '#' || sign == '&' ? 1 : 0);
+    if (sign == '&') {
+        *p = begin;
+        return append_vector_value(g, s, p);
+    }
+    const char *end = begin;
+    while (is_name_character(*end)) {
+        end++;
+    }
+    *p = end + (sign == '{' && *end == '}' ? 1 : 0);
+    char *name = dalcs_arena_copy(&g->script->arena, begin, (size_t)(end - begin));
+    if (name == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    const char *value = variable_of(g->script, dalcs_lower_text(name));
+    if (sign == '?') {
+        append(g, value != NULL ? "1" : "0", 1);
+    } else if (sign == '#') {
+        append_number(g, value != NULL ? (double)count_words(g->script, value) : 0.0);
+    } else {
+        return append_value(g, s, name, p);
+    }
     return DALCS_OK;
+}
+
+/* Is this a variable behind a dollar? */
+static bool begins_variable(const char *p) {
+    return is_name_character(p[0]) || p[0] == '&' || p[0] == '{' ||
+           ((p[0] == '?' || p[0] == '#') && is_name_character(p[1]));
+}
+
+/* A brace that only ties a name to what follows, {$run}: the name itself, as it is. */
+static bool is_variable_alone(const char *p, const char *close) {
+    const char *end = p + 2;
+    while (is_name_character(*end)) {
+        end++;
+    }
+    return p[1] == '$' && end > p + 2 && end == close;
 }
 
 enum dalcs_status dalcs_script_expand(struct dalcs_script *script, const struct dalcs_statement *s,
@@ -176,9 +291,13 @@ enum dalcs_status dalcs_script_expand(struct dalcs_script *script, const struct 
     append(&g, "", 0);
     for (const char *p = s->rest; *p != '\0' && status == DALCS_OK;) {
         const char *close = *p == '{' ? strchr(p, '}') : NULL;
-        if (*p == '$' && (is_name_character(p[1]) || p[1] == '&' || p[1] == '{')) {
+        if (*p == '$' && begins_variable(p + 1)) {
             p++;
             status = append_variable(&g, s, &p);
+        } else if (close != NULL && is_variable_alone(p, close)) {
+            p += 2;
+            status = append_variable(&g, s, &p);
+            p = close + 1;
         } else if (close != NULL) {
             /* What stands in the braces may hold variables itself. */
             struct dalcs_statement inner = *s;
@@ -229,25 +348,39 @@ const char *dalcs_script_word(struct dalcs_script *script, const char **text) {
     return dalcs_arena_copy(&script->arena, begin, n);
 }
 
-static enum dalcs_status report(struct dalcs_script *script, const struct dalcs_statement *s,
-                                const struct dalcs_vector_formula *f) {
+struct dalcs_vector_formula dalcs_script_formula(struct dalcs_script *script, const char *text) {
+    return (struct dalcs_vector_formula){.vectors = &script->vectors,
+                                         .definitions = &script->definitions,
+                                         .text = text,
+                                         .arena = &script->arena};
+}
+
+enum dalcs_status dalcs_script_refuse_formula(struct dalcs_script *script,
+                                              const struct dalcs_statement *s,
+                                              const struct dalcs_vector_formula *f) {
     if (f->out_of_memory) {
         return DALCS_E_NOMEM;
     }
     return dalcs_script_refuse(script, s, f->hint[0] != '\0' ? f->hint : NULL, "%s", f->message);
 }
 
-enum dalcs_status dalcs_script_number(struct dalcs_script *script, const struct dalcs_statement *s,
-                                      const char *text, double *value) {
-    struct dalcs_vector_formula f = {
-        .vectors = &script->vectors, .text = text, .arena = &script->arena};
-    const struct dalcs_vector *v = dalcs_vector_formula_next(&f);
-    if (v == NULL) {
-        return report(script, s, &f);
+enum dalcs_status dalcs_script_value(struct dalcs_script *script, const struct dalcs_statement *s,
+                                     const char *text, const struct dalcs_vector **value) {
+    struct dalcs_vector_formula f = dalcs_script_formula(script, text);
+    *value = dalcs_vector_formula_next(&f);
+    if (*value == NULL) {
+        return dalcs_script_refuse_formula(script, s, &f);
     }
     if (!dalcs_vector_formula_at_end(&f)) {
         return dalcs_script_refuse(script, s, NULL, "did not expect '%s'", text + f.at);
     }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_script_number(struct dalcs_script *script, const struct dalcs_statement *s,
+                                      const char *text, double *value) {
+    const struct dalcs_vector *v;
+    DALCS_TRY(dalcs_script_value(script, s, text, &v));
     if (v->n != 1) {
         return dalcs_script_refuse(script, s, "an index picks one: v(out)[0]",
                                    "'%s' is a vector of length %zu, not a number", v->name, v->n);
@@ -256,58 +389,4 @@ enum dalcs_status dalcs_script_number(struct dalcs_script *script, const struct 
     return isfinite(*value)
                ? DALCS_OK
                : dalcs_script_refuse(script, s, NULL, "'%s' is not a finite number", v->name);
-}
-
-/* The word `all`, and nothing behind it. */
-static bool is_all(const char *text) {
-    return strncmp(text, "all", 3) == 0 && text[3 + strspn(text + 3, " \t")] == '\0';
-}
-
-/* vector[n_before..*n-1] become all of the plot but its scale. */
-static enum dalcs_status all_vectors(struct dalcs_script *script, size_t n_before,
-                                     const struct dalcs_vector ***vector, size_t *n) {
-    const struct dalcs_plot_vectors *plot = &script->vectors.plot;
-    const size_t first = plot->analysis == DALCS_OPERATING_POINT ? 0 : 1;
-    *vector = dalcs_arena_alloc(&script->arena, n_before + plot->n, sizeof(struct dalcs_vector *));
-    *n = n_before;
-    if (*vector == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    for (size_t k = first; k < plot->n; k++) {
-        (*vector)[(*n)++] = plot->vector[k];
-    }
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_script_vectors(struct dalcs_script *script, const struct dalcs_statement *s,
-                                       const char *text, const struct dalcs_vector ***vector,
-                                       size_t *n) {
-    struct dalcs_vector_formula f = {
-        .vectors = &script->vectors, .text = text, .arena = &script->arena};
-    if (dalcs_vector_formula_at_end(&f)) {
-        return all_vectors(script, 0, vector, n);
-    }
-    *vector = dalcs_arena_alloc(&script->arena, strlen(text), sizeof(struct dalcs_vector *));
-    if (*vector == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    *n = 0;
-    while (!dalcs_vector_formula_at_end(&f)) {
-        if (is_all(f.text + f.at)) {
-            const struct dalcs_vector **listed = *vector;
-            const size_t n_listed = *n;
-            enum dalcs_status status = all_vectors(script, n_listed, vector, n);
-            if (status != DALCS_OK) {
-                return status;
-            }
-            memcpy(*vector, listed, n_listed * sizeof(struct dalcs_vector *));
-            return DALCS_OK;
-        }
-        const struct dalcs_vector *v = dalcs_vector_formula_next(&f);
-        if (v == NULL) {
-            return report(script, s, &f);
-        }
-        (*vector)[(*n)++] = v;
-    }
-    return DALCS_OK;
 }

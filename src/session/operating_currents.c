@@ -182,7 +182,7 @@ static enum dalcs_status make_shadow(struct dalcs_session *s, int n, struct dalc
     shadow->name = s->name;
     DALCS_TRY(list_signals(&shadow->arena, c, n));
     c->losses = NULL;
-    c->n_measured = c->n_measures = c->n_fouriers = c->n_prints = c->n_steps = 0;
+    c->n_computed = c->n_measured = c->n_measures = c->n_fouriers = c->n_prints = c->n_steps = 0;
     c->operating_point = true;
     c->options.compress = c->options.fill = 0;
     c->transient.step = 0; /* no more rows than are asked for */

@@ -2,6 +2,7 @@
  *
  * dalcs_session_run at the end is the table of contents. */
 #include "pipeline.h"
+#include "computed.h"
 
 #include "gates.h"
 #include "stroboscope.h"
@@ -310,28 +311,40 @@ static enum dalcs_status run_stroboscope(struct dalcs_session *session,
     return status;
 }
 
-static enum dalcs_status run_all(struct dalcs_session *session,
-                                 const struct dalcs_run_options *options,
-                                 const struct dalcs_sink *sink) {
-    DALCS_TRY(dalcs_session_apply_values(session));
-    const struct dalcs_sink complete = completed(sink);
+/* Of a circuit with the values that were set; the sink has all callbacks but perhaps rows. */
+static enum dalcs_status run_circuit(struct dalcs_session *session,
+                                     const struct dalcs_run_options *options,
+                                     const struct dalcs_sink *sink) {
     if (options->steady || options->bode) {
         session->circuit.periodic.present = true; /* as if there were a .pss */
         DALCS_TRY(dalcs_steady_prepare(session));
     }
     DALCS_TRY(dalcs_steps_find(session));
     if (options->samples > 0) {
-        return run_stroboscope(session, options, &complete);
+        return run_stroboscope(session, options, sink);
     }
     if (session->steps.n > 0) {
-        return dalcs_stepped_run(session, options, &complete);
+        return dalcs_stepped_run(session, options, sink);
     }
-    DALCS_TRY(dalcs_operating_currents(session, options, &complete));
+    DALCS_TRY(dalcs_operating_currents(session, options, sink));
     const enum dalcs_analysis alone = options->steady ? DALCS_PERIODIC : DALCS_AC;
     return options->steady || options->bode
-               ? dalcs_run_analyses(session, options, &complete, NULL, &alone, 1)
-               : dalcs_run_analyses(session, options, &complete, NULL, dalcs_analyses_in_order,
+               ? dalcs_run_analyses(session, options, sink, NULL, &alone, 1)
+               : dalcs_run_analyses(session, options, sink, NULL, dalcs_analyses_in_order,
                                     DALCS_N_IN_ORDER);
+}
+
+static enum dalcs_status run_all(struct dalcs_session *session,
+                                 const struct dalcs_run_options *options,
+                                 const struct dalcs_sink *sink) {
+    DALCS_TRY(dalcs_session_apply_values(session));
+    const struct dalcs_sink complete = completed(sink);
+    if (session->circuit.n_computed == 0) {
+        return run_circuit(session, options, &complete);
+    }
+    struct dalcs_computing computing;
+    dalcs_computing_init(&computing, session, &complete);
+    return run_circuit(session, options, &computing.sink);
 }
 
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,

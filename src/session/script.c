@@ -93,17 +93,16 @@ static enum dalcs_status use_own_analyses(struct dalcs_session *s, size_t first)
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
-                                          const struct dalcs_extra_card *card, size_t n_cards,
-                                          const struct dalcs_run_options *options,
-                                          const struct dalcs_sink *sink) {
+/* A second analysis, where it is not NULL, and other cards beside the netlist's own. */
+static enum dalcs_status run_with(struct dalcs_session *session,
+                                  const struct dalcs_source_line *second,
+                                  const struct dalcs_extra_card *card, size_t n_cards,
+                                  const struct dalcs_run_options *options,
+                                  const struct dalcs_sink *sink) {
     for (size_t k = 0; k < n_cards; k++) {
         if (card[k].line >= dalcs_session_n_script_lines(session)) {
             return DALCS_E_OPTION;
         }
-    }
-    if (!session->has_netlist) {
-        return DALCS_E_OPTION;
     }
     struct dalcs_netlist *netlist = &session->netlist;
     const struct dalcs_netlist before = *netlist;
@@ -116,6 +115,9 @@ enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
     for (size_t k = 0; k < n_cards && status == DALCS_OK; k++) {
         status = dalcs_netlist_add_card(netlist, &netlist->script[card[k].line], card[k].text,
                                         &session->diag);
+    }
+    if (status == DALCS_OK && second != NULL) {
+        status = dalcs_netlist_add_card(netlist, second, second->text, &session->diag);
     }
     if (status == DALCS_OK) {
         status = use_own_analyses(session, before.n_cards);
@@ -133,10 +135,39 @@ enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
     return status;
 }
 
+enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
+                                          const struct dalcs_extra_card *card, size_t n_cards,
+                                          const struct dalcs_run_options *options,
+                                          const struct dalcs_sink *sink) {
+    return session->has_netlist ? run_with(session, NULL, card, n_cards, options, sink)
+                                : DALCS_E_OPTION;
+}
+
+size_t dalcs_session_n_second_analyses(const struct dalcs_session *session) {
+    return session->has_netlist ? session->netlist.n_second : 0;
+}
+
+enum dalcs_status dalcs_session_run_second(struct dalcs_session *session, size_t index,
+                                           const struct dalcs_extra_card *card, size_t n_cards,
+                                           const struct dalcs_run_options *options,
+                                           const struct dalcs_sink *sink) {
+    return index < dalcs_session_n_second_analyses(session)
+               ? run_with(session, &session->netlist.second[index], card, n_cards, options, sink)
+               : DALCS_E_OPTION;
+}
+
 /* ---- Other values ------------------------------------------------------------------------------ */
 
 static enum dalcs_status keep_override(struct dalcs_session *s,
                                        const struct dalcs_override *override) {
+    double *list = NULL;
+    if (override->n_list > 0) {
+        list = dalcs_arena_alloc(&s->arena, override->n_list, sizeof *list);
+        if (list == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        memcpy(list, override->list, override->n_list * sizeof *list);
+    }
     s->is_altered = true;
     for (size_t k = 0; k < s->n_altered; k++) {
         struct dalcs_override *known = &s->override[k];
@@ -146,12 +177,15 @@ static enum dalcs_status keep_override(struct dalcs_session *s,
         if (known->kind == override->kind && strcmp(known->name, override->name) == 0 &&
             same_field) {
             known->value = override->value;
+            known->list = list;
+            known->n_list = override->n_list;
             return DALCS_OK;
         }
     }
     DALCS_TRY(
         dalcs_grow(&s->override, &s->override_capacity, s->n_altered + 1, sizeof *s->override));
     struct dalcs_override own = *override;
+    own.list = list;
     own.name = dalcs_arena_copy(&s->arena, override->name, strlen(override->name));
     if (override->field != NULL) {
         own.field = dalcs_arena_copy(&s->arena, override->field, strlen(override->field));
@@ -234,6 +268,27 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
     } else {
         found = (session->has_circuit && has_device(&session->circuit, name, like)) ||
                 has_card(&session->netlist, NULL, 0, name, like);
+    }
+    return found ? keep_override(session, &override) : DALCS_E_OPTION;
+}
+
+enum dalcs_status dalcs_session_alter_waveform(struct dalcs_session *session, const char *name,
+                                               const char *function, const double *value, size_t n,
+                                               const char **nearest) {
+    const char *unused = NULL;
+    const char **like = nearest != NULL ? nearest : &unused;
+    const struct dalcs_override override = {.kind = DALCS_OVERRIDE_WAVEFORM,
+                                            .name = name,
+                                            .field = function,
+                                            .list = value,
+                                            .n_list = n};
+    bool found = false;
+    *like = NULL;
+    for (int k = 0; session->has_circuit && k < session->circuit.n_devices; k++) {
+        const struct dalcs_device *d = &session->circuit.device[k];
+        const bool is_source = d->kind == DALCS_VSOURCE || d->kind == DALCS_ISOURCE;
+        found = found || (is_source && strcmp(d->name, name) == 0);
+        *like = is_source && *like == NULL ? dalcs_names_nearest_of(&d->name, 1, name) : *like;
     }
     return found ? keep_override(session, &override) : DALCS_E_OPTION;
 }

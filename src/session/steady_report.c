@@ -205,7 +205,8 @@ static enum dalcs_status tell_conserved(struct dalcs_steady *st) {
 
 static enum dalcs_status tell_signals(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
-    const size_t n = (size_t)s->circuit.n_shown;
+    const struct dalcs_circuit *c = &s->circuit;
+    const size_t n = (size_t)(c->n_computed > 0 ? c->n_named : c->n_shown);
     struct dalcs_steady_signal *signal = dalcs_arena_alloc(&s->arena, n + 1, sizeof(*signal));
     if (signal == NULL) {
         return DALCS_E_NOMEM;

@@ -426,6 +426,7 @@ B2 0 y I=1m*sgn(v(in)) - clip(v(y)/1k, 1m) + 1m*sin(1000*time)*exp(-time) + u(ti
 B3 z 0 V=max(abs(v(in)), abs(v(out))) + i(R1) + (v(in) > 1 && v(out) > 2 ? 1 : 0)
 E4 w 0 TABLE {v(in)} = (-1,-2) (0,0) (1,1)
 R3 z w 1k
+.save v(y) {v(y)*i(r1)} w(r3) {v(in) > 0 ? abs(v(y)) : v(out) && 1}
 .tran 50u 0.2m
 .end
 """, 0),
@@ -536,6 +537,40 @@ end
 if x > 1
   echo $&x
 end
+.endc
+.end
+""", 0),
+    "plots": ("""Plots, spectra and functions of a control block
+V1 in 0 DC 2 AC 1 SIN(0 1 1k)
+R1 in out 1k
+C1 out 0 1u
+.tran 0.1m 1m
+.tran 0.1m 0.4m
+.control
+define twice(x) 2*x
+compose r values 1k 2k
+run
+linearize
+fft v(out)
+let line = twice(mag(v(out)[1]))
+setplot tran1
+spec 0 2k 1k v(out)
+set curplot = new
+set scratch = $curplot
+foreach x $&r
+  alter r1 = $x
+  op
+  let {$scratch}.out$x = v(out)
+end
+print {$scratch}.out1k tran1.v(out) > t.txt
+echo $plots $#plots $?nothing
+strcmp same $scratch a
+cross c 1 tran1.v(in) tran2.v(in)
+unlet c
+fourier 1k v(out)
+setplot
+display
+destroy all
 .endc
 .end
 """, 0),

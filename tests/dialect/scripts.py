@@ -4,6 +4,7 @@
 usage: scripts.py PROGRAM
 """
 
+import csv
 import math
 import pathlib
 import re
@@ -203,13 +204,42 @@ def printed_formulas(c):
             lines = out.decode().splitlines()
             good = len(lines) > 1 and abs(float(lines[1].split(",")[-1]) - wanted) < 1e-9
             c.check(status == 0 and good and "one connection" not in err, f"'{card} {word}' ends with {status}: {lines}\n{err}")
-    for word in ("{v(a)*v(b)}", "{v(a)**2}", "{abs(v(a))}", "{v(a)*i(v1)}", "{sin(v(a))}", "{1/v(a)}"):
+    for word, wanted in (
+            ("{v(a)*v(b)}", 4.5), ("{v(a)**2}", 9.0), ("{abs(v(b)-v(a))}", 1.5), ("{sin(v(a))}", math.sin(3)),
+            ("{v(a)*i(v1)}", -4.5e-3), ("{1/v(a)}", 1 / 3), ("par('k*v(a)*v(b)')", 9.0),
+            ("{v(a) > v(b) ? 1 : 2}", 1.0), ("{v(a) < v(b) ? 1 : 2}", 2.0), ("{max(v(a), v(b), 5)}", 5.0),
+            ("{v(b) > 1 && v(a) > 5}", 0.0), ("{v(b) > 1 || v(a) > 5}", 1.0), ("{-v(x1.q)**2}", -0.5625),
+            ("w(r1)", 2.25e-3), ("p(r2)", 1.125e-3), ("w(x1.r1)", 0.5625e-3), ("w(v1)", -4.5e-3)):
+        for card in (".print op", ".plot op", ".save", ".probe"):
+            status, _, err, out = run(c.program, f"x\n{body.format(inner='')}.op\n{card} v(a) {word} v(b)\n.end\n")
+            lines = [line.split(",v(a),")[-1] for line in out.decode().splitlines()]
+            found = next(csv.reader([out.decode().splitlines()[1]])) if len(lines) > 1 else []
+            good = len(found) == 4 and abs(float(found[2]) - wanted) < 1e-12 + 1e-9 * abs(wanted)
+            c.check(status == 0 and good and "left out" not in err, f"'{card} {word}' ends with {status}: {found}\n{err}")
+    for word in ("{sdt(v(a))}", "{delay(v(a),1m)}"):
         status, _, err, out = run(c.program, f"x\n{body.format(inner='')}.op\n.print op v(a) {word} v(b)\n.end\n")
-        names = out.decode().splitlines()[0] if out else ""
-        c.check(status == 0 and names.endswith("v(a),v(b)") and "left out" in err, f"{word}: {names} {err}")
+        c.check("left out" in err or status == 3, f"{word}: {status} {err}")
     status, _, err, out = run(c.program, f"x\n{body.format(inner='.print op {v(p)-v(q)} v(q)' + chr(10))}.op\n.end\n")
     lines = out.decode().splitlines()
     c.check(status == 0 and len(lines) == 2 and abs(float(lines[1].split(",")[-2]) - 0.75) < 1e-9, f"{lines} {err}")
+    # Each analysis has them, in the order of the cards; .ac of magnitudes, as .meas ac.
+    wave = "V1 a 0 DC 1 AC 2 SIN(0 3 50)\nR1 a 0 2\nR2 a b 1\nR3 b 0 1\n.save {v(a)*v(b)} v(b) w(r1)\n"
+    for card, columns, wanted in (
+            (".tran 1m 5m", ["{v(a)*v(b)}", "v(b)", "w(r1)"], [5, 4.5, 1.5, 4.5]),
+            (".ac lin 1 50 50", ["re({v(a)*v(b)})", "im({v(a)*v(b)})", "re(v(b))", "im(v(b))", "re(w(r1))", "im(w(r1))"],
+             [50, 2, 0, 1, 0, 2, 0]),
+            (".dc V1 0 2 1 R1 1 4 3", ["r1", "{v(a)*v(b)}", "v(b)", "w(r1)"], [2, 4, 2, 1, 1]),
+            (".tran 1m 5m\n.step V1 list 1 2", ["{v(a)*v(b)}", "v(b)", "w(r1)"], [5, 4.5, 1.5, 4.5]),
+            (".pss 50", ["{v(a)*v(b)}", "v(b)", "w(r1)"], None)):
+        status, _, err, out = run(c.program, f"x\n{wave}{card}\n.end\n")
+        lines = list(csv.reader(out.decode().splitlines()))
+        names = lines[0] if lines else []
+        c.check(status == 0 and [n.replace(" ", "") for n in names[-len(columns):]] == columns, f"{card}: {names} {err}")
+        values = [[float(x) for x in line] for line in lines[1:]]
+        at = [v for v in values if wanted and abs(v[0 if ".step" not in card else 1] - wanted[0] * (1e-3 if wanted[0] == 5 else 1)) < 1e-9]
+        got = at[-1][-len(columns):] if at else []
+        c.check(wanted is None or (len(got) == len(columns) and all(abs(x - y) < 1e-9 for x, y in zip(got, wanted[1:]))),
+                f"{card}: {got}, not {wanted}")
     # A formula that is recorded changes nothing else.
     plain = run(c.program, f"x\n{body.format(inner='')}.op\n.end\n")[3].decode().splitlines()
     more = run(c.program, f"x\n{body.format(inner='')}.op\n.save all {{v(a)-v(b)}}\n.end\n")[3].decode().splitlines()

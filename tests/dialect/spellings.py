@@ -622,8 +622,8 @@ NOTED = [
      "means nothing here"),
     ("reltol", "V1 a 0 1\nR1 a 0 1\n.options reltol=0.2\n.op\n", "a tolerance of 0.2 is cut to 0.1"),
     ("reltol", "V1 a 0 1\nR1 a 0 1\n.options abstol=0.2 reltol=0.5\n.op\n", "is cut to 0.1"),
-    ("a power", "V1 a 0 1\nR1 a 0 1\n.print op v(a) P(r1) W(r1)\n.op\n", "p(...) is left out"),
-    ("a power", "V1 a 0 1\nR1 a 0 1\n.print op v(a) W(r1)\n.op\n", "w(...) is left out"),
+    ("a power", "V1 a 0 1\nE1 b 0 a 0 2\nR1 b 0 1\n.print op v(a) P(e1) W(e1)\n.op\n", "p(...) is left out"),
+    ("a power", "V1 a 0 1\nC1 a 0 1u Rser=1\n.print op v(a) W(c1)\n.op\n", "w(...) is left out"),
     ("startup", "V1 a 0 SIN(1 1 50)\nR1 a 0 1\n.tran 1m startup\n", "does not start at 0"),
     ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n"
      ".lib C:\\Program Files (x86)\\LTC\\LTspiceIV\\lib\\cmp\\standard.dio\n", "is left out"),

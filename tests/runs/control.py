@@ -228,8 +228,8 @@ set numdgt=12
 print v(out)-v(x) v(out,x)
 let x = 4
 echo x is $&x, twice {2*x}
-display
-display
+listing
+listing
 .endc
 .end
 """)
@@ -245,7 +245,7 @@ display
         checker.check(dict(printed(ours.stdout)) == {"v(out)-v(x)": 0.25, "v(out,x)": 0.25},
                       f"altermod: {ours.stdout}")
         checker.check("x is 4, twice 8" in ours.stdout, ours.stdout)
-        checker.check(ours.stderr.count("'display' is not done here") == 1, ours.stderr)
+        checker.check(ours.stderr.count("'listing' is not done here") == 1, ours.stderr)
     with tempfile.TemporaryDirectory() as folder:
         ours, _ = both.run(folder, "no analysis", CIRCUIT.format(title="late") + """.op
 .control

@@ -486,8 +486,12 @@ START_TEST(test_spellings) {
     ck_assert_double_eq(circuit.diode_model[circuit.device[4].model].vfwd, 0.7);
     ck_assert_int_eq(circuit.n_couplings, 1);
     ck_assert_double_eq(circuit.device[7].value, 43);
-    check_signals((const char *[]){"i(d1)", "i(r1)", "v(a)"}, 3);
-    ck_assert_int_eq(circuit.n_shown, 2);
+    check_signals((const char *[]){"i(d1)", "i(r1)", "v(r1)", "v(a)"}, 4);
+    ck_assert_int_eq(circuit.n_named, 2);
+    ck_assert_int_eq(circuit.n_shown, 4); /* rows have what p(r1) is computed from */
+    ck_assert_int_eq(circuit.n_computed, 1);
+    ck_assert_str_eq(circuit.computed[0].name, "p(r1)");
+    ck_assert_int_eq(circuit.computed[0].at, 1);
     ck_assert_int_eq(circuit.n_measures, 1);
     dalcs_circuit_finish(&circuit);
 }

@@ -1,0 +1,117 @@
+/* set_command.c - variables and what is said: set, unset, strcmp, echo. */
+#include "lower_case.h"
+#include "script_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* `set` alone, as ngspice answers it. */
+static void list_variables(const struct dalcs_script *script) {
+    const struct dalcs_variables *all = &script->variables;
+    for (size_t k = 0; k < all->n; k++) {
+        fprintf(script->host->out, "%s\t%s\n", all->variable[k].name, all->variable[k].value);
+    }
+}
+
+/* "name", "name = value", "name = ( a b c )". */
+enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *text;
+    enum dalcs_status status = dalcs_script_expand(script, s, &text);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    const size_t length = strcspn(text, "=");
+    const char *left = dalcs_arena_copy(&script->arena, text, length);
+    const char *name = left != NULL ? dalcs_script_word(script, &left) : NULL;
+    if (name == NULL && text[length] == '\0') {
+        list_variables(script);
+        return DALCS_OK;
+    }
+    if (name == NULL) {
+        return dalcs_script_refuse(script, s, "set name=value", "a name is missing");
+    }
+    struct dalcs_statement lower = {.rest = name, .line = s->line, .column = s->column};
+    status = dalcs_script_expand_low(script, &lower, &name);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    const char *value = text[length] == '=' ? text + length + 1 : "";
+    value += strspn(value, " \t");
+    size_t n = strlen(value);
+    while (n > 0 && (value[n - 1] == ' ' || value[n - 1] == '\t')) {
+        n--;
+    }
+    const char first = value[0];
+    const bool wrapped =
+        n >= 2 && ((first == '(' && value[n - 1] == ')') || (first == '"' && value[n - 1] == '"'));
+    const char *own = wrapped ? dalcs_arena_copy(&script->arena, value + 1, n - 2)
+                              : dalcs_arena_copy(&script->arena, value, n);
+    if (own == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    const struct dalcs_script_host *host = script->host;
+    if (strcmp(name, "curplot") != 0) {
+        return dalcs_variables_set(&script->variables, name, own);
+    }
+    const bool is_of_host = host->knows != NULL && host->knows(host->user, "setplot");
+    return is_of_host ? DALCS_OK : dalcs_script_choose_plot(script, s, own);
+}
+
+enum dalcs_status dalcs_script_unset(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *text;
+    enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
+    for (const char *name;
+         status == DALCS_OK && (name = dalcs_script_word(script, &text)) != NULL;) {
+        dalcs_variables_unset(&script->variables, name);
+    }
+    return status;
+}
+
+/* strcmp name a b: the variable becomes 0 where both texts are the same, else -1 or 1. */
+enum dalcs_status dalcs_script_strcmp(struct dalcs_script *script,
+                                      const struct dalcs_statement *s) {
+    const char *text;
+    DALCS_TRY(dalcs_script_expand(script, s, &text));
+    const char *name = dalcs_script_word(script, &text);
+    const char *a = name != NULL ? dalcs_script_word(script, &text) : NULL;
+    const char *b = a != NULL ? dalcs_script_word(script, &text) : NULL;
+    if (b == NULL) {
+        return dalcs_script_refuse(script, s, "strcmp same $curplot tran1",
+                                   "a name and two texts are missing");
+    }
+    char *low = dalcs_arena_copy(&script->arena, name, strlen(name));
+    const int order = strcmp(a, b);
+    return low == NULL ? DALCS_E_NOMEM
+                       : dalcs_variables_set(&script->variables, dalcs_lower_text(low),
+                                             order < 0   ? "-1"
+                                             : order > 0 ? "1"
+                                                         : "0");
+}
+
+/* echo text, echo -n text; `> file` and `>> file`. */
+enum dalcs_status dalcs_script_echo(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *text;
+    struct dalcs_redirection to;
+    DALCS_TRY(dalcs_script_expand(script, s, &text));
+    const bool goes_on = strncmp(text, "-n", 2) == 0 && strchr(" \t", text[2]) != NULL;
+    text += goes_on ? 2 + strspn(text + 2, " \t") : 0;
+    char *line = dalcs_arena_copy(&script->arena, text, strlen(text));
+    if (line == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_redirection_find(&to, script, line));
+    size_t n = strlen(line);
+    while (to.path != NULL && n > 0 && (line[n - 1] == ' ' || line[n - 1] == '\t')) {
+        line[--n] = '\0';
+    }
+    DALCS_TRY(dalcs_redirection_open(&to, script, s));
+    for (const char *c = line; *c != '\0'; c++) {
+        if (*c != '"') {
+            fputc(*c, to.file);
+        }
+    }
+    if (!goes_on) {
+        fputc('\n', to.file);
+    }
+    return dalcs_redirection_close(&to, script, s);
+}

@@ -1,0 +1,376 @@
+/* vector_functions.c - what a name with parentheses gives. */
+#include "vector_formula.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double TURN = 6.283185307179586;
+
+/* ---- Of each value --------------------------------------------------------------------------------- */
+
+static double complex db_of(double complex x) {
+    return 20.0 * log10(cabs(x));
+}
+
+static double complex angle_of(double complex x) {
+    return carg(x);
+}
+
+static double complex magnitude_of(double complex x) {
+    return cabs(x);
+}
+
+static double complex real_of(double complex x) {
+    return creal(x);
+}
+
+static double complex imaginary_of(double complex x) {
+    return cimag(x);
+}
+
+static double complex log_of(double complex x) {
+    return cimag(x) == 0.0 ? log(creal(x)) : clog(x);
+}
+
+static double complex log10_of(double complex x) {
+    return cimag(x) == 0.0 ? log10(creal(x)) : clog(x) / log(10.0);
+}
+
+static double complex root_of(double complex x) {
+    return cimag(x) == 0.0 && creal(x) >= 0.0 ? sqrt(creal(x)) : csqrt(x);
+}
+
+static double complex floor_of(double complex x) {
+    return floor(creal(x));
+}
+
+static double complex ceiling_of(double complex x) {
+    return ceil(creal(x));
+}
+
+static double complex nearest_of(double complex x) {
+    return nearbyint(creal(x));
+}
+
+static double complex not_of(double complex x) {
+    return x == 0.0;
+}
+
+static double complex is_positive(double complex x) {
+    return creal(x) > 0.0;
+}
+
+static double complex times_j(double complex x) {
+    return x * I;
+}
+
+/* A function of the C library that a table names is searched for whenever the program starts; one that is
+ * called, when it is called first. */
+#define CALL(f)                                                                                    \
+    static double complex call_##f(double complex x) {                                             \
+        return f(x);                                                                               \
+    }
+CALL(cexp)
+CALL(csin)
+CALL(ccos)
+CALL(ctan)
+CALL(catan)
+CALL(csinh)
+CALL(ccosh)
+CALL(ctanh)
+CALL(conj)
+
+static const struct {
+    const char *name;
+    double complex (*of)(double complex x);
+    bool gives_reals;
+} EACH[] = {
+    {"abs", magnitude_of, true}, {"mag", magnitude_of, true},  {"magnitude", magnitude_of, true},
+    {"m", magnitude_of, true},   {"ph", angle_of, true},       {"phase", angle_of, true},
+    {"db", db_of, true},         {"re", real_of, true},        {"real", real_of, true},
+    {"im", imaginary_of, true},  {"imag", imaginary_of, true}, {"sqrt", root_of, false},
+    {"exp", call_cexp, false},   {"ln", log_of, false},        {"log", log_of, false},
+    {"log10", log10_of, false},  {"sin", call_csin, false},    {"cos", call_ccos, false},
+    {"tan", call_ctan, false},   {"atan", call_catan, false},  {"sinh", call_csinh, false},
+    {"cosh", call_ccosh, false}, {"tanh", call_ctanh, false},  {"floor", floor_of, true},
+    {"ceil", ceiling_of, true},  {"nint", nearest_of, true},   {"not", not_of, true},
+    {"pos", is_positive, true},  {"conj", call_conj, false},   {"j", times_j, false},
+};
+
+/* ---- Of a whole vector -------------------------------------------------------------------------------- */
+
+static double complex mean_of(const struct dalcs_vector *v) {
+    double complex sum = 0.0;
+    for (size_t k = 0; k < v->n; k++) {
+        sum += v->value[k];
+    }
+    return v->n > 0 ? sum / (double)v->n : NAN;
+}
+
+static double complex deviation_of(const struct dalcs_vector *v) {
+    const double complex mean = mean_of(v);
+    double sum = 0.0;
+    for (size_t k = 0; k < v->n; k++) {
+        const double off = cabs(v->value[k] - mean);
+        sum += off * off;
+    }
+    return v->n > 1 ? sqrt(sum / (double)(v->n - 1)) : 0.0;
+}
+
+static double complex largest_of(const struct dalcs_vector *v) {
+    double largest = v->n > 0 ? creal(v->value[0]) : NAN;
+    for (size_t k = 1; k < v->n; k++) {
+        largest = fmax(largest, creal(v->value[k]));
+    }
+    return largest;
+}
+
+static double complex smallest_of(const struct dalcs_vector *v) {
+    double smallest = v->n > 0 ? creal(v->value[0]) : NAN;
+    for (size_t k = 1; k < v->n; k++) {
+        smallest = fmin(smallest, creal(v->value[k]));
+    }
+    return smallest;
+}
+
+static double complex length_of(const struct dalcs_vector *v) {
+    return (double)v->n;
+}
+
+static const struct {
+    const char *name;
+    double complex (*of)(const struct dalcs_vector *v);
+} WHOLE[] = {
+    {"mean", mean_of},    {"vecmax", largest_of},  {"maximum", largest_of},
+    {"max", largest_of},  {"vecmin", smallest_of}, {"minimum", smallest_of},
+    {"min", smallest_of}, {"length", length_of},   {"stddev", deviation_of},
+};
+
+/* ---- Of a vector, value by value ------------------------------------------------------------------------ */
+
+static struct dalcs_vector *alike(struct dalcs_vector_formula *f, const struct dalcs_vector *x,
+                                  bool is_complex) {
+    struct dalcs_vector *v = dalcs_vector_make(f, x->n, is_complex);
+    if (v != NULL) {
+        v->scale = x->scale;
+    }
+    return v;
+}
+
+static struct dalcs_vector *running_mean(struct dalcs_vector_formula *f,
+                                         const struct dalcs_vector *x) {
+    struct dalcs_vector *v = alike(f, x, x->is_complex);
+    double complex sum = 0.0;
+    for (size_t k = 0; v != NULL && k < x->n; k++) {
+        sum += x->value[k];
+        v->value[k] = sum / (double)(k + 1);
+    }
+    return v;
+}
+
+static struct dalcs_vector *normalised(struct dalcs_vector_formula *f,
+                                       const struct dalcs_vector *x) {
+    struct dalcs_vector *v = alike(f, x, x->is_complex);
+    double largest = 0.0;
+    for (size_t k = 0; k < x->n; k++) {
+        largest = fmax(largest, cabs(x->value[k]));
+    }
+    for (size_t k = 0; v != NULL && k < x->n; k++) {
+        v->value[k] = x->value[k] / (largest > 0.0 ? largest : 1.0);
+    }
+    return v;
+}
+
+static struct dalcs_vector *continuous_phase(struct dalcs_vector_formula *f,
+                                             const struct dalcs_vector *x) {
+    struct dalcs_vector *v = alike(f, x, false);
+    for (size_t k = 0; v != NULL && k < x->n; k++) {
+        v->value[k] = carg(x->value[k]);
+    }
+    if (v != NULL) {
+        dalcs_calculus_unwrap(v->value, v->n);
+    }
+    return v;
+}
+
+static struct dalcs_vector *unwrapped(struct dalcs_vector_formula *f,
+                                      const struct dalcs_vector *x) {
+    struct dalcs_vector *v = alike(f, x, false);
+    if (v != NULL) {
+        memcpy(v->value, x->value, x->n * sizeof *x->value);
+        dalcs_calculus_unwrap(v->value, v->n);
+    }
+    return v;
+}
+
+/* The scale that it goes along; NULL: it has none. */
+static const struct dalcs_vector *scale_of(struct dalcs_vector_formula *f, const char *name,
+                                           const struct dalcs_vector *x) {
+    if (x->scale == NULL || x->scale->n != x->n) {
+        (void)dalcs_vector_fail(f, "%s() takes a vector of a run", name);
+        return NULL;
+    }
+    return x->scale;
+}
+
+static struct dalcs_vector *derivative(struct dalcs_vector_formula *f,
+                                       const struct dalcs_vector *x) {
+    const struct dalcs_vector *scale = scale_of(f, "deriv", x);
+    struct dalcs_vector *v = scale != NULL ? alike(f, x, x->is_complex) : NULL;
+    if (v != NULL) {
+        dalcs_calculus_derivative(v->value, x->value, scale->value, x->n);
+    }
+    return v;
+}
+
+static struct dalcs_vector *integral(struct dalcs_vector_formula *f, const struct dalcs_vector *x) {
+    const struct dalcs_vector *scale = scale_of(f, "integ", x);
+    struct dalcs_vector *v = scale != NULL ? alike(f, x, x->is_complex) : NULL;
+    if (v != NULL) {
+        dalcs_calculus_integral(v->value, x->value, scale->value, x->n);
+    }
+    return v;
+}
+
+static struct dalcs_vector *group_delay(struct dalcs_vector_formula *f,
+                                        const struct dalcs_vector *x) {
+    const struct dalcs_vector *scale = scale_of(f, "group_delay", x);
+    const struct dalcs_vector *phase = scale != NULL ? continuous_phase(f, x) : NULL;
+    struct dalcs_vector *v = phase != NULL ? alike(f, x, false) : NULL;
+    if (v != NULL) {
+        dalcs_calculus_derivative(v->value, phase->value, scale->value, x->n);
+        for (size_t k = 0; k < v->n; k++) {
+            v->value[k] /= -TURN;
+        }
+    }
+    return v;
+}
+
+/* A vector of another plot on the scale of the current one. */
+static struct dalcs_vector *interpolated(struct dalcs_vector_formula *f,
+                                         const struct dalcs_vector *x) {
+    const struct dalcs_vector *from = scale_of(f, "interpolate", x);
+    const struct dalcs_vector *to = dalcs_vectors_scale(f->vectors);
+    if (from == NULL || to == NULL) {
+        return dalcs_vector_fail(f, "interpolate() needs a plot with a scale");
+    }
+    struct dalcs_vector *v = dalcs_vector_make(f, to->n, x->is_complex);
+    for (size_t k = 0; v != NULL && k < to->n; k++) {
+        v->value[k] = dalcs_calculus_interpolate(x->value, from->value, x->n, creal(to->value[k]));
+    }
+    if (v != NULL) {
+        v->scale = to;
+    }
+    return v;
+}
+
+static struct dalcs_vector *counted(struct dalcs_vector_formula *f, const struct dalcs_vector *x,
+                                    const char *name) {
+    const double n = x->n == 1 ? creal(x->value[0]) : -1.0;
+    if (!(n >= 1.0 && n <= 1e8)) {
+        return dalcs_vector_fail(f, "%s() takes a length", name);
+    }
+    struct dalcs_vector *v = dalcs_vector_make(f, (size_t)n, false);
+    for (size_t k = 0; v != NULL && k < v->n; k++) {
+        v->value[k] = name[0] == 'u' ? 1.0 : (double)k;
+    }
+    return v;
+}
+
+static struct dalcs_vector *vector_of(struct dalcs_vector_formula *f,
+                                      const struct dalcs_vector *x) {
+    return counted(f, x, "vector");
+}
+
+static struct dalcs_vector *ones_of(struct dalcs_vector_formula *f, const struct dalcs_vector *x) {
+    return counted(f, x, "unitvec");
+}
+
+static const struct {
+    const char *name;
+    struct dalcs_vector *(*of)(struct dalcs_vector_formula *f, const struct dalcs_vector *x);
+} ALONG[] = {
+    {"avg", running_mean},        {"norm", normalised},         {"cph", continuous_phase},
+    {"cphase", continuous_phase}, {"unwrap", unwrapped},        {"deriv", derivative},
+    {"integ", integral},          {"group_delay", group_delay}, {"interpolate", interpolated},
+    {"vector", vector_of},        {"unitvec", ones_of},
+};
+
+/* ---- Of several ------------------------------------------------------------------------------------------ */
+
+/* The larger or smaller of two, value by value. */
+static struct dalcs_vector *of_pair(struct dalcs_vector_formula *f, const char *name,
+                                    const struct dalcs_vector *a, const struct dalcs_vector *b) {
+    const bool is_max = strcmp(name, "max") == 0;
+    if (!is_max && strcmp(name, "min") != 0) {
+        return strcmp(name, "pow") == 0 || strcmp(name, "pwr") == 0
+                   ? dalcs_vector_combine(f, DALCS_VECTOR_POWER, a, b)
+                   : dalcs_vector_fail(f, "there is no function '%s' of two", name);
+    }
+    struct dalcs_vector *v = dalcs_vector_combine(f, DALCS_VECTOR_ADD, a, b);
+    for (size_t k = 0; v != NULL && k < v->n; k++) {
+        const double x = creal(a->value[a->n == 1 ? 0 : k]);
+        const double y = creal(b->value[b->n == 1 ? 0 : k]);
+        v->value[k] = is_max ? fmax(x, y) : fmin(x, y);
+    }
+    return v;
+}
+
+/* The body, in which the parameters are these values. */
+static struct dalcs_vector *call_definition(struct dalcs_vector_formula *f,
+                                            const struct dalcs_definition *definition,
+                                            const struct dalcs_vector *const *argument) {
+    struct dalcs_vector_formula inner = {.vectors = f->vectors,
+                                         .definitions = f->definitions,
+                                         .text = definition->body,
+                                         .arena = f->arena,
+                                         .definition = definition,
+                                         .argument = argument,
+                                         .depth = f->depth + 1};
+    struct dalcs_vector *v = dalcs_vector_formula_next(&inner);
+    if (v != NULL && !dalcs_vector_formula_at_end(&inner)) {
+        v = dalcs_vector_fail(&inner, "did not expect '%.60s'", inner.text + inner.at);
+    }
+    if (v == NULL) {
+        f->out_of_memory = inner.out_of_memory;
+        snprintf(f->hint, sizeof f->hint, "%.150s", inner.hint);
+        return dalcs_vector_fail(f, "in %.30s(): %.120s", definition->name, inner.message);
+    }
+    return v;
+}
+
+struct dalcs_vector *dalcs_vector_call(struct dalcs_vector_formula *f, const char *name,
+                                       const struct dalcs_vector *const *argument, size_t n) {
+    const struct dalcs_definition *defined = dalcs_definitions_find(f->definitions, name, n);
+    const struct dalcs_vector *x = argument[0];
+    if (defined != NULL) {
+        return call_definition(f, defined, argument);
+    }
+    if (n == 2) {
+        return of_pair(f, name, argument[0], argument[1]);
+    }
+    for (size_t i = 0; n == 1 && i < sizeof EACH / sizeof EACH[0]; i++) {
+        if (strcmp(EACH[i].name, name) == 0) {
+            struct dalcs_vector *v = alike(f, x, x->is_complex && !EACH[i].gives_reals);
+            for (size_t k = 0; v != NULL && k < x->n; k++) {
+                v->value[k] = EACH[i].of(x->value[k]);
+                v->is_complex = v->is_complex || cimag(v->value[k]) != 0.0;
+            }
+            return v;
+        }
+    }
+    for (size_t i = 0; n == 1 && i < sizeof WHOLE / sizeof WHOLE[0]; i++) {
+        if (strcmp(WHOLE[i].name, name) == 0) {
+            return dalcs_vector_number(f, WHOLE[i].of(x));
+        }
+    }
+    for (size_t i = 0; n == 1 && i < sizeof ALONG / sizeof ALONG[0]; i++) {
+        if (strcmp(ALONG[i].name, name) == 0) {
+            return ALONG[i].of(f, x);
+        }
+    }
+    return dalcs_vector_fail(
+        f, n == 1 ? "there is no function '%s'" : "there is no function '%s' of so many arguments",
+        name);
+}
