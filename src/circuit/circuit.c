@@ -170,6 +170,9 @@ static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigne
                 return DALCS_E_NOMEM;
             }
         }
+        if (pass == ELEMENTS) {
+            dalcs_block_read_oscillators(builder);
+        }
     }
     return DALCS_OK;
 }
