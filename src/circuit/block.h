@@ -71,6 +71,7 @@ void dalcs_transformer_parse(struct dalcs_builder *builder, const struct dalcs_c
 
 /* Gates, flip-flops, bridges: false where the type is none of them. */
 bool dalcs_block_parse_logic(struct dalcs_block_card *c);
+void dalcs_block_parse_one_shot(const struct dalcs_block_card *c);
 /* gain, summer, limit, int, d_dt, slew, pwl, hyst, aswitch: likewise. */
 bool dalcs_block_parse_analog(struct dalcs_block_card *c);
 /* mult, divide, climit, s_xfer: likewise. */

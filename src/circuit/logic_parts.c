@@ -36,6 +36,7 @@ struct dalcs_logic_card *dalcs_logic_start(struct dalcs_builder *builder,
                                           .n_inputs = n_inputs,
                                           .input = input,
                                           .output = {-1, -1},
+                                          .sampled = -1,
                                           .where = dalcs_builder_keep_location(builder, name)};
     return of;
 }
@@ -306,7 +307,7 @@ void dalcs_logic_resolve(struct dalcs_builder *builder) {
         for (int k = 0; k < of->gate->n_inputs; k++) {
             resolve_input(builder, driver, of, k);
         }
-        if (of->gate->kind == DALCS_GATE_SAMPLE) {
+        if (of->sampled.node != of->sampled.reference) {
             measure_sample(builder, of);
         }
     }

@@ -21,7 +21,7 @@ struct dalcs_logic_card {
 
     struct dalcs_logic_sampled {
         int node, reference;
-    } sampled; /* of a sample */
+    } sampled; /* of a sample; of a pulse, whose length it is; else both are ground */
 };
 
 /* A gate with so many inputs, none of which is wired; NULL: out of memory. */

@@ -5,12 +5,12 @@
 #include "circuit.h"
 
 struct dalcs_logic_state {
-    bool q;         /* what the inputs make of it */
-    bool seen;      /* q a delay ago: what others read and the output shows */
-    bool clock;     /* its level */
-    int count;      /* of clocks, from 1 to those of a cycle; 0: none yet */
+    bool q;     /* what the inputs make of it */
+    bool seen;  /* q a delay ago: what others read and the output shows */
+    bool clock; /* its level */
+    int count; /* of clocks, from 1 to those of a cycle; 0: none yet; of a monostable 1 in a pulse, 2 behind it */
     bool is_forced; /* q, by preset or clear */
-    bool takes;     /* a sample takes what stood before this instant */
+    bool takes;     /* a sample takes what stood before this instant, a pulse begins */
 };
 
 struct dalcs_logic_network {

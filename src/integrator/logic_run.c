@@ -86,7 +86,8 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
         struct dalcs_logic_state *state = &l->network.state[k];
         state->q = state->seen = circuit->gate[k].initial;
         state->count = circuit->gate[k].first;
-        if (circuit->gate[k].kind == DALCS_GATE_SAMPLE) {
+        l->output[k].ends = INFINITY;
+        if (circuit->gate[k].sampled >= 0) {
             l->sample[l->n_samples++] = k;
         }
     }
@@ -154,14 +155,53 @@ double dalcs_logic_run_next(const struct dalcs_logic_run *l) {
     double next = INFINITY;
     for (int k = 0; l->circuit != NULL && k < l->network.n; k++) {
         const struct dalcs_logic_output *o = &l->output[k];
-        next = o->n_due > 0 ? fmin(next, o->due[o->first_due]) : next;
+        next = fmin(next, o->n_due > 0 ? fmin(o->ends, o->due[o->first_due]) : o->ends);
     }
     return next;
 }
 
+/* Pulses that begin at t. */
+static void start_pulses(struct dalcs_logic_run *l, double t) {
+    for (int k = 0; k < l->network.n; k++) {
+        const struct dalcs_logic_gate *g = &l->network.gate[k];
+        struct dalcs_logic_state *state = &l->network.state[k];
+        if (g->kind != DALCS_GATE_MONOSTABLE) {
+            continue;
+        }
+        if (state->takes) {
+            l->output[k].ends =
+                t + g->pulse.lead + (g->sampled >= 0 ? fmax(0.0, l->taken[k]) : g->pulse.length);
+        } else if (state->count == 0) {
+            l->output[k].ends = INFINITY;
+        }
+        state->takes = false;
+    }
+}
+
+/* One that ends is followed by a time in which no other begins. */
+static bool end_pulses(struct dalcs_logic_run *l, double t) {
+    bool any = false;
+    for (int k = 0; k < l->network.n; k++) {
+        const struct dalcs_logic_gate *g = &l->network.gate[k];
+        struct dalcs_logic_state *state = &l->network.state[k];
+        struct dalcs_logic_output *o = &l->output[k];
+        while (o->ends <= t + l->radau->resolution) {
+            const bool rests = state->count == 1 && !g->pulse.is_retriggered;
+            if (state->q) {
+                state->q = state->is_forced = false;
+                queue(l, k, state);
+                any = true;
+            }
+            state->count = rests ? 2 : 0;
+            o->ends = rests ? o->ends + g->pulse.recovery : INFINITY;
+        }
+    }
+    return any;
+}
+
 /* Has anything come due? */
 static bool release(struct dalcs_logic_run *l, double t) {
-    bool any = false;
+    bool any = end_pulses(l, t);
     for (int k = 0; k < l->network.n; k++) {
         struct dalcs_logic_output *o = &l->output[k];
         while (o->n_due > 0 && o->due[o->first_due] <= t + l->radau->resolution) {
@@ -244,6 +284,7 @@ static bool settle(struct dalcs_logic_run *l, double t, long most) {
     do {
         (void)release(l, t);
         settles = dalcs_logic_settle(&l->network, l, queue);
+        start_pulses(l, t);
     } while (settles && release(l, t) && most-- > 0);
     return settles && most >= 0;
 }

@@ -27,7 +27,9 @@ struct dalcs_logic_run {
         size_t capacity[4];
         double *due; /* [n_due] s, when q, as it was a delay before, is seen: it changes at each */
         size_t first_due, n_due, due_capacity;
-    } * output; /* [n gates] */
+        double
+            ends; /* s, the pulse of a monostable, or what is behind it; INFINITY: there is none */
+    } * output;   /* [n gates] */
 
     void *cut_user;
     void (*on_cut)(void *user, int part,
