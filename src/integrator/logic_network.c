@@ -164,6 +164,17 @@ void dalcs_logic_rest(struct dalcs_logic_network *l) {
     l->rests = false;
 }
 
+bool dalcs_logic_is_at_rest(struct dalcs_logic_network *l) {
+    bool rests = true;
+    l->rests = true;
+    for (int k = 0; k < l->n; k++) {
+        l->moves[k] = decide(l, k).q != l->state[k].seen;
+        rests = rests && !l->moves[k];
+    }
+    l->rests = false;
+    return rests;
+}
+
 static bool is_at_mark(const struct dalcs_logic_network *l) {
     bool is = true;
     for (int k = 0; k < l->n && is; k++) {

@@ -11,11 +11,11 @@
 /* ---- Set up ------------------------------------------------------------------------------------------- */
 
 /* All switches by their names. */
-static enum dalcs_status list_switches(const struct dalcs_radau *radau, struct dalcs_names *names,
+static enum dalcs_status list_switches(const struct dalcs_euler *euler, struct dalcs_names *names,
                                        struct dalcs_logic_place **place) {
     size_t capacity = 0;
-    for (int part = 0; part < radau->n_parts; part++) {
-        const struct dalcs_system *s = radau->part[part].component->system;
+    for (int part = 0; part < euler->n_components; part++) {
+        const struct dalcs_system *s = euler->component[part].system;
         for (int d = 0; d < s->n_pairs; d++) {
             if (s->pair[d].kind == DALCS_PAIR_SWITCH) {
                 const size_t n = names->n;
@@ -29,11 +29,11 @@ static enum dalcs_status list_switches(const struct dalcs_radau *radau, struct d
 }
 
 enum dalcs_status dalcs_logic_find_comparators(const struct dalcs_circuit *circuit,
-                                               const struct dalcs_radau *radau,
+                                               const struct dalcs_euler *euler,
                                                struct dalcs_logic_place *place) {
     struct dalcs_names names = {0};
     struct dalcs_logic_place *all = NULL;
-    enum dalcs_status status = list_switches(radau, &names, &all);
+    enum dalcs_status status = list_switches(euler, &names, &all);
     for (int k = 0; k < circuit->n_comparators && status == DALCS_OK; k++) {
         const int at = dalcs_names_find(&names, circuit->device[circuit->comparator[k]].name);
         status = at >= 0 ? DALCS_OK : DALCS_E_INTERNAL;
@@ -70,8 +70,8 @@ static enum dalcs_status allocate(struct dalcs_logic_run *l) {
 }
 
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
-                                        struct dalcs_radau *radau) {
-    *l = (struct dalcs_logic_run){.radau = radau};
+                                        struct dalcs_euler *euler, struct dalcs_radau *radau) {
+    *l = (struct dalcs_logic_run){.euler = euler, .radau = radau};
     if (circuit->n_gates == 0) {
         return DALCS_OK;
     }
@@ -81,7 +81,7 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
     l->network.gate = circuit->gate;
     enum dalcs_status status = allocate(l);
     l->network.bit = l->bit;
-    status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau, l->place) : status;
+    status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, euler, l->place) : status;
     for (int k = 0; k < l->network.n && status == DALCS_OK; k++) {
         struct dalcs_logic_state *state = &l->network.state[k];
         state->q = state->seen = circuit->gate[k].initial;
@@ -218,9 +218,16 @@ static bool release(struct dalcs_logic_run *l, double t) {
 
 static void read_bits(struct dalcs_logic_run *l) {
     for (int k = 0; k < l->n_comparators; k++) {
-        const struct dalcs_radau_part *part = &l->radau->part[l->place[k].part];
-        l->bit[k] = dalcs_osnsp_is_on(&part->component->osnsp, l->place[k].pair);
+        const struct dalcs_component *component = &l->euler->component[l->place[k].part];
+        l->bit[k] = dalcs_osnsp_is_on(&component->osnsp, l->place[k].pair);
     }
+}
+
+bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l) {
+    if (l->circuit != NULL) {
+        read_bits(l);
+    }
+    return l->circuit == NULL || dalcs_logic_is_at_rest(&l->network);
 }
 
 enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed) {
@@ -239,7 +246,7 @@ enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed)
         l->network.state[k].takes = false;
         DALCS_TRY(dalcs_logic_output_start(l, k, changed));
     }
-    for (int k = 0; k < l->radau->n_parts && *changed; k++) {
+    for (int k = 0; l->radau != NULL && k < l->radau->n_parts && *changed; k++) {
         dalcs_excitation_enter(&l->radau->part[k].excitation, 0.0);
     }
     return l->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;

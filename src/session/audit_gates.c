@@ -55,7 +55,8 @@ enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
     a->gate = dalcs_alloc((size_t)circuit->n_gates, sizeof(*a->gate));
     a->place = dalcs_alloc((size_t)circuit->n_comparators + 1, sizeof(*a->place));
     enum dalcs_status status = a->gate != NULL && a->place != NULL ? DALCS_OK : DALCS_E_NOMEM;
-    status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau, a->place) : status;
+    status =
+        status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau->base, a->place) : status;
     for (int k = 0; status == DALCS_OK && k < circuit->n_gates; k++) {
         a->gate[k].is_lost = true; /* until it is looked at for the first time */
         a->gate[k].count = circuit->gate[k].first;

@@ -121,7 +121,7 @@ static enum dalcs_status set_up_others(struct dalcs_run *r, struct parts *p) {
         const struct dalcs_radau_options options =
             dalcs_transient_options(r, s->circuit.transient.stop);
         DALCS_TRY(dalcs_radau_setup(&p->radau, &p->euler, &options, &r->osnsp));
-        DALCS_TRY(dalcs_logic_run_setup(&p->logic, &s->circuit, &p->radau));
+        DALCS_TRY(dalcs_logic_run_setup(&p->logic, &s->circuit, &p->euler, &p->radau));
     }
     if (dalcs_run_wants_losses(r)) {
         DALCS_TRY(dalcs_losses_run_start(&p->losses, r, &p->euler, p->is_euler,
