@@ -76,8 +76,7 @@ void dalcs_block_parse_one_shot(const struct dalcs_block_card *c);
 bool dalcs_block_parse_analog(struct dalcs_block_card *c);
 /* mult, divide, climit, s_xfer: likewise. */
 bool dalcs_block_parse_formula(struct dalcs_block_card *c);
-/* triangle, square, sine, d_osc: likewise. They wait until all elements are known. */
+/* triangle, square, sine, d_osc: likewise. */
 bool dalcs_block_parse_oscillator(const struct dalcs_block_card *c);
-void dalcs_block_read_oscillators(struct dalcs_builder *builder);
 
 #endif

@@ -9,7 +9,7 @@
  *     checks     of the whole
  *
  * Every pass goes on after an error, so that a person sees all of them. */
-#include "block.h"
+#include "oscillator.h"
 #include "card_table.h"
 #include "storage.h"
 
@@ -171,7 +171,7 @@ static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigne
             }
         }
         if (pass == ELEMENTS) {
-            dalcs_block_read_oscillators(builder);
+            dalcs_oscillator_put_all(builder);
         }
     }
     return DALCS_OK;
