@@ -409,6 +409,8 @@ void dalcs_transfer_parse(struct dalcs_reader *reader, struct dalcs_device *devi
                           bool has_control);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
+/* LTspice's VARISTOR and MODULATE; false: another function. */
+bool dalcs_analog_function_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* After the word POLY, on a device that has its own nodes. */
 void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device);
 /* Room for the devices that a card's POLY becomes; one of them may be a source. */

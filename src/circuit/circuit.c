@@ -9,8 +9,8 @@
  *     checks     of the whole
  *
  * Every pass goes on after an error, so that a person sees all of them. */
-#include "oscillator.h"
 #include "card_table.h"
+#include "oscillator.h"
 #include "storage.h"
 
 #include <stdlib.h>

@@ -10,9 +10,9 @@
 
 enum { DALCS_GATE_PINS = 5 };
 
-/* What a gate may become: a source, the other output, a resistor at each, a comparator and its resistor at each
- * input. */
-enum { DALCS_GATE_DEVICES = 4 + 2 * DALCS_GATE_PINS };
+/* What a gate may become: at each output a source, a resistor, another one as a switch and a capacitor, at each input a
+ * comparator and its resistor. */
+enum { DALCS_GATE_DEVICES = 8 + 2 * DALCS_GATE_PINS };
 
 enum dalcs_logic_kind {
     DALCS_GATE_AND,

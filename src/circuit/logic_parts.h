@@ -16,7 +16,8 @@ struct dalcs_logic_card {
     } * pin; /* [gate->n_inputs] */
 
     int node[2], common; /* of q and its complement, -1: not wired */
-    double ohms;         /* at each output */
+    double ohms[2];      /* in series with an output that is low, high */
+    double farad;        /* behind those, to the common node */
     double on, off;      /* V: where an input rises and falls */
 
     struct dalcs_logic_sampled {
