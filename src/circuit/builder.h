@@ -407,6 +407,9 @@ bool dalcs_modulation_set_fm(struct dalcs_builder *builder, const struct dalcs_t
 /* LAPLACE, which comes next: of the controlling nodes, or of a formula that follows. */
 void dalcs_transfer_parse(struct dalcs_reader *reader, struct dalcs_device *device,
                           bool has_control);
+/* The same behind a B's formula, m alike in parallel. */
+void dalcs_transfer_parse_behind(struct dalcs_reader *reader, struct dalcs_device *device,
+                                 const struct dalcs_token *formula, double m);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
 /* LTspice's VARISTOR and MODULATE; false: another function. */

@@ -240,6 +240,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_stimuli += n > 0;
             table->n_inner += is_transfer(card) ? 2 * DALCS_RATIONAL_DEGREE + 1 : 0;
         }
+        table->n_inner += letter == 'b' && is_transfer(card) ? 2 * DALCS_RATIONAL_DEGREE + 1 : 0;
         table->n_inner += letter == 's' && dalcs_formula_find_control(card) < card->n;
         table->n_switches += letter == 's' || letter == 'w';
         table->n_diodes += letter == 'd' || letter == 'a';
