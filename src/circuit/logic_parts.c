@@ -52,8 +52,10 @@ static int add_stimulus(struct dalcs_builder *builder, double value) {
         return -1;
     }
     point[1] = value;
-    circuit->stimulus[circuit->n_stimuli] = (struct dalcs_stimulus){
-        .kind = DALCS_STIMULUS_PWL, .u.pwl = {.n = 1, .t = point, .v = point + 1}};
+    circuit->stimulus[circuit->n_stimuli] =
+        (struct dalcs_stimulus){.kind = DALCS_STIMULUS_PWL,
+                                .is_written = true,
+                                .u.pwl = {.n = 1, .t = point, .v = point + 1}};
     return circuit->n_stimuli++;
 }
 
