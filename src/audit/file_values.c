@@ -15,6 +15,9 @@ enum { MOST_EDGES = 16 };
 struct file_number file_stimulus(const struct file_audit *a, const struct file_row *row,
                                  int stimulus) {
     const struct dalcs_stimulus *s = &a->circuit->stimulus[stimulus];
+    if (s->is_written) {
+        return (struct file_number){0};
+    }
     if (a->is_at_rest) {
         return file_exactly(dalcs_stimulus_operating_value(s, a->circuit->transient.present));
     }

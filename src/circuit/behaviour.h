@@ -248,9 +248,9 @@ const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struc
                                            enum dalcs_smooth_kind kind, int n,
                                            const struct dalcs_form **argument);
 
-/* The product of the voltages of two nodes, as the source `what` of an element: its node; -1 after an error. */
-int dalcs_smooth_add_product(struct dalcs_builder *builder, const struct dalcs_token *element,
-                             const char *what, int first, int second);
+/* A smooth function of the voltages of n nodes, as the source `what` of an element: its node; -1 after an error. */
+int dalcs_smooth_add(struct dalcs_builder *builder, const struct dalcs_token *element,
+                     const char *what, enum dalcs_smooth_kind kind, int n, const int *node_of);
 
 /* ---- commutate.c ----------------------------------------------------------------------------------- */
 

@@ -39,9 +39,10 @@ static bool read_formula(struct dalcs_reader *reader, const struct dalcs_token *
     return true;
 }
 
-/* tc1=, temp= and the like behind a formula: nothing depends on a temperature. */
+/* tc1=, temp= and the like behind a formula: nothing depends on a temperature. And what LTspice's steps are told there. */
 static bool skip_temperature(struct dalcs_reader *reader) {
-    static const char *const names[] = {"tc", "tc1", "tc2", "temp", "dtemp", "reciproctc"};
+    static const char *const names[] = {"tc",    "tc1",        "tc2",    "temp",
+                                        "dtemp", "reciproctc", "tripdv", "tripdt"};
     const struct dalcs_token *name;
     while ((name = dalcs_reader_peek(reader, 0)) != NULL &&
            dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]) &&
@@ -134,6 +135,19 @@ void dalcs_behavioural_parse_resistance(struct dalcs_builder *builder,
     add_element(&reader, device, token, 'r', n * m);
 }
 
+/* Rpar= and Cpar= of LTspice, across a source of a current. */
+static bool read_across(struct dalcs_reader *reader, struct dalcs_parasitics *across) {
+    const struct dalcs_token *name;
+    while ((name = dalcs_reader_peek(reader, 0)) != NULL &&
+           (strcmp(name->text, "rpar") == 0 || strcmp(name->text, "cpar") == 0) &&
+           dalcs_reader_take_parameter(reader) != NULL) {
+        if (!dalcs_parasitic_read(reader, name, across)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     int node[2];
@@ -160,11 +174,20 @@ void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_c
     }
     device->node[0] = node[0];
     device->node[1] = node[1];
+    struct dalcs_parasitics across = {0};
     if (!read_formula(&reader, &token) || !skip_temperature(&reader) ||
-        (quantity != 'v' && !read_parallel(&reader, &m)) || !skip_temperature(&reader)) {
+        (quantity != 'v' && !read_parallel(&reader, &m)) || !skip_temperature(&reader) ||
+        (quantity == 'i' && !read_across(&reader, &across))) {
         return;
     }
-    add_element(&reader, device, token, quantity, m);
+    const struct dalcs_token *next = dalcs_reader_peek(&reader, 0);
+    if (strchr("vi", quantity) != NULL && next != NULL && strcmp(next->text, "laplace") == 0) {
+        dalcs_transfer_parse_behind(&reader, device, token, m);
+    } else {
+        add_element(&reader, device, token, quantity, m);
+    }
+    dalcs_parasitic_multiply(&across, m);
+    dalcs_parasitic_expand(builder, card->token, device, &across);
 }
 
 int dalcs_behavioural_parse_control(struct dalcs_reader *reader,

@@ -41,25 +41,23 @@ static const struct {
     {"pwl", NULL, NULL},
     {"aswitch", NULL, NULL},
     {"transformer", NULL, NULL},
-    {"d_dt", "a derivative is not causal: a jump of its input has none",
-     "write a capacitor and the current through it, or s/(1 + s*t) with LAPLACE"},
+    {"d_dt", NULL, NULL},
     {"mult", NULL, NULL},
     {"divide", NULL, NULL},
-    {"climit", "its limits are signals", "a B source with min() and max() of them"},
+    {"climit", NULL, NULL},
     {"ilimit", "it is a limited source", "V with Ilimit=, or E and ideal diodes"},
-    {"hyst", "its two branches are not decided by a switch", "S with Vh=, or SCHMITT"},
-    {"sine", "the phase is an integral of its input", "V with SIN, or SFFM"},
-    {"triangle", "the phase is an integral of its input", "V with PULSE of long edges"},
-    {"square", "the phase is an integral of its input", "V with PULSE"},
-    {"oneshot", "its width is a function of its input",
-     "d_dff with set or reset by a d_buffer of that delay"},
+    {"hyst", NULL, NULL},
+    {"sine", NULL, NULL},
+    {"triangle", NULL, NULL},
+    {"square", NULL, NULL},
+    {"oneshot", NULL, NULL},
     {"s_xfer", NULL, NULL},
-    {"d_dlatch", "it follows its input while it is enabled", "write it of d_and and d_or"},
-    {"d_srlatch", "it follows its inputs while it is enabled", "write it of d_and and d_or"},
+    {"d_dlatch", NULL, NULL},
+    {"d_srlatch", NULL, NULL},
     {"d_tristate", "an output that lets go has no bit", "write aswitch behind a dac_bridge"},
     {"d_open_c", "an output that lets go has no bit", "write aswitch behind a dac_bridge"},
     {"d_open_e", "an output that lets go has no bit", "write aswitch behind a dac_bridge"},
-    {"d_osc", "its frequency is a signal", "V with PULSE, and an adc_bridge"},
+    {"d_osc", NULL, NULL},
     {"d_source", "its file is not read", "V with PWL, and an adc_bridge"},
     {"d_ram", "it has a memory of words", "a table of d_dff"},
     {"d_state", "its file is not read", "d_dff and gates"},
@@ -350,7 +348,7 @@ void dalcs_block_parse(struct dalcs_builder *builder, const struct dalcs_card *c
         c.n_ports++;
     }
     if (!ok || (!dalcs_block_parse_logic(&c) && !dalcs_block_parse_analog(&c) &&
-                !dalcs_block_parse_formula(&c))) {
+                !dalcs_block_parse_formula(&c) && !dalcs_block_parse_oscillator(&c))) {
         builder->hidden |= DALCS_HIDDEN_ELEMENTS;
     }
 }

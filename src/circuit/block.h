@@ -71,9 +71,12 @@ void dalcs_transformer_parse(struct dalcs_builder *builder, const struct dalcs_c
 
 /* Gates, flip-flops, bridges: false where the type is none of them. */
 bool dalcs_block_parse_logic(struct dalcs_block_card *c);
-/* gain, summer, limit, int, slew, pwl, aswitch: likewise. */
+void dalcs_block_parse_one_shot(const struct dalcs_block_card *c);
+/* gain, summer, limit, int, d_dt, slew, pwl, hyst, aswitch: likewise. */
 bool dalcs_block_parse_analog(struct dalcs_block_card *c);
-/* mult, divide, s_xfer: likewise. */
+/* mult, divide, climit, s_xfer: likewise. */
 bool dalcs_block_parse_formula(struct dalcs_block_card *c);
+/* triangle, square, sine, d_osc: likewise. */
+bool dalcs_block_parse_oscillator(const struct dalcs_block_card *c);
 
 #endif

@@ -1,51 +1,12 @@
 /* block_analog.c - XSPICE's analog code models of straight lines, as sources, capacitors and ideal diodes.
  *
  * int is a capacitor that a source charges, between two ideal diodes where it has limits: at a limit it stays, and it
- * leaves as soon as its input turns. slew is a source whose current is limited, into a capacitor. */
-#include "behaviour.h"
-#include "block.h"
+ * leaves as soon as its input turns. hyst is one table of the input, which a switch shifts. d_dt is the current of a
+ * capacitor that follows the input. slew is a source whose current is limited, into a capacitor. */
+#include "block_parts.h"
 
 #include <math.h>
 #include <string.h>
-
-/* A device from a to b; what NULL: it has the element's name. */
-static struct dalcs_device *add(const struct dalcs_block_card *c, enum dalcs_device_kind kind,
-                                const char *what, int a, int b) {
-    const struct dalcs_token *name = c->card->token;
-    struct dalcs_device *device =
-        what == NULL ? dalcs_builder_add_device(c->builder, kind, name)
-                     : dalcs_builder_add_inner_device(c->builder, kind, what, name);
-    if (device != NULL) {
-        device->node[0] = a;
-        device->node[1] = b;
-    }
-    return device;
-}
-
-static bool add_constant(const struct dalcs_block_card *c, enum dalcs_device_kind kind,
-                         const char *what, const int *node, double value) {
-    struct dalcs_circuit *circuit = c->builder->circuit;
-    struct dalcs_device *device = add(c, kind, what, node[0], node[1]);
-    if (device == NULL) {
-        return false;
-    }
-    device->stimulus = circuit->n_stimuli++;
-    circuit->stimulus[device->stimulus] =
-        (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true, .dc = value};
-    return true;
-}
-
-static void control(struct dalcs_device *device, const struct dalcs_block_end *by, double gain) {
-    device->node[2] = by->node;
-    device->node[3] = by->reference;
-    device->value = gain;
-}
-
-static bool check(const struct dalcs_block_card *c, const char *const *names, size_t n, int ports,
-                  const char *usage) {
-    return dalcs_block_has_only(c, names, n) && dalcs_block_has_ports(c, ports, 0, usage) &&
-           dalcs_block_has_nodes(c, usage);
-}
 
 /* ---- Without memory ------------------------------------------------------------------------------------------- */
 
@@ -58,22 +19,23 @@ static bool add_sum(const struct dalcs_block_card *c, const double *gain, double
         const char *what = dalcs_builder_hint(c->builder, "term%d", k + 1);
         const int to =
             is_last ? out->reference : dalcs_builder_inner_node(c->builder, what, c->card->token);
-        struct dalcs_device *e = add(c, DALCS_VCVS, k == 0 ? NULL : what, from, to);
+        struct dalcs_device *e = dalcs_block_add(c, DALCS_VCVS, k == 0 ? NULL : what, from, to);
         if (e == NULL || to < 0) {
             return false;
         }
-        control(e, &c->port[0].end[k], gain[k]);
+        dalcs_block_control(e, &c->port[0].end[k], gain[k]);
         from = to;
     }
-    return constant == 0 ||
-           add_constant(c, DALCS_VSOURCE, "constant", (int[]){from, out->reference}, constant);
+    return constant == 0 || dalcs_block_add_constant(c, DALCS_VSOURCE, "constant",
+                                                     (int[]){from, out->reference}, constant);
 }
 
 static void parse_sum(const struct dalcs_block_card *c, bool is_gain) {
     static const char *const names[] = {"in_offset", "in_gain", "out_gain", "out_offset"};
     static const char *const gain_names[] = {"in_offset", "gain", "out_offset"};
-    if (!(is_gain ? check(c, gain_names, 3, 2, "a gain is: Aname in out model")
-                  : check(c, names, 4, 2, "a summer is: Aname [in in ...] out model"))) {
+    if (!(is_gain
+              ? dalcs_block_check(c, gain_names, 3, 2, "a gain is: Aname in out model")
+              : dalcs_block_check(c, names, 4, 2, "a summer is: Aname [in in ...] out model"))) {
         return;
     }
     double *gain = dalcs_arena_alloc(&c->builder->scratch, (size_t)c->port[0].n, sizeof *gain);
@@ -91,42 +53,12 @@ static void parse_sum(const struct dalcs_block_card *c, bool is_gain) {
     (void)add_sum(c, gain, constant);
 }
 
-static void add_table(const struct dalcs_block_card *c, const struct dalcs_piecewise *table) {
-    const struct dalcs_block_end *out = &c->port[1].end[0];
-    struct dalcs_device *e = add(c, DALCS_VCVS, NULL, out->node, out->reference);
-    if (e != NULL) {
-        control(e, &c->port[0].end[0], 1);
-        dalcs_behavioural_add_table(c->builder, e, table);
-    }
-}
-
-static struct dalcs_piecewise make_table(const struct dalcs_block_card *c, int n) {
-    struct dalcs_piecewise table = {.n = n};
-    table.knot = dalcs_arena_alloc(&c->builder->scratch, (size_t)n, sizeof *table.knot);
-    c->builder->out_of_memory = c->builder->out_of_memory || table.knot == NULL;
-    return table;
-}
-
-static void set_knot(struct dalcs_piecewise *table, int k, double x, double y) {
-    table->knot[k] = (struct dalcs_knot){x, y, y, y};
-}
-
-/* Reads both limits; those that are not given are none. */
-static bool read_limits(const struct dalcs_block_card *c, double *low, double *high) {
-    *low = dalcs_block_number(c->block, "out_lower_limit", -(double)INFINITY);
-    *high = dalcs_block_number(c->block, "out_upper_limit", (double)INFINITY);
-    if (!(*low < *high)) {
-        dalcs_builder_error(c->builder, c->block->type, NULL,
-                            "out_lower_limit must be below out_upper_limit");
-    }
-    return *low < *high;
-}
-
 static void parse_limit(const struct dalcs_block_card *c) {
     static const char *const names[] = {"in_offset",       "gain",        "out_lower_limit",
                                         "out_upper_limit", "limit_range", "fraction"};
     double y[2];
-    if (!check(c, names, 6, 2, "a limit is: Aname in out model") || !read_limits(c, &y[0], &y[1])) {
+    if (!dalcs_block_check(c, names, 6, 2, "a limit is: Aname in out model") ||
+        !dalcs_block_read_limits(c, &y[0], &y[1])) {
         return;
     }
     const double gain = dalcs_block_number(c->block, "gain", 1);
@@ -137,7 +69,7 @@ static void parse_limit(const struct dalcs_block_card *c) {
         return;
     }
     const int n = (isfinite(y[0]) ? 1 : 0) + (isfinite(y[1]) ? 1 : 0);
-    struct dalcs_piecewise table = make_table(c, n);
+    struct dalcs_piecewise table = dalcs_block_make_table(c, n);
     if (table.knot == NULL) {
         return;
     }
@@ -146,47 +78,28 @@ static void parse_limit(const struct dalcs_block_card *c) {
     for (int k = 0, at = 0; k < 2; k++) {
         const double limit = y[gain > 0 ? k : 1 - k];
         if (isfinite(limit)) {
-            set_knot(&table, at++, limit / gain - offset, limit);
+            dalcs_block_set_knot(&table, at++, limit / gain - offset, limit);
         }
     }
-    add_table(c, &table);
+    dalcs_block_add_table(c, &c->port[0].end[0], &table);
 }
 
 static void parse_pwl(const struct dalcs_block_card *c) {
     static const char *const names[] = {"x_array", "y_array", "input_domain", "fraction", "limit"};
-    const struct dalcs_block_value *x = dalcs_block_find(c->block, "x_array");
-    const struct dalcs_block_value *y = dalcs_block_find(c->block, "y_array");
-    if (!check(c, names, 5, 2, "a table is: Aname in out model")) {
+    struct dalcs_piecewise table;
+    if (!dalcs_block_check(c, names, 5, 2, "a table is: Aname in out model") ||
+        !dalcs_block_read_table(c, "x_array", "y_array", &table)) {
         return;
     }
-    bool ascends = x != NULL && y != NULL && x->n == y->n && x->n >= 2;
-    for (int k = 1; ascends && k < x->n; k++) {
-        ascends = x->number[k] > x->number[k - 1];
+    if (dalcs_block_number(c->block, "limit", 0) != 0) {
+        table.before = table.after = 0;
     }
-    if (!ascends) {
-        dalcs_builder_error(c->builder, c->block->type, NULL,
-                            "x_array and y_array have as many numbers, two at least, and those of "
-                            "x_array ascend");
-        return;
-    }
-    const int n = x->n;
-    struct dalcs_piecewise table = make_table(c, n);
-    if (table.knot == NULL) {
-        return;
-    }
-    for (int k = 0; k < n; k++) {
-        set_knot(&table, k, x->number[k], y->number[k]);
-    }
-    if (dalcs_block_number(c->block, "limit", 0) == 0) {
-        table.before = (y->number[1] - y->number[0]) / (x->number[1] - x->number[0]);
-        table.after = (y->number[n - 1] - y->number[n - 2]) / (x->number[n - 1] - x->number[n - 2]);
-    }
-    add_table(c, &table);
+    dalcs_block_add_table(c, &c->port[0].end[0], &table);
 }
 
 static void parse_switch(const struct dalcs_block_card *c) {
     static const char *const names[] = {"cntl_off", "cntl_on", "log", "r_off", "r_on"};
-    if (!check(c, names, 5, 2, "a switch is: Aname control %gd(node node) model")) {
+    if (!dalcs_block_check(c, names, 5, 2, "a switch is: Aname control %gd(node node) model")) {
         return;
     }
     const double off = dalcs_block_number(c->block, "cntl_off", 0);
@@ -206,11 +119,74 @@ static void parse_switch(const struct dalcs_block_card *c) {
                        "'%s' changes over at once, half way between cntl_off and cntl_on",
                        c->card->token->text);
     struct dalcs_device *s =
-        add(c, DALCS_SWITCH, NULL, c->port[1].end[0].node, c->port[1].end[0].reference);
+        dalcs_block_add(c, DALCS_SWITCH, NULL, c->port[1].end[0].node, c->port[1].end[0].reference);
     if (s != NULL) {
         s->node[2] = c->port[0].end[0].node;
         s->node[3] = c->port[0].end[0].reference;
         s->model = dalcs_switch_add_model(c->builder, &model);
+    }
+}
+
+/* ---- With a switch ---------------------------------------------------------------------------------------------- */
+
+/* 2 hyst while the input comes from above, to a node behind a switch. -1: out of memory. */
+static int add_branch(const struct dalcs_block_card *c, double low, double high, double hyst) {
+    const struct dalcs_token *name = c->card->token;
+    const int level = dalcs_builder_inner_node(c->builder, "level", name);
+    const int node = dalcs_builder_inner_node(c->builder, "branch", name);
+    struct dalcs_device *s = dalcs_block_add(c, DALCS_SWITCH, "branch", level, node);
+    struct dalcs_device *r = dalcs_block_add(c, DALCS_RESISTOR, "branch", node, 0);
+    const struct dalcs_switch_model model = {.name = c->block->name->text,
+                                             .roff = (double)INFINITY,
+                                             .vt = 0.5 * (low + high),
+                                             .vh = 0.5 * (high - low) + hyst};
+    if (level < 0 || node < 0 || s == NULL || r == NULL ||
+        !dalcs_block_add_constant(c, DALCS_VSOURCE, "level", (int[]){level, 0}, 2 * hyst)) {
+        return -1;
+    }
+    dalcs_block_control(s, &c->port[0].end[0], 1);
+    s->model = dalcs_switch_add_model(c->builder, &model);
+    r->value = 1;
+    return s->model >= 0 ? node : -1;
+}
+
+/* Two branches of one shape. The output is continuous where the input passes from one to the other, for both are at the
+ * same limit there. */
+static void parse_hysteresis(const struct dalcs_block_card *c) {
+    static const char *const names[] = {"in_low",          "in_high",         "hyst",
+                                        "out_lower_limit", "out_upper_limit", "input_domain",
+                                        "fraction"};
+    if (!dalcs_block_check(c, names, 7, 2, "a hysteresis is: Aname in out model")) {
+        return;
+    }
+    const double low = dalcs_block_number(c->block, "in_low", 0);
+    const double high = dalcs_block_number(c->block, "in_high", 1);
+    const double hyst = dalcs_block_number(c->block, "hyst", 0.1);
+    if (!(low < high) || hyst < 0) {
+        dalcs_builder_error(c->builder, c->block->type,
+                            hyst < 0 ? NULL : "where the output is to jump: SCHMITT, or S with Vh=",
+                            hyst < 0 ? "hyst cannot be negative" : "in_low must be below in_high");
+        return;
+    }
+    struct dalcs_piecewise table = dalcs_block_make_table(c, 2);
+    struct dalcs_block_end shifted = c->port[0].end[0];
+    if (hyst > 0) {
+        const int branch = add_branch(c, low, high, hyst);
+        const int node = dalcs_builder_inner_node(c->builder, "shifted", c->card->token);
+        struct dalcs_device *e = dalcs_block_add(c, DALCS_VCVS, "shifted", node, branch);
+        if (branch < 0 || node < 0 || e == NULL) {
+            return;
+        }
+        dalcs_block_control(e, &c->port[0].end[0], 1);
+        shifted.node = node;
+        shifted.reference = 0;
+    }
+    if (table.knot != NULL) {
+        dalcs_block_set_knot(&table, 0, low + hyst,
+                             dalcs_block_number(c->block, "out_lower_limit", 0));
+        dalcs_block_set_knot(&table, 1, high + hyst,
+                             dalcs_block_number(c->block, "out_upper_limit", 1));
+        dalcs_block_add_table(c, &shifted, &table);
     }
 }
 
@@ -220,8 +196,8 @@ static void parse_switch(const struct dalcs_block_card *c) {
 static int add_state(const struct dalcs_block_card *c, double farad) {
     const struct dalcs_block_end *out = &c->port[1].end[0];
     const int node = dalcs_builder_inner_node(c->builder, "state", c->card->token);
-    struct dalcs_device *e = add(c, DALCS_VCVS, NULL, out->node, out->reference);
-    struct dalcs_device *capacitor = add(c, DALCS_CAPACITOR, "state", node, 0);
+    struct dalcs_device *e = dalcs_block_add(c, DALCS_VCVS, NULL, out->node, out->reference);
+    struct dalcs_device *capacitor = dalcs_block_add(c, DALCS_CAPACITOR, "state", node, 0);
     if (node < 0 || e == NULL || capacitor == NULL) {
         return -1;
     }
@@ -239,13 +215,13 @@ static bool add_bound(const struct dalcs_block_card *c, int state, bool is_upper
     }
     const int node = dalcs_builder_inner_node(c->builder, what, c->card->token);
     struct dalcs_device *d =
-        add(c, DALCS_DIODE, what, is_upper ? state : node, is_upper ? node : state);
+        dalcs_block_add(c, DALCS_DIODE, what, is_upper ? state : node, is_upper ? node : state);
     if (node < 0 || d == NULL) {
         return false;
     }
     d->model = dalcs_diode_ideal_model(c->builder);
-    return add_constant(c, DALCS_VSOURCE, is_upper ? "at_upper" : "at_lower", (int[]){node, 0},
-                        limit);
+    return dalcs_block_add_constant(c, DALCS_VSOURCE, is_upper ? "at_upper" : "at_lower",
+                                    (int[]){node, 0}, limit);
 }
 
 static void parse_integrator(const struct dalcs_block_card *c) {
@@ -253,8 +229,8 @@ static void parse_integrator(const struct dalcs_block_card *c) {
                                         "out_upper_limit", "limit_range", "out_ic"};
     double low;
     double high;
-    if (!check(c, names, 6, 2, "an integrator is: Aname in out model") ||
-        !read_limits(c, &low, &high)) {
+    if (!dalcs_block_check(c, names, 6, 2, "an integrator is: Aname in out model") ||
+        !dalcs_block_read_limits(c, &low, &high)) {
         return;
     }
     const double gain = dalcs_block_number(c->block, "gain", 1);
@@ -267,13 +243,13 @@ static void parse_integrator(const struct dalcs_block_card *c) {
     const double farad = dalcs_charging / fabs(gain);
     const double by = gain > 0 ? dalcs_charging : -dalcs_charging;
     const int state = add_state(c, farad);
-    struct dalcs_device *g = state >= 0 ? add(c, DALCS_VCCS, "charge", 0, state) : NULL;
+    struct dalcs_device *g = state >= 0 ? dalcs_block_add(c, DALCS_VCCS, "charge", 0, state) : NULL;
     if (g == NULL) {
         return;
     }
-    control(g, &c->port[0].end[0], by);
+    dalcs_block_control(g, &c->port[0].end[0], by);
     if (offset != 0 &&
-        !add_constant(c, DALCS_ISOURCE, "constant", (int[]){0, state}, by * offset)) {
+        !dalcs_block_add_constant(c, DALCS_ISOURCE, "constant", (int[]){0, state}, by * offset)) {
         return;
     }
     if (add_bound(c, state, true, high) && add_bound(c, state, false, low)) {
@@ -283,7 +259,7 @@ static void parse_integrator(const struct dalcs_block_card *c) {
 
 static void parse_slew(const struct dalcs_block_card *c) {
     static const char *const names[] = {"rise_slope", "fall_slope", "range"};
-    if (!check(c, names, 3, 2, "a slew is: Aname in out model")) {
+    if (!dalcs_block_check(c, names, 3, 2, "a slew is: Aname in out model")) {
         return;
     }
     const double up = dalcs_block_number(c->block, "rise_slope", 1e9);
@@ -294,13 +270,57 @@ static void parse_slew(const struct dalcs_block_card *c) {
     }
     const double farad = dalcs_charging / fmax(up, down); /* a current of dalcs_charging at most */
     const int state = add_state(c, farad);
-    struct dalcs_device *e = state >= 0 ? add(c, DALCS_VCVS, "follow", state, 0) : NULL;
+    struct dalcs_device *e = state >= 0 ? dalcs_block_add(c, DALCS_VCVS, "follow", state, 0) : NULL;
     if (e == NULL) {
         return;
     }
-    control(e, &c->port[0].end[0], 1);
+    dalcs_block_control(e, &c->port[0].end[0], 1);
     const struct dalcs_current_limits limits = {.forward = farad * down, .reverse = farad * up};
     dalcs_current_limit_expand(c->builder, c->card->token, e, &limits);
+}
+
+/* gain times the current of a capacitor that a copy of the input charges, as a voltage at a node; -1: out of memory. */
+static int add_derivative(const struct dalcs_block_card *c, double gain, int reference) {
+    const struct dalcs_token *name = c->card->token;
+    const int copy = dalcs_builder_inner_node(c->builder, "copy", name);
+    const int node = dalcs_builder_inner_node(c->builder, "rate", name);
+    struct dalcs_device *e = dalcs_block_add(c, DALCS_VCVS, "copy", copy, 0);
+    struct dalcs_device *capacitor = dalcs_block_add(c, DALCS_CAPACITOR, "copy", copy, 0);
+    struct dalcs_device *h = dalcs_block_add(c, DALCS_CCVS, "rate", node, reference);
+    if (copy < 0 || node < 0 || e == NULL || capacitor == NULL || h == NULL) {
+        return -1;
+    }
+    dalcs_block_control(e, &c->port[0].end[0], 1);
+    capacitor->value = dalcs_charging;
+    h->control = (int)(e - c->builder->circuit->device);
+    h->value = -gain / dalcs_charging;
+    return node;
+}
+
+static void parse_derivative(const struct dalcs_block_card *c) {
+    static const char *const names[] = {"gain", "out_offset", "out_lower_limit", "out_upper_limit",
+                                        "limit_range"};
+    double y[2];
+    if (!dalcs_block_check(c, names, 5, 2, "a differentiator is: Aname in out model") ||
+        !dalcs_block_read_limits(c, &y[0], &y[1])) {
+        return;
+    }
+    const double offset = dalcs_block_number(c->block, "out_offset", 0);
+    const int node = add_derivative(c, dalcs_block_number(c->block, "gain", 1), 0);
+    const int n = (isfinite(y[0]) ? 1 : 0) + (isfinite(y[1]) ? 1 : 0);
+    struct dalcs_piecewise table = dalcs_block_make_table(c, n > 0 ? n : 1);
+    if (node < 0 || table.knot == NULL) {
+        return;
+    }
+    table.before = isfinite(y[0]) ? 0 : 1;
+    table.after = isfinite(y[1]) ? 0 : 1;
+    dalcs_block_set_knot(&table, 0, 0, offset); /* where there is no limit */
+    for (int k = 0, at = 0; k < 2; k++) {
+        if (isfinite(y[k])) {
+            dalcs_block_set_knot(&table, at++, y[k] - offset, y[k]);
+        }
+    }
+    dalcs_block_add_table(c, &(struct dalcs_block_end){.node = node}, &table);
 }
 
 bool dalcs_block_parse_analog(struct dalcs_block_card *c) {
@@ -315,6 +335,10 @@ bool dalcs_block_parse_analog(struct dalcs_block_card *c) {
         parse_switch(c);
     } else if (strcmp(type, "int") == 0) {
         parse_integrator(c);
+    } else if (strcmp(type, "hyst") == 0) {
+        parse_hysteresis(c);
+    } else if (strcmp(type, "d_dt") == 0) {
+        parse_derivative(c);
     } else if (strcmp(type, "slew") == 0) {
         parse_slew(c);
     } else {

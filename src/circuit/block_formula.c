@@ -1,6 +1,5 @@
-/* block_formula.c - XSPICE's code models that are a product, a quotient or a transfer function of their inputs. */
-#include "block.h"
-#include "formula_writer.h"
+/* block_formula.c - XSPICE's code models that are a product, a quotient, a limit or a transfer function of their inputs. */
+#include "block_parts.h"
 #include "rational.h"
 
 #include <math.h>
@@ -9,37 +8,7 @@
 /* States of s_xfer: each takes two elements, for which a card has room. */
 enum { MOST_STATES = 10 };
 
-static struct dalcs_device *add_output(const struct dalcs_block_card *c,
-                                       const struct dalcs_block_end *out) {
-    struct dalcs_device *device = dalcs_builder_add_device(c->builder, DALCS_VCVS, c->card->token);
-    if (device != NULL) {
-        device->node[0] = out->node;
-        device->node[1] = out->reference;
-    }
-    return device;
-}
-
 /* ---- Products -------------------------------------------------------------------------------------------------- */
-
-static const struct dalcs_token *name_of(struct dalcs_formula_writer *w, int node) {
-    return dalcs_formula_name(w->builder, w->element,
-                              node == 0 ? "0" : w->builder->node_name[node]);
-}
-
-/* gain (v(input) + offset) */
-static const struct dalcs_formula *line(struct dalcs_formula_writer *w,
-                                        const struct dalcs_block_end *input, double offset,
-                                        double gain) {
-    const struct dalcs_token *a = name_of(w, input->node);
-    const struct dalcs_token *b = input->reference != 0 ? name_of(w, input->reference) : NULL;
-    if (a == NULL || (b == NULL && input->reference != 0)) {
-        return NULL;
-    }
-    const struct dalcs_formula *v = dalcs_formula_signal(w, DALCS_FORMULA_VOLTAGE, a, b);
-    v = offset == 0 ? v : dalcs_formula_operation(w, DALCS_ADD, v, dalcs_formula_number(w, offset));
-    return gain == 1 ? v
-                     : dalcs_formula_operation(w, DALCS_MULTIPLY, dalcs_formula_number(w, gain), v);
-}
 
 /* out_gain * what + out_offset, as the voltage of the output. */
 static void put_out(const struct dalcs_block_card *c, struct dalcs_formula_writer *w,
@@ -52,10 +21,7 @@ static void put_out(const struct dalcs_block_card *c, struct dalcs_formula_write
     if (offset != 0) {
         what = dalcs_formula_operation(w, DALCS_ADD, what, dalcs_formula_number(w, offset));
     }
-    struct dalcs_device *device = add_output(c, out);
-    if (device != NULL) {
-        dalcs_behavioural_add_formula(c->builder, device, dalcs_formula_token(w, what));
-    }
+    dalcs_block_put_out(c, w, what, out);
 }
 
 static void parse_product(const struct dalcs_block_card *c) {
@@ -69,9 +35,9 @@ static void parse_product(const struct dalcs_block_card *c) {
     }
     const struct dalcs_formula *product = NULL;
     for (int k = 0; k < c->port[0].n; k++) {
-        const struct dalcs_formula *factor =
-            line(&w, &c->port[0].end[k], dalcs_block_element(c->block, "in_offset", k, 0),
-                 dalcs_block_element(c->block, "in_gain", k, 1));
+        const struct dalcs_formula *factor = dalcs_block_line(
+            &w, &c->port[0].end[k], dalcs_block_element(c->block, "in_offset", k, 0),
+            dalcs_block_element(c->block, "in_gain", k, 1));
         product = k == 0 ? factor : dalcs_formula_operation(&w, DALCS_MULTIPLY, product, factor);
     }
     put_out(c, &w, product, &c->port[1].end[0]);
@@ -90,12 +56,35 @@ static void parse_quotient(const struct dalcs_block_card *c) {
         return;
     }
     const struct dalcs_formula *above =
-        line(&w, &c->port[0].end[0], dalcs_block_number(c->block, "num_offset", 0),
-             dalcs_block_number(c->block, "num_gain", 1));
+        dalcs_block_line(&w, &c->port[0].end[0], dalcs_block_number(c->block, "num_offset", 0),
+                         dalcs_block_number(c->block, "num_gain", 1));
     const struct dalcs_formula *below =
-        line(&w, &c->port[1].end[0], dalcs_block_number(c->block, "den_offset", 0),
-             dalcs_block_number(c->block, "den_gain", 1));
+        dalcs_block_line(&w, &c->port[1].end[0], dalcs_block_number(c->block, "den_offset", 0),
+                         dalcs_block_number(c->block, "den_gain", 1));
     put_out(c, &w, dalcs_formula_operation(&w, DALCS_DIVIDE, above, below), &c->port[2].end[0]);
+}
+
+/* A line between two signals, the upper one of which counts where they have met. */
+static void parse_limits(const struct dalcs_block_card *c) {
+    static const char *const names[] = {"in_offset",   "gain",        "upper_delta",
+                                        "lower_delta", "limit_range", "fraction"};
+    static const char usage[] = "a controlled limiter is: Aname in upper lower out model";
+    struct dalcs_formula_writer w;
+    if (!dalcs_block_has_only(c, names, 6) || !dalcs_block_has_ports(c, 4, 0, usage) ||
+        !dalcs_block_has_nodes(c, usage) ||
+        !dalcs_formula_writer_start(&w, c->builder, c->card->token)) {
+        return;
+    }
+    const struct dalcs_formula *value =
+        dalcs_block_line(&w, &c->port[0].end[0], dalcs_block_number(c->block, "in_offset", 0),
+                         dalcs_block_number(c->block, "gain", 1));
+    const struct dalcs_formula *upper = dalcs_block_line(
+        &w, &c->port[1].end[0], -dalcs_block_number(c->block, "upper_delta", 0), 1);
+    const struct dalcs_formula *lower =
+        dalcs_block_line(&w, &c->port[2].end[0], dalcs_block_number(c->block, "lower_delta", 0), 1);
+    value = dalcs_formula_call(&w, "max", 2, (const struct dalcs_formula *const[]){value, lower});
+    value = dalcs_formula_call(&w, "min", 2, (const struct dalcs_formula *const[]){value, upper});
+    dalcs_block_put_out(c, &w, value, &c->port[3].end[0]);
 }
 
 /* ---- Transfer functions ---------------------------------------------------------------------------------------- */
@@ -180,7 +169,8 @@ static void parse_transfer(const struct dalcs_block_card *c) {
                             r.above.degree, r.below.degree);
         return;
     }
-    struct dalcs_device *device = add_output(c, &c->port[1].end[0]);
+    const struct dalcs_block_end *out = &c->port[1].end[0];
+    struct dalcs_device *device = dalcs_block_add(c, DALCS_VCVS, NULL, out->node, out->reference);
     const struct dalcs_block_end *in = &c->port[0].end[0];
     const int shifted = offset != 0 ? add_shifted(c, in, offset) : in->node;
     if (device != NULL && shifted >= 0) {
@@ -195,6 +185,8 @@ bool dalcs_block_parse_formula(struct dalcs_block_card *c) {
         parse_product(c);
     } else if (strcmp(type, "divide") == 0) {
         parse_quotient(c);
+    } else if (strcmp(type, "climit") == 0) {
+        parse_limits(c);
     } else if (strcmp(type, "s_xfer") == 0) {
         parse_transfer(c);
     } else {

@@ -65,6 +65,17 @@ static bool is_delay_wrong(const struct dalcs_block_card *c) {
     return false;
 }
 
+static bool are_levels_wrong(const struct dalcs_block_card *c, const char *low, double usual_low,
+                             const char *high, double usual_high, bool may_be_equal) {
+    const double a = dalcs_block_number(c->block, low, usual_low);
+    const double b = dalcs_block_number(c->block, high, usual_high);
+    if (a < b || (may_be_equal && a == b)) {
+        return false;
+    }
+    dalcs_builder_error(c->builder, c->block->type, NULL, "%s must be below %s", low, high);
+    return true;
+}
+
 /* ---- Gates ------------------------------------------------------------------------------------------------- */
 
 static void parse_gate(struct dalcs_block_card *c, enum dalcs_logic_kind kind, bool is_inverted) {
@@ -129,7 +140,10 @@ static void add_flip_flop(struct dalcs_block_card *c, enum dalcs_logic_kind kind
     drive(of, out, k == 1, dalcs_block_number(c->block, "rise_delay", usual_delay),
           dalcs_block_number(c->block, "fall_delay", usual_delay));
     struct dalcs_logic_gate *g = of->gate;
-    const double clock = dalcs_block_number(c->block, "clk_delay", usual_delay);
+    const char *delay = kind == DALCS_GATE_DATA_LATCH ? "data_delay"
+                        : kind == DALCS_GATE_SR_LATCH ? "sr_delay"
+                                                      : "clk_delay";
+    const double clock = dalcs_block_number(c->block, delay, usual_delay);
     g->forced_delay[0] = g->delay[0] + dalcs_block_number(c->block, "reset_delay", usual_delay);
     g->forced_delay[1] = g->delay[1] + dalcs_block_number(c->block, "set_delay", usual_delay);
     g->delay[0] += clock;
@@ -139,9 +153,13 @@ static void add_flip_flop(struct dalcs_block_card *c, enum dalcs_logic_kind kind
 
 static void parse_flip_flop(struct dalcs_block_card *c, enum dalcs_logic_kind kind) {
     static const char *const names[] = {
-        "clk_delay", "set_delay", "reset_delay", "ic",      "rise_delay", "fall_delay", "data_load",
-        "clk_load",  "set_load",  "reset_load",  "jk_load", "t_load",     "sr_load"};
-    const int n_data = kind == DALCS_GATE_JK || kind == DALCS_GATE_SR ? 2 : 1;
+        "clk_delay",   "set_delay",  "reset_delay", "ic",       "rise_delay",  "fall_delay",
+        "data_load",   "clk_load",   "set_load",    "jk_load",  "t_load",      "sr_load",
+        "enable_load", "reset_load", "data_delay",  "sr_delay", "enable_delay"};
+    const size_t n_names = sizeof names / sizeof names[0];
+    const bool is_latch = kind == DALCS_GATE_DATA_LATCH || kind == DALCS_GATE_SR_LATCH;
+    const int n_data =
+        kind == DALCS_GATE_JK || kind == DALCS_GATE_SR || kind == DALCS_GATE_SR_LATCH ? 2 : 1;
     struct dalcs_block_port *port = c->port;
     if (c->n_ports == n_data + 4) { /* the complement may be left out */
         port[c->n_ports].end = dalcs_arena_alloc(&c->builder->scratch, 1, sizeof *port->end);
@@ -152,7 +170,7 @@ static void parse_flip_flop(struct dalcs_block_card *c, enum dalcs_logic_kind ki
         port[c->n_ports].n = 1;
         port[c->n_ports++].end[0].is_null = true;
     }
-    if (!dalcs_block_has_only(c, names, sizeof names / sizeof names[0]) || is_delay_wrong(c) ||
+    if (!dalcs_block_has_only(c, names, is_latch ? n_names : n_names - 3) || is_delay_wrong(c) ||
         !dalcs_block_has_ports(
             c, n_data + 5, 0,
             n_data == 1 ? "a flip-flop is: Aname data clock set reset q complement model"
@@ -193,17 +211,6 @@ static void parse_divider(struct dalcs_block_card *c) {
 }
 
 /* ---- Bridges -------------------------------------------------------------------------------------------------- */
-
-static bool are_levels_wrong(const struct dalcs_block_card *c, const char *low, double usual_low,
-                             const char *high, double usual_high, bool may_be_equal) {
-    const double a = dalcs_block_number(c->block, low, usual_low);
-    const double b = dalcs_block_number(c->block, high, usual_high);
-    if (a < b || (may_be_equal && a == b)) {
-        return false;
-    }
-    dalcs_builder_error(c->builder, c->block->type, NULL, "%s must be below %s", low, high);
-    return true;
-}
 
 static void parse_bridge(struct dalcs_block_card *c, bool is_adc) {
     static const char *const adc_names[] = {"in_low", "in_high", "rise_delay", "fall_delay"};
@@ -249,12 +256,20 @@ bool dalcs_block_parse_logic(struct dalcs_block_card *c) {
         const char *type;
         enum dalcs_logic_kind kind;
         bool is_inverted;
-    } gates[] = {{"d_and", DALCS_GATE_AND, false},       {"d_nand", DALCS_GATE_AND, true},
-                 {"d_or", DALCS_GATE_OR, false},         {"d_nor", DALCS_GATE_OR, true},
-                 {"d_xor", DALCS_GATE_XOR, false},       {"d_xnor", DALCS_GATE_XOR, true},
-                 {"d_buffer", DALCS_GATE_BUFFER, false}, {"d_inverter", DALCS_GATE_BUFFER, true},
-                 {"d_dff", DALCS_GATE_FLIP_FLOP, false}, {"d_jkff", DALCS_GATE_JK, false},
-                 {"d_tff", DALCS_GATE_TOGGLE, false},    {"d_srff", DALCS_GATE_SR, false}};
+    } gates[] = {{"d_and", DALCS_GATE_AND, false},
+                 {"d_nand", DALCS_GATE_AND, true},
+                 {"d_or", DALCS_GATE_OR, false},
+                 {"d_nor", DALCS_GATE_OR, true},
+                 {"d_xor", DALCS_GATE_XOR, false},
+                 {"d_xnor", DALCS_GATE_XOR, true},
+                 {"d_buffer", DALCS_GATE_BUFFER, false},
+                 {"d_inverter", DALCS_GATE_BUFFER, true},
+                 {"d_dff", DALCS_GATE_FLIP_FLOP, false},
+                 {"d_jkff", DALCS_GATE_JK, false},
+                 {"d_tff", DALCS_GATE_TOGGLE, false},
+                 {"d_srff", DALCS_GATE_SR, false},
+                 {"d_dlatch", DALCS_GATE_DATA_LATCH, false},
+                 {"d_srlatch", DALCS_GATE_SR_LATCH, false}};
 
     const char *type = c->block->type->text;
     for (size_t k = 0; k < sizeof gates / sizeof gates[0]; k++) {
@@ -269,6 +284,8 @@ bool dalcs_block_parse_logic(struct dalcs_block_card *c) {
     }
     if (strcmp(type, "d_fdiv") == 0) {
         parse_divider(c);
+    } else if (strcmp(type, "oneshot") == 0) {
+        dalcs_block_parse_one_shot(c);
     } else if (strcmp(type, "adc_bridge") == 0 || strcmp(type, "dac_bridge") == 0) {
         parse_bridge(c, type[0] == 'a');
     } else if (strcmp(type, "d_pullup") == 0 || strcmp(type, "d_pulldown") == 0) {

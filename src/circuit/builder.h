@@ -103,7 +103,9 @@ struct dalcs_builder {
     bool *read_by_gates;            /* [n_nodes_of_gates] nodes whose bit another gate reads */
     size_t n_nodes_of_gates;
     const struct dalcs_logic_card *gate_card; /* the last of all, each points to the one before */
-    const struct dalcs_storage *storage;      /* likewise: coils and capacitors that are no lines */
+    const struct dalcs_oscillator
+        *oscillator;                     /* likewise: code models that wait for their control */
+    const struct dalcs_storage *storage; /* likewise: coils and capacitors that are no lines */
 
     const struct dalcs_token *pss;  /* so with .pss */
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
@@ -408,8 +410,13 @@ bool dalcs_modulation_set_fm(struct dalcs_builder *builder, const struct dalcs_t
 /* LAPLACE, which comes next: of the controlling nodes, or of a formula that follows. */
 void dalcs_transfer_parse(struct dalcs_reader *reader, struct dalcs_device *device,
                           bool has_control);
+/* The same behind a B's formula, m alike in parallel. */
+void dalcs_transfer_parse_behind(struct dalcs_reader *reader, struct dalcs_device *device,
+                                 const struct dalcs_token *formula, double m);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
+/* LTspice's VARISTOR and MODULATE; false: another function. */
+bool dalcs_analog_function_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* After the word POLY, on a device that has its own nodes. */
 void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device);
 /* Room for the devices that a card's POLY becomes; one of them may be a source. */

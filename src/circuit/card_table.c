@@ -237,7 +237,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         if (dalcs_card_is_logic(card)) {
             table->n_gates++;
             table->n_gate_inputs += DALCS_GATE_PINS;
-            table->n_stimuli += 2;
+            table->n_stimuli += 5;
             table->n_inner += DALCS_GATE_DEVICES;
         } else {
             count_block(table, card);
@@ -250,6 +250,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_stimuli += n > 0;
             table->n_inner += is_transfer(card) ? 2 * DALCS_RATIONAL_DEGREE + 1 : 0;
         }
+        table->n_inner += letter == 'b' && is_transfer(card) ? 2 * DALCS_RATIONAL_DEGREE + 1 : 0;
         table->n_inner += letter == 's' && dalcs_formula_find_control(card) < card->n;
         table->n_switches += letter == 's' || letter == 'w';
         table->n_diodes += letter == 'd' || letter == 'a';

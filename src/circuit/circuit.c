@@ -9,8 +9,8 @@
  *     checks     of the whole
  *
  * Every pass goes on after an error, so that a person sees all of them. */
-#include "block.h"
 #include "card_table.h"
+#include "oscillator.h"
 #include "storage.h"
 
 #include <stdlib.h>
@@ -172,6 +172,9 @@ static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigne
             if (builder->out_of_memory) {
                 return DALCS_E_NOMEM;
             }
+        }
+        if (pass == ELEMENTS) {
+            dalcs_oscillator_put_all(builder);
         }
     }
     return DALCS_OK;

@@ -112,6 +112,15 @@ struct dalcs_switch_model {
     bool is_exchanged; /* ON and OFF of a card mean open and closed */
 };
 
+/* What the channel of a MOSFET carries at most with its gate at its high level. */
+struct dalcs_saturation {
+    const char *name;
+    int device;     /* whose current is the element's */
+    double current; /* A; of a p channel below 0 */
+    double level;   /* V of the gate */
+    struct dalcs_location where;
+};
+
 /* Mutual inductance k sqrt(L1 L2) between inductor devices, |k| <= 1. */
 struct dalcs_coupling {
     const char *name;
@@ -194,6 +203,8 @@ struct dalcs_circuit {
     bool has_own_tangents; /* each exponential diode has a model that no other has */
     int n_switch_models;
     struct dalcs_switch_model *switch_model;
+    int n_saturations;
+    struct dalcs_saturation *saturation;
     int n_couplings;
     struct dalcs_coupling *coupling;
     int n_initial_conditions;

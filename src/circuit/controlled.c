@@ -28,7 +28,8 @@ static bool is_refused(struct dalcs_reader *reader) {
         !dalcs_builder_is_one_of(token->text, forms, sizeof forms / sizeof forms[0])) {
         return false;
     }
-    dalcs_builder_error(reader->builder, token, "a circuit of R, L and C can have it",
+    dalcs_builder_error(reader->builder, token,
+                        "write LAPLACE with the ratio that the table was made of, or R, L and C",
                         "a response over frequency (%s) has no equations in time", token->text);
     return true;
 }

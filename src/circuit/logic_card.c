@@ -14,7 +14,25 @@ static const char USAGE[] =
 
 enum { PIN_INVERTED = DALCS_GATE_PINS, PIN_OUTPUT, PIN_COMMON, N_PINS };
 
-enum { VHIGH, VLOW, REF, TD, TRISE, TFALL, VT, VH, ROUT, IC, CYCLES, DUTY, N_PARAMETERS };
+enum {
+    VHIGH,
+    VLOW,
+    REF,
+    TD,
+    TRISE,
+    TFALL,
+    VT,
+    VH,
+    ROUT,
+    RHIGH,
+    RLOW,
+    COUT,
+    TAU,
+    IC,
+    CYCLES,
+    DUTY,
+    N_PARAMETERS
+};
 
 struct function {
     const char *name;
@@ -59,13 +77,8 @@ static bool is_refused(struct dalcs_builder *builder, const struct dalcs_token *
         const char *name, *because, *hint;
     } functions[] = {
         {"ota", "its output is a limited product of differences",
-         "write a B source with I=limit(...) of v(in1,in2)"},
-        {"varistor", "its breakdown voltage is a signal, which makes it a product",
-         "write two diodes and B sources of that signal"},
-        {"modulator", "the phase of its sine is an integral",
-         "write a V source with SFFM, or SIN(...)"},
-        {"modulate", "the phase of its sine is an integral",
-         "write a V source with SFFM, or SIN(...)"},
+         "write a B source from pin 8 to pin 7: I=Iout*tanh(G/Iout*v(pin2,pin1)), or "
+         "I=limit(G*v(pin2,pin1), -Iout, Iout)"},
         {"phasedet", "it has three states", "write two DFLOP that an AND of both clears"}};
 
     for (size_t k = 0; k < sizeof functions / sizeof functions[0]; k++) {
@@ -99,7 +112,7 @@ static bool has_parameter(const struct card *c, int k) {
     const bool is_sample = c->function->kind == DALCS_GATE_SAMPLE;
     const bool is_special = k == VT || k == VH || k == CYCLES || k == DUTY;
     return is_special ? (c->function->wants >> k & 1U) != 0
-                      : !is_sample || k == REF || k == ROUT || k == IC;
+                      : !is_sample || k == REF || k == ROUT || k == COUT || k == TAU || k == IC;
 }
 
 static bool read_parameters(struct dalcs_reader *reader, struct card *c) {
@@ -136,14 +149,35 @@ static bool read_parameters(struct dalcs_reader *reader, struct card *c) {
     return true;
 }
 
+/* A ramp, a time constant, a resistance with a capacitance: ways to say how an output goes from level to level. */
+static bool check_ways(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
+    static const struct {
+        int one, other;
+    } pairs[] = {{TAU, TRISE}, {TAU, TFALL}, {TAU, COUT}, {TAU, RHIGH}, {TAU, RLOW}};
+
+    for (size_t k = 0; k < sizeof pairs / sizeof pairs[0]; k++) {
+        const struct dalcs_parameter *one = &p[pairs[k].one];
+        const struct dalcs_parameter *other = &p[pairs[k].other];
+        if (one->place != NULL && other->place != NULL && one->value > 0 && other->value > 0) {
+            dalcs_builder_error(builder, other->place, "leave one of them out",
+                                "'%s' and '%s' of one output", one->name, other->name);
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool check_parameters(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
-    static const int not_negative[] = {TD, TRISE, TFALL, VH, ROUT};
+    static const int not_negative[] = {TD, TRISE, TFALL, VH, ROUT, RHIGH, RLOW, COUT, TAU};
     for (size_t k = 0; k < sizeof not_negative / sizeof not_negative[0]; k++) {
         const struct dalcs_parameter *one = &p[not_negative[k]];
         if (one->value < 0) {
             dalcs_builder_error(builder, one->place, USAGE, "'%s' cannot be negative", one->name);
             return false;
         }
+    }
+    if (!check_ways(builder, p)) {
+        return false;
     }
     if (!(p[VHIGH].value > p[VLOW].value)) {
         dalcs_builder_error(builder, p[VHIGH].place != NULL ? p[VHIGH].place : p[VLOW].place,
@@ -163,6 +197,15 @@ static bool check_parameters(struct dalcs_builder *builder, const struct dalcs_p
         return false;
     }
     return true;
+}
+
+/* A capacitance without a resistance has LTspice's 1 ohm. */
+static void take_impedance(struct dalcs_logic_card *of, const struct dalcs_parameter *p) {
+    const bool has_capacitance = p[COUT].value > 0 || p[TAU].value > 0;
+    const double ohms = p[ROUT].value > 0 || !has_capacitance ? p[ROUT].value : 1;
+    of->ohms[0] = p[RLOW].place != NULL ? p[RLOW].value : ohms;
+    of->ohms[1] = p[RHIGH].place != NULL ? p[RHIGH].value : ohms;
+    of->farad = p[TAU].value > 0 ? p[TAU].value / ohms : p[COUT].value;
 }
 
 static void take_parameters(struct card *c) {
@@ -189,7 +232,7 @@ static void take_parameters(struct card *c) {
     const double ref = p[REF].place != NULL ? p[REF].value : g->low + 0.5 * (g->high - g->low);
     of->on = c->is_schmitt ? p[VT].value + p[VH].value : ref;
     of->off = c->is_schmitt ? p[VT].value - p[VH].value : ref;
-    of->ohms = p[ROUT].value;
+    take_impedance(of, p);
 }
 
 /* ---- Pins ------------------------------------------------------------------------------------------------ */
@@ -259,10 +302,15 @@ void dalcs_logic_parse(struct dalcs_builder *builder, const struct dalcs_card *c
                            [VT] = {"vt", DALCS_VOLTAGE, false, 0, NULL},
                            [VH] = {"vh", DALCS_VOLTAGE, false, 0, NULL},
                            [ROUT] = {"rout", DALCS_OHM, false, 0, NULL},
+                           [RHIGH] = {"rhigh", DALCS_OHM, false, 0, NULL},
+                           [RLOW] = {"rlow", DALCS_OHM, false, 0, NULL},
+                           [COUT] = {"cout", DALCS_FARAD, false, 0, NULL},
+                           [TAU] = {"tau", DALCS_SECOND, false, 0, NULL},
                            [IC] = {"ic", DALCS_VOLTAGE, false, 0, NULL},
                            [CYCLES] = {"cycles", DALCS_PLAIN, false, 2, NULL},
                            [DUTY] = {"duty", DALCS_PLAIN, false, 0.5, NULL}}};
-    if (c.of == NULL || !dalcs_reader_nodes(&reader, N_PINS, c.node)) {
+    if (c.of == NULL || dalcs_analog_function_parse(builder, card) ||
+        !dalcs_reader_nodes(&reader, N_PINS, c.node)) {
         return;
     }
     reader.at++; /* the function */

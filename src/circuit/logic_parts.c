@@ -36,6 +36,7 @@ struct dalcs_logic_card *dalcs_logic_start(struct dalcs_builder *builder,
                                           .n_inputs = n_inputs,
                                           .input = input,
                                           .output = {-1, -1},
+                                          .sampled = -1,
                                           .where = dalcs_builder_keep_location(builder, name)};
     return of;
 }
@@ -51,14 +52,59 @@ static int add_stimulus(struct dalcs_builder *builder, double value) {
         return -1;
     }
     point[1] = value;
-    circuit->stimulus[circuit->n_stimuli] = (struct dalcs_stimulus){
-        .kind = DALCS_STIMULUS_PWL, .u.pwl = {.n = 1, .t = point, .v = point + 1}};
+    circuit->stimulus[circuit->n_stimuli] =
+        (struct dalcs_stimulus){.kind = DALCS_STIMULUS_PWL,
+                                .is_written = true,
+                                .u.pwl = {.n = 1, .t = point, .v = point + 1}};
     return circuit->n_stimuli++;
 }
 
-/* Puts a resistor between a source of an output and its pin. */
-static bool add_resistance(struct dalcs_builder *builder, const struct dalcs_logic_card *of,
-                           const char *what, struct dalcs_device *source) {
+/* Across the larger resistance while the output is at the level that has the smaller one: half way between both it
+ * changes over. */
+static bool add_other_resistance(struct dalcs_builder *builder, const struct dalcs_logic_card *of,
+                                 const char *what, const struct dalcs_device *r, int common) {
+    struct dalcs_device *s = dalcs_builder_add_inner_device(builder, DALCS_SWITCH, what, of->name);
+    const bool is_when_high = of->ohms[1] < of->ohms[0];
+    const double small = fmin(of->ohms[0], of->ohms[1]);
+    const double middle = 0.5 * (of->gate->low + of->gate->high);
+    const struct dalcs_switch_model model = {.name = "rout",
+                                             .ron = small * r->value / (r->value - small),
+                                             .roff = (double)INFINITY,
+                                             .vt = is_when_high ? middle : -middle};
+    const int index = dalcs_switch_add_model(builder, &model);
+    if (s == NULL || index < 0) {
+        return false;
+    }
+    s->node[0] = r->node[0];
+    s->node[1] = r->node[1];
+    s->node[is_when_high ? 2 : 3] = r->node[0];
+    s->node[is_when_high ? 3 : 2] = common;
+    s->model = index;
+    return true;
+}
+
+static bool add_capacitance(struct dalcs_builder *builder, const struct dalcs_logic_card *of,
+                            const char *what, const int *node, double first) {
+    struct dalcs_device *c =
+        dalcs_builder_add_inner_device(builder, DALCS_CAPACITOR, what, of->name);
+    if (c == NULL) {
+        return false;
+    }
+    c->node[0] = node[0];
+    c->node[1] = node[1];
+    c->value = of->farad;
+    c->initial = first;
+    c->has_initial = true;
+    return true;
+}
+
+/* Puts what it has between a source of an output, from `first` volts on, and its pin. */
+static bool add_impedance(struct dalcs_builder *builder, const struct dalcs_logic_card *of,
+                          const char *what, struct dalcs_device *source, double first) {
+    const int pin[2] = {source->node[0], source->node[1]};
+    if (!(of->ohms[0] > 0) && !(of->ohms[1] > 0)) {
+        return true;
+    }
     struct dalcs_device *r =
         dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, what, of->name);
     const int node = dalcs_builder_inner_node(builder, what, of->name);
@@ -66,10 +112,11 @@ static bool add_resistance(struct dalcs_builder *builder, const struct dalcs_log
         return false;
     }
     r->node[0] = node;
-    r->node[1] = source->node[0];
-    r->value = of->ohms;
+    r->node[1] = pin[0];
+    r->value = fmax(of->ohms[0], of->ohms[1]);
     source->node[0] = node;
-    return true;
+    return (of->ohms[0] == of->ohms[1] || add_other_resistance(builder, of, what, r, pin[1])) &&
+           (of->farad == 0 || add_capacitance(builder, of, what, pin, first));
 }
 
 static struct dalcs_device *add_source(struct dalcs_builder *builder,
@@ -90,7 +137,9 @@ static bool add_output(struct dalcs_builder *builder, const struct dalcs_logic_c
     source->node[0] = of->node[k];
     source->node[1] = of->common;
     source->stimulus = of->gate->output[k] = stimulus;
-    return !(of->ohms > 0) || add_resistance(builder, of, k == 0 ? "rout" : "routbar", source);
+    const bool is_high = of->gate->initial == (k == 0);
+    return add_impedance(builder, of, k == 0 ? "rout" : "routbar", source,
+                         is_high ? of->gate->high : of->gate->low);
 }
 
 /* One of both that a sample shows: a wire while the mode is on, or off. */
@@ -155,7 +204,7 @@ static bool add_sample(struct dalcs_builder *builder, const struct dalcs_logic_c
     }
     out->node[0] = of->node[0];
     out->node[1] = of->common;
-    return !(of->ohms > 0) || add_resistance(builder, of, "rout", out);
+    return add_impedance(builder, of, "rout", out, of->gate->held);
 }
 
 static bool add_outputs(struct dalcs_builder *builder, const struct dalcs_logic_card *of) {
@@ -235,7 +284,7 @@ static int find_comparator(struct dalcs_builder *builder, const struct dalcs_log
 /* Its outputs jump from one level to the other, and nothing pulls at them. */
 static bool is_exact(const struct dalcs_logic_card *of) {
     return of->gate->kind != DALCS_GATE_SAMPLE && of->gate->rise == 0 && of->gate->fall == 0 &&
-           of->ohms == 0;
+           of->ohms[0] == 0 && of->ohms[1] == 0;
 }
 
 /* A gate that drives a pin: twice its number, and one more where by its complement; -1: none, or not as this input
@@ -306,7 +355,7 @@ void dalcs_logic_resolve(struct dalcs_builder *builder) {
         for (int k = 0; k < of->gate->n_inputs; k++) {
             resolve_input(builder, driver, of, k);
         }
-        if (of->gate->kind == DALCS_GATE_SAMPLE) {
+        if (of->sampled.node != of->sampled.reference) {
             measure_sample(builder, of);
         }
     }

@@ -16,12 +16,13 @@ struct dalcs_logic_card {
     } * pin; /* [gate->n_inputs] */
 
     int node[2], common; /* of q and its complement, -1: not wired */
-    double ohms;         /* at each output */
+    double ohms[2];      /* in series with an output that is low, high */
+    double farad;        /* behind those, to the common node */
     double on, off;      /* V: where an input rises and falls */
 
     struct dalcs_logic_sampled {
         int node, reference;
-    } sampled; /* of a sample */
+    } sampled; /* of a sample; of a pulse, whose length it is; else both are ground */
 };
 
 /* A gate with so many inputs, none of which is wired; NULL: out of memory. */

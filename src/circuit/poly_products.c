@@ -51,8 +51,8 @@ static int node_of(const struct poly *p, struct product *product, int k) {
     const int second = node_of(p, product, 1 + of->last);
     const char *what = dalcs_builder_hint(p->reader->builder, "product%d", k);
     of->node = first > 0 && second > 0 && what != NULL
-                   ? dalcs_smooth_add_product(p->reader->builder, p->reader->card->token, what,
-                                              first, second)
+                   ? dalcs_smooth_add(p->reader->builder, p->reader->card->token, what,
+                                      DALCS_SMOOTH_PRODUCT, 2, (int[]){first, second})
                    : -1;
     return of->node;
 }

@@ -132,11 +132,13 @@ const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struc
     return c->failed ? NULL : dalcs_form_affine(c, &v);
 }
 
-int dalcs_smooth_add_product(struct dalcs_builder *builder, const struct dalcs_token *element,
-                             const char *what, int first, int second) {
+int dalcs_smooth_add(struct dalcs_builder *builder, const struct dalcs_token *element,
+                     const char *what, enum dalcs_smooth_kind kind, int n, const int *node_of) {
     struct dalcs_compiler c = {.builder = builder, .element = element};
-    const struct dalcs_smooth smooth = {
-        .kind = DALCS_SMOOTH_PRODUCT, .n = 2, .node = {first, second}, .source = {-1, -1}};
+    struct dalcs_smooth smooth = {.kind = kind, .n = n, .node = {-1, -1}, .source = {-1, -1}};
+    for (int k = 0; k < n; k++) {
+        smooth.node[k] = node_of[k];
+    }
     const struct dalcs_behaviour *behaviour = make(&c, &smooth);
     struct dalcs_device *device =
         behaviour != NULL ? dalcs_builder_add_inner_device(builder, DALCS_VCVS, what, element)

@@ -46,6 +46,7 @@ struct dalcs_stimulus {
     bool has_dc;
     double ac_real, ac_imaginary; /* of the card's AC magnitude and phase; V or A */
     bool is_ac_alone;             /* the card has nothing else */
+    bool is_written;              /* while a run goes on, by a gate: it is not known before */
 
     union {
         /* offset + amplitude exp(-damping (t - delay)) sin(2 pi frequency (t - delay) + phase);

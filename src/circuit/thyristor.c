@@ -10,6 +10,10 @@
  *     of a GTO     besides 0.5 v/Vgoff in [-3, 0]                      opens where v has fallen to -Vgoff
  * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current.
  *
+ * With a latching current Il it opens with its gate, unless another switch, which closes where i has fallen to Ih and
+ * opens where it has reached Il, has opened: while that is closed, 1 is taken from the control, whose part of i is not
+ * there then.
+ *
  * A triac is two of them, the one against the other, whose v is |v| and whose i is that of the terminal, in the
  * direction of each: how two ideal diodes against each other share a current is not determined, what both together
  * carry is. Without Ih its control is
@@ -30,12 +34,13 @@ struct dalcs_thyristor {
     enum kind kind;
     double trigger, turn_off; /* V of the gate */
     double holding;           /* A; 0: none */
+    double latching;          /* A; 0: as long as its gate it conducts whatever flows */
     double reversed;          /* V */
     double other;             /* A in the other half of a triac */
     double drop;              /* V when it conducts, at least */
 };
 
-enum { VGT, VGOFF, IH, VOFF, IOFF, RON, VFWD, N_PARAMETERS };
+enum { VGT, VGOFF, IH, IL, VOFF, IOFF, RON, VFWD, N_PARAMETERS };
 
 static const char MODEL_USAGE[] =
     "a thyristor's model is: .model name thyristor|triac|gto [(Vgt=volts Ih=amperes Ron=ohms "
@@ -45,14 +50,15 @@ static const char USAGE[] = "a thyristor is: Aname anode cathode gate [reference
 /* ---- The model ------------------------------------------------------------------------------------- */
 
 static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
-    static const char *const ours[] = {"vgt", "vgoff", "ih", "voff", "ioff", "ron", "vfwd"};
-    static const char *const latching[] = {"il", "ilatch", "igt", "tq", "vdrm", "vrrm"};
+    static const char *const ours[] = {"vgt", "vgoff", "ih", "il", "voff", "ioff", "ron", "vfwd"};
+    static const char *const others[] = {"ilatch", "igt", "tq", "vdrm", "vrrm"};
     struct dalcs_builder *builder = reader->builder;
     if (dalcs_builder_is_label(name->text)) {
         return false;
     }
-    if (dalcs_builder_is_one_of(name->text, latching, sizeof latching / sizeof latching[0])) {
-        dalcs_builder_error(builder, name, "leave it out: Ih= is the current below which it opens",
+    if (dalcs_builder_is_one_of(name->text, others, sizeof others / sizeof others[0])) {
+        dalcs_builder_error(builder, name,
+                            "leave it out: Il= and Ih= are its currents, Vgt= the gate's voltage",
                             "'%s' of an ideal thyristor has no meaning here", name->text);
         return true;
     }
@@ -65,13 +71,18 @@ static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_tok
 
 static bool check(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
     for (int k = 0; k < N_PARAMETERS; k++) {
-        const bool may_be_zero = k == IH || k == RON || k == VFWD;
+        const bool may_be_zero = k == IH || k == IL || k == RON || k == VFWD;
         if (p[k].value < 0 || (p[k].value == 0 && !may_be_zero)) {
             dalcs_builder_error(builder, p[k].place, MODEL_USAGE,
                                 may_be_zero ? "'%s' cannot be negative" : "'%s' must be positive",
                                 p[k].name);
             return false;
         }
+    }
+    if (p[IL].value > 0 && p[IL].value < p[IH].value) {
+        dalcs_builder_error(builder, p[IL].place, "exchange the two",
+                            "the latching current cannot be below the holding current");
+        return false;
     }
     return true;
 }
@@ -84,6 +95,7 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
         [VGT] = {"vgt", DALCS_VOLTAGE, false, 0.5, NULL},
         [VGOFF] = {"vgoff", DALCS_VOLTAGE, false, 0.5, NULL},
         [IH] = {"ih", DALCS_CURRENT, false, 0, NULL},
+        [IL] = {"il", DALCS_CURRENT, false, 0, NULL},
         [VOFF] = {"voff", DALCS_VOLTAGE, false, 1e-3, NULL},
         [IOFF] = {"ioff", DALCS_CURRENT, false, 1e-6, NULL},
         [RON] = {"ron", DALCS_OHM, false, 0, NULL},
@@ -104,13 +116,19 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
                                                                            : THYRISTOR,
                                   .trigger = p[VGT].value,
                                   .turn_off = p[VGOFF].value,
-                                  .holding = p[IH].value,
+                                  .holding = p[IH].place != NULL ? p[IH].value : 0.5 * p[IL].value,
+                                  .latching = p[IL].value,
                                   .reversed = p[VOFF].value,
                                   .other = p[IOFF].value,
                                   .drop = p[VFWD].value};
     valve->ron = valve->rrev = p[RON].value;
     valve->vfwd = p[VFWD].value;
     valve->roff = valve->vrev = INFINITY;
+    if (t->latching > 0 && t->holding == 0) {
+        dalcs_builder_error(builder, p[IH].place, "leave Ih out: it is half of Il then",
+                            "with a latching current there is a holding current above 0");
+        return NULL;
+    }
     if (p[VGOFF].place != NULL && t->kind != GTO) {
         dalcs_builder_error(builder, p[VGOFF].place, "make it a gto", "no gate turns a %s off",
                             type->text);
@@ -168,7 +186,9 @@ control(struct dalcs_formula_writer *w, const struct dalcs_thyristor *t, const s
         cut(w, (holds ? 2.5 : 1.5) / t->trigger, v, 0, 0, holds ? 3 : 2);
     const struct dalcs_formula *keep = holds ? cut(w, p->direction / t->holding, i, -1.5, -1, 0)
                                              : cut(w, 0.5 / t->reversed, u, 0, -1, 0);
-    sum = dalcs_formula_operation(w, DALCS_ADD, sum, keep);
+    if (t->latching == 0) {
+        sum = dalcs_formula_operation(w, DALCS_ADD, sum, keep);
+    }
     if (t->kind == GTO) {
         sum = dalcs_formula_operation(w, DALCS_ADD, sum, cut(w, 0.5 / t->turn_off, v, 0, -3, 0));
     }
@@ -176,6 +196,48 @@ control(struct dalcs_formula_writer *w, const struct dalcs_thyristor *t, const s
 }
 
 /* ---- The element ---------------------------------------------------------------------------------------- */
+
+/* A node that is at 1 V until the current has reached Il, and from Ih down; -1 after an error. */
+static int add_latch(struct dalcs_builder *builder, const struct dalcs_thyristor *t,
+                     const struct dalcs_token *name, const struct places *places) {
+    struct dalcs_formula_writer w;
+    if (!dalcs_formula_writer_start(&w, builder, name)) {
+        builder->out_of_memory = true;
+        return -1;
+    }
+    const struct dalcs_token *formula = dalcs_formula_token(
+        &w, dalcs_formula_operation(
+                &w, DALCS_MULTIPLY, dalcs_formula_number(&w, places->direction / t->holding),
+                dalcs_formula_signal(&w, DALCS_FORMULA_CURRENT, places->self, NULL)));
+    const int current =
+        formula != NULL ? dalcs_behavioural_add_readout(builder, formula, "current", name) : -1;
+    const int one = dalcs_builder_inner_node(builder, "one", name);
+    const int node = dalcs_builder_inner_node(builder, "unlatched", name);
+    struct dalcs_device *s =
+        dalcs_builder_add_inner_device(builder, DALCS_SWITCH, "unlatched", name);
+    struct dalcs_device *r =
+        dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, "unlatched", name);
+    struct dalcs_device *v = dalcs_builder_add_inner_device(builder, DALCS_VSOURCE, "one", name);
+    const double ratio = t->latching / t->holding;
+    const struct dalcs_switch_model model = {.name = "latch",
+                                             .roff = (double)INFINITY,
+                                             .vt = -0.5 * (1 + ratio),
+                                             .vh = 0.5 * (ratio - 1)};
+    const int index = dalcs_switch_add_model(builder, &model);
+    if (current < 0 || one < 0 || node < 0 || s == NULL || r == NULL || v == NULL || index < 0) {
+        return -1;
+    }
+    s->node[0] = v->node[0] = one;
+    s->node[1] = r->node[0] = node;
+    s->node[3] = current;
+    s->model = index;
+    s->initially_on = s->has_initial_state = true;
+    r->value = 1;
+    v->stimulus = builder->circuit->n_stimuli++;
+    builder->circuit->stimulus[v->stimulus] =
+        (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true, .dc = 1};
+    return node;
+}
 
 /* A half: its switch, from `anode` to `cathode` through a diode. */
 static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token *element,
@@ -209,6 +271,11 @@ static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token 
     valve->node[1] = half->node[0] = inside;
     valve->model = model->index;
     half->node[2] = node;
+    if (model->thyristor->latching > 0) {
+        const int unlatched = add_latch(builder, model->thyristor, name, places);
+        half->node[3] = unlatched >= 0 ? unlatched : 0;
+        return unlatched >= 0;
+    }
     return true;
 }
 

@@ -1,7 +1,7 @@
 /* transfer.c - LAPLACE: a transfer function of s as states, each a capacitor that a source charges.
  *
  *     Ename a b LAPLACE {formula} = {expression of s}
- *     Ename a b control control Laplace=expression of s
+ *     Ename a b control control Laplace=expression of s        Bname a b V=formula Laplace=expression of s
  *
  * Of (b_n s^n + ... + b_0)/(s^n + a_(n-1) s^(n-1) + ... + a_0) the states x_1, ..., x_n go with x_k' = r_k x_(k+1) and
  * x_n' = r_n (u - A_0 x_1 - ... - A_(n-1) x_n), the output is B_n u + (B_0 - B_n A_0) x_1 + ..., where A_k and B_k are
@@ -168,30 +168,70 @@ static const struct dalcs_token *take_formula(struct dalcs_reader *reader, const
     return token;
 }
 
+/* Those of LTspice's own way with transfer functions, an impulse response: they mean nothing here. */
+static bool skip_words(struct dalcs_reader *reader) {
+    static const char *const words[] = {"window", "nfft", "mtol"};
+    const struct dalcs_token *name;
+    while ((name = dalcs_reader_peek(reader, 0)) != NULL &&
+           dalcs_builder_is_one_of(name->text, words, 3) &&
+           dalcs_reader_take_parameter(reader) != NULL) {
+        dalcs_builder_note(reader->builder, name, NULL,
+                           "'%s' has no meaning here and is ignored: the states of a transfer "
+                           "function are solved with the circuit",
+                           name->text);
+        if (!dalcs_reader_skip_value(reader)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The ratio, and the end of the card; false when an error was reported. */
+static bool read_ratio(struct dalcs_reader *reader, struct transfer *t) {
+    struct dalcs_rational r;
+    const struct dalcs_token *ratio = take_formula(reader, "an expression of s");
+    if (ratio == NULL || !skip_words(reader) || !dalcs_reader_end(reader) ||
+        !dalcs_rational_make(reader->builder, ratio->formula, &r)) {
+        return false;
+    }
+    if (r.above.degree > r.below.degree) {
+        dalcs_builder_error(reader->builder, ratio,
+                            "add poles: s/(1 + s*t) for s, with a short time t",
+                            "the transfer function is improper: of degree %d over %d, it "
+                            "differentiates",
+                            r.above.degree, r.below.degree);
+        return false;
+    }
+    normalize(&r, t);
+    return true;
+}
+
+void dalcs_transfer_parse_behind(struct dalcs_reader *reader, struct dalcs_device *device,
+                                 const struct dalcs_token *formula, double m) {
+    struct transfer t = {.builder = reader->builder, .name = reader->card->token};
+    reader->usage = "a transfer function is: Bname node node V=formula LAPLACE=ratio of "
+                    "polynomials in s";
+    reader->at++;
+    if (read_ratio(reader, &t)) {
+        t.input[0] = dalcs_behavioural_add_readout(reader->builder, formula, "input", t.name);
+        if (t.input[0] >= 0) {
+            (void)expand(&t, device, m);
+        }
+    }
+}
+
 void dalcs_transfer_parse(struct dalcs_reader *reader, struct dalcs_device *device,
                           bool has_control) {
     struct dalcs_builder *builder = reader->builder;
     struct transfer t = {.builder = builder, .name = reader->card->token};
-    struct dalcs_rational r;
     reader->usage = has_control ? "a transfer function is: LAPLACE=ratio of polynomials in s"
                                 : "a transfer function is: LAPLACE {formula} = {ratio of "
                                   "polynomials in s}";
     reader->at++;
     const struct dalcs_token *input = has_control ? NULL : take_formula(reader, "a formula");
-    const struct dalcs_token *ratio =
-        has_control || input != NULL ? take_formula(reader, "an expression of s") : NULL;
-    if (ratio == NULL || !dalcs_reader_end(reader) ||
-        !dalcs_rational_make(builder, ratio->formula, &r)) {
+    if ((!has_control && input == NULL) || !read_ratio(reader, &t)) {
         return;
     }
-    if (r.above.degree > r.below.degree) {
-        dalcs_builder_error(builder, ratio, "add poles: s/(1 + s*t) for s, with a short time t",
-                            "the transfer function is improper: of degree %d over %d, it "
-                            "differentiates",
-                            r.above.degree, r.below.degree);
-        return;
-    }
-    normalize(&r, &t);
     if (has_control) {
         t.input[0] = device->node[2];
         t.input[1] = device->node[3];

@@ -10,9 +10,11 @@ enum dalcs_transistor_kind { DALCS_MOSFET, DALCS_IGBT, DALCS_BIPOLAR };
 struct dalcs_transistor {
     enum dalcs_transistor_kind kind;
     const char *name;
-    bool is_p;            /* PMOS, PNP: on below its threshold */
-    double threshold;     /* V of the gate against the source, of the base against the emitter */
-    double gain;          /* A/V^2 where the channel is a resistance; 0: `ron` says what that is */
+    bool is_p;        /* PMOS, PNP: on below its threshold */
+    double threshold; /* V of the gate against the source, of the base against the emitter */
+    double gain;      /* A/V^2 where the channel is a resistance; 0: `ron` says what that is */
+    double
+        saturating; /* A/V^2: twice a channel's largest current over the square of v - threshold; 0: not known */
     double width, length; /* m, where no element says others */
     double ron;           /* ohm */
     double series;        /* ohm, besides: Rd + Rs */

@@ -263,6 +263,21 @@ static double high_level(struct dalcs_builder *builder, const struct dalcs_trans
     return high;
 }
 
+/* Not where nobody says what its gate is at. */
+static void note_saturation(struct dalcs_builder *builder, const struct dalcs_transistor_use *use,
+                            double over) {
+    struct dalcs_circuit *c = builder->circuit;
+    const struct dalcs_transistor *t = use->of;
+    const double sign = t->is_p ? -1 : 1;
+    c->saturation[c->n_saturations++] =
+        (struct dalcs_saturation){.name = c->device[use->device].name,
+                                  .device = builder->current_of[use->device],
+                                  .current = sign * 0.5 * t->saturating * use->width / use->length *
+                                             over * over * use->parallel,
+                                  .level = sign * over + t->threshold,
+                                  .where = c->device[use->device].where};
+}
+
 static void settle(struct dalcs_builder *builder, const struct links *links,
                    const struct dalcs_transistor_use *use) {
     struct dalcs_circuit *c = builder->circuit;
@@ -286,6 +301,10 @@ static void settle(struct dalcs_builder *builder, const struct links *links,
             return;
         }
         channel = 1 / (t->gain * use->width / use->length * (high - model->vt));
+        const bool is_known = t->high != 0 || (drive.gate.is_known && drive.gate.high > model->vt);
+        if (t->saturating > 0 && is_known) {
+            note_saturation(builder, use, high - model->vt);
+        }
     } else if (t->high != 0) {
         at = dalcs_builder_hint(builder, " at %g V", t->high);
     }
@@ -317,8 +336,18 @@ void dalcs_transistor_resolve(struct dalcs_builder *builder) {
     if (builder->transistor == NULL || builder->out_of_memory || !list_links(builder, &links)) {
         return;
     }
-    for (const struct dalcs_transistor_use *use = in_order(builder->transistor); use != NULL;
-         use = use->before) {
+    struct dalcs_transistor_use *first = in_order(builder->transistor);
+    size_t n = 0;
+    for (const struct dalcs_transistor_use *use = first; use != NULL; use = use->before) {
+        n++;
+    }
+    struct dalcs_circuit *c = builder->circuit;
+    c->saturation = dalcs_arena_alloc(&c->arena, n, sizeof *c->saturation);
+    if (c->saturation == NULL) {
+        builder->out_of_memory = true;
+        return;
+    }
+    for (const struct dalcs_transistor_use *use = first; use != NULL; use = use->before) {
         settle(builder, &links, use);
     }
 }

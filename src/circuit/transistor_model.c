@@ -132,6 +132,12 @@ static double gain_of(const struct dalcs_parameter *p, const struct dalcs_token 
     return p[KP].value * (is_vdmos ? p[MTRIODE].value : 1);
 }
 
+/* Kp without VDMOS's mtriode, which is of the linear region alone. */
+static double saturating_of(const struct dalcs_parameter *p, const struct dalcs_token *type) {
+    const bool is_vdmos = strcmp(type->text, "vdmos") == 0;
+    return is_igbt(type) ? 0 : gain_of(p, type) / (is_vdmos ? p[MTRIODE].value : 1);
+}
+
 static void set_diode(struct dalcs_transistor *t, const struct dalcs_parameter *p) {
     const bool is_of_igbt = t->kind == DALCS_IGBT;
     t->drop = p[VDIODE].value;
@@ -199,6 +205,7 @@ struct dalcs_transistor *dalcs_transistor_parse_model(struct dalcs_reader *reade
                                    .is_p = is_p,
                                    .threshold = p[VTO].value,
                                    .gain = gain_of(p, type),
+                                   .saturating = saturating_of(p, type),
                                    .width = vdmos || igbt ? 1 : p[W].value,
                                    .length = vdmos || igbt ? 1 : p[L].value,
                                    .ron = p[RON].value,

@@ -46,10 +46,10 @@ static bool rises(const struct dalcs_logic_network *l, bool clock,
 static bool next(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g, bool q) {
     const bool data = read(l, &g->input[DALCS_GATE_DATA]);
     const bool reset = read(l, &g->input[DALCS_GATE_RESET]);
-    return g->kind == DALCS_GATE_TOGGLE ? q != data
-           : g->kind == DALCS_GATE_JK   ? (q ? !reset : data)
-           : g->kind == DALCS_GATE_SR   ? !reset && (data || q)
-                                        : data;
+    return g->kind == DALCS_GATE_TOGGLE                                 ? q != data
+           : g->kind == DALCS_GATE_JK                                   ? (q ? !reset : data)
+           : g->kind == DALCS_GATE_SR || g->kind == DALCS_GATE_SR_LATCH ? !reset && (data || q)
+                                                                        : data;
 }
 
 static void go_flip_flop(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
@@ -59,7 +59,7 @@ static void go_flip_flop(const struct dalcs_logic_network *l, const struct dalcs
     state->is_forced = clears || read(l, &g->input[DALCS_GATE_PRESET]);
     if (state->is_forced) {
         state->q = !clears;
-    } else if (rises(l, clock, state)) {
+    } else if (dalcs_gate_is_transparent(g) ? clock : rises(l, clock, state)) {
         state->q = next(l, g, state->q);
     }
     state->clock = clock;
@@ -87,6 +87,21 @@ static void go_sample(const struct dalcs_logic_network *l, const struct dalcs_lo
     state->clock = clock;
 }
 
+/* How a pulse ends, time says. */
+static void go_monostable(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
+                          struct dalcs_logic_state *state) {
+    const bool clock = read(l, &g->input[DALCS_GATE_CLOCK]);
+    state->is_forced = read(l, &g->input[DALCS_GATE_CLEAR]);
+    if (state->is_forced) {
+        state->q = state->takes = false;
+        state->count = 0;
+    } else if (rises(l, clock, state) && (state->count == 0 || g->pulse.is_retriggered)) {
+        state->q = state->takes = true;
+        state->count = 1;
+    }
+    state->clock = clock;
+}
+
 static struct dalcs_logic_state decide(const struct dalcs_logic_network *l, int k) {
     const struct dalcs_logic_gate *g = &l->gate[k];
     struct dalcs_logic_state state = l->state[k];
@@ -96,6 +111,8 @@ static struct dalcs_logic_state decide(const struct dalcs_logic_network *l, int 
         go_counter(l, g, &state);
     } else if (g->kind == DALCS_GATE_SAMPLE) {
         go_sample(l, g, &state);
+    } else if (g->kind == DALCS_GATE_MONOSTABLE) {
+        go_monostable(l, g, &state);
     } else if (dalcs_gate_has_clock(g)) {
         go_flip_flop(l, g, &state);
     } else {
@@ -145,6 +162,17 @@ void dalcs_logic_rest(struct dalcs_logic_network *l) {
         l->state[k].q = dalcs_gate_has_delay(&l->gate[k]) ? decide(l, k).q : l->state[k].q;
     }
     l->rests = false;
+}
+
+bool dalcs_logic_is_at_rest(struct dalcs_logic_network *l) {
+    bool rests = true;
+    l->rests = true;
+    for (int k = 0; k < l->n; k++) {
+        l->moves[k] = decide(l, k).q != l->state[k].seen;
+        rests = rests && !l->moves[k];
+    }
+    l->rests = false;
+    return rests;
 }
 
 static bool is_at_mark(const struct dalcs_logic_network *l) {

@@ -5,12 +5,12 @@
 #include "circuit.h"
 
 struct dalcs_logic_state {
-    bool q;         /* what the inputs make of it */
-    bool seen;      /* q a delay ago: what others read and the output shows */
-    bool clock;     /* its level */
-    int count;      /* of clocks, from 1 to those of a cycle; 0: none yet */
+    bool q;     /* what the inputs make of it */
+    bool seen;  /* q a delay ago: what others read and the output shows */
+    bool clock; /* its level */
+    int count; /* of clocks, from 1 to those of a cycle; 0: none yet; of a monostable 1 in a pulse, 2 behind it */
     bool is_forced; /* q, by preset or clear */
-    bool takes;     /* a sample takes what stood before this instant */
+    bool takes;     /* a sample takes what stood before this instant, a pulse begins */
 };
 
 struct dalcs_logic_network {
@@ -20,12 +20,15 @@ struct dalcs_logic_network {
     struct dalcs_logic_state *state;       /* [n] */
     struct dalcs_logic_state *next, *mark; /* [n] work */
     bool rests;                            /* a clock that stands high has not risen */
-    bool *moves; /* [n] after a failure: in the loop that does not settle */
+    bool *moves; /* [n] after a failure: in the loop that does not settle, or not at rest */
 };
 
 /* The states at rest as the bits have them, one gate after the other, with no delay. What has no rest goes on from there:
  * where gates in a ring differ, one does, as of a ring oscillator that runs. */
 void dalcs_logic_rest(struct dalcs_logic_network *network);
+
+/* Do all show what their inputs make of them, and will? If not, moves says which do not. */
+bool dalcs_logic_is_at_rest(struct dalcs_logic_network *network);
 
 /* Until nothing changes, without time passing: gates with a delay change q alone. False: it goes round for ever, for a
  * state comes back. on_q is told of each change of a q, and of the state that it is part of. */

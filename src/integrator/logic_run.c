@@ -11,11 +11,11 @@
 /* ---- Set up ------------------------------------------------------------------------------------------- */
 
 /* All switches by their names. */
-static enum dalcs_status list_switches(const struct dalcs_radau *radau, struct dalcs_names *names,
+static enum dalcs_status list_switches(const struct dalcs_euler *euler, struct dalcs_names *names,
                                        struct dalcs_logic_place **place) {
     size_t capacity = 0;
-    for (int part = 0; part < radau->n_parts; part++) {
-        const struct dalcs_system *s = radau->part[part].component->system;
+    for (int part = 0; part < euler->n_components; part++) {
+        const struct dalcs_system *s = euler->component[part].system;
         for (int d = 0; d < s->n_pairs; d++) {
             if (s->pair[d].kind == DALCS_PAIR_SWITCH) {
                 const size_t n = names->n;
@@ -29,11 +29,11 @@ static enum dalcs_status list_switches(const struct dalcs_radau *radau, struct d
 }
 
 enum dalcs_status dalcs_logic_find_comparators(const struct dalcs_circuit *circuit,
-                                               const struct dalcs_radau *radau,
+                                               const struct dalcs_euler *euler,
                                                struct dalcs_logic_place *place) {
     struct dalcs_names names = {0};
     struct dalcs_logic_place *all = NULL;
-    enum dalcs_status status = list_switches(radau, &names, &all);
+    enum dalcs_status status = list_switches(euler, &names, &all);
     for (int k = 0; k < circuit->n_comparators && status == DALCS_OK; k++) {
         const int at = dalcs_names_find(&names, circuit->device[circuit->comparator[k]].name);
         status = at >= 0 ? DALCS_OK : DALCS_E_INTERNAL;
@@ -70,8 +70,8 @@ static enum dalcs_status allocate(struct dalcs_logic_run *l) {
 }
 
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
-                                        struct dalcs_radau *radau) {
-    *l = (struct dalcs_logic_run){.radau = radau};
+                                        struct dalcs_euler *euler, struct dalcs_radau *radau) {
+    *l = (struct dalcs_logic_run){.euler = euler, .radau = radau};
     if (circuit->n_gates == 0) {
         return DALCS_OK;
     }
@@ -81,12 +81,13 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
     l->network.gate = circuit->gate;
     enum dalcs_status status = allocate(l);
     l->network.bit = l->bit;
-    status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau, l->place) : status;
+    status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, euler, l->place) : status;
     for (int k = 0; k < l->network.n && status == DALCS_OK; k++) {
         struct dalcs_logic_state *state = &l->network.state[k];
         state->q = state->seen = circuit->gate[k].initial;
         state->count = circuit->gate[k].first;
-        if (circuit->gate[k].kind == DALCS_GATE_SAMPLE) {
+        l->output[k].ends = INFINITY;
+        if (circuit->gate[k].sampled >= 0) {
             l->sample[l->n_samples++] = k;
         }
     }
@@ -154,14 +155,53 @@ double dalcs_logic_run_next(const struct dalcs_logic_run *l) {
     double next = INFINITY;
     for (int k = 0; l->circuit != NULL && k < l->network.n; k++) {
         const struct dalcs_logic_output *o = &l->output[k];
-        next = o->n_due > 0 ? fmin(next, o->due[o->first_due]) : next;
+        next = fmin(next, o->n_due > 0 ? fmin(o->ends, o->due[o->first_due]) : o->ends);
     }
     return next;
 }
 
+/* Pulses that begin at t. */
+static void start_pulses(struct dalcs_logic_run *l, double t) {
+    for (int k = 0; k < l->network.n; k++) {
+        const struct dalcs_logic_gate *g = &l->network.gate[k];
+        struct dalcs_logic_state *state = &l->network.state[k];
+        if (g->kind != DALCS_GATE_MONOSTABLE) {
+            continue;
+        }
+        if (state->takes) {
+            l->output[k].ends =
+                t + g->pulse.lead + (g->sampled >= 0 ? fmax(0.0, l->taken[k]) : g->pulse.length);
+        } else if (state->count == 0) {
+            l->output[k].ends = INFINITY;
+        }
+        state->takes = false;
+    }
+}
+
+/* One that ends is followed by a time in which no other begins. */
+static bool end_pulses(struct dalcs_logic_run *l, double t) {
+    bool any = false;
+    for (int k = 0; k < l->network.n; k++) {
+        const struct dalcs_logic_gate *g = &l->network.gate[k];
+        struct dalcs_logic_state *state = &l->network.state[k];
+        struct dalcs_logic_output *o = &l->output[k];
+        while (o->ends <= t + l->radau->resolution) {
+            const bool rests = state->count == 1 && !g->pulse.is_retriggered;
+            if (state->q) {
+                state->q = state->is_forced = false;
+                queue(l, k, state);
+                any = true;
+            }
+            state->count = rests ? 2 : 0;
+            o->ends = rests ? o->ends + g->pulse.recovery : INFINITY;
+        }
+    }
+    return any;
+}
+
 /* Has anything come due? */
 static bool release(struct dalcs_logic_run *l, double t) {
-    bool any = false;
+    bool any = end_pulses(l, t);
     for (int k = 0; k < l->network.n; k++) {
         struct dalcs_logic_output *o = &l->output[k];
         while (o->n_due > 0 && o->due[o->first_due] <= t + l->radau->resolution) {
@@ -178,9 +218,16 @@ static bool release(struct dalcs_logic_run *l, double t) {
 
 static void read_bits(struct dalcs_logic_run *l) {
     for (int k = 0; k < l->n_comparators; k++) {
-        const struct dalcs_radau_part *part = &l->radau->part[l->place[k].part];
-        l->bit[k] = dalcs_osnsp_is_on(&part->component->osnsp, l->place[k].pair);
+        const struct dalcs_component *component = &l->euler->component[l->place[k].part];
+        l->bit[k] = dalcs_osnsp_is_on(&component->osnsp, l->place[k].pair);
     }
+}
+
+bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l) {
+    if (l->circuit != NULL) {
+        read_bits(l);
+    }
+    return l->circuit == NULL || dalcs_logic_is_at_rest(&l->network);
 }
 
 enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed) {
@@ -199,7 +246,7 @@ enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed)
         l->network.state[k].takes = false;
         DALCS_TRY(dalcs_logic_output_start(l, k, changed));
     }
-    for (int k = 0; k < l->radau->n_parts && *changed; k++) {
+    for (int k = 0; l->radau != NULL && k < l->radau->n_parts && *changed; k++) {
         dalcs_excitation_enter(&l->radau->part[k].excitation, 0.0);
     }
     return l->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
@@ -244,6 +291,7 @@ static bool settle(struct dalcs_logic_run *l, double t, long most) {
     do {
         (void)release(l, t);
         settles = dalcs_logic_settle(&l->network, l, queue);
+        start_pulses(l, t);
     } while (settles && release(l, t) && most-- > 0);
     return settles && most >= 0;
 }

@@ -11,12 +11,13 @@
 
 struct dalcs_logic_run {
     struct dalcs_circuit *circuit; /* whose stimuli are written; NULL: there is no logic */
-    struct dalcs_radau *radau;
+    struct dalcs_euler *euler;     /* whose switches are read */
+    struct dalcs_radau *radau;     /* on it; NULL: at rest alone */
     struct dalcs_logic_network network;
     bool *bit; /* [n_comparators] */
     int n_comparators;
 
-    struct dalcs_logic_place { /* of a comparator */
+    struct dalcs_logic_place { /* of a comparator: its component, or part, and its pair there */
         int part, pair;
     } * place;
 
@@ -27,7 +28,9 @@ struct dalcs_logic_run {
         size_t capacity[4];
         double *due; /* [n_due] s, when q, as it was a delay before, is seen: it changes at each */
         size_t first_due, n_due, due_capacity;
-    } * output; /* [n gates] */
+        double
+            ends; /* s, the pulse of a monostable, or what is behind it; INFINITY: there is none */
+    } * output;   /* [n gates] */
 
     void *cut_user;
     void (*on_cut)(void *user, int part,
@@ -44,16 +47,20 @@ struct dalcs_logic_run {
 
 /* Where the engine keeps comparators, place[circuit->n_comparators]. */
 enum dalcs_status dalcs_logic_find_comparators(const struct dalcs_circuit *circuit,
-                                               const struct dalcs_radau *radau,
+                                               const struct dalcs_euler *euler,
                                                struct dalcs_logic_place *place) DALCS_MUST_CHECK;
 
-/* Does nothing where the circuit has no logic. */
+/* Does nothing where the circuit has no logic. radau, on that engine, may be NULL: nothing but rest is asked for. */
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
+                                        struct dalcs_euler *euler,
                                         struct dalcs_radau *radau) DALCS_MUST_CHECK;
 void dalcs_logic_run_finish(struct dalcs_logic_run *l);
 
 /* Bits and outputs as the operating point that the engine has solved has them. *changed: it is to be solved again. */
 enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed) DALCS_MUST_CHECK;
+
+/* Do all show what the operating point that the engine has solved asks for? If not, network.moves says which do not. */
+bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l);
 
 /* s, the next change of an output that waits; INFINITY: none does. */
 double dalcs_logic_run_next(const struct dalcs_logic_run *l);

@@ -500,7 +500,7 @@ int dalcs_formula_find_control(const struct dalcs_card *card) {
     return k;
 }
 
-/* LAPLACE {formula} = {expression}, LAPLACE=expression. */
+/* LAPLACE {formula} = {expression}, LAPLACE=expression; behind the formula of a B the same. */
 bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n) {
     static const char *const word[] = {"laplace"};
     bool is_table;
@@ -508,10 +508,10 @@ bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n) {
     while (k < card->n && !is_word(&card->token[k], word, 1)) {
         k++;
     }
-    if ((card->letter != 'e' && card->letter != 'g') || k >= card->n) {
+    if (strchr("beg", card->letter) == NULL || card->letter == '\0' || k >= card->n) {
         return false;
     }
-    const int formula = start_of_controlled(card, &is_table);
+    const int formula = card->letter == 'b' ? card->n : start_of_controlled(card, &is_table);
     k = formula < card->n ? formula + 1 : k + 1;
     k += is_kind(card, k, DALCS_TOKEN_EQUAL);
     *first = k;

@@ -180,8 +180,10 @@ static void raw_roles(const struct dalcs_card *card, unsigned char *role) {
                                 (k >= 2 && card->token[k - 1].kind == DALCS_TOKEN_EQUAL &&
                                  is_form(&card->token[k - 2])) ||
                                 is_form(&card->token[k - 1]);
-        const bool is_multiplier = k >= 2 && is_word(&card->token[k - 2], "m");
-        if (card->token[k].kind == DALCS_TOKEN_EXPRESSION && is_formula && !is_multiplier) {
+        const bool is_number =
+            k >= 2 && (is_word(&card->token[k - 2], "m") || is_word(&card->token[k - 2], "rpar") ||
+                       is_word(&card->token[k - 2], "cpar"));
+        if (card->token[k].kind == DALCS_TOKEN_EXPRESSION && is_formula && !is_number) {
             role[k] = DALCS_ROLE_RAW;
         }
     }

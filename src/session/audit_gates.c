@@ -21,6 +21,7 @@ struct audit_gate {
     bool was_seen;
     double free_at; /* s: what was decided when it was lost is shown from then on */
     double before;  /* V, what it may take at this instant */
+    double ends;    /* s: a pulse, or the time behind it in which no clock counts */
     double *due;    /* [n_due] s: what it has to show changes */
     size_t first_due, n_due, capacity;
 };
@@ -54,12 +55,13 @@ enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
     a->gate = dalcs_alloc((size_t)circuit->n_gates, sizeof(*a->gate));
     a->place = dalcs_alloc((size_t)circuit->n_comparators + 1, sizeof(*a->place));
     enum dalcs_status status = a->gate != NULL && a->place != NULL ? DALCS_OK : DALCS_E_NOMEM;
-    status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau, a->place) : status;
+    status =
+        status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau->base, a->place) : status;
     for (int k = 0; status == DALCS_OK && k < circuit->n_gates; k++) {
         a->gate[k].is_lost = true; /* until it is looked at for the first time */
         a->gate[k].count = circuit->gate[k].first;
         a->gate[k].held = circuit->gate[k].held;
-        has_samples = has_samples || circuit->gate[k].kind == DALCS_GATE_SAMPLE;
+        has_samples = has_samples || circuit->gate[k].sampled >= 0;
     }
     if (has_samples && status == DALCS_OK) {
         status = find_systems(a);
@@ -140,6 +142,7 @@ static bool after_clock(enum dalcs_logic_kind kind, bool q, bool data, bool rese
     case DALCS_GATE_JK:
         return jk[at];
     case DALCS_GATE_SR:
+    case DALCS_GATE_SR_LATCH:
         return sr[at];
     default:
         return data;
@@ -154,17 +157,22 @@ static struct verdict of_memory(const struct dalcs_audit_gates *a, const struct 
     const bool sets = reads(a, &g->input[is_latch ? 0 : DALCS_GATE_PRESET], &v.is_known);
     const bool clock = !is_latch && reads(a, &g->input[DALCS_GATE_CLOCK], &v.is_known);
     const bool data = !is_latch && reads(a, &g->input[DALCS_GATE_DATA], &v.is_known);
-    const bool has_reset = g->kind == DALCS_GATE_JK || g->kind == DALCS_GATE_SR;
+    const bool has_reset =
+        g->kind == DALCS_GATE_JK || g->kind == DALCS_GATE_SR || g->kind == DALCS_GATE_SR_LATCH;
     const bool reset = has_reset && reads(a, &g->input[DALCS_GATE_RESET], &v.is_known);
-    const bool rises = clock && !s->clock && s->was_seen;
+    const bool is_open = dalcs_gate_is_transparent(g);
+    const bool acts = is_open ? clock : clock && !s->clock && s->was_seen;
     const bool next = !is_latch && after_clock(g->kind, s->q, data, reset);
     v.q = !clears && (sets || next);
-    v.is_held = !clears && !sets && !rises;
+    v.is_held = !clears && !sets && !acts;
     v.is_forced = clears || sets;
-    if (rises && !sets && !clears && (data != s->data || reset != s->reset)) {
+    if (!is_open && acts && !sets && !clears && (data != s->data || reset != s->reset)) {
         v.is_known = false; /* did they change before the clock? */
     }
-    if (clock && !s->was_seen) {
+    if (is_open && !acts && s->clock && (data != s->data || reset != s->reset)) {
+        v.is_known = false; /* after the gate closed? */
+    }
+    if (clock && !is_open && !s->was_seen) {
         v.is_known = false; /* has it risen at the start, or was it high before? */
     }
     s->clock = clock;
@@ -191,6 +199,30 @@ static struct verdict of_counter(const struct dalcs_audit_gates *a,
     }
     v.is_known = v.is_known && s->count >= 0;
     v.q = s->count > 0 && s->count <= g->n_high;
+    s->clock = clock;
+    return v;
+}
+
+/* The pulse that a clock began lasts as long as what was read just before that says. */
+static struct verdict of_monostable(const struct dalcs_audit_gates *a,
+                                    const struct dalcs_logic_gate *g, struct audit_gate *s,
+                                    double t) {
+    struct verdict v = {.is_known = true};
+    const bool clock = reads(a, &g->input[DALCS_GATE_CLOCK], &v.is_known);
+    const bool clears = reads(a, &g->input[DALCS_GATE_CLEAR], &v.is_known);
+    while (s->count > 0 && s->ends <= t + 4.0 * a->radau->resolution) {
+        s->count = s->count == 1 && !g->pulse.is_retriggered ? 2 : 0;
+        s->ends += g->pulse.recovery;
+    }
+    if (clears) {
+        s->count = 0;
+    } else if (clock && !s->clock && s->was_seen && (s->count == 0 || g->pulse.is_retriggered)) {
+        s->count = 1;
+        s->ends = t + g->pulse.lead + (g->sampled >= 0 ? fmax(0.0, s->before) : g->pulse.length);
+    }
+    v.is_known = v.is_known && (s->was_seen || !clock);
+    v.is_forced = clears;
+    v.q = s->count == 1;
     s->clock = clock;
     return v;
 }
@@ -232,10 +264,11 @@ static void go_to(struct audit_gate *s, double t, double near, bool *is_near) {
     }
 }
 
-static struct verdict decide(const struct dalcs_audit_gates *a, int k, bool now) {
+static struct verdict decide(const struct dalcs_audit_gates *a, int k, bool now, double t) {
     const struct dalcs_logic_gate *g = &a->circuit->gate[k];
     struct audit_gate *s = &a->gate[k];
     return g->kind == DALCS_GATE_COUNTER                            ? of_counter(a, g, s, now)
+           : g->kind == DALCS_GATE_MONOSTABLE                       ? of_monostable(a, g, s, t)
            : g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g) ? of_memory(a, g, s)
                                                                     : of_inputs(a, g);
 }
@@ -255,7 +288,7 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
         s->q = s->shown = now;
         s->first_due = s->n_due = 0;
     }
-    const struct verdict v = decide(a, k, now);
+    const struct verdict v = decide(a, k, now, t);
     s->was_seen = true;
     const bool is_open = !v.is_known || (v.is_held && may_have_missed(a, g));
     *is_wrong = false;
@@ -298,7 +331,7 @@ enum dalcs_status dalcs_audit_gates_sample(struct dalcs_audit_gates *a, double t
     }
     DALCS_TRY(dalcs_radau_evaluate(a->radau, t, DALCS_LEFT));
     for (int k = 0; k < c->n_gates; k++) {
-        if (c->gate[k].kind == DALCS_GATE_SAMPLE) {
+        if (c->gate[k].sampled >= 0) {
             const struct dalcs_signal *s = &c->signal[c->measured[c->gate[k].sampled]];
             a->gate[k].before = potential(a, s->node[0]) - potential(a, s->node[1]);
         }

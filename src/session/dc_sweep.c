@@ -3,6 +3,7 @@
  * Where sources alone are swept, one engine goes through all points: only its inputs change, and each
  * point starts in the mode of the one before. For anything else the circuit is built again at each
  * point, and the mode is handed on where the pairs are the same. */
+#include "gates.h"
 #include "measures.h"
 
 #include "quantity.h"
@@ -91,10 +92,11 @@ static void blame_point(const struct sweep *s) {
 
 /* The operating point of e, as a row. */
 static enum dalcs_status solve_point(struct sweep *s, struct dalcs_euler *e,
+                                     struct dalcs_logic_run *logic,
                                      const struct dalcs_network *network) {
     struct dalcs_run *r = s->run;
     const size_t n_outer = (size_t)s->n_dc - 1;
-    enum dalcs_status status = dalcs_euler_operating_point(e, false);
+    enum dalcs_status status = dalcs_gates_operating_point(e, logic, false);
     if (status != DALCS_OK) {
         status = dalcs_explain_failure(r, e, status);
         if (status > DALCS_OK) {
@@ -129,7 +131,8 @@ static struct dalcs_stimulus *stimulus_of(struct dalcs_circuit *circuit,
     return sweep->device < 0 ? NULL : &circuit->stimulus[circuit->device[sweep->device].stimulus];
 }
 
-static enum dalcs_status walk(struct sweep *s, struct dalcs_euler *e) {
+static enum dalcs_status walk(struct sweep *s, struct dalcs_euler *e,
+                              struct dalcs_logic_run *logic) {
     struct dalcs_session *session = s->run->s;
     for (long k = 0; k < s->n; k++) {
         take_point(s, k);
@@ -140,7 +143,7 @@ static enum dalcs_status walk(struct sweep *s, struct dalcs_euler *e) {
                 source->has_dc = true;
             }
         }
-        DALCS_TRY(solve_point(s, e, &session->network));
+        DALCS_TRY(solve_point(s, e, logic, &session->network));
     }
     return DALCS_OK;
 }
@@ -157,7 +160,13 @@ static enum dalcs_status run_sources(struct sweep *s) {
         const struct dalcs_stimulus *source = stimulus_of(circuit, &s->dc[i]);
         before[i] = source != NULL ? *source : (struct dalcs_stimulus){0};
     }
-    const enum dalcs_status status = walk(s, &e);
+    struct dalcs_logic_run logic;
+    enum dalcs_status status = dalcs_logic_run_setup(&logic, circuit, &e, NULL);
+    if (status == DALCS_OK) {
+        status = walk(s, &e, &logic);
+        dalcs_warn_of_restless_gates(r, &logic);
+    }
+    dalcs_logic_run_finish(&logic);
     for (int i = 0; i < s->n_dc; i++) {
         struct dalcs_stimulus *source = stimulus_of(circuit, &s->dc[i]);
         if (source != NULL) {
@@ -237,8 +246,11 @@ static enum dalcs_status run_point(struct sweep *s) {
     } else {
         status = dalcs_euler_setup(&e, &circuit, &network, &r->osnsp, 1.0, 1.0);
         if (status == DALCS_OK) {
+            struct dalcs_logic_run logic;
             hand_modes_on(s, &e);
-            status = solve_point(s, &e, &network);
+            status = dalcs_logic_run_setup(&logic, &circuit, &e, NULL);
+            status = status == DALCS_OK ? solve_point(s, &e, &logic, &network) : status;
+            dalcs_logic_run_finish(&logic);
             if (status == DALCS_OK) {
                 status = keep_modes(s, &e);
             }

@@ -37,23 +37,46 @@ enum dalcs_status dalcs_refuse_gates(struct dalcs_run *r, const struct dalcs_log
     return DALCS_E_NETLIST;
 }
 
+enum dalcs_status dalcs_gates_operating_point(struct dalcs_euler *e, struct dalcs_logic_run *logic,
+                                              bool sources_at_start) {
+    const bool has_logic = logic != NULL && logic->circuit != NULL;
+    bool changed = has_logic;
+    for (int round = 0; changed && round <= logic->network.n; round++) {
+        DALCS_TRY(dalcs_euler_operating_point(e, sources_at_start));
+        DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
+    }
+    return changed || !has_logic ? dalcs_euler_operating_point(e, sources_at_start) : DALCS_OK;
+}
+
+void dalcs_warn_of_restless_gates(struct dalcs_run *r, struct dalcs_logic_run *logic) {
+    if (dalcs_logic_run_is_at_rest(logic)) {
+        return;
+    }
+    const char *names = list_moving(r, logic);
+    dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, "a .tran shows how they go on",
+                   "gates have no rest at the operating point: %s", names == NULL ? "" : names);
+}
+
 enum dalcs_status dalcs_check_gates(struct dalcs_run *r, enum dalcs_analysis analysis) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    const bool is_asked =
-        analysis == DALCS_OPERATING_POINT ? c->operating_point
-        : analysis == DALCS_DC_SWEEP      ? c->n_dc > 0
-        : analysis == DALCS_AC            ? c->ac.n > 0 || r->options->bode
-        : analysis == DALCS_PERIODIC
-            ? c->periodic.present || r->options->steady
-            : c->transient.present && (c->transient.starts_steady || c->envelope.present);
-    if (c->n_gates == 0 || (!is_asked && r->method != DALCS_METHOD_EULER)) {
+    const bool is_steady =
+        analysis == DALCS_PERIODIC ? c->periodic.present || r->options->steady
+        : analysis == DALCS_AC
+            ? (c->ac.n > 0 && c->periodic.present) || r->options->bode
+            : analysis == DALCS_TRANSIENT && c->transient.present &&
+                  (c->transient.starts_steady || c->envelope.present);
+    const bool is_stepped =
+        analysis == DALCS_TRANSIENT && c->transient.present && r->method == DALCS_METHOD_EULER;
+    if (c->n_gates == 0 || (!is_steady && !is_stepped)) {
         return DALCS_OK;
     }
     dalcs_diag_add(&r->s->diag, DALCS_ERROR, &c->gate[0].where,
-                   is_asked ? "leave the other analyses out, or the gates"
-                            : "leave method=euler out",
-                   "gates and flip-flops ('%s') are decided by events: in .tran alone, and not by "
-                   "implicit Euler",
+                   is_steady ? "a .tran that is long enough, and .meas over its last period"
+                             : "leave method=euler out",
+                   is_steady ? "gates and flip-flops ('%s') have states that no steady state is "
+                               "looked for with"
+                             : "gates and flip-flops ('%s') are decided by events, which implicit "
+                               "Euler does not have",
                    c->gate[0].name);
     return DALCS_E_NETLIST;
 }

@@ -10,6 +10,14 @@
 enum dalcs_status dalcs_refuse_gates(struct dalcs_run *r, const struct dalcs_logic_run *logic,
                                      double t) DALCS_MUST_CHECK;
 
+/* The operating point of an engine, with gates at rest in it: a change of an output may move what others read. logic is
+ * that of the engine, which may have none; NULL likewise. */
+enum dalcs_status dalcs_gates_operating_point(struct dalcs_euler *e, struct dalcs_logic_run *logic,
+                                              bool sources_at_start) DALCS_MUST_CHECK;
+
+/* Says so where they have found none. */
+void dalcs_warn_of_restless_gates(struct dalcs_run *r, struct dalcs_logic_run *logic);
+
 /* Analyses and methods that have no events. */
 enum dalcs_status dalcs_check_gates(struct dalcs_run *r,
                                     enum dalcs_analysis analysis) DALCS_MUST_CHECK;

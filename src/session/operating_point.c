@@ -1,6 +1,7 @@
 /* operating_point.c - .op: one one-step problem, one row. */
 #include "pipeline.h"
 
+#include "gates.h"
 #include "measures.h"
 
 #include <stdlib.h>
@@ -22,7 +23,12 @@ enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, 1.0, 1.0));
     e.open_user = &r->undetermined;
     e.on_open = dalcs_undetermined_at;
-    enum dalcs_status status = dalcs_euler_operating_point(&e, s->circuit.transient.present);
+    struct dalcs_logic_run logic;
+    enum dalcs_status status = dalcs_logic_run_setup(&logic, &s->circuit, &e, NULL);
+    if (status == DALCS_OK) {
+        status = dalcs_gates_operating_point(&e, &logic, s->circuit.transient.present);
+        dalcs_warn_of_restless_gates(r, &logic);
+    }
     if (status == DALCS_OK) {
         status = dalcs_run_begin_plot(r, DALCS_OPERATING_POINT);
     }
@@ -52,6 +58,7 @@ enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
     free(row);
     status = dalcs_explain_failure(r, &e, status);
     dalcs_run_add_work(r, &e);
+    dalcs_logic_run_finish(&logic);
     dalcs_euler_finish(&e);
     return status;
 }

@@ -256,9 +256,9 @@ enum dalcs_status dalcs_envelope_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 /* Runs .tran into r->sink. */
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
-/* Exponential diodes: watches their currents; after the run, says where the tangent was taken elsewhere. */
-enum dalcs_status dalcs_tangents_watch(struct dalcs_run *r) DALCS_MUST_CHECK;
-void dalcs_tangents_judge(struct dalcs_run *r);
+/* Watches the currents of exponential diodes and MOSFETs; after the run, says which the idealised element is wrong for. */
+enum dalcs_status dalcs_currents_watch(struct dalcs_run *r) DALCS_MUST_CHECK;
+void dalcs_currents_judge(struct dalcs_run *r);
 
 /* Hands a jump to the recorder, and warns once of each switch that interrupts a coil; user is the run.
  */

@@ -4,6 +4,7 @@
  * left of (2.1) is linear, so amplitudes obey
  *     (j omega P_I - A_I) y = E_I s,   -A_II y = E_II s,   C y = -F s where w = 0, else lambda = 0
  * with the AC values of the sources as s: one sparse complex system for each frequency. */
+#include "gates.h"
 #include "measures.h"
 #include "smooth_newton.h"
 
@@ -360,10 +361,15 @@ static enum dalcs_status report_sides(struct dalcs_run *r, struct dalcs_euler *e
     return warn_of_degenerate(r, side, n_sides);
 }
 
-static enum dalcs_status find_operating_point(struct dalcs_run *r, struct dalcs_euler *e) {
+static enum dalcs_status find_operating_point(struct dalcs_run *r, struct dalcs_euler *e,
+                                              struct dalcs_logic_run *logic) {
     e->open_user = &r->undetermined;
     e->on_open = dalcs_undetermined_at;
-    enum dalcs_status status = dalcs_euler_operating_point(e, false);
+    enum dalcs_status status = dalcs_logic_run_setup(logic, &r->s->circuit, e, NULL);
+    if (status == DALCS_OK) {
+        status = dalcs_gates_operating_point(e, logic, false);
+        dalcs_warn_of_restless_gates(r, logic);
+    }
     if (status == DALCS_OK) {
         e->at_operating_point = true;
         status = dalcs_undetermined_several(&r->undetermined, e, 0.0);
@@ -417,9 +423,10 @@ static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler 
 enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) {
     struct small_signal a = {.run = r};
     struct dalcs_euler e;
+    struct dalcs_logic_run logic; /* whose outputs the sources show as long as it is there */
     DALCS_TRY(dalcs_commanded_ac_refuse(r));
     DALCS_TRY(dalcs_euler_setup(&e, &r->s->circuit, &r->s->network, &r->osnsp, 1.0, 1.0));
-    enum dalcs_status status = find_operating_point(r, &e);
+    enum dalcs_status status = find_operating_point(r, &e, &logic);
     if (status == DALCS_OK) {
         status = setup(&a, &e);
     }
@@ -433,6 +440,7 @@ enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) {
     free(a.part);
     free(a.row);
     dalcs_run_add_work(r, &e);
+    dalcs_logic_run_finish(&logic);
     dalcs_euler_finish(&e);
     return status;
 }

@@ -190,10 +190,12 @@ static enum dalcs_status look_at(struct clocks *c, int stimulus) {
     }
     double level = c->at_start ? dalcs_stimulus_value(s, 0.0, DALCS_LEFT) : last_level(s);
     char text[DALCS_QUANTITY_SIZE];
-    dalcs_diag_add(&c->run->s->diag, DALCS_NOTE, NULL, NULL,
-                   "'%s' does not repeat: in the steady state it is what it %s, %s", name,
-                   c->at_start ? "is at t = 0" : "comes to",
-                   dalcs_quantity_write(text, level, "", 9));
+    if (strchr(name, '(') == NULL) { /* not a part of an element */
+        dalcs_diag_add(&c->run->s->diag, DALCS_NOTE, NULL, NULL,
+                       "'%s' does not repeat: in the steady state it is what it %s, %s", name,
+                       c->at_start ? "is at t = 0" : "comes to",
+                       dalcs_quantity_write(text, level, "", 9));
+    }
     *s = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .dc = level, .has_dc = true};
     return DALCS_OK;
 }

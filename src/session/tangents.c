@@ -1,7 +1,8 @@
-/* tangents.c - exponential diodes that carry another current than the one their tangent is taken at.
+/* tangents.c - currents that are not those which an idealised element is right for, told of after the run.
  *
- * Which current that is cannot be known before the run, and a diode for milliamperes at the tangent of 1 A
- * has a fifth of a volt too much. After the run it is known. */
+ * An exponential diode is right at the current that its tangent is taken at. Which current it carries cannot be known
+ * before the run, and a diode for milliamperes at the tangent of 1 A has a fifth of a volt too much. A MOSFET's channel
+ * carries no more than its saturation current, the switch in its place does. */
 #include "session_internal.h"
 
 #include <math.h>
@@ -18,40 +19,74 @@ static const struct dalcs_exponential *exponential_of(const struct dalcs_circuit
     return m->exponential.voltage > 0.0 ? &m->exponential : NULL;
 }
 
-enum dalcs_status dalcs_tangents_watch(struct dalcs_run *r) {
+static const struct dalcs_saturation *saturation_of(const struct dalcs_circuit *c, int output) {
+    const struct dalcs_signal *signal = &c->signal[output];
+    for (int k = 0; k < c->n_saturations && signal->kind == DALCS_SIGNAL_CURRENT; k++) {
+        if (c->saturation[k].device == signal->device) {
+            return &c->saturation[k];
+        }
+    }
+    return NULL;
+}
+
+enum dalcs_status dalcs_currents_watch(struct dalcs_run *r) {
     const struct dalcs_circuit *c = &r->s->circuit;
     struct dalcs_recorder *recorder = &r->s->recorder;
+    if (c->n_diode_models == 0 && c->n_saturations == 0) {
+        return DALCS_OK;
+    }
     int n = 0;
-    for (int i = 0; i < c->n_shown && c->n_diode_models > 0; i++) {
-        n += exponential_of(c, i) != NULL ? 1 : 0;
+    for (int i = 0; i < c->n_shown; i++) {
+        n += exponential_of(c, i) != NULL || saturation_of(c, i) != NULL ? 1 : 0;
     }
     if (n == 0) {
         return DALCS_OK;
     }
-    int *watched = dalcs_arena_alloc(&r->s->arena, (size_t)n, sizeof(*watched));
-    recorder->largest = dalcs_arena_alloc(&r->s->arena, (size_t)n, sizeof(*recorder->largest));
-    if (watched == NULL || recorder->largest == NULL) {
+    recorder->watched = dalcs_arena_alloc(&r->s->arena, (size_t)n, sizeof(*recorder->watched));
+    if (recorder->watched == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int i = 0; i < c->n_shown; i++) {
-        if (exponential_of(c, i) != NULL) {
-            watched[recorder->n_watched++] = i;
+        const struct dalcs_saturation *s = saturation_of(c, i);
+        if (exponential_of(c, i) != NULL || s != NULL) {
+            recorder->watched[recorder->n_watched++] = (struct dalcs_watched){
+                .output = i, .sign = s != NULL && s->current < 0.0 ? -1.0 : 1.0};
         }
     }
-    recorder->watched = watched;
     return DALCS_OK;
 }
 
-void dalcs_tangents_judge(struct dalcs_run *r) {
+/* The switch in its place carries any current. */
+static void judge_saturations(struct dalcs_run *r) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    const struct dalcs_recorder *recorder = &r->s->recorder;
+    for (int k = 0; k < recorder->n_watched; k++) {
+        const struct dalcs_watched *w = &recorder->watched[k];
+        const struct dalcs_saturation *s = saturation_of(c, w->output);
+        if (s != NULL && w->largest > fabs(s->current)) {
+            dalcs_diag_add(
+                &r->s->diag, DALCS_WARNING, &s->where,
+                "drive its gate further, or take a transistor that carries more",
+                "'%s' carries %.4g A at %.4g s, more than the %.4g A at which its channel "
+                "saturates with v(gs) = %g V",
+                s->name, w->sign * w->largest, w->at, s->current, s->level);
+        }
+    }
+}
+
+static void judge_tangents(struct dalcs_run *r) {
     const struct dalcs_circuit *c = &r->s->circuit;
     const struct dalcs_recorder *recorder = &r->s->recorder;
     int worst = -1;
     double most = notable;
     double over = 0.0; /* V */
     for (int k = 0; k < recorder->n_watched; k++) {
-        int device = c->signal[recorder->watched[k]].device;
+        if (exponential_of(c, recorder->watched[k].output) == NULL) {
+            continue;
+        }
+        int device = c->signal[recorder->watched[k].output].device;
         const struct dalcs_diode_model *m = &c->diode_model[c->device[device].model];
-        double i = recorder->largest[k];
+        double i = recorder->watched[k].largest;
         double v = dalcs_exponential_voltage(&m->exponential, i);
         double off = m->vfwd + m->ron * i - v;
         if (i > 0.0 && fabs(off) > most * v) {
@@ -63,12 +98,18 @@ void dalcs_tangents_judge(struct dalcs_run *r) {
     if (worst < 0) {
         return;
     }
-    const struct dalcs_device *d = &c->device[c->signal[recorder->watched[worst]].device];
+    const struct dalcs_device *d = &c->device[c->signal[recorder->watched[worst].output].device];
     dalcs_diag_add(&r->s->diag, DALCS_NOTE, &d->where,
                    dalcs_arena_printf(&r->s->arena, ".options diodecurrent=%.2g takes it there",
-                                      recorder->largest[worst]),
+                                      recorder->watched[worst].largest),
                    "'%s' carries %.3g A at most, where its tangent at %.3g A is %.3g mV %s the "
                    "exponential diode",
-                   d->name, recorder->largest[worst], c->diode_model[d->model].exponential.at,
-                   1e3 * fabs(over), over > 0.0 ? "above" : "below");
+                   d->name, recorder->watched[worst].largest,
+                   c->diode_model[d->model].exponential.at, 1e3 * fabs(over),
+                   over > 0.0 ? "above" : "below");
+}
+
+void dalcs_currents_judge(struct dalcs_run *r) {
+    judge_tangents(r);
+    judge_saturations(r);
 }

@@ -97,7 +97,7 @@ static enum dalcs_status set_up_rows(struct dalcs_run *r) {
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     s->recorder.n_shown = s->circuit.n_shown;
-    return dalcs_tangents_watch(r);
+    return dalcs_currents_watch(r);
 }
 
 static enum dalcs_status set_up_euler(struct dalcs_run *r, struct parts *p) {
@@ -121,7 +121,7 @@ static enum dalcs_status set_up_others(struct dalcs_run *r, struct parts *p) {
         const struct dalcs_radau_options options =
             dalcs_transient_options(r, s->circuit.transient.stop);
         DALCS_TRY(dalcs_radau_setup(&p->radau, &p->euler, &options, &r->osnsp));
-        DALCS_TRY(dalcs_logic_run_setup(&p->logic, &s->circuit, &p->radau));
+        DALCS_TRY(dalcs_logic_run_setup(&p->logic, &s->circuit, &p->euler, &p->radau));
     }
     if (dalcs_run_wants_losses(r)) {
         DALCS_TRY(dalcs_losses_run_start(&p->losses, r, &p->euler, p->is_euler,
@@ -178,7 +178,7 @@ static enum dalcs_status walk_and_report(struct dalcs_run *r, struct parts *p) {
     if (dalcs_run_keeps_ledger(r)) {
         DALCS_TRY(dalcs_transient_close_ledger(r, &p->energy, &p->euler, radau_of(p)));
     }
-    dalcs_tangents_judge(r);
+    dalcs_currents_judge(r);
     return DALCS_OK;
 }
 

@@ -6,6 +6,7 @@
 #include "steady.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* From x(0-), or from the operating point (NULL). */
 static enum dalcs_status start_at(struct dalcs_euler *e, struct dalcs_radau *radau,
@@ -33,9 +34,32 @@ static void take_over_switches(struct dalcs_euler *e, const struct dalcs_euler *
     }
 }
 
+/* With gates at rest in it. The logic of the run goes on from there. */
+static enum dalcs_status rest_held(struct dalcs_run *r, struct dalcs_euler *e,
+                                   struct dalcs_euler *held, struct dalcs_logic_run *logic) {
+    struct dalcs_logic_run at_rest;
+    if (logic == NULL || logic->circuit == NULL) {
+        const enum dalcs_status status = dalcs_euler_operating_point(held, true);
+        take_over_switches(e, held);
+        return status;
+    }
+    DALCS_TRY(dalcs_logic_run_setup(&at_rest, &r->s->circuit, held, NULL));
+    enum dalcs_status status = dalcs_gates_operating_point(held, &at_rest, true);
+    if (status == DALCS_OK) {
+        bool changed;
+        memcpy(logic->network.state, at_rest.network.state,
+               (size_t)logic->network.n * sizeof(*logic->network.state));
+        dalcs_logic_run_finish(&at_rest);
+        take_over_switches(e, held);
+        return dalcs_logic_run_rest(logic, &changed);
+    }
+    dalcs_logic_run_finish(&at_rest);
+    return status;
+}
+
 /* The operating point of `clamped`, in which .ic are held; its states start the transient. */
 static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
-                                    struct dalcs_radau *radau,
+                                    struct dalcs_radau *radau, struct dalcs_logic_run *logic,
                                     const struct dalcs_network *clamped) {
     struct dalcs_session *s = r->s;
     struct dalcs_euler held;
@@ -45,15 +69,13 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
     held.on_open = dalcs_undetermined_at;
     held.on_operating_point = dalcs_held_coils_rest;
     double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
-    enum dalcs_status status =
-        initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
+    enum dalcs_status status = initial == NULL ? DALCS_E_NOMEM : rest_held(r, e, &held, logic);
     status = dalcs_explain_failure(r, &held, status);
     dalcs_run_add_work(r, &held);
     if (status == DALCS_OK) {
         for (int k = 0; k < held.n_components; k++) {
             initial[k] = held.component[k].u; /* the same x: clamps add algebraic unknowns only */
         }
-        take_over_switches(e, &held);
         status = start_at(e, radau, initial);
     }
     free(initial);
@@ -63,25 +85,16 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
 
 /* By a network of its own. */
 static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_euler *e,
-                                           struct dalcs_radau *radau) {
+                                           struct dalcs_radau *radau,
+                                           struct dalcs_logic_run *logic) {
     struct dalcs_session *s = r->s;
     struct dalcs_network clamped;
     DALCS_TRY(dalcs_network_build(&clamped, &s->circuit,
                                   &(struct dalcs_network_options){.clamp_initial_conditions = true},
                                   &s->diag));
-    enum dalcs_status status = start_from(r, e, radau, &clamped);
+    enum dalcs_status status = start_from(r, e, radau, logic, &clamped);
     dalcs_network_finish(&clamped);
     return status;
-}
-
-/* With logic at rest, if it has one: a change of an output may move what others read. NULL: it has none. */
-static enum dalcs_status operating_point(struct dalcs_euler *e, struct dalcs_logic_run *logic) {
-    bool changed = logic != NULL;
-    for (int round = 0; changed && round <= logic->network.n; round++) {
-        DALCS_TRY(dalcs_euler_operating_point(e, true));
-        DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
-    }
-    return changed || logic == NULL ? dalcs_euler_operating_point(e, true) : DALCS_OK;
 }
 
 enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,
@@ -98,12 +111,12 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
         return start_at(e, radau, r->s->network.initial);
     }
     if (r->s->network.held != NULL) {
-        return start_from(r, e, radau, r->s->network.held);
+        return start_from(r, e, radau, logic, r->s->network.held);
     }
     if (c->n_initial_conditions > 0) {
-        return start_from_clamps(r, e, radau);
+        return start_from_clamps(r, e, radau, logic);
     }
-    DALCS_TRY(operating_point(e, logic));
+    DALCS_TRY(dalcs_gates_operating_point(e, logic, true));
     if (logic != NULL && dalcs_sources_jump(c, 0.0)) {
         DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
         if (r->losses != NULL) {

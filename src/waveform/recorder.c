@@ -92,9 +92,16 @@ static double next_output(const struct dalcs_schedule *s) {
     return INFINITY;
 }
 
+static void look(struct dalcs_watched *w, double time, double value) {
+    if (w->sign * value > w->largest) {
+        w->largest = w->sign * value;
+        w->at = time;
+    }
+}
+
 static enum dalcs_status emit(struct dalcs_recorder *r, double time, const double *value) {
     for (int k = 0; k < r->n_watched; k++) {
-        r->largest[k] = fmax(r->largest[k], value[r->watched[k]]);
+        look(&r->watched[k], time, value[r->watched[k].output]);
     }
     return r->sink->row(r->sink->user, time, value);
 }
@@ -288,11 +295,12 @@ enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalc
     return emit(r, t, r->row);
 }
 
-static void watch(struct dalcs_recorder *r, const struct dalcs_rows *rows, int n) {
+static void watch(struct dalcs_recorder *r, const struct dalcs_rows *rows, const double *time,
+                  int n) {
     for (int i = 0; i < r->n_watched; i++) {
-        const double *value = rows->value[r->watched[i]].at;
+        const double *value = rows->value[r->watched[i].output].at;
         for (int k = 0; k < n; k++) {
-            r->largest[i] = fmax(r->largest[i], value[k]);
+            look(&r->watched[i], time[k], value[k]);
         }
     }
 }
@@ -302,7 +310,7 @@ enum dalcs_status dalcs_recorder_rows(struct dalcs_recorder *r, const struct dal
     const struct dalcs_sink *sink = r->sink;
     const size_t n_shown = (size_t)r->n_shown;
     r->schedule.next += (size_t)n_due;
-    watch(r, rows, n);
+    watch(r, rows, time, n);
     for (size_t i = 0; i < n_shown; i++) {
         const double *value = rows->value[i].at;
         double *to = r->row + i;

@@ -30,8 +30,12 @@ struct dalcs_recorder {
     bool have_before;
     bool starts_on_edge; /* `before` is what was before an edge at t = 0 */
     int n_watched;       /* outputs whose largest value in all rows is wanted */
-    const int *watched;
-    double *largest; /* [n_watched] as `watched`; both borrowed */
+
+    struct dalcs_watched {
+        int output;
+        double sign;        /* 1, or -1: the lowest value is wanted, its sign turned */
+        double largest, at; /* not below 0; s */
+    } * watched;            /* borrowed */
 
     bool keep; /* events and jumps */
     size_t limit;

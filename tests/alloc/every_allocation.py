@@ -192,6 +192,36 @@ r3 q3 0 1k
 .tran 1u 30u uic
 .end
 """, 0),
+    "oscillators": ("""oscillators, pulses, hystereses, rates, and what outputs are behind
+v1 c 0 PWL(0 0.2 20u 1)
+a1 c t tri
+.model tri triangle(cntl_array=[0 1] freq_array=[0 200k])
+a2 c s sin
+.model sin sine(cntl_array=[0 1] freq_array=[10k 200k])
+a3 c q sq
+.model sq square(cntl_array=[0 1] freq_array=[10k 200k] out_low=0)
+a4 q c null p one
+.model one oneshot(cntl_array=[0 1] pw_array=[1u 2u])
+a5 t h hys
+.model hys hyst(in_low=-0.5 in_high=0.5)
+a6 s d rate
+.model rate d_dt(gain=1u out_upper_limit=1)
+a7 s t d l lim
+.model lim climit
+a8 q p null null g n lat
+.model lat d_dlatch
+a9 q 0 0 0 0 0 b 0 BUF Rhigh=1k Rlow=2k Cout=1n
+a10 c 0 0 0 0 0 v 0 VARISTOR
+a11 c t 0 0 0 0 m 0 MODULATE mark=200k space=0
+a12 v w g 0 th
+.model th thyristor(Il=1m)
+b1 y 0 V=v(t) laplace=1/(1+s*1u)
+b2 0 z I=1m*v(t) rpar=1k
+r1 s v 1k
+r2 w 0 1k
+.op
+.end
+""", 0),
     "transistors": ("""What commands transistors, and what they become
 V1 b 0 1
 R1 b d 10

@@ -172,6 +172,41 @@ r7 g2 0 1k
 .end
 """
 
+OSCILLATORS = """oscillators, pulses and hystereses
+v1 c 0 pwl(0 1 8m 3)
+v2 k 0 2
+v3 a 0 sin(0 2 170)
+v4 g 0 pulse(0 1 0.3m 1u 1u 0.4m 2m)
+v5 u 0 sin(1 0.2 400)
+v6 l 0 -0.5
+a2 k t2 mt
+.model mt triangle(cntl_array=[0 1 3] freq_array=[50 300 900] out_low=-2 out_high=3 duty_cycle=0.3)
+a3 c s1 ms
+a4 k s2 ms
+.model ms sine(cntl_array=[0 1 3] freq_array=[50 300 900] out_low=-2 out_high=3)
+a5 k q2 mq
+.model mq square(cntl_array=[0 1 3] freq_array=[50 300 900] out_low=-2 out_high=3 duty_cycle=0.3 rise_time=20u fall_time=40u)
+a6 a h mh
+.model mh hyst(in_low=-0.5 in_high=0.7 hyst=0.4 out_lower_limit=-1 out_upper_limit=3 input_domain=1e-6 fraction=false)
+a7 a d md
+.model md d_dt(gain=1m out_lower_limit=-1.5 out_upper_limit=1.6 limit_range=1e-9)
+a8 a u l b mc
+.model mc climit(in_offset=0.1 gain=1.5 upper_delta=0.1 lower_delta=0.05 limit_range=1e-9 fraction=false)
+a9 g c null p mp
+.model mp oneshot(cntl_array=[0 1 3] pw_array=[50u 0.1m 0.9m] out_low=-1 out_high=2 rise_time=50u fall_time=90u
++ rise_delay=30u fall_delay=40u retrig=false)
+r2 t2 0 1k
+r3 s1 0 1k
+r4 s2 0 1k
+r5 q2 0 1k
+r6 h 0 1k
+r7 d 0 1k
+r8 b 0 1k
+r9 p 0 1k
+.tran 0.5u 8m 0 0.5u
+.end
+"""
+
 
 def at(times, values, t):
     """Between two points."""
@@ -216,6 +251,7 @@ def main():
         compare(checker, program, HALF_BRIDGE, ["v(x)", "i(l1)"], 100e-6, 0.03)
         compare(checker, program, DIGITAL, [f"v(a{x})" for x in ("q", "nq", "j", "t", "g", "x")], 800e-9, 2e-2)
         compare(checker, program, BLOCKS, ["v(g1)", "v(s1)", "v(l1)", "v(i1)", "v(w1)", "v(p1)", "v(g2)"], 4e-3, 4e-3)
+        compare(checker, program, OSCILLATORS, [f"v({x})" for x in ("t2", "s1", "s2", "q2", "h", "d", "b", "p")], 8e-3, 8e-3)
     except ngspice_batch.NoNgspice:
         print("ngspice is not installed")
         return SKIPPED

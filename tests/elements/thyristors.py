@@ -164,6 +164,41 @@ def limits(checker, program):
     checker.close(done.report["measurements"][0]["value"], 10.0, 1e-9, "no gate turns a thyristor off")
 
 
+def latching(checker, program):
+    """A gate that ends before a coil has the latching current, and one that ends behind it; then down to the holding current;
+    in both directions of a triac; a second pulse."""
+    text = "a coil and a battery\nv1 a 0 {v!r}\nvg g k pulse(0 {high!r} {start!r} 0 0 {width!r} {period!r})\na1 a k g k th\n" \
+           "l1 k x {henry!r}\nr1 x 0 {ohm!r}\nd1 {d} di\n.model di d(ron=0)\n.model th {model}\n.tran {step!r} {stop!r}\n" \
+           ".meas tran after find i(a1) at={at!r}\n.meas tran last find i(a1) at={stop!r}\n.save i(a1)\n.end\n"
+    cases = ((100, 0.1, 100, 50e-3, "thyristor(Vgt=0.5 Il=50m Ih=20m)"), (12, 1e-6, 0.5, 2, "scr(Il=2)"), (1e3, 10, 1e3, 0.3, "gto(Il=0.3 Ih=0.3)"),
+             (-24, 1e-3, 10, 0.4, "triac(Il=0.4 Ih=0.1)"), (24, 1e-3, 10, 0.4, "triac(Il=0.4 Ih=0.1)"), (325, 5e-3, 20, 5, "thyristor(Il=5 Vfwd=1.5 Ron=0.1)"),
+             (1e-2, 1e-3, 1, 1e-3, "thyristor(Il=1m Ih=1u)"))
+    for v, henry, ohm, il, model in cases:
+        drop, ron = (1.5, 0.1) if "Vfwd" in model else (0, 0)
+        tau, end = henry / (ohm + ron), (abs(v) - drop) / (ohm + ron)
+        t = -tau * math.log(1 - il / end)
+        for part in (0.3, 0.999, 1.001, 3):
+            start, stop = 0.5 * tau, 8 * tau
+            done = run_at(program, text.format(v=v, high=1 if v > 0 else -1, start=start, width=part * t, period=100 * tau, henry=henry, ohm=ohm,
+                                               d="0 k" if v > 0 else "k 0", model=model, step=tau / 50, stop=stop, at=start + part * t + 0.01 * tau))
+            what = f"{model} at {v} V for {part} of its time"
+            if checker.check(done.status == 0, f"{what}: {done.stderr}"):
+                after, last = (m["value"] for m in done.report["measurements"])
+                wanted = math.copysign(end * (1 - math.exp(-(stop - start) / tau)), v) if part > 1 else 0
+                checker.close(last, wanted, 1e-6 * end, f"{what}: its last current")
+                checker.check((after != 0) == (part > 1), f"{what}: {after} behind the gate")
+    fade = "a current that fades\ni1 0 a PWL(0 2 1m 0)\nr9 a 0 1k\nvg g 0 PULSE(1 0 0.1m)\na1 a o g 0 th\nr1 o 0 0\n" \
+           ".tran 1u 1m\n.meas tran t when i(a1)=1u fall=last\n.model th {model}\n.end\n"
+    for model, holding in (("thyristor(Il=1 Ih=0.5)", 0.5), ("thyristor(Il=1.7)", 0.85), ("gto(Il=1.5 Ih=50m)", 0.05), ("triac(Il=1 Ih=0.25)", 0.25)):
+        done = run_at(program, fade.format(model=model))
+        checker.check(done.status == 0, done.stderr)
+        checker.close(done.report["measurements"][0]["value"], (1 - holding / 2) * 1e-3, 1e-9, f"{model} opens")
+    done = run_at(program, fade.format(model="thyristor(Il=1.9)"))
+    checker.close(done.report["measurements"][0]["value"], (1 - 0.95 / 2) * 1e-3, 1e-9, "a gate that ended at 1.8 A, after 2 A")
+    done = run_at(program, fade.format(model="thyristor(Il=2.5 Ih=0.1)"))
+    checker.close(done.report["measurements"][0]["value"], 0.1e-3, 1e-9, "never latched")
+
+
 def terminals(checker, program):
     """The current of a triac is that of both halves; gates that last through the zeros of it, at any height."""
     text = "a triac\nv1 in 0 sin(0 {v} {f})\nvg g b pulse(0 {high} {start!r} {edge!r} {edge!r} {width!r} {period!r})\n" \
@@ -219,7 +254,9 @@ def names(checker, program):
             checker.check([n for n in done.names if "(" in n[2:]] == [], f"{done.names}")
     done = run_at(program, "a line\nv1 a 0 10\na1 a o a 0 th\nr1 o 0 1\n.op\n.model th thyristor(Ron=0.25 Vfwd=1.25)\n.end\n")
     checker.close(done.column("i(a1)")[0], 8.75 / 1.25, 1e-9, "Ron and Vfwd")
-    for line, words in (("a1 a o th\n.model th thyristor", "3 or 4 nodes"), ("a1 a o g 0 th\n.model th thyristor(Il=1)", "no meaning"),
+    for line, words in (("a1 a o th\n.model th thyristor", "3 or 4 nodes"), ("a1 a o g 0 th\n.model th thyristor(Igt=1m)", "no meaning"),
+                        ("a1 a o g 0 th\n.model th thyristor(Il=1 Ih=2)", "cannot be below the holding"),
+                        ("a1 a o g 0 th\n.model th thyristor(Il=1 Ih=0)", "a holding current above 0"),
                         ("a1 a o g 0 th\n.model th thyristor(Vgt=0)", "must be positive"),
                         ("a1 a o g 0 th\n.model th thyristor(Ih=-1)", "cannot be negative"),
                         ("a1 a o g 0 th\n.model th triac(Vgoff=1)", "make it a gto"),
@@ -232,7 +269,7 @@ def names(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("thyristors")
-    for part in (converters, limits, terminals, shorts, names):
+    for part in (converters, limits, latching, terminals, shorts, names):
         part(checker, program)
     return checker.finish()
 

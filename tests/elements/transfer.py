@@ -112,6 +112,28 @@ def rest(checker, program):
                           f"over frequency: {f}: {got}, not {wanted}")
 
 
+def behind(checker, program):
+    """The same behind a formula of B, V and I, of a product too, against E and G; in a subcircuit, and what LTspice adds."""
+    ratios = ("1/(1+s*0.5m)", "s/(1+s*2m)", "5/(s^2/1e7+s*0.4/3162+1)", "(1+s/3k)/((1+s/1k)*(1+s/30k))", "-3", "1/(1+s*1u)^3",
+              "(s^2+1e6)/(s+1e3)^2", "100/(s+100)", "1/s", "(1+s*t1)/(1+s*10*t1)")
+    for ratio in ratios:
+        word = " uic" if ratio == "1/s" else ""
+        cards = ["v1 a 0 pulse(-1 2 0.1m 0.2m 0.1m 1m 3m)", ".param t1=0.1m", f"b1 o 0 V=2*v(a) laplace={ratio}", f"b2 0 p I=1m*v(a) LAPLACE={{{ratio}}}",
+                 "r2 p 0 2k", f"b3 q 0 V=v(a)*v(a) Laplace={ratio} window=1m nfft=64 mtol=1", f"e1 e 0 LAPLACE {{2*v(a)}} = {{{ratio}}}", "b4 z 0 V=v(a)*v(a)",
+                 f"e2 f 0 z 0 Laplace={ratio}", "xs a s filter", ".subckt filter i o t2={t1}", f"b1 o 0 V=v(i)*2 laplace={ratio.replace('t1', 't2')}", ".ends",
+                 f".tran 10u 5m{word}", ".save v(o) v(p) v(q) v(e) v(f) v(s)"]
+        done = run_cards(program, ratio, cards)
+        if runs(checker, done, ratio):
+            size = max(map(abs, done.column("v(e)")))
+            for name, other in (("v(o)", "v(e)"), ("v(p)", "v(e)"), ("v(s)", "v(e)"), ("v(q)", "v(f)")):
+                worst = max(abs(x - y) for x, y in zip(done.column(name), done.column(other)))
+                checker.check(worst <= 1e-8 * max(size, 1), f"{ratio}: {name} differs from {other} by {worst}")
+    cards = ["v1 a 0 pulse(0 1 0 0 0 1 2)", "b1 0 q I=1m*v(a) m=2 rpar={r} cpar=0.5u", ".param r=2k", "b2 x 0 V=v(a) tripdv=1 tripdt=1n", ".tran 0.1m 3m"]
+    done = run_cards(program, "what LTspice adds", cards)
+    if runs(checker, done, "what LTspice adds"):
+        checker.close(done.at("v(q)", 3e-3), 2 * (1 - math.exp(-3)), 1e-8, "across a source of a current")
+
+
 def refused(checker, program):
     cases = (("e1 o 0 a 0 Laplace=s", "improper: of degree 1 over 0, it differentiates"),
              ("e1 o 0 a 0 Laplace=s^3/(1+s)^2", "improper: of degree 3 over 2"),
@@ -122,6 +144,12 @@ def refused(checker, program):
              ("e1 o 0 a 0 Laplace=1/(1+s)^11/(1+2*s)^10", "a degree above 20"),
              ("e1 o 0 LAPLACE {v(a)} = {1/(1+s*v(a))}", "a voltage or a current is not supported"),
              ("e1 o 0 LAPLACE {v(a)}", "an expression of s is missing"),
+             ("b1 o 0 V=v(a) laplace=s", "improper: of degree 1 over 0"),
+             ("b1 o 0 V=v(a) laplace=", "an expression of s is missing"),
+             ("b1 o 0 V=v(a) laplace=1/(1+s) wrong=1", "did not expect 'wrong'"),
+             ("b1 o 0 R=v(a) laplace=1/(1+s)", "did not expect 'laplace'"),
+             ("b1 o 0 V=v(a) rpar=1", "did not expect 'rpar'"),
+             ("e1 o 0 FREQ {v(a)} = (1,0,0) (1k,-3,-45)", "LAPLACE with the ratio that the table was made of"),
              ("e1 o 0 a 0 Laplace=1/(1+s*tau)", "tau"))
     for card, words in cases:
         done = run_cards(program, card, ["v1 a 0 1", card, "r1 o 0 1", ".tran 1 2"])
@@ -131,7 +159,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("transfer")
-    for part in (steps, rest, refused):
+    for part in (steps, rest, behind, refused):
         part(checker, program)
     return checker.finish()
 

@@ -164,6 +164,31 @@ def circuits(checker, program):
                 checker.close(value_of(done, "m"), wanted, 3e-8 * abs(wanted) + 1e-12, case)
 
 
+# model, its element's parameters, the gate's high level against the source, what the channel saturates at
+SATURATIONS = (("NMOS(Vto=2 Kp=2)", "W=1 L=1", 4.5, 6.25), ("NMOS(Vto=1 Kp=20u W=1m L=2u)", "", 5, 0.08), ("VDMOS(Vto=4 Kp=25)", "", 5, 12.5),
+               ("VDMOS(Vto=4 Kp=25 mtriode=3)", "", 5, 12.5), ("NMOS(Vto=2 Kp=2)", "W=1 L=1 M=3", 4.5, 18.75), ("NMOS(Vto=2 Kp=2 Vgon=3)", "W=4 L=1", 12, 4),
+               ("PMOS(Vto=-2 Kp=2)", "W=1 L=1", -4, -4), ("VDMOS(pchan Vto=-3 Kp=10)", "", -3.5, -1.25), ("NMOS(Vto=0.5 Kp=1m W=1 L=1)", "", 1, 125e-6))
+
+
+def saturations(checker, program):
+    """A current source's ramp through a transistor: beyond what its channel carries there is a warning, short of it none."""
+    for model, more, level, limit in SATURATIONS:
+        for part in (0.5, 0.99, 1.04, 5):
+            text = f"a ramp\ni1 {'0 d' if limit > 0 else 'd 0'} pwl(0 0 1m {abs(limit) * part!r})\nvg g 0 pulse(0 {level!r} -1 0 0 1 2)\n" \
+                   f"m1 d g 0 x {more}\n.model x {model}\n.tran 10u 1m\n.save i(m1)\n.end\n"
+            text = text.replace(f"pulse(0 {level!r} -1 0 0 1 2)", repr(level))
+            done = run_at(program, text, quiet=False)
+            what = f"{model} {more} at {part} of its current"
+            checker.check(done.status == 0, f"{what}: {done.stderr}")
+            words = f"'m1' carries {limit * part:.4g} A at 0.001 s, more than the {limit:.4g} A at which its channel saturates"
+            checker.check(("saturates" in done.stderr) == (part > 1), f"{what}: {done.stderr}")
+            checker.check(part < 1 or words in done.stderr, f"{what}: {words}: {done.stderr}")
+    for card in ("m1 d g 0 irf540", "m1 d g 0 x\n.model x NMOS(Vto=2 Ron=0.1)"):
+        text = f"none is known\nv1 a 0 1e4\nr1 a d 1\nvg g 0 10\n{card}\n.tran 1u 1m\n.end\n"
+        done = run_at(program, text, quiet=False)
+        checker.check(done.status == 0 and "saturates" not in done.stderr, f"{card}: {done.stderr}")
+
+
 def igbts(checker, program):
     """A knee and a resistance; backwards only by the diode that the card has."""
     chopper = "a chopper\nv1 in 0 {v}\nr1 in c {r}\nz1 c g 0 ig\nvg g 0 {gate}\n{card}\n.tran 0.1u 10u\n" \
@@ -241,7 +266,7 @@ def refusals(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("transistors")
-    for part in (cards, circuits, igbts, bipolars, refusals):
+    for part in (cards, circuits, saturations, igbts, bipolars, refusals):
         part(checker, program)
     return checker.finish()
 

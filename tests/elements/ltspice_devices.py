@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""LTspice's A devices: what their outputs are behind, VARISTOR and MODULATE, against closed forms; every parameter that
+its documentation has is obeyed, or refused by name.
+
+usage: ltspice_devices.py PROGRAM
+"""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+from logic import run_cards, runs  # noqa: E402
+
+
+def outputs(checker, program):
+    """Time constants of outputs, alike and different for both levels, with a load and without; of both outputs, and with uic."""
+    cases = (("Tau={0}", 1, 1), ("Tau={0} Rout=50", 1, 1), ("Rout=2k Cout={1}", 2, 2), ("Rhigh=1k Rlow=3k Cout={1}", 1, 3),
+             ("Rhigh=4k Rlow=1k Cout={1}", 4, 1), ("Cout={2}", 1, 1), ("Rout=1k Rlow=2k Cout={1}", 1, 2))
+    for scale, low, high in ((1e-3, 1, 5), (2e-9, 0, 1), (3.0, -12, 12), (1e-6, 0, 3.3)):
+        for text, up, down in cases:
+            words = text.format(repr(scale), repr(scale / 1e3), repr(scale))
+            what = f"{words} at {scale} s"
+            cards = [f"v1 a 0 pulse(0 1 {scale!r} 0 0 {2 * scale!r} {10 * scale!r})",
+                     f"a1 a 0 0 0 0 n q 0 BUF Vlow={low!r} Vhigh={high!r} Ref=0.5 {words}", "r1 q 0 1e15", "r2 n 0 1e15",
+                     f".tran {scale / 10!r} {5 * scale!r}"]
+            done = run_cards(program, what, cards)
+            if not runs(checker, done, what):
+                continue
+
+            def level(t, first, other, towards, back):
+                if t < scale:
+                    return first
+                top = other + (first - other) * math.exp(-(min(t, 3 * scale) / scale - 1) / towards)
+                return top if t <= 3 * scale else first + (top - first) * math.exp(-(t / scale - 3) / back)
+            for t, q, n in zip(done.time, done.column("v(q)"), done.column("v(n)")):
+                checker.close(q, level(t, low, high, up, down), 1e-7 * (high - low), f"{what}: q at {t}")
+                checker.close(n, level(t, high, low, down, up), 1e-7 * (high - low), f"{what}: its complement at {t}")
+    for words, on, off in (("Rhigh=1k Rlow=0", 2, 0), ("Rhigh=0 Rlow=1k", 4, 0.5), ("Rout=3k Rhigh=1k", 2, 0.25), ("Rout=1k", 2, 0.5)):
+        cards = ["v1 a 0 pulse(0 1 1m 0 0 1m 10m)", f"a1 a 0 0 0 0 0 q 0 BUF Vhigh=4 Ref=0.5 {words}", "r1 q x 1k", "v2 x 0 pulse(1 0 1m 0 0 1m 10m)",
+                 ".tran 0.1m 3m"]
+        done = run_cards(program, words, cards)
+        if runs(checker, done, words):
+            off = 0 if "Rlow=0" in words else 0.75 if "3k" in words else 0.5
+            checker.close(done.at("v(q)", 1.5e-3), on, 1e-9, f"{words}, high")
+            checker.close(done.at("v(q)", 2.5e-3), off, 1e-9, f"{words}, low")
+    cards = ["v1 a 0 0", "a1 a 0 0 0 0 0 q 0 SRFLOP Tau=1m IC=5 Vhigh=5 Ref=0.5", "r1 q 0 1e12",
+             "a2 s 0 c 0 0 0 h 0 SAMPLEHOLD Rout=1k Cout=1u IC=2", "v2 s 0 7", "v3 c 0 pulse(0 1 1m 0 0 1m 10m)", "r2 h 0 1e12", ".tran 0.1m 5m uic"]
+    done = run_cards(program, "from its first level", cards)
+    if runs(checker, done, "from its first level"):
+        checker.close(done.at("v(q)", 4e-3), 5, 1e-6, "a latch that begins high")
+        checker.close(done.at("v(h)", 3e-3), 7 - 5 * math.exp(-2), 1e-6, "a sample behind a resistor")
+
+
+def varistors(checker, program):
+    """Clamps between volts and kilovolts, a control that moves and falls below 0, a difference of nodes, without resistance."""
+    for scale, f, ohms in ((1, 400, 10), (325, 50, 0.5), (1e-3, 1e6, 1e3), (20, 0.1, 100), (5, 7e3, 0)):
+        what = f"a varistor at {scale} V"
+        cards = [f"v1 s 0 sin(0 {5 * scale!r} {f!r})", "r1 s v 1k", f"v2 c 0 pwl(0 {2 * scale!r} {2 / f!r} {-scale!r})", "v3 d 0 0",
+                 f"a1 c d 0 0 0 0 v 0 VARISTOR Rclamp={ohms!r}", f".tran {0.01 / f!r} {2 / f!r}", ".save v(v) i(a1)"]
+        done = run_cards(program, what, cards)
+        if not runs(checker, done, what):
+            continue
+        for t, v, i in zip(done.time, done.column("v(v)"), done.column("i(a1)")):
+            limit = max(0, scale * (2 - 1.5 * t * f))
+            s = 5 * scale * math.sin(2 * math.pi * f * t)
+            over = max(0, abs(s) - limit) / (1e3 + ohms)
+            checker.close(i, math.copysign(over, s), 1e-8 * scale / 1e3 * 5, f"{what}: its current at {t}")
+            checker.close(v, s - 1e3 * math.copysign(over, s), 1e-8 * 5 * scale, f"{what}: its voltage at {t}")
+
+
+def modulators(checker, program):
+    """Frequencies that stand, and that a signal moves, with an amplitude that is a signal and without."""
+    for space, mark in ((1e3, 2e3), (2e6, 1e6), (0.01, 0.05), (5e4, 5e4), (0, 300)):
+        f = max(space, mark)
+        end = 6 / f
+        what = f"a modulator from {space} to {mark} Hz"
+        word = f"MODULATE mark={mark!r} space={space!r}"
+        cards = [f"v1 f 0 pwl(0 0 {end!r} 1)", f"v2 m 0 sin(2 1 {0.3 * f!r})", f"a1 f m 0 0 0 0 a 0 {word}", f"a2 f 0 0 0 0 0 b 0 {word}",
+                 "v3 h 0 0.5", f"a3 h m 0 0 0 0 c 0 {word}", f"a4 0 0 0 0 0 0 d 0 {word.replace('MODULATE', 'MODULATOR')}",
+                 *(f"r{x} {x} 0 1k" for x in "abcd"), f".tran {end / 200!r} {end!r}"]
+        done = run_cards(program, what, cards)
+        if not runs(checker, done, what):
+            continue
+        for t, a, b, c, d in zip(done.time, *(done.column(f"v({x})") for x in "abcd")):
+            ramp = math.sin(2 * math.pi * (space * t + (mark - space) * t * t / (2 * end)))
+            m = 2 + math.sin(2 * math.pi * 0.3 * f * t)
+            checker.close(a, m * ramp, 3e-7, f"{what}: both at {t}")
+            checker.close(b, ramp, 1e-7, f"{what}: its frequency at {t}")
+            checker.close(c, m * math.sin(math.pi * (space + mark) * t), 1e-7, f"{what}: its amplitude at {t}")
+            checker.close(d, math.sin(2 * math.pi * space * t), 1e-9, f"{what}: neither at {t}")
+
+
+def parameters(checker, program):
+    """Each function with each parameter that LTspice knows: accepted, or refused with its name; never passed over in silence.
+    Those without effect are the accuracies of its own time steps."""
+    gates = "AND OR XOR BUF INV SCHMITT SCHMTBUF SCHMTINV DIFFSCHMITT DIFFSCHMTBUF DIFFSCHMTINV SRFLOP DFLOP".split()
+    levels = ["Vhigh=2", "Vlow=-1", "Ref=0.3", "Td=1u", "Trise=1u", "Tfall=2u", "Rout=10", "Rhigh=5", "Rlow=7", "Cout=1n", "Tau=1u", "IC=1",
+              "tripdt=1n", "ttol=1n", "temp=50"]
+    known = {name: set(levels) | {"Vt=0.4", "Vh=0.1"} for name in gates}
+    known["COUNTER"] = set(levels) | {"cycles=3", "duty=0.4"}
+    known["SAMPLEHOLD"] = {"Ref=0.3", "Rout=10", "Cout=1n", "Tau=1u", "IC=1", "tripdt=1n", "ttol=1n", "temp=50"}
+    known["VARISTOR"] = {"Rclamp=2"}
+    known["MODULATE"] = {"mark=2k space=1k"}
+    words = set(levels) | {"Vt=0.4", "Vh=0.1", "cycles=3", "duty=0.4", "Rclamp=2", "mark=2k space=1k", "G=1m", "Iout=1m", "Isink=1m", "linear=1",
+                           "asym=1", "en=1n", "enk=10", "powerup=1"}
+    for name, accepted in known.items():
+        inverts = "INV" in name
+        pins = "a c f 0 0" if name == "SAMPLEHOLD" else "a 0 f 0 0" if name == "DFLOP" else "a c 0 0 0" if name in ("AND", "OR", "XOR", "SRFLOP", "VARISTOR") else "a 0 0 0 0"
+        for word in sorted(words):
+            more = word if name != "MODULATE" or "mark" in word else f"mark=2k space=1k {word}"
+            card = f"a1 {pins} {'o 0' if inverts else '0 o'} 0 {name} {more}"
+            done = run_cards(program, card, ["v1 a 0 1", "v2 c 0 1", "v3 f 0 1", card, "r1 o 0 1k", ".tran 1u 10u"])
+            if word in accepted:
+                checker.check(done.status == 0, f"{card}: {done.stderr}")
+            else:
+                checker.check(done.status != 0 and f"parameter '{word.split('=')[0].lower()}'" in done.stderr, f"{card}: {done.stderr}")
+
+
+def refused(checker, program):
+    cases = (("a1 a 0 0 0 0 0 o 0 BUF Tau=1u Trise=1u", "'tau' and 'trise' of one output"),
+             ("a1 a 0 0 0 0 0 o 0 BUF Tau=1u Cout=1u", "'tau' and 'cout' of one output"),
+             ("a1 a 0 0 0 0 0 o 0 BUF Tau=-1u", "'tau' cannot be negative"),
+             ("a1 a b 0 0 0 0 o 0 VARISTOR Rclamp=-1", "'rclamp' cannot be negative"),
+             ("a1 a b a 0 0 0 o 0 VARISTOR", "pin 3 of 'a1' means nothing for this function"),
+             ("a1 a b 0 0 0 0 0 0 VARISTOR", "pin 7 of 'a1' is not wired"),
+             ("a1 a b 0 0 0 0 o 0 MODULATE mark=1k", "space="),
+             ("a1 a b 0 0 0 o 0 0 MODULATE mark=1k space=1k", "pin 6 of 'a1' means nothing"),
+             ("a1 a b 0 0 0 0 o 0 OTA G=1m", "I=Iout*tanh(G/Iout*v(pin2,pin1))"))
+    for card, text in cases:
+        done = run_cards(program, card, ["v1 a 0 1", "v2 b 0 1", card, "r1 o 0 1", ".tran 1 2"])
+        checker.check(done.status != 0 and text in done.stderr, f"{card}: {done.stderr}")
+    done = run(program, "\n".join(["x", "v1 a 0 1", ".subckt s i o", "a1 i 0 0 0 0 0 o 0 BUF Tau={t}", ".ends", ".param t=1u", "x1 a o s",
+                                   "r1 o 0 1k", ".tran 1u 10u", ".end", ""]), method=None)
+    checker.check(done.status == 0, f"in a subcircuit: {done.stderr}")
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    checker = Checker("ltspice_devices")
+    for part in (outputs, varistors, modulators, parameters, refused):
+        part(checker, program)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
