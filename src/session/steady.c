@@ -128,12 +128,14 @@ enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) {
         return first < DALCS_OK ? first : DALCS_OK;
     }
     struct burst b = {.first = st->residual, .best = st->residual, .done = is_done(st, 0.0)};
+    bool is_stuck = false; /* where the run has come to: steps may lead to where no run does */
     st->n.bursts++;
     for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING;
          k++) {
         enum dalcs_status status = dalcs_steady_next_step(st);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        if (status != DALCS_OK || (st->is_stuck && k == 0)) {
+        is_stuck = st->is_stuck && k == 0;
+        if (status != DALCS_OK || is_stuck) {
             break;
         }
         status = try_step(st, &b);
@@ -142,27 +144,74 @@ enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) {
             break;
         }
     }
+    st->is_stuck = is_stuck;
     *done = b.done;
     return DALCS_OK;
 }
 
-/* Along st->drift from where the last pass has come to, as far as the same modes follow each other. *endless: that
- * is as far as it was tried. */
-static enum dalcs_status leap(struct dalcs_steady *st, double *from, bool *endless) {
-    const size_t bytes = (size_t)st->layout.n_x * sizeof(double);
+/* Does the last pass go on along st->drift as far as a pass from before, but for what far away is rounding? */
+static bool goes_on(const struct dalcs_steady *st, const double *moved) {
+    bool does = true;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        const double now = st->then.x[x] - st->at.x[x];
+        does = does && (st->drift[x] == 0.0 || fabs(now - moved[x]) <= 0.5 * fabs(moved[x]));
+    }
+    return does;
+}
+
+/* Along st->drift from where the last pass has come to, as far as the same modes follow each other and take it as far.
+ * *endless: that is as far as it was tried. `from`, `moved`: work. */
+static enum dalcs_status leap(struct dalcs_steady *st, double *from, double *moved, bool *endless) {
     const uint64_t signature = st->signature;
-    memcpy(from, st->then.x, bytes);
+    for (int x = 0; x < st->layout.n_x; x++) {
+        from[x] = st->then.x[x];
+        moved[x] = st->then.x[x] - st->at.x[x];
+    }
     bool same = true;
     int k = 0;
     for (; k < MOST_LEAPS && same; k++) {
         go_by(st, from, st->drift, ldexp(1.0, k));
         enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        same = status == DALCS_OK && st->signature == signature;
+        same = status == DALCS_OK && st->signature == signature && goes_on(st, moved);
     }
     *endless = same;
     st->n.leaps++;
     go_by(st, from, st->drift, ldexp(1.0, k - (same ? 1 : 2)));
+    return DALCS_OK;
+}
+
+/* How much of the last pass is not st->drift. */
+static double rest(const struct dalcs_steady *st) {
+    double most = 0.0;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        const double off = fabs(st->then.x[x] - st->at.x[x] - st->drift[x]);
+        most = off > 0.0 ? fmax(most, off / st->scale[x]) : most;
+    }
+    return most;
+}
+
+/* Does what drifts at this point of a run do so for ever? It does if Newton's method, in the same modes, comes to where
+ * nothing else moves: what still moves may lead to other modes. st->drift is that of there. */
+static enum dalcs_status drifts(struct dalcs_steady *st, const struct dalcs_orbit_point *point,
+                                bool *does) {
+    uint64_t signature = 0;
+    *does = false;
+    dalcs_steady_copy_point(st, &st->at, point);
+    for (int k = 0; k < MOST_STEPS && !*does; k++) {
+        enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+        const bool same = k == 0 || st->signature == signature;
+        signature = st->signature;
+        status = status == DALCS_OK ? dalcs_steady_next_step(st) : status;
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        if (status != DALCS_OK || !same || !st->is_stuck) {
+            return DALCS_OK;
+        }
+        *does = rest(st) <= good;
+        if (!*does) {
+            take_step(st);
+        }
+    }
     return DALCS_OK;
 }
 
@@ -196,7 +245,9 @@ bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool *endless) {
     struct dalcs_orbit_point run;
     struct dalcs_orbit_point from;
-    if (!dalcs_steady_make_point(st, &run) || !dalcs_steady_make_point(st, &from)) {
+    struct dalcs_orbit_point moved;
+    if (!dalcs_steady_make_point(st, &run) || !dalcs_steady_make_point(st, &from) ||
+        !dalcs_steady_make_point(st, &moved)) {
         return DALCS_E_NOMEM;
     }
     *found = *endless = false;
@@ -209,11 +260,20 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool
         DALCS_TRY(dalcs_steady_burst(st, found));
         wait = total;
         if (!*found && st->is_stuck) {
-            DALCS_TRY(leap(st, from.x, endless));
-            wait = 1;
+            DALCS_TRY(leap(st, from.x, moved.x, endless));
+            const bool leapt = !*endless;
+            DALCS_TRY(leapt ? DALCS_OK : drifts(st, &run, endless));
+            wait = leapt ? 1 : wait;
+            if (!leapt && !*endless) {
+                dalcs_steady_copy_point(st, &st->at, &run);
+            }
         } else if (!*found) {
             dalcs_steady_copy_point(st, &st->at, &run);
         }
+    }
+    if (!*found && !*endless) { /* what is told of the last period is of one of the run */
+        enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN);
+        return status < DALCS_OK ? status : DALCS_OK;
     }
     return *found ? dalcs_steady_refine(st, &run) : DALCS_OK;
 }

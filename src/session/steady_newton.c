@@ -6,8 +6,10 @@
  * period to period, and in this piece of the map there is no steady state. */
 #include "steady.h"
 
+#include <float.h>
 #include <lapacke.h>
 #include <math.h>
+#include <string.h>
 
 /* Singular values of 1 - M below this part of the largest, or of 1, are rounding: of M, with states in units in which
  * energies are alike, and of the tolerance that its run was held to. */
@@ -106,19 +108,87 @@ static enum dalcs_status note_conserved(struct dalcs_steady *st, int system, con
     return DALCS_OK;
 }
 
-static enum dalcs_status solve(struct dalcs_steady *st, int system, struct newton *w) {
+/* w->A = M in the units. */
+static void put_map(struct newton *w, const double *M) {
+    for (int k = 0; k < w->n; k++) {
+        for (int x = 0; x < w->n; x++) {
+            w->A[k * w->n + x] = w->unit[x] * M[k * w->n + x] / w->unit[k];
+        }
+    }
+}
+
+/* 1 - M = U s Vt, of M in w->A. */
+static enum dalcs_status decompose(struct newton *w) {
     const int n = w->n;
+    for (int k = 0; k < n; k++) {
+        for (int x = 0; x < n; x++) {
+            w->A[k * n + x] = (x == k ? 1.0 : 0.0) - w->A[k * n + x];
+        }
+    }
     const int failed = LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'A', n, n, w->A, n, w->s, w->U, n,
                                       w->Vt, n, w->superb);
-    if (failed != 0) {
-        return failed == LAPACK_WORK_MEMORY_ERROR ? DALCS_E_NOMEM : DALCS_SINGULAR;
-    }
+    return failed == 0                          ? DALCS_OK
+           : failed == LAPACK_WORK_MEMORY_ERROR ? DALCS_E_NOMEM
+                                                : DALCS_SINGULAR;
+}
+
+/* The number of singular values that are rounding: the last ones. */
+static int count_rounding(const struct newton *w) {
     int m = 0;
+    while (m < w->n && !(w->s[w->n - 1 - m] > is_singular * fmax(1.0, w->s[0]))) {
+        m++;
+    }
+    return m;
+}
+
+/* unit /= scales that balance rows and columns of M, of which entries that are rounding have no part. */
+static enum dalcs_status balance(struct newton *w, const double *M) {
+    const size_t n = (size_t)w->n;
+    double largest = 0.0;
+    int low;
+    int high;
+    put_map(w, M);
+    for (size_t i = 0; i < n * n; i++) {
+        largest = fmax(largest, fabs(w->A[i]));
+    }
+    for (size_t i = 0; i < n * n; i++) {
+        w->A[i] = fabs(w->A[i]) > DBL_EPSILON * largest ? w->A[i] : 0.0;
+    }
+    if (LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', w->n, w->A, w->n, &low, &high, w->c) != 0) {
+        return DALCS_SINGULAR;
+    }
+    for (size_t k = 0; k < n; k++) {
+        w->unit[k] /= w->c[k];
+    }
+    return DALCS_OK;
+}
+
+/* Energies of a state of a control and of what it commands have nothing to do with each other: M is far from normal, and
+ * a slow control looks like a conserved quantity. What is conserved is so in units that balance M, too; else those are
+ * taken. */
+static enum dalcs_status look_closer(struct newton *w, const double *M) {
+    const int m = count_rounding(w);
+    double *before = w->rest; /* not in use yet */
+    memcpy(before, w->unit, (size_t)w->n * sizeof(double));
+    DALCS_TRY(balance(w, M));
+    put_map(w, M);
+    DALCS_TRY(decompose(w));
+    if (count_rounding(w) < m) {
+        return DALCS_OK;
+    }
+    memcpy(w->unit, before, (size_t)w->n * sizeof(double));
+    put_map(w, M);
+    return decompose(w);
+}
+
+/* (1 - M) d = F, but for what is conserved. */
+static enum dalcs_status solve(struct dalcs_steady *st, int system, struct newton *w) {
+    const int n = w->n;
+    const int m = count_rounding(w);
     const double size = sqrt(dot(w->F, w->F, n));
     for (int k = 0; k < n; k++) {
         double part = dot(w->U + (size_t)k * (size_t)n, w->F, n);
-        if (!(w->s[k] > is_singular * fmax(1.0, w->s[0]))) {
-            m++;
+        if (k >= n - m) {
             st->is_stuck = st->is_stuck || fabs(part) > grows * size;
             DALCS_TRY(note_conserved(st, system, w, k));
             continue;
@@ -148,12 +218,12 @@ static enum dalcs_status newton_of(struct dalcs_steady *st, int system, struct d
     }
     for (int x = 0; x < w.n; x++) {
         w.unit[x] = dalcs_steady_unit(st, system, x);
-        w.F[x] = w.unit[x] * (st->then.x[first + x] - st->at.x[first + x]);
     }
-    for (int k = 0; k < w.n; k++) {
-        for (int x = 0; x < w.n; x++) {
-            w.A[k * w.n + x] = (x == k ? 1.0 : 0.0) - w.unit[x] * M[k * w.n + x] / w.unit[k];
-        }
+    put_map(&w, M);
+    DALCS_TRY(decompose(&w));
+    DALCS_TRY(count_rounding(&w) > 0 ? look_closer(&w, M) : DALCS_OK);
+    for (int x = 0; x < w.n; x++) {
+        w.F[x] = w.unit[x] * (st->then.x[first + x] - st->at.x[first + x]);
     }
     DALCS_TRY(solve(st, system, &w));
     for (int x = 0; x < w.n; x++) {

@@ -21,7 +21,7 @@ static const double most_periods = 1e5;
 
 /* One source that repeats. */
 struct clock {
-    struct dalcs_stimulus *stimulus; /* NULL: of a formula */
+    struct dalcs_stimulus *stimulus;
     const char *name;
     double period; /* s */
 };
@@ -88,13 +88,6 @@ bool dalcs_steady_repeats(const struct dalcs_stimulus *s) {
     return repeats;
 }
 
-static double delay_of(const struct dalcs_stimulus *s) {
-    return s->kind == DALCS_STIMULUS_SIN     ? s->u.sine.delay
-           : s->kind == DALCS_STIMULUS_PULSE ? s->u.pulse.delay
-           : s->kind == DALCS_STIMULUS_PWL   ? s->u.pwl.repeat_from
-                                             : 0.0;
-}
-
 /* It comes to this in the end. */
 static double last_level(const struct dalcs_stimulus *s) {
     if (s->kind == DALCS_STIMULUS_EXP) {
@@ -131,31 +124,6 @@ static enum dalcs_status add_tones(struct clocks *c, struct dalcs_stimulus *s, c
     return DALCS_OK;
 }
 
-/* What a formula of sources is made of may be no source of its own: then it stays as it is. */
-static enum dalcs_status look_into(struct clocks *c, const struct dalcs_stimulus *s,
-                                   const char *name) {
-    const struct dalcs_circuit *circuit = &c->run->s->circuit;
-    for (int k = 0; k < s->u.formula.argument.n; k++) {
-        const struct dalcs_stimulus *of = s->u.formula.argument.part[k].of;
-        bool is_listed = of >= circuit->stimulus && of < circuit->stimulus + circuit->n_stimuli;
-        double period = own_period(of);
-        if (is_listed || is_level(of)) {
-            continue;
-        }
-        if (of->kind == DALCS_STIMULUS_FORMULA) {
-            DALCS_TRY(look_into(c, of, name));
-        } else if (period > 0.0 && delay_of(of) == 0.0) {
-            DALCS_TRY(add_clock(c, NULL, name, period));
-        } else {
-            char text[256];
-            snprintf(text, sizeof text, "whether '%s', a formula of sources, repeats is not known",
-                     name);
-            return refuse(c->run, NULL, "write it as PULSE, SIN or PWL, without a delay", text);
-        }
-    }
-    return DALCS_OK;
-}
-
 static int count_clocks(const struct dalcs_stimulus *s) {
     int n = 1;
     if (s->kind == DALCS_STIMULUS_TONES) {
@@ -168,10 +136,30 @@ static int count_clocks(const struct dalcs_stimulus *s) {
     return n;
 }
 
-static enum dalcs_status look_at(struct clocks *c, int stimulus) {
-    struct dalcs_circuit *circuit = &c->run->s->circuit;
-    struct dalcs_stimulus *s = &circuit->stimulus[stimulus];
-    const char *name = dalcs_steady_source_name(circuit, stimulus);
+static enum dalcs_status look_at(struct clocks *c, struct dalcs_stimulus *s, const char *name,
+                                 bool is_part);
+
+/* A formula of sources has copies of these. They are copied once more, for what is changed here is put back behind
+ * the search. */
+static enum dalcs_status look_into(struct clocks *c, struct dalcs_stimulus *s, const char *name) {
+    struct dalcs_arena *arena = &c->run->s->arena;
+    struct dalcs_stimulus_sum *sum = &s->u.formula.argument;
+    struct dalcs_stimulus_summand *part = dalcs_arena_alloc(arena, (size_t)sum->n, sizeof *part);
+    struct dalcs_stimulus *of = dalcs_arena_alloc(arena, (size_t)sum->n, sizeof *of);
+    if (part == NULL || of == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < sum->n; k++) {
+        of[k] = *sum->part[k].of;
+        part[k] = (struct dalcs_stimulus_summand){sum->part[k].factor, &of[k]};
+        DALCS_TRY(look_at(c, &of[k], name, true));
+    }
+    sum->part = part;
+    return DALCS_OK;
+}
+
+static enum dalcs_status look_at(struct clocks *c, struct dalcs_stimulus *s, const char *name,
+                                 bool is_part) {
     if (is_level(s)) {
         return DALCS_OK;
     }
@@ -188,11 +176,18 @@ static enum dalcs_status look_at(struct clocks *c, int stimulus) {
     if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.damping < 0.0 && !c->at_start) {
         return refuse(c->run, NULL, NULL, "a sine that grows without end has no steady state");
     }
+    if (is_part && c->at_start) { /* it would stay what it is at the start */
+        char sentence[256];
+        snprintf(sentence, sizeof sentence, "'%s' is a formula of a source that does not repeat",
+                 name);
+        return refuse(c->run, NULL, "make that source repeat", sentence);
+    }
     double level = c->at_start ? dalcs_stimulus_value(s, 0.0, DALCS_LEFT) : last_level(s);
     char text[DALCS_QUANTITY_SIZE];
     if (strchr(name, '(') == NULL) { /* not a part of an element */
         dalcs_diag_add(&c->run->s->diag, DALCS_NOTE, NULL, NULL,
-                       "'%s' does not repeat: in the steady state it is what it %s, %s", name,
+                       "%s'%s' does not repeat: in the steady state it is what it %s, %s",
+                       is_part ? "a source in the formula of " : "", name,
                        c->at_start ? "is at t = 0" : "comes to",
                        dalcs_quantity_write(text, level, "", 9));
     }
@@ -306,15 +301,14 @@ enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bo
     c.clock = dalcs_alloc(most, sizeof(*c.clock));
     enum dalcs_status status = c.clock != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (int i = 0; i < circuit->n_stimuli && status == DALCS_OK; i++) {
-        status = look_at(&c, i);
+        status =
+            look_at(&c, &r->s->circuit.stimulus[i], dalcs_steady_source_name(circuit, i), false);
     }
     status = status == DALCS_OK ? find_common(&c, period) : status;
     status = status == DALCS_OK ? take_asked(&c, asked, period) : status;
     *is_free = c.n == 0;
     for (int k = 0; k < c.n && status == DALCS_OK; k++) {
-        status = c.clock[k].stimulus == NULL
-                     ? DALCS_OK
-                     : dalcs_steady_settle(r, c.clock[k].stimulus, c.clock[k].name, *period);
+        status = dalcs_steady_settle(r, c.clock[k].stimulus, c.clock[k].name, *period);
     }
     free(c.clock);
     return status;

@@ -72,7 +72,8 @@ static enum dalcs_status tell_failure(struct dalcs_steady *st, bool endless) {
             st->step[x] = st->drift[x];
         }
         dalcs_diag_add(
-            &s->diag, DALCS_ERROR, NULL, "a source fills what nothing empties: give it a way out",
+            &s->diag, DALCS_ERROR, NULL,
+            "a source fills what nothing empties: give it a way out, or limit what commands it",
             "there is no periodic steady state: each period %s, whatever they are", moves_text(st));
         return DALCS_NOT_CONVERGED;
     }

@@ -1,7 +1,6 @@
 /* steady_settle.c - what sources are in a steady state: as from a multiple of T on that is behind all delays. */
 #include "steady.h"
 
-#include <float.h>
 #include <math.h>
 
 /* PWL: the block from where t = 0 is in it on, and what is before that behind it; its ends are jumps if they differ. */
@@ -44,10 +43,10 @@ static enum dalcs_status turn_block(struct dalcs_run *r, struct dalcs_stimulus *
     return DALCS_OK;
 }
 
-/* An n-th of T in the place of a period that is so but for rounding. */
+/* An n-th of T in the place of a period that is so but for the digits that it was typed with: edges that are meant to
+ * meet do so only if no more than their own rounding is between them (stimulus.c). */
 static double fitted(double own, double T) {
-    const double period = T / rint(T / own);
-    return fabs(period - own) > 4.0 * DBL_EPSILON * period ? period : own;
+    return T / rint(T / own);
 }
 
 static void settle_sine(struct dalcs_stimulus *s, double T) {

@@ -44,8 +44,8 @@ class Case:
         path = self.folder / "c.json"
         return done, json.loads(path.read_text()) if path.exists() else {}
 
-    def refuses(self, netlist, status, *words, options=()):
-        done, report = self.run(netlist, *options)
+    def refuses(self, netlist, status, *words, options=(), verb="steady"):
+        done, report = self.run(netlist, *options, verb=verb)
         said = done.stderr
         self.checker.check(done.returncode == status, f"{netlist}: status {done.returncode}, {said}")
         self.checker.check("steady" not in report, f"{netlist}: it has an answer")
@@ -117,6 +117,13 @@ def periods(case):
     case.finds("* AM\n" + CLOCK + BUCK + "Il out 0 AM(0.1 0.5 1k 20k)\n.pss uic\n", 1e-3)
     case.finds("* once\n" + CLOCK + BUCK + "Il out 0 PWL(0 0 100u 0 100u 1)\n.pss uic\n", 10e-6,
                "'il' does not repeat", mean=MEAN)
+    # the command is what a formula makes of a source
+    formula = "Bg g 0 V=v(p) > 0.5 ? 1 : 0\n" + BUCK + ".pss uic\n"
+    case.finds("* of a delayed one\nVp p 0 PULSE(0 1 33u 0 0 4u 10u)\n" + formula, 10e-6, mean=MEAN)
+    case.finds("* of two\nVp p q PULSE(0 1 7u 0 0 4u 10u)\nVq q 0 SIN(0 0.1 50k 8u)\n" + formula, 20e-6, mean=MEAN)
+    case.finds("* and of one that comes to something\n" + CLOCK + BUCK + "Vl l 0 PWL(0 0 100u 0 100u 1)\n"
+               "Bl out 0 I=v(l) > 0.5 ? 0.1 : 0\n.pss uic\n", 10e-6, "formula of 'bl' does not repeat",
+               "it is what it comes to, 1", mean=MEAN)
     done, report = case.run("* quiet\nV1 a 0 PULSE(0 1 0 0 0 4u 10u)\nR1 a 0 1k\n.pss\n")
     case.checker.check(done.returncode == 0 and report["steady"]["multipliers"] == [],
                        f"without states: {done.stderr}")
@@ -181,6 +188,8 @@ def leaving(case):
     case.checker.check(abs(value["before"] - MEAN) < 1e-9, f"before the step {value['before']}")
     case.checker.check(value["after"] < 4.5, f"after the step {value['after']}")
     case.checker.check("ltspice" not in done.stderr.lower(), "it is nobody's dialect")
+    case.refuses("* its load\n" + CLOCK + BUCK + "Vl l 0 PWL(0 0 100u 0 100u 1)\nBl out 0 I=v(l) > 0.5 ? 1 : 0\n"
+                 ".tran 1u 300u uic=steady\n", 2, "'bl' is a formula of a source that does not repeat", verb="run")
     done, report = case.run("* both\n" + CLOCK + BUCK + ".pss uic\n.tran 1u 100u uic\n", verb="run")
     case.checker.check(done.returncode == 0 and "steady" in report and report["stop"] == 100e-6,
                        f".pss and .tran: {done.stderr}")
