@@ -27,6 +27,18 @@ static void remember_switches(struct dalcs_radau_part *part) {
     }
 }
 
+/* Times closer than the resolution are one: what sources do just behind the instant they do at it. A carrier that meets
+ * its reference at t = 0 crosses it at 1e-21 s by rounding. Returns whether any has an edge. */
+static bool enter_edges(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    struct dalcs_excitation *e = &part->excitation;
+    bool any = false;
+    while (e->next_edge <= part->segment.t + r->resolution) {
+        dalcs_excitation_enter(e, fmax(part->segment.t, e->next_edge));
+        any = true;
+    }
+    return any;
+}
+
 enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initial) {
     for (int k = 0; k < r->n_parts; k++) {
         struct dalcs_radau_part *part = &r->part[k];
@@ -43,6 +55,8 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         }
         remember_switches(part);
         dalcs_commands_start(&part->commands);
+        (void)dalcs_commands_obey(&part->commands, r->resolution);
+        (void)enter_edges(r, part);
         obey_commands(part);
         part->guards.fresh = true;
         if (initial != NULL || dalcs_component_jumps_at_start(c)) {
@@ -174,12 +188,9 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     if (part->guards.n_crossed > 0 || part->segment.by_euler) {
         count_crowd(r, part);
     }
-    if (part->excitation.next_edge <= part->segment.t + r->resolution) {
-        dalcs_excitation_enter(&part->excitation, part->segment.t);
-        part->guards.fresh = true;
-    }
+    part->guards.fresh = enter_edges(r, part) || part->guards.fresh;
     bool commanded = part->commands.next <= part->segment.t + r->resolution &&
-                     dalcs_commands_obey(&part->commands, part->segment.t);
+                     dalcs_commands_obey(&part->commands, part->segment.t + r->resolution);
     if (commanded) {
         obey_commands(part);
         part->guards.fresh = true;
@@ -220,7 +231,8 @@ bool dalcs_radau_is_disturbed(const struct dalcs_radau_part *part, const bool *c
 /* Its segment has begun at t, as if nothing had changed. */
 static enum dalcs_status begin_again(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     dalcs_excitation_enter(&part->excitation, part->segment.t);
-    if (dalcs_commands_obey(&part->commands, part->segment.t)) {
+    (void)enter_edges(r, part);
+    if (dalcs_commands_obey(&part->commands, part->segment.t + r->resolution)) {
         obey_commands(part);
         part->guards.flipped = true;
     }
