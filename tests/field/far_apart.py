@@ -3,13 +3,13 @@
 
 usage: far_apart.py PROGRAM
 
-KCL adds up conductances. Of 1000 S and 1e-9 S the sum is off by 1e-13 S, which is a resistor to ground that is not there:
-a divider of two leaks was off by 3e-5 of its voltage, two coils in series with a leak oscillated themselves to 1e240 A, and
-an island had a voltage that nothing gave it. Resistors that conduct 2.7e8 times as well as the least conductor of their
+KCL adds up conductances. Of 1000 S and 1e-9 S the sum is off by 1e-13 S, which is a resistor to ground that is not
+there: a divider of two leaks was off by 3e-5 of its voltage, two coils in series with a leak rose to 1e240 A, and an
+island had a voltage that nothing gave it. Resistors that conduct 2.7e8 times as well as the least conductor of their
 part have their current as an unknown.
 
-Times closer than the resolution of a run are one: a carrier and a reference that are both 0 at t = 0 cross at 1e-21 s by
-rounding.
+Times closer than the resolution of a run are one: a carrier and a reference that are both 0 at t = 0 cross at 1e-21 s
+by rounding.
 """
 
 import json
@@ -93,8 +93,8 @@ def dead_end(checker):
 
 
 def meeting(checker, seed):
-    """Legs whose carrier, some quarter of a period late, and whose sine are 0 at the start; half of the gates are formulas.
-    The mean of a leg is between its rails as its reference is; without current in the coils at the start none jumps."""
+    """Legs whose carrier, some quarter of a period late, and whose sine are 0 at the start; half of the gates are
+    formulas. The currents begin at 0 and stay within what the supply can drive."""
     chance = random.Random(f"meeting {seed}")
     period = 10.0 ** chance.uniform(-6, -3)
     hertz = 1.0 / (period * chance.uniform(7, 13))
@@ -103,7 +103,8 @@ def meeting(checker, seed):
     cards = [f"vr ref 0 sin(0 {size * 0.7!r} {hertz!r})", "v1 in 0 100"]
     for k in range(cells):
         quarter = chance.choice((0.25, 0.75))
-        cards += [f"vt{k} t{k} 0 pulse({-abs(size)!r} {abs(size)!r} {-quarter * period!r} {period / 2!r} {period / 2!r} "
+        ramp, peak = period / 2, abs(size)
+        cards += [f"vt{k} t{k} 0 pulse({-peak!r} {peak!r} {-quarter * period!r} {ramp!r} {ramp!r} "
                   f"{1e-9 * period!r} {period * (1 + 1e-9)!r})"]
         gate = (f"ref t{k}", f"t{k} ref")
         if chance.random() < 0.5:
