@@ -327,6 +327,17 @@ static enum dalcs_status name_readers(struct stamps *b) {
     return DALCS_OK;
 }
 
+/* Sums less what they were rounded to. `sums` grows by the latter. */
+static enum dalcs_status find_rest(struct dalcs_csr *rest, const struct dalcs_csr *rounded,
+                                   struct dalcs_triplets *sums) {
+    for (int r = 0; r < rounded->n_rows; r++) {
+        for (int k = rounded->p[r]; k < rounded->p[r + 1]; k++) {
+            DALCS_TRY(dalcs_triplets_add(sums, r, rounded->j[k], -rounded->x[k]));
+        }
+    }
+    return dalcs_csr_compress(rest, rounded->n_rows, rounded->n_columns, sums);
+}
+
 enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_devices,
                                            const int *device, int n_nodes, const int *node,
                                            struct dalcs_system *system, double **initial) {
@@ -382,6 +393,9 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
     for (size_t k = 0; k < sizeof(part) / sizeof(part[0]) && status == DALCS_OK; k++) {
         status =
             dalcs_csr_compress(part[k].matrix, part[k].n_rows, part[k].n_columns, part[k].entries);
+    }
+    if (status == DALCS_OK) {
+        status = find_rest(&system->A_rest, &system->A, &b.A);
     }
     if (status == DALCS_OK) {
         find_tangents(system);

@@ -92,6 +92,19 @@ def dead_end(checker):
             checker.close(outcome.column("i(l1)")[-1], 0.0, 1e-12, f"a dead end of {ohms}: i(l1)")
 
 
+def island(checker, seed):
+    """Coils and resistors that hang on a sine by one node: KCL of the island adds up to 0, and so does its answer."""
+    chance = random.Random(f"island {seed}")
+    ohms = [10.0 ** chance.uniform(-4, -2), 10.0 ** chance.uniform(0, 2)]
+    cards = ["v1 as n sin(0 50 97)", "l1 n b 1", "s1 t p g 0 m", "vg g 0 0", "va b x 0", "vb a y 0", "d1 y b", "l2 p q 1",
+             f"r1 q o {ohms[0]!r}", f"r2 o a {ohms[1]!r}", ".model m sw(ron=1m vt=0.5 vh=0.3)", ".save i(l1) i(l2)",
+             ".tran 33.4u 6.69m uic"]
+    outcome = outcome_of(checker, f"island {seed}", cards)
+    if outcome:
+        for name in ("i(l1)", "i(l2)"):
+            checker.close(max(map(abs, outcome.column(name))), 0.0, 1e-9, f"island {seed}: {name}")
+
+
 def meeting(checker, seed):
     """Legs whose carrier, some quarter of a period late, and whose sine are 0 at the start; half of the gates are
     formulas. The currents begin at 0 and stay within what the supply can drive."""
@@ -131,6 +144,8 @@ def main():
         two_coils(checker, seed)
     limit(checker)
     dead_end(checker)
+    for seed in range(12):
+        island(checker, seed)
     for seed in range(16):
         meeting(checker, seed)
     return checker.finish()
