@@ -2,7 +2,7 @@
  *
  *   x   voltages of capacitors, (magnetising) currents of coils
  *   z   node voltages; currents of V, E, H; of capacitors that close a loop of capacitors or are
- *       asked for; of coils that perfect coupling makes dependent
+ *       asked for; of coils that perfect coupling makes dependent; of resistors far below others
  *   lambda   currents of diodes and switches
  *
  * KCL, currents leaving. At a node of the capacitor forest (its root apart) KCL is the differential
@@ -16,6 +16,7 @@
 #include "stamp_behaviour.h"
 #include "stamp_device.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -136,6 +137,40 @@ static enum dalcs_status stamp_clamps(struct stamps *b, int component) {
     return DALCS_OK;
 }
 
+/* The sum of the conductances at a node is rounded: in KCL that is a conductance to ground of eps/2 of the sum, which no
+ * element has. Beside the least conductance of the part it must be less than the error that the default tolerance leaves to a
+ * step, 3e-8. What conducts better has its current as an unknown, and KCL has a 1 for it. */
+static const double most_conductances_apart = 3e-8 / (0.5 * DBL_EPSILON);
+
+/* Of resistors and of what leaks. */
+static double conductance_of(const struct dalcs_circuit *c, const struct dalcs_device *d) {
+    switch (d->behaviour != NULL ? DALCS_VSOURCE : d->kind) {
+    case DALCS_RESISTOR:
+        return d->value == 0.0 ? 0.0 : 1.0 / fabs(d->value);
+    case DALCS_DIODE:
+        return 1.0 / c->diode_model[d->model].roff;
+    case DALCS_SWITCH:
+        return 1.0 / c->switch_model[d->model].roff;
+    default:
+        return 0.0;
+    }
+}
+
+static void find_best_conductor(struct dalcs_layout *l, int n_devices, const int *device) {
+    double least = INFINITY;
+    for (int i = 0; i < n_devices; i++) {
+        double g = conductance_of(l->circuit, &l->circuit->device[device[i]]);
+        least = g > 0.0 && g < least ? g : least;
+    }
+    l->most_conductance = most_conductances_apart * least;
+}
+
+bool dalcs_layout_is_branch(const struct dalcs_layout *l, int device) {
+    const struct dalcs_device *d = &l->circuit->device[device];
+    return d->kind == DALCS_RESISTOR && d->behaviour == NULL && d->value != 0.0 &&
+           conductance_of(l->circuit, d) > l->most_conductance;
+}
+
 /* How many unknowns of each sort the component needs: everything else follows from the counts. */
 static void count(struct stamps *b, int n_devices, const int *device, int n_nodes, const int *node,
                   int component) {
@@ -158,7 +193,7 @@ static void count(struct stamps *b, int n_devices, const int *device, int n_node
         }
         switch (d->kind) {
         case DALCS_RESISTOR:
-            s->n_z += d->value == 0.0 ? 1 : 0;
+            s->n_z += d->value == 0.0 || dalcs_layout_is_branch(l, device[i]) ? 1 : 0;
             break;
         case DALCS_CAPACITOR:
             s->n_x++;
@@ -292,6 +327,17 @@ static enum dalcs_status name_readers(struct stamps *b) {
     return DALCS_OK;
 }
 
+/* Sums less what they were rounded to. `sums` grows by the latter. */
+static enum dalcs_status find_rest(struct dalcs_csr *rest, const struct dalcs_csr *rounded,
+                                   struct dalcs_triplets *sums) {
+    for (int r = 0; r < rounded->n_rows; r++) {
+        for (int k = rounded->p[r]; k < rounded->p[r + 1]; k++) {
+            DALCS_TRY(dalcs_triplets_add(sums, r, rounded->j[k], -rounded->x[k]));
+        }
+    }
+    return dalcs_csr_compress(rest, rounded->n_rows, rounded->n_columns, sums);
+}
+
 enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_devices,
                                            const int *device, int n_nodes, const int *node,
                                            struct dalcs_system *system, double **initial) {
@@ -299,6 +345,7 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
     struct stamps b = {.layout = layout, .s = system};
     int component = layout->topology.device_component[device[0]];
     enum dalcs_status status = DALCS_OK;
+    find_best_conductor(layout, n_devices, device);
     count(&b, n_devices, device, n_nodes, node, component);
     status = allocate(&b);
     if (status != DALCS_OK) {
@@ -346,6 +393,9 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
     for (size_t k = 0; k < sizeof(part) / sizeof(part[0]) && status == DALCS_OK; k++) {
         status =
             dalcs_csr_compress(part[k].matrix, part[k].n_rows, part[k].n_columns, part[k].entries);
+    }
+    if (status == DALCS_OK) {
+        status = find_rest(&system->A_rest, &system->A, &b.A);
     }
     if (status == DALCS_OK) {
         find_tangents(system);

@@ -31,6 +31,8 @@ struct dalcs_layout {
     struct coil_group *group;
     int *group_of; /* [n_devices], -1 for a coil on its own */
     int *grouped_coil;
+    double
+        most_conductance; /* S, of the part that is assembled: what conducts better is a branch */
     struct dalcs_initial_voltages initial_voltages;
     int *held_start, *held; /* [n_components + 1] conditions of .ic that each component holds, one
                                component's after the other's; NULL when none are held */
@@ -42,6 +44,9 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
                                            const int *device, int n_nodes, const int *node,
                                            struct dalcs_system *system,
                                            double **initial) DALCS_MUST_CHECK;
+
+/* A resistor of the part that is assembled whose current is an unknown. */
+bool dalcs_layout_is_branch(const struct dalcs_layout *layout, int device);
 
 /* The current of coil `device` as columns and coefficients (at most 1 + coils of its group). Returns
  * their number. */

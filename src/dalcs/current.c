@@ -56,7 +56,7 @@ enum dalcs_status dalcs_layout_current(const struct dalcs_layout *l, const struc
     }
     switch (d->kind) {
     case DALCS_RESISTOR:
-        if (d->value == 0.0) {
+        if (l->current_column[device] >= 0) {
             put(i, l->current_column[device], 1.0);
         } else {
             put_voltage(l, i, d->node[0], d->node[1], 1.0 / d->value);

@@ -99,7 +99,12 @@ static void put_device(const struct dalcs_layout *l, const struct dalcs_system *
     }
     switch (d->kind) {
     case DALCS_RESISTOR:
-        put_resistance(l, t, d, d->value == 0.0 ? INFINITY : d->value);
+        if (l->current_column[device] >= 0) {
+            put(t, DALCS_POWER_RESISTORS, DALCS_POWER_SQUARE, d->value)->first[0] =
+                l->current_column[device];
+        } else {
+            put_resistance(l, t, d, d->value == 0.0 ? INFINITY : d->value);
+        }
         return;
     case DALCS_INDUCTOR:
     case DALCS_CAPACITOR:

@@ -19,8 +19,8 @@ static bool has_own_current(const struct dalcs_layout *l, int device) {
     case DALCS_DIODE:
     case DALCS_SWITCH:
         return true;
-    case DALCS_RESISTOR: /* a short that is asked for it */
-        return dalcs_device_is_short(d) && l->topology.has_current[device];
+    case DALCS_RESISTOR: /* a short that is asked for it, or one beside much larger ones */
+        return l->current_column[device] >= 0;
     default:
         return d->behaviour != NULL;
     }

@@ -174,6 +174,14 @@ static enum dalcs_status stamp_voltage_branch(struct stamps *b, int device) {
     }
 }
 
+/* 0 = v(a) - v(b) - R i. */
+static enum dalcs_status stamp_resistance(struct stamps *b, int device) {
+    const struct dalcs_device *d = &b->layout->circuit->device[device];
+    DALCS_TRY(stamp_voltage_branch(b, device));
+    return dalcs_stamp_add(&b->A, b->layout->branch_row[device], b->layout->current_column[device],
+                           -d->value);
+}
+
 /* Pairs: w = v(cathode) - v(anode) + Vfwd + Ron lambda >= 0. */
 static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, double threshold,
                                     double ron, struct dalcs_pair pair) {
@@ -249,7 +257,8 @@ enum dalcs_status dalcs_stamp_device(struct stamps *b, int device, int *next_for
             b->s->monotone = false;
             DALCS_TRY(dalcs_stamp_reads_voltage(b, device, d->node[0], d->node[1]));
         }
-        return dalcs_stamp_conductance(b, d, 1.0 / d->value);
+        return dalcs_layout_is_branch(l, device) ? stamp_resistance(b, device)
+                                                 : dalcs_stamp_conductance(b, d, 1.0 / d->value);
     case DALCS_INDUCTOR:
         if (l->group_of[device] < 0) {
             return stamp_coil(b, device);

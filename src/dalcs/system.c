@@ -14,6 +14,7 @@ const char *dalcs_label_equation(enum dalcs_label_kind kind) {
 void dalcs_system_finish(struct dalcs_system *system) {
     dalcs_csr_finish(&system->P);
     dalcs_csr_finish(&system->A);
+    dalcs_csr_finish(&system->A_rest);
     dalcs_csr_finish(&system->E);
     dalcs_csr_finish(&system->C);
     dalcs_csr_finish(&system->F);

@@ -123,7 +123,12 @@ struct dalcs_system {
     struct dalcs_pair *pair;    /* [n_pairs] */
     int *stimulus;              /* [n_inputs] index in the circuit; -1 for the constant 1 */
     const char **input_element; /* [n_inputs] name of the source; NULL for the constant 1 */
-    bool monotone;              /* R, L, C, K, independent sources, diodes and switches only, all
+
+    /* What rounding has left of A's sums of conductances: with it, KCL of what is cut off from ground adds up to 0.
+     * Empty (p is NULL) where that is not known. */
+    struct dalcs_csr A_rest;
+
+    bool monotone; /* R, L, C, K, independent sources, diodes and switches only, all
                                    passive: the OSNSP is solvable iff feasible */
 };
 

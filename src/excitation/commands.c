@@ -182,11 +182,11 @@ void dalcs_commands_start(struct dalcs_commands *commands) {
     find_earliest(commands);
 }
 
-bool dalcs_commands_obey(struct dalcs_commands *commands, double t) {
+bool dalcs_commands_obey(struct dalcs_commands *commands, double until) {
     bool moved = false;
     for (int k = 0; k < commands->n; k++) {
         struct dalcs_command *m = &commands->command[k];
-        if (m->next > t + 4 * DBL_EPSILON * t) {
+        if (m->next > until + 4 * DBL_EPSILON * until) {
             continue;
         }
         if (m->moves) {

@@ -46,8 +46,8 @@ void dalcs_commands_finish(struct dalcs_commands *commands);
 /* At t = 0: is_on of every command from its control, and from what it was before; the first search. */
 void dalcs_commands_start(struct dalcs_commands *commands);
 
-/* Moves what is due at t, and looks for the next. Returns whether anything moved. */
-bool dalcs_commands_obey(struct dalcs_commands *commands, double t);
+/* Moves what is due until then, once each, and looks for the next. Returns whether anything moved. */
+bool dalcs_commands_obey(struct dalcs_commands *commands, double until);
 
 /* Stimuli (changed[n_stimuli of the circuit]) are others from t on: switches that they control are looked at anew. */
 void dalcs_commands_disturb(struct dalcs_commands *commands, double t, const bool *changed);

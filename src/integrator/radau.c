@@ -27,6 +27,20 @@ static void remember_switches(struct dalcs_radau_part *part) {
     }
 }
 
+/* Times closer than the resolution are one: what sources do just behind the instant they do at it. A carrier that meets
+ * its reference at t = 0 crosses it at 1e-21 s by rounding. Returns whether any has an edge; *jumps: whether its value jumps. */
+static bool enter_edges(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool *jumps) {
+    struct dalcs_excitation *e = &part->excitation;
+    bool any = false;
+    *jumps = false;
+    while (e->next_edge <= part->segment.t + r->resolution) {
+        dalcs_excitation_enter(e, fmax(part->segment.t, e->next_edge));
+        *jumps = *jumps || e->jumps;
+        any = true;
+    }
+    return any;
+}
+
 enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initial) {
     for (int k = 0; k < r->n_parts; k++) {
         struct dalcs_radau_part *part = &r->part[k];
@@ -43,6 +57,9 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         }
         remember_switches(part);
         dalcs_commands_start(&part->commands);
+        (void)dalcs_commands_obey(&part->commands, r->resolution);
+        bool jumps; /* as a start does anyhow */
+        (void)enter_edges(r, part, &jumps);
         obey_commands(part);
         part->guards.fresh = true;
         if (initial != NULL || dalcs_component_jumps_at_start(c)) {
@@ -176,14 +193,14 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     if (part->guards.n_crossed > 0 || part->segment.by_euler) {
         count_crowd(r, part);
     }
-    if (part->excitation.next_edge <= part->segment.t + r->resolution) {
-        dalcs_excitation_enter(&part->excitation, part->segment.t);
+    bool jumps;
+    if (enter_edges(r, part, &jumps)) {
         part->guards.fresh = true;
-        part->guards.bends = goes_on && !part->excitation.jumps;
-        part->guards.leaps = part->excitation.jumps;
+        part->guards.bends = goes_on && !jumps;
+        part->guards.leaps = jumps;
     }
     bool commanded = part->commands.next <= part->segment.t + r->resolution &&
-                     dalcs_commands_obey(&part->commands, part->segment.t);
+                     dalcs_commands_obey(&part->commands, part->segment.t + r->resolution);
     if (commanded) {
         obey_commands(part);
         part->guards.fresh = true;
@@ -224,8 +241,10 @@ bool dalcs_radau_is_disturbed(const struct dalcs_radau_part *part, const bool *c
 
 /* Its segment has begun at t, as if nothing had changed. */
 static enum dalcs_status begin_again(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    bool jumps;
     dalcs_excitation_enter(&part->excitation, part->segment.t);
-    if (dalcs_commands_obey(&part->commands, part->segment.t)) {
+    (void)enter_edges(r, part, &jumps);
+    if (dalcs_commands_obey(&part->commands, part->segment.t + r->resolution)) {
         obey_commands(part);
         part->guards.flipped = true;
     }

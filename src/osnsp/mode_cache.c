@@ -2,6 +2,7 @@
  *
  * Each mode has its own compressed matrix and its own analysis: diodes that block have no unknown,
  * and a pattern shared by all modes would cost several times the fill. */
+#include "null_space.h"
 #include "osnsp_internal.h"
 
 #include <stdlib.h>
@@ -257,10 +258,36 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
                              : status;
 }
 
+/* Is the least pivot no more than rounding of what was subtracted in it? Columns far apart make the estimate of the
+ * condition small as well, and the pivot of an island of 1 ohm that only 100 Mohm tie to nothing is 1e-8 of its column. */
+static enum dalcs_status look_for_rounding(const struct dalcs_columns *a) {
+    struct dalcs_triplets t = {0};
+    struct dalcs_null_space space;
+    enum dalcs_status status = DALCS_OK;
+    for (int c = 0; c < a->n; c++) {
+        for (int k = a->p[c]; k < a->p[c + 1] && status == DALCS_OK; k++) {
+            status = dalcs_triplets_add(&t, a->i[k], c, a->x[k]);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_null_space_find(&space, a->n, a->n, &t);
+    }
+    dalcs_triplets_finish(&t);
+    if (status == DALCS_OK) {
+        status = space.n_free > 0 ? DALCS_SINGULAR : DALCS_OK;
+        dalcs_null_space_finish(&space);
+    }
+    return status;
+}
+
 static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
     struct dalcs_columns a;
     DALCS_TRY(fill_plain_matrix(p, e, &a));
+    p->klu.rcond = 1.0; /* what small ones without KLU tell */
     enum dalcs_status status = factor(p, e, &a);
+    if (status == DALCS_OK && p->klu.rcond < p->options.rcond_min) {
+        status = look_for_rounding(&a);
+    }
     dalcs_columns_finish(&a);
     return status == DALCS_OK ? order_rows(p, e) : status;
 }

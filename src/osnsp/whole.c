@@ -191,6 +191,7 @@ static void find_residual(const struct dalcs_whole *whole, const double *u, cons
     int n_equations = dalcs_system_n_equations(s);
     for (int r = 0; r < n_equations; r++) {
         long double sum = row_times(&s->A, r, y) + row_times(&s->E, r, u + s->n_x);
+        sum += s->A_rest.p != NULL ? row_times(&s->A_rest, r, y) : 0.0L;
         for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
             int x = s->P.j[k];
             sum += whole->sigma * (long double)s->P.x[k] * ((long double)u[x] - y[x]);

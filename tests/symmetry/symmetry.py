@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """The same answer whatever the units, the names, the company: netlists against their transformed selves.
 
-usage: symmetry.py PROGRAM [--long] [--seeds N[-M]] [--only WORD] [--change WORD] [--keep FOLDER] [FILE ...]
+usage: symmetry.py PROGRAM [--long] [--of tree|power] [--seeds N[-M]] [--power N[-M]] [--only WORD]
+                   [--change WORD] [--keep FOLDER] [FILE ...]
 
 Without more: a few transformations of each netlist of the tree, cut to forty periods, and of some random ones; what
-known.txt lists must fail, all else must hold. --long: every transformation of each, whole. --seeds: random circuits of
-these numbers; with FILE: these netlists; --only and --change: those whose name holds WORD. --keep: leaves each pair
-that differs in a folder, cut down to the elements that it takes."""
+known.txt lists must fail, all else must hold; --of: the tree's and those of random_netlists.py alone, or those of
+random_power.py. --long: every transformation of each, whole. --seeds: random circuits of these numbers, --power: those
+of random_power.py; with FILE: these netlists; --only and --change: those whose name holds WORD. --keep: leaves each
+pair that differs in a folder, cut down to the elements that it takes."""
 
 import argparse
 import pathlib
@@ -15,6 +17,7 @@ import sys
 import zlib
 
 import random_netlists
+import random_power
 import shrinking
 from agreement import Reference
 from dalcs_program import NETLISTS
@@ -25,6 +28,7 @@ from values import Unsupported
 HERE = pathlib.Path(__file__).resolve().parent
 PERIODS = 40
 SHORT_SEEDS = range(33)
+SHORT_POWER = range(36)
 OF_EACH = 3  # transformations of one netlist in a short run
 
 
@@ -41,19 +45,22 @@ def shortened(circuit):
 
 def netlists(arguments):
     """Name and circuit of all that is to be transformed; a word instead of what cannot be."""
-    if not arguments.files and arguments.seeds is None:
+    if not arguments.files and arguments.seeds is None and arguments.power is None:
         paths = sorted(NETLISTS.rglob("*.cir"))
         seeds = SHORT_SEEDS if not arguments.long else range(10 * len(random_netlists.KINDS))
+        power = SHORT_POWER if not arguments.long else range(10 * len(random_power.KINDS))
+        paths, seeds = ([], ()) if arguments.of == "power" else (paths, seeds)
+        power = () if arguments.of == "tree" else power
     else:
-        paths, seeds = [pathlib.Path(name) for name in arguments.files], arguments.seeds or ()
+        paths = [pathlib.Path(name) for name in arguments.files]
+        seeds, power = arguments.seeds or (), arguments.power or ()
     for path in paths:
         if arguments.only in path.stem:
             try:
                 yield path.stem, read(path.read_text(encoding="utf-8", errors="replace"))
             except Unsupported as reason:
                 yield path.stem, str(reason)
-    for seed in seeds:
-        circuit = random_netlists.draw(seed)
+    for circuit in [random_netlists.draw(seed) for seed in seeds] + [random_power.draw(seed) for seed in power]:
         if arguments.only in circuit.title:
             yield circuit.title.replace(" ", "_"), circuit
 
@@ -73,11 +80,12 @@ class Session:
         self.changes = {name: f for name, f in all_of_them().items() if arguments.change in name}
         self.count = {"compared": 0, "differ": 0, "known": 0, "skipped": 0}
         self.known = known_failures() if self.short() else {}
+        self.seen = set()
         self.bad = 0
 
     def short(self):
         a = self.arguments
-        return not (a.long or a.files or a.seeds is not None or a.only or a.change)
+        return not (a.long or a.files or a.seeds is not None or a.power is not None or a.only or a.change)
 
     def chosen(self, name):
         """Those that are the turn of the netlist of this name, whatever other netlists there are."""
@@ -110,6 +118,7 @@ class Session:
             print(f"FAIL {name} {change_name}: passes, take it out of known.txt", flush=True)
 
     def netlist(self, name, circuit):
+        self.seen.add(name)
         if isinstance(circuit, str):
             self.count["skipped"] += 1
             print(f"skip {name}: {circuit}")
@@ -126,7 +135,7 @@ class Session:
             self.compare(name, circuit, reference, change_name)
 
     def finish(self):
-        for name, change in self.known:
+        for name, change in [key for key in self.known if key[0] in self.seen or not self.arguments.of]:
             self.bad += 1
             print(f"FAIL known.txt: {name} {change} was not compared")
         print(", ".join(f"{n} {what}" for what, n in self.count.items()))
@@ -142,7 +151,9 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
     parser.add_argument("--long", action="store_true")
+    parser.add_argument("--of", choices=("tree", "power"))
     parser.add_argument("--seeds", type=seeds_of)
+    parser.add_argument("--power", type=seeds_of)
     parser.add_argument("--only", default="")
     parser.add_argument("--change", default="")
     parser.add_argument("--keep")

@@ -175,14 +175,17 @@ END_TEST
 
 /* 1 MV drives a current through R2, whose KCL at b has terms of twice this current, beside a norm of 1 S * 1 MV. Twice
  * 1000 n roundings of the norm are an answer of their own, half as many may be rounding: a node that is off by 1 pV is
- * seen in the one and not in the other, while 1 uV is in both. */
+ * seen in the one and not in the other, while 1 uV is in both. The 1 S is a G: the current of a resistor so
+ * far from the other would be an unknown. */
 static bool accepts(double roundings, double off) {
     char netlist[256];
 
     enum { N_COLUMNS = 5 }; /* a, b, c, i(V1), lambda */
 
     double terms = roundings * N_COLUMNS * DBL_EPSILON * 1e6;
-    snprintf(netlist, sizeof(netlist), "faint\nV1 a 0 1meg\nR2 a b %.17g\nR3 b c 1\nD1 c 0\n.op\n",
+    snprintf(netlist, sizeof(netlist),
+             "faint\nV1 a 0 1meg\nR2 a b %.17g\nR3 b c 1meg\nG3 b c b 0 1\n"
+             "D1 c 0\n.op\n",
              2e6 / terms);
     setup(netlist);
     ck_assert_int_eq(dalcs_system_n_columns(s), N_COLUMNS);
