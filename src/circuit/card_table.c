@@ -81,7 +81,7 @@ static const struct dot_card DOT_CARDS[] = {
 static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot", ".preprocess"};
 
 /* Analyses that this simulator will not have. */
-static const char *const NEVER[] = {".noise", ".pz", ".disto",   ".tf",   ".sp",
+static const char *const NEVER[] = {".noise", ".pz",  ".disto",   ".tf",   ".sp",
                                     ".hb",    ".net", ".machine", ".stab", ".ferret"};
 
 /* Elements by letter that are not supported. */

@@ -135,9 +135,8 @@ static void extrapolate_lengths(const struct dalcs_radau_part *part, const doubl
     double *after = part->work.after;
     *is_near = true;
     for (int x = 0; x < part->component->system->n_x; x++) {
-        double most = part->inner_tolerance *
-                      fmax(dalcs_step_scale(part, x, part->scales.unit),
-                           fmax(fabs(part->x[x]), fabs(after[x])));
+        double most = part->inner_tolerance * fmax(dalcs_step_scale(part, x, part->scales.unit),
+                                                   fmax(fabs(part->x[x]), fabs(after[x])));
         double differ = after[x] - whole[x];
         after[x] += differ;
         *is_near = *is_near && differ * differ <= most * fmax(fabs(after[x] - part->x[x]), most);

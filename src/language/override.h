@@ -19,7 +19,7 @@ struct dalcs_override {
     const char *name;  /* flat, lower case: "x1.r1" */
     const char *field; /* of a model: "vfwd"; of a waveform: "pulse"; else NULL */
     double value;
-    bool is_step; /* of a run: one of .step or .mc */
+    bool is_step;       /* of a run: one of .step or .mc */
     const double *list; /* [n_list] of a waveform */
     size_t n_list;
 };
