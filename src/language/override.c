@@ -334,7 +334,7 @@ enum dalcs_status dalcs_override_cards(struct dalcs_language *language) {
     const struct dalcs_deck *deck = language->deck;
     for (size_t k = 0; k < deck->n_overrides; k++) {
         const enum dalcs_override_kind kind = deck->override[k].kind;
-        if (kind == DALCS_OVERRIDE_ELEMENT || kind == DALCS_OVERRIDE_MODEL) {
+        if (kind != DALCS_OVERRIDE_PARAMETER && kind != DALCS_OVERRIDE_RUN) {
             DALCS_TRY(apply(language, &deck->override[k]));
         }
     }
