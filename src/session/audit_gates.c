@@ -339,10 +339,12 @@ enum dalcs_status dalcs_audit_gates_sample(struct dalcs_audit_gates *a, double t
     return DALCS_OK;
 }
 
-/* V, the errors that waveforms of these nodes may have. */
-static double doubt_of(const struct dalcs_audit_gates *a, const struct dalcs_signal *s) {
+/* V, the errors that waveforms of the nodes may have that a gate samples: none where these are one. */
+static double doubt_of(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g) {
+    const struct dalcs_circuit *c = a->circuit;
+    const struct dalcs_signal *s = g->sampled >= 0 ? &c->signal[c->measured[g->sampled]] : NULL;
     double doubt = 0.0;
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; s != NULL && k < 2; k++) {
         const int system = a->node_system[s->node[k]];
         const struct dalcs_radau_part *part = system >= 0 ? &a->radau->part[system] : NULL;
         doubt += part != NULL ? part->tolerance * part->scales.unit[0] : 0.0;
@@ -369,7 +371,7 @@ static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
     s->is_lost = false;
     s->clock = clock;
     s->q = tracks;
-    const double doubt = doubt_of(a, &c->signal[c->measured[g->sampled]]);
+    const double doubt = doubt_of(a, g);
     return fabs(value - s->held) > doubt ||
            (mode != NULL && is_known && (mode->u.pwl.v[mode->u.pwl.n - 1] != 0.0) != tracks);
 }
