@@ -165,7 +165,8 @@ static const char *suggest_function(const struct run *r, const char *name) {
 static enum dalcs_outcome draw(const struct run *r, const struct dalcs_operation *o,
                                dalcs_draw *function) {
     struct dalcs_language *language = r->language;
-    const double *x = &language->stack[language->n_stack - (size_t)o->count];
+    const double *x = /* without arguments there may be no stack */
+        o->count > 0 ? &language->stack[language->n_stack - (size_t)o->count] : NULL;
     const double value = dalcs_drawn_next(language, function, x, o->count);
     if (!isfinite(value)) {
         report(r, o, dalcs_draw_usage(o->u.name), "a value of %s is not finite", o->u.name);

@@ -140,6 +140,17 @@ static int put_slack(struct refutation *r, int n, int row, double sign, bool is_
     return n + 1;
 }
 
+/* Does a resistance stand in this branch equation? What refutes a passive circuit dissipates nothing, so that such an
+ * equation needs no weight (Cottle, Pang and Stone 1992, thm 3.1.2). */
+static bool is_resistive(const struct dalcs_system *s, int row) {
+    bool is = false;
+    for (int k = s->A.p[row]; k < s->A.p[row + 1] && !is; k++) {
+        is = s->row[row].kind == DALCS_LABEL_BRANCH && s->A.j[k] == s->dual[row] &&
+             s->A.x[k] != 0.0;
+    }
+    return is;
+}
+
 /* The columns of the present case; how many. */
 static int put_columns(struct refutation *r) {
     const struct dalcs_system *s = r->claim.system;
@@ -156,6 +167,9 @@ static int put_columns(struct refutation *r) {
             r->least.is_free[n] = !is_diode;
             memcpy(r->least.a + (size_t)n++ * m, r->dense + (size_t)c * m, m * sizeof(double));
         }
+    }
+    for (int row = 0; row < n_equations && s->monotone; row++) {
+        n = is_resistive(s, row) ? put_slack(r, n, row, 1.0, true) : n;
     }
     for (int d = 0; d < s->n_pairs; d++) {
         enum dalcs_side_claim side = r->claim.side[d];
