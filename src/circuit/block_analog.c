@@ -207,21 +207,31 @@ static int add_state(const struct dalcs_block_card *c, double farad) {
     return node;
 }
 
-/* It goes no further than a limit. */
+/* It goes no further than a limit, which is the forward voltage of a diode to ground. As a source it would be a voltage of
+ * the circuit, whatever its distance, and signals are measured by the largest of these; a limit on the other side of 0 is
+ * one. */
 static bool add_bound(const struct dalcs_block_card *c, int state, bool is_upper, double limit) {
     const char *what = is_upper ? "upper" : "lower";
+    const bool is_behind = is_upper ? limit < 0.0 : limit > 0.0;
     if (!isfinite(limit)) {
         return true;
     }
-    const int node = dalcs_builder_inner_node(c->builder, what, c->card->token);
+    const int node = is_behind ? dalcs_builder_inner_node(c->builder, what, c->card->token) : 0;
     struct dalcs_device *d =
         dalcs_block_add(c, DALCS_DIODE, what, is_upper ? state : node, is_upper ? node : state);
     if (node < 0 || d == NULL) {
         return false;
     }
-    d->model = dalcs_diode_ideal_model(c->builder);
-    return dalcs_block_add_constant(c, DALCS_VSOURCE, is_upper ? "at_upper" : "at_lower",
-                                    (int[]){node, 0}, limit);
+    if (is_behind) {
+        d->model = dalcs_diode_ideal_model(c->builder);
+        return dalcs_block_add_constant(c, DALCS_VSOURCE, is_upper ? "at_upper" : "at_lower",
+                                        (int[]){node, 0}, limit);
+    }
+    struct dalcs_circuit *circuit = c->builder->circuit;
+    circuit->diode_model[circuit->n_diode_models] = (struct dalcs_diode_model){
+        .name = "limit", .roff = INFINITY, .vfwd = fabs(limit), .vrev = INFINITY};
+    d->model = circuit->n_diode_models++;
+    return true;
 }
 
 static void parse_integrator(const struct dalcs_block_card *c) {

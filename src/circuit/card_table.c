@@ -260,7 +260,8 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_scaled += 2;
             table->n_diodes++;
         }
-        table->n_scaled += (letter == 'd' || letter == 'a') && (card->n > 4 || card->parallel > 0);
+        table->n_scaled += letter == 'd' && (card->n > 4 || card->parallel > 0);
+        table->n_scaled += letter == 'a' ? 2 : 0; /* the limits of an integrator */
         return DALCS_CARD_ELEMENT;
     }
     const char *what = refused_element(letter);
