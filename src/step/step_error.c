@@ -54,6 +54,11 @@ static void find_controls(struct dalcs_radau_part *part) {
     }
 }
 
+/* A threshold that is far away makes a large w of small voltages: it is none of the circuit. */
+static bool has_threshold(const struct dalcs_system *s, int pair) {
+    return s->F.p[pair] < s->F.p[pair + 1];
+}
+
 enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     size_t n = (size_t)dalcs_quads_of(dalcs_system_n_columns(s));
@@ -79,7 +84,8 @@ enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
     for (int c = 0; c < dalcs_system_n_columns(s); c++) { /* of the mode with all pairs open */
         bool is_pair = c >= dalcs_system_n_equations(s);
         kinds->is_ampere[c] = !is_pair && s->column_is_current[c] ? 1.0 : 0.0;
-        kinds->is_volt[c] = 1.0 - kinds->is_ampere[c];
+        bool is_far = is_pair && has_threshold(s, c - dalcs_system_n_equations(s));
+        kinds->is_volt[c] = is_far ? 0.0 : 1.0 - kinds->is_ampere[c];
         kinds->leans[c] = 1.0;
         kinds->counts[c] = is_pair ? 0 : UINT64_MAX;
         if (s->is_part != NULL && s->is_part[c]) { /* what reads it is judged */
@@ -104,7 +110,7 @@ static void find_kinds(const struct dalcs_radau_part *part) {
         for (int k = c + first; changed != 0; k++, changed >>= 1, mode >>= 1) {
             if ((changed & 1) != 0) {
                 double closed = (double)(int)(mode & 1);
-                kinds->is_volt[k] = 1.0 - closed;
+                kinds->is_volt[k] = has_threshold(p->system, k - c) ? 0.0 : 1.0 - closed;
                 kinds->is_closed[k] = closed;
                 kinds->counts[k] = -(mode & 1);
             }
