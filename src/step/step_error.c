@@ -54,8 +54,7 @@ static void find_controls(struct dalcs_radau_part *part) {
     }
 }
 
-/* A threshold that is far away makes a large w of small voltages: it is none of the circuit. Nor is what a formula's pair
- * has a current. */
+/* A threshold that is far away makes a large w of small voltages: it is none of the circuit. */
 static bool has_threshold(const struct dalcs_system *s, int pair) {
     return s->F.p[pair] < s->F.p[pair + 1];
 }
@@ -112,7 +111,7 @@ static void find_kinds(const struct dalcs_radau_part *part) {
             if ((changed & 1) != 0) {
                 double closed = (double)(int)(mode & 1);
                 kinds->is_volt[k] = has_threshold(p->system, k - c) ? 0.0 : 1.0 - closed;
-                kinds->is_closed[k] = p->system->pair[k - c].is_formula ? 0.0 : closed;
+                kinds->is_closed[k] = closed;
                 kinds->counts[k] = -(mode & 1);
             }
         }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Limits that nothing comes near, which people write for "none": 1e9 V in an integrator, a diode or a formula.
+"""Limits that nothing comes near, which people write for "none": 1e9 V in an integrator or a diode.
 
 usage: far_limits.py PROGRAM
 
@@ -26,11 +26,8 @@ CIRCUITS = {
 # what is idle beside it, by its limit; it reads node {n}
 LIMITS = {
     "int": "ai{k} {n} z{k} mi{k}\n.model mi{k} int(gain=1 out_lower_limit=-{l} out_upper_limit={l})\nri{k} z{k} 0 1k",
-    "limit()": "bl{k} z{k} 0 v=limit(v({n}),-{l},{l})\nrl{k} z{k} 0 1k",
-    "min and max": "bm{k} z{k} 0 v=min(max(2*v({n}),-{l}),{l})\nrm{k} z{k} 0 1k",
     "a zener": "dz{k} {n} 0 mz{k}\n.model mz{k} d(vfwd={l} vrev={l})",
     "a forward voltage": "df{k} {n} 0 mf{k}\n.model mf{k} d(vfwd={l})",
-    "the limit of XSPICE": "al{k} {n} z{k} ml{k}\n.model ml{k} limit(gain=1 out_lower_limit=-{l} out_upper_limit={l})\nrk{k} z{k} 0 1k",
 }
 
 
