@@ -145,8 +145,18 @@ static int put_slack(struct refutation *r, int n, int row, double sign, bool is_
 static bool is_resistive(const struct dalcs_system *s, int row) {
     bool is = false;
     for (int k = s->A.p[row]; k < s->A.p[row + 1] && !is; k++) {
-        is = s->row[row].kind == DALCS_LABEL_BRANCH && s->A.j[k] == s->dual[row] &&
-             s->A.x[k] != 0.0;
+        is =
+            s->row[row].kind == DALCS_LABEL_BRANCH && s->A.j[k] == s->dual[row] && s->A.x[k] != 0.0;
+    }
+    return is;
+}
+
+/* Is the problem but one of a passive circuit? Where a control says on which side a switch is, a current through a resistor
+ * may contradict it. */
+static bool is_passive(const struct dalcs_system *s) {
+    bool is = s->monotone;
+    for (int d = 0; d < s->n_pairs && is; d++) {
+        is = !dalcs_claim_follows(s, d);
     }
     return is;
 }
@@ -168,7 +178,8 @@ static int put_columns(struct refutation *r) {
             memcpy(r->least.a + (size_t)n++ * m, r->dense + (size_t)c * m, m * sizeof(double));
         }
     }
-    for (int row = 0; row < n_equations && s->monotone; row++) {
+    bool needs_no_resistor = is_passive(s);
+    for (int row = 0; row < n_equations && needs_no_resistor; row++) {
         n = is_resistive(s, row) ? put_slack(r, n, row, 1.0, true) : n;
     }
     for (int d = 0; d < s->n_pairs; d++) {
