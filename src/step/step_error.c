@@ -54,9 +54,9 @@ static void find_controls(struct dalcs_radau_part *part) {
     }
 }
 
-/* A threshold that is far away makes a large w of small voltages: it is none of the circuit. */
+/* Of a diode: a threshold that is far away makes a large w of small voltages, and is none of the circuit. */
 static bool has_threshold(const struct dalcs_system *s, int pair) {
-    return s->F.p[pair] < s->F.p[pair + 1];
+    return !s->pair[pair].is_formula && s->F.p[pair] < s->F.p[pair + 1];
 }
 
 enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
