@@ -6,11 +6,10 @@
  * Each is a PULSE with a phase, whose edges are met exactly; as functions of functions a triangle would have infinite
  * slopes within, and floor has steps without end. */
 #include "behaviour.h"
+#include "pi.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double PI = 3.14159265358979323846;
 
 /* rate t + offset */
 struct line {
@@ -50,9 +49,9 @@ static const struct dalcs_form *floor_of(struct dalcs_compiler *c, struct line x
 static const struct dalcs_form *triangle(struct dalcs_compiler *c, struct line x) {
     const double sign = x.rate < 0 ? -1 : 1;
     const struct dalcs_wave wave = {.shape = DALCS_TRIANGLE,
-                                    .frequency = sign * x.rate / (2 * PI),
-                                    .phase = sign * x.offset / (2 * PI)};
-    return dalcs_form_scale(c, PI, dalcs_wave_value(c, &wave));
+                                    .frequency = sign * x.rate / (2 * dalcs_pi),
+                                    .phase = sign * x.offset / (2 * dalcs_pi)};
+    return dalcs_form_scale(c, dalcs_pi, dalcs_wave_value(c, &wave));
 }
 
 static bool is_call(const struct dalcs_formula *f, const char *const *names) {
@@ -77,16 +76,16 @@ static const struct dalcs_form *arc_of(struct dalcs_compiler *c, const struct da
         if (*arc != 't' || wave != 't') {
             return NULL;
         }
-        const struct line turns = {x.rate / PI, x.offset / PI + 0.5};
-        const struct dalcs_form *saw = dalcs_form_scale(c, PI, fraction(c, turns));
-        return dalcs_form_add(c, dalcs_form_number(c, -PI / 2), 1, saw);
+        const struct line turns = {x.rate / dalcs_pi, x.offset / dalcs_pi + 0.5};
+        const struct dalcs_form *saw = dalcs_form_scale(c, dalcs_pi, fraction(c, turns));
+        return dalcs_form_add(c, dalcs_form_number(c, -dalcs_pi / 2), 1, saw);
     }
     if (wave == 's') { /* sin(x) = cos(x - pi/2) */
-        x.offset -= PI / 2;
+        x.offset -= dalcs_pi / 2;
     }
     const struct dalcs_form *arc_cosine = triangle(c, x);
     return *arc == 'c' ? arc_cosine
-                       : dalcs_form_add(c, dalcs_form_number(c, PI / 2), -1, arc_cosine);
+                       : dalcs_form_add(c, dalcs_form_number(c, dalcs_pi / 2), -1, arc_cosine);
 }
 
 /* x % y and fmod(x, y) of a line that is never negative. */

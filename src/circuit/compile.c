@@ -1,6 +1,7 @@
 /* compile.c - formulas to values, operation by operation. What is not piecewise linear is a source of its own
  * (smooth_parts.c), or refused. */
 #include "behaviour.h"
+#include "pi.h"
 
 #include <math.h>
 #include <string.h>
@@ -255,12 +256,12 @@ static const struct dalcs_form *table(struct dalcs_compiler *c, const struct dal
 /* sin, cos and falling exp of a straight line in time. */
 static const struct dalcs_form *wave(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                      const struct dalcs_form *a) {
-    static const double PI = 3.14159265358979323846;
     const double rate = a->affine.term[0].coefficient;
     const double offset = a->affine.constant;
     if (*f->function != 'e') {
-        const struct dalcs_wave w = {.frequency = rate / (2 * PI),
-                                     .phase = offset / (2 * PI) + (*f->function == 'c' ? 0.25 : 0)};
+        const struct dalcs_wave w = {.frequency = rate / (2 * dalcs_pi),
+                                     .phase = offset / (2 * dalcs_pi) +
+                                              (*f->function == 'c' ? 0.25 : 0)};
         return dalcs_wave_value(c, &w);
     }
     const struct dalcs_wave w = {.decay = -rate, .phase = 0.25};

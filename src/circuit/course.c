@@ -145,7 +145,8 @@ static bool passes_on_line(const struct dalcs_stimulus_sum *sum, double sign, do
     const double first = dalcs_sum_value(sum, from, DALCS_RIGHT);
     const double fall = fmax(sign * (first - last), -above);
     *t = fmax(from, edge - (edge - from) * (-above / fall));
-    if (*t < 0.5 * edge) { /* the last digit of the edge is more than that of t: once more from there */
+    /* far before the edge, the last digit of that is more than the last one of t: once more from there */
+    if (*t < 0.5 * edge) {
         const double rest = sign * (dalcs_sum_value(sum, *t, DALCS_RIGHT) - threshold);
         *t = fmax(from, *t + (edge - from) * (rest / fall));
     }

@@ -6,12 +6,11 @@
  * its direction, a sine of the phase is the cosine of half a turn times that number, which is smooth where it turns.
  * Until t = 0 a switch holds it at its first phase: the operating point, and small signals around it, see no oscillation. */
 #include "oscillator.h"
+#include "pi.h"
 
 #include "logic_parts.h"
 
 #include <math.h>
-
-static const double pi = 3.14159265358979323846;
 
 bool dalcs_oscillator_set_hertz(struct dalcs_oscillator *o, const struct dalcs_piecewise *table) {
     struct dalcs_piecewise *f = &o->hertz;
@@ -234,7 +233,7 @@ static void put_sine(const struct dalcs_oscillator *o, int swing) {
         return;
     }
     e->node[2] = swing;
-    e->value = pi;
+    e->value = dalcs_pi;
     const int cosine = dalcs_smooth_add(o->card.builder, o->card.card->token, "cosine",
                                         DALCS_SMOOTH_COS, 1, &angle);
     if (cosine >= 0) {

@@ -5,11 +5,10 @@
  * the same time within rounding form a cluster, whose left limit is the end of the segment before it
  * and whose right limit is the start of the segment after it, both exact values of the card. */
 #include "formula_stimulus.h"
+#include "pi.h"
 
 #include <float.h>
 #include <math.h>
-
-static const double PI = 3.14159265358979323846;
 
 /* How far from an edge a time may be and still mean it. An edge is computed with three roundings and
  * a caller's time grid with about as many. */
@@ -34,7 +33,7 @@ static double sin_of_cycles(double x) {
     } else if (r < -0.25) {
         r = -0.5 - r;
     }
-    return sin(2 * PI * r);
+    return sin(2 * dalcs_pi * r);
 }
 
 /* Phase in cycles, less whole ones, at `since` after a start at `phase`. The product's rounding error,
@@ -381,7 +380,7 @@ static void sine_term(const struct dalcs_stimulus *s, double since,
     double amplitude = s->u.sine.amplitude;
     amplitude *= s->u.sine.damping != 0 ? exp(-s->u.sine.damping * since) : 1;
     *term = (struct dalcs_stimulus_term){.decay = s->u.sine.damping,
-                                         .omega = 2 * PI * s->u.sine.frequency,
+                                         .omega = 2 * dalcs_pi * s->u.sine.frequency,
                                          .cosine = amplitude * sin_of_cycles(cycles),
                                          .sine = amplitude * sin_of_cycles(cycles + 0.25)};
 }
@@ -395,7 +394,7 @@ static void sine_piece(const struct dalcs_stimulus *s, double t,
     if (piece->to == s->u.sine.delay || sine_is_over(s, t)) {
         piece->level = sine_value(s, t);
         *piece->term = (struct dalcs_stimulus_term){.decay = s->u.sine.damping,
-                                                    .omega = 2 * PI * s->u.sine.frequency};
+                                                    .omega = 2 * dalcs_pi * s->u.sine.frequency};
         return;
     }
     piece->level = s->u.sine.offset;
@@ -429,7 +428,7 @@ static void tones_piece(const struct dalcs_stimulus *s, double t,
         const double amplitude = have_begun ? tone->amplitude : 0;
         const double cycles = cycles_at(tone->frequency, t - s->u.tones.delay, tone->phase);
         piece->term[k] = (struct dalcs_stimulus_term){
-            .omega = 2 * PI * tone->frequency,
+            .omega = 2 * dalcs_pi * tone->frequency,
             .cosine = amplitude * sin_of_cycles(cycles),
             .sine = amplitude * sin_of_cycles(cycles + 0.25),
         };

@@ -1,5 +1,6 @@
 /* wave.c - functions of time alone: damped sinusoids, straight lines and steps become stimuli. */
 #include "behaviour.h"
+#include "pi.h"
 
 #include <math.h>
 
@@ -27,10 +28,9 @@ static int add_wave(struct dalcs_compiler *c, struct dalcs_wave wave) {
 }
 
 static double sin_of_cycles(double x) {
-    static const double PI = 3.14159265358979323846;
     const double r = x - floor(x);
     const double quarters[] = {0, 1, 0, -1};
-    return r * 4 == floor(r * 4) ? quarters[(int)(r * 4)] : sin(2 * PI * r);
+    return r * 4 == floor(r * 4) ? quarters[(int)(r * 4)] : sin(2 * dalcs_pi * r);
 }
 
 const struct dalcs_form *dalcs_wave_value(struct dalcs_compiler *c, const struct dalcs_wave *wave) {

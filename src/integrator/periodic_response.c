@@ -1,11 +1,10 @@
 /* periodic_response.c - small signals through the pieces of a period. */
 #include "periodic_response.h"
+#include "pi.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <string.h>
-
-static const double two_pi = 6.28318530717958647692;
 
 /* ---- Integrals of polynomials times exp(-j kappa theta) ------------------------------------------ */
 
@@ -167,7 +166,7 @@ static void add_means(struct dalcs_periodic_response *r, const struct dalcs_flow
 }
 
 static double complex turn(double w, double t) {
-    return cexp(I * fmod(w * t, two_pi));
+    return cexp(I * fmod(w * t, dalcs_two_pi));
 }
 
 /* From r->now at the start to what it is at the end of the period. means: r->y grows, with everything at w + of. */
@@ -223,7 +222,7 @@ static enum dalcs_status solve(struct dalcs_periodic_response *r, double w) {
 enum dalcs_status dalcs_periodic_response_at(struct dalcs_periodic_response *r, double w,
                                              int sideband) {
     const size_t n_x = (size_t)r->flow->n_x;
-    const double other = w + sideband * two_pi / r->flow->period;
+    const double other = w + sideband * dalcs_two_pi / r->flow->period;
     r->stamp++;
     for (int m = 0; m < r->n_read; m++) {
         r->y[r->read[m]] = 0.0;

@@ -227,8 +227,9 @@ void dalcs_witness_from_cases(struct dalcs_osnsp *p) {
     name_pairs(p->system, &p->weighed);
 }
 
-/* Sources that enter row r of `of`, and for an equation the elements whose currents do. */
-static void add_row(struct dalcs_osnsp *p, const struct dalcs_csr *of, int r) {
+/* Sources that enter an equation. */
+static void add_inputs(struct dalcs_osnsp *p, int r) {
+    const struct dalcs_csr *of = &p->system->E;
     for (int k = of->p[r]; k < of->p[r + 1]; k++) {
         if (of->j[k] > 0 && of->x[k] != 0.0) {
             add_element(&p->weighed, p->system->input_element[of->j[k]]);
@@ -295,7 +296,7 @@ void dalcs_witness_from_weights(struct dalcs_osnsp *p, const double *v) {
         if (!(fabs(v[r]) > zero_part * largest[s->row_is_current[r]])) {
             continue;
         }
-        add_row(p, &s->E, r);
+        add_inputs(p, r);
         add_readers(p, r);
         if (s->row[r].kind == DALCS_LABEL_BRANCH || s->row[r].kind == DALCS_LABEL_STATE ||
             (s->row[r].kind == DALCS_LABEL_NODE && is_alone)) {

@@ -6,6 +6,7 @@
  *
  * No row is moved to a grid, so edges of nanoseconds are where they are: an FFT would see them elsewhere. */
 #include "spectrum.h"
+#include "pi.h"
 
 #include "memory.h"
 #include "quantity.h"
@@ -16,8 +17,6 @@
 #include <string.h>
 
 enum { MOST_LINES = 20000, ROWS_OF_A_NEEDLE = 3 };
-
-static const double two_pi = 6.28318530717958647693;
 
 struct work {
     size_t n, n_lines; /* signals; frequencies besides 0 */
@@ -33,7 +32,7 @@ struct work {
 
 static void turn_to(struct work *w, double at) {
     const double part = (at - w->start) / w->length;
-    const double complex one = cos(two_pi * part) - I * sin(two_pi * part);
+    const double complex one = cos(dalcs_two_pi * part) - I * sin(dalcs_two_pi * part);
     w->turn[0] = 1.0;
     for (size_t k = 1; k <= w->n_lines; k++) {
         w->turn[k] = w->turn[k - 1] * one;
@@ -42,7 +41,7 @@ static void turn_to(struct work *w, double at) {
 
 static void add_line(struct work *w, size_t signal, double span, double before, double after) {
     const double slope = (after - before) / span;
-    const double omega = two_pi / w->length;
+    const double omega = dalcs_two_pi / w->length;
     double complex *sum = w->sum + signal * w->n_lines;
     w->mean[signal] += 0.5 * span * (before + after);
     for (size_t k = 1; k <= w->n_lines; k++) {

@@ -1,12 +1,11 @@
 /* periodic_ac.c - .ac behind .pss: small sinusoids around the periodic orbit. */
 #include "periodic_ac.h"
+#include "pi.h"
 
 #include "radau.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double two_pi = 6.28318530717958647692;
 
 /* The orbit is known to rounding whatever the tolerance. How events move follows from what is on both sides of them,
  * which is as good as this. */
@@ -43,7 +42,7 @@ static enum dalcs_status solve_part(struct dalcs_periodic_ac *a, struct dalcs_pe
         return DALCS_OK;
     }
     const enum dalcs_status status =
-        dalcs_periodic_response_at(&p->response, two_pi * frequency, a->sideband);
+        dalcs_periodic_response_at(&p->response, dalcs_two_pi * frequency, a->sideband);
     if (status == DALCS_SINGULAR) {
         return refuse_frequency(a, frequency);
     }
@@ -165,7 +164,7 @@ static double fastest_of(const struct dalcs_sweep *f) {
     for (int k = 0; k < f->n; k++) {
         fastest = fmax(fastest, dalcs_sweep_value(f, k));
     }
-    return two_pi * fastest;
+    return dalcs_two_pi * fastest;
 }
 
 static enum dalcs_status go_on(void *user) {

@@ -1,12 +1,11 @@
 /* periodic_margins.c - crossings between two frequencies of a sweep, on the response itself, not on its rows. */
 #include "periodic_margins.h"
+#include "pi.h"
 
 #include "dalcs.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* Halves of an interval of frequencies until they are the same. */
 enum { MOST_HALVINGS = 60 };
@@ -54,7 +53,8 @@ static enum dalcs_status look(struct dalcs_margins *m, bool of_phase, double fre
     if (!of_phase) {
         DALCS_TRY(dalcs_grow(&m->crossover, &m->crossover_capacity, m->n_crossovers + 1,
                              sizeof *m->crossover));
-        m->crossover[m->n_crossovers++] = (struct dalcs_margin){at, carg(-there) * 180.0 / pi};
+        m->crossover[m->n_crossovers++] =
+            (struct dalcs_margin){at, carg(-there) * 180.0 / dalcs_pi};
     }
     return DALCS_OK;
 }

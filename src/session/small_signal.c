@@ -6,6 +6,7 @@
  * with the AC values of the sources as s: one sparse complex system for each frequency. */
 #include "gates.h"
 #include "measures.h"
+#include "pi.h"
 #include "smooth_newton.h"
 
 #include "lu.h"
@@ -253,8 +254,7 @@ static void find_residual(struct part *part, double omega) {
 }
 
 static enum dalcs_status solve_part(struct part *part, double frequency, double rcond_min) {
-    static const double two_pi = 6.28318530717958647692;
-    const double omega = two_pi * frequency;
+    const double omega = dalcs_two_pi * frequency;
     struct dalcs_lu lu;
     if (part->n == 0) {
         return DALCS_OK;

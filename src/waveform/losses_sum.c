@@ -1,5 +1,6 @@
 /* losses_sum.c - sums over stretches, and what switches by their tables. */
 #include "losses_sum.h"
+#include "pi.h"
 
 #include "memory.h"
 
@@ -8,8 +9,6 @@
 #include <string.h>
 
 enum { N = DALCS_STRETCH_NODES };
-
-static const double two_pi = 6.283185307179586477;
 
 static double frequency_of(const struct dalcs_circuit *c, const struct dalcs_device *d) {
     const struct dalcs_stimulus *s = d->stimulus >= 0 ? &c->stimulus[d->stimulus] : NULL;
@@ -150,7 +149,8 @@ struct cut {
 
 static void add_fundamental(struct dalcs_loss *d, const struct cut *cut, double theta,
                             double weight, double volt, double ampere, double since) {
-    double turn = two_pi * fmod(d->frequency * (cut->from + theta * cut->length - since), 1.0);
+    double turn =
+        dalcs_two_pi * fmod(d->frequency * (cut->from + theta * cut->length - since), 1.0);
     d->c[0] += weight * volt * cos(turn);
     d->s[0] += weight * volt * sin(turn);
     d->c[1] += weight * ampere * cos(turn);
