@@ -81,10 +81,12 @@ static double part_value(const struct dalcs_audit *audit, const struct audit_par
                : affine_value(audit, part, s, device, false, &b->output, size, &terms);
 }
 
-/* A lambda that adds to what an affine function reads besides is held to that one's scale, too. */
+/* A lambda that adds to what an affine function reads besides is held to that one's scale, too; but not to a number, which
+ * is exact and may be a limit that nothing comes near. */
 static void raise_lambdas(struct dalcs_audit *audit, int device, const struct dalcs_affine *a,
                           double size) {
     double *scale = audit->scale.lambda + audit->net.first_lambda[device];
+    size -= fabs(a->constant);
     for (int k = 0; k < a->n; k++) {
         if (a->term[k].kind == DALCS_QUANTITY_PAIR) {
             size -= fabs(a->term[k].coefficient) * scale[a->term[k].index];

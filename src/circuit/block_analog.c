@@ -81,6 +81,8 @@ static void parse_limit(const struct dalcs_block_card *c) {
             dalcs_block_set_knot(&table, at++, limit / gain - offset, limit);
         }
     }
+    table.zero = gain * offset;
+    table.has_zero = true;
     dalcs_block_add_table(c, &c->port[0].end[0], &table);
 }
 
@@ -330,6 +332,8 @@ static void parse_derivative(const struct dalcs_block_card *c) {
             dalcs_block_set_knot(&table, at++, y[k] - offset, y[k]);
         }
     }
+    table.zero = offset;
+    table.has_zero = true;
     dalcs_block_add_table(c, &(struct dalcs_block_end){.node = node}, &table);
 }
 

@@ -27,7 +27,7 @@ static int add_model(struct dalcs_builder *builder) {
 static const struct dalcs_form *two_values(struct dalcs_compiler *c, const struct dalcs_form *v,
                                            double low, double high) {
     struct dalcs_knot knot = {0.5 * (low + high), fmin(low, high), low, fmax(low, high)};
-    const struct dalcs_piecewise step = {1, &knot, 0, 0};
+    const struct dalcs_piecewise step = {.n = 1, .knot = &knot};
     return dalcs_form_apply(c, &step, v);
 }
 

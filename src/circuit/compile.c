@@ -92,7 +92,7 @@ static const struct dalcs_form *divide(struct dalcs_compiler *c, const struct da
 static const struct dalcs_form *compare(struct dalcs_compiler *c, const struct dalcs_form *a,
                                         const struct dalcs_form *b, double at_0) {
     struct dalcs_knot knot = {0, 0, at_0, 1};
-    const struct dalcs_piecewise step = {1, &knot, 0, 0};
+    const struct dalcs_piecewise step = {.n = 1, .knot = &knot};
     const struct dalcs_form *result = dalcs_form_apply(c, &step, dalcs_form_add(c, a, -1, b));
     return dalcs_form_to_logic(c, result);
 }
@@ -213,7 +213,7 @@ static const struct dalcs_form *choice(struct dalcs_compiler *c, const struct da
 
 static const struct dalcs_form *apply(struct dalcs_compiler *c, struct dalcs_knot *knot, int n,
                                       double before, double after, const struct dalcs_form *a) {
-    const struct dalcs_piecewise outer = {n, knot, before, after};
+    const struct dalcs_piecewise outer = {.n = n, .knot = knot, .before = before, .after = after};
     return dalcs_form_apply(c, &outer, a);
 }
 
@@ -247,7 +247,7 @@ static const struct dalcs_form *table(struct dalcs_compiler *c, const struct dal
         return refuse_name(c, f, "table(x, x1, y1, x2, y2, ...) with x1 < x2 < ...",
                            "the points of '%s' are not in order");
     }
-    const struct dalcs_piecewise inside = {n, knot, 0, 0};
+    const struct dalcs_piecewise inside = {.n = n, .knot = knot};
     const bool has_slopes = goes_on && n > 1;
     return apply(c, knot, n, has_slopes ? dalcs_piecewise_slope(&inside, 1) : 0,
                  has_slopes ? dalcs_piecewise_slope(&inside, n - 1) : 0, argument[0]);

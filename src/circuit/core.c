@@ -112,7 +112,8 @@ static bool make_curve(struct dalcs_builder *builder, const struct dalcs_core *c
         knot[n - 1 - k] = (struct dalcs_knot){-i, -flux, -flux, -flux};
     }
     const double slope = p[TURNS] * p[TURNS] * p[AREA] * MU0 / (m * (p[LM] + p[LG]));
-    *curve = (struct dalcs_piecewise){2 * (n - 1), knot, slope, slope};
+    *curve =
+        (struct dalcs_piecewise){.n = 2 * (n - 1), .knot = knot, .before = slope, .after = slope};
     builder->out_of_memory = builder->out_of_memory || knot == NULL;
     return knot != NULL;
 }

@@ -5,6 +5,8 @@
  * are then quantities like others. */
 #include "behaviour.h"
 
+#include <math.h>
+
 static const struct dalcs_form *keep(struct dalcs_compiler *c, struct dalcs_form value) {
     struct dalcs_form *kept = c->failed ? NULL : dalcs_arena_alloc(c->arena, 1, sizeof *kept);
     if (kept == NULL) {
@@ -168,31 +170,42 @@ const struct dalcs_form *dalcs_form_apply(struct dalcs_compiler *c,
     return from_one(c, &whole);
 }
 
-/* b + max(a - b, 0), b the one that is constant where one is: there it is exact. */
-const struct dalcs_form *dalcs_form_max(struct dalcs_compiler *c, const struct dalcs_form *a,
-                                        const struct dalcs_form *b) {
-    struct dalcs_knot knot = {0, 0, 0, 0};
-    const struct dalcs_piecewise ramp = {1, &knot, 0, 1};
+/* max(a, b), sign = 1, or min(a, b), sign = -1: b + max(a - b, 0), b - max(b - a, 0). With a number it is one
+ * function of the other, exact on the number and around 0. */
+static const struct dalcs_form *extreme(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                        const struct dalcs_form *b, int sign) {
     if (a == NULL || b == NULL) {
         return NULL;
     }
     const bool swaps = dalcs_form_is_number(a);
     const struct dalcs_form *base = swaps ? a : b;
-    const struct dalcs_form *excess = dalcs_form_add(c, swaps ? b : a, -1, base);
-    return dalcs_form_add(c, base, 1, dalcs_form_apply(c, &ramp, excess));
+    const struct dalcs_form *other = swaps ? b : a;
+    if (dalcs_form_is_number(base)) {
+        const double x = base->affine.constant;
+        struct dalcs_knot knot = {x, x, x, x};
+        const struct dalcs_piecewise bound = {.n = 1,
+                                              .knot = &knot,
+                                              .before = sign > 0 ? 0 : 1,
+                                              .after = sign > 0 ? 1 : 0,
+                                              .has_zero = true,
+                                              .zero = sign > 0 ? fmax(x, 0) : fmin(x, 0)};
+        return dalcs_form_apply(c, &bound, other);
+    }
+    struct dalcs_knot knot = {0, 0, 0, 0};
+    const struct dalcs_piecewise ramp = {.n = 1, .knot = &knot, .after = 1};
+    const struct dalcs_form *excess =
+        sign > 0 ? dalcs_form_add(c, other, -1, base) : dalcs_form_add(c, base, -1, other);
+    return dalcs_form_add(c, base, sign, dalcs_form_apply(c, &ramp, excess));
+}
+
+const struct dalcs_form *dalcs_form_max(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                        const struct dalcs_form *b) {
+    return extreme(c, a, b, 1);
 }
 
 const struct dalcs_form *dalcs_form_min(struct dalcs_compiler *c, const struct dalcs_form *a,
                                         const struct dalcs_form *b) {
-    struct dalcs_knot knot = {0, 0, 0, 0};
-    const struct dalcs_piecewise ramp = {1, &knot, 0, 1};
-    if (a == NULL || b == NULL) {
-        return NULL;
-    }
-    const bool swaps = dalcs_form_is_number(a);
-    const struct dalcs_form *base = swaps ? a : b;
-    const struct dalcs_form *excess = dalcs_form_add(c, base, -1, swaps ? b : a);
-    return dalcs_form_add(c, base, -1, dalcs_form_apply(c, &ramp, excess));
+    return extreme(c, a, b, -1);
 }
 
 const struct dalcs_form *dalcs_form_to_logic(struct dalcs_compiler *c, const struct dalcs_form *a) {

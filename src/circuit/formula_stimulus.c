@@ -38,17 +38,10 @@ static struct place find_place(const struct dalcs_stimulus *s, double t, enum da
     return place_of(s, &course);
 }
 
-/* Of the line before knot k, which on a flat one is exact. */
-static double on_line(const struct dalcs_piecewise *f, int k, double argument) {
-    const double slope = dalcs_piecewise_slope(f, k);
-    const struct dalcs_knot *knot = &f->knot[k < f->n ? k : f->n - 1];
-    const double value = k < f->n ? knot->left : knot->right;
-    return slope == 0.0 ? value : value + slope * (argument - knot->at);
-}
-
 static double value_at(const struct dalcs_stimulus *s, struct place place, double argument) {
     const struct dalcs_piecewise *f = &s->u.formula.function;
-    return place.rests ? f->knot[place.knot].value : on_line(f, place.knot, argument);
+    return place.rests ? f->knot[place.knot].value
+                       : dalcs_piecewise_on_line(f, place.knot, argument);
 }
 
 double dalcs_formula_stimulus_value(const struct dalcs_stimulus *s, double t,

@@ -41,7 +41,7 @@ static bool add_steps(struct dalcs_compiler *c, struct dalcs_levels *levels,
         const struct dalcs_knot *from = &part->f.knot[k];
         const double height = from->right - from->left;
         struct dalcs_knot knot = {from->at, 0, (from->value - from->left) / height, 1};
-        const struct dalcs_piecewise step = {1, &knot, 0, 0};
+        const struct dalcs_piecewise step = {.n = 1, .knot = &knot};
         if (height != 0 &&
             !add(levels, height, dalcs_form_to_logic(c, dalcs_form_apply(c, &step, direction)))) {
             return false;

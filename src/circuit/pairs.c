@@ -100,18 +100,41 @@ static void add_half(struct dalcs_compiler *c, const struct half *h, struct dalc
     }
 }
 
-/* The piece that the others are added to: a flat one, on which the value is then exact, or else the
- * one around 0. */
+/* Arguments are between a millionth of this and a million times it, in volts or amperes. A piece that reaches
+ * further from 0 than this, as base, leaves the rounding of slope times argument to the flat pieces: at most
+ * 1e6 eps = 2e-10 of their value. A flat piece that begins nearer, as base, leaves the rounding of its value to
+ * the piece around 0: at most 1e6 eps of what that one is worth. Both are below the tolerance, 1e-9. */
+static const double near_zero = 1.0;
+
+/* How far the piece around 0 reaches on the side where it ends first. */
+static double reach_of(const struct dalcs_piecewise *f, int around) {
+    return fmin(around < f->n ? f->knot[around].at : INFINITY,
+                around > 0 ? -f->knot[around - 1].at : INFINITY);
+}
+
+static double value_of(const struct dalcs_piecewise *f, int piece) {
+    const struct dalcs_knot *knot = &f->knot[piece < f->n ? piece : f->n - 1];
+    return piece < f->n ? knot->left : knot->right;
+}
+
+/* The piece that the others are added to: the one around 0 if it is wide, or else a flat one, on which the value is
+ * then exact: the one of the least value, whose rounding the others get. */
 static int base_of(const struct dalcs_piecewise *f) {
-    int base = 0;
-    while (base < f->n && f->knot[base].at <= 0) {
-        base++;
+    int around = 0;
+    while (around < f->n && f->knot[around].at <= 0) {
+        around++;
     }
-    for (int k = f->n; k >= 0; k--) {
-        base = dalcs_piecewise_slope(f, k) == 0 ? k : base;
+    if (isinf(dalcs_piecewise_slope(f, around))) { /* a vertical end */
+        around = around == 0 ? 1 : around - 1;
     }
-    if (isinf(dalcs_piecewise_slope(f, base))) { /* a vertical end */
-        base = base == 0 ? 1 : base - 1;
+    int base = around;
+    bool is_flat = false;
+    for (int k = 0; k <= f->n && reach_of(f, around) < near_zero; k++) {
+        if (dalcs_piecewise_slope(f, k) == 0 &&
+            (!is_flat || fabs(value_of(f, k)) < fabs(value_of(f, base)))) {
+            base = k;
+            is_flat = true;
+        }
     }
     return base;
 }
@@ -131,11 +154,8 @@ static void freeze_part(struct dalcs_compiler *c, const struct dalcs_form_part *
         return;
     }
     const int base = base_of(f);
-    const struct dalcs_knot *knot = &f->knot[base < f->n ? base : f->n - 1];
-    const double value = base < f->n ? knot->left : knot->right;
-    const double slope = dalcs_piecewise_slope(f, base);
-    sum->constant += slope == 0 ? value : value - slope * knot->at;
-    *sum = dalcs_affine_add(c, sum, slope, &part->direction);
+    sum->constant += dalcs_piecewise_on_line(f, base, 0);
+    *sum = dalcs_affine_add(c, sum, dalcs_piecewise_slope(f, base), &part->direction);
     const struct half right = {f, &part->direction, base, 1};
     const struct half left = {f, &part->direction, base, -1};
     add_half(c, &right, sum);

@@ -24,6 +24,11 @@ double dalcs_piecewise_slope(const struct dalcs_piecewise *f, int k) {
     return b->left == a->right ? 0 : (b->left - a->right) / (b->at - a->at);
 }
 
+/* Is f(0) on the line before knot k, and known? */
+static bool knows_zero(const struct dalcs_piecewise *f, int k) {
+    return f->has_zero && (k == 0 || f->knot[k - 1].at < 0) && (k == f->n || f->knot[k].at > 0);
+}
+
 /* The knot at s, or else the first beyond it. */
 static int find(const struct dalcs_piecewise *f, double s, bool *is_there) {
     int k = 0;
@@ -49,12 +54,18 @@ double dalcs_piecewise_at(const struct dalcs_piecewise *f, double s, int side) {
         const struct dalcs_knot *knot = &f->knot[k];
         return side < 0 ? knot->left : side > 0 ? knot->right : knot->value;
     }
-    if (k == 0) {
-        return f->before == 0 ? f->knot[0].left : f->knot[0].left + f->before * (s - f->knot[0].at);
-    }
+    return dalcs_piecewise_on_line(f, k, s);
+}
+
+double dalcs_piecewise_on_line(const struct dalcs_piecewise *f, int k, double s) {
     const double slope = dalcs_piecewise_slope(f, k);
-    return slope == 0 ? f->knot[k - 1].right
-                      : f->knot[k - 1].right + slope * (s - f->knot[k - 1].at);
+    const struct dalcs_knot *knot = &f->knot[k > 0 ? k - 1 : 0];
+    const double value = k > 0 ? knot->right : knot->left;
+    if (slope == 0) {
+        return value;
+    }
+    return knows_zero(f, k) && fabs(s) < fabs(s - knot->at) ? f->zero + slope * s
+                                                            : value + slope * (s - knot->at);
 }
 
 static bool is_flat_at(const struct dalcs_knot *knot, double size) {
@@ -99,6 +110,8 @@ bool dalcs_piecewise_line(struct dalcs_arena *arena, double constant, double slo
     f->n = 1;
     f->knot[0] = (struct dalcs_knot){0, constant, constant, constant};
     f->before = f->after = slope;
+    f->has_zero = true;
+    f->zero = constant;
     return true;
 }
 
@@ -150,6 +163,8 @@ static bool join(struct dalcs_arena *arena, const struct dalcs_piecewise *a,
         f->before = a->knot[0].left * b->before + b->knot[0].left * a->before;
         f->after = a->knot[a->n - 1].right * b->after + b->knot[b->n - 1].right * a->after;
     }
+    f->has_zero = true;
+    f->zero = joined(a, b, 0, is_product).value;
     simplify(f);
     return true;
 }
@@ -173,6 +188,8 @@ static bool copy(struct dalcs_arena *arena, const struct dalcs_piecewise *a,
     f->n = a->n;
     f->before = a->before;
     f->after = a->after;
+    f->has_zero = a->has_zero;
+    f->zero = a->zero;
     return true;
 }
 
@@ -183,6 +200,7 @@ bool dalcs_piecewise_scale(struct dalcs_arena *arena, const struct dalcs_piecewi
     }
     f->before *= factor;
     f->after *= factor;
+    f->zero *= factor;
     for (int k = 0; k < f->n; k++) {
         f->knot[k].left *= factor;
         f->knot[k].value *= factor;
@@ -201,6 +219,7 @@ bool dalcs_piecewise_to_logic(struct dalcs_arena *arena, const struct dalcs_piec
         struct dalcs_knot *knot = &f->knot[k];
         *knot = (struct dalcs_knot){knot->at, knot->left != 0, knot->value != 0, knot->right != 0};
     }
+    f->zero = f->zero != 0;
     simplify(f);
     return true;
 }
@@ -221,8 +240,12 @@ static void cross(const struct dalcs_piecewise *outer, const struct dalcs_piecew
     const struct dalcs_knot *b = k < inner->n ? &inner->knot[k] : NULL;
     for (int i = 0; i < outer->n && slope != 0; i++) {
         const struct dalcs_knot *knot = &outer->knot[slope > 0 ? i : outer->n - 1 - i];
-        const double at = a != NULL ? a->at + (knot->at - a->right) / slope
-                                    : b->at + (knot->at - b->left) / slope;
+        double at = a != NULL ? a->at + (knot->at - a->right) / slope
+                              : b->at + (knot->at - b->left) / slope;
+        const double from_zero = (knot->at - inner->zero) / slope;
+        if (knows_zero(inner, k) && fabs(from_zero) < fabs(at - (a != NULL ? a->at : b->at))) {
+            at = from_zero;
+        }
         const bool is_after =
             a == NULL || (at > a->at && !is_near(at, a->at) && !is_near(knot->at, a->right));
         const bool is_before =
@@ -258,6 +281,8 @@ bool dalcs_piecewise_compose(struct dalcs_arena *arena, const struct dalcs_piece
     }
     f->before = far_slope(outer, inner->before, -1);
     f->after = far_slope(outer, inner->after, 1);
+    f->has_zero = true;
+    f->zero = dalcs_piecewise_at(outer, dalcs_piecewise_at(inner, 0, 0), 0);
     simplify(f);
     return true;
 }

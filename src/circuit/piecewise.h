@@ -17,6 +17,8 @@ struct dalcs_piecewise {
     int n; /* at least 1 */
     struct dalcs_knot *knot;
     double before, after; /* slopes beyond the first and the last knot */
+    bool has_zero;        /* is f(0) known? Knots far away tell it but to their own rounding */
+    double zero;
 };
 
 /* The functions below make new ones in the arena, without knots that change nothing; false when out of
@@ -53,6 +55,9 @@ bool dalcs_piecewise_is_line(const struct dalcs_piecewise *f);
 
 /* Constant between its knots? */
 bool dalcs_piecewise_is_stepped(const struct dalcs_piecewise *f);
+
+/* Of the line before knot k, at s: on a flat one exact. */
+double dalcs_piecewise_on_line(const struct dalcs_piecewise *f, int k, double s);
 
 /* The limit at s from the left (side < 0) or the right (side > 0), or the value (0). */
 double dalcs_piecewise_at(const struct dalcs_piecewise *f, double s, int side);

@@ -92,7 +92,12 @@ static bool mirror(struct dalcs_arena *arena, const struct dalcs_piecewise *f,
         const struct dalcs_knot *from = &f->knot[f->n - 1 - k];
         knot[k] = (struct dalcs_knot){-from->at, from->right, from->value, from->left};
     }
-    *mirrored = (struct dalcs_piecewise){f->n, knot, -f->after, -f->before};
+    *mirrored = (struct dalcs_piecewise){.n = f->n,
+                                         .knot = knot,
+                                         .before = -f->after,
+                                         .after = -f->before,
+                                         .has_zero = f->has_zero,
+                                         .zero = f->zero};
     return knot != NULL;
 }
 

@@ -87,8 +87,10 @@ static bool integrate_steps(struct dalcs_arena *arena, const struct dalcs_piecew
         value += k > 0 ? slope->knot[k].left * (at - slope->knot[k - 1].at) : 0;
         knot[k] = (struct dalcs_knot){at, value, value, value};
     }
-    *f = (struct dalcs_piecewise){slope->n, knot, slope->knot[0].left,
-                                  slope->knot[slope->n - 1].right};
+    *f = (struct dalcs_piecewise){.n = slope->n,
+                                  .knot = knot,
+                                  .before = slope->knot[0].left,
+                                  .after = slope->knot[slope->n - 1].right};
     const double at_0 = dalcs_piecewise_at(f, 0, 0);
     for (int k = 0; k < slope->n; k++) {
         knot[k].left = knot[k].value = knot[k].right -= at_0;
@@ -331,7 +333,9 @@ bool dalcs_storage_function_invert(struct dalcs_arena *arena,
     }
     const double before = curve->before;
     const double after = curve->after;
-    *inverse = (struct dalcs_piecewise){n, knot, before > 0 ? f->unit / before : (double)INFINITY,
-                                        after > 0 ? f->unit / after : (double)INFINITY};
+    *inverse = (struct dalcs_piecewise){.n = n,
+                                        .knot = knot,
+                                        .before = before > 0 ? f->unit / before : (double)INFINITY,
+                                        .after = after > 0 ? f->unit / after : (double)INFINITY};
     return true;
 }

@@ -54,9 +54,10 @@ static void find_controls(struct dalcs_radau_part *part) {
     }
 }
 
-/* Of a diode: a threshold that is far away makes a large w of small voltages, and is none of the circuit. */
-static bool has_threshold(const struct dalcs_system *s, int pair) {
-    return !s->pair[pair].is_formula && s->F.p[pair] < s->F.p[pair + 1];
+/* Lambda and w of a formula have no unit; thresholds of diodes that are far away make a large w of small voltages.
+ * Neither is a signal of the circuit, by which others are measured. */
+static bool measures_nothing(const struct dalcs_system *s, int pair) {
+    return s->pair[pair].is_formula || s->F.p[pair] < s->F.p[pair + 1];
 }
 
 enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
@@ -84,7 +85,7 @@ enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
     for (int c = 0; c < dalcs_system_n_columns(s); c++) { /* of the mode with all pairs open */
         bool is_pair = c >= dalcs_system_n_equations(s);
         kinds->is_ampere[c] = !is_pair && s->column_is_current[c] ? 1.0 : 0.0;
-        bool is_far = is_pair && has_threshold(s, c - dalcs_system_n_equations(s));
+        bool is_far = is_pair && measures_nothing(s, c - dalcs_system_n_equations(s));
         kinds->is_volt[c] = is_far ? 0.0 : 1.0 - kinds->is_ampere[c];
         kinds->leans[c] = 1.0;
         kinds->counts[c] = is_pair ? 0 : UINT64_MAX;
@@ -110,9 +111,10 @@ static void find_kinds(const struct dalcs_radau_part *part) {
         for (int k = c + first; changed != 0; k++, changed >>= 1, mode >>= 1) {
             if ((changed & 1) != 0) {
                 double closed = (double)(int)(mode & 1);
-                kinds->is_volt[k] = has_threshold(p->system, k - c) ? 0.0 : 1.0 - closed;
-                kinds->is_closed[k] = closed;
-                kinds->counts[k] = -(mode & 1);
+                kinds->is_volt[k] = measures_nothing(p->system, k - c) ? 0.0 : 1.0 - closed;
+                bool is_judged = !p->system->pair[k - c].is_formula; /* else what reads it is */
+                kinds->is_closed[k] = is_judged ? closed : 0.0;
+                kinds->counts[k] = is_judged ? -(mode & 1) : 0;
             }
         }
     }
@@ -289,7 +291,7 @@ static void compare(const struct dalcs_radau_part *part, const struct allowance 
         judge(q, curved ? dalcs_larger(error, fabs(ripple[c])) : error, allowed, of);
     }
     for (int c = n_equations; curved && c < n_equations + s->n_pairs; c++) {
-        if (is_on(part, c - n_equations)) { /* the voltage of the others is one of the columns */
+        if (part->scales.kinds->counts[c] != 0) { /* an open one's voltage is one of the columns */
             double scale = dalcs_step_scale(part, c, q->unit);
             judge(q, fabs(ripple[c]), a->tolerance * scale + a->besides[2], 1);
         }
