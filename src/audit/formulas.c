@@ -81,19 +81,23 @@ static double part_value(const struct dalcs_audit *audit, const struct audit_par
                : affine_value(audit, part, s, device, false, &b->output, size, &terms);
 }
 
-/* A lambda that adds to what an affine function reads besides is held to that one's scale, too; but not to a number, which
- * is exact and may be a limit that nothing comes near. */
-static void raise_lambdas(struct dalcs_audit *audit, int device, const struct dalcs_affine *a,
-                          double size) {
+static bool is_own(const struct dalcs_affine_term *term, int row) {
+    return term->kind == DALCS_QUANTITY_PAIR && term->index >= row;
+}
+
+/* The lambdas of a row's own cell are held to the scale of the argument that they are added to: it has lambdas of earlier
+ * pairs only. A number in it is exact and may be a limit that nothing comes near: it is no scale. */
+static void raise_lambdas(struct dalcs_audit *audit, int device, int row,
+                          const struct dalcs_affine *a, double size) {
     double *scale = audit->scale.lambda + audit->net.first_lambda[device];
     size -= fabs(a->constant);
     for (int k = 0; k < a->n; k++) {
-        if (a->term[k].kind == DALCS_QUANTITY_PAIR) {
+        if (is_own(&a->term[k], row)) {
             size -= fabs(a->term[k].coefficient) * scale[a->term[k].index];
         }
     }
     for (int k = 0; k < a->n; k++) {
-        if (a->term[k].kind == DALCS_QUANTITY_PAIR) {
+        if (is_own(&a->term[k], row)) {
             scale[a->term[k].index] =
                 fmax(scale[a->term[k].index], size / fabs(a->term[k].coefficient));
         }
@@ -127,7 +131,7 @@ static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,
         const int pair = audit->net.first_lambda[device] + k;
         const double w =
             affine_value(audit, part, s, device, as_is, &d->behaviour->w[k], &size, &terms);
-        raise_lambdas(audit, device, &d->behaviour->w[k], size);
+        raise_lambdas(audit, device, k, &d->behaviour->w[k], size);
         const double lambda = audit_ratio(s->lambda[pair], audit->scale.lambda[pair]);
         const double over = fabs(fmin(lambda, audit_ratio(w, size))) - AUDIT_ROUNDING;
         audit_find(audit, part, law, device, over * held, held, s->t);

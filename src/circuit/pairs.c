@@ -70,71 +70,86 @@ static double far_value(const struct half *h, const struct dalcs_knot *knot) {
     return h->sign > 0 ? knot->right : knot->left;
 }
 
+/* Arguments are up to this part of a piece's width: a kink goes on beyond it, and what ends it must cancel that: at most
+ * eps / narrow * 1 kV = 2e-10 of what the piece is high is rounding. Narrower pieces saturate, which is exact and takes
+ * one pair more. */
+static const double narrow = 1e-3;
+
+/* What a piece adds to the line of slope `before`, from its first knot to the next one, where it ends. */
+static void add_saturation(struct dalcs_compiler *c, const struct half *h, int k, double before,
+                           const struct dalcs_affine *beyond, struct dalcs_affine *sum) {
+    const double width = fabs(knot_of(h, k + 1)->at - knot_of(h, k)->at);
+    const double slope = fabs(slope_of(h, k + 1) - before);
+    const double height =
+        near_value(h, knot_of(h, k + 1)) - far_value(h, knot_of(h, k)) - before * width;
+    if (slope != 0 && height != 0) {
+        add_pair(c, sum, height > 0 ? 1 : -1, add_cell(c, beyond, 1 / slope, fabs(height)));
+    }
+}
+
 static void add_half(struct dalcs_compiler *c, const struct half *h, struct dalcs_affine *sum) {
     const struct dalcs_affine zero = dalcs_affine_constant(0);
+    double before = slope_of(h, 0); /* of the line that the pieces are added to */
     for (int k = 0; knot_of(h, k) != NULL && !c->failed; k++) {
         const struct dalcs_knot *knot = knot_of(h, k);
         const struct dalcs_knot *next = knot_of(h, k + 1);
         struct dalcs_affine beyond = dalcs_affine_add(c, &zero, h->sign, h->direction);
         beyond.constant = -h->sign * knot->at;
-        const double slope = slope_of(h, k + 1);
-        const double bend = slope - slope_of(h, k);
+        const bool returns = next != NULL && slope_of(h, k + 2) == before;
+        const bool saturates = returns || (next != NULL && fabs(next->at - knot->at) < narrow);
+        const double bend = saturates ? 0 : slope_of(h, k + 1) - before;
         const double jump = far_value(h, knot) - near_value(h, knot);
-        const bool is_saturation = jump == 0 && next != NULL && slope_of(h, k) == 0 &&
-                                   slope_of(h, k + 2) == 0 && next->left == next->right &&
-                                   slope != 0;
         if (jump != 0) {
             const int pair = add_cell(c, &beyond, 0, fabs(jump));
             add_pair(c, sum, jump > 0 ? 1 : -1, pair);
             if (bend != 0) {
                 add_pair(c, sum, bend, pair + 1);
             }
-        } else if (is_saturation) {
-            const double height = near_value(h, next) - near_value(h, knot);
-            const int pair = add_cell(c, &beyond, 1 / fabs(slope), fabs(height));
-            add_pair(c, sum, height > 0 ? 1 : -1, pair);
-            k++;
         } else if (bend != 0) {
             add_pair(c, sum, bend > 0 ? 1 : -1, add_cell(c, &beyond, 1 / fabs(bend), INFINITY));
         }
+        if (saturates) {
+            add_saturation(c, h, k, before, &beyond, sum);
+        }
+        before += bend;
     }
 }
 
-/* Arguments are between a millionth of this and a million times it, in volts or amperes. A piece that reaches
- * further from 0 than this, as base, leaves the rounding of slope times argument to the flat pieces: at most
- * 1e6 eps = 2e-10 of their value. A flat piece that begins nearer, as base, leaves the rounding of its value to
- * the piece around 0: at most 1e6 eps of what that one is worth. Both are below the tolerance, 1e-9. */
+/* Arguments are between a millionth of this and a million times it, in volts or amperes. The base leaves the rounding of its
+ * value to the other pieces. A flat one that begins nearer than this gives them at most 1e6 eps = 2e-10 of what they are
+ * worth. Without one, the piece around 0 reaches at least as far, and slope times argument is rounded to at most 1e6 eps
+ * of what the flat pieces are worth. */
 static const double near_zero = 1.0;
-
-/* How far the piece around 0 reaches on the side where it ends first. */
-static double reach_of(const struct dalcs_piecewise *f, int around) {
-    return fmin(around < f->n ? f->knot[around].at : INFINITY,
-                around > 0 ? -f->knot[around - 1].at : INFINITY);
-}
 
 static double value_of(const struct dalcs_piecewise *f, int piece) {
     const struct dalcs_knot *knot = &f->knot[piece < f->n ? piece : f->n - 1];
     return piece < f->n ? knot->left : knot->right;
 }
 
-/* The piece that the others are added to: the one around 0 if it is wide, or else a flat one, on which the value is
- * then exact: the one of the least value, whose rounding the others get. */
+static double distance_of(const struct dalcs_piecewise *f, int piece) {
+    const double below = piece < f->n ? -f->knot[piece].at : -INFINITY;
+    const double above = piece > 0 ? f->knot[piece - 1].at : -INFINITY;
+    return fmax(fmax(below, above), 0);
+}
+
+/* The piece that the others are added to: a flat one near 0, on which the value is then exact, and of these the one
+ * of the least value; or else the one around 0. */
 static int base_of(const struct dalcs_piecewise *f) {
-    int around = 0;
-    while (around < f->n && f->knot[around].at <= 0) {
-        around++;
-    }
-    if (isinf(dalcs_piecewise_slope(f, around))) { /* a vertical end */
-        around = around == 0 ? 1 : around - 1;
-    }
-    int base = around;
-    bool is_flat = false;
-    for (int k = 0; k <= f->n && reach_of(f, around) < near_zero; k++) {
-        if (dalcs_piecewise_slope(f, k) == 0 &&
-            (!is_flat || fabs(value_of(f, k)) < fabs(value_of(f, base)))) {
+    int base = -1;
+    for (int k = 0; k <= f->n; k++) {
+        const bool may_be = dalcs_piecewise_slope(f, k) == 0 && distance_of(f, k) < near_zero;
+        if (may_be && (base < 0 || fabs(value_of(f, k)) < fabs(value_of(f, base)))) {
             base = k;
-            is_flat = true;
         }
+    }
+    if (base >= 0) {
+        return base;
+    }
+    for (base = 0; base < f->n && f->knot[base].at <= 0;) {
+        base++;
+    }
+    if (isinf(dalcs_piecewise_slope(f, base))) { /* a vertical end */
+        base = base == 0 ? 1 : base - 1;
     }
     return base;
 }

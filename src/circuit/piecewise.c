@@ -24,11 +24,6 @@ double dalcs_piecewise_slope(const struct dalcs_piecewise *f, int k) {
     return b->left == a->right ? 0 : (b->left - a->right) / (b->at - a->at);
 }
 
-/* Is f(0) on the line before knot k, and known? */
-static bool knows_zero(const struct dalcs_piecewise *f, int k) {
-    return f->has_zero && (k == 0 || f->knot[k - 1].at < 0) && (k == f->n || f->knot[k].at > 0);
-}
-
 /* The knot at s, or else the first beyond it. */
 static int find(const struct dalcs_piecewise *f, double s, bool *is_there) {
     int k = 0;
@@ -57,19 +52,61 @@ double dalcs_piecewise_at(const struct dalcs_piecewise *f, double s, int side) {
     return dalcs_piecewise_on_line(f, k, s);
 }
 
-double dalcs_piecewise_on_line(const struct dalcs_piecewise *f, int k, double s) {
-    const double slope = dalcs_piecewise_slope(f, k);
-    const struct dalcs_knot *knot = &f->knot[k > 0 ? k - 1 : 0];
-    const double value = k > 0 ? knot->right : knot->left;
-    if (slope == 0) {
-        return value;
+/* The points that are known of the line before knot k: at most its two knots and f(0). */
+static int points_of(const struct dalcs_piecewise *f, int k, double at[3], double value[3]) {
+    int n = 0;
+    if (k > 0) {
+        at[n] = f->knot[k - 1].at;
+        value[n++] = f->knot[k - 1].right;
     }
-    return knows_zero(f, k) && fabs(s) < fabs(s - knot->at) ? f->zero + slope * s
-                                                            : value + slope * (s - knot->at);
+    if (k < f->n) {
+        at[n] = f->knot[k].at;
+        value[n++] = f->knot[k].left;
+    }
+    if (f->has_zero && (k == 0 || f->knot[k - 1].at < 0) && (k == f->n || f->knot[k].at > 0)) {
+        at[n] = 0;
+        value[n++] = f->zero;
+    }
+    return n;
+}
+
+/* Of n numbers the one next to x. */
+static int nearest(const double *number, int n, double x) {
+    int best = 0;
+    for (int k = 1; k < n; k++) {
+        best = fabs(number[k] - x) < fabs(number[best] - x) ? k : best;
+    }
+    return best;
+}
+
+double dalcs_piecewise_on_line(const struct dalcs_piecewise *f, int k, double s) {
+    double at[3];
+    double value[3];
+    const int from = nearest(at, points_of(f, k, at, value), s);
+    const double slope = dalcs_piecewise_slope(f, k);
+    return slope == 0 ? value[from] : value[from] + slope * (s - at[from]);
+}
+
+/* Where the line before knot k, which is not flat, is y. */
+static double reaches(const struct dalcs_piecewise *f, int k, double y) {
+    double at[3];
+    double value[3];
+    const int from = nearest(value, points_of(f, k, at, value), y);
+    return at[from] + (y - value[from]) / dalcs_piecewise_slope(f, k);
 }
 
 static bool is_flat_at(const struct dalcs_knot *knot, double size) {
     return fabs(knot->right - knot->left) <= 8 * DBL_EPSILON * size;
+}
+
+/* What the rounding of the values at its ends makes of the slope before knot k. */
+static double slope_rounding(const struct dalcs_piecewise *f, int k) {
+    if (k == 0 || k == f->n) {
+        return 0;
+    }
+    const struct dalcs_knot *a = &f->knot[k - 1];
+    const struct dalcs_knot *b = &f->knot[k];
+    return 8 * DBL_EPSILON * fmax(fabs(a->right), fabs(b->left)) / (b->at - a->at);
 }
 
 /* Takes away knots without a jump and without a change of slope, all but one. */
@@ -80,6 +117,7 @@ static void simplify(struct dalcs_piecewise *f) {
     }
     int n = 0;
     double slope = f->before;
+    double rounding_before = 0;
     for (int k = 0; k < f->n; k++) {
         const double next = dalcs_piecewise_slope(f, k + 1);
         struct dalcs_knot knot = f->knot[k];
@@ -88,13 +126,16 @@ static void simplify(struct dalcs_piecewise *f) {
             knot.left = knot.right = next == 0 ? knot.right : knot.left;
             knot.value = knot.left;
         }
+        const double rounding = slope_rounding(f, k + 1);
         const bool is_straight = knot.left == knot.right &&
-                                 fabs(next - slope) <= 0x1p-40 * fmax(fabs(next), fabs(slope));
+                                 fabs(next - slope) <= fmax(0x1p-40 * fmax(fabs(next), fabs(slope)),
+                                                            rounding_before + rounding);
         const bool is_last = k == f->n - 1 && n == 0;
         if (!is_straight || is_last) {
             f->knot[n++] = knot;
         }
         slope = next;
+        rounding_before = rounding;
     }
     const bool is_line = n == 1 && f->knot[0].left == f->knot[0].right &&
                          fabs(f->after - f->before) <= 0x1p-40 * fabs(f->before);
@@ -240,12 +281,7 @@ static void cross(const struct dalcs_piecewise *outer, const struct dalcs_piecew
     const struct dalcs_knot *b = k < inner->n ? &inner->knot[k] : NULL;
     for (int i = 0; i < outer->n && slope != 0; i++) {
         const struct dalcs_knot *knot = &outer->knot[slope > 0 ? i : outer->n - 1 - i];
-        double at = a != NULL ? a->at + (knot->at - a->right) / slope
-                              : b->at + (knot->at - b->left) / slope;
-        const double from_zero = (knot->at - inner->zero) / slope;
-        if (knows_zero(inner, k) && fabs(from_zero) < fabs(at - (a != NULL ? a->at : b->at))) {
-            at = from_zero;
-        }
+        const double at = reaches(inner, k, knot->at);
         const bool is_after =
             a == NULL || (at > a->at && !is_near(at, a->at) && !is_near(knot->at, a->right));
         const bool is_before =

@@ -43,6 +43,9 @@ TELLS = {"limit()": (1, 0), "min and max": (2, 0), "max of one side": (1, 0), "l
 # beyond it around 0.
 EXACT = [(0.37, "0.3", 777777.7, 0.3), (3.7, "1.3", -777777.7, -1.3), (0.7, "0.11", 3.3e5, 0.11), (1, "2", 1.1e-9, 1.1e-9),
          (1, "9", -3.3e-9, -3.3e-9), (1, "1e9", 1e-3, 1e-3)]
+# Tables with narrow pieces, what drives n, and the value; and how many corners one with wider pieces has.
+NARROW = [("-1,0.1,0,0.3,3e-4,1.7,6e-4,1.9", -900.0, 0.1), ("0,0.2,2e-4,-1.1,5e-4,0.7,1,0.9", 800.0, 0.9)]
+WIDER = ("0,0,5e-3,1,1e-2,1.5,15e-3,1.75", 4)
 
 
 def main():
@@ -73,6 +76,15 @@ def main():
                   at=[1e-6], method=None, options=["--audit", "full"])
         found = ran.column("v(z)")[0]
         checker.check(abs(found - value) <= 1e-12 * abs(value), f"limit {limit} V of {factor} times {volts!r} V is {found!r}")
+    for points, volts, value in NARROW:
+        ran = run(program, f"narrow\nv1 m 0 {volts!r}\nr2 m n 1k\nb1 z 0 v=table(v(n),{points})\nr1 z 0 1k\n.tran 1u 2u\n.end\n",
+                  at=[1e-6], method=None, options=["--audit", "full"])
+        found = ran.column("v(z)")[0]
+        checker.check(abs(found - value) <= 1e-12, f"table {points} at {volts!r} V is {found!r}")
+    points, corners = WIDER
+    ran = run(program, f"wider\nv1 m 0 1\nr2 m n 1k\nb1 z 0 v=table(v(n),{points})\nr1 z 0 1k\n.tran 1u 2u\n.end\n", method=None)
+    found = ran.report["size"]["lambda"]
+    checker.check(found == corners, f"table {points} has {found} corners")
     return checker.finish()
 
 
