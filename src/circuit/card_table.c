@@ -214,11 +214,31 @@ static void count_block(struct dalcs_card_table *table, const struct dalcs_card 
     }
 }
 
+/* tran for .tran. A card that begins with the letter of an element may be one, as Dc and Env: it is taken for a card if
+ * nothing follows its name, or if its name is one that nobody gives an element. */
+static bool lacks_dot(const struct dalcs_card *card) {
+    static const char *const cards[] = {"tran", "param", "params",  "plot",   "print", "probe",
+                                        "temp", "func",  "options", "option", "four"};
+    static const char *const names[] = {"model", "include", "measure", "meas", "subckt", "control"};
+    static const char *const alone[] = {"end", "ends", "endc", "op"};
+    const char *name = card->token->text;
+    return dalcs_builder_is_one_of(name, cards, sizeof cards / sizeof cards[0]) ||
+           dalcs_builder_is_one_of(name, names, sizeof names / sizeof names[0]) ||
+           (card->n == 1 && dalcs_builder_is_one_of(name, alone, sizeof alone / sizeof alone[0]));
+}
+
 static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
                                               const struct dalcs_card *card) {
     struct dalcs_builder *builder = table->builder;
     const struct dalcs_token *name = card->token;
     const char letter = card->letter;
+    if (lacks_dot(card)) {
+        builder->hidden |= DALCS_HIDDEN_ALL;
+        dalcs_builder_error(builder, name,
+                            dalcs_builder_hint(builder, "did you mean '.%s'?", name->text),
+                            "'%s' lacks the '.' of a card", name->text);
+        return DALCS_CARD_NONE;
+    }
     if (letter == 'k') {
         const size_t n_coils = (size_t)dalcs_coupling_count_coils(card);
         table->n_pairs += n_coils * (n_coils - 1) / 2;
@@ -337,6 +357,17 @@ static void copy_word(const char *line, int index, char *word, size_t size) {
     word[n] = '\0';
 }
 
+/* DC, AC or a function, with or without its parenthesis. */
+static bool begins_source(const char *word) {
+    static const char *const known[] = {"sin", "pulse", "pwl", "exp", "am", "sffm", "dc", "ac"};
+    const size_t length = strcspn(word, "(");
+    bool found = false;
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
+        found = found || (strlen(known[k]) == length && strncasecmp(word, known[k], length) == 0);
+    }
+    return found;
+}
+
 void dalcs_card_table_check_title(struct dalcs_builder *builder) {
     const struct dalcs_source_line *line = builder->netlist->title_line;
     char first[32];
@@ -348,9 +379,10 @@ void dalcs_card_table_check_title(struct dalcs_builder *builder) {
     copy_word(line->text, 0, first, sizeof first);
     copy_word(line->text, 3, value, sizeof value);
     /* A digit tells R1 from Rectifier. */
-    const bool is_element = first[0] != '\0' && strchr("RLCVIrlcvi", first[0]) != NULL &&
-                            strpbrk(first, "0123456789") != NULL &&
-                            dalcs_number_parse(value, &number) == DALCS_NUMBER_OK;
+    const bool is_element =
+        first[0] != '\0' && strchr("RLCVIrlcvi", first[0]) != NULL &&
+        strpbrk(first, "0123456789") != NULL &&
+        (dalcs_number_parse(value, &number) == DALCS_NUMBER_OK || begins_source(value));
     const bool is_card = first[0] == '.' && first[1] >= 'A' && strcasecmp(first, ".title") != 0;
     if (is_element || is_card) {
         const struct dalcs_token token = {.line = line, .length = (int)strlen(line->text)};

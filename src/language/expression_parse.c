@@ -4,6 +4,7 @@
  * ngspice's reading of a formula is not that of mathematics and other simulators, there is no safe
  * one, and it is an error: a**b**c, and a*-b**c. */
 #include "expression.h"
+#include "foreign.h"
 #include "number.h"
 
 #include <stdlib.h>
@@ -69,8 +70,9 @@ static void unexpected(struct parser *p) {
     if (p->symbol == END) {
         report(p, DALCS_ERROR, p->last_end, 1, NULL, "a value is missing");
     } else {
-        report(p, DALCS_ERROR, p->begin, p->length, NULL, "did not expect '%.*s' in the expression",
-               p->length, p->text->text + p->begin);
+        report(p, DALCS_ERROR, p->begin, p->length,
+               dalcs_foreign_sign(p->text->text + p->begin, (size_t)p->length),
+               "did not expect '%.*s' in the expression", p->length, p->text->text + p->begin);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "netlist.h"
 
 #include "encoding.h"
+#include "foreign.h"
 #include "lexer.h"
 #include "text_file.h"
 
@@ -34,6 +35,25 @@ static bool is_no_text(struct dalcs_netlist *netlist, const struct dalcs_source 
     where.column = (int)(nul - line) + 1;
     dalcs_diag_add(diag, DALCS_ERROR, &where, "save the netlist as UTF-8 text",
                    "NUL byte: this is not a text file");
+    netlist->has_errors = true;
+    return true;
+}
+
+/* Says so when a program for drawing circuits wrote the text; else false. */
+static bool is_drawing(struct dalcs_netlist *netlist, const struct dalcs_source *source,
+                       const char *text, size_t length, struct dalcs_diag *diag) {
+    const struct dalcs_foreign *drawing = dalcs_foreign_drawing(text, length);
+    if (drawing == NULL) {
+        return false;
+    }
+    const struct dalcs_location where = {.file = source->name,
+                                         .line = 1,
+                                         .column = 1,
+                                         .length = 1,
+                                         .file_number = source->number,
+                                         .included = source->included};
+    dalcs_diag_add(diag, DALCS_ERROR, &where, drawing->hint,
+                   "this is a drawing of %s, not a netlist", drawing->program);
     netlist->has_errors = true;
     return true;
 }
@@ -181,7 +201,8 @@ enum dalcs_status dalcs_source_read(struct dalcs_netlist *netlist,
     netlist->n_bytes += length;
     struct dalcs_lexer lexer = {.netlist = netlist, .source = source, .diag = diag};
     DALCS_TRY(dalcs_encoding_to_utf8(&netlist->arena, &text, &length));
-    if (is_no_text(netlist, source, text, length, diag)) {
+    if (is_no_text(netlist, source, text, length, diag) ||
+        is_drawing(netlist, source, text, length, diag)) {
         return DALCS_OK;
     }
     lexer.raw = dalcs_arena_copy(&netlist->arena, text, length);
