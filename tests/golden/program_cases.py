@@ -163,7 +163,7 @@ class Usage(Case):
                           self.refused("run", "a.cir", word))
         self.assertIn("did you mean '-o a.png'?", self.refused("plot", "a.raw", "a.png"))
         self.assertIn("did you mean '--measures'?", self.refused("run", "a.cir", "--mesures", "m.csv"))
-        for word, meant in [("simulate", "run"), ("lcp", "equations"), ("version", "--version"), ("chekc", "check")]:
+        for word, meant in [("simulate", "run"), ("lcp", "equations"), ("version", "--version"), ("equation", "equations")]:
             self.assertIn(f"unknown verb '{word}'; did you mean '{meant}'?", self.refused(word, "a.cir"))
         self.assertIn("'dalcs run' writes its waveforms", self.refused("plot", "a.cir"))
         self.assertIn("two results", self.refused("run", "a.cir", "-o", "x.csv", "-o", "x.csv"))
