@@ -1,43 +1,59 @@
-/* foreign.c - names drawings and signs that are no SPICE.
+/* foreign.c - names files and signs that are no SPICE.
  *
  * A drawing read as a netlist gives an error for each of its lines, and none says that it is one. */
 #include "foreign.h"
 
 #include <string.h>
 
-/* How a drawing begins, and its second line where the first may be the title of a netlist. */
+#define KICAD  "KiCad writes a netlist by File > Export > Netlist, Spice"
+#define SYSTEM "a system file begins with: dalcs-system 2 TITLE"
+
+/* How a file begins, and its second line where the first may be the title of a netlist. */
 static const struct {
     const char *first, *second;
     struct dalcs_foreign is;
-} DRAWINGS[] = {
+} FILES[] = {
     {"Version ",
      "SHEET ",
-     {"LTspice",
+     {"a drawing of LTspice",
       "in LTspice, View > SPICE Netlist writes a netlist; so does 'LTspice -netlist FILE'"}},
-    {"<Qucs Schematic", NULL, {"Qucs", "Qucs-S writes a netlist by Simulation > Save netlist"}},
-    {"(kicad_sch", NULL, {"KiCad", "KiCad writes a netlist by File > Export > Netlist, Spice"}},
-    {"EESchema Schematic",
+    {"<Qucs Schematic",
      NULL,
-     {"KiCad", "KiCad writes a netlist by File > Export > Netlist, Spice"}},
-    {"v {xschem ", NULL, {"xschem", "xschem writes a netlist by Netlist"}},
-    {"v 20", "C ", {"gschem", "'lepton-netlist -g spice-sdb FILE' or gnetlist writes a netlist"}},
+     {"a drawing of Qucs", "Qucs-S writes a netlist by Simulation > Save netlist"}},
+    {"(kicad_sch", NULL, {"a drawing of KiCad", KICAD}},
+    {"EESchema Schematic", NULL, {"a drawing of KiCad", KICAD}},
+    {"v {xschem ", NULL, {"a drawing of xschem", "xschem writes a netlist by Netlist"}},
+    {"v 20",
+     "C ",
+     {"a drawing of gschem", "'lepton-netlist -g spice-sdb FILE' or gnetlist writes a netlist"}},
+    {"dalcs-system 1",
+     "about ",
+     {"a one-step problem that could not be solved",
+      "'tools/replay FILE' solves it again and says where it fails"}},
+    {"dalcs-system", NULL, {"a system file of another version", SYSTEM}},
 };
 
 static int begins(const char *text, size_t length, const char *with) {
     return length >= strlen(with) && memcmp(text, with, strlen(with)) == 0;
 }
 
-const struct dalcs_foreign *dalcs_foreign_drawing(const char *text, size_t length) {
+const struct dalcs_foreign *dalcs_foreign_file(const char *name, const char *text, size_t length) {
+    static const struct dalcs_foreign headless = {"a system file without its first line", SYSTEM};
     const char *newline = length > 0 ? memchr(text, '\n', length) : NULL;
+    const char *three_bytes = "\xEF\xBB\xBF"; /* a byte order mark */
+    const char *first = begins(text, length, three_bytes) ? text + 3 : text;
+    if (begins(first, length - (size_t)(first - text), "dalcs-system 2")) {
+        return NULL; /* its cards are read like those of a netlist */
+    }
     const size_t second = newline != NULL ? (size_t)(newline - text) + 1 : length;
-    for (size_t k = 0; k < sizeof DRAWINGS / sizeof DRAWINGS[0]; k++) {
-        if (begins(text, length, DRAWINGS[k].first) &&
-            (DRAWINGS[k].second == NULL ||
-             begins(text + second, length - second, DRAWINGS[k].second))) {
-            return &DRAWINGS[k].is;
+    for (size_t k = 0; k < sizeof FILES / sizeof FILES[0]; k++) {
+        if (begins(text, length, FILES[k].first) &&
+            (FILES[k].second == NULL || begins(text + second, length - second, FILES[k].second))) {
+            return &FILES[k].is;
         }
     }
-    return NULL;
+    const char *dot = strrchr(name, '.');
+    return dot != NULL && strcmp(dot, ".dalcs") == 0 ? &headless : NULL;
 }
 
 const char *dalcs_foreign_sign(const char *word, size_t length) {

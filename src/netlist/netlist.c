@@ -39,11 +39,11 @@ static bool is_no_text(struct dalcs_netlist *netlist, const struct dalcs_source 
     return true;
 }
 
-/* Says so when a program for drawing circuits wrote the text; else false. */
-static bool is_drawing(struct dalcs_netlist *netlist, const struct dalcs_source *source,
+/* Says so when the text is of another kind, such as a drawing; else false. */
+static bool is_foreign(struct dalcs_netlist *netlist, const struct dalcs_source *source,
                        const char *text, size_t length, struct dalcs_diag *diag) {
-    const struct dalcs_foreign *drawing = dalcs_foreign_drawing(text, length);
-    if (drawing == NULL) {
+    const struct dalcs_foreign *file = dalcs_foreign_file(source->name, text, length);
+    if (file == NULL) {
         return false;
     }
     const struct dalcs_location where = {.file = source->name,
@@ -52,8 +52,7 @@ static bool is_drawing(struct dalcs_netlist *netlist, const struct dalcs_source 
                                          .length = 1,
                                          .file_number = source->number,
                                          .included = source->included};
-    dalcs_diag_add(diag, DALCS_ERROR, &where, drawing->hint,
-                   "this is a drawing of %s, not a netlist", drawing->program);
+    dalcs_diag_add(diag, DALCS_ERROR, &where, file->hint, "this is %s, not a netlist", file->what);
     netlist->has_errors = true;
     return true;
 }
@@ -202,7 +201,7 @@ enum dalcs_status dalcs_source_read(struct dalcs_netlist *netlist,
     struct dalcs_lexer lexer = {.netlist = netlist, .source = source, .diag = diag};
     DALCS_TRY(dalcs_encoding_to_utf8(&netlist->arena, &text, &length));
     if (is_no_text(netlist, source, text, length, diag) ||
-        is_drawing(netlist, source, text, length, diag)) {
+        is_foreign(netlist, source, text, length, diag)) {
         return DALCS_OK;
     }
     lexer.raw = dalcs_arena_copy(&netlist->arena, text, length);

@@ -180,6 +180,15 @@ class Usage(Case):
         self.write(netlist.replace(".tran", "R2 c 0 1k\n.tran"))
         self.assertNotIn("no element is at ground", self.dalcs("run", "a.cir").stderr)
 
+    def test_slips_of_system_files(self):
+        self.write("x1' = -x1 + lambda\n0 <= lambda _|_ x1 >= 0\n", "mine.dalcs")
+        self.assertIn("a system file begins with: dalcs-system 2 TITLE",
+                      self.dalcs("run", "mine.dalcs", expect=NETLIST).stderr)
+        self.write("dalcs-system 2 mine\nstate x\nP 1\n.op\n", "mine.dalcs")
+        self.assertIn("write: matrix p, and its rows behind +", self.dalcs("run", "mine.dalcs", expect=NETLIST).stderr)
+        self.write(RECTIFIER)
+        self.assertIn("did you mean 'osnsp'?", self.dalcs("equations", "a.cir", "--form", "lcp", expect=USAGE).stderr)
+
     def test_one_file_for_two_results(self):
         """However it is spelled, and whether it is there or not."""
         self.write(RECTIFIER)
