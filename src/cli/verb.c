@@ -52,14 +52,17 @@ static const char *option_for(const char *word) {
                                                                            : NULL;
 }
 
-void dalcs_verb_one_too_many(const struct dalcs_cli *cli, const char *what, const char *word) {
-    const char *option = option_for(word);
-    if (option != NULL && strcmp(what, "netlist") != 0) {
+void dalcs_verb_one_too_many(const struct dalcs_cli *cli, const char *verb, const char *word) {
+    const bool is_plot = strcmp(verb, "plot") == 0;
+    const bool is_run = strcmp(verb, "run") == 0 || strcmp(verb, "steady") == 0;
+    const char *option = is_run || is_plot ? option_for(word) : NULL;
+    if (option != NULL && is_plot) {
         option = "-o "; /* of a file of waveforms */
     }
-    dalcs_cli_error(cli, "one %s at a time: '%s' is one too many%s%s%s%s", what, word,
-                    option != NULL ? "; did you mean '" : "", option != NULL ? option : "",
-                    option != NULL ? word : "", option != NULL ? "'?" : "");
+    dalcs_cli_error(cli, "one %s at a time: '%s' is one too many%s%s%s%s",
+                    is_plot ? "file" : "netlist", word, option != NULL ? "; did you mean '" : "",
+                    option != NULL ? option : "", option != NULL ? word : "",
+                    option != NULL ? "'?" : "");
 }
 
 enum dalcs_status dalcs_verb_take_netlist(const struct dalcs_cli *cli, const char *verb, int argc,
@@ -69,7 +72,7 @@ enum dalcs_status dalcs_verb_take_netlist(const struct dalcs_cli *cli, const cha
         return DALCS_E_OPTION;
     }
     if (optind != argc - 1) {
-        dalcs_verb_one_too_many(cli, "netlist", argv[argc - 1]);
+        dalcs_verb_one_too_many(cli, verb, argv[argc - 1]);
         return DALCS_E_OPTION;
     }
     *netlist = argv[optind];

@@ -30,6 +30,10 @@ static const struct {
      "about ",
      {"a one-step problem that could not be solved",
       "'tools/replay FILE' solves it again and says where it fails"}},
+    {"Title: ",
+     "Date: ",
+     {"a raw file of waveforms",
+      "'dalcs plot FILE' draws it, 'dalcs audit NETLIST FILE' checks it"}},
     {"dalcs-system", NULL, {"a system file of another version", SYSTEM}},
 };
 
