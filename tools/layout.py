@@ -48,7 +48,8 @@ class Part:
 
     def line(self, a, b, side=""):
         (ax, ay), (bx, by) = a, b
-        return f"{self.name} {self.kind} {ax:g},{ay:g} {bx:g},{by:g} {side}" + (f" | {self.value}" if self.value else "")
+        value = f" | {self.value}" if self.value else ""
+        return f"{self.name} {self.kind} {ax:g},{ay:g} {bx:g},{by:g} {side}{value}"
 
 
 def quantity(word, unit):
@@ -137,7 +138,8 @@ class Layout:
 
     def sides_of(self, node, k):
         """Does anything come to a node, the k-th, from before and from behind?"""
-        places = [self.order.index(end) for part in self.across if node in part.ends for end in part.ends if end != node]
+        places = [self.order.index(end) for part in self.across if node in part.ends
+                  for end in part.ends if end != node]
         return any(place < k for place in places), any(place > k for place in places)
 
     def place_nodes(self):

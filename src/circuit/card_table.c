@@ -214,16 +214,15 @@ static void count_block(struct dalcs_card_table *table, const struct dalcs_card 
     }
 }
 
-/* tran for .tran. A card that begins with the letter of an element may be one, as Dc and Env: it is taken for a card if
- * nothing follows its name, or if its name is one that nobody gives an element. */
+/* tran for .tran. Elements may be called as cards are, Dc and Env: it is a card if nothing follows its name, or if its name
+ * is one that nobody gives an element. */
 static bool lacks_dot(const struct dalcs_card *card) {
-    static const char *const cards[] = {"tran", "param", "params",  "plot",   "print", "probe",
-                                        "temp", "func",  "options", "option", "four"};
-    static const char *const names[] = {"model", "include", "measure", "meas", "subckt", "control"};
+    static const char *const cards[] = {"tran",  "param",   "params", "plot",    "print",
+                                        "probe", "temp",    "model",  "include", "measure",
+                                        "meas",  "options", "option", "subckt",  "control"};
     static const char *const alone[] = {"end", "ends", "endc", "op"};
     const char *name = card->token->text;
     return dalcs_builder_is_one_of(name, cards, sizeof cards / sizeof cards[0]) ||
-           dalcs_builder_is_one_of(name, names, sizeof names / sizeof names[0]) ||
            (card->n == 1 && dalcs_builder_is_one_of(name, alone, sizeof alone / sizeof alone[0]));
 }
 

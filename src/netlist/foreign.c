@@ -1,6 +1,7 @@
 /* foreign.c - names files and signs that are no SPICE.
  *
- * A drawing read as a netlist gives an error for each of its lines, and none says that it is one. */
+ * A drawing read as a netlist gives an error for each of its lines, and none says that it is
+ * one. */
 #include "foreign.h"
 
 #include <string.h>
@@ -43,12 +44,14 @@ static int begins(const char *text, size_t length, const char *with) {
 
 const struct dalcs_foreign *dalcs_foreign_file(const char *name, const char *text, size_t length) {
     static const struct dalcs_foreign headless = {"a system file without its first line", SYSTEM};
-    const char *newline = length > 0 ? memchr(text, '\n', length) : NULL;
-    const char *three_bytes = "\xEF\xBB\xBF"; /* a byte order mark */
-    const char *first = begins(text, length, three_bytes) ? text + 3 : text;
-    if (begins(first, length - (size_t)(first - text), "dalcs-system 2")) {
+    if (begins(text, length, "\xEF\xBB\xBF")) { /* a byte order mark */
+        text += 3;
+        length -= 3;
+    }
+    if (begins(text, length, "dalcs-system 2")) {
         return NULL; /* its cards are read like those of a netlist */
     }
+    const char *newline = length > 0 ? memchr(text, '\n', length) : NULL;
     const size_t second = newline != NULL ? (size_t)(newline - text) + 1 : length;
     for (size_t k = 0; k < sizeof FILES / sizeof FILES[0]; k++) {
         if (begins(text, length, FILES[k].first) &&
