@@ -1,7 +1,8 @@
 """Places the elements of a netlist, for a schematic that nobody has drawn by hand: tools/schematics.py draws it.
 
 Nodes lie on a line, in the order in which the fewest elements pass over others; elements between neighbours lie on
-this line, others in lanes above it, and those at ground hang below it. What has more than two ends is not drawn.
+this line, others in lanes above it, and those at ground hang below it. A transistor is the switch that it is; what has
+inner elements or more ends is not drawn.
 """
 
 import itertools
@@ -12,7 +13,8 @@ LETTER = 0.17  # width of one
 KINDS = {"r": ("resistor", "Ω"), "c": ("capacitor", "F"), "l": ("inductor", "H"), "d": ("diode", ""),
          "s": ("switch", ""), "w": ("switch", ""), "v": ("voltage", "V"), "i": ("current", "A"),
          "e": ("controlled-voltage", ""), "h": ("controlled-voltage", ""), "g": ("controlled-current", ""),
-         "f": ("controlled-current", ""), "b": ("controlled-current", "")}
+         "f": ("controlled-current", ""), "b": ("controlled-current", ""),
+         "m": ("switch", ""), "z": ("switch", ""), "q": ("switch", "")}
 GROUND = ("0", "gnd")
 PERMUTED = 7  # nodes of which all orders are tried
 PREFIXES = {"meg": "M", "k": "k", "": "", "m": "m", "u": "µ", "µ": "µ", "n": "n", "p": "p"}
@@ -28,7 +30,7 @@ class Part:
     def __init__(self, words):
         self.name, self.letter, self.words = words[0], words[0][0].lower(), words
         self.kind, unit = KINDS[self.letter]
-        self.ends = tuple("0" if node in GROUND else node for node in (word.lower() for word in words[1:3]))
+        self.ends = tuple(word.lower() for word in words[1:3])
         rest = " ".join(words[3:])
         shape = re.match(r"(sin|pulse|pwl|exp|am|sffm)\b", rest, re.IGNORECASE)
         self.value = ""
@@ -62,33 +64,36 @@ def quantity(word, unit):
 
 
 def plain(netlist):
-    """Cards without their continuation, and no commands."""
-    return re.sub(r"^\.control\b.*?^\.endc\b", "", re.sub(r"\n\+", " ", netlist),
-                  flags=re.IGNORECASE | re.MULTILINE | re.DOTALL)
+    """The title and the elements, each on one line, transistors by the two nodes that their current flows between."""
+    text = re.sub(r"\n\+", " ", netlist)
+    for begin, end in ("control", "endc"), ("subckt", "ends"):
+        text = re.sub(rf"^\.{begin}\b.*?^\.{end}\b.*?$", "", text, flags=re.IGNORECASE | re.MULTILINE | re.DOTALL)
+    title, *lines = text.split("\n")
+    cards = []
+    for words in (line.split(";")[0].split() for line in lines):
+        if words and words[0][0].isalpha():
+            if words[0][0].lower() in "mzq" and len(words) > 4:
+                words[2:4] = words[3], words[2]
+            words[1:3] = ["0" if word.lower() in GROUND else word for word in words[1:3]]
+            cards.append(" ".join(words))
+    return "\n".join([title, *cards, ""])
 
 
-def parts_of(netlist):
-    """(elements to draw, names that are not drawn) of a netlist."""
+def parts_of(deck):
+    """(elements to draw, names that are not drawn) of what plain() gives."""
     parts, omitted, controls = [], [], set()
-    for line in plain(netlist).split("\n")[1:]:
-        words = line.split(";")[0].split()
-        if words and words[0].lower() in (".subckt", ".include", ".lib"):
-            raise NoLayout(f"{words[0]} is not drawn")
-        if not words or not words[0][0].isalpha():
-            continue
+    for words in map(str.split, deck.split("\n")[1:-1]):
         letter = words[0][0].lower()
         if letter in KINDS and len(words) > 3 or letter in "ds" and len(words) > 2:
             parts.append(Part(words))
         elif letter in "ka":
             omitted.append(words[0])
         else:
-            raise NoLayout(f"{words[0]} is not drawn")
-        if letter == "s":
-            controls |= {word.lower() for word in words[3:5]}
-    # what does nothing but drive a gate
-    for part in list(parts):
-        gate = [node for node in part.ends if node in controls]
-        if part.letter in "vbe" and gate and part.ends[1] == "0" and sum(gate[0] in p.ends for p in parts) == 1:
+            raise NoLayout(f"{words[0]} is not drawn: it has inner elements, or more than two ends")
+        controls |= {word.lower() for word in words[3:4 + (letter == "s")]} if letter in "smzq" else set()
+    for part in list(parts):  # what does nothing but drive a gate
+        gates = [node for node in part.ends if node in controls and sum(node in p.ends for p in parts) == 1]
+        if part.letter in "vbe" and gates:
             parts.remove(part)
             omitted.append(part.name)
     if not parts or any(part.ends[0] == part.ends[1] for part in parts):
@@ -197,8 +202,8 @@ class Layout:
         return self.text
 
 
-def describe(netlist):
-    """(A description of the netlist's schematic, the names of elements that it leaves out.)"""
-    parts, omitted = parts_of(netlist)
+def describe(deck):
+    """(A description of the schematic of what plain() gives, the names of elements that it leaves out.)"""
+    parts, omitted = parts_of(deck)
     lines = Layout(parts).lines()
     return "\n".join(lines + ["omit " + " ".join(omitted)] * bool(omitted)) + "\n", omitted

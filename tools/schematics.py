@@ -246,12 +246,14 @@ def main():
     if len(sys.argv) not in (3, 4):
         sys.exit(__doc__)
     *description, netlist, out = (pathlib.Path(name) for name in sys.argv[1:])
-    deck = layout.plain(netlist.read_text(encoding="utf-8"))
     try:
+        deck = layout.plain(netlist.read_text(encoding="utf-8"))
         text = description[0].read_text(encoding="utf-8") if description else layout.describe(deck)[0]
         picture = draw(text, deck, deck.split("\n", maxsplit=1)[0])
     except (Wrong, layout.NoLayout) as error:
         sys.exit(f"{(description or [netlist])[0]}: {error}")
+    except OSError as error:
+        sys.exit(f"schematics: {error}")
     out.write_text(picture, encoding="utf-8")
 
 

@@ -40,6 +40,7 @@ class Schematics(unittest.TestCase):
         """Neighbours on the line, what is at ground below, what goes past others in a lane above."""
         deck = "Buck\nV1 in 0 12\nVg g 0 PULSE(0 1 0 0 0 4u 10u)\nS1 in sw g 0 sm\nD1 0 sw\nL1 sw out 50u\n" \
                "C1 out 0 20u\nR1 in out 2k\n.tran 1u 1m\n"
+        deck = layout.plain(deck)
         text, omitted = layout.describe(deck)
         where = {words[0]: [tuple(map(float, word.split(","))) for word in words[2:4]]
                  for words in map(str.split, text.split("\n")) if len(words) > 3 and words[0] != "wire"}
@@ -55,6 +56,19 @@ class Schematics(unittest.TestCase):
         wrong = text.replace("D1 diode", "D2 diode")
         with self.assertRaises(schematics.Wrong):
             schematics.draw(wrong, deck, "title")
+
+    def test_transistors(self):
+        """By the nodes of their currents; sources that only drive gates are left out; gnd is ground."""
+        deck = "Half bridge\nV1 p gnd 400\nM1 p gh sw fet\nM2 sw gl\n+ 0 fet\nVh gh sw PULSE(0 12 0 1n 1n 5u 10u)\n" \
+               "Vl gl GND PULSE(12 0 0 1n 1n 5u 10u)\nL1 sw o 100u\nR1 o 0 10\n.subckt no a b\nR1 a b 1\n.ends\n" \
+               ".control\nrun\n.endc\n.end\n"
+        deck = layout.plain(deck)
+        text, omitted = layout.describe(deck)
+        self.assertEqual(omitted, ["Vh", "Vl"])
+        self.assertIn("</svg>", schematics.draw(text, deck, "title"))
+        self.assertRegex(text, "M1 switch .*\n")
+        with self.assertRaises(layout.NoLayout):
+            layout.describe("title\nX1 a b two\nR1 a b 1\n")
 
     def test_lanes_do_not_touch(self):
         """Two that pass over each other are in two lanes: the comparison would see one node."""
