@@ -9,10 +9,15 @@
 #define KICAD  "KiCad writes a netlist by File > Export > Netlist, Spice"
 #define SYSTEM "a system file begins with: dalcs-system 2 TITLE"
 
+/* What a file is, and how to get a netlist of it or run it. */
+struct kind {
+    const char *what, *hint;
+};
+
 /* How a file begins, and its second line where the first may be the title of a netlist. */
 static const struct {
     const char *first, *second;
-    struct dalcs_foreign is;
+    struct kind is;
 } FILES[] = {
     {"Version ",
      "SHEET ",
@@ -38,12 +43,13 @@ static const struct {
     {"dalcs-system", NULL, {"a system file of another version", SYSTEM}},
 };
 
-static int begins(const char *text, size_t length, const char *with) {
+static bool begins(const char *text, size_t length, const char *with) {
     return length >= strlen(with) && memcmp(text, with, strlen(with)) == 0;
 }
 
-const struct dalcs_foreign *dalcs_foreign_file(const char *name, const char *text, size_t length) {
-    static const struct dalcs_foreign headless = {"a system file without its first line", SYSTEM};
+/* NULL: a netlist, as far as is known. */
+static const struct kind *kind_of(const char *name, const char *text, size_t length) {
+    static const struct kind headless = {"a system file without its first line", SYSTEM};
     if (begins(text, length, "\xEF\xBB\xBF")) { /* a byte order mark */
         text += 3;
         length -= 3;
@@ -61,6 +67,23 @@ const struct dalcs_foreign *dalcs_foreign_file(const char *name, const char *tex
     }
     const char *dot = strrchr(name, '.');
     return dot != NULL && strcmp(dot, ".dalcs") == 0 ? &headless : NULL;
+}
+
+bool dalcs_foreign_is_reported(struct dalcs_netlist *netlist, const struct dalcs_source *source,
+                               const char *text, size_t length, struct dalcs_diag *diag) {
+    const struct kind *file = kind_of(source->name, text, length);
+    if (file == NULL) {
+        return false;
+    }
+    const struct dalcs_location where = {.file = source->name,
+                                         .line = 1,
+                                         .column = 1,
+                                         .length = 1,
+                                         .file_number = source->number,
+                                         .included = source->included};
+    dalcs_diag_add(diag, DALCS_ERROR, &where, file->hint, "this is %s, not a netlist", file->what);
+    netlist->has_errors = true;
+    return true;
 }
 
 const char *dalcs_foreign_sign(const char *word, size_t length) {

@@ -2,15 +2,12 @@
 #ifndef DALCS_FOREIGN_H
 #define DALCS_FOREIGN_H
 
-#include <stddef.h>
+#include "netlist.h"
 
-/* What a file is, and how to get a netlist of it or run it. */
-struct dalcs_foreign {
-    const char *what, *hint;
-};
-
-/* What this text in a file of that name is; NULL: a netlist, as far as is known. */
-const struct dalcs_foreign *dalcs_foreign_file(const char *name, const char *text, size_t length);
+/* Says so when a text is of a kind that is known and no netlist, by how it begins or by the name of its file; else
+ * false. */
+bool dalcs_foreign_is_reported(struct dalcs_netlist *netlist, const struct dalcs_source *source,
+                               const char *text, size_t length, struct dalcs_diag *diag);
 
 /* What to write in place of a dash, a quotation mark or a sign of another language in a word; else NULL. */
 const char *dalcs_foreign_sign(const char *word, size_t length);

@@ -39,24 +39,6 @@ static bool is_no_text(struct dalcs_netlist *netlist, const struct dalcs_source 
     return true;
 }
 
-/* Says so when the text is of another kind, such as a drawing; else false. */
-static bool is_foreign(struct dalcs_netlist *netlist, const struct dalcs_source *source,
-                       const char *text, size_t length, struct dalcs_diag *diag) {
-    const struct dalcs_foreign *file = dalcs_foreign_file(source->name, text, length);
-    if (file == NULL) {
-        return false;
-    }
-    const struct dalcs_location where = {.file = source->name,
-                                         .line = 1,
-                                         .column = 1,
-                                         .length = 1,
-                                         .file_number = source->number,
-                                         .included = source->included};
-    dalcs_diag_add(diag, DALCS_ERROR, &where, file->hint, "this is %s, not a netlist", file->what);
-    netlist->has_errors = true;
-    return true;
-}
-
 static size_t end_of_line(const struct dalcs_lexer *lexer, size_t begin) {
     const char *newline = memchr(lexer->raw + begin, '\n', lexer->length - begin);
     return newline != NULL ? (size_t)(newline - lexer->raw) : lexer->length;
@@ -200,7 +182,7 @@ enum dalcs_status dalcs_source_read(struct dalcs_netlist *netlist,
     netlist->n_bytes += length;
     struct dalcs_lexer lexer = {.netlist = netlist, .source = source, .diag = diag};
     DALCS_TRY(dalcs_encoding_to_utf8(&netlist->arena, &text, &length));
-    if (is_foreign(netlist, source, text, length, diag) ||
+    if (dalcs_foreign_is_reported(netlist, source, text, length, diag) ||
         is_no_text(netlist, source, text, length, diag)) {
         return DALCS_OK;
     }
