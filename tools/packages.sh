@@ -12,7 +12,7 @@ packages_of() {
             python3-numpy python3-pandas python3-scipy ;;
         plot) echo gnuplot-nox ;;
         latex) echo texlive-latex-base ;;
-        browser) echo chromium chromium-driver python3-selenium ;;
+        browser) echo chromium chromium-driver firefox-esr python3-selenium ;;
         wasm) echo emscripten dpkg-dev ;;
         crosscheck) echo libngspice0-dev ngspice python3 ;;
         kicad) echo kicad kicad-demos openbox xdotool xvfb ;;

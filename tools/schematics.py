@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Draws a circuit as SVG from a short description, and compares it with its netlist.
 
-usage: tools/schematics.py DESCRIPTION NETLIST OUT.svg
+usage: tools/schematics.py [DESCRIPTION] NETLIST OUT.svg
+
+Without a description its elements are placed by tools/layout.py.
 
 A description has one part a line; a point is X,Y in units of the grid, with Y downwards:
 
@@ -23,6 +25,9 @@ import math
 import pathlib
 import re
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import layout  # noqa: E402  pylint: disable=wrong-import-position,import-error
 
 UNIT, MARGIN, LETTER = 46, 26, 8  # pixels
 INK, NAMES = "#303030", "#0072b2"
@@ -238,14 +243,17 @@ def draw(description, netlist, title):
 
 
 def main():
-    if len(sys.argv) != 4:
+    if len(sys.argv) not in (3, 4):
         sys.exit(__doc__)
-    description, netlist, out = (pathlib.Path(name) for name in sys.argv[1:])
-    deck = netlist.read_text(encoding="utf-8")
+    *description, netlist, out = (pathlib.Path(name) for name in sys.argv[1:])
     try:
-        picture = draw(description.read_text(encoding="utf-8"), deck, deck.split("\n", maxsplit=1)[0])
-    except Wrong as error:
-        sys.exit(f"{description}: {error}")
+        deck = layout.plain(netlist.read_text(encoding="utf-8"))
+        text = description[0].read_text(encoding="utf-8") if description else layout.describe(deck)[0]
+        picture = draw(text, deck, deck.split("\n", maxsplit=1)[0])
+    except (Wrong, layout.NoLayout) as error:
+        sys.exit(f"{(description or [netlist])[0]}: {error}")
+    except OSError as error:
+        sys.exit(f"schematics: {error}")
     out.write_text(picture, encoding="utf-8")
 
 

@@ -56,8 +56,13 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
         transient->use_initial_conditions = true;
         if (dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
             transient->starts_steady = dalcs_reader_take_word(reader, "steady");
-            if (!transient->starts_steady) {
-                dalcs_reader_unexpected(reader);
+            const struct dalcs_token *other = dalcs_reader_peek(reader, 0);
+            if (!transient->starts_steady && other != NULL) {
+                dalcs_builder_error(builder, other,
+                                    "uic=steady starts from the periodic steady state",
+                                    "did not expect '%s' here", other->text);
+            } else if (!transient->starts_steady) {
+                dalcs_reader_missing(reader, "'steady'");
             }
             return transient->starts_steady;
         }

@@ -4,6 +4,7 @@
  * before it. Running out of memory is remembered in out_of_memory and ends the build. */
 #include "builder.h"
 
+#include "foreign.h"
 #include "lower_case.h"
 
 #include <string.h>
@@ -30,9 +31,11 @@ void dalcs_builder_error_at(struct dalcs_builder *builder, const struct dalcs_lo
 void dalcs_builder_error(struct dalcs_builder *builder, const struct dalcs_token *token,
                          const char *hint, const char *format, ...) {
     const struct dalcs_location where = dalcs_token_location(token);
+    const char *sign = dalcs_foreign_sign(token->line->text + token->offset, (size_t)token->length);
     va_list arguments;
     va_start(arguments, format);
-    dalcs_diag_add_list(builder->diag, DALCS_ERROR, &where, hint, format, arguments);
+    dalcs_diag_add_list(builder->diag, DALCS_ERROR, &where, sign != NULL ? sign : hint, format,
+                        arguments);
     va_end(arguments);
     builder->failed = true;
 }

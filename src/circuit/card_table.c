@@ -7,12 +7,11 @@
 
 #include "core.h"
 #include "rational.h"
+#include "slips.h"
 
 #include "formula.h"
-#include "number.h"
 
 #include <string.h>
-#include <strings.h>
 
 struct dot_card {
     const char *name;
@@ -219,6 +218,13 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     struct dalcs_builder *builder = table->builder;
     const struct dalcs_token *name = card->token;
     const char letter = card->letter;
+    if (dalcs_slip_lacks_dot(card)) {
+        builder->hidden |= DALCS_HIDDEN_ALL;
+        dalcs_builder_error(builder, name,
+                            dalcs_builder_hint(builder, "did you mean '.%s'?", name->text),
+                            "'%s' lacks the '.' of a card", name->text);
+        return DALCS_CARD_NONE;
+    }
     if (letter == 'k') {
         const size_t n_coils = (size_t)dalcs_coupling_count_coils(card);
         table->n_pairs += n_coils * (n_coils - 1) / 2;
@@ -321,40 +327,4 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
     table->has_limits = table->has_limits || is_model_with(card, "ilimit", "revilimit");
     table->n_inner += card->letter == '.' ? count_formulas(card) : 0;
     return card->letter == '.' ? classify_dot(table, name) : classify_element(table, card);
-}
-
-/* Word number `index` of a line, as a NUL-terminated copy of at most `size` - 1 bytes. */
-static void copy_word(const char *line, int index, char *word, size_t size) {
-    const char *blank = " \t";
-    const char *p = line + strspn(line, blank);
-    for (; index > 0; index--) {
-        p += strcspn(p, blank);
-        p += strspn(p, blank);
-    }
-    size_t n = strcspn(p, blank);
-    n = n < size - 1 ? n : size - 1;
-    memcpy(word, p, n);
-    word[n] = '\0';
-}
-
-void dalcs_card_table_check_title(struct dalcs_builder *builder) {
-    const struct dalcs_source_line *line = builder->netlist->title_line;
-    char first[32];
-    char value[32];
-    struct dalcs_number number;
-    if (line == NULL) {
-        return;
-    }
-    copy_word(line->text, 0, first, sizeof first);
-    copy_word(line->text, 3, value, sizeof value);
-    /* A digit tells R1 from Rectifier. */
-    const bool is_element = first[0] != '\0' && strchr("RLCVIrlcvi", first[0]) != NULL &&
-                            strpbrk(first, "0123456789") != NULL &&
-                            dalcs_number_parse(value, &number) == DALCS_NUMBER_OK;
-    const bool is_card = first[0] == '.' && first[1] >= 'A' && strcasecmp(first, ".title") != 0;
-    if (is_element || is_card) {
-        const struct dalcs_token token = {.line = line, .length = (int)strlen(line->text)};
-        dalcs_builder_warn(builder, &token, "put a title before it",
-                           "the first line is always the title, though it looks like a card");
-    }
 }

@@ -54,7 +54,4 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
  * put something in series. */
 void dalcs_card_table_make_room(struct dalcs_card_table *table);
 
-/* Warns when the first line looks like a card: it is the title all the same. */
-void dalcs_card_table_check_title(struct dalcs_builder *builder);
-
 #endif

@@ -11,6 +11,7 @@
  * Every pass goes on after an error, so that a person sees all of them. */
 #include "card_table.h"
 #include "oscillator.h"
+#include "slips.h"
 #include "storage.h"
 
 #include <stdlib.h>
@@ -266,7 +267,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     if (class_of == NULL) {
         return DALCS_E_NOMEM;
     }
-    dalcs_card_table_check_title(builder);
+    dalcs_slip_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(read_cards(builder, class_of));
     dalcs_passive_add_default_rser(builder);

@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-static const char USAGE[] = "a model is: .model name D|SW|CSW [(parameter=value ...)]";
+static const char USAGE[] =
+    "a model is: .model name D|SW|CSW|VDMOS|NIGBT|SCR|TRIAC [(parameter=value ...)]";
 
 struct type {
     const char *name;
@@ -208,6 +209,20 @@ static bool has_tolerance(struct dalcs_builder *builder, const struct dalcs_card
     return false;
 }
 
+/* What people call a part, and how SPICE calls its model. */
+static const char *hint_of_type(struct dalcs_builder *builder, const char *word) {
+    static const char *const called[][2] = {
+        {"diode", "D"},    {"zener", "D"},     {"mosfet", "VDMOS"}, {"mos", "VDMOS"},
+        {"fet", "VDMOS"},  {"igbt", "NIGBT"},  {"bjt", "NPN"},      {"relay", "SW"},
+        {"resistor", "R"}, {"capacitor", "C"}, {"inductor", "L"}};
+    for (size_t k = 0; k < sizeof called / sizeof called[0]; k++) {
+        if (strcmp(called[k][0], word) == 0) {
+            return dalcs_builder_hint(builder, "did you mean '%s'?", called[k][1]);
+        }
+    }
+    return USAGE;
+}
+
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *name;
@@ -236,7 +251,8 @@ void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     const struct type *known = find_type(type->text);
     model->type = type;
     if (known == NULL) {
-        dalcs_builder_error(builder, type, USAGE, "there is no model type '%s'", type->text);
+        dalcs_builder_error(builder, type, hint_of_type(builder, type->text),
+                            "there is no model type '%s'", type->text);
         return;
     }
     model->kind = known->kind;

@@ -67,14 +67,31 @@ void dalcs_reader_missing(struct dalcs_reader *reader, const char *what) {
     reader->builder->failed = true;
 }
 
+static const char *brace_hint(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    return dalcs_builder_hint(builder, "a formula has braces: write {%s}", token->text);
+}
+
+static bool is_formula(const struct dalcs_token *token) {
+    return token->kind == DALCS_TOKEN_WORD && strpbrk(token->text, "*/") != NULL;
+}
+
+/* A name of .param, or a formula, that stands where a number is wanted; else how the card is written. */
+static const char *hint_of_formula(const struct dalcs_reader *reader,
+                                   const struct dalcs_token *token) {
+    double value;
+    const bool is_name = token->kind == DALCS_TOKEN_WORD &&
+                         dalcs_deck_parameter(reader->builder->deck, token->text, &value);
+    return is_name || is_formula(token) ? brace_hint(reader->builder, token) : reader->usage;
+}
+
 void dalcs_reader_unexpected(struct dalcs_reader *reader) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     reader->builder->failed = true;
     if (token == NULL || token->kind == DALCS_TOKEN_BAD) {
         return;
     }
-    dalcs_builder_error(reader->builder, token, reader->usage, "did not expect '%s' here",
-                        token->text);
+    dalcs_builder_error(reader->builder, token, hint_of_formula(reader, token),
+                        "did not expect '%s' here", token->text);
 }
 
 bool dalcs_reader_end(struct dalcs_reader *reader) {
@@ -147,7 +164,9 @@ static void report_number(struct dalcs_builder *builder, const struct dalcs_toke
         return;
     }
     case DALCS_NUMBER_MALFORMED:
-        dalcs_builder_error(builder, token, NUMBER_USAGE, "'%s' is not a number", token->text);
+        dalcs_builder_error(builder, token,
+                            is_formula(token) ? brace_hint(builder, token) : NUMBER_USAGE,
+                            "'%s' is not a number", token->text);
         return;
     }
 }
@@ -242,8 +261,8 @@ bool dalcs_reader_list_number(struct dalcs_reader *reader, enum dalcs_quantity q
     const enum dalcs_number_status status =
         dalcs_number_parse_as(token->text, builder->netlist->dialect.name, &number);
     if (status == DALCS_NUMBER_MALFORMED && !dalcs_reader_is_number(token)) {
-        dalcs_builder_error(builder, token, reader->usage, "expected %s, not '%s'", what,
-                            token->text);
+        dalcs_builder_error(builder, token, hint_of_formula(reader, token), "expected %s, not '%s'",
+                            what, token->text);
         return false;
     }
     if (status != DALCS_NUMBER_OK) {
@@ -322,9 +341,13 @@ bool dalcs_reader_nodes(struct dalcs_reader *reader, int n, int *node) {
         const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
         if (next != NULL && next->kind == DALCS_TOKEN_OPEN && next->line == token->line &&
             next->offset == token->offset + token->length) {
-            dalcs_builder_error(reader->builder, next,
-                                "rename the node, or put a blank before the parenthesis",
-                                "a node's name cannot contain a parenthesis");
+            static const char *const values[] = {"sin", "pulse", "pwl", "exp", "am", "sffm"};
+            dalcs_builder_error(
+                reader->builder, next,
+                dalcs_builder_is_one_of(token->text, values, sizeof values / sizeof values[0])
+                    ? reader->usage
+                    : "rename the node, or put a blank before the parenthesis",
+                "a node's name cannot contain a parenthesis");
             return false;
         }
         node[k] = dalcs_builder_node(reader->builder, token);

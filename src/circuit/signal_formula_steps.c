@@ -47,8 +47,12 @@ static const char *hint_for_name(const struct dalcs_signal_compilation *c, const
     if (dalcs_names_find(&builder->nodes, name) >= 0) {
         return dalcs_builder_hint(builder, "write v(%s)", name);
     }
-    return dalcs_names_find(&builder->devices, name) >= 0
-               ? dalcs_builder_hint(builder, "write i(%s)", name)
+    if (dalcs_names_find(&builder->devices, name) >= 0) {
+        return dalcs_builder_hint(builder, "write i(%s)", name);
+    }
+    return results != NULL
+               ? dalcs_builder_hint(builder, "measure it before this line: .meas tran %s AVG ...",
+                                    name)
                : NULL;
 }
 

@@ -35,8 +35,10 @@ static bool read_dc(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                     struct dalcs_stimulus *stimulus) {
     if (stimulus->has_dc) {
         const struct dalcs_token *second = dalcs_reader_peek(reader, 0);
+        const char *unit = second != NULL ? strstr(second->text, "hz") : NULL;
         dalcs_builder_error(reader->builder,
-                            second != NULL ? second : dalcs_reader_previous(reader), USAGE,
+                            second != NULL ? second : dalcs_reader_previous(reader),
+                            unit != NULL ? "SIN(0 325 50) is a sine of 230 V rms and 50 Hz" : USAGE,
                             "a second DC value");
         return false;
     }

@@ -155,7 +155,7 @@ static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int
         return DALCS_E_OPTION;
     }
     if (optind != argc - 1) {
-        dalcs_cli_error(cli, "one netlist at a time: '%s' is one too many", argv[argc - 1]);
+        dalcs_verb_one_too_many(cli, "-b", argv[argc - 1]);
         return DALCS_E_OPTION;
     }
     b->arguments.netlist = argv[optind];

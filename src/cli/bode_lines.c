@@ -30,7 +30,7 @@ const char dalcs_bode_help[] =
     "      --sideband N    rows are of the components N frequencies of the orbit higher (default: "
     "0)\n"
     "      --period T      the period in s, a multiple of that of each source (default: the\n"
-    "                      smallest common one)\n" DALCS_RUN_OPTIONS "\n"
+    "                      smallest common one)\n" DALCS_RUN_OPTIONS DALCS_LAST_OPTIONS "\n"
     "examples:\n"
     "  dalcs bode buck.cir -o response.csv\n"
     "  dalcs bode buck.cir --loop vloop --report margins.json\n"

@@ -4,6 +4,7 @@
 #include "batch.h"
 #include "names.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <string.h>
 #include <unistd.h>
@@ -73,6 +74,31 @@ static void write_help(FILE *stream) {
           stream);
 }
 
+/* The verb that does what others call so; NULL: no such word. */
+static const char *verb_for(const char *word) {
+    static const char *const meant[][2] = {{"simulate", "run"},
+                                           {"sim", "run"},
+                                           {"tran", "run"},
+                                           {"pss", "steady"},
+                                           {"draw", "plot"},
+                                           {"show", "plot"},
+                                           {"view", "plot"},
+                                           {"lcp", "equations"},
+                                           {"matrix", "equations"},
+                                           {"verify", "audit"},
+                                           {"validate", "audit"},
+                                           {"ngspice", "compare"},
+                                           {"losses", "run --losses"},
+                                           {"efficiency", "run --losses"},
+                                           {"version", "--version"}};
+    for (size_t k = 0; k < sizeof meant / sizeof meant[0]; k++) {
+        if (strcmp(meant[k][0], word) == 0) {
+            return meant[k][1];
+        }
+    }
+    return NULL;
+}
+
 static enum dalcs_exit refuse_verb(const struct dalcs_cli *cli, const char *word) {
     const char *name[N_VERBS];
     for (int i = 0; i < N_VERBS; i++) {
@@ -84,7 +110,12 @@ static enum dalcs_exit refuse_verb(const struct dalcs_cli *cli, const char *word
         dalcs_cli_error(cli, "unknown option '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
                         nearest ? nearest : "", nearest ? "'?" : "");
     } else {
-        const char *nearest = dalcs_names_nearest_of(name, N_VERBS, word);
+        const char *nearest = verb_for(word);
+        if (nearest == NULL && strpbrk(word, "./") != NULL) {
+            dalcs_cli_error(cli, "cannot read '%s': %s", word, strerror(ENOENT));
+            return DALCS_EXIT_IO;
+        }
+        nearest = nearest != NULL ? nearest : dalcs_names_nearest_of(name, N_VERBS, word);
         dalcs_cli_error(cli, "unknown verb '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
                         nearest ? nearest : "", nearest ? "'?" : "; see 'dalcs --help'");
     }

@@ -85,7 +85,9 @@ static enum dalcs_status choose(const struct dalcs_cli *cli, const char *name,
             return DALCS_OK;
         }
     }
-    const char *nearest = dalcs_names_nearest_of(list, n, text);
+    /* One letter apart, an LCP is no LCS: it is what a step solves. */
+    const char *nearest =
+        strcmp(text, "lcp") == 0 ? "osnsp" : dalcs_names_nearest_of(list, n, text);
     fprintf(cli->err, "dalcs: error: %s: '%s' is none of", name, text);
     for (size_t k = 0; k < n; k++) {
         fprintf(cli->err, " %s", list[k]);

@@ -119,7 +119,7 @@ enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *argume
         if (optind == argc) {
             dalcs_cli_error(cli, "no file given; see 'dalcs plot --help'");
         } else {
-            dalcs_cli_error(cli, "one file at a time: '%s' is one too many", argv[argc - 1]);
+            dalcs_verb_one_too_many(cli, "plot", argv[argc - 1]);
         }
         status = DALCS_E_OPTION;
     }

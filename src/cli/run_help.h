@@ -50,7 +50,10 @@
     "      --ascii         write raw files as text (default: .options filetype, else binary)\n"    \
     "      --dialect ngspice|ltspice|xyce\n"                                                       \
     "                      for which simulator the netlist was written (default: what it shows)\n" \
-    "      --split-steps   in a raw file, make each step of .step a plot of its own\n"             \
+    "      --split-steps   in a raw file, make each step of .step a plot of its own\n"
+
+/* Behind those that only one verb has. */
+#define DALCS_LAST_OPTIONS                                                                         \
     "  -q, --quiet         print nothing but warnings and errors\n"                                \
     "  -h, --help          this text\n"
 

@@ -33,7 +33,7 @@ const char dalcs_steady_help[] =
     "                      power factors and THD\n"
     "      --losses-plot FILE\n"
     "                      draw what each element loses as bars, .svg, .png or "
-    ".pdf\n" DALCS_RUN_OPTIONS "\n"
+    ".pdf\n" DALCS_RUN_OPTIONS DALCS_LAST_OPTIONS "\n"
     "examples:\n"
     "  dalcs steady buck.cir\n"
     "  dalcs steady buck.cir -o period.csv --report buck.json\n"

@@ -8,7 +8,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-enum { MOST_OPTIONS = 32 };
+enum { MOST_OPTIONS = 64 };
 
 enum dalcs_status dalcs_verb_refuse(const struct dalcs_cli *cli, const char *verb,
                                     const struct option *option, int code, char **argv) {
@@ -38,6 +38,33 @@ enum dalcs_status dalcs_verb_refuse(const struct dalcs_cli *cli, const char *ver
     return DALCS_E_OPTION;
 }
 
+/* The option that a word was probably meant for, else NULL. */
+static const char *option_for(const char *word) {
+    static const char *const outputs[] = {".csv", ".raw", ".svg", ".png", ".pdf", ".html"};
+    const char *dot = strrchr(word, '.');
+    for (size_t k = 0; dot != NULL && k < sizeof outputs / sizeof outputs[0]; k++) {
+        if (strcasecmp(dot, outputs[k]) == 0) {
+            return k < 2 || k == 5 ? "-o " : "--plot ";
+        }
+    }
+    return strchr(word, '=') != NULL                                       ? "--set "
+           : word[0] >= '0' && word[0] <= '9' && strchr(word, ':') != NULL ? "--losses="
+                                                                           : NULL;
+}
+
+void dalcs_verb_one_too_many(const struct dalcs_cli *cli, const char *verb, const char *word) {
+    const bool is_plot = strcmp(verb, "plot") == 0;
+    const bool is_run = strcmp(verb, "run") == 0 || strcmp(verb, "steady") == 0;
+    const char *option = is_run || is_plot ? option_for(word) : NULL;
+    if (option != NULL && is_plot) {
+        option = "-o "; /* of a file of waveforms */
+    }
+    dalcs_cli_error(cli, "one %s at a time: '%s' is one too many%s%s%s%s",
+                    is_plot ? "file" : "netlist", word, option != NULL ? "; did you mean '" : "",
+                    option != NULL ? option : "", option != NULL ? word : "",
+                    option != NULL ? "'?" : "");
+}
+
 enum dalcs_status dalcs_verb_take_netlist(const struct dalcs_cli *cli, const char *verb, int argc,
                                           char **argv, const char **netlist) {
     if (optind == argc) {
@@ -45,7 +72,7 @@ enum dalcs_status dalcs_verb_take_netlist(const struct dalcs_cli *cli, const cha
         return DALCS_E_OPTION;
     }
     if (optind != argc - 1) {
-        dalcs_cli_error(cli, "one netlist at a time: '%s' is one too many", argv[argc - 1]);
+        dalcs_verb_one_too_many(cli, verb, argv[argc - 1]);
         return DALCS_E_OPTION;
     }
     *netlist = argv[optind];

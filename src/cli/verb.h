@@ -12,6 +12,9 @@ enum dalcs_status dalcs_verb_refuse(const struct dalcs_cli *cli, const char *ver
                                     const struct option *option, int code, char **argv);
 
 /* The one netlist that is left at argv[optind], or a message. */
+/* Says that `word` is one too many, and for which option it was probably meant. */
+void dalcs_verb_one_too_many(const struct dalcs_cli *cli, const char *verb, const char *word);
+
 enum dalcs_status dalcs_verb_take_netlist(const struct dalcs_cli *cli, const char *verb, int argc,
                                           char **argv, const char **netlist) DALCS_MUST_CHECK;
 

@@ -451,13 +451,24 @@ static enum dalcs_status build_states(struct dalcs_network *network, const struc
     return DALCS_OK;
 }
 
+/* Does any element stand at ground? Of most netlists in which none does, ground was forgotten. */
+static bool has_ground(const struct dalcs_circuit *c) {
+    bool found = false;
+    for (int i = 0; i < c->n_devices; i++) {
+        found = found || c->device[i].node[0] == 0 || c->device[i].node[1] == 0;
+    }
+    return found;
+}
+
 /* Islands that nothing ties to ground have their voltages by convention, and a person should know. */
 static void note_references(const struct dalcs_layout *l, struct dalcs_diag *diag) {
     const struct dalcs_circuit *c = l->circuit;
+    const char *hint =
+        has_ground(c) ? NULL : "no element is at ground: call the node that it is 0 or gnd";
     for (int n = 1; n < c->n_nodes; n++) {
         if (l->topology.is_reference[n]) {
             dalcs_diag_add(
-                diag, DALCS_NOTE, NULL, NULL,
+                diag, DALCS_NOTE, NULL, hint,
                 "nothing ties node '%s' and what hangs on it to ground: its voltage is 0 by "
                 "convention, the others of that part are relative to it",
                 c->node_name[n]);

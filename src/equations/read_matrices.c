@@ -49,6 +49,15 @@ static const struct {
 
 static const char USAGE[] = "matrix name, then rows of numbers on lines that start with +";
 
+bool dalcs_reading_is_matrix(const char *name) {
+    bool found = false;
+    for (size_t k = 0; k < DALCS_N_BLOCKS; k++) {
+        found = found || strcmp(BLOCKS[k].name, name) == 0 ||
+                (BLOCKS[k].alias != NULL && strcmp(BLOCKS[k].alias, name) == 0);
+    }
+    return found;
+}
+
 static int size_of(const struct dalcs_described_system *s, enum extent extent) {
     size_t size = 1;
     switch (extent) {

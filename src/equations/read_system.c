@@ -444,11 +444,13 @@ static void take_system_card(struct dalcs_reading *r, const struct dalcs_card *c
             "input",  "network", "system",   "inputs", "state",      "unknown", "row",
             "pair",   "switch",  "interval", "free",   "contact",    "joint",   "friction",
             "corner", "reverse", "matrix",   "output", "coordinate", "element", "monotone"};
-        dalcs_builder_error(&r->builder, card->token,
-                            dalcs_builder_suggest_of(&r->builder, known,
-                                                     sizeof known / sizeof known[0], word,
-                                                     "doc/system-file.md lists the cards"),
-                            "unknown card '%s' in a system file", word);
+        const char *hint =
+            dalcs_reading_is_matrix(word)
+                ? dalcs_builder_hint(&r->builder, "write: matrix %s, and its rows behind +", word)
+                : dalcs_builder_suggest_of(&r->builder, known, sizeof known / sizeof known[0], word,
+                                           "doc/system-file.md lists the cards");
+        dalcs_builder_error(&r->builder, card->token, hint, "unknown card '%s' in a system file",
+                            word);
     }
 }
 

@@ -127,6 +127,9 @@ void dalcs_reading_take_unit(struct dalcs_reading *r, struct dalcs_reader *reade
 
 /* ---- read_matrices.c ------------------------------------------------------------------------ */
 
+/* Is this the name of a matrix? */
+bool dalcs_reading_is_matrix(const char *name);
+
 /* Keeps the card `matrix NAME ...`. */
 void dalcs_reading_take_matrix(struct dalcs_reading *r, struct dalcs_described_system *s,
                                const struct dalcs_card *card);

@@ -370,9 +370,12 @@ static void report_unknown(const struct call *call) {
         hint = dalcs_language_suggest(language, &s->definition->subcircuits, name->text,
                                       "subcircuits");
     }
-    dalcs_language_report(language, DALCS_ERROR, call->scope, name,
-                          hint != NULL ? hint : "a subcircuit is: .subckt name port ... .ends",
-                          "there is no subcircuit '%s'", name->text);
+    dalcs_language_report(
+        language, DALCS_ERROR, call->scope, name,
+        hint != NULL
+            ? hint
+            : "a subcircuit is: .subckt name port ... .ends; .include reads a file that has it",
+        "there is no subcircuit '%s'", name->text);
 }
 
 /* "a b": the ports, for a message. */

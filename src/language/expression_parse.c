@@ -4,6 +4,7 @@
  * ngspice's reading of a formula is not that of mathematics and other simulators, there is no safe
  * one, and it is an error: a**b**c, and a*-b**c. */
 #include "expression.h"
+#include "foreign.h"
 #include "number.h"
 
 #include <stdlib.h>
@@ -65,12 +66,28 @@ static void report(struct parser *p, enum dalcs_severity severity, int begin, in
     p->failed = p->failed || severity == DALCS_ERROR;
 }
 
+/* What other languages write for an operator; NULL: nothing known. */
+static const char *operator_hint(const char *text, int length) {
+    static const struct {
+        const char *word, *hint;
+    } WORDS[] = {{"and", "write &&"}, {"or", "write ||"}, {"not", "write !"}};
+
+    const char *hint = dalcs_foreign_sign(text, (size_t)length);
+    for (size_t k = 0; k < sizeof WORDS / sizeof WORDS[0]; k++) {
+        if ((int)strlen(WORDS[k].word) == length && memcmp(WORDS[k].word, text, length) == 0) {
+            hint = WORDS[k].hint;
+        }
+    }
+    return hint;
+}
+
 static void unexpected(struct parser *p) {
     if (p->symbol == END) {
         report(p, DALCS_ERROR, p->last_end, 1, NULL, "a value is missing");
     } else {
-        report(p, DALCS_ERROR, p->begin, p->length, NULL, "did not expect '%.*s' in the expression",
-               p->length, p->text->text + p->begin);
+        report(p, DALCS_ERROR, p->begin, p->length,
+               operator_hint(p->text->text + p->begin, p->length),
+               "did not expect '%.*s' in the expression", p->length, p->text->text + p->begin);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "netlist.h"
 
 #include "encoding.h"
+#include "foreign.h"
 #include "lexer.h"
 #include "text_file.h"
 
@@ -181,7 +182,8 @@ enum dalcs_status dalcs_source_read(struct dalcs_netlist *netlist,
     netlist->n_bytes += length;
     struct dalcs_lexer lexer = {.netlist = netlist, .source = source, .diag = diag};
     DALCS_TRY(dalcs_encoding_to_utf8(&netlist->arena, &text, &length));
-    if (is_no_text(netlist, source, text, length, diag)) {
+    if (dalcs_foreign_is_reported(netlist, source, text, length, diag) ||
+        is_no_text(netlist, source, text, length, diag)) {
         return DALCS_OK;
     }
     lexer.raw = dalcs_arena_copy(&netlist->arena, text, length);

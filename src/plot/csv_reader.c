@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 struct reader {
     const char *at, *end;
@@ -90,11 +91,24 @@ static size_t read_name(struct reader *reader, char *name) {
     return n;
 }
 
+static bool is_netlist_name(const char *path) {
+    static const char *const endings[] = {".cir", ".net", ".sp", ".ckt", ".spice"};
+    const char *dot = strrchr(path, '.');
+    bool found = false;
+    for (size_t k = 0; dot != NULL && k < sizeof endings / sizeof endings[0]; k++) {
+        found = found || strcasecmp(dot, endings[k]) == 0;
+    }
+    return found;
+}
+
 static enum dalcs_status refuse(const struct reader *reader, const char *path,
                                 struct dalcs_diag *diag) {
     dalcs_diag_add(
         diag, DALCS_ERROR, NULL,
-        "waveforms are read from .raw files of SPICE and .csv files whose first line has names",
+        is_netlist_name(path)
+            ? "this is a netlist: 'dalcs run' writes its waveforms, and draws them with --plot"
+            : "waveforms are read from .raw files of SPICE and .csv files whose first line has "
+              "names",
         "'%s' holds no waveforms: line %ld is neither of a raw file nor of a table", path,
         reader->line);
     return DALCS_E_OPTION;

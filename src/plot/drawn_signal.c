@@ -321,7 +321,7 @@ enum dalcs_status dalcs_signal_parse(struct dalcs_signal *signal,
     *signal = (struct dalcs_signal){.text = bare};
     DALCS_TRY(parse_sum(&parser, &signal->root));
     if (*parser.at) {
-        return refuse(&parser, "expected an operator");
+        return refuse(&parser, "expected an operator or a comma");
     }
     signal->dimension = signal->root->dimension;
     return DALCS_OK;

@@ -25,11 +25,13 @@ import sys
 
 USER_PAGES = [
     "README.md", "doc/accuracy.md", "doc/audit.md", "doc/bode.md", "doc/check.md", "doc/compare.md",
-    "doc/averaged.md", "doc/figures.md", "doc/first-circuit.md", "doc/install.md", "doc/library.md", "doc/lessons/*.md",
-    "doc/methods.md", "doc/netlist.md", "doc/output.md", "doc/plots.md", "doc/python.md", "doc/steady.md",
+    "doc/README.md", "doc/averaged.md", "doc/figures.md", "doc/first-circuit.md", "doc/gallery.md", "doc/install.md",
+    "doc/library.md", "doc/lessons/*.md", "doc/magnetics.md", "doc/methods.md", "doc/netlist.md",
+    "doc/ngspice-library.md", "doc/output.md", "doc/plots.md", "doc/python.md", "doc/steady.md", "doc/sweeps.md",
     "doc/system-file.md",
 ]
-DEVELOPER_PAGES = ["doc/adding-a-*.md", "doc/auditor.md", "doc/integrator.md", "doc/one-step.md"]
+DEVELOPER_PAGES = ["doc/adding-a-*.md", "doc/architecture.md", "doc/auditor.md", "doc/integrator.md",
+                   "doc/observers.md", "doc/one-step.md", "doc/testing.md", "doc/theory.md", "tools/wasm/README.md"]
 SENTENCE_LIMIT, PARAGRAPH_LIMIT, EASE_LIMIT = 35, 120, 45.0
 
 FENCE = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)

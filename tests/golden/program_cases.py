@@ -157,7 +157,37 @@ class Usage(Case):
         self.assertIn(".svg, .png or .pdf", self.refused("run", "a.cir", "--plot", "p.gif"))
         self.assertIn("no netlist", self.refused("run"))
         self.assertIn("one too many", self.refused("run", "a.cir", "a.cir"))
+        for word, meant in [("a.csv", "-o a.csv"), ("a.png", "--plot a.png"), ("1m:2m", "--losses=1m:2m"),
+                            ("r1=3", "--set r1=3")]:
+            self.assertIn(f"one netlist at a time: '{word}' is one too many; did you mean '{meant}'?",
+                          self.refused("run", "a.cir", word))
+        self.assertIn("did you mean '-o a.png'?", self.refused("plot", "a.raw", "a.png"))
+        self.assertIn("did you mean '--measures'?", self.refused("run", "a.cir", "--mesures", "m.csv"))
+        for word, meant in [("simulate", "run"), ("lcp", "equations"), ("version", "--version"), ("equation", "equations")]:
+            self.assertIn(f"unknown verb '{word}'; did you mean '{meant}'?", self.refused(word, "a.cir"))
+        self.assertIn("'dalcs run' writes its waveforms", self.refused("plot", "a.cir"))
         self.assertIn("two results", self.refused("run", "a.cir", "-o", "x.csv", "-o", "x.csv"))
+
+    def test_a_file_that_is_not_there(self):
+        """Without a verb it is a name with a dot or a slash, and no verb."""
+        for name in "nowhere.cir", "in/it":
+            self.assertIn(f"cannot read '{name}': No such file", self.dalcs(name, expect=INPUT_OUTPUT).stderr)
+
+    def test_no_ground(self):
+        netlist = "A rectifier\nV1 a b SIN(0 10 50)\nD1 a p\nR1 p b 1k\n.tran 10u 20m\n.end\n"
+        self.write(netlist)
+        self.assertIn("no element is at ground: call the node that it is 0 or gnd", self.dalcs("run", "a.cir").stderr)
+        self.write(netlist.replace(".tran", "R2 c 0 1k\n.tran"))
+        self.assertNotIn("no element is at ground", self.dalcs("run", "a.cir").stderr)
+
+    def test_slips_of_system_files(self):
+        self.write("x1' = -x1 + lambda\n0 <= lambda _|_ x1 >= 0\n", "mine.dalcs")
+        self.assertIn("a system file begins with: dalcs-system 2 TITLE",
+                      self.dalcs("run", "mine.dalcs", expect=NETLIST).stderr)
+        self.write("dalcs-system 2 mine\nstate x\nP 1\n.op\n", "mine.dalcs")
+        self.assertIn("write: matrix p, and its rows behind +", self.dalcs("run", "mine.dalcs", expect=NETLIST).stderr)
+        self.write(RECTIFIER)
+        self.assertIn("did you mean 'osnsp'?", self.dalcs("equations", "a.cir", "--form", "lcp", expect=USAGE).stderr)
 
     def test_one_file_for_two_results(self):
         """However it is spelled, and whether it is there or not."""

@@ -4,6 +4,7 @@
 usage: runs.py SOURCE_FOLDER, with PYTHONPATH=build/src/python
 """
 
+import copy
 import gc
 import math
 import os
@@ -220,6 +221,27 @@ class Errors(unittest.TestCase):
         self.assertIn("nan", self.failure(dalcs.OptionError, NETLIST, rload=math.nan).message)
         error = self.failure(dalcs.NetlistError, NETLIST, c1=-1)
         self.assertEqual((error.element, error.line), ("c1", 5))
+
+    def test_values_as_in_netlists(self):
+        text, number = dalcs.run(NETLIST, rload="2k"), dalcs.run(NETLIST, rload=2000.0)
+        self.assertEqual(text.values.tobytes(), number.values.tobytes())
+        with self.assertRaisesRegex(ValueError, "'2kk2' is no number of a netlist"):
+            dalcs.run(NETLIST, rload="2kk2")
+
+    def test_an_option_by_another_name(self):
+        self.assertIn("did you mean the option 'tol'?", str(self.failure(dalcs.OptionError, NETLIST, tolerance=1e-9)))
+        self.assertNotIn("option", str(self.failure(dalcs.OptionError, NETLIST, zz9=1e-9)))
+
+    def test_help_names_the_options(self):
+        for function in dalcs.run, dalcs.sweep, dalcs.steady:
+            self.assertIn(getattr(dalcs.Circuit, function.__name__).__doc__.split("\n")[0], function.__doc__)
+        self.assertIn("tol, method, stages", dalcs.run.__doc__)
+
+    def test_a_result_is_not_copied(self):
+        result = dalcs.run(NETLIST)
+        for copied in pickle.dumps, copy.deepcopy:
+            with self.assertRaisesRegex(TypeError, "send its arrays"):
+                copied(result)
 
     def test_a_file_that_is_not_there(self):
         self.assertIn("cannot read", self.failure(dalcs.Error, "nowhere.cir").message)

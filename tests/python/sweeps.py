@@ -78,6 +78,17 @@ class Sweeps(unittest.TestCase):
         self.assertEqual(sweep["c1"].tolist(), [1e-6, 2e-6, 3e-6] * 2)
         self.assertEqual(len(dalcs.sweep(NETLIST, {"rload": []})), 0)
 
+    def test_lists_by_name(self):
+        grid = dalcs.sweep(NETLIST, {"rload": [1e3, 2e3], "c1": [5e-6, 20e-6]})
+        named = dalcs.sweep(NETLIST, rload=["1k", 2e3], c1=[5e-6, "20u"])
+        both = dalcs.sweep(NETLIST, {"rload": [1e3, 2e3]}, c1=[5e-6, 20e-6])
+        self.assertEqual(bytes_of(grid), bytes_of(named))
+        self.assertEqual(bytes_of(grid), bytes_of(both))
+        with self.assertRaisesRegex(TypeError, r"sweep\(netlist, r1=\["):
+            dalcs.sweep(NETLIST, rload=1e3)
+        with self.assertRaisesRegex(TypeError, "c1 cannot stand beside it"):
+            dalcs.sweep(NETLIST, [{"rload": 1e3}], c1=[5e-6])
+
     def test_one_value_each(self):
         sweep = dalcs.sweep(NETLIST, {"rload": LOADS[:5]}, each=lambda r: r.events["time"][0])
         np.testing.assert_allclose(sweep["value"], [opens(ohm) for ohm in LOADS[:5]], atol=1e-11)

@@ -276,7 +276,7 @@ START_TEST(test_wrong_expressions) {
     refuse_signal("v(a)*", "expected a signal at the end");
     refuse_signal("v(a", "')' is missing at the end");
     refuse_signal("(v(a)", "')' is missing at the end");
-    refuse_signal("v(a))", "expected an operator at ')'");
+    refuse_signal("v(a))", "expected an operator or a comma at ')'");
     refuse_signal("2..*v(a)", "expected a number at '2..*v(a)'");
     char deep[5000];
     memset(deep, '(', sizeof deep - 1);

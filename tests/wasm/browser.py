@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Each lesson in a browser without a screen: what its panel shows is what the program computes.
 
-usage: browser.py DALCS ENGINE SITE
-ENGINE is what tools/wasm/build made; SITE is tools/site. Status 77 (skipped) where ENGINE, Debian's chromium,
-chromium-driver or python3-selenium are not there. DALCS_LESSONS names lessons, else all are looked at.
+usage: browser.py chromium|firefox DALCS ENGINE SITE
+ENGINE is what tools/wasm/build made; SITE is tools/site. Status 77 (skipped) where ENGINE or Debian's packages are not
+there: chromium, chromium-driver and python3-selenium, or firefox-esr. DALCS_LESSONS names lessons, else all are
+looked at.
 """
 
 import os
@@ -19,13 +20,16 @@ import unittest
 SKIPPED = 77
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "tests" / "support"))
-DALCS, ENGINE, SITE = (pathlib.Path(name).resolve() for name in sys.argv[1:4])
+sys.path.insert(1, str(TOP / "tools" / "wasm"))
+BROWSER = sys.argv[1]
+DALCS, ENGINE, SITE = (pathlib.Path(name).resolve() for name in sys.argv[2:5])
 LARGEST_PAGE = 2_500_000  # bytes, with the engine
 WAVEFORM, EVENT = 1e-9, 1e-9  # over the largest value; over the stop time
 
 try:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
+    if BROWSER == "chromium":
+        from selenium import webdriver
+        from selenium.webdriver.chrome.service import Service
     import numpy
 except ImportError:
     # Debian's packages are for Debian's Python, which need not be the first in PATH.
@@ -34,10 +38,21 @@ except ImportError:
         os.execv(DEBIANS, [DEBIANS, *sys.argv, "--debian"])
     print("python3-selenium or python3-numpy is not installed")
     sys.exit(SKIPPED)
+import age  # noqa: E402  pylint: disable=wrong-import-position,import-error
 import dalcs_program  # noqa: E402  pylint: disable=wrong-import-position,import-error
+import marionette  # noqa: E402  pylint: disable=wrong-import-position,import-error
 
 LESSONS = os.environ.get("DALCS_LESSONS", "").split() or sorted(
     path.stem for path in (TOP / "doc/lessons/src").glob("[0-9]*.txt"))
+
+
+def chromium():
+    options = webdriver.ChromeOptions()
+    for argument in ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                     "--window-size=1500,900"]:
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    return webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
 
 
 class Page(unittest.TestCase):
@@ -46,12 +61,7 @@ class Page(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.site = pathlib.Path(cls.folder.name) / "site"
         subprocess.run([SITE, "--engine", ENGINE, cls.site], check=True, stdout=subprocess.DEVNULL)
-        options = webdriver.ChromeOptions()
-        for argument in ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                         "--window-size=1500,900"]:
-            options.add_argument(argument)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        cls.driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+        cls.driver = chromium() if BROWSER == "chromium" else marionette.Firefox()
         cls.millis = []
 
     @classmethod
@@ -158,6 +168,7 @@ class Page(unittest.TestCase):
                 else:
                     self.assertEqual(shown.strip(), done.stdout.strip(), name)
 
+    @unittest.skipUnless(BROWSER == "chromium", "its log names what a page loads")
     def test_pages_are_small_and_load_nothing_else(self):
         files = sum((self.site / "lessons" / name).stat().st_size for name in ("dalcs-engine.js", "draw.js", "play.js"))
         for name in LESSONS:
@@ -221,6 +232,7 @@ class Page(unittest.TestCase):
         run = dalcs_program.run(DALCS, TOP / "netlists/tanks/lc_bridge.cir", method="euler", options=["--step", "5u"])
         self.assertAlmostEqual(last, run.column("v(1)")[-1], delta=1e-9)
 
+    @unittest.skipUnless(BROWSER == "chromium", "its driver sets the size of a window")
     def test_narrow(self):
         self.driver.set_window_size(500, 900)
         try:
@@ -234,10 +246,14 @@ def main():
     if not ENGINE.is_file():
         print(f"there is no {ENGINE}: tools/wasm/build makes it")
         return SKIPPED
-    for program in ["chromium", "chromedriver"]:
+    for program in ["chromium", "chromedriver"] if BROWSER == "chromium" else ["firefox-esr"]:
         if not shutil.which(program):
             print(f"{program} is not installed")
             return SKIPPED
+    old = age.complaint(ENGINE)
+    if old:
+        print(old)
+        return 1
     unittest.main(argv=sys.argv[:1])
     return 0
 

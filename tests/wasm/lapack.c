@@ -31,6 +31,8 @@ lapack_int own_dgesvd(int layout, char job_u, char job_vt, lapack_int m, lapack_
 lapack_int own_dgelss(int layout, lapack_int m, lapack_int n, lapack_int n_right, double *a,
                       lapack_int lda, double *b, lapack_int ldb, double *s, double rcond,
                       lapack_int *rank);
+lapack_int own_dgebal(int layout, char job, lapack_int n, double *a, lapack_int lda,
+                      lapack_int *low, lapack_int *high, double *scale);
 lapack_int own_dgeev(int layout, char job_left, char job_right, lapack_int n, double *a,
                      lapack_int lda, double *re, double *im, double *left, lapack_int ld_left,
                      double *right, lapack_int ld_right);
@@ -281,6 +283,42 @@ static void least_squares(int n, int r) {
     look(off, 1e-8, "dgelss", n);
 }
 
+static double length_of(const double *a, int n) {
+    double length = 0.0;
+    for (int k = 0; k < n * n; k++) {
+        length = hypot(length, a[k]);
+    }
+    return length;
+}
+
+/* States whose units are up to 3 (n - 1) decades apart. Scaling is by powers of 2, so it does not round. */
+static void balances(int n) {
+    double a[MOST * MOST], b[MOST * MOST], wanted[MOST * MOST], scale[MOST], ratio = 1.0, off = 0.0;
+    lapack_int low, high;
+    fill(a, n, n, n);
+    for (int k = 0; k < n * n; k++) {
+        a[k] *= pow(1e3, k % n - k / n);
+    }
+    memcpy(b, a, sizeof(a));
+    memcpy(wanted, a, sizeof(a));
+    look(own_dgebal(LAPACK_COL_MAJOR, 'S', n, b, n, &low, &high, scale), 0.0, "dgebal", n);
+    look(abs(low - 1) + abs(high - n), 0.0, "the range of dgebal", n);
+    for (int i = 0; i < n; i++) {
+        double row = 0.0, column = 0.0;
+        for (int j = 0; j < n; j++) {
+            off = fmax(off, fabs(b[j * n + i] - a[j * n + i] / scale[i] * scale[j]));
+            row += i == j ? 0.0 : fabs(b[j * n + i]);
+            column += i == j ? 0.0 : fabs(b[i * n + j]);
+        }
+        ratio = n > 1 ? fmax(ratio, fmax(row / column, column / row)) : 1.0;
+    }
+    look(off, 0.0, "D^-1 A D of dgebal", n);
+    /* 2 + r / 2 < 0.95 (1 + r): another step by 2 pays from r = 21/9 on */
+    look(ratio, 2.34, "rows over columns of dgebal", n);
+    LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, wanted, n, &low, &high, scale);
+    look(length_of(b, n), 2.0 * length_of(wanted, n), "length of dgebal", n);
+}
+
 /* scale: how far apart the units of states are */
 static void eigen(int n, int kind) {
     double a[MOST * MOST], b[MOST * MOST], re[MOST], im[MOST], wr[MOST], wi[MOST],
@@ -341,6 +379,7 @@ int main(void) {
         singular(m, n, r, layout, -1);
         least_squares(n, r);
         eigen(n, round % 4);
+        balances(n);
     }
     printf("lapack: %d comparisons, %d wrong\n", n_looked_at, n_wrong);
     return n_wrong == 0 && n_looked_at > 2000 ? 0 : 1;

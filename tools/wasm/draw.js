@@ -132,9 +132,14 @@ function bars(elements, from, to) {
 /** The (w, lambda) plane of a diode: the two half axes of its rule, and where the run was. */
 function plane(name, w, lambda) {
     const size = 190, edge = 26;
-    const [, wHigh] = rangeOf([w]), [, lHigh] = rangeOf([lambda]);
-    const shown = (high, factor) => high > 1e-12 ? (high / 1.06 / factor).toPrecision(3) : '0'; // what rounding leaves
-    const wLow = -0.12 * wHigh, lLow = -0.12 * lHigh;
+    // a diode with a resistance or a forward drop leaves its corner on the side of negative w
+    const [wLeast, wMost] = rangeOf([w]), [lLeast, lMost] = rangeOf([lambda]);
+    const wHigh = Math.max(wMost, -0.3 * wLeast), lHigh = Math.max(lMost, -0.3 * lLeast);
+    const wLow = Math.min(wLeast, -0.12 * wHigh), lLow = Math.min(lLeast, -0.12 * lHigh);
+    const shown = (values, high, factor) => {
+        const most = values.reduce((soFar, value) => Math.max(soFar, value), 0);
+        return most > 1e-6 * high && most > 1e-12 ? (most / factor).toPrecision(3) : '0'; // what rounding leaves
+    };
     const x = (v) => edge + (size - 2 * edge) * (v - wLow) / (wHigh - wLow);
     const y = (v) => size - edge - (size - 2 * edge) * (v - lLow) / (lHigh - lLow);
     const [wFactor, wPrefix] = prefixFor(wHigh), [lFactor, lPrefix] = prefixFor(lHigh);
@@ -143,8 +148,8 @@ function plane(name, w, lambda) {
     let out = `<path d="M${x(wHigh)} ${y(0)}H${x(0)}V${y(lHigh)}" class="rule"/>`;
     for (const dot of dots.keys()) out += `<path d="M${dot}h0" class="dot"/>`;
     out += textAt(x(wHigh), y(0) + 16, 'end', `w (${wPrefix}V)`) + textAt(x(0) + 8, 20, 'start', `λ (${lPrefix}A)`);
-    out += textAt(x(wHigh), y(0) - 6, 'end', shown(wHigh, wFactor));
-    out += textAt(x(0) + 8, y(lHigh) + 14, 'start', shown(lHigh, lFactor));
-    out += textAt(size - 4, 14, 'end', name, 'font-weight="bold"');
+    out += textAt(x(wHigh), y(0) - 6, 'end', shown(w, wHigh, wFactor));
+    out += textAt(x(0) + 8, y(lHigh) + 14, 'start', shown(lambda, lHigh, lFactor));
+    out += textAt(4, size - 4, 'start', name, 'font-weight="bold"');
     return `<svg viewBox="0 0 ${size} ${size}" class="plane" role="img">${out}</svg>`;
 }

@@ -193,6 +193,7 @@ function update() {
             showTheory();
         }, 200);
     }
+    byId('messages').classList.toggle('notes', !/(^|: )(error|warning): /m.test(byId('messages').textContent));
     play.millis = performance.now() - start;
     byId('millis').textContent = `answered in ${play.millis.toFixed(0)} ms`;
     document.body.dataset.ready = 'yes';

@@ -21,7 +21,7 @@ body.playing{flex-wrap:nowrap}.playing main{max-width:44em;padding:1em 1.5em 4em
 #planes{display:flex;flex-wrap:wrap}#play svg.plane{width:190px}#results.stale{opacity:.35}
 #sliders label{display:grid;grid-template-columns:11em 1fr 6em;gap:.8em;align-items:center}
 #netlist{width:100%;box-sizing:border-box;font:13px/1.35 monospace}
-#messages{white-space:pre-wrap;background:none;color:#a33;max-height:11em;padding:0}#messages:empty{display:none}
+#messages{white-space:pre-wrap;background:none;color:#a33;max-height:11em;padding:0}#messages.notes{color:#555}#messages:empty{display:none}
 #play .grid{stroke:#e4e4e0}#play .zero{stroke:#999}#play .curve{fill:none;stroke-width:1.6;clip-path:url(#inside)}
 #play .bar{fill:#404040}#play .rule{fill:none;stroke:#e69f00;stroke-width:7;stroke-opacity:.35}
 #play .dot{stroke:#0072b2;stroke-width:3;stroke-linecap:round}#play td.yes{color:#060}#play td.no{color:#a00}

@@ -24,6 +24,7 @@ Arrays of rows are views of the run's memory. All units are SI.
 
 from __future__ import annotations
 
+import inspect
 from typing import Any, Callable, Dict, List, Mapping, Optional
 
 from . import _library
@@ -31,7 +32,7 @@ from ._circuit import Circuit
 from ._equations import System
 from ._errors import Cancelled, Error, NetlistError, NoSolution, OptionError
 from ._result import Result, Table
-from ._session import Netlist
+from ._session import Netlist, Number
 from ._sweep import Grid, Sweep
 
 __version__: str = _library.lib.dalcs_version().decode()
@@ -39,38 +40,48 @@ __all__ = ["Cancelled", "Circuit", "Error", "NetlistError", "NoSolution", "Optio
            "Sweep", "System", "Table", "check", "equations", "run", "steady", "sweep", "variants"]
 
 
-def run(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *,
+def run(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
         dialect: Optional[str] = None, **more: Any) -> Result:
     """Circuit(netlist, dialect).run(values, **more)"""
     return Circuit(netlist, dialect).run(values, **more)
 
 
-def steady(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *,
+def steady(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
            dialect: Optional[str] = None, **more: Any) -> Result:
     """Circuit(netlist, dialect).steady(values, **more)"""
     return Circuit(netlist, dialect).steady(values, **more)
 
 
-def sweep(netlist: Netlist, grid: Grid, *, workers: Optional[int] = None,
+def sweep(netlist: Netlist, grid: Optional[Grid] = None, *, workers: Optional[int] = None,
           each: Optional[Callable[[Result], Any]] = None, dialect: Optional[str] = None,
           **options: Any) -> Sweep:
     """Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, **options)"""
     return Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, **options)
 
 
-def variants(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *,
+def variants(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
              dialect: Optional[str] = None, **more: Any) -> Sweep:
     """Circuit(netlist, dialect).variants(values, **more)"""
     return Circuit(netlist, dialect).variants(values, **more)
 
 
-def check(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *, step: float = 0.0,
+def check(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *, step: float = 0.0,
           dialect: Optional[str] = None) -> Dict[str, Any]:
     """Circuit(netlist, dialect).check(values, step=step)"""
     return Circuit(netlist, dialect).check(values, step=step)
 
 
-def equations(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *,
+def equations(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
               form: str = "dalcs", dialect: Optional[str] = None) -> List[System]:
     """Circuit(netlist, dialect).equations(values, form=form)"""
     return Circuit(netlist, dialect).equations(values, form=form)
+
+
+def _describe() -> None:
+    """help(dalcs.run) says what run() takes: as the method of Circuit does."""
+    for function in (run, steady, sweep, variants, check, equations):
+        method = getattr(Circuit, function.__name__)
+        function.__doc__ = f"{function.__doc__}\n\n{inspect.cleandoc(method.__doc__ or '')}"
+
+
+_describe()

@@ -11,7 +11,7 @@ import ctypes
 from . import _library as c
 from ._equations import System, systems_of
 from ._result import Result
-from ._session import Netlist, Options, Session, Window
+from ._session import Netlist, Number, Options, Session, Window
 from ._sweep import Grid, Sweep, sweep_of, variants_of
 
 
@@ -23,19 +23,20 @@ class Circuit:
         self.dialect = dialect
 
     def _read(self, losses: Window = False, steady: bool = False,
-              values: Optional[Mapping[str, float]] = None,
+              values: Optional[Mapping[str, Number]] = None,
               seed: Optional[int] = None) -> Session:
         session = Session(self.netlist, self.dialect, losses, steady, seed)
         session.set_values(values or {})
         return session
 
-    def run(self, values: Optional[Mapping[str, float]] = None, *,
+    def run(self, values: Optional[Mapping[str, Number]] = None, *,
             at: Optional[Sequence[float]] = None, losses: Window = False, rows: bool = True,
             seed: Optional[int] = None,
             progress: Optional[Callable[[float, float], Any]] = None, **more: Any) -> Result:
         """Runs its .op, .dc, .ac, .pss and .tran.
 
-        values    other values, by name: a parameter of .param, an element ("r1"), "dmod(vfwd)"
+        values    other values, by name: a parameter of .param, an element ("r1"), "dmod(vfwd)"; a number,
+                  or its text as in a netlist: "4.7k"
         at        times of rows in s, ascending, in place of those of .tran
         losses    True: also where the power went; (from, to): in this window, s
         rows      False: events and measurements only
@@ -58,7 +59,7 @@ class Circuit:
         chosen = Options(options, at)
         return Result(session, session.run(chosen, progress, rows), bool(options.get("only")))
 
-    def steady(self, values: Optional[Mapping[str, float]] = None, *,
+    def steady(self, values: Optional[Mapping[str, Number]] = None, *,
                period: Optional[float] = None, **more: Any) -> Result:
         """The periodic steady state: rows of one period, `.steady` says whether it is stable.
 
@@ -68,12 +69,12 @@ class Circuit:
             more["period"] = float(period)
         return self.run(values, steady=True, **more)
 
-    def sweep(self, grid: Grid, *, workers: Optional[int] = None,
+    def sweep(self, grid: Optional[Grid] = None, *, workers: Optional[int] = None,
               each: Optional[Callable[[Result], Any]] = None, **options: Any) -> Sweep:
         """Runs of all combinations of values, in several threads.
 
         grid     {"rload": [5, 10], "c1": [10e-6, 20e-6]}: all combinations, the last name fastest;
-                 or a list of dicts, one a run
+                 or a list of dicts, one a run. Lists may also stand by name: sweep(rload=[5, 10])
         workers  threads; None: as many as there are cores. Results do not depend on it
         each     each(result) gives the values to keep: a dict, or one value, which is called "value".
                  None: the measurements, and no rows are made, which is fastest
@@ -83,7 +84,7 @@ class Circuit:
         """
         return sweep_of(self.run, grid, workers, each, options)
 
-    def variants(self, values: Optional[Mapping[str, float]] = None, *, seed: Optional[int] = None,
+    def variants(self, values: Optional[Mapping[str, Number]] = None, *, seed: Optional[int] = None,
                  workers: Optional[int] = None, each: Optional[Callable[[Result], Any]] = None,
                  **options: Any) -> Sweep:
         """The runs of the netlist's .step and .mc, in several threads.
@@ -96,7 +97,7 @@ class Circuit:
             raise ValueError("the netlist has neither .step nor .mc")
         return variants_of(self.run, points, workers, each, {**options, "values": values, "seed": seed})
 
-    def check(self, values: Optional[Mapping[str, float]] = None, *,
+    def check(self, values: Optional[Mapping[str, Number]] = None, *,
               step: float = 0.0) -> Dict[str, Any]:
         """What theory says without a run, as `dalcs check --format json` (doc/check.schema.json).
 
@@ -105,7 +106,7 @@ class Circuit:
         session = self._read(values=values)
         return dict(json.loads(session.document(c.lib.dalcs_session_check_json, float(step))))
 
-    def equations(self, values: Optional[Mapping[str, float]] = None, *,
+    def equations(self, values: Optional[Mapping[str, Number]] = None, *,
                   form: str = "dalcs") -> List[System]:
         """The complementarity system of each connected part; form "lcs": z eliminated where it can be."""
         if form not in ("dalcs", "lcs"):

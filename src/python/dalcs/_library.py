@@ -117,6 +117,7 @@ CALLS = {
     "dalcs_tables_destroy": (None, (c_void_p,)),
     "dalcs_session_report_json": (c_int, (c_void_p, POINTER(c_char_p))),
     "dalcs_session_check_json": (c_int, (c_void_p, c_double, POINTER(c_char_p))),
+    "dalcs_parse_number": (c_int, (c_char_p, POINTER(c_double))),
     "dalcs_session_equations_json": (c_int, (c_void_p, c_int, c_double, POINTER(c_char_p))),
 }
 

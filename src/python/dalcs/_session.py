@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import difflib
 import math
 import os
 import signal
@@ -16,6 +17,25 @@ from ._errors import OptionError, error_of
 
 Netlist = Union[str, "os.PathLike[str]"]
 Window = Union[bool, Tuple[float, float]]
+Number = Union[float, str]  # a str as in netlists: "4.7k"
+OWN_OPTIONS = frozenset(("at", "losses", "rows", "seed", "progress", "values"))  # of Circuit.run
+
+
+def number_of(value: Number) -> float:
+    """A number, or the one that a text such as "2.2u" is in a netlist."""
+    if not isinstance(value, str):
+        return float(value)
+    number = ctypes.c_double(math.nan)
+    if c.lib.dalcs_parse_number(value.encode(), ctypes.byref(number)) != c.OK:
+        raise ValueError(f"{value!r} is no number of a netlist, such as 4.7k or 2.2u")
+    return number.value
+
+
+def _options_like(name: str) -> list[str]:
+    """Names of options that somebody may have meant who wrote this."""
+    known = sorted(c.OPTIONS | OWN_OPTIONS)
+    return ([option for option in known if option.startswith(name) or name.startswith(option)]
+            or difflib.get_close_matches(name, known, 1))
 
 
 @c.Progress
@@ -64,6 +84,10 @@ class Session:
     def __del__(self) -> None:
         c.lib.dalcs_session_destroy(self.handle)
 
+    def __reduce__(self) -> Any:
+        raise TypeError("a result is memory of libdalcs, which cannot be copied or sent to another process: "
+                        "send its arrays, its report, or to_pandas()")
+
     def _check(self, status: int) -> None:
         if status != c.OK:
             raise error_of(status, self.messages())
@@ -81,9 +105,16 @@ class Session:
             found.append(name.decode("utf-8", "replace"))
         return found
 
-    def set_values(self, values: Mapping[str, float]) -> None:
+    def set_values(self, values: Mapping[str, Number]) -> None:
         for name, value in values.items():
-            self._check(c.lib.dalcs_session_set_value(self.handle, name.encode(), float(value)))
+            try:
+                self._check(c.lib.dalcs_session_set_value(self.handle, name.encode(), number_of(value)))
+            except OptionError as error:
+                meant = _options_like(name)
+                if "hint: " in str(error) or not meant:
+                    raise
+                hint = f"\n  hint: did you mean the option {meant[0]!r}?"
+                raise OptionError(error.status, [*error.messages[:-1], error.messages[-1] + hint]) from None
 
     def _values(self, call: Callable[..., Optional[bytes]], *arguments: int) -> dict[str, float]:
         """All names and values that a call gives by index."""

@@ -13,15 +13,34 @@ from numpy.typing import NDArray
 from . import _library as c
 from ._errors import Cancelled, Error
 from ._result import Result
+from ._session import OWN_OPTIONS, Number, number_of
 
-Grid = Union[Mapping[str, Sequence[float]], Sequence[Mapping[str, float]]]
+Grid = Union[Mapping[str, Sequence[Number]], Sequence[Mapping[str, Number]]]
 
 
 def _points_of(grid: Grid) -> List[Dict[str, float]]:
     if isinstance(grid, Mapping):
         names = list(grid)
-        return [dict(zip(names, values)) for values in itertools.product(*grid.values())]
-    return [dict(point) for point in grid]
+        points = [dict(zip(names, values)) for values in itertools.product(*grid.values())]
+    else:
+        points = [dict(point) for point in grid]
+    return [{name: number_of(value) for name, value in point.items()} for point in points]
+
+
+def _grid_of(grid: Optional[Grid], options: Dict[str, Any]) -> Grid:
+    """The grid with what stands among the options as a list: sweep(netlist, rload=[5, 10])."""
+    own = {name: value for name, value in options.items()
+           if name not in c.OPTIONS | OWN_OPTIONS and np.ndim(value) > 0}
+    for name in own:
+        del options[name]
+    if grid is not None and not isinstance(grid, Mapping):
+        if own:
+            raise TypeError("a list of points holds all values: " + ", ".join(own) + " cannot stand beside it")
+        return grid
+    whole = {**(grid or {}), **own}
+    if grid is None and not own:
+        raise TypeError('sweep() needs values: sweep(netlist, {"r1": [1e3, 2e3]}) or sweep(netlist, r1=[1e3, 2e3])')
+    return whole
 
 
 class Sweep:
@@ -199,11 +218,11 @@ def _table_of(run: Callable[..., Result], points: List[Dict[str, float]], worker
     return Sweep(points, _Workers(task, len(points), stopped).run(min(workers, len(points))))
 
 
-def sweep_of(run: Callable[..., Result], grid: Grid, workers: Optional[int],
+def sweep_of(run: Callable[..., Result], grid: Optional[Grid], workers: Optional[int],
              each: Optional[Callable[[Result], Any]], options: Mapping[str, Any]) -> Sweep:
     """What Circuit.sweep does, by this function that runs one point."""
-    points = _points_of(grid)
     asked = dict(options)
+    points = _points_of(_grid_of(grid, asked))
     fixed = dict(asked.pop("values", None) or {})
     return _table_of(lambda index, **more: run({**fixed, **points[index]}, **more), points, workers, each,
                      asked, lambda index, result: None)

@@ -258,6 +258,17 @@ static int find_vectors(lapack_int n, const double *a, const double *scale, cons
     return 1;
 }
 
+/* By columns, lda = n, and only scaling: job is 'S'. Rows and columns are measured by their sums, those of LAPACK by the
+ * roots of the sums of squares: a power of 2 may differ. */
+lapack_int LAPACKE_dgebal(int layout, char job, lapack_int n, double *a, lapack_int lda,
+                          lapack_int *low, lapack_int *high, double *scale) {
+    (void)layout, (void)job, (void)lda;
+    balance(n, a, scale);
+    *low = 1;
+    *high = n;
+    return 0;
+}
+
 /* By columns, without left vectors; the rest of a column of lda is not looked at. */
 lapack_int LAPACKE_dgeev(int layout, char job_left, char job_right, lapack_int n, double *a,
                          lapack_int lda, double *re, double *im, double *left, lapack_int ld_left,

@@ -52,6 +52,8 @@ lapack_int LAPACKE_dgelss(int layout, lapack_int m, lapack_int n, lapack_int n_r
 
 /* ---- eigen.c: eigenvalues of any matrix ---- */
 
+lapack_int LAPACKE_dgebal(int layout, char job, lapack_int n, double *a, lapack_int lda,
+                          lapack_int *low, lapack_int *high, double *scale);
 lapack_int LAPACKE_dgeev(int layout, char job_left, char job_right, lapack_int n, double *a,
                          lapack_int lda, double *re, double *im, double *left, lapack_int ld_left,
                          double *right, lapack_int ld_right);

@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""The gallery: a schematic of each netlist that agrees with it, a card for each circuit, and their place in the site.
+
+usage: gallery.py SOURCE_FOLDER BUILD_FOLDER
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE, BUILD = (pathlib.Path(name).resolve() for name in sys.argv[1:3])
+sys.path += [str(SOURCE / "tools")]
+import layout  # noqa: E402  pylint: disable=wrong-import-position,import-error
+import schematics  # noqa: E402  pylint: disable=wrong-import-position,import-error
+
+# Of subcircuits nobody knows what is inside.
+NOT_DRAWN = {"boost_interleaved", "full_bridge_phase_shift", "inverter_three_phase", "twelve_pulse"}
+
+
+def run(*command):
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+class Schematics(unittest.TestCase):
+    def test_every_netlist(self):
+        """schematics.draw() compares elements, their ends and nodes."""
+        refused = set()
+        for path in sorted((SOURCE / "netlists").rglob("*.cir")):
+            deck = layout.plain(path.read_text(encoding="utf-8"))
+            try:
+                self.assertIn("</svg>", schematics.draw(layout.describe(deck)[0], deck, "title"))
+            except layout.NoLayout:
+                refused.add(path.stem)
+        self.assertEqual(refused, NOT_DRAWN)
+
+    def test_places(self):
+        """Neighbours on the line, what is at ground below, what goes past others in a lane above."""
+        deck = "Buck\nV1 in 0 12\nVg g 0 PULSE(0 1 0 0 0 4u 10u)\nS1 in sw g 0 sm\nD1 0 sw\nL1 sw out 50u\n" \
+               "C1 out 0 20u\nR1 in out 2k\n.tran 1u 1m\n"
+        deck = layout.plain(deck)
+        text, omitted = layout.describe(deck)
+        where = {words[0]: [tuple(map(float, word.split(","))) for word in words[2:4]]
+                 for words in map(str.split, text.split("\n")) if len(words) > 3 and words[0] != "wire"}
+        self.assertEqual(omitted, ["Vg"])
+        for name in "S1", "L1":
+            self.assertEqual([y for _, y in where[name]], [0.0, 0.0], name)
+            self.assertLess(where[name][0][0], where[name][1][0], name)
+        for name in "V1", "C1":
+            self.assertEqual([y for _, y in where[name]], [0.0, layout.DEPTH], name)
+        self.assertEqual([y for _, y in where["D1"]], [layout.DEPTH, 0.0])
+        self.assertTrue(all(y < 0.0 for _, y in where["R1"]))
+        self.assertIn("| 2 kΩ", text)
+        wrong = text.replace("D1 diode", "D2 diode")
+        with self.assertRaises(schematics.Wrong):
+            schematics.draw(wrong, deck, "title")
+
+    def test_transistors(self):
+        """By the nodes of their currents; sources that only drive gates are left out; gnd is ground."""
+        deck = "Half bridge\nV1 p gnd 400\nM1 p gh sw fet\nM2 sw gl\n+ 0 fet\nVh gh sw PULSE(0 12 0 1n 1n 5u 10u)\n" \
+               "Vl gl GND PULSE(12 0 0 1n 1n 5u 10u)\nL1 sw o 100u\nR1 o 0 10\n.subckt no a b\nR1 a b 1\n.ends\n" \
+               ".control\nrun\n.endc\n.end\n"
+        deck = layout.plain(deck)
+        text, omitted = layout.describe(deck)
+        self.assertEqual(omitted, ["Vh", "Vl"])
+        self.assertIn("</svg>", schematics.draw(text, deck, "title"))
+        self.assertRegex(text, "M1 switch .*\n")
+        with self.assertRaises(layout.NoLayout):
+            layout.describe("title\nX1 a b two\nR1 a b 1\n")
+
+    def test_lanes_do_not_touch(self):
+        """Two that pass over each other are in two lanes: the comparison would see one node."""
+        deck = "Ring\n" + "".join(f"R{i}{j} {i} {j} 1k\n" for i in range(1, 8) for j in range(i + 1, 8)) + "C1 1 0 1u\n"
+        self.assertIn("</svg>", schematics.draw(layout.describe(deck)[0], deck, "title"))
+
+
+class Page(unittest.TestCase):
+    def test_list(self):
+        done = run(SOURCE / "tools/gallery", "--check")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_cards_and_site(self):
+        with tempfile.TemporaryDirectory() as place:
+            place = pathlib.Path(place)
+            done = run(SOURCE / "tools/gallery", "--build", BUILD, "--only", "hc11", place / "gallery")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            index = (place / "gallery/index.html").read_text(encoding="utf-8")
+            self.assertEqual(len(re.findall("<article", index)), 3)
+            self.assertEqual(len(re.findall("Refused: .*no solution", index)), 3)
+            done = run(SOURCE / "tools/gallery", "--build", BUILD, "--only", "full_bridge_r.cir", place / "gallery")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue((place / "gallery/rectifiers_full_bridge_r.png").read_bytes().startswith(b"\x89PNG"))
+            self.assertIn("</svg>", (place / "gallery/rectifiers_full_bridge_r.svg").read_text(encoding="utf-8"))
+            site = [SOURCE / "tools/site", "--gallery", place / "gallery", place / "site"]
+            done = run(*site)
+            if "No module named 'markdown'" in done.stderr:
+                self.skipTest("python3-markdown is not installed")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn('href="gallery/index.html"', (place / "site/gallery.html").read_text(encoding="utf-8"))
+            (place / "gallery/rectifiers_full_bridge_r.svg").unlink()
+            self.assertIn("leads nowhere", run(*site).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
