@@ -24,6 +24,7 @@
 #include "times.h"
 #include "variants.h"
 #include "verb.h"
+#include "worst_case_lines.h"
 
 #include <math.h>
 #include <string.h>
@@ -211,6 +212,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
         dalcs_measurements_write(out, report);
     }
     dalcs_sensitivity_lines_write(out, report);
+    dalcs_worst_case_lines_write(out, report);
     fputc('\n', out);
 }
 
@@ -389,6 +391,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     const enum dalcs_status measures =
         dalcs_measures_file_close(&run->measures, run->cli, arguments, report, status);
     files = files == DALCS_OK ? measures : files;
+    if (status == DALCS_OK && report != NULL) {
+        status = dalcs_worst_case_tell_failed(run->cli, report);
+    }
     return status == DALCS_OK ? files : status;
 }
 
