@@ -12,8 +12,8 @@ static void write_value(struct dalcs_json *json, const char *key, double value) 
     }
 }
 
-static void write_places(struct dalcs_json *json, const struct dalcs_report *report,
-                         const char *key, size_t run) {
+static void write_places(struct dalcs_json *json, const char *key,
+                         const struct dalcs_report *report, size_t run) {
     dalcs_json_open(json, key, '{', true);
     for (size_t p = 0; p < report->worst_case.n_parameters; p++) {
         dalcs_json_integer(json, report->worst_case.parameter[p].name,
@@ -30,8 +30,8 @@ static void write_result(struct dalcs_json *json, const struct dalcs_report *rep
     write_value(json, "smallest", run[result->smallest].value[k]);
     write_value(json, "nominal", run[0].value[k]);
     write_value(json, "largest", run[result->largest].value[k]);
-    write_places(json, report, "at_smallest", result->smallest);
-    write_places(json, report, "at_largest", result->largest);
+    write_places(json, "at_smallest", report, result->smallest);
+    write_places(json, "at_largest", report, result->largest);
     dalcs_json_open(json, "alone", '{', false);
     for (size_t p = 0; p < report->worst_case.n_parameters; p++) {
         dalcs_json_open(json, report->worst_case.parameter[p].name, '[', true);
