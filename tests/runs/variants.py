@@ -9,6 +9,7 @@ import math
 import os
 import pathlib
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -227,6 +228,29 @@ class Variants(unittest.TestCase):
         self.assertIn("Is a directory", self.run_it("folder.csv", status=4))
         self.write("\n".join(card for card in CIRCUIT.splitlines() if not card.startswith(".step")))
         self.assertIn("has no .step", self.run_it("m.csv", "--shard", "1/2", status=2))
+
+    @unittest.skipUnless(shutil.which("parallel"), "GNU parallel is not installed")
+    def test_gnu_parallel(self):
+        """Parts by GNU parallel; one is killed in the middle, which costs the others nothing and is gone on with."""
+        self.write(MANY)
+        self.run_it("whole.csv")
+        (self.folder / "part.sh").write_text(
+            '#!/bin/sh\nif [ "$1" = 2 ] && [ -n "$KILL" ]; then ulimit -f 8; fi\n'  # blocks of 512 bytes: SIGXFSZ
+            f'exec {PROGRAM} run a.cir -q -o none --jobs 1 --resume --shard "$1/4" --measures "part.$1.csv"\n')
+        command = ["parallel", "--will-cite", "-j", "2", "sh", "part.sh", "{}", ":::", "1", "2", "3", "4"]
+        killed = subprocess.run(command, cwd=self.folder, env={**os.environ, "KILL": "1"}, check=False,
+                                capture_output=True, text=True)
+        self.assertEqual(killed.returncode, 1, killed.stderr)  # of the jobs that failed
+        self.assertTrue((self.folder / "part.2.partial.csv").exists())
+        kept = (self.folder / "part.2.partial.csv").read_text().splitlines()
+        self.assertGreater(len(kept), 10)
+        for k in 1, 3, 4:
+            self.assertTrue((self.folder / f"part.{k}.csv").exists())
+        again = subprocess.run(command, cwd=self.folder, check=True, capture_output=True, text=True)
+        self.assertEqual(again.stderr, "")
+        parts = [self.text(f"part.{k}.csv").splitlines(True) for k in (1, 2, 3, 4)]
+        self.assertEqual("".join(parts[0] + parts[1][1:] + parts[2][1:] + parts[3][1:]), self.text("whole.csv"))
+        self.assertEqual(parts[1][:len(kept) - 1], [line + "\n" for line in kept[:-1]])
 
 
 if __name__ == "__main__":
