@@ -83,6 +83,8 @@ static enum dalcs_exit refuse_verb(const struct dalcs_cli *cli, const char *word
         const char *nearest = dalcs_names_nearest_of(option, 2, word);
         dalcs_cli_error(cli, "unknown option '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
                         nearest ? nearest : "", nearest ? "'?" : "");
+    } else if (strpbrk(word, "./") != NULL) {
+        dalcs_cli_error(cli, "there is no file '%s'", word);
     } else {
         const char *nearest = dalcs_names_nearest_of(name, N_VERBS, word);
         dalcs_cli_error(cli, "unknown verb '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
@@ -122,7 +124,7 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
     if (dalcs_cli_is_batch(argc, argv)) {
         return dalcs_cli_batch(cli, argc, argv);
     }
-    if (argv[1][0] != '-' && access(argv[1], F_OK) == 0) {
+    if (strcmp(argv[1], "-") == 0 || (argv[1][0] != '-' && access(argv[1], F_OK) == 0)) {
         return dalcs_cli_run(cli, argc, argv);
     }
     return refuse_verb(cli, argv[1]);

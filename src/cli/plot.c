@@ -24,6 +24,7 @@ static const char help[] =
     "\n"
     "Draws the waveforms of a .raw or .csv file, of dalcs or of another SPICE: a panel for each\n"
     "unit, and below them when diodes and switches conduct. Without -o it draws on the terminal.\n"
+    "FILE may be -, the standard input.\n"
     "\n"
     "  -o, --output FILE   what is drawn, by its name: .svg, .png or .pdf with gnuplot, .html for\n"
     "                      a page with zoom, cursors and a list of the signals\n"

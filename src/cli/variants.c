@@ -1,6 +1,7 @@
 /* variants.c - many variants: their table in a file and for people, what failed, what ended it early. */
 #include "variants.h"
 
+#include "atomic_file.h"
 #include "csv_cells.h"
 #include "memory.h"
 #include "run_statistics.h"
@@ -32,11 +33,11 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                                      const struct dalcs_session *session, bool has_script,
                                      bool *wanted) {
     const bool has_steps = dalcs_session_request(session).n_steps > 1;
-    const bool is_table = arguments->no_waveforms && arguments->n_outputs == 0 &&
-                          arguments->measures != NULL && arguments->report == NULL &&
-                          arguments->plot == NULL && !arguments->losses &&
-                          arguments->losses_plot == NULL && !arguments->energy &&
-                          !arguments->steady && !arguments->bode && !arguments->batch;
+    const bool is_table =
+        arguments->no_waveforms && arguments->n_outputs == 0 && arguments->measures != NULL &&
+        !dalcs_is_standard_output(arguments->measures) && arguments->report == NULL &&
+        arguments->plot == NULL && !arguments->losses && arguments->losses_plot == NULL &&
+        !arguments->energy && !arguments->steady && !arguments->bode && !arguments->batch;
     const bool can_read = strcmp(arguments->netlist, "-") != 0;
     const bool is_asked = arguments->n_shards > 0 || arguments->resume || arguments->jobs > 0;
     *wanted = has_steps && is_table && can_read && !has_script && arguments->only == 0;
@@ -49,7 +50,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                         ? "each thread reads the netlist, so give the name of a file in place of -"
                     : arguments->only > 0 ? "--only is one of them"
                     : has_script ? "a .control block says what is run here, one run after the other"
-                                 : "the netlist has no .step");
+                                 : "the netlist has no .step and no .mc");
     return DALCS_E_OPTION;
 }
 

@@ -97,7 +97,8 @@ enum dalcs_status dalcs_waveforms_read_file(struct dalcs_waveforms *waveforms, c
     char *text = NULL;
     size_t length = 0;
     *waveforms = (struct dalcs_waveforms){0};
-    DALCS_TRY(dalcs_text_file_read(path, most_bytes, &text, &length, NULL, diag));
+    const char *from = strcmp(path, "-") == 0 ? "/dev/stdin" : path;
+    DALCS_TRY(dalcs_text_file_read(from, most_bytes, &text, &length, NULL, diag));
     if (length > most_bytes) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "'%s' is larger than 4 GiB", path);
         free(text);
