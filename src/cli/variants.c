@@ -219,6 +219,8 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
     const size_t shard = arguments->n_shards > 0 ? arguments->shard : 1;
     struct dalcs_decimal decimal;
     dalcs_decimal_init(&decimal);
+    const bool goes_on = arguments->resume || dalcs_crashes_go_on();
+    struct dalcs_crashes crashes = {0};
     struct variants v = {.cli = cli, .arguments = arguments, .file = {.path = arguments->measures}};
     /* Neighbours stay together: the parts one after the other are the whole table. */
     v.pool = (struct dalcs_variants_pool){
@@ -238,7 +240,11 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
     enum dalcs_status status = dalcs_run_statistics_begin(&v.statistics, v.pool.n_measures);
     status = status != DALCS_OK || header == NULL
                  ? DALCS_E_NOMEM
-                 : dalcs_variants_file_open(&v.file, cli, header, arguments->resume, begin_of, &v);
+                 : dalcs_variants_file_open(&v.file, cli, header, goes_on, begin_of, &v);
+    if (status == DALCS_OK && !v.file.is_complete) {
+        status = dalcs_crashes_watch(&crashes, v.file.partial, goes_on);
+        v.pool.crashes = &crashes;
+    }
     if (status == DALCS_E_NOMEM) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     } else if (status == DALCS_OK && v.file.is_complete) {
@@ -249,6 +255,7 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
         status = run_rest(&v);
     }
     free(header);
+    dalcs_crashes_finish(&crashes, status == DALCS_OK || status == DALCS_NOT_CONVERGED);
     dalcs_run_statistics_finish(&v.statistics);
     dalcs_variants_file_finish(&v.file);
     for (size_t k = 0; k < v.n_said; k++) {
