@@ -28,8 +28,8 @@ enum {
 
 static struct {
     char **argument, **environment; /* of the program anew; heap, for as long as it runs */
-    int notes;                      /* the file's descriptor; -1: crashes are not noted */
-} again = {.notes = -1};
+    const char *notes;              /* the file's path; NULL: crashes are not noted */
+} again;
 
 static _Thread_local long running = -1; /* step */
 
@@ -61,7 +61,7 @@ static void go_on(int signal_number, siginfo_t *info, void *context) {
     static const char said[] = "dalcs: a variant crashed: its row says so, the others go on\n";
     char line[64];
     (void)context;
-    if (running < 0 || again.notes < 0 || info->si_code == SI_USER) {
+    if (running < 0 || again.notes == NULL || info->si_code == SI_USER) {
         die(signal_number); /* sent by somebody, or in no variant */
         return;
     }
@@ -69,7 +69,8 @@ static void go_on(int signal_number, siginfo_t *info, void *context) {
     line[n++] = ' ';
     n += write_digits(line + n, (unsigned long)signal_number);
     line[n++] = '\n';
-    if (write(again.notes, line, n) != (ssize_t)n) {
+    const int notes = open(again.notes, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (notes < 0 || write(notes, line, n) != (ssize_t)n) {
         die(signal_number);
         return;
     }
@@ -130,8 +131,8 @@ static void catch_crashes(const char *path) {
     if (again.argument == NULL || again.environment == NULL) {
         return;
     }
-    again.notes = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    for (int k = 0; k < N_CRASHING && again.notes >= 0; k++) {
+    again.notes = path;
+    for (int k = 0; k < N_CRASHING; k++) {
         struct sigaction action = {.sa_sigaction = go_on,
                                    .sa_flags = (int)(SA_SIGINFO | SA_ONSTACK | SA_NODEFER)};
         sigemptyset(&action.sa_mask);
@@ -201,14 +202,11 @@ int dalcs_crashes_find(const struct dalcs_crashes *crashes, size_t step) {
 }
 
 void dalcs_crashes_finish(struct dalcs_crashes *crashes, bool is_complete) {
-    for (int k = 0; k < N_CRASHING && again.notes >= 0; k++) {
+    for (int k = 0; k < N_CRASHING && again.notes != NULL; k++) {
         signal(crashing[k], SIG_DFL);
     }
-    if (again.notes >= 0) {
-        close(again.notes);
-        again.notes = -1;
-    }
-    if (crashes->path != NULL && (is_complete || crashes->n == 0)) {
+    again.notes = NULL;
+    if (crashes->path != NULL && is_complete) {
         unlink(crashes->path);
     }
     free(crashes->path);

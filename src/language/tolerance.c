@@ -34,17 +34,6 @@ static double size_of(const struct dalcs_tolerance *t, double nominal) {
 
 /* ---- Models ------------------------------------------------------------------------------------ */
 
-/* "power/rb" of x1.rb: what all instances of the subcircuit share. */
-static const char *lot_of_model(struct dalcs_language *language, const char *flat) {
-    const char *dot = strrchr(flat, '.');
-    const char *instance =
-        dot != NULL ? dalcs_language_text(language, "%.*s", (int)(dot - flat), flat) : NULL;
-    const int k = instance != NULL ? dalcs_names_find(&language->deck->instances, instance) : -1;
-    return k < 0 ? flat
-                 : dalcs_language_text(language, "%s/%s",
-                                       language->scope[k]->definition->name->text, dot + 1);
-}
-
 /* Those that follow no parameter's value are of none. An R, L or C takes its factor alone from a model. */
 static bool check_model(struct dalcs_tolerant *all, struct dalcs_tolerant_model *m,
                         const struct dalcs_card *card) {
@@ -62,7 +51,10 @@ static bool check_model(struct dalcs_tolerant *all, struct dalcs_tolerant_model 
             return false;
         }
         if (letter == '\0' || t->name == NULL || strcmp(t->name, own) == 0) {
-            m->value[n++] = *t;
+            m->value[n] = *t;
+            m->value[n].dev.is_relative |= letter != '\0'; /* of a factor that is 1 */
+            m->value[n].lot.is_relative |= letter != '\0';
+            n++;
         }
     }
     m->n = n;
@@ -80,7 +72,7 @@ static bool take_model(struct dalcs_tolerant *all, size_t k) {
         return m.n == 0;
     }
     const char *name = card->token[1].text;
-    m.lot = lot_of_model(language, name);
+    m.lot = dalcs_tolerance_lot_of_model(language, name);
     if (m.lot == NULL ||
         dalcs_grow(&all->model, &all->capacity, all->n_models + 1, sizeof *all->model) !=
             DALCS_OK ||

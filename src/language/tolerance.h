@@ -47,6 +47,9 @@ double dalcs_tolerance_draw_dev(struct dalcs_tolerant *all, const struct dalcs_t
 double dalcs_tolerance_draw_lot(struct dalcs_tolerant *all, const struct dalcs_tolerance *t,
                                 const char *lot, const char *field);
 
+/* "power/rb" of x1.rb: what all instances of the subcircuit share. */
+const char *dalcs_tolerance_lot_of_model(struct dalcs_language *language, const char *flat);
+
 /* A value that a tolerance has a part in: of what random functions made of it nobody asks then. */
 void dalcs_tolerance_keep(struct dalcs_tolerant *all, const char *name, double value);
 

@@ -72,3 +72,13 @@ double dalcs_tolerance_draw_lot(struct dalcs_tolerant *all, const struct dalcs_t
     }
     return deviation(all, t, key);
 }
+
+const char *dalcs_tolerance_lot_of_model(struct dalcs_language *language, const char *flat) {
+    const char *dot = strrchr(flat, '.');
+    const char *instance =
+        dot != NULL ? dalcs_language_text(language, "%.*s", (int)(dot - flat), flat) : NULL;
+    const int k = instance != NULL ? dalcs_names_find(&language->deck->instances, instance) : -1;
+    return k < 0 ? flat
+                 : dalcs_language_text(language, "%s/%s",
+                                       language->scope[k]->definition->name->text, dot + 1);
+}

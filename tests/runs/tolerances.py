@@ -257,6 +257,29 @@ class Tolerances(unittest.TestCase):
             last = 1.01 if tolerance else 1
             self.assertAlmostEqual(said["results"][0]["largest"], 10 * last / (12 * 0.99 + last), delta=1e-9)
 
+    def test_sizes(self):
+        """In per cent, in ohms, of a model's factor, from an expression, behind any way to write the value."""
+        written = {"R1 in 0 1k DEV=5%": 50, "R1 in 0 1k DEV=5": 5, "R1 in 0 1k dev 0.5%": 5, "R1 in 0 R=1k DEV=1%": 10,
+                   "R1 in 0 {x} DEV={x/100}%": 100, "R1 in 0 RB 1k\n.model RB RES(R=1 DEV=0.05)": 50,
+                   "R1 in 0 1k RB\n.model RB R(DEV=5%)": 50, "R1 in 0 RB R=1k DEV=1%\n.model RB RES(R=1 DEV=9%)": 10,
+                   "R1 in 0 1k RB\n.model RB RES(TC1=1 DEV=5% R=1 LOT=2%)": 20}
+        for card, size in written.items():
+            text = f"t\n.param x=1k\nI1 0 in 1\n{card}\n.op\n.meas op v find v(in)\n.wcase\n"
+            self.run_it(text, "--report", "r.json")
+            v = json.loads((self.folder / "r.json").read_text())["worst_case"]["results"][0]
+            self.assertAlmostEqual(v["largest"], 1000 + size, delta=1e-9, msg=card)
+            self.assertAlmostEqual(v["smallest"], 1000 - size, delta=1e-9, msg=card)
+
+    def test_other_elements(self):
+        cards = {"V1 b 0 5 DEV=10%": 5.5, "V1 b 0 DC 5 AC 1 DEV=10%": 5.5, "I1 0 b 5m DEV=10%": 5.5, "E1 b 0 one 0 5 DEV=10%": 5.5,
+                 "G1 0 b one 0 5m DEV=10%": 5.5, "F1 0 b Vone 5 LOT=10%": 5.5, "H1 b 0 Vone 5k DEV=10%": 5.5}
+        for card, largest in cards.items():
+            text = (f"t\nVone one 0 1\nIone 0 one 1m\n{card}\nR1 b 0 1k\n.op\n"
+                    ".meas op v find v(b)\n.wcase\n")
+            self.run_it(text, "--report", "r.json")
+            v = json.loads((self.folder / "r.json").read_text())["worst_case"]["results"][0]
+            self.assertAlmostEqual(v["largest"], largest, delta=1e-9, msg=card)
+
     def test_steady_state(self):
         text = ("t\nV1 in 0 PULSE(0 10 0 0 0 5u 10u)\nR1 in out 1k DEV=5%\nC1 out 0 1u\nR2 out 0 1k DEV=5%\n.pss\n"
                 ".meas pss v avg v(out)\n.wcase\n")
