@@ -213,8 +213,8 @@ class Tolerances(unittest.TestCase):
 
     def test_effects_that_do_not_add_up(self):
         """A bridge in balance: moving one arm up or down tells nothing of moving two."""
-        text = ("t\nV1 in 0 10\nR1 in a 1k DEV=10%\nR2 a 0 1k\nR3 in b 1k DEV=10%\nR4 b 0 1k\nB1 c 0 V=-abs(v(a)-v(b))\n"
-                ".tran 1u 10u\n.meas tran off min v(c)\n")
+        text = ("t\nV1 in 0 10\nR1 in a 1k DEV=10%\nR2 a 0 1k\nR3 in b 1k DEV=10%\nR4 b 0 1k\n"
+                "B1 c 0 V=-abs(v(a)-v(b))\n.tran 1u 10u\n.meas tran off min v(c)\n")
         done = self.run_it(text + ".wcase\n", "--report", "r.json")
         off = json.loads((self.folder / "r.json").read_text())["worst_case"]["results"][0]
         self.assertAlmostEqual(off["smallest"], -10 * abs(1 / 1.9 - 1 / 2.1), delta=1e-9)
@@ -271,7 +271,8 @@ class Tolerances(unittest.TestCase):
             self.assertAlmostEqual(v["smallest"], 1000 - size, delta=1e-9, msg=card)
 
     def test_other_elements(self):
-        cards = {"V1 b 0 5 DEV=10%": 5.5, "V1 b 0 DC 5 AC 1 DEV=10%": 5.5, "I1 0 b 5m DEV=10%": 5.5, "E1 b 0 one 0 5 DEV=10%": 5.5,
+        cards = {"V1 b 0 5 DEV=10%": 5.5, "V1 b 0 DC 5 AC 1 DEV=10%": 5.5, "I1 0 b 5m DEV=10%": 5.5,
+                 "E1 b 0 one 0 5 DEV=10%": 5.5,
                  "G1 0 b one 0 5m DEV=10%": 5.5, "F1 0 b Vone 5 LOT=10%": 5.5, "H1 b 0 Vone 5k DEV=10%": 5.5}
         for card, largest in cards.items():
             text = (f"t\nVone one 0 1\nIone 0 one 1m\n{card}\nR1 b 0 1k\n.op\n"
