@@ -842,6 +842,30 @@ struct dalcs_report {
             const double *derivative; /* [n_parameters] by the value; not a number: there is none */
         } * result;                   /* [n_results] */
     } sensitivity;
+
+    /* .wcase: first all in the middle, then each tolerance at its ends alone, then all of them where these say that
+     * each measurement is smallest and largest, and all corners where these are few. */
+    struct {
+        bool present, has_corners;
+        size_t n_parameters, n_results, n_runs, n_failed;
+
+        const struct dalcs_worst_case_parameter {
+            const char *name;          /* "r1", "d1(vfwd)", "lot(rb)" */
+            double low, nominal, high; /* values; -1, 0 and 1 of what has no value of its own */
+        } * parameter;                 /* [n_parameters] */
+
+        const struct dalcs_worst_case_result {
+            const char *name;               /* of .meas */
+            size_t smallest, largest;       /* runs */
+            const double *at_low, *at_high; /* [n_parameters] with this one there alone */
+        } * result;                         /* [n_results] */
+
+        const struct dalcs_worst_case_run {
+            const signed char *place; /* [n_parameters] -1: low, 0: nominal, 1: high */
+            const double *value;      /* [n_results] NaN: it could not be measured */
+            const char *error;        /* NULL: there is none */
+        } * run;                      /* [n_runs] */
+    } worst_case;
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

@@ -532,6 +532,11 @@ bool dalcs_monte_carlo_read_seed(struct dalcs_reader *reader);
 /* What was drawn, into the circuit. */
 enum dalcs_status dalcs_monte_carlo_collect(struct dalcs_builder *builder) DALCS_MUST_CHECK;
 
+/* worst_case_card.c: .wcase, the tolerances that it varies, and what it asks of the rest of the netlist. */
+void dalcs_worst_case_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+enum dalcs_status dalcs_worst_case_collect(struct dalcs_builder *builder) DALCS_MUST_CHECK;
+void dalcs_worst_case_check(struct dalcs_builder *builder);
+
 /* An element whose first letter is among `letters`, param name or model(field). False after a message. */
 bool dalcs_sweep_read_item(struct dalcs_reader *reader, const char *letters,
                            struct dalcs_sweep *sweep);

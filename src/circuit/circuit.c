@@ -158,6 +158,7 @@ static const struct {
     [DALCS_CARD_SENS] = {REFERENCES, dalcs_sensitivity_parse},
     [DALCS_CARD_STEP] = {REFERENCES, dalcs_sweep_parse_step},
     [DALCS_CARD_MC] = {REFERENCES, dalcs_monte_carlo_parse},
+    [DALCS_CARD_WORST_CASE] = {REFERENCES, dalcs_worst_case_parse},
     [DALCS_CARD_MEASURE] = {MEASURES, dalcs_measure_parse},
     [DALCS_CARD_FOURIER] = {MEASURES, dalcs_fourier_parse},
     [DALCS_CARD_LOSSES] = {MEASURES, dalcs_losses_parse},
@@ -257,6 +258,7 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
         circuit->initial_condition[k] = builder->initial_condition[k];
     }
     DALCS_TRY(dalcs_monte_carlo_collect(builder));
+    DALCS_TRY(dalcs_worst_case_collect(builder));
     DALCS_TRY(collect_prints(builder));
     return dalcs_measured_collect(builder);
 }
@@ -293,6 +295,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
         dalcs_initial_check(builder);
         dalcs_sweep_check(builder);
         dalcs_sensitivity_check(builder);
+        dalcs_worst_case_check(builder);
         dalcs_own_resistance_replace(builder);
     }
     return builder->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;

@@ -179,6 +179,20 @@ struct dalcs_sensitivity_card {
     struct dalcs_sweep *item; /* [n] whose start is the value that it has */
 };
 
+/* What .wcase varies. */
+struct dalcs_worst_case_card {
+    bool present;
+    bool no_corners; /* not all of them, however few they are */
+    bool no_dev, no_lot;
+    struct dalcs_location where;
+    int n;
+
+    struct dalcs_tolerance_place {
+        const char *name; /* "r1", "d1(vfwd)", "lot(rb)" */
+        uint64_t key;     /* in an override of the corner */
+    } * place;            /* [n] */
+};
+
 /* What .pss asks for; times in s. */
 struct dalcs_periodic_card {
     bool present;
@@ -239,6 +253,7 @@ struct dalcs_circuit {
     struct dalcs_sweep ac; /* frequencies of .ac in Hz; n is 0 without one */
     struct dalcs_orbit_ac_card orbit_ac;
     struct dalcs_sensitivity_card sensitivity;
+    struct dalcs_worst_case_card worst_case;
     int n_steps; /* of .step and .mc, the innermost first */
     struct dalcs_sweep *step;
     int n_drawn; /* values that random functions had a part in */

@@ -114,12 +114,12 @@ bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_param
     return ok;
 }
 
-/* Of an R, L or C the card has the value; a model's temperature, noise and tolerance change nothing here. */
+/* Of an R, L or C the card has the value; a model's temperature and noise change nothing here. */
 static void read_passive(struct dalcs_reader *reader, struct dalcs_model *model) {
     static const char *const nothing[] = {
-        "tc",     "tc1",   "tc2",   "tce",          "tnom",        "temp",       "dtemp",
-        "kf",     "af",    "ef",    "lf",           "wf",          "dev",        "lot",
-        "bv_max", "level", "t_abs", "t_rel_global", "t_rel_local", "t_measured", "noise"};
+        "tc",    "tc1",          "tc2",         "tce",        "tnom", "temp",   "dtemp",
+        "kf",    "af",           "ef",          "lf",         "wf",   "bv_max", "level",
+        "t_abs", "t_rel_global", "t_rel_local", "t_measured", "noise"};
     (void)dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
     const struct dalcs_token *name;
     while ((name = take_parameter(reader)) != NULL && dalcs_reader_skip_value(reader)) {
@@ -190,25 +190,6 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
     return dalcs_reader_end(reader);
 }
 
-/* PSpice's tolerances, dev=5% and lot/gauss=10%: is there one? With a message, an error but for R, L and C, whose
- * values the model leaves alone. */
-static bool has_tolerance(struct dalcs_builder *builder, const struct dalcs_card *card,
-                          enum dalcs_severity severity) {
-    for (int k = 3; k < card->n; k++) {
-        const char *text = card->token[k].text;
-        const bool is_one = (strncmp(text, "dev", 3) == 0 || strncmp(text, "lot", 3) == 0) &&
-                            (text[3] == '\0' || text[3] == '/');
-        if (card->token[k].kind == DALCS_TOKEN_WORD && is_one) {
-            (severity == DALCS_ERROR ? dalcs_builder_error : dalcs_builder_warn)(
-                builder, &card->token[k],
-                "write the value itself with mc, unif or agauss, such as {mc(1k, 0.05)}",
-                "tolerances of models (DEV, LOT) are not supported");
-            return true;
-        }
-    }
-    return false;
-}
-
 /* What people call a part, and how SPICE calls its model. */
 static const char *hint_of_type(struct dalcs_builder *builder, const char *word) {
     static const char *const called[][2] = {
@@ -257,10 +238,7 @@ void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     }
     model->kind = known->kind;
     if (known->kind == DALCS_MODEL_PASSIVE) {
-        (void)has_tolerance(builder, card, DALCS_WARNING);
         read_passive(&reader, model);
-    } else if (known->kind != DALCS_MODEL_OTHER && has_tolerance(builder, card, DALCS_ERROR)) {
-        model->kind = DALCS_MODEL_WRONG;
     } else if (known->kind != DALCS_MODEL_OTHER && !read_parameters(&reader, model)) {
         model->kind = DALCS_MODEL_WRONG;
     }

@@ -86,7 +86,7 @@ void dalcs_monte_carlo_parse(struct dalcs_builder *builder, const struct dalcs_c
     sweep.stop = sweep.n;
     if (builder->deck->n_drawn == 0 && !builder->deck->has_random_formula) {
         dalcs_builder_warn(builder, card->token,
-                           "write a value such as R1 a b {agauss(1k, 50, 3)} or {mc(1k, 0.05)}",
+                           "write a value such as R1 a b {mc(1k, 0.05)}, or R1 a b 1k DEV=5%",
                            "nothing in the netlist is random: all runs are the same");
     }
     (void)dalcs_sweep_add_step(builder, card, &sweep);
@@ -109,7 +109,8 @@ enum dalcs_status dalcs_monte_carlo_collect(struct dalcs_builder *builder) {
     }
     circuit->n_drawn = (int)deck->n_drawn;
     circuit->is_random = deck->n_drawn > 0 || deck->has_random_formula;
-    if (circuit->is_random && circuit->n_steps == 0 && !deck->is_step) {
+    if (circuit->is_random && circuit->n_steps == 0 && !deck->is_step &&
+        !circuit->worst_case.present) {
         dalcs_diag_add(builder->diag, DALCS_NOTE, NULL, ".mc 100 runs it with 100 of them",
                        "random values are drawn once");
     }

@@ -109,6 +109,8 @@ static enum dalcs_exit refuse_verb(const struct dalcs_cli *cli, const char *word
         const char *nearest = dalcs_names_nearest_of(option, 2, word);
         dalcs_cli_error(cli, "unknown option '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
                         nearest ? nearest : "", nearest ? "'?" : "");
+    } else if (strpbrk(word, "./") != NULL) {
+        dalcs_cli_error(cli, "there is no file '%s'", word);
     } else {
         const char *nearest = verb_for(word);
         if (nearest == NULL && strpbrk(word, "./") != NULL) {
@@ -153,7 +155,7 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
     if (dalcs_cli_is_batch(argc, argv)) {
         return dalcs_cli_batch(cli, argc, argv);
     }
-    if (argv[1][0] != '-' && access(argv[1], F_OK) == 0) {
+    if (strcmp(argv[1], "-") == 0 || (argv[1][0] != '-' && access(argv[1], F_OK) == 0)) {
         return dalcs_cli_run(cli, argc, argv);
     }
     return refuse_verb(cli, argv[1]);

@@ -4,6 +4,7 @@
 #include "csv_cells.h"
 #include "memory.h"
 #include "settings.h"
+#include "worst_case_lines.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -76,14 +77,25 @@ static void end_row(struct dalcs_csv_cells *c, const struct dalcs_measures_file 
     dalcs_csv_end(c);
 }
 
-static void write_header(struct dalcs_csv_cells *c, const struct dalcs_measures_file *m,
-                         const struct dalcs_arguments *arguments,
-                         const struct dalcs_report *report) {
+static void write_names(struct dalcs_csv_cells *c, const struct dalcs_arguments *arguments) {
     for (size_t k = 0; k < arguments->n_set; k++) {
         size_t length;
         dalcs_settings_value(arguments->set[k], &length);
         dalcs_csv_text(c, arguments->set[k], length);
     }
+}
+
+static void write_settings(struct dalcs_csv_cells *c, const struct dalcs_arguments *arguments) {
+    for (size_t k = 0; k < arguments->n_set; k++) {
+        size_t length;
+        dalcs_csv_number(c, dalcs_settings_value(arguments->set[k], &length));
+    }
+}
+
+static void write_header(struct dalcs_csv_cells *c, const struct dalcs_measures_file *m,
+                         const struct dalcs_arguments *arguments,
+                         const struct dalcs_report *report) {
+    write_names(c, arguments);
     for (size_t k = 0; k < m->n_parameters + m->n_drawn; k++) {
         dalcs_csv_text(c, m->name[k], strlen(m->name[k]));
     }
@@ -100,10 +112,7 @@ static void write_header(struct dalcs_csv_cells *c, const struct dalcs_measures_
 static void write_step(struct dalcs_csv_cells *c, const struct dalcs_measures_file *m,
                        const struct dalcs_arguments *arguments, const struct dalcs_report *report,
                        size_t step) {
-    for (size_t k = 0; k < arguments->n_set; k++) {
-        size_t length;
-        dalcs_csv_number(c, dalcs_settings_value(arguments->set[k], &length));
-    }
+    write_settings(c, arguments);
     const size_t n_values = m->n_parameters + m->n_drawn;
     for (size_t k = 0; k < n_values; k++) {
         dalcs_csv_number(c, m->value[step * n_values + k]);
@@ -119,6 +128,28 @@ static void write_step(struct dalcs_csv_cells *c, const struct dalcs_measures_fi
     end_row(c, m, "");
 }
 
+/* Of .wcase a row each run. */
+static void write_worst_case(struct dalcs_csv_cells *c, const struct dalcs_arguments *arguments,
+                             const struct dalcs_report *report) {
+    write_names(c, arguments);
+    dalcs_worst_case_write_header(c, report);
+    dalcs_csv_end(c);
+    for (size_t run = 0; run < report->worst_case.n_runs; run++) {
+        write_settings(c, arguments);
+        dalcs_worst_case_write_row(c, report, run);
+        dalcs_csv_end(c);
+    }
+}
+
+static void write_steps(struct dalcs_csv_cells *c, const struct dalcs_measures_file *m,
+                        const struct dalcs_arguments *arguments,
+                        const struct dalcs_report *report) {
+    write_header(c, m, arguments, report);
+    for (size_t step = 0; step < m->n_steps; step++) {
+        write_step(c, m, arguments, report, step);
+    }
+}
+
 enum dalcs_status dalcs_measures_file_close(struct dalcs_measures_file *m,
                                             const struct dalcs_cli *cli,
                                             const struct dalcs_arguments *arguments,
@@ -129,9 +160,10 @@ enum dalcs_status dalcs_measures_file_close(struct dalcs_measures_file *m,
         struct dalcs_decimal decimal;
         struct dalcs_csv_cells c = {.out = m->file.stream, .decimal = &decimal};
         dalcs_decimal_init(&decimal);
-        write_header(&c, m, arguments, report);
-        for (size_t step = 0; step < m->n_steps; step++) {
-            write_step(&c, m, arguments, report, step);
+        if (report->worst_case.present) {
+            write_worst_case(&c, arguments, report);
+        } else {
+            write_steps(&c, m, arguments, report);
         }
         if (dalcs_atomic_file_commit(&m->file) != DALCS_OK) {
             status = tell_failure(m, cli);

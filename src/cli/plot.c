@@ -5,6 +5,7 @@
 #include "margin_lines.h"
 #include "page.h"
 #include "plot_arguments.h"
+#include "plot_charts.h"
 #include "report_reader.h"
 #include "spectrum.h"
 #include "text_plot.h"
@@ -23,6 +24,7 @@ static const char help[] =
     "\n"
     "Draws the waveforms of a .raw or .csv file, of dalcs or of another SPICE: a panel for each\n"
     "unit, and below them when diodes and switches conduct. Without -o it draws on the terminal.\n"
+    "FILE may be -, the standard input.\n"
     "\n"
     "  -o, --output FILE   what is drawn, by its name: .svg, .png or .pdf with gnuplot, .html for\n"
     "                      a page with zoom, cursors and a list of the signals\n"
@@ -34,6 +36,10 @@ static const char help[] =
     "--to:\n"
     "                      take whole periods\n"
     "      --histogram     how often each value of one signal occurs, of a table with a row a run\n"
+    "      --tornado[=A,B] how far one result moves with each value: of a table that .wcase wrote, "
+    "or\n"
+    "                      of any other one with the columns A and B for values\n"
+    "      --family[=A]    one signal of all runs of .step over each other, coloured by A\n"
     "      --report FILE   take the events from what dalcs run --report wrote, or the margins "
     "from\n"
     "                      what dalcs bode --loop --report wrote; without it\n"
@@ -164,10 +170,7 @@ static enum dalcs_status read_file(struct drawing *drawing) {
                        waveforms->n_plots, waveforms->plot_name);
     }
     DALCS_TRY(choose_run(drawing));
-    const char *slash = strrchr(arguments->file, '/');
-    drawing->title = waveforms->title[strspn(waveforms->title, "* ")] ? waveforms->title
-                     : slash                                          ? slash + 1
-                                                                      : arguments->file;
+    drawing->title = dalcs_plot_title(waveforms, arguments->file);
     if (arguments->spectrum > 0.0 || arguments->histogram) {
         DALCS_TRY(dalcs_selection_make(&drawing->selection, waveforms, arguments->group,
                                        arguments->n_groups, arguments->from, arguments->to,
@@ -308,20 +311,27 @@ static enum dalcs_status check_paths(const struct dalcs_cli *cli,
     return DALCS_OK;
 }
 
+static enum dalcs_status draw_checked(struct drawing *drawing) {
+    const struct dalcs_plot_arguments *arguments = drawing->arguments;
+    if (arguments->tornado != NULL || arguments->family != NULL) {
+        return dalcs_plot_chart_draw(drawing->cli, arguments, terminal_width(drawing->cli->out),
+                                     &drawing->diag);
+    }
+    DALCS_TRY(read_file(drawing));
+    write_messages(drawing);
+    return !arguments->output   ? draw_text(drawing)
+           : arguments->is_page ? draw_page(drawing)
+                                : draw_picture(drawing);
+}
+
 static enum dalcs_status draw(const struct dalcs_cli *cli,
                               const struct dalcs_plot_arguments *arguments,
                               const struct dalcs_report *run) {
     struct drawing drawing = {.cli = cli, .arguments = arguments, .run = run};
     enum dalcs_status status = check_paths(cli, arguments);
     if (status == DALCS_OK) {
-        status = read_file(&drawing);
+        status = draw_checked(&drawing);
         write_messages(&drawing);
-        if (status == DALCS_OK) {
-            status = !arguments->output   ? draw_text(&drawing)
-                     : arguments->is_page ? draw_page(&drawing)
-                                          : draw_picture(&drawing);
-            write_messages(&drawing);
-        }
         if (status == DALCS_E_NOMEM || drawing.diag.out_of_memory) {
             dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         }

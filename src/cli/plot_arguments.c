@@ -11,7 +11,20 @@
 #include <string.h>
 #include <strings.h>
 
-enum { FROM = 256, TO, SPECTRUM, HISTOGRAM, REPORT, EVENTS, NO_BARS, THEME, PLOT, RUN };
+enum {
+    FROM = 256,
+    TO,
+    SPECTRUM,
+    HISTOGRAM,
+    TORNADO,
+    FAMILY,
+    REPORT,
+    EVENTS,
+    NO_BARS,
+    THEME,
+    PLOT,
+    RUN
+};
 
 static const struct option option[] = {{"signals", required_argument, NULL, 's'},
                                        {"from", required_argument, NULL, FROM},
@@ -26,6 +39,8 @@ static const struct option option[] = {{"signals", required_argument, NULL, 's'}
                                        {"run", required_argument, NULL, RUN},
                                        {"quiet", no_argument, NULL, 'q'},
                                        {"histogram", no_argument, NULL, HISTOGRAM},
+                                       {"tornado", optional_argument, NULL, TORNADO},
+                                       {"family", optional_argument, NULL, FAMILY},
                                        {"help", no_argument, NULL, 'h'},
                                        {NULL, 0, NULL, 0}};
 
@@ -65,6 +80,12 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
     case HISTOGRAM:
         arguments->histogram = true;
         return DALCS_OK;
+    case TORNADO:
+        arguments->tornado = optarg != NULL ? optarg : "";
+        return DALCS_OK;
+    case FAMILY:
+        arguments->family = optarg != NULL ? optarg : "";
+        return DALCS_OK;
     case 'o':
         return parse_output(arguments, cli, optarg);
     case REPORT:
@@ -98,6 +119,36 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
     }
 }
 
+/* One chart is drawn, and it may not be over time. */
+static enum dalcs_status check_charts(const struct dalcs_cli *cli,
+                                      const struct dalcs_plot_arguments *arguments) {
+    const struct {
+        const char *name;
+        bool given, has_time;
+    } chart[] = {{"spectrum", arguments->spectrum > 0.0, false},
+                 {"histogram", arguments->histogram, false},
+                 {"tornado", arguments->tornado != NULL, false},
+                 {"family", arguments->family != NULL, true}};
+
+    const char *first = NULL;
+    for (size_t k = 0; k < sizeof chart / sizeof chart[0]; k++) {
+        if (!chart[k].given) {
+            continue;
+        }
+        if (first != NULL) {
+            dalcs_cli_error(cli, "--%s or --%s, not both", first, chart[k].name);
+            return DALCS_E_OPTION;
+        }
+        if (arguments->report != NULL || arguments->marks) {
+            dalcs_cli_error(cli, "--%s is not %s: leave out --report and --events", chart[k].name,
+                            chart[k].has_time ? "of one run" : "over time");
+            return DALCS_E_OPTION;
+        }
+        first = chart[k].name;
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *arguments,
                                              const struct dalcs_cli *cli, int argc, char **argv) {
     *arguments = (struct dalcs_plot_arguments){.from = NAN, .to = NAN, .theme = &dalcs_theme_light};
@@ -123,15 +174,8 @@ enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *argume
         }
         status = DALCS_E_OPTION;
     }
-    const bool has_time = arguments->spectrum == 0.0 && !arguments->histogram;
-    if (status == DALCS_OK && !has_time && (arguments->report || arguments->marks)) {
-        dalcs_cli_error(cli, "--%s is not over time: leave out --report and --events",
-                        arguments->histogram ? "histogram" : "spectrum");
-        status = DALCS_E_OPTION;
-    }
-    if (status == DALCS_OK && arguments->spectrum > 0.0 && arguments->histogram) {
-        dalcs_cli_error(cli, "--spectrum or --histogram, not both");
-        status = DALCS_E_OPTION;
+    if (status == DALCS_OK && !arguments->help) {
+        status = check_charts(cli, arguments);
     }
     if (status == DALCS_OK && arguments->is_page && arguments->theme == &dalcs_theme_print) {
         dalcs_cli_error(cli, "--theme print is for pictures: a page is light or dark");

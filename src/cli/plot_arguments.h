@@ -16,6 +16,8 @@ struct dalcs_plot_arguments {
     const struct dalcs_theme *theme;
     size_t plot, run; /* from 1; 0: not given */
     bool histogram;
+    const char *tornado; /* the values, "" where the table says them; NULL: none */
+    const char *family;  /* what colours the runs, "" for the first; NULL: none */
     bool marks, no_bars, quiet, help;
 };
 

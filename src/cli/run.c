@@ -24,6 +24,7 @@
 #include "times.h"
 #include "variants.h"
 #include "verb.h"
+#include "worst_case_lines.h"
 
 #include <math.h>
 #include <string.h>
@@ -211,6 +212,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
         dalcs_measurements_write(out, report);
     }
     dalcs_sensitivity_lines_write(out, report);
+    dalcs_worst_case_lines_write(out, report);
     fputc('\n', out);
 }
 
@@ -389,6 +391,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     const enum dalcs_status measures =
         dalcs_measures_file_close(&run->measures, run->cli, arguments, report, status);
     files = files == DALCS_OK ? measures : files;
+    if (status == DALCS_OK && report != NULL) {
+        status = dalcs_worst_case_tell_failed(run->cli, report);
+    }
     return status == DALCS_OK ? files : status;
 }
 
@@ -495,8 +500,19 @@ enum dalcs_status dalcs_cli_run_arguments(const struct dalcs_cli *cli,
     return status;
 }
 
+/* What is for people goes elsewhere then. */
+static bool uses_standard_output(const struct dalcs_arguments *arguments) {
+    bool uses = dalcs_is_standard_output(arguments->measures) ||
+                dalcs_is_standard_output(arguments->report);
+    for (size_t k = 0; k < arguments->n_outputs; k++) {
+        uses = uses || dalcs_is_standard_output(arguments->output[k]);
+    }
+    return uses;
+}
+
 enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv) {
     struct dalcs_arguments arguments;
+    struct dalcs_cli other = *cli;
     enum dalcs_status status = dalcs_arguments_parse(&arguments, cli, argc, argv);
     if (status != DALCS_OK) {
         return dalcs_cli_exit(status);
@@ -510,7 +526,8 @@ enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv
         status = dalcs_paths_check(cli, &arguments);
     }
     if (status == DALCS_OK && !arguments.help) {
-        status = dalcs_cli_run_arguments(cli, &arguments);
+        other.out = uses_standard_output(&arguments) ? cli->err : cli->out;
+        status = dalcs_cli_run_arguments(&other, &arguments);
     }
     dalcs_arguments_finish(&arguments);
     return dalcs_cli_exit(status);

@@ -3,9 +3,10 @@
 #define DALCS_RUN_HELP_H
 
 #define DALCS_RUN_OPTIONS                                                                          \
-    "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may "    \
-    "be\n"                                                                                         \
-    "                      repeated; without it FILE's name with .raw, in the current folder)\n"   \
+    "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw, and - "  \
+    "is\n"                                                                                         \
+    "                      CSV on the standard output (may be repeated; without it FILE's name\n"  \
+    "                      with .raw, in the current folder)\n"                                    \
     "      --method auto|radau|lobatto|euler\n"                                                    \
     "                      how to integrate: radau is Radau IIA, lobatto Lobatto IIIC, euler\n"    \
     "                      implicit Euler with a fixed step; auto chooses for each part "          \

@@ -1,6 +1,7 @@
 /* variants.c - many variants: their table in a file and for people, what failed, what ended it early. */
 #include "variants.h"
 
+#include "atomic_file.h"
 #include "csv_cells.h"
 #include "memory.h"
 #include "run_statistics.h"
@@ -32,11 +33,11 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                                      const struct dalcs_session *session, bool has_script,
                                      bool *wanted) {
     const bool has_steps = dalcs_session_request(session).n_steps > 1;
-    const bool is_table = arguments->no_waveforms && arguments->n_outputs == 0 &&
-                          arguments->measures != NULL && arguments->report == NULL &&
-                          arguments->plot == NULL && !arguments->losses &&
-                          arguments->losses_plot == NULL && !arguments->energy &&
-                          !arguments->steady && !arguments->bode && !arguments->batch;
+    const bool is_table =
+        arguments->no_waveforms && arguments->n_outputs == 0 && arguments->measures != NULL &&
+        !dalcs_is_standard_output(arguments->measures) && arguments->report == NULL &&
+        arguments->plot == NULL && !arguments->losses && arguments->losses_plot == NULL &&
+        !arguments->energy && !arguments->steady && !arguments->bode && !arguments->batch;
     const bool can_read = strcmp(arguments->netlist, "-") != 0;
     const bool is_asked = arguments->n_shards > 0 || arguments->resume || arguments->jobs > 0;
     *wanted = has_steps && is_table && can_read && !has_script && arguments->only == 0;
@@ -49,7 +50,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                         ? "each thread reads the netlist, so give the name of a file in place of -"
                     : arguments->only > 0 ? "--only is one of them"
                     : has_script ? "a .control block says what is run here, one run after the other"
-                                 : "the netlist has no .step");
+                                 : "the netlist has no .step and no .mc");
     return DALCS_E_OPTION;
 }
 
@@ -218,6 +219,8 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
     const size_t shard = arguments->n_shards > 0 ? arguments->shard : 1;
     struct dalcs_decimal decimal;
     dalcs_decimal_init(&decimal);
+    const bool goes_on = arguments->resume || dalcs_crashes_go_on();
+    struct dalcs_crashes crashes = {0};
     struct variants v = {.cli = cli, .arguments = arguments, .file = {.path = arguments->measures}};
     /* Neighbours stay together: the parts one after the other are the whole table. */
     v.pool = (struct dalcs_variants_pool){
@@ -237,7 +240,11 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
     enum dalcs_status status = dalcs_run_statistics_begin(&v.statistics, v.pool.n_measures);
     status = status != DALCS_OK || header == NULL
                  ? DALCS_E_NOMEM
-                 : dalcs_variants_file_open(&v.file, cli, header, arguments->resume, begin_of, &v);
+                 : dalcs_variants_file_open(&v.file, cli, header, goes_on, begin_of, &v);
+    if (status == DALCS_OK && !v.file.is_complete) {
+        status = dalcs_crashes_watch(&crashes, v.file.partial, goes_on);
+        v.pool.crashes = &crashes;
+    }
     if (status == DALCS_E_NOMEM) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     } else if (status == DALCS_OK && v.file.is_complete) {
@@ -248,6 +255,7 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
         status = run_rest(&v);
     }
     free(header);
+    dalcs_crashes_finish(&crashes, status == DALCS_OK || status == DALCS_NOT_CONVERGED);
     dalcs_run_statistics_finish(&v.statistics);
     dalcs_variants_file_finish(&v.file);
     for (size_t k = 0; k < v.n_said; k++) {

@@ -2,6 +2,7 @@
 #include "variants_file.h"
 
 #include "atomic_file.h"
+#include "variants_crash.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -109,7 +110,7 @@ enum dalcs_status dalcs_variants_file_open(struct dalcs_variants_file *f,
     if (error != 0) {
         return fail(cli, f->path, error);
     }
-    if (resume) {
+    if (resume && !dalcs_crashes_go_on()) { /* then a table of that name is one of before */
         const enum dalcs_status status = look_at_table(f, cli, header);
         if (status != DALCS_OK || f->is_complete) {
             return status;
@@ -119,7 +120,7 @@ enum dalcs_status dalcs_variants_file_open(struct dalcs_variants_file *f,
     if (f->partial == NULL) {
         return DALCS_E_NOMEM;
     }
-    f->stream = fopen(f->partial, "a+");
+    f->stream = fopen(f->partial, "a+e");
     if (f->stream == NULL) {
         return fail(cli, f->partial, errno);
     }

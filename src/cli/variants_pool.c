@@ -124,6 +124,7 @@ static void find_reason(const struct dalcs_session *session, size_t first, enum 
     *length = strcspn(*reason, "\n");
 }
 
+/* session: NULL: it crashed, and nothing is known of the step. */
 static void write_values(const struct crew *crew, const struct dalcs_session *session, size_t step,
                          struct dalcs_csv_cells *cells, FILE *line, double *values) {
     const struct dalcs_session *whole = crew->pool->session;
@@ -135,10 +136,10 @@ static void write_values(const struct crew *crew, const struct dalcs_session *se
         fprintf(line, " %*.6g", dalcs_variant_width(name), value);
     }
     for (size_t k = 0; (name = dalcs_session_drawn(whole, k, &value)) != NULL; k++) {
-        dalcs_csv_number(cells, drawn(session, name, k));
+        dalcs_csv_number(cells, session != NULL ? drawn(session, name, k) : (double)NAN);
     }
     for (size_t k = 0; (name = dalcs_session_measure_name(whole, k)) != NULL; k++) {
-        value = values[k] = measured(session, name, k);
+        value = values[k] = session != NULL ? measured(session, name, k) : (double)NAN;
         dalcs_csv_number(cells, value);
         fprintf(line, " %*.6g", dalcs_variant_width(name), value);
     }
@@ -146,7 +147,7 @@ static void write_values(const struct crew *crew, const struct dalcs_session *se
 
 static void write_warnings(const struct dalcs_session *session, size_t first, FILE *out) {
     enum dalcs_level level;
-    for (size_t k = first; k < dalcs_session_n_messages(session); k++) {
+    for (size_t k = first; session != NULL && k < dalcs_session_n_messages(session); k++) {
         const char *text = dalcs_session_message(session, k, &level);
         if (level == DALCS_LEVEL_WARNING) {
             fwrite(text, 1, strlen(text) + 1, out);
@@ -163,9 +164,9 @@ static void finish_variant(struct dalcs_variant *v) {
     *v = (struct dalcs_variant){0};
 }
 
-/* What the step gave, after its run ended with `status`. */
+/* What the step gave, with a reason, "" where it went well. */
 static enum dalcs_status write_variant(const struct crew *crew, const struct dalcs_session *session,
-                                       size_t step, size_t first, enum dalcs_status status,
+                                       size_t step, size_t first, const char *reason, size_t length,
                                        struct dalcs_variant *v) {
     size_t size[3];
     FILE *row = open_memstream(&v->row, &size[0]);
@@ -174,17 +175,12 @@ static enum dalcs_status write_variant(const struct crew *crew, const struct dal
     v->value = dalcs_alloc(crew->pool->n_measures, sizeof *v->value);
     if (row != NULL && line != NULL && warnings != NULL && v->value != NULL) {
         struct dalcs_csv_cells cells = {.out = row, .decimal = crew->pool->decimal};
-        const char *reason = "";
-        size_t length = 0;
         write_values(crew, session, step, &cells, line, v->value);
-        if (status != DALCS_OK) {
-            find_reason(session, first, status, &reason, &length);
-        }
         dalcs_csv_text(&cells, reason, length);
         dalcs_csv_end(&cells);
         fprintf(line, "%s%.*s", length > 0 ? "  " : "", (int)length, reason);
         write_warnings(session, first, warnings);
-        v->failed = status != DALCS_OK;
+        v->failed = length > 0;
     }
     bool complete = row != NULL && line != NULL && warnings != NULL && v->value != NULL;
     FILE *const file[] = {row, line, warnings};
@@ -236,9 +232,28 @@ static enum dalcs_status run_step(struct worker *w, size_t step, struct dalcs_va
     if (status == DALCS_E_CANCELLED) {
         return status;
     }
-    DALCS_TRY(write_variant(crew, w->session, step, first, status, v));
+    const char *reason = "";
+    size_t length = 0;
+    if (status != DALCS_OK) {
+        find_reason(w->session, first, status, &reason, &length);
+    }
+    DALCS_TRY(write_variant(crew, w->session, step, first, reason, length, v));
     w->n_run = status == DALCS_OK ? w->n_run : MOST_OF_A_SESSION;
     return DALCS_OK;
+}
+
+/* One that has crashed is not run again. */
+static enum dalcs_status run_or_tell(struct worker *w, size_t step, struct dalcs_variant *v) {
+    const int crash = dalcs_crashes_find(w->crew->pool->crashes, step);
+    if (crash != 0) {
+        char reason[96];
+        snprintf(reason, sizeof reason, "the program crashed here: %s", strsignal(crash));
+        return write_variant(w->crew, NULL, step, 0, reason, strlen(reason), v);
+    }
+    dalcs_crashes_begin(step);
+    const enum dalcs_status status = run_step(w, step, v);
+    dalcs_crashes_end();
+    return status;
 }
 
 /* All that are done and next; under the lock. */
@@ -265,6 +280,7 @@ static size_t end_of_row(const struct crew *crew, size_t first) {
 static void *work(void *user) {
     struct worker w = {.crew = user};
     struct crew *crew = w.crew;
+    dalcs_crashes_enter_thread();
     pthread_mutex_lock(&crew->lock);
     for (;;) {
         while (crew->status == DALCS_OK && crew->next < crew->pool->end &&
@@ -281,7 +297,7 @@ static void *work(void *user) {
             pthread_mutex_unlock(&crew->lock);
             struct dalcs_variant v = {0};
             enum dalcs_status status = look(crew);
-            status = status == DALCS_OK ? run_step(&w, step, &v) : status;
+            status = status == DALCS_OK ? run_or_tell(&w, step, &v) : status;
             pthread_mutex_lock(&crew->lock);
             crew->slot[step % crew->n_slots] = v;
             crew->status = crew->status == DALCS_OK ? status : crew->status;

@@ -4,6 +4,7 @@
 
 #include "arguments.h"
 #include "decimal.h"
+#include "variants_crash.h"
 
 /* What a step gave; texts are heap. */
 struct dalcs_variant {
@@ -20,6 +21,7 @@ struct dalcs_variants_pool {
     const struct dalcs_session *session; /* has read the netlist and does not run */
     const struct dalcs_run_options *options;
     const struct dalcs_decimal *decimal;
+    const struct dalcs_crashes *crashes;
     size_t n_measures; /* of a step */
     size_t first, end; /* steps, from 0 on */
     /* Called for each step in its order, by one thread at a time. */

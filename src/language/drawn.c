@@ -2,6 +2,7 @@
 #include "language.h"
 #include "number.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,7 +38,10 @@ void dalcs_drawn_start(struct dalcs_language *language) {
                                    is_word(card, 0, ".option") || is_word(card, 0, ".opt"))) {
             read_seed(card, &language->seed);
         }
-        if (is_mc || is_word(card, 0, ".step")) {
+        const bool is_worst = is_word(card, 0, ".wcase") || is_word(card, 0, ".wc");
+        language->is_worst_case = language->is_worst_case || is_worst;
+        language->has_runs = language->has_runs || is_mc || is_worst;
+        if (is_mc || is_worst || is_word(card, 0, ".step")) {
             language->run = 0; /* what all runs have in common may not fail for a draw of one */
         }
     }
@@ -45,6 +49,8 @@ void dalcs_drawn_start(struct dalcs_language *language) {
         if (deck->override[k].kind == DALCS_OVERRIDE_RUN) {
             language->run = (uint32_t)deck->override[k].value;
             language->deck->is_step = deck->override[k].is_step;
+        } else if (deck->override[k].kind == DALCS_OVERRIDE_CORNER) {
+            language->corner = &deck->override[k];
         }
     }
 }
@@ -64,11 +70,59 @@ static uint64_t key_of(const struct dalcs_draw_place *p) {
     return has_name ? dalcs_draw_hash(hash, at) : hash;
 }
 
+static const char *name_of(struct dalcs_language *language, const struct dalcs_draw_place *p);
+
+/* Of value k of a place, as .wcase knows it. */
+static uint64_t key_of_value(uint64_t key, uint32_t k) {
+    char text[16];
+    snprintf(text, sizeof text, "%u", (unsigned)k);
+    return k == 0 ? key : dalcs_draw_hash(key, text);
+}
+
+double dalcs_drawn_place(struct dalcs_language *language, uint64_t key, uint32_t k) {
+    const struct dalcs_override *corner = language->corner;
+    if (corner != NULL) {
+        const uint64_t sought = key_of_value(key, k);
+        for (size_t i = 0; i < corner->n_list; i++) {
+            if (corner->key[i] == sought) {
+                return 0.5 + corner->list[i] / 2;
+            }
+        }
+    }
+    return corner != NULL || language->run == 0
+               ? 0.5
+               : dalcs_draw_uniform(language->seed, language->run, key, k);
+}
+
+void dalcs_drawn_list(struct dalcs_language *language, uint64_t key, const char *name,
+                      bool is_lot) {
+    struct dalcs_deck *deck = language->deck;
+    if (!language->is_worst_case) {
+        return;
+    }
+    if (name == NULL || dalcs_grow(&deck->draw, &deck->draw_capacity, deck->n_draws + 1,
+                                   sizeof *deck->draw) != DALCS_OK) {
+        language->out_of_memory = true;
+        return;
+    }
+    deck->draw[deck->n_draws++] = (struct dalcs_draw){name, key, is_lot};
+}
+
+/* What is drawn is of a value, or one of several of it. */
+static void list_next(struct dalcs_language *language, uint64_t key) {
+    const uint32_t k = language->place.n;
+    const char *name = language->is_worst_case ? name_of(language, &language->place) : NULL;
+    if (name != NULL) {
+        name = k > 0 ? dalcs_language_text(language, "%s:%u", name, (unsigned)k + 1) : name;
+        dalcs_drawn_list(language, key_of_value(key, k), name, false);
+    }
+}
+
 double dalcs_drawn_next(struct dalcs_language *language, dalcs_draw *draw, const double *x, int n) {
-    const double u = language->run == 0
-                         ? 0.5
-                         : dalcs_draw_uniform(language->seed, language->run,
-                                              key_of(&language->place), language->place.n);
+    const bool is_wanted = language->run > 0 || language->is_worst_case;
+    const uint64_t key = is_wanted ? key_of(&language->place) : 0;
+    const double u = dalcs_drawn_place(language, key, language->place.n);
+    list_next(language, key);
     language->place.n++;
     return draw(x, n, u);
 }
@@ -114,6 +168,19 @@ static const char *tell_apart(struct dalcs_language *language, const struct dalc
         n += strncmp(known, name, length) == 0 && (known[length] == '\0' || known[length] == ':');
     }
     return n > 1 ? dalcs_language_text(language, "%s:%d", name, n) : name;
+}
+
+void dalcs_drawn_keep(struct dalcs_language *language, const char *name, double value) {
+    struct dalcs_deck *deck = language->deck;
+    if (!language->has_runs) {
+        return;
+    }
+    if (name == NULL || dalcs_grow(&deck->drawn, &deck->drawn_capacity, deck->n_drawn + 1,
+                                   sizeof *deck->drawn) != DALCS_OK) {
+        language->out_of_memory = true;
+        return;
+    }
+    deck->drawn[deck->n_drawn++] = (struct dalcs_drawn){.name = name, .value = value};
 }
 
 void dalcs_drawn_leave(struct dalcs_language *language, struct dalcs_draw_place before,

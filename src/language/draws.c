@@ -101,18 +101,26 @@ static double spread(double u) {
     return 2 * u - 1;
 }
 
+/* 0 and 1, which are never drawn, are the ends of what is tolerated, so many standard deviations away. */
+static double normal(double u, double sigmas) {
+    return u <= 0 ? -sigmas : u >= 1 ? sigmas : dalcs_normal_quantile(u);
+}
+
 static double draw_gauss_alone(const double *x, int n, double u) {
+    static const double usual = 3;
     (void)n;
-    return x[0] * dalcs_normal_quantile(u);
+    return x[0] * normal(u, usual);
 }
 
 /* The last argument says how many standard deviations the variation is; one without it. */
 static double draw_agauss(const double *x, int n, double u) {
-    return x[0] + x[1] / (n > 2 ? x[2] : 1) * dalcs_normal_quantile(u);
+    const double sigmas = n > 2 ? x[2] : 1;
+    return x[0] + x[1] / sigmas * normal(u, sigmas);
 }
 
 static double draw_gauss(const double *x, int n, double u) {
-    return x[0] + x[0] * x[1] / (n > 2 ? x[2] : 1) * dalcs_normal_quantile(u);
+    const double sigmas = n > 2 ? x[2] : 1;
+    return x[0] + x[0] * x[1] / sigmas * normal(u, sigmas);
 }
 
 static double draw_flat(const double *x, int n, double u) {

@@ -671,6 +671,9 @@ enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_
     if (status == DALCS_OK && deck->n_overrides > 0) {
         status = dalcs_override_cards(language);
     }
+    if (status == DALCS_OK && netlist->has_tolerances) {
+        status = dalcs_tolerances_apply(language);
+    }
     deck->card = deck->own;
     return status == DALCS_OK && language->out_of_memory ? DALCS_E_NOMEM : status;
 }
@@ -738,6 +741,7 @@ void dalcs_deck_finish(struct dalcs_deck *deck) {
     dalcs_names_finish(&deck->instances);
     free(deck->own);
     free(deck->drawn);
+    free(deck->draw);
     dalcs_arena_finish(&deck->arena);
     *deck = (struct dalcs_deck){0};
 }

@@ -32,8 +32,17 @@ struct dalcs_deck {
 
     struct dalcs_drawn *drawn; /* [n_drawn] in the order of their evaluation; heap */
     size_t n_drawn, drawn_capacity;
+    struct dalcs_draw *draw; /* [n_draws] of .wcase: each tolerance; heap */
+    size_t n_draws, draw_capacity;
     bool is_step;            /* of .step or .mc */
     bool has_random_formula; /* or condition: a value was drawn that is none of these */
+};
+
+/* A tolerance: DEV or LOT, or one call of a random function. */
+struct dalcs_draw {
+    const char *name; /* "r1", "d1(vfwd)", "lot(rb)" */
+    uint64_t key;
+    bool is_lot;
 };
 
 /* A value that random functions had a part in: of a parameter, or on a card. */

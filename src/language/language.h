@@ -158,6 +158,9 @@ struct dalcs_language {
     struct dalcs_draw_place place; /* what is being evaluated */
     uint64_t seed;
     uint32_t run; /* number of the run, from 1; 0: every draw is in the middle */
+    const struct dalcs_override *corner; /* of .wcase: where each of them is; or NULL */
+    bool has_runs;                       /* .mc or .wcase: what DEV and LOT are for */
+    bool is_worst_case;                  /* .wcase: what is drawn is listed */
 };
 
 /* ---- language.c: messages ---------------------------------------------------------------------- */
@@ -244,10 +247,31 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) DAL
 /* Those of elements and models, in the deck's flat cards. */
 enum dalcs_status dalcs_override_cards(struct dalcs_language *language) DALCS_MUST_CHECK;
 
+/* The token of an element's value; *is_there: false when it has none. */
+int dalcs_card_find_value(const struct dalcs_card *card, bool *is_there);
+
+/* A copy of the card with this value at token `at`. */
+enum dalcs_status dalcs_card_set(struct dalcs_language *language, struct dalcs_card *card, int at,
+                                 double value) DALCS_MUST_CHECK;
+
+/* ---- tolerance.c: DEV and LOT --------------------------------------------------------------------- */
+
+/* Takes them off the deck's cards, and puts what they make of values in this run there. */
+enum dalcs_status dalcs_tolerances_apply(struct dalcs_language *language) DALCS_MUST_CHECK;
+
 /* ---- drawn.c: random values ---------------------------------------------------------------------- */
 
 /* The netlist's seed, else the usual one, and the number of this run. */
 void dalcs_drawn_start(struct dalcs_language *language);
+
+/* Value k of a place in this run: in (0, 1), in a corner also 0 or 1, the ends of what is tolerated. */
+double dalcs_drawn_place(struct dalcs_language *language, uint64_t key, uint32_t k);
+
+/* Lists it for .wcase. */
+void dalcs_drawn_list(struct dalcs_language *language, uint64_t key, const char *name, bool is_lot);
+
+/* A value that tolerances have a part in, where runs draw them. */
+void dalcs_drawn_keep(struct dalcs_language *language, const char *name, double value);
 
 /* The next value of the place that is being evaluated. */
 double dalcs_drawn_next(struct dalcs_language *language, dalcs_draw *draw, const double *x, int n);

@@ -106,6 +106,15 @@ static enum dalcs_status edit(struct dalcs_language *language, struct dalcs_card
     return DALCS_OK;
 }
 
+int dalcs_card_find_value(const struct dalcs_card *card, bool *is_there) {
+    return place_of_value(card, is_there);
+}
+
+enum dalcs_status dalcs_card_set(struct dalcs_language *language, struct dalcs_card *card, int at,
+                                 double value) {
+    return edit(language, card, at, true, NULL, value);
+}
+
 static bool is_waveform(const struct dalcs_token *token) {
     static const char *const name[] = {"pulse", "sin", "exp", "pwl", "sffm", "am"};
     bool is = false;
@@ -334,7 +343,8 @@ enum dalcs_status dalcs_override_cards(struct dalcs_language *language) {
     const struct dalcs_deck *deck = language->deck;
     for (size_t k = 0; k < deck->n_overrides; k++) {
         const enum dalcs_override_kind kind = deck->override[k].kind;
-        if (kind != DALCS_OVERRIDE_PARAMETER && kind != DALCS_OVERRIDE_RUN) {
+        if (kind != DALCS_OVERRIDE_PARAMETER && kind != DALCS_OVERRIDE_RUN &&
+            kind != DALCS_OVERRIDE_CORNER) {
             DALCS_TRY(apply(language, &deck->override[k]));
         }
     }

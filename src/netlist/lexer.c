@@ -402,8 +402,8 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
 /* A card that is not of a flat netlist of numbers. */
 static bool is_language(const struct dalcs_token *name) {
     static const char *const words[] = {
-        ".param",  ".params", ".csparam", ".global_param", ".func",  ".subckt", ".ends",
-        ".global", ".if",     ".elseif",  ".else",         ".endif", ".step"};
+        ".param", ".params", ".csparam", ".global_param", ".func", ".subckt", ".ends", ".global",
+        ".if",    ".elseif", ".else",    ".endif",        ".step", ".wcase",  ".wc"};
     for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
         if (strcmp(name->text, words[k]) == 0) {
             return true;
@@ -424,6 +424,18 @@ static bool may_have_formula(const struct dalcs_card *card) {
     for (int k = 4; k < card->n && (is_coil || card->letter == 'c') && !may; k++) {
         may = card->token[k].kind == DALCS_TOKEN_EQUAL &&
               strcmp(card->token[k - 1].text, is_coil ? "flux" : "q") == 0;
+    }
+    return may;
+}
+
+/* DEV=5%, LOT/1/gauss=2%, on an element or in a model. */
+static bool may_have_tolerance(const struct dalcs_card *card) {
+    bool may = false;
+    for (int k = 3; k < card->n && !may; k++) {
+        const char *text = card->token[k].text;
+        may = card->token[k].kind == DALCS_TOKEN_WORD &&
+              (strncmp(text, "dev", 3) == 0 || strncmp(text, "lot", 3) == 0) &&
+              (text[3] == '\0' || text[3] == '/');
     }
     return may;
 }
@@ -477,8 +489,10 @@ enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
     if (card.letter == '.' && dalcs_include_is_card(token->text)) {
         return dalcs_include_card(lexer, &card);
     }
-    netlist->has_language = netlist->has_language || card.letter == 'x' ||
-                            (card.letter == '.' && is_language(token)) || may_have_formula(&card);
+    netlist->has_tolerances = netlist->has_tolerances || may_have_tolerance(&card);
+    netlist->has_language = netlist->has_language || netlist->has_tolerances ||
+                            card.letter == 'x' || (card.letter == '.' && is_language(token)) ||
+                            may_have_formula(&card);
     DALCS_TRY(dalcs_grow(&netlist->card, &netlist->capacity, netlist->n_cards + 1,
                          sizeof *netlist->card));
     netlist->card[netlist->n_cards++] = card;

@@ -102,6 +102,7 @@ struct dalcs_netlist {
     bool has_errors;  /* of spelling: a circuit cannot be built, but may be looked at for more */
     bool misses_file; /* one that it includes could not be read: much may be undefined */
     const char *missing_library; /* the last one that is left out because it is not here; or NULL */
+    bool has_tolerances;         /* DEV or LOT somewhere */
     bool has_language; /* expressions, parameters, subcircuits or conditions: must be expanded */
     int n_sources;     /* files read, the netlist itself included */
     size_t n_bytes;    /* of them together */

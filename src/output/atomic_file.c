@@ -24,6 +24,10 @@ static enum dalcs_status fail(struct dalcs_atomic_file *file, int error) {
     return error == ENOMEM ? DALCS_E_NOMEM : DALCS_E_IO;
 }
 
+bool dalcs_is_standard_output(const char *path) {
+    return path && strcmp(path, "-") == 0;
+}
+
 /* The permissions of the file to be replaced, or what the umask grants a new one. */
 static int check_target(const char *path, mode_t *mode) {
     struct stat target;
@@ -57,7 +61,22 @@ static void name_temporary(char *text, size_t size, const char *path, unsigned a
     snprintf(text, size, "%s.partial-%s", path, suffix);
 }
 
+/* What goes to the standard output is kept where nobody else sees it, until it is complete. */
+static int open_unnamed(void) {
+    FILE *unnamed = tmpfile();
+    const int descriptor = unnamed ? fcntl(fileno(unnamed), F_DUPFD_CLOEXEC, 3) : -1;
+    const int error = errno;
+    if (unnamed) {
+        fclose(unnamed);
+    }
+    errno = error;
+    return descriptor;
+}
+
 static int open_temporary(struct dalcs_atomic_file *file) {
+    if (dalcs_is_standard_output(file->path)) {
+        return open_unnamed();
+    }
     size_t size = strlen(file->path) + sizeof ".partial-XXXXXX";
     file->temporary = dalcs_alloc(size, 1);
     if (!file->temporary) {
@@ -96,7 +115,7 @@ enum dalcs_status dalcs_atomic_file_open(struct dalcs_atomic_file *file, const c
         return fail(file, ENOMEM);
     }
     mode_t mode = 0;
-    int error = check_target(file->path, &mode);
+    int error = dalcs_is_standard_output(file->path) ? 0 : check_target(file->path, &mode);
     if (error != 0) {
         return fail(file, error);
     }
@@ -132,7 +151,30 @@ static int close_stream(struct dalcs_atomic_file *file) {
     return error;
 }
 
+/* An errno, or 0. */
+static int copy_to_standard_output(struct dalcs_atomic_file *file) {
+    char bytes[BUFSIZ];
+    size_t n;
+    errno = 0;
+    bool good = !ferror(file->stream) && fflush(file->stream) == 0;
+    if (good) {
+        rewind(file->stream);
+    }
+    while (good && (n = fread(bytes, 1, sizeof bytes, file->stream)) > 0) {
+        good = fwrite(bytes, 1, n, stdout) == n;
+    }
+    return good ? 0 : errno != 0 ? errno : EIO;
+}
+
 static enum dalcs_status move_to(struct dalcs_atomic_file *file, const char *name) {
+    if (!file->temporary) {
+        const int failed = copy_to_standard_output(file);
+        if (failed != 0) {
+            return fail(file, failed);
+        }
+        dalcs_atomic_file_discard(file);
+        return DALCS_OK;
+    }
     int error = close_stream(file);
     if (error == 0 && rename(file->temporary, name) != 0) {
         error = errno;

@@ -16,6 +16,9 @@ struct dalcs_atomic_file {
     int error;
 };
 
+/* Is the path "-"? What is written there appears at once, when it is complete or kept. */
+bool dalcs_is_standard_output(const char *path);
+
 /* Opens a temporary file next to `path`. Refuses a path that is something else than a plain file,
  * or a plain file that may not be written. */
 enum dalcs_status dalcs_atomic_file_open(struct dalcs_atomic_file *file,

@@ -12,6 +12,9 @@
 
 const struct dalcs_table_format *dalcs_table_find_format(const char *path) {
     static const struct dalcs_table_format *const all[] = {&dalcs_csv_format, &dalcs_raw_format};
+    if (dalcs_is_standard_output(path)) {
+        return &dalcs_csv_format;
+    }
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         size_t length = strlen(path), n = strlen(all[i]->extension);
         if (length > n && strcasecmp(path + length - n, all[i]->extension) == 0) {

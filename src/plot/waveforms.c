@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* More than a run of an hour writes, and less than what makes a machine swap for long. */
 static const size_t most_bytes = (size_t)4 << 30;
@@ -23,6 +24,37 @@ static bool has_equal_distances(const struct dalcs_waveforms *w) {
     return w->n_rows > 2 && worst <= 1e-6 * fabs(distance);
 }
 
+/* Waveforms of many runs have the values of .step before the axis: it comes first. What was measured in them, with
+ * reasons in the last column, has none. */
+static void put_axis_first(struct dalcs_waveforms *w) {
+    size_t at = 0;
+    if (strcmp(w->name[w->n_columns - 1], "error") == 0) {
+        return;
+    }
+    for (size_t k = w->n_columns; k-- > 1;) {
+        const bool is =
+            strcasecmp(w->name[k], "time") == 0 || strcasecmp(w->name[k], "frequency") == 0;
+        at = is && strcasecmp(w->name[0], w->name[k]) != 0 ? k : at;
+    }
+    const char *name = w->name[at];
+    const struct dalcs_dimension dimension = w->dimension[at];
+    const struct dalcs_digits digits = w->digits[at];
+    for (size_t k = at; k > 0; k--) {
+        w->name[k] = w->name[k - 1];
+        w->dimension[k] = w->dimension[k - 1];
+        w->digits[k] = w->digits[k - 1];
+    }
+    w->name[0] = name;
+    w->dimension[0] = dimension;
+    w->digits[0] = digits;
+    for (size_t row = 0; row < w->n_rows && at > 0; row++) {
+        double *cell = w->value + row * w->n_columns;
+        const double axis = cell[at];
+        memmove(cell + 1, cell, at * sizeof *cell);
+        cell[0] = axis;
+    }
+}
+
 static enum dalcs_status read_plain(struct dalcs_waveforms *waveforms, const char *path,
                                     const char *text, size_t length, size_t plot,
                                     struct dalcs_diag *diag) {
@@ -34,6 +66,9 @@ static enum dalcs_status read_plain(struct dalcs_waveforms *waveforms, const cha
     if (status != DALCS_OK) {
         dalcs_waveforms_finish(waveforms);
         return status;
+    }
+    if (!dalcs_waveforms_is_raw(text, length)) {
+        put_axis_first(waveforms);
     }
     dalcs_digits_judge(waveforms->digits, waveforms->n_columns, waveforms->precision);
     if (has_equal_distances(waveforms)) {
@@ -62,7 +97,8 @@ enum dalcs_status dalcs_waveforms_read_file(struct dalcs_waveforms *waveforms, c
     char *text = NULL;
     size_t length = 0;
     *waveforms = (struct dalcs_waveforms){0};
-    DALCS_TRY(dalcs_text_file_read(path, most_bytes, &text, &length, NULL, diag));
+    const char *from = strcmp(path, "-") == 0 ? "/dev/stdin" : path;
+    DALCS_TRY(dalcs_text_file_read(from, most_bytes, &text, &length, NULL, diag));
     if (length > most_bytes) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "'%s' is larger than 4 GiB", path);
         free(text);

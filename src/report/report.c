@@ -3,6 +3,7 @@
 #include "report.h"
 #include "response_json.h"
 #include "sensitivity_json.h"
+#include "worst_case_json.h"
 
 #include "json.h"
 #include "losses_json.h"
@@ -381,6 +382,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_steady(&json, report);
     dalcs_response_json_write(&json, report);
     dalcs_sensitivity_json_write(&json, report);
+    dalcs_worst_case_json_write(&json, report);
     write_infeasible(&json, report);
     dalcs_json_close(&json, '}');
 }

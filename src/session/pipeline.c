@@ -274,6 +274,16 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
 const enum dalcs_analysis dalcs_analyses_in_order[DALCS_N_IN_ORDER] = {
     DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_PERIODIC, DALCS_AC, DALCS_TRANSIENT};
 
+enum dalcs_status dalcs_run_asked(struct dalcs_session *session,
+                                  const struct dalcs_run_options *options,
+                                  const struct dalcs_sink *sink) {
+    const enum dalcs_analysis alone = options->steady ? DALCS_PERIODIC : DALCS_AC;
+    return options->steady || options->bode
+               ? dalcs_run_analyses(session, options, sink, NULL, &alone, 1)
+               : dalcs_run_analyses(session, options, sink, NULL, dalcs_analyses_in_order,
+                                    DALCS_N_IN_ORDER);
+}
+
 static struct dalcs_sink completed(const struct dalcs_sink *sink) {
     return (struct dalcs_sink){
         .user = sink->user,
@@ -327,11 +337,9 @@ static enum dalcs_status run_circuit(struct dalcs_session *session,
         return dalcs_stepped_run(session, options, sink);
     }
     DALCS_TRY(dalcs_operating_currents(session, options, sink));
-    const enum dalcs_analysis alone = options->steady ? DALCS_PERIODIC : DALCS_AC;
-    return options->steady || options->bode
-               ? dalcs_run_analyses(session, options, sink, NULL, &alone, 1)
-               : dalcs_run_analyses(session, options, sink, NULL, dalcs_analyses_in_order,
-                                    DALCS_N_IN_ORDER);
+    DALCS_TRY(dalcs_run_asked(session, options, sink));
+    return session->circuit.worst_case.present ? dalcs_worst_case_run(session, options, sink)
+                                               : DALCS_OK;
 }
 
 static enum dalcs_status run_all(struct dalcs_session *session,

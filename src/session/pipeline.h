@@ -16,6 +16,16 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
                                      const enum dalcs_analysis *analysis,
                                      size_t n) DALCS_MUST_CHECK;
 
+/* Those that the netlist asks for, else the one that the options name. */
+enum dalcs_status dalcs_run_asked(struct dalcs_session *session,
+                                  const struct dalcs_run_options *options,
+                                  const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
+/* .wcase, after a run with all tolerances in the middle: the runs at their ends, into the report. */
+enum dalcs_status dalcs_worst_case_run(struct dalcs_session *session,
+                                       const struct dalcs_run_options *options,
+                                       const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
 /* Each analysis in all steps before the next one. */
 enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,

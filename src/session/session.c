@@ -66,7 +66,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
 static bool is_built_again(const struct dalcs_circuit *circuit, const struct dalcs_netlist *netlist,
                            bool is_kept) {
     bool again = circuit->n_steps > 0 || circuit->sensitivity.present ||
-                 netlist->n_script_lines > 0 || is_kept;
+                 circuit->worst_case.present || netlist->n_script_lines > 0 || is_kept;
     for (int k = 0; k < circuit->n_dc; k++) {
         const int device = circuit->dc[k].device;
         again = again || device < 0 || circuit->device[device].stimulus < 0;

@@ -49,7 +49,7 @@ enum dalcs_status dalcs_steady_means_setup(struct dalcs_steady_means *m,
                                            struct dalcs_radau *radau) {
     const size_t n = (size_t)network->n_outputs + 1;
     *m = (struct dalcs_steady_means){.circuit = circuit};
-    dalcs_stretch_rule_make(&m->rule);
+    m->rule = dalcs_stretch_rule;
     m->sum = dalcs_alloc(n, sizeof(double));
     m->square = dalcs_alloc(n, sizeof(double));
     enum dalcs_status status =

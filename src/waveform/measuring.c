@@ -56,7 +56,7 @@ enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
                                   .start = start,
                                   .stop = stop,
                                   .n = circuit->n_measures};
-    dalcs_stretch_rule_make(&m->rule);
+    m->rule = dalcs_stretch_rule;
     m->values = dalcs_alloc(3 * n_signals, sizeof(*m->values));
     m->row = dalcs_alloc(n_signals, sizeof(double));
     m->row_imaginary = dalcs_alloc(n_signals, sizeof(double));

@@ -3,6 +3,7 @@
 
 #include "extremes.h"
 #include "quads.h"
+#include "stretch_rule.h" /* of make_stretch_rule.c */
 #include "wide_vectors.h"
 
 #include <float.h>
@@ -21,47 +22,6 @@ static const double resolved = 4e-14;
 static const double helps = 0.25;
 
 enum { MOST_HALVINGS = 50, MOST_IN_VAIN = 6, TAIL = 3 };
-
-/* P_0 to P_(N-1) at x. */
-static void polynomials(double x, double *p) {
-    p[0] = 1.0;
-    p[1] = x;
-    for (int k = 1; k + 1 < N; k++) {
-        p[k + 1] = ((2 * k + 1) * x * p[k] - k * p[k - 1]) / (k + 1);
-    }
-}
-
-/* Newton's method on P_N from Tricomi's estimates of its zeros. */
-void dalcs_stretch_rule_make(struct dalcs_stretch_rule *rule) {
-    const double pi = 3.14159265358979323846;
-    for (int i = 0; i < N; i++) {
-        long double x = -cosl((long double)pi * (i + 0.75L) / (N + 0.5L));
-        long double slope = 1.0L;
-        for (int round = 0; round < 8; round++) {
-            long double before = 1.0L;
-            long double p = x;
-            for (int k = 1; k < N; k++) {
-                long double next = ((2 * k + 1) * x * p - k * before) / (k + 1);
-                before = p;
-                p = next;
-            }
-            slope = N * (x * p - before) / (x * x - 1.0L);
-            x -= p / slope;
-        }
-        rule->node[i] = (double)x;
-        rule->weight[i] = (double)(1.0L / ((1.0L - x * x) * slope * slope));
-    }
-    for (int i = 0; i < N; i++) {
-        double p[N];
-        polynomials(rule->node[i], p);
-        for (int k = 0; k < N; k++) {
-            rule->expand[i][k] = (2 * k + 1) * rule->weight[i] * p[k];
-        }
-        for (int k = N; k < ROOM; k++) {
-            rule->expand[i][k] = 0.0;
-        }
-    }
-}
 
 /* sum[ROOM], its k of expand[i][k] value[i]: node by node, so that coefficients are neighbours, and unrolled, so that the
  * sums stay in registers. */

@@ -18,7 +18,7 @@ struct dalcs_stretch_rule {
     double expand[DALCS_STRETCH_NODES][DALCS_STRETCH_ROOM]; /* [node][coefficient], 0 beyond */
 };
 
-void dalcs_stretch_rule_make(struct dalcs_stretch_rule *rule);
+extern const struct dalcs_stretch_rule dalcs_stretch_rule;
 
 /* value[NODES] at the nodes to coefficient[NODES], and to a value at x. */
 void dalcs_stretch_expand(const struct dalcs_stretch_rule *rule, const double *value,

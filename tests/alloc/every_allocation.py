@@ -241,6 +241,21 @@ V2 switched 0 PULSE(0 10 1u 0 0 1u 4u)
 .save v(d) i(m1) i(a1)
 .end
 """, 0),
+    "tolerances": ("""Tolerances on parts and in models, and the worst of them
+V1 in 0 5
+R1 in a RB 1k DEV=1%
+.model RB RES(R=1 LOT/1=5%)
+X1 a 0 leg
+.subckt leg a b
+D1 a m DM
+R1 m b {mc(1k,0.1)}
+.model DM D(vfwd=0.7 DEV/gauss=10m LOT=1%)
+.ends
+.tran 1u 1u
+.meas tran v max v(a)
+.wcase corners=no
+.end
+""", 0),
     "dialect": ("""A netlist told to be LTspice's, and what its and Xyce's switches have
 .options dialect=ltspice gmin=1n itl4=10
 V1 a 0 SIN(0 4k7 1)

@@ -69,6 +69,9 @@ KINDS = {
     "sources that are resistors": lambda n: ONE + each(n, "vmK n qK 0\nhK qK mK vmK 2\ngK mK 0 mK 0 1") + OP,
     "H in a chain with its V": lambda n: ["v1 n0 0 1"] + each(n, "hK nK nJ v1 -2") + [f"rl n{n} 0 1"] + OP,
     "models": lambda n: ONE + each(n, "dK n mK dmK\nrK mK 0 1\n.model dmK d(ron=J)") + OP,
+    "tolerances": lambda n: ONE + [".model rb res(r=1 lot=5%)"] + each(n, "rK n mK rb 1k dev=1%\nrbK mK 0 1 lot/1=2%") + OP + [
+        ".mc 2"],
+    "models with tolerances": lambda n: ONE + each(n, "dK n mK dmK\nrK mK 0 1\n.model dmK d(ron=J dev=1% lot=1%)") + OP + [".mc 2"],
     "scaled diodes": lambda n: ONE + [".model dm d(is=1e-14)"] + each(n, "dK n mK dm J\nrK mK 0 1") + OP,
     "switches": lambda n: ONE + [".model sw sw(vt=0.5 ron=1)"] + each(n, "sK n mK n 0 sw\nrK mK 0 1") + OP,
     "initial voltages": lambda n: ONE + each(n, "rK n mK 1\ncK mK 0 1u\n.ic v(mK)=J") + [".tran 1u 2u uic"],

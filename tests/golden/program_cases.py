@@ -405,6 +405,38 @@ class Results(Case):
         self.dalcs("run", "a.cir", "-q", "-o", "two.csv")
         self.assertEqual(self.path("one.csv").read_bytes(), self.path("two.csv").read_bytes())
 
+    def test_standard_output(self):
+        """- for a result: the table alone, as the file has it, and what is for people on the other stream."""
+        (self.folder / "half.cir").write_text(RECTIFIER.replace(".end", ".meas tran top max v(out)\n.end"))
+        run = [DALCS, "run", "half.cir"]
+        subprocess.run([*run, "-q", "-o", "a.csv", "--measures", "m.csv"], cwd=self.folder, check=True)
+        for option, name in (["-o", "-"], "a.csv"), (["-o", "none", "--measures", "-"], "m.csv"):
+            for quiet in [], ["-q"]:
+                done = subprocess.run([*run, *option, *quiet], cwd=self.folder, capture_output=True, text=True, check=True)
+                self.assertEqual(done.stdout, (self.folder / name).read_text())
+                self.assertEqual(done.stderr == "", bool(quiet))
+        done = subprocess.run([*run, "-o", "none", "--report", "-"], cwd=self.folder, capture_output=True, text=True,
+                              check=True)
+        self.assertEqual(json.loads(done.stdout)["status"], "ok")
+        done = subprocess.run([DALCS, "-", "-q", "-o", "-"], cwd=self.folder, capture_output=True, text=True,
+                              input=RECTIFIER, check=True)
+        self.assertEqual(done.stdout, (self.folder / "a.csv").read_text())
+        drawn = subprocess.run([DALCS, "plot", "-", "-s", "v(out)"], cwd=self.folder, capture_output=True, text=True,
+                               input=done.stdout, check=True)
+        self.assertIn("v(out)", drawn.stdout)
+        self.assertNotIn("-", [path.name for path in self.folder.iterdir()])
+        done = subprocess.run([*run, "-o", "-", "--measures", "-"], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("'-' is given for two results", done.stderr)
+        with open("/dev/full", "w", encoding="ascii") as full:
+            done = subprocess.run([*run, "-q", "-o", "-"], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True,
+                                  check=False)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("No space left on device", done.stderr)
+        done = subprocess.run([DALCS, "none.cir"], cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (2, "dalcs: error: there is no file 'none.cir'\n"))
+
     def test_standard_input(self):
         self.path("part.inc").write_text("R1 out 0 1k\n")
         text = RECTIFIER.replace("R1 out 0 1k\n", ".include part.inc\n")

@@ -23,7 +23,11 @@ DRAWINGS = {
     "report": ["-o", "a.html", "--report", "a.json", "--events"],
     "spectrum": ["-o", "a.html", "-s", "v(a),i(d1)", "--spectrum", "2"],
     "mistake": ["-s", "v(aa)"],
+    "tornado": ["-s", "v(a)", "--tornado=time,i(d1)"],
+    "tornado of a column that is not there": ["-s", "v(a)", "--tornado=time,i(d2)"],
+    "family": ["-s", "v(a)", "--family", "-o", "a.svg"],
 }
+STEPS = "r,time,v(a)\n" + "".join(f"{k // 20},{k % 20},{k % 3}\n" for k in range(40))
 
 
 def main(program, library):
@@ -31,7 +35,7 @@ def main(program, library):
     for name, options in DRAWINGS.items():
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
-            (folder / "a.csv").write_text(TABLE)
+            (folder / "a.csv").write_text(STEPS if name == "family" else TABLE)
             (folder / "a.json").write_text(REPORT)
             command = [program, "plot", "a.csv", *options]
             done, tally = preload.run_preloaded(library, command, folder)
@@ -39,7 +43,8 @@ def main(program, library):
                 continue
             expected = done.returncode
             for at in range(1, tally.calls + 1):
-                (folder / "a.html").unlink(missing_ok=True)
+                for made in "a.html", "a.svg":
+                    (folder / made).unlink(missing_ok=True)
                 done, _ = preload.run_preloaded(library, command, folder, DALCS_FAIL_AT=at)
                 where = f"{name}, allocation {at} of {tally.calls}"
                 checker.check(done.returncode >= 0, f"{where}: signal {-done.returncode}")

@@ -209,6 +209,75 @@ class Plot(unittest.TestCase):
         self.assertIn("not of waveforms", self.refused("buck.raw", "-s", "v(out)", "--histogram", "-o", "x.svg"))
         self.assertIn("not both", self.refused("runs.csv", "--histogram", "--spectrum", "1k"))
 
+    def test_tornado(self):
+        """Of .wcase each value at its ends; of other tables a plane, which fits these rows exactly."""
+        rows = [(k % 7, k * k % 5, k % 3) for k in range(40)]
+        (self.folder / "plane.csv").write_text(
+            "run,a,b,c,y,error\n" + "".join(f"{k},{a},{b},{c},{3 + 2 * a - b},\n" for k, (a, b, c) in enumerate(rows)) +
+            '40,1,2,3,nan,"no solution, again"\n')
+        said = self.plot("plane.csv", "-s", "y", "--tornado=c,b,a").stdout.splitlines()
+        mean = [sum(row[i] for row in rows) / 40 for i in range(3)]
+        middle = 3 + 2 * mean[0] - mean[1]
+        bars = [line.split() for line in said]
+        self.assertEqual([bar[0] for bar in bars], ["y", "a", "b", "c"])
+        for bar, (low, high) in zip(bars[1:], [(2 * (0 - mean[0]), 2 * (6 - mean[0])), (mean[1], mean[1] - 4), (0, 0)]):
+            self.assertAlmostEqual(float(bar[1]), middle + low, delta=1e-5)
+            self.assertAlmostEqual(float(bar[2]), middle + high, delta=1e-5)
+        (self.folder / "worst.csv").write_text(
+            "r1,lot(rb),y,z,error\n1000,0,5,1,\n950,0,6,1,\n1050,0,4,1,\n1000,-1,5.5,1,\n1000,1,nan,1,no solution\n"
+            "1050,0,4,1,\n950,-1,7,1,\n1000,0,5,1,\n1000,0,5,1,\n")
+        bars = [line.split() for line in self.plot("worst.csv", "-s", "Y", "--tornado").stdout.splitlines()]
+        self.assertEqual([bar[:3] for bar in bars[1:]], [["r1", "6", "4"], ["lot(rb)", "5.5", "nan"]])
+        self.plot("worst.csv", "-s", "y", "--tornado", "-o", "tornado.svg", "-q")
+        texts = self.texts("tornado.svg")
+        for text in "r1 (950 to 1.05 k)", "lot(rb) (-1 to 1)", "low end", "high end", "y", "worst.csv":
+            self.assertIn(text, texts)
+        self.plot("worst.csv", "-s", "y", "--tornado", "-o", "t.png", "-q", "--theme", "dark")
+        self.assertTrue((self.folder / "t.png").read_bytes().startswith(b"\x89PNG"))
+        for arguments, message in [
+                (["plane.csv", "-s", "y", "--tornado"], "say which columns are values: --tornado=r1,c1"),
+                (["worst.csv", "-s", "r1", "--tornado"], "'r1' is one of the values that .wcase has varied"),
+                (["plane.csv", "-s", "yy", "--tornado=a"], "the table has no column 'yy'"),
+                (["plane.csv", "-s", "y", "--tornado=a,bb"], "the table has no column 'bb'"),
+                (["plane.csv", "-s", "y", "--tornado=a,b,a"], "'a' is constant in the table, or follows from"),
+                (["worst.csv", "-s", "y", "--tornado=z"], "'z' is constant in the table"),
+                (["plane.csv", "--tornado=a"], "a tornado is of one column"),
+                (["plane.csv", "-s", "y", "--tornado=a", "-o", "a.html"], "a tornado is a picture, no page"),
+                (["plane.csv", "-s", "y", "--tornado=a", "--family"], "--tornado or --family, not both"),
+                (["plane.csv", "-s", "y", "--tornado=a", "--events"], "leave out --report and --events")]:
+            self.assertIn(message, self.refused(*arguments), arguments)
+        (self.folder / "few.csv").write_text("a,b,c,y\n" + "1,2,3,4\n2,2,1,4\n0,1,1,1\n")
+        self.assertIn("3 runs are too few to tell the effects of 3 values apart",
+                      self.refused("few.csv", "-s", "y", "--tornado=a,b,c"))
+
+    def test_family(self):
+        """All steps over each other, from the raw file and from the table, in which the axis comes after the steps."""
+        (self.folder / "step.cir").write_text("steps\n.options dialect=ltspice\nV1 in 0 SIN(0 10 50)\nD1 in out\n"
+                                              "C1 out 0 {c}\nR1 out 0 1k\n.param c=1u\n.tran 100u 60m uic\n"
+                                              ".step R1 list 100 10k\n.step param c list 10u 20u\n.end\n")
+        self.run_program("run", "step.cir", "-q", "-o", "step.raw", "-o", "step.csv")
+        for name in "step.raw", "step.csv":
+            self.plot(name, "-s", "v(in,out)", "--family", "-o", "family.svg", "-q")
+            texts = self.texts("family.svg")
+            for text in "r1", "time (ms)", "v(in,out) (V)":
+                self.assertIn(text, texts)
+            self.plot(name, "-s", "i(d1)", "--family=c", "--from", "20m", "-o", "family.svg", "-q")
+            texts = self.texts("family.svg")
+            for text in "c", "i(d1) (mA)", "20", "60":
+                self.assertIn(text, texts)
+            drawn = (self.folder / "family.svg").read_text()
+            self.assertGreaterEqual(drawn.count("gnuplot_plot_"), 4)
+            for arguments, message in [
+                    (["--family=in", "-s", "v(out)", "-o", "x.svg"], "the file has no column 'in'"),
+                    (["--family=v(in)", "-s", "v(out)", "-o", "x.svg"], "'v(in)' does not have one value in each run"),
+                    (["--family", "-o", "x.svg"], "a family is of one signal"),
+                    (["--family", "-s", "v(out)"], "a family is a picture"),
+                    (["--family", "-s", "v(no)", "-o", "x.svg"], "no signal 'v(no)'")]:
+                self.assertIn(message, self.refused(name, *arguments), arguments)
+        self.assertIn("a family is of several runs, and the file has 1",
+                      self.refused("buck.raw", "-s", "v(out)", "--family", "-o", "x.svg"))
+        self.assertIn("the first of 4 runs", self.plot("step.csv", "-s", "v(out)").stderr)
+
     def test_refusals(self):
         for arguments, status, message in [
                 (["buck.raw", "-s", "v(ot)"], USAGE, "no signal 'v(ot)'; did you mean 'v(out)'?"),

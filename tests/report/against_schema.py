@@ -178,7 +178,8 @@ def main():
     schema = json.loads((root / "doc" / "report.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     source = "".join((root / "src" / "report" / name).read_text(encoding="utf-8")
-                     for name in ("report.c", "losses_json.c", "response_json.c", "sensitivity_json.c"))
+                     for name in ("report.c", "losses_json.c", "response_json.c", "sensitivity_json.c",
+                                  "worst_case_json.c"))
     netlists = sorted((root / "netlists").glob("**/*.cir")) + sorted(
         (root / "tests" / "reference").glob("*.cir"))
     with tempfile.TemporaryDirectory() as name:
@@ -204,6 +205,11 @@ def main():
         report = reports.run(loop, "auto")[1]
         check(report.get("response", {}).get("crossovers"), f"no margins: {report.get('response')}")
         check(report.get("sensitivity", {}).get("results"), f"no sensitivities: {report.get('sensitivity')}")
+        worst = reports.folder / "worst.cir"
+        worst.write_text("tolerances\nV1 in 0 1\nR1 in a 1k DEV=5%\nC1 a 0 {aunif(1u,0.5u)}\n.tran 1u 1m\n"
+                         ".meas tran v max v(a)\n.wcase\n.end\n", encoding="utf-8")
+        status, report = reports.run(worst, "auto")
+        check(status == 0 and report.get("worst_case", {}).get("results"), f"no worst case: {report}")
         for name, (text, status, kind) in MADE.items():
             reports.made(name, text, status, kind)
         for method in METHODS:

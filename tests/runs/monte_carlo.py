@@ -312,9 +312,7 @@ class MonteCarlo(unittest.TestCase):
             ".mc 1.5": "the number of runs is a whole one, from 1 to",
             ".mc 5 seed=-2": "a seed is a whole number from 0 to 2^53",
             ".options seed=1.5": "a seed is a whole number from 0 to 2^53",
-            ".wcase tran v(out) max": "worst cases are not supported yet (.wcase)",
             ".sampling": "Xyce's samplings are not supported yet (.sampling)",
-            ".model dm D(is=1e-14 dev/gauss 5%)": "tolerances of models (DEV, LOT) are not supported",
         }
         for card, wanted in cards.items():
             said = self.run_it(DIVIDER.replace(".mc 40", card), status=3)

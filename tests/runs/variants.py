@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks tables of many variants: the same bytes for any number of threads and parts, what fails, what ends them early.
 
-usage: variants.py PROGRAM
+usage: variants.py PROGRAM [LIBRARY]     (of crash_at.c)
 """
 
 import csv
@@ -9,6 +9,7 @@ import math
 import os
 import pathlib
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -17,6 +18,7 @@ import time
 import unittest
 
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+CRASH = str(pathlib.Path(sys.argv[2]).resolve()) if len(sys.argv) > 2 else None
 
 CIRCUIT = """a rectifier with loads that may be impossible
 .options dialect=ltspice
@@ -227,6 +229,68 @@ class Variants(unittest.TestCase):
         self.assertIn("Is a directory", self.run_it("folder.csv", status=4))
         self.write("\n".join(card for card in CIRCUIT.splitlines() if not card.startswith(".step")))
         self.assertIn("has no .step", self.run_it("m.csv", "--shard", "1/2", status=2))
+
+    @unittest.skipUnless(shutil.which("parallel"), "GNU parallel is not installed")
+    def test_gnu_parallel(self):
+        """Parts by GNU parallel; one is killed in the middle, which costs the others nothing and is gone on with."""
+        self.write(MANY)
+        self.run_it("whole.csv")
+        (self.folder / "part.sh").write_text(
+            '#!/bin/sh\nif [ "$1" = 2 ] && [ -n "$KILL" ]; then ulimit -f 8; fi\n'  # blocks of 512 bytes: SIGXFSZ
+            f'exec {PROGRAM} run a.cir -q -o none --jobs 1 --resume --shard "$1/4" --measures "part.$1.csv"\n')
+        command = ["parallel", "--will-cite", "-j", "2", "sh", "part.sh", "{}", ":::", "1", "2", "3", "4"]
+        killed = subprocess.run(command, cwd=self.folder, env={**os.environ, "KILL": "1"}, check=False,
+                                capture_output=True, text=True)
+        self.assertEqual(killed.returncode, 1, killed.stderr)  # of the jobs that failed
+        self.assertTrue((self.folder / "part.2.partial.csv").exists())
+        kept = (self.folder / "part.2.partial.csv").read_text().splitlines()
+        self.assertGreater(len(kept), 10)
+        for k in 1, 3, 4:
+            self.assertTrue((self.folder / f"part.{k}.csv").exists())
+        again = subprocess.run(command, cwd=self.folder, check=True, capture_output=True, text=True)
+        self.assertEqual(again.stderr, "")
+        parts = [self.text(f"part.{k}.csv").splitlines(True) for k in (1, 2, 3, 4)]
+        self.assertEqual("".join(parts[0] + parts[1][1:] + parts[2][1:] + parts[3][1:]), self.text("whole.csv"))
+        self.assertEqual(parts[1][:len(kept) - 1], [line + "\n" for line in kept[:-1]])
+
+    @unittest.skipIf(CRASH is None, "crashes are what a sanitizer is for")
+    def test_crashes(self):
+        """A fault, abort() and an overflow of the stack: the row says so, all others are what they are."""
+        self.write(CIRCUIT.replace(".param load=1 c=10u", ".param load=1 c={1u*exp(x)} x=1 r={1k+flat(1)}")
+                   .replace("{load}", "{r}").replace(".step param load list 100 0 1k 2k 10k\n", "")
+                   .replace("param c list 10u 20u -1u", "param x 5 9 0.05"))
+        self.run_it("whole.csv")
+        whole = self.text("whole.csv").splitlines()
+        environment = {**os.environ, "LD_PRELOAD": CRASH}
+        for more in ("--jobs", "2"), ("--jobs", "1"), ("--shard", "1/1"):
+            said = self.run_it("m.csv", *more, status=1, env=environment)
+            self.assertEqual(said.count("a variant crashed: its row says so, the others go on"), 3)
+            self.assertIn("3 of 81 variants failed", said)
+            rows = self.text("m.csv").splitlines()
+            self.assertEqual(len(rows), len(whole))
+            for before, row in zip(whole, rows):
+                reason = {"7.25": "Segmentation fault", "7.5": "Aborted", "7.75": "Segmentation fault"}.get(
+                    row.split(",")[0])
+                if reason is None:
+                    self.assertEqual(row, before)
+                else:
+                    x, *values, error = row.split(",")
+                    self.assertEqual((x, set(values)), (before.split(",")[0], {"nan"}))
+                    self.assertEqual(error, "the program crashed here: " + reason)
+        self.assertEqual([path.name for path in self.folder.glob("*crashed")], [])
+        done = subprocess.run([*self.command("m.csv", "--only", "46")], cwd=self.folder, env=environment, check=False,
+                              capture_output=True)
+        self.assertEqual(done.returncode, -signal.SIGSEGV)  # one alone is no table: the crash is there to be looked at
+
+    def test_a_signal_that_is_sent_is_no_crash(self):
+        self.write(SLOW)
+        with subprocess.Popen(self.command("m.csv"), cwd=self.folder) as process:
+            while not (self.folder / "m.partial.csv").exists():
+                time.sleep(0.01)
+            time.sleep(0.05)
+            process.send_signal(signal.SIGSEGV)
+            self.assertEqual(process.wait(timeout=60), -signal.SIGSEGV)
+        self.assertFalse((self.folder / "m.csv").exists())
 
 
 if __name__ == "__main__":

@@ -1,0 +1,39 @@
+/* variants_crash.h - a variant that crashes is a row that says so: the program starts itself again, and goes on. */
+#ifndef DALCS_VARIANTS_CRASH_H
+#define DALCS_VARIANTS_CRASH_H
+
+#include "cli.h"
+
+#include <stddef.h>
+
+/* Variants that have crashed before. */
+struct dalcs_crashes {
+    char *path; /* of the file that names them, beside the table; heap */
+    size_t n, capacity;
+
+    struct dalcs_crash {
+        size_t step;
+        int signal;
+    } * crash; /* [n] heap */
+};
+
+/* Is this the program after a crash, and not as somebody has called it? */
+bool dalcs_crashes_go_on(void);
+
+/* Reads those of the partial table `partial` where it is gone on with, and forgets them where not; from now on crashes of
+ * this process are noted there, if the system can start it again. */
+enum dalcs_status dalcs_crashes_watch(struct dalcs_crashes *crashes, const char *partial,
+                                      bool goes_on) DALCS_MUST_CHECK;
+
+/* Each thread: before its first step; and around each step. */
+void dalcs_crashes_enter_thread(void);
+void dalcs_crashes_begin(size_t step);
+void dalcs_crashes_end(void);
+
+/* The signal that the step has crashed with; 0: it has not. */
+int dalcs_crashes_find(const struct dalcs_crashes *crashes, size_t step);
+
+/* `is_complete`: nobody will ask again. */
+void dalcs_crashes_finish(struct dalcs_crashes *crashes, bool is_complete);
+
+#endif
