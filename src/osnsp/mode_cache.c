@@ -226,8 +226,7 @@ static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_e
             int row = p->matched_row[index_of_slot(f, e, c)];
             row_of_column[c] = row >= 0 ? slot[row] : -1;
         }
-        status = dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, row_of_column,
-                                 p->options.rcond_min);
+        status = dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, row_of_column, 0.0);
         for (int c = 0; c < a->n; c++) {
             int row = row_of_column[c];
             p->matched_row[index_of_slot(f, e, c)] = row >= 0 ? index_of_slot(f, e, row) : -1;
@@ -253,8 +252,7 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
     }
     enum dalcs_status status =
         dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, dalcs_far_apart);
-    return status > DALCS_OK ? dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL,
-                                               p->options.rcond_min)
+    return status > DALCS_OK ? dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL, 0.0)
                              : status;
 }
 
