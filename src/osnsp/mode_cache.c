@@ -357,7 +357,7 @@ static bool is_key(const uint64_t *key, const uint64_t *mode, size_t words, uint
 enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
                                   struct dalcs_mode_entry **entry) {
     size_t words = (size_t)p->n_words;
-    uint64_t last_word = (uint64_t)p->form_id[0] << 9 | (uint64_t)p->insists << 8 | (uint64_t)kind;
+    uint64_t last_word = (uint64_t)p->form_id[0] << 8 | (uint64_t)p->insists << 7 | (uint64_t)kind;
     if (p->newest != NULL && is_key(p->newest->key, p->mode, words, last_word)) {
         *entry = p->newest; /* as in most steps */
         p->counters.cache_hits++;

@@ -410,8 +410,9 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
     }
     if (is_undecided(status) && dalcs_osnsp_is_monotone(p)) { /* a mode may only seem singular */
         p->insists = true;
-        status = pivot(p, u, y, p->options.max_pivots + 2 * p->system->n_pairs);
+        enum dalcs_status insisted = pivot(p, u, y, p->options.max_pivots + 2 * p->system->n_pairs);
         p->insists = false;
+        status = insisted <= DALCS_OK ? insisted : status;
     }
     if (status > DALCS_OK && !dalcs_osnsp_is_monotone(p)) {
         status = dalcs_enumerate(p, u, y);
