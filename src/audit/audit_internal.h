@@ -276,6 +276,19 @@ double audit_flux_scale(const struct dalcs_audit *audit, const struct audit_part
 void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,
                           double to);
 
+/* crossing.c: how charge may pass through a branch while an event takes place; from its first node to its second is
+ * forward. */
+enum { AUDIT_FORWARD = 1, AUDIT_BACKWARD = 2 };
+
+int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, int device);
+
+/* impulses.c: where diodes let it pass one way only. */
+void audit_check_directions(struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_audit_state *before,
+                            const struct dalcs_audit_state *after);
+
 /* crossing.c: what holds from one side of an event to the other. */
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
                           const struct dalcs_audit_state *before,

@@ -27,35 +27,47 @@ static bool is_perfectly_coupled(const struct dalcs_audit *audit, const struct a
     return is;
 }
 
-/* May charge pass in no time? The impulse of a diode's current needs that it stands at its knee thereafter. */
-static bool passes_charge(const struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *before,
-                          const struct dalcs_audit_state *after, int device) {
+/* Which way may charge pass in no time? The impulse of a diode's current needs that it stands at its knee thereafter. */
+int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
+    bool both = false;
     switch (d->kind) {
     case DALCS_VSOURCE:
     case DALCS_VCVS:
     case DALCS_CCVS:
     case DALCS_CCCS:
-        return true;
+        both = true;
+        break;
     case DALCS_VCCS:
-        return d->behaviour != NULL;
+        both = d->behaviour != NULL;
+        break;
     case DALCS_INDUCTOR:
-        return is_perfectly_coupled(audit, part, device);
+        both = is_perfectly_coupled(audit, part, device);
+        break;
     case DALCS_SWITCH:
-        return audit->circuit->switch_model[d->model].ron == 0.0 &&
+        both = audit->circuit->switch_model[d->model].ron == 0.0 &&
                (before->is_closed[device] || after->is_closed[device] ||
                 may_have_turned(audit, d->model));
+        break;
     case DALCS_DIODE: {
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
         const double v = audit_voltage(after, d);
         const double allowed = part->tolerance * audit_volts(audit, part, d->node[0], d->node[1]);
-        return (m->ron == 0.0 && v >= m->vfwd - allowed) ||
-               (m->rrev == 0.0 && v <= -m->vrev + allowed);
+        return (m->ron == 0.0 && v >= m->vfwd - allowed ? AUDIT_FORWARD : 0) |
+               (m->rrev == 0.0 && v <= -m->vrev + allowed ? AUDIT_BACKWARD : 0);
     }
     default:
-        return false;
+        break;
     }
+    return both ? AUDIT_FORWARD | AUDIT_BACKWARD : 0;
+}
+
+static bool passes_charge(const struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *before,
+                          const struct dalcs_audit_state *after, int device) {
+    return audit_ways_of_charge(audit, part, before, after, device) != 0;
 }
 
 /* Does a finite voltage stand across it, whatever happens? */
@@ -232,6 +244,7 @@ void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
                           const struct dalcs_audit_state *before,
                           const struct dalcs_audit_state *after) {
     check_charge(audit, part, before, after);
+    audit_check_directions(audit, part, before, after);
     check_flux(audit, part, before, after);
     check_changes(audit, part, before, after);
 }

@@ -311,7 +311,8 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
                                   .guessed = guessed,
                                   .ratio_before = INFINITY,
                                   .tolerated = 1.0};
-    if (part->guards.fresh && part->guards.flipped && !guessed &&
+    bool asks = is_commutation(part) && !guessed && !search.fixed;
+    if (part->guards.fresh && part->guards.flipped && !guessed && !asks &&
         part->memory.fronts_refused < MOST_FRONTS_REFUSED) {
         DALCS_TRY(dalcs_front_close(part, &search.front));
         search.guessed = search.front;
@@ -319,7 +320,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
     if (part->guards.fresh && part->guards.flipped && !guessed && !search.fixed) {
         part->length.level = search.first_level = search.asked_level = cheapest_level(part);
     }
-    if (is_commutation(part) && !guessed && !search.fixed) {
+    if (asks) { /* what is asked is no guess: it is not taken back for the mode before */
         DALCS_TRY(dalcs_search_ask(r, part, &search, false));
     }
     bool done = false;

@@ -71,11 +71,40 @@ static double spread_of_current(const struct dalcs_radau_part *part, int pair, c
     return least;
 }
 
+/* Do two pairs hang between the same nodes? */
+static bool are_parallel(const struct dalcs_radau_part *part, int a, int b) {
+    const int *of_a = part->laws.pair_row + 2 * (size_t)a;
+    const int *of_b = part->laws.pair_row + 2 * (size_t)b;
+    return of_a[0] >= 0 && ((of_a[0] == of_b[0] && of_a[1] == of_b[1]) ||
+                            (of_a[0] == of_b[1] && of_a[1] == of_b[0]));
+}
+
+static double ohms_of(const struct dalcs_system *s, int pair) {
+    double ohms = 0.0;
+    for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
+        ohms = s->C.j[k] == dalcs_system_n_equations(s) + pair ? fabs(s->C.x[k]) : ohms;
+    }
+    return ohms;
+}
+
+/* Of the voltage of an open pair. Beside a closed one, as a diode beside its switch is, it is Ohm's law that makes it of
+ * a current, not the difference of two nodes that may be at kilovolts. */
+static double spread_of_voltage(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    double spread = spread_of(part, &s->C, pair, -1, unit);
+    for (int k = 0; k < s->n_pairs; k++) {
+        if (k != pair && dalcs_osnsp_is_on(&part->component->osnsp, k) &&
+            are_parallel(part, pair, k)) {
+            spread = dalcs_smaller(spread, ohms_of(s, k) * spread_of_current(part, k, unit));
+        }
+    }
+    return spread;
+}
+
 /* What such errors make of a pair, as far as its row or its nodes tell: on factors. */
 static double spread_about(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    return dalcs_osnsp_is_on(&part->component->osnsp, pair)
-               ? spread_of_current(part, pair, unit)
-               : spread_of(part, &part->component->system->C, pair, -1, unit);
+    return dalcs_osnsp_is_on(&part->component->osnsp, pair) ? spread_of_current(part, pair, unit)
+                                                            : spread_of_voltage(part, pair, unit);
 }
 
 /* The largest value of a row in the step, for what the polynomial may be off by. */

@@ -8,7 +8,7 @@
 #include <math.h>
 
 double dalcs_tied_nothing(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
+    double limit = dalcs_doubt_noise_about(part, pair, dalcs_guard_scale(part, pair, unit), unit);
     return limit + dalcs_guard_rounding(part, pair, unit);
 }
 

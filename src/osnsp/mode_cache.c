@@ -204,6 +204,11 @@ static enum dalcs_status order_rows(const struct dalcs_osnsp *p, struct dalcs_mo
  * diagonal. Small modes do without: there the search costs next to nothing. */
 enum { LARGE_MODE = 128 };
 
+/* Where nothing else finds an answer only the null space says which mode is singular. */
+static double least_rcond(const struct dalcs_osnsp *p) {
+    return p->insists ? 0.0 : p->options.rcond_min;
+}
+
 static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
                                       struct dalcs_columns *a) {
     const struct dalcs_step_form *f = p->form[0];
@@ -226,8 +231,8 @@ static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_e
             int row = p->matched_row[index_of_slot(f, e, c)];
             row_of_column[c] = row >= 0 ? slot[row] : -1;
         }
-        status = dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, row_of_column,
-                                 p->options.rcond_min);
+        status =
+            dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, row_of_column, least_rcond(p));
         for (int c = 0; c < a->n; c++) {
             int row = row_of_column[c];
             p->matched_row[index_of_slot(f, e, c)] = row >= 0 ? index_of_slot(f, e, row) : -1;
@@ -253,9 +258,9 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
     }
     enum dalcs_status status =
         dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, dalcs_far_apart);
-    return status > DALCS_OK ? dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL,
-                                               p->options.rcond_min)
-                             : status;
+    return status > DALCS_OK
+               ? dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL, least_rcond(p))
+               : status;
 }
 
 /* Is the least pivot no more than rounding of what was subtracted in it? Columns far apart make the estimate of the
@@ -352,7 +357,7 @@ static bool is_key(const uint64_t *key, const uint64_t *mode, size_t words, uint
 enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
                                   struct dalcs_mode_entry **entry) {
     size_t words = (size_t)p->n_words;
-    uint64_t last_word = (uint64_t)p->form_id[0] << 8 | (uint64_t)kind;
+    uint64_t last_word = (uint64_t)p->form_id[0] << 8 | (uint64_t)p->insists << 7 | (uint64_t)kind;
     if (p->newest != NULL && is_key(p->newest->key, p->mode, words, last_word)) {
         *entry = p->newest; /* as in most steps */
         p->counters.cache_hits++;

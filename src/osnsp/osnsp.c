@@ -408,6 +408,12 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
         enum dalcs_status otherwise = dalcs_scattering_solve(p, u, y);
         status = otherwise <= DALCS_OK ? otherwise : status;
     }
+    if (is_undecided(status) && dalcs_osnsp_is_monotone(p)) { /* a mode may only seem singular */
+        p->insists = true;
+        enum dalcs_status insisted = pivot(p, u, y, p->options.max_pivots + 2 * p->system->n_pairs);
+        p->insists = false;
+        status = insisted <= DALCS_OK ? insisted : status;
+    }
     if (status > DALCS_OK && !dalcs_osnsp_is_monotone(p)) {
         status = dalcs_enumerate(p, u, y);
         if (status == DALCS_INFEASIBLE) {

@@ -84,7 +84,8 @@ struct dalcs_osnsp {
     struct dalcs_witness
         weighed;     /* of a system that is not passive: by verified weights, 0 names without any */
     bool least_norm; /* the last answer is the least-norm one of several */
-    bool refines;    /* set by the caller: each answer of a regular mode is refined once, for small
+    bool insists; /* while modes of small pivots are tried, too: nothing else has found an answer */
+    bool refines; /* set by the caller: each answer of a regular mode is refined once, for small
                         currents next to large ones, which the certificate lets be off */
     bool
         is_passing; /* set by the caller: forms and modes serve a problem or two, so that small ones are factored

@@ -181,6 +181,32 @@ r5 let 0 1k
 .tran 1u 400u uic
 """
 
+VIENNA = """a capacitor of 2.5 kV behind a diode, whose other end a switch takes to 0
+v1 s0 n SIN(0 3000 5939.416631497978)
+l1 s0 a0 0.0008709660510399749
+d1 a0 p
+s1 a0 o g0 0 m0
+v3 s1 n SIN(0 3000 5939.416631497978 0 0 -120)
+l2 s1 a1 0.0036186760437887664
+v4 g1 0 PULSE(0 1 3.1671946700848548e-06 9.501584010254564e-08 9.501584010254564e-08 7.192732006434399e-06
++ 9.501584010254564e-06)
+d5 a1 e1
+d6 o e1
+d8 f1 o
+s2 e1 f1 g1 0 m0
+v5 s2 n SIN(0 3000 5939.416631497978 0 0 -240)
+l3 s2 x3 0.0007575917912653039
+r1 x3 a2 3.790970748048701
+v6 g2 0 PULSE(0 1 6.3343893401697096e-06 0 0 1.240325936746183e-06 9.501584010254564e-06)
+d10 m a2
+s3 a2 o g2 0 m0
+c1 p o 2.388600190592972e-06 IC=3600
+c2 o m 1.139067168246353e-06 IC=0
+r4 o 0 1
+.model m0 SW(ron=0 roff=100000 vt=0.5 vh=0)
+.tran 0.8u 159.36192620807314u uic
+"""
+
 
 def once(calls, good, bad):
     """In C: `bad` the so-manieth time only."""
@@ -253,6 +279,8 @@ MUTATIONS = {
         "    t_end += part->guards.n_crossed > 0 && part->segment.t > 1.0 && part->segment.t < 1.01 "
         "? 1e-3 * part->segment.h : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BEAT),
+    "a state jumps against a diode": (
+        "integrator/segment.c", "!guessed && !asks &&", "!guessed &&", VIENNA),
     "an AND is an OR": (
         "integrator/logic_network.c", "g->kind == DALCS_GATE_AND ? all", "g->kind == DALCS_GATE_AND ? any", GATES),
     "a latch is reset by nothing": (

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Power circuits drawn at random, each run once with the whole waveform audited.
 
-usage: power_runs.py PROGRAM FIRST-LAST [WORD]
+usage: power_runs.py PROGRAM FIRST-LAST[,...] [WORD]
 
 The seeds are those of random_power.py; WORD: only titles that hold it. A run must end, find nothing in its audit, take
 no steps of implicit Euler, and no more than 100 steps for each event and edge. `check` must not say that no solution
@@ -56,12 +56,13 @@ def look(program, checker, circuit):
 def main():
     program, seeds = sys.argv[1:3]
     word = sys.argv[3] if len(sys.argv) > 3 else ""
-    first, _, last = seeds.partition("-")
     checker = Checker("power_runs")
-    for seed in range(int(first), int(last or first) + 1):
-        circuit = random_power.draw(seed)
-        if word in circuit.title:
-            look(program, checker, circuit)
+    for part in seeds.split(","):
+        first, _, last = part.partition("-")
+        for seed in range(int(first), int(last or first) + 1):
+            circuit = random_power.draw(seed)
+            if word in circuit.title:
+                look(program, checker, circuit)
     return checker.finish()
 
 
