@@ -419,6 +419,8 @@ void dalcs_transfer_parse_behind(struct dalcs_reader *reader, struct dalcs_devic
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
 /* LTspice's VARISTOR and MODULATE; false: another function. */
+/* LTspice's OTA. */
+void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 bool dalcs_analog_function_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* After the word POLY, on a device that has its own nodes. */
 void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device);

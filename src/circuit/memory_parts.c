@@ -10,9 +10,10 @@ static struct dalcs_device *add_device(struct dalcs_compiler *c, enum dalcs_devi
                                        const char *what, int from, int to) {
     struct dalcs_builder *builder = c->builder;
     const char *name = dalcs_arena_printf(&builder->scratch, "%s%d", what, c->n_nodes);
-    struct dalcs_device *device = name != NULL && dalcs_builder_reserve_devices(builder, 1)
-                                      ? dalcs_builder_add_inner_device(builder, kind, name, c->element)
-                                      : NULL;
+    struct dalcs_device *device =
+        name != NULL && dalcs_builder_reserve_devices(builder, 1)
+            ? dalcs_builder_add_inner_device(builder, kind, name, c->element)
+            : NULL;
     if (device == NULL) {
         c->failed = true;
         return NULL;
@@ -54,8 +55,7 @@ static bool add_reset(struct dalcs_compiler *c, const struct dalcs_formula *cond
         .name = "reset", .roff = (double)INFINITY, .vt = 0.5};
     int source;
     const int control = dalcs_compiler_node_at(c, "reset", condition, false, &source);
-    struct dalcs_device *s =
-        control >= 0 ? add_device(c, DALCS_SWITCH, "reset", state, 0) : NULL;
+    struct dalcs_device *s = control >= 0 ? add_device(c, DALCS_SWITCH, "reset", state, 0) : NULL;
     if (s == NULL) {
         return false;
     }
