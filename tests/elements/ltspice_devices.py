@@ -116,6 +116,24 @@ def quadratures(checker, program):
                 checker.close(found, wanted, 5e-7, f"{what}: {name} at {t}")
 
 
+def many(checker, program):
+    """Oscillators need more room than their cards show: beside sources that read currents, gates and formulas."""
+    cards = ["v1 f 0 pwl(0 0 1m 1)"]
+    for k in range(9):
+        cards += [f"a{k} f 0 0 0 0 c{k} s{k} 0 MODULATE mark={k + 2}k space=1k", f"r{k} c{k} 0 1k", f"vm{k} s{k} t{k} 0", f"rt{k} t{k} 0 1k",
+                  f"f{k} 0 i{k} vm{k} 2", f"ri{k} i{k} 0 1k", f"a{k}g s{k} 0 0 0 0 0 g{k} 0 BUF Ref=0.5", f"rg{k} g{k} 0 1k", f"b{k} p{k} 0 v=v(c{k})*v(s{k})",
+                  f"rp{k} p{k} 0 1k"]
+    done = run_cards(program, "many", [*cards, ".tran 10u 1m"])
+    if not runs(checker, done, "many modulators"):
+        return
+    for k in range(9):
+        for t, s, i, p in zip(done.time, done.column(f"v(s{k})"), done.column(f"v(i{k})"), done.column(f"v(p{k})")):
+            angle = 2 * math.pi * (1e3 * t + (k + 1) * 1e3 * t * t / 2e-3)
+            checker.close(s, math.sin(angle), 1e-6, f"of many: {k} at {t}")
+            checker.close(i, 2 * math.sin(angle), 2e-6, f"its current: {k} at {t}")
+            checker.close(p, math.sin(2 * angle) / 2, 1e-6, f"its product: {k} at {t}")
+
+
 def transconductors(checker, program):
     """OTAs against their law: soft and linear, unlike limits, a product, an offset, clamps on either side of 0, a capacitor, a loop."""
     for scale, f in ((1, 1e3), (1e-3, 2e6), (100, 0.5)):
@@ -200,7 +218,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("ltspice_devices")
-    for part in (outputs, varistors, modulators, quadratures, transconductors, parameters, refused):
+    for part in (outputs, varistors, modulators, quadratures, many, transconductors, parameters, refused):
         part(checker, program)
     return checker.finish()
 
