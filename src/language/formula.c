@@ -22,6 +22,7 @@ struct work {
     int depth;
     const char
         *variable; /* a name that stands for a variable rather than a parameter; NULL: none */
+    bool has_choices;
     bool failed;
 };
 
@@ -351,6 +352,7 @@ static int choose(struct work *w, const struct frame *f, int k) {
         run(w, f, otherwise, end);
     }
     if (!w->failed) {
+        w->has_choices = true;
         push_over(w, f, o, DALCS_FORMULA_CHOICE, 3);
     }
     return end;
@@ -452,6 +454,9 @@ static const struct dalcs_formula *make_formula(struct dalcs_language *language,
     const struct frame f = {expression, 0};
     run(&w, &f, 0, expression->n);
     const struct dalcs_formula *formula = w.failed ? NULL : w.stack[0];
+    if (formula != NULL && w.has_choices && variable == NULL) {
+        formula = dalcs_formula_guard(language, formula, w.n_parts);
+    }
     free(w.stack);
     language->deck->has_errors = language->deck->has_errors || formula == NULL;
     return formula;
