@@ -5,6 +5,7 @@
  * still equal at the start (x' = sign(x) from 0), and one step alone may be longer than the circuit has a
  * unique answer for. */
 #include "freedom.h"
+#include "smooth_newton.h"
 
 #include <math.h>
 #include <string.h>
@@ -31,6 +32,38 @@ static bool is_candidate(const struct dalcs_component *c) {
     return !dalcs_osnsp_is_monotone(&c->osnsp) && n_diodes > 0 && n_diodes <= MOST_DIODES;
 }
 
+/* Modes are tried with products and smooth functions as lines, their tangents at the answer that is taken. Does an answer
+ * lie on the functions, too? */
+static bool lies_on_functions(const struct dalcs_component *c, const double *y) {
+    const struct dalcs_system *s = c->system;
+    bool lies = true;
+    for (int k = 0; k < s->n_smooth && lies; k++) {
+        const struct dalcs_smooth_input *of = &s->smooth[k];
+        double x[2];
+        for (int j = 0; j < 2; j++) {
+            x[j] = j < of->n && of->column[j] >= 0 ? y[of->column[j]] : of->number[j];
+        }
+        const double value = dalcs_smooth_value(of->kind, x);
+        const double off = dalcs_smooth_rest(of, x) - c->osnsp.newton->phi[k];
+        lies = fabs(off) <= same_value * (fabs(value) + fabs(value - off));
+    }
+    return lies;
+}
+
+/* The first of n answers, those that lie there; how many. */
+static int keep_true(const struct dalcs_component *c, double *answer, int n) {
+    const size_t n_columns = (size_t)dalcs_system_n_columns(c->system);
+    int kept = 0;
+    for (int k = 0; k < n; k++) {
+        if (lies_on_functions(c, answer + (size_t)k * n_columns)) {
+            memmove(answer + (size_t)kept * n_columns, answer + (size_t)k * n_columns,
+                    n_columns * sizeof(*answer));
+            kept++;
+        }
+    }
+    return kept;
+}
+
 /* All answers of a step of length h from the present values; of an operating point where h is 0. The
  * last one is that which is taken. */
 static enum dalcs_status list_answers(struct dalcs_component *c, double h, double *u,
@@ -44,6 +77,7 @@ static enum dalcs_status list_answers(struct dalcs_component *c, double h, doubl
         dalcs_component_look_ahead(c, h, u);
     }
     DALCS_TRY(dalcs_osnsp_list_answers(&c->osnsp, sigma, u, MOST_ANSWERS, answer, n));
+    *n = keep_true(c, answer, *n);
     if (*n < 2) {
         return DALCS_OK;
     }

@@ -1,7 +1,7 @@
 /* analog_function.c - LTspice's A devices of voltages: VARISTOR and MODULATE.
  *
  *     Aname control control 0 0 0 0 a b VARISTOR [Rclamp=1]      a and b are pins 7 and 8
- *     Aname frequency amplitude 0 0 0 0 out com MODULATE [mark=hertz space=hertz]
+ *     Aname frequency amplitude 0 0 0 cos sin com MODULATE mark=hertz space=hertz [Vhigh=1 Vlow=-1]
  *
  * A varistor is two ideal diodes, each before a source of the voltage that it breaks down at. */
 #include "oscillator.h"
@@ -9,18 +9,27 @@
 #include <math.h>
 #include <string.h>
 
-enum { N_PINS = 8, PIN_OUTPUT = 6, PIN_COMMON };
+enum { N_PINS = 8, PIN_QUADRATURE = 5, PIN_OUTPUT, PIN_COMMON };
 
-/* Its eight nodes, without those that mean nothing, and its parameters; false: an error was reported. */
-static bool read_card(struct dalcs_reader *reader, int *node, struct dalcs_parameter *p, int n) {
+static bool is_modulator(const struct dalcs_card *card) {
+    const char *function = card->token[DALCS_LOGIC_MODEL].text;
+    return strcmp(function, "modulate") == 0 || strcmp(function, "modulator") == 0;
+}
+
+/* Its eight nodes, without those that mean nothing: a modulator has two outputs, of which one may do. */
+static bool read_pins(struct dalcs_reader *reader, int *node) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *name = reader->card->token;
     if (!dalcs_reader_nodes(reader, N_PINS, node)) {
         return false;
     }
+    const bool has_two = is_modulator(reader->card);
     for (int pin = 2; pin <= PIN_OUTPUT; pin++) {
         const bool is_wired = node[pin] != node[PIN_COMMON];
-        if (is_wired != (pin == PIN_OUTPUT)) {
+        const bool is_other = has_two && pin >= PIN_QUADRATURE &&
+                              node[PIN_QUADRATURE + PIN_OUTPUT - pin] != node[PIN_COMMON];
+        const bool is_optional = has_two && (pin == PIN_QUADRATURE || is_other);
+        if (is_wired != (pin == PIN_OUTPUT) && !is_optional) {
             dalcs_builder_error(builder, &name[1 + pin], is_wired ? "tie it to pin 8" : NULL,
                                 is_wired ? "pin %d of '%s' means nothing for this function"
                                          : "pin %d of '%s' is not wired",
@@ -29,6 +38,15 @@ static bool read_card(struct dalcs_reader *reader, int *node, struct dalcs_param
         }
     }
     reader->at++; /* the function */
+    return true;
+}
+
+/* And its parameters; false: an error was reported. */
+static bool read_card(struct dalcs_reader *reader, int *node, struct dalcs_parameter *p, int n) {
+    struct dalcs_builder *builder = reader->builder;
+    if (!read_pins(reader, node)) {
+        return false;
+    }
     while (!dalcs_reader_at_end(reader)) {
         const struct dalcs_token *parameter = dalcs_reader_take_parameter(reader);
         if (parameter == NULL) {
@@ -48,7 +66,7 @@ static bool read_card(struct dalcs_reader *reader, int *node, struct dalcs_param
         if (!dalcs_reader_number(reader, p[k].quantity, "a value", &p[k].value)) {
             return false;
         }
-        if (!(p[k].value >= 0)) {
+        if (!(p[k].value >= 0) && p[k].quantity != DALCS_VOLTAGE) {
             dalcs_builder_error(builder, parameter, NULL, "'%s' cannot be negative", p[k].name);
             return false;
         }
@@ -109,8 +127,9 @@ static void parse_varistor(struct dalcs_builder *builder, const struct dalcs_car
 
 /* ---- MODULATE --------------------------------------------------------------------------------------------------- */
 
-/* The carrier, times the second input where that is wired. */
-static void put_product(struct dalcs_block_card *c, const int *node, int carrier) {
+/* The carrier, times the second input. */
+static void put_product(struct dalcs_block_card *c, const int *node, const char *what, int carrier,
+                        int output) {
     const int amplitude = dalcs_builder_inner_node(c->builder, "amplitude", c->card->token);
     struct dalcs_device *e = dalcs_block_add(c, DALCS_VCVS, "amplitude", amplitude, 0);
     if (amplitude < 0 || e == NULL) {
@@ -122,52 +141,88 @@ static void put_product(struct dalcs_block_card *c, const int *node, int carrier
     const int product = dalcs_smooth_add(c->builder, c->card->token, "product",
                                          DALCS_SMOOTH_PRODUCT, 2, (int[]){carrier, amplitude});
     struct dalcs_device *out =
-        product >= 0 ? dalcs_block_add(c, DALCS_VCVS, NULL, node[PIN_OUTPUT], node[PIN_COMMON])
-                     : NULL;
+        product >= 0 ? dalcs_block_add(c, DALCS_VCVS, what, output, node[PIN_COMMON]) : NULL;
     if (out != NULL) {
         out->node[2] = product;
         out->value = 1;
     }
 }
 
+/* One output, `what` NULL: that which has the element's current. The cosine is a quarter of a period ahead: both have
+ * a phase of their own, of the same frequency. */
+static void put_output(struct dalcs_oscillator *o, const int *node, const char *what, int pin) {
+    o->what = what;
+    o->phase = pin == PIN_QUADRATURE ? 0.25 : 0;
+    o->out = (struct dalcs_block_end){.node = node[pin], .reference = node[PIN_COMMON]};
+    if (node[1] != node[PIN_COMMON]) {
+        const int carrier = dalcs_builder_inner_node(o->card.builder, "carrier", o->place);
+        o->what = "carrier";
+        o->out = (struct dalcs_block_end){.node = carrier};
+        put_product(&o->card, node, what, carrier, node[pin]);
+    }
+    dalcs_oscillator_add(o);
+}
+
+enum { MARK, SPACE, HIGH, LOW, N_OF_MODULATOR };
+
+/* The frequency and the levels; false: an error was reported. */
+static bool set_levels(struct dalcs_oscillator *o, const int *node,
+                       const struct dalcs_parameter *p) {
+    const bool has_levels = p[HIGH].place != NULL || p[LOW].place != NULL;
+    const bool has_amplitude = node[1] != node[PIN_COMMON];
+    if (!has_amplitude && !(p[HIGH].value > p[LOW].value)) {
+        dalcs_builder_error(o->card.builder, o->place, NULL, "Vhigh must be above Vlow");
+        return false;
+    }
+    if (has_amplitude && has_levels) {
+        dalcs_builder_warn(o->card.builder, o->place, NULL,
+                           "the amplitude of '%s' is the voltage of pin 2: Vhigh and Vlow are "
+                           "ignored",
+                           o->place->text);
+    }
+    o->low = has_amplitude ? -1 : p[LOW].value;
+    o->high = has_amplitude ? 1 : p[HIGH].value;
+    struct dalcs_piecewise table = dalcs_block_make_table(&o->card, 2);
+    if (table.knot == NULL) {
+        return false;
+    }
+    dalcs_block_set_knot(&table, 0, 0, p[SPACE].value);
+    dalcs_block_set_knot(&table, 1, 1, p[MARK].value);
+    table.before = table.after = p[MARK].value - p[SPACE].value;
+    return dalcs_oscillator_set_hertz(o, &table);
+}
+
 static void parse_modulator(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader =
         dalcs_reader_start(builder, card,
-                           "a modulator is: Aname frequency amplitude 0 0 0 0 out com MODULATE "
-                           "mark=hertz space=hertz, pins 3 to 6 tied to pin 8");
-    struct dalcs_parameter p[] = {{"mark", DALCS_HERTZ, false, 0, NULL},
-                                  {"space", DALCS_HERTZ, false, 0, NULL}};
+                           "a modulator is: Aname frequency amplitude 0 0 0 cos sin com MODULATE "
+                           "mark=hertz space=hertz, pins 3 to 5 tied to pin 8");
+    struct dalcs_parameter p[N_OF_MODULATOR] = {[MARK] = {"mark", DALCS_HERTZ, false, 0, NULL},
+                                                [SPACE] = {"space", DALCS_HERTZ, false, 0, NULL},
+                                                [HIGH] = {"vhigh", DALCS_VOLTAGE, false, 1, NULL},
+                                                [LOW] = {"vlow", DALCS_VOLTAGE, false, -1, NULL}};
     int node[N_PINS];
-    if (!read_card(&reader, node, p, 2)) {
+    if (!read_card(&reader, node, p, N_OF_MODULATOR)) {
         return;
     }
-    if (p[0].place == NULL || p[1].place == NULL) {
-        dalcs_reader_missing(&reader, p[0].place == NULL ? "mark=" : "space=");
+    if (p[MARK].place == NULL || p[SPACE].place == NULL) {
+        dalcs_reader_missing(&reader, p[MARK].place == NULL ? "mark=" : "space=");
         return;
     }
     struct dalcs_oscillator o = {.card = {.builder = builder, .card = card},
                                  .place = card->token,
                                  .shape = DALCS_OSCILLATOR_SINE,
                                  .control = {.node = node[0], .reference = node[PIN_COMMON]},
-                                 .out = {.node = node[PIN_OUTPUT], .reference = node[PIN_COMMON]},
-                                 .low = -1,
-                                 .high = 1,
                                  .duty = 0.5};
-    struct dalcs_piecewise table = dalcs_block_make_table(&o.card, 2);
-    if (table.knot == NULL) {
+    const bool has_sine = node[PIN_OUTPUT] != node[PIN_COMMON];
+    if (!set_levels(&o, node, p)) {
         return;
     }
-    dalcs_block_set_knot(&table, 0, 0, p[1].value);
-    dalcs_block_set_knot(&table, 1, 1, p[0].value);
-    table.before = table.after = p[0].value - p[1].value;
-    if (node[1] != node[PIN_COMMON]) {
-        const int carrier = dalcs_builder_inner_node(builder, "carrier", card->token);
-        o.what = "carrier";
-        o.out = (struct dalcs_block_end){.node = carrier};
-        put_product(&o.card, node, carrier);
+    if (has_sine) {
+        put_output(&o, node, NULL, PIN_OUTPUT);
     }
-    if (dalcs_oscillator_set_hertz(&o, &table)) {
-        dalcs_oscillator_add(&o);
+    if (node[PIN_QUADRATURE] != node[PIN_COMMON]) {
+        put_output(&o, node, has_sine ? "cosine" : NULL, PIN_QUADRATURE);
     }
 }
 
@@ -175,7 +230,9 @@ bool dalcs_analog_function_parse(struct dalcs_builder *builder, const struct dal
     const char *function = card->token[DALCS_LOGIC_MODEL].text;
     if (strcmp(function, "varistor") == 0) {
         parse_varistor(builder, card);
-    } else if (strcmp(function, "modulate") == 0 || strcmp(function, "modulator") == 0) {
+    } else if (strcmp(function, "ota") == 0) {
+        dalcs_transconductor_parse(builder, card);
+    } else if (is_modulator(card)) {
         parse_modulator(builder, card);
     } else {
         return false;

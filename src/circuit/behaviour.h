@@ -232,9 +232,6 @@ struct dalcs_behaviour *dalcs_behaviour_make(struct dalcs_compiler *c,
 
 /* ---- inner_parts.c --------------------------------------------------------------------------------- */
 
-/* Room for n more devices, in pieces that double: a netlist of many products has many parts. The array moves. */
-bool dalcs_builder_reserve_devices(struct dalcs_builder *builder, size_t n);
-
 /* A compiler of a part of the formula, as the formula of a source of its own: pairs are those of one device. */
 bool dalcs_compiler_start_inner(struct dalcs_compiler *c, struct dalcs_compiler *inner,
                                 size_t n_forms);
@@ -251,6 +248,19 @@ const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struc
 /* A smooth function of the voltages of n nodes, as the source `what` of an element: its node; -1 after an error. */
 int dalcs_smooth_add(struct dalcs_builder *builder, const struct dalcs_token *element,
                      const char *what, enum dalcs_smooth_kind kind, int n, const int *node_of);
+
+/* A node of its own at the value of a part of the formula, from a source to ground: its number among devices. is_part:
+ * as that of a behaviour. And a node alone. -1 after an error. */
+int dalcs_compiler_node_at(struct dalcs_compiler *c, const char *what,
+                           const struct dalcs_formula *f, bool is_part, int *source);
+int dalcs_compiler_new_node(struct dalcs_compiler *c, const char *what);
+
+/* ---- memory_parts.c -------------------------------------------------------------------------------- */
+
+/* Is a part of a formula a derivative or an integral? Its value, by parts that are added to the circuit as those of
+ * smooth functions are. */
+bool dalcs_memory_is(const struct dalcs_formula *f);
+const struct dalcs_form *dalcs_memory_form(struct dalcs_compiler *c, const struct dalcs_formula *f);
 
 /* ---- commutate.c ----------------------------------------------------------------------------------- */
 

@@ -277,6 +277,35 @@ static bool read_points(struct dalcs_reader *reader, struct dalcs_piecewise *tab
     return true;
 }
 
+bool dalcs_behavioural_has_own_table(const struct dalcs_card *card) {
+    static const char *const names[] = {"tbl", "table"};
+    return card->letter == 'i' && card->n > 3 && card->token[3].kind == DALCS_TOKEN_WORD &&
+           dalcs_builder_is_one_of(card->token[3].text, names, sizeof names / sizeof names[0]);
+}
+
+void dalcs_behavioural_parse_own_table(struct dalcs_builder *builder,
+                                       const struct dalcs_card *card) {
+    struct dalcs_reader reader = dalcs_reader_start(
+        builder, card, "such a source is: Iname node node TBL=(v1,i1, v2,i2, ...)");
+    struct dalcs_device *device = dalcs_builder_add_device(builder, DALCS_VCCS, card->token);
+    struct dalcs_piecewise table = {0};
+    if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node)) {
+        return;
+    }
+    device->node[2] = device->node[0];
+    device->node[3] = device->node[1];
+    reader.at++;
+    dalcs_reader_take(&reader, DALCS_TOKEN_EQUAL);
+    if (!read_points(&reader, &table)) {
+        return;
+    }
+    for (int k = 0; k < table.n; k++) {
+        const double i = table.knot[k].value * dalcs_parallel_of(card);
+        table.knot[k].left = table.knot[k].value = table.knot[k].right = i;
+    }
+    dalcs_behavioural_add_table(builder, device, &table);
+}
+
 void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device) {
     const struct dalcs_token *form = dalcs_reader_peek(reader, 0);
     const bool is_table = strcmp(form->text, "table") == 0;

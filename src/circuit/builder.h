@@ -230,6 +230,9 @@ struct dalcs_device *dalcs_builder_add_inner_device(struct dalcs_builder *builde
 int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
                              const struct dalcs_token *element);
 
+/* Room for n more devices, in pieces that double: a netlist of many products has many parts. The array moves. */
+bool dalcs_builder_reserve_devices(struct dalcs_builder *builder, size_t n);
+
 /* Puts a short "terminal(c1)" before node[0] of a device, which becomes an inner one: the current of the element
  * is that of the short, which no unknown is spent on where no one asks. False when out of memory. */
 bool dalcs_builder_add_terminal(struct dalcs_builder *builder, const struct dalcs_token *element,
@@ -416,6 +419,8 @@ void dalcs_transfer_parse_behind(struct dalcs_reader *reader, struct dalcs_devic
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
 /* LTspice's VARISTOR and MODULATE; false: another function. */
+/* LTspice's OTA. */
+void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 bool dalcs_analog_function_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* After the word POLY, on a device that has its own nodes. */
 void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device);
@@ -438,6 +443,10 @@ void dalcs_behavioural_add_formula(struct dalcs_builder *builder, const struct d
                                    const struct dalcs_token *formula);
 bool dalcs_behavioural_is_form(const struct dalcs_token *token);
 void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device);
+/* I with TBL, LTspice's: a current that is a table of the voltage across it. */
+bool dalcs_behavioural_has_own_table(const struct dalcs_card *card);
+void dalcs_behavioural_parse_own_table(struct dalcs_builder *builder,
+                                       const struct dalcs_card *card);
 /* Compiles all formulas, when all elements are known. */
 void dalcs_behavioural_resolve(struct dalcs_builder *builder);
 void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card);

@@ -243,7 +243,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         if (dalcs_card_is_logic(card)) {
             table->n_gates++;
             table->n_gate_inputs += DALCS_GATE_PINS;
-            table->n_stimuli += 5;
+            table->n_stimuli += 10; /* of a modulator with two outputs */
             table->n_inner += DALCS_GATE_DEVICES;
         } else {
             count_block(table, card);

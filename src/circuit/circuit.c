@@ -92,7 +92,11 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_source_parse(builder, card, DALCS_VSOURCE);
         return;
     case 'i':
-        dalcs_source_parse(builder, card, DALCS_ISOURCE);
+        if (dalcs_behavioural_has_own_table(card)) {
+            dalcs_behavioural_parse_own_table(builder, card);
+        } else {
+            dalcs_source_parse(builder, card, DALCS_ISOURCE);
+        }
         return;
     case 'e':
         dalcs_controlled_parse(builder, card, DALCS_VCVS);

@@ -293,6 +293,7 @@ static const char *smooth_name(const struct dalcs_compiler *c, const struct dalc
 static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                      const struct dalcs_form **argument) {
     static const char *const steps[] = {"int", "floor", "ceil", "nint", "round", "fmod"};
+    static const char *const points[] = {"eq0", "ne0"};
     const struct dalcs_form *a = argument[0];
     if (is_named(f, "abs")) {
         return apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}}, 1, -1, 1, a);
@@ -300,8 +301,11 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
     if (is_named(f, "sgn")) {
         return apply(c, (struct dalcs_knot[]){{0, -1, 0, 1}}, 1, 0, 0, a);
     }
-    if (is_named(f, "u") || is_named(f, "stp")) {
-        return compare(c, a, dalcs_form_number(c, 0), 0);
+    if (is_named(f, "u") || is_named(f, "stp") || is_named(f, "gt0") || is_named(f, "ge0")) {
+        return compare(c, a, dalcs_form_number(c, 0), is_named(f, "ge0") ? 1 : 0);
+    }
+    if (is_named(f, "lt0") || is_named(f, "le0")) {
+        return compare(c, dalcs_form_number(c, 0), a, is_named(f, "le0") ? 1 : 0);
     }
     if (is_named(f, "buf")) {
         return compare(c, a, dalcs_form_number(c, 0.5), 0);
@@ -326,7 +330,7 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
         const struct dalcs_form *high = dalcs_form_max(c, argument[1], argument[2]);
         return dalcs_form_min(c, dalcs_form_max(c, a, low), high);
     }
-    if (is_named(f, "table") || is_named(f, "pwl")) {
+    if (is_named(f, "table") || is_named(f, "tbl") || is_named(f, "pwl")) {
         return table(c, f, argument, is_named(f, "pwl"));
     }
     const bool is_of_time = a->n == 0 && dalcs_affine_is_time(&a->affine);
@@ -345,6 +349,10 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
             "sums of u(...) make a staircase of so many steps, and PULSE(0 1 0 T 0 0 T) a sawtooth",
             "%s(...) of a quantity that varies has steps without end");
     }
+    if (dalcs_builder_is_one_of(f->function, points, sizeof points / sizeof points[0])) {
+        return refuse_name(c, f, "gt0, lt0, ge0 and le0 compare",
+                           "%s(...) of a quantity that varies tells single points only");
+    }
     enum dalcs_smooth_kind kind;
     if (dalcs_smooth_find(smooth_name(c, f), f->n, &kind)) {
         return dalcs_smooth_form(c, f, kind, f->n, argument);
@@ -359,6 +367,9 @@ static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
     const struct dalcs_form *carrier = dalcs_carrier(c, f);
     if (carrier != NULL) {
         return carrier;
+    }
+    if (dalcs_memory_is(f)) {
+        return dalcs_memory_form(c, f);
     }
     const struct dalcs_form **argument =
         dalcs_arena_alloc(c->arena, (size_t)f->n + 1, sizeof(const struct dalcs_form *));

@@ -15,16 +15,20 @@ bool dalcs_builder_reserve_devices(struct dalcs_builder *builder, size_t n_more)
     struct dalcs_device *device = dalcs_arena_alloc(&circuit->arena, most, sizeof *device);
     const struct dalcs_token **token =
         dalcs_arena_alloc(&builder->scratch, most, sizeof(const struct dalcs_token *));
+    const struct dalcs_token **control =
+        dalcs_arena_alloc(&builder->scratch, most, sizeof(const struct dalcs_token *));
     int *current_of = dalcs_arena_alloc(&builder->scratch, most, sizeof *current_of);
-    if (device == NULL || token == NULL || current_of == NULL) {
+    if (device == NULL || token == NULL || control == NULL || current_of == NULL) {
         builder->out_of_memory = true;
         return false;
     }
     memcpy(device, circuit->device, n * sizeof *device);
     memcpy(token, builder->device_token, n * sizeof(const struct dalcs_token *));
+    memcpy(control, builder->control_token, n * sizeof(const struct dalcs_token *));
     memcpy(current_of, builder->current_of, n * sizeof *current_of);
     circuit->device = device;
     builder->device_token = token;
+    builder->control_token = control;
     builder->current_of = current_of;
     builder->device_capacity = most;
     return true;

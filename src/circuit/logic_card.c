@@ -76,9 +76,6 @@ static bool is_refused(struct dalcs_builder *builder, const struct dalcs_token *
     static const struct {
         const char *name, *because, *hint;
     } functions[] = {
-        {"ota", "its output is a limited product of differences",
-         "write a B source from pin 8 to pin 7: I=Iout*tanh(G/Iout*v(pin2,pin1)), or "
-         "I=limit(G*v(pin2,pin1), -Iout, Iout)"},
         {"phasedet", "it has three states", "write two DFLOP that an AND of both clears"}};
 
     for (size_t k = 0; k < sizeof functions / sizeof functions[0]; k++) {

@@ -343,6 +343,10 @@ void dalcs_logic_resolve(struct dalcs_builder *builder) {
         builder->out_of_memory = true;
         return;
     }
+    /* Parts of formulas may have taken the room that was counted for them. */
+    if (!dalcs_builder_reserve_devices(builder, 2 * builder->comparator_capacity)) {
+        return;
+    }
     builder->n_nodes_of_gates = n_nodes;
     for (const struct dalcs_logic_card *of = builder->gate_card; of != NULL; of = of->before) {
         for (int k = 0; k < 2; k++) {

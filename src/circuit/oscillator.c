@@ -12,6 +12,8 @@
 
 #include <math.h>
 
+enum { MOST_DEVICES = 20 }; /* that one consists of */
+
 bool dalcs_oscillator_set_hertz(struct dalcs_oscillator *o, const struct dalcs_piecewise *table) {
     struct dalcs_piecewise *f = &o->hertz;
     const struct dalcs_knot *first = &table->knot[0];
@@ -96,6 +98,7 @@ static bool add_source(const struct dalcs_oscillator *o, double hertz) {
         s.u.sine.offset = 0.5 * (o->low + o->high);
         s.u.sine.amplitude = 0.5 * (o->high - o->low);
         s.u.sine.frequency = hertz;
+        s.u.sine.phase = 360 * o->phase;
     } else if (hertz > 0) {
         s = (struct dalcs_stimulus){0};
         set_pulse(o, hertz, &s);
@@ -269,7 +272,8 @@ static void expand(const struct dalcs_oscillator *o) {
                                                             : 1 - o->duty;
     int node[2];
     /* sin(2 pi phase) is the cosine of an angle that is three quarters of a turn ahead */
-    if (!add_swing(o, up, o->shape == DALCS_OSCILLATOR_SINE ? 0.75 : o->phase, node)) {
+    const double ahead = o->shape == DALCS_OSCILLATOR_SINE ? 0.75 : 0;
+    if (!add_swing(o, up, fmod(o->phase + ahead, 1), node)) {
         return;
     }
     if (o->shape == DALCS_OSCILLATOR_TRIANGLE) {
@@ -298,6 +302,9 @@ void dalcs_oscillator_add(const struct dalcs_oscillator *o) {
 void dalcs_oscillator_put_all(struct dalcs_builder *builder) {
     for (const struct dalcs_oscillator *o = builder->oscillator; o != NULL; o = o->before) {
         double control;
+        if (!dalcs_builder_reserve_devices(builder, MOST_DEVICES)) {
+            return;
+        }
         if (is_constant(o, &control)) {
             (void)add_source(o, dalcs_piecewise_at(&o->hertz, control, 0));
         } else {

@@ -2,7 +2,7 @@
  * ground that reads nodes. An argument that is not the voltage of a node is put out at one by a source, too. */
 #include "behaviour.h"
 
-static int new_node(struct dalcs_compiler *c, const char *what) {
+int dalcs_compiler_new_node(struct dalcs_compiler *c, const char *what) {
     const char *name = dalcs_arena_printf(&c->builder->scratch, "%s%d", what, ++c->n_nodes);
     const int node = name != NULL ? dalcs_builder_inner_node(c->builder, name, c->element) : -1;
     c->failed = c->failed || node < 0;
@@ -36,8 +36,8 @@ static int plain_node(const struct dalcs_form *form) {
     return is_plain ? a->term[0].index : -1;
 }
 
-/* A node at the value of a formula. */
-static int node_at(struct dalcs_compiler *c, const struct dalcs_formula *f, int *source) {
+int dalcs_compiler_node_at(struct dalcs_compiler *c, const char *what,
+                           const struct dalcs_formula *f, bool is_part, int *source) {
     struct dalcs_compiler inner;
     if (!dalcs_compiler_start_inner(c, &inner, c->n_forms)) {
         return -1;
@@ -46,13 +46,13 @@ static int node_at(struct dalcs_compiler *c, const struct dalcs_formula *f, int 
     struct dalcs_behaviour *behaviour =
         form != NULL && !inner.failed ? dalcs_behaviour_make(&inner, form) : NULL;
     dalcs_compiler_finish_inner(c, &inner);
-    const int node = behaviour != NULL && !c->failed ? new_node(c, "argument") : -1;
+    const int node = behaviour != NULL && !c->failed ? dalcs_compiler_new_node(c, what) : -1;
     if (node < 0) {
         return -1;
     }
-    behaviour->is_part = true;
+    behaviour->is_part = is_part;
     *source = c->builder->circuit->n_devices;
-    return add_source(c, "argument", node, behaviour);
+    return add_source(c, what, node, behaviour);
 }
 
 /* What the source reads, for whoever asks what formulas read. */
@@ -101,12 +101,13 @@ static int add_smooth(struct dalcs_compiler *c, const struct dalcs_formula *f,
         }
         smooth->node[k] = plain_node(argument[k]);
         if (smooth->node[k] < 0) {
-            smooth->node[k] = node_at(c, f->argument[k], &smooth->source[k]);
+            smooth->node[k] =
+                dalcs_compiler_node_at(c, "argument", f->argument[k], true, &smooth->source[k]);
         }
         c->failed = c->failed || smooth->node[k] < 0;
     }
     const struct dalcs_behaviour *behaviour = c->failed ? NULL : make(c, smooth);
-    const int node = behaviour != NULL ? new_node(c, "function") : -1;
+    const int node = behaviour != NULL ? dalcs_compiler_new_node(c, "function") : -1;
     if (node < 0 || add_source(c, "function", node, behaviour) < 0) {
         return -1;
     }

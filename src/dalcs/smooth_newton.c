@@ -43,9 +43,20 @@ double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x) {
     return dalcs_smooth_value(of->kind, x) - line_of(of, 0) * x[0] - line_of(of, 1) * x[1];
 }
 
+/* A root at 0 is vertical, and where sources alone decide its argument nobody asks for its slope: 0 times the square
+ * root of the largest number is 0. */
+static void finite_gradient(const struct dalcs_smooth_input *of, const double *x,
+                            double *gradient) {
+    static const double steepest = 0x1p+511;
+    dalcs_smooth_gradient(of->kind, x, gradient);
+    for (int j = 0; j < 2; j++) {
+        gradient[j] = isinf(gradient[j]) ? copysign(steepest, gradient[j]) : gradient[j];
+    }
+}
+
 static void gradient_of_rest(const struct dalcs_smooth_input *of, const double *x,
                              double *gradient) {
-    dalcs_smooth_gradient(of->kind, x, gradient);
+    finite_gradient(of, x, gradient);
     gradient[0] -= line_of(of, 0);
     gradient[1] -= line_of(of, 1);
 }
@@ -219,7 +230,7 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
         const struct dalcs_smooth_input *of = input_of(newton, q);
         double gradient[2];
         double f = dalcs_smooth_value(of->kind, newton->x[q]);
-        dalcs_smooth_gradient(of->kind, newton->x[q], gradient);
+        finite_gradient(of, newton->x[q], gradient);
         double least = tolerance * fabs(f);
         double most = least;
         for (int j = 0; j < of->n; j++) {
@@ -239,8 +250,10 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
     return worst <= 1.0 && !newton->limits;
 }
 
-bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats) {
+/* Have all functions values there, and slopes? `newton->worst` has none. */
+static bool is_finite(struct dalcs_smooth_newton *newton, bool *has_slopes) {
     bool is = true;
+    *has_slopes = true;
     for (int q = 0; q < newton->n && is; q++) {
         const struct dalcs_smooth_input *of = input_of(newton, q);
         double a[2];
@@ -249,12 +262,21 @@ bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *rep
             a[j] = dalcs_smooth_tangent_point(of->kind, newton->tangent[q][j], newton->x[q][j]);
         }
         dalcs_smooth_gradient(of->kind, a, gradient);
-        is = isfinite(dalcs_smooth_value(of->kind, a)) && isfinite(gradient[0]) &&
-             (of->column[1] < 0 || isfinite(gradient[1]));
-        newton->worst = is ? newton->worst : q % newton->system->n_smooth;
+        const bool has = isfinite(gradient[0]) && (of->column[1] < 0 || isfinite(gradient[1]));
+        is = isfinite(dalcs_smooth_value(of->kind, a)) && !isnan(gradient[0]) &&
+             (of->column[1] < 0 || !isnan(gradient[1]));
+        *has_slopes = *has_slopes && has;
+        newton->worst = is && has ? newton->worst : q % newton->system->n_smooth;
     }
+    return is;
+}
+
+bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats) {
+    bool has_slopes;
+    const bool is = is_finite(newton, &has_slopes);
     const bool is_first = newton->n_steps == 0;
-    *repeats = !is && newton->halved < (is_first ? newton->system->n_smooth : MOST_HALVINGS);
+    *repeats = !(is && has_slopes) &&
+               newton->halved < (is_first ? newton->system->n_smooth : MOST_HALVINGS);
     if (*repeats) {
         newton->halved++;
         for (int q = 0; q < newton->n; q++) {

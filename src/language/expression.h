@@ -117,6 +117,9 @@ const struct dalcs_function *dalcs_function_find(const char *name, enum dalcs_di
 /* Why a function of other simulators is not here, as a hint; NULL for any other name. */
 const char *dalcs_function_refusal(const char *name);
 
+/* ddt(x), idt(x, first, reset) and sdt: of a source's formula alone, which becomes a capacitor with it. */
+bool dalcs_function_remembers(const char *name, int *least, int *most);
+
 /* The name of a built-in function like this one, or NULL. */
 const char *dalcs_function_nearest(const char *name);
 

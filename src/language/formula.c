@@ -22,6 +22,7 @@ struct work {
     int depth;
     const char
         *variable; /* a name that stands for a variable rather than a parameter; NULL: none */
+    bool has_choices;
     bool failed;
 };
 
@@ -249,15 +250,16 @@ static void push_signal(struct work *w, const struct frame *f, const struct dalc
 /* ---- Calls ----------------------------------------------------------------------------------- */
 
 static void check_call(struct work *w, const struct frame *f, const struct dalcs_operation *o) {
-    static const char *const memories[] = {"ddt", "idt", "sdt", "delay"};
-    if (dalcs_scope_find_function(w->scope, o->u.name) != NULL) {
+    int least;
+    int most;
+    if (dalcs_scope_find_function(w->scope, o->u.name) != NULL ||
+        dalcs_function_remembers(o->u.name, &least, &most)) {
         return;
     }
-    const char *hint = dalcs_function_refusal(o->u.name);
-    for (size_t k = 0; k < sizeof memories / sizeof memories[0]; k++) {
-        hint =
-            strcmp(o->u.name, memories[k]) == 0 ? "what remembers is a capacitor or a coil" : hint;
-    }
+    const char *hint =
+        strcmp(o->u.name, "delay") == 0
+            ? "a line of coils and capacitors delays, or BUF with td= of a signal of two levels"
+            : dalcs_function_refusal(o->u.name);
     fail(w, f, o, hint, "'%s(...)' is not a function of the values at one time", o->u.name);
 }
 
@@ -289,10 +291,30 @@ static void call_user(struct work *w, const struct frame *f, const struct dalcs_
     }
 }
 
+/* ddt, idt, sdt: of numbers, too, they are functions of time. */
+static void call_memory(struct work *w, const struct frame *f, const struct dalcs_operation *o,
+                        int least, int most) {
+    if (w->variable != NULL) {
+        fail(w, f, o, "derivatives and integrals are for B, E and G",
+             "'%s(...)' is not for a formula of this kind", o->u.name);
+    } else if (o->count < least || o->count > most) {
+        fail(w, f, o, "ddt(x), idt(x), idt(x, first), idt(x, first, reset)",
+             "'%s' with another number of arguments", o->u.name);
+    } else {
+        push_over(w, f, o, DALCS_FORMULA_CALL, o->count);
+    }
+}
+
 static void call(struct work *w, const struct frame *f, const struct dalcs_operation *o) {
     struct dalcs_user_function *user = dalcs_scope_find_function(w->scope, o->u.name);
+    int least;
+    int most;
     if (user != NULL) {
         call_user(w, f, o, user);
+        return;
+    }
+    if (dalcs_function_remembers(o->u.name, &least, &most)) {
+        call_memory(w, f, o, least, most);
         return;
     }
     const struct dalcs_function *function =
@@ -330,6 +352,7 @@ static int choose(struct work *w, const struct frame *f, int k) {
         run(w, f, otherwise, end);
     }
     if (!w->failed) {
+        w->has_choices = true;
         push_over(w, f, o, DALCS_FORMULA_CHOICE, 3);
     }
     return end;
@@ -431,6 +454,9 @@ static const struct dalcs_formula *make_formula(struct dalcs_language *language,
     const struct frame f = {expression, 0};
     run(&w, &f, 0, expression->n);
     const struct dalcs_formula *formula = w.failed ? NULL : w.stack[0];
+    if (formula != NULL && w.has_choices && variable == NULL) {
+        formula = dalcs_formula_guard(language, formula, w.n_parts);
+    }
     free(w.stack);
     language->deck->has_errors = language->deck->has_errors || formula == NULL;
     return formula;
@@ -607,6 +633,7 @@ static bool find_resistance(const struct dalcs_card *card, int *first, int *n) {
 }
 
 bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n) {
+    static const char *const laplace[] = {"laplace"};
     bool is_table = false;
     if (card->letter == 'r') {
         return find_resistance(card, first, n);
@@ -631,7 +658,10 @@ bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n) {
     while (end < card->n) {
         const enum dalcs_token_kind kind = card->token[end].kind;
         depth += (kind == DALCS_TOKEN_OPEN) - (kind == DALCS_TOKEN_CLOSE);
-        const bool is_next = end > *first && depth == 0 && dalcs_assignment_starts(card, end);
+        /* LTspice needs no equal sign behind LAPLACE, nor a blank before its parenthesis */
+        const bool is_ratio = card->letter == 'b' && is_word(&card->token[end], laplace, 1);
+        const bool is_next =
+            end > *first && depth == 0 && (is_ratio || dalcs_assignment_starts(card, end));
         const bool ends_here = is_table && (kind == DALCS_TOKEN_EQUAL ||
                                             (end > *first && *first < card->n &&
                                              card->token[*first].kind == DALCS_TOKEN_EXPRESSION));

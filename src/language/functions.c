@@ -22,6 +22,26 @@ static double step(double x) {
     return x > 0 ? 1 : 0;
 }
 
+static double is_zero(double x) {
+    return x == 0 ? 1 : 0;
+}
+
+static double is_not_zero(double x) {
+    return x != 0 ? 1 : 0;
+}
+
+static double is_below(double x) {
+    return x < 0 ? 1 : 0;
+}
+
+static double is_not_below(double x) {
+    return x >= 0 ? 1 : 0;
+}
+
+static double is_not_above(double x) {
+    return x <= 0 ? 1 : 0;
+}
+
 static double ramp(double x) {
     return x > 0 ? x : 0;
 }
@@ -187,11 +207,18 @@ static const struct dalcs_function FUNCTIONS[] = {
     {"limit", 3, 3, NULL, NULL, limit},
     {"u", 1, 1, step, NULL, NULL},
     {"stp", 1, 1, step, NULL, NULL},
+    {"gt0", 1, 1, step, NULL, NULL},
+    {"lt0", 1, 1, is_below, NULL, NULL},
+    {"ge0", 1, 1, is_not_below, NULL, NULL},
+    {"le0", 1, 1, is_not_above, NULL, NULL},
+    {"eq0", 1, 1, is_zero, NULL, NULL},
+    {"ne0", 1, 1, is_not_zero, NULL, NULL},
     {"uramp", 1, 1, ramp, NULL, NULL},
     {"u2", 1, 1, clip, NULL, NULL},
     {"buf", 1, 1, buffer, NULL, NULL},
     {"inv", 1, 1, invert, NULL, NULL},
     {"table", 3, MOST_ARGUMENTS, NULL, NULL, table},
+    {"tbl", 3, MOST_ARGUMENTS, NULL, NULL, table},
     {"pwl", 3, MOST_ARGUMENTS, NULL, NULL, lines},
     {"if", 3, 3, NULL, NULL, NULL}, /* these two jump */
     {"ternary_fcn", 3, 3, NULL, NULL, NULL},
@@ -233,6 +260,13 @@ const char *dalcs_function_refusal(const char *name) {
         }
     }
     return NULL;
+}
+
+bool dalcs_function_remembers(const char *name, int *least, int *most) {
+    const bool is_derivative = strcmp(name, "ddt") == 0;
+    *least = 1;
+    *most = is_derivative ? 1 : 3;
+    return is_derivative || strcmp(name, "idt") == 0 || strcmp(name, "sdt") == 0;
 }
 
 bool dalcs_constant_find(const char *name, double *value) {

@@ -300,6 +300,10 @@ bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n);
 /* The same of LAPLACE: what is an expression of s. */
 bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n);
 
+/* The same formula, whose parts have values where they are not chosen, too: n_parts are made. */
+const struct dalcs_formula *dalcs_formula_guard(struct dalcs_language *language,
+                                                const struct dalcs_formula *formula, int n_parts);
+
 /* The formula of token[0..n-1]; NULL when an error was reported or out of memory. */
 const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
                                                struct dalcs_scope *scope,

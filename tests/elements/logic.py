@@ -288,8 +288,7 @@ def counters(checker, program):
 
 def refused(checker, program):
     """Words for what is not there."""
-    cases = (("a1 a b 0 0 0 0 o 0 OTA G=1m", "ota is not supported: its output is a limited product"),
-             ("a1 a b 0 0 0 0 o 0 PHASEDET", "phasedet is not supported: it has three states"),
+    cases = (("a1 a b 0 0 0 0 o 0 PHASEDET", "phasedet is not supported: it has three states"),
              ("a1 a 0 b 0 0 0 o 0 SAMPLEHOLD td=1n", "samplehold has no parameter 'td'"),
              ("a1 a 0 b 0 0 o 0 0 SAMPLEHOLD", "pin 6 of 'a1' means nothing"),
              ("a1 a 0 0 0 0 0 o 0 COUNTER cycles=2.5", "a whole number of clocks"),

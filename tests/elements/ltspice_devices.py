@@ -92,6 +92,82 @@ def modulators(checker, program):
             checker.close(d, math.sin(2 * math.pi * space * t), 1e-9, f"{what}: neither at {t}")
 
 
+def quadratures(checker, program):
+    """Both outputs of a modulator, one of them alone, and levels, of a frequency that stands and of one that a signal moves."""
+    for space, mark, levels in ((1e3, 2e3, ""), (2e6, 1e6, " Vhigh=3 Vlow=-1"), (0.01, 0.05, " Vlow=0"), (0, 300, " Vhigh=2")):
+        f = max(space, mark)
+        end = 6 / f
+        what = f"a modulator of two outputs from {space} to {mark} Hz{levels}"
+        word = f"MODULATE mark={mark!r} space={space!r}"
+        cards = [f"v1 f 0 pwl(0 0 {end!r} 1)", f"v2 m 0 sin(2 1 {0.3 * f!r})", f"a1 f m 0 0 0 c s 0 {word}", f"a2 f 0 0 0 0 d 0 0 {word}{levels}",
+                 "v3 h 0 0.5", f"a3 h 0 0 0 0 e t 0 {word}{levels}", *(f"r{x} {x} 0 1k" for x in "csdet"), f".tran {end / 200!r} {end!r}"]
+        done = run_cards(program, what, cards)
+        if not runs(checker, done, what):
+            continue
+        high = 3 if "h=3" in levels else 2 if "h=2" in levels else 1
+        low = 0 if "w=0" in levels else -1
+        middle, half = 0.5 * (high + low), 0.5 * (high - low)
+        for t, c, s, d, e, x in zip(done.time, *(done.column(f"v({x})") for x in "csdet")):
+            angle = 2 * math.pi * (space * t + (mark - space) * t * t / (2 * end))
+            still = math.pi * (space + mark) * t
+            m = 2 + math.sin(2 * math.pi * 0.3 * f * t)
+            for found, wanted, name in ((c, m * math.cos(angle), "cosine"), (s, m * math.sin(angle), "sine"), (d, middle + half * math.cos(angle), "alone"),
+                                        (e, middle + half * math.cos(still), "still cosine"), (x, middle + half * math.sin(still), "still sine")):
+                checker.close(found, wanted, 5e-7, f"{what}: {name} at {t}")
+
+
+def many(checker, program):
+    """Oscillators need more room than their cards show: beside sources that read currents, gates and formulas."""
+    cards = ["v1 f 0 pwl(0 0 1m 1)"]
+    for k in range(9):
+        cards += [f"a{k} f 0 0 0 0 c{k} s{k} 0 MODULATE mark={k + 2}k space=1k", f"r{k} c{k} 0 1k", f"vm{k} s{k} t{k} 0", f"rt{k} t{k} 0 1k",
+                  f"f{k} 0 i{k} vm{k} 2", f"ri{k} i{k} 0 1k", f"a{k}g s{k} 0 0 0 0 0 g{k} 0 BUF Ref=0.5", f"rg{k} g{k} 0 1k", f"b{k} p{k} 0 v=v(c{k})*v(s{k})",
+                  f"rp{k} p{k} 0 1k"]
+    done = run_cards(program, "many", [*cards, ".tran 10u 1m"])
+    if not runs(checker, done, "many modulators"):
+        return
+    for k in range(9):
+        for t, s, i, p in zip(done.time, done.column(f"v(s{k})"), done.column(f"v(i{k})"), done.column(f"v(p{k})")):
+            angle = 2 * math.pi * (1e3 * t + (k + 1) * 1e3 * t * t / 2e-3)
+            checker.close(s, math.sin(angle), 1e-6, f"of many: {k} at {t}")
+            checker.close(i, 2 * math.sin(angle), 2e-6, f"its current: {k} at {t}")
+            checker.close(p, math.sin(2 * angle) / 2, 1e-6, f"its product: {k} at {t}")
+
+
+def transconductors(checker, program):
+    """OTAs against their law: soft and linear, unlike limits, a product, an offset, clamps on either side of 0, a capacitor, a loop."""
+    for scale, f in ((1, 1e3), (1e-3, 2e6), (100, 0.5)):
+        what = f"OTAs at {scale} V"
+        i, r = 1e-3, 1e3 * scale
+        cards = [f"v1 p 0 sin(0 {scale!r} {f!r})", f"v2 q 0 sin(0 2 {0.3 * f!r})",
+                 f"a1 0 p 0 0 0 0 a 0 OTA G={2 * i / scale!r} Iout={i!r} Vhigh=1e308 Vlow=-1e308 Rout={r!r}",
+                 f"a2 0 p 0 0 0 0 b 0 OTA G={i / scale!r} linear Rout={r!r} Vhigh={0.4 * scale!r} Vlow={-0.7 * scale!r}",
+                 f"a3 0 p q 0 0 0 c 0 OTA G={i / scale!r} linear=1 Rout={r!r} Vhigh=1e308 Vlow=-1e308",
+                 f"a4 p 0 0 0 0 0 d 0 OTA G={i / scale!r} asym Isource={3 * i!r} Isink={-i!r} Rout={r!r} Vhigh=1e308 Vlow=-1e308",
+                 f"a5 0 p 0 0 0 0 e 0 OTA G={i / scale!r} linear Ref={0.5 * scale!r} Rout={r!r} Vhigh={-0.2 * scale!r} Vlow={-1.2 * scale!r}",
+                 f"a6 g p 0 0 0 0 g 0 OTA G={i / scale!r} linear Rout={1e6 * r!r} Vhigh=1e308 Vlow=-1e308 en=1n",
+                 "a7 0 p 0 0 0 0 0 0 OTA g=0 in=3p", f".tran {0.01 / f!r} {2 / f!r}"]
+        done = run_cards(program, what, cards)
+        if not runs(checker, done, what):
+            continue
+        for t, *v in zip(done.time, *(done.column(f"v({x})") for x in "abcdeg")):
+            s = math.sin(2 * math.pi * f * t)
+            q = 2 * math.sin(2 * math.pi * 0.3 * f * t)
+            down = -3 * math.tanh(max(-s, 0) / -3) - math.tanh(max(s, 0))
+            wanted = (math.tanh(2 * s), min(0.4, max(-0.7, s)), s * q, down, min(-0.2, max(-1.2, s - 0.5)), s / (1 + 1e-6))
+            for k, (found, should) in enumerate(zip(v, wanted)):
+                checker.close(found, scale * should, 2e-7 * scale, f"{what}: a{k + 1} at {t}")
+    done = run_cards(program, "an integrator", ["v1 p 0 0.1", "a1 0 p 0 0 0 0 o 0 OTA G=1m Iout=1 Cout=1u Vhigh=5 Vlow=-5", "r1 o 0 1e12", ".ic v(o)=0",
+                                                ".tran 1m 100m"])
+    if runs(checker, done, "an OTA and its capacitor"):
+        checker.close(done.at("v(o)", 20e-3), 2, 1e-6, "what it charges")
+        checker.close(done.at("v(o)", 90e-3), 5, 1e-6, "its limit")
+    for card, part in (("a1 p 0 0 0 p 0 o 0 OTA G=1", "pin 5 of 'a1'"), ("a1 p 0 0 0 0 0 o 0 OTA Vhigh=-1 Vlow=1", "Vhigh must be above Vlow"),
+                       ("a1 p 0 0 0 0 0 o 0 OTA Iout=0", "not 0"), ("a1 p 0 0 0 0 0 o 0 OTA Rout=-1", "negative")):
+        done = run_cards(program, card, ["v1 p 0 1", "r1 o 0 1", card, ".tran 1 1"])
+        checker.check(done.status == 3 and part in done.stderr and "1:1" not in done.stderr, f"{card}: {done.stderr}")
+
+
 def parameters(checker, program):
     """Each function with each parameter that LTspice knows: accepted, or refused with its name; never passed over in silence.
     Those without effect are the accuracies of its own time steps."""
@@ -102,7 +178,9 @@ def parameters(checker, program):
     known["COUNTER"] = set(levels) | {"cycles=3", "duty=0.4"}
     known["SAMPLEHOLD"] = {"Ref=0.3", "Rout=10", "Cout=1n", "Tau=1u", "IC=1", "tripdt=1n", "ttol=1n", "temp=50"}
     known["VARISTOR"] = {"Rclamp=2"}
-    known["MODULATE"] = {"mark=2k space=1k"}
+    known["MODULATE"] = {"mark=2k space=1k", "Vhigh=2", "Vlow=-1"}
+    known["OTA"] = {"Vhigh=2", "Vlow=-1", "Ref=0.3", "Rout=10", "Cout=1n", "Rclamp=2", "G=1m", "Iout=1m", "Isink=1m", "linear=1", "asym=1",
+                    "en=1n", "enk=10", "powerup=1"}
     words = set(levels) | {"Vt=0.4", "Vh=0.1", "cycles=3", "duty=0.4", "Rclamp=2", "mark=2k space=1k", "G=1m", "Iout=1m", "Isink=1m", "linear=1",
                            "asym=1", "en=1n", "enk=10", "powerup=1"}
     for name, accepted in known.items():
@@ -126,8 +204,9 @@ def refused(checker, program):
              ("a1 a b a 0 0 0 o 0 VARISTOR", "pin 3 of 'a1' means nothing for this function"),
              ("a1 a b 0 0 0 0 0 0 VARISTOR", "pin 7 of 'a1' is not wired"),
              ("a1 a b 0 0 0 0 o 0 MODULATE mark=1k", "space="),
-             ("a1 a b 0 0 0 o 0 0 MODULATE mark=1k space=1k", "pin 6 of 'a1' means nothing"),
-             ("a1 a b 0 0 0 0 o 0 OTA G=1m", "I=Iout*tanh(G/Iout*v(pin2,pin1))"))
+             ("a1 a b 0 0 a 0 o 0 MODULATE mark=1k space=1k", "pin 5 of 'a1' means nothing"),
+             ("a1 a b 0 0 0 0 0 0 MODULATE mark=1k space=1k", "pin 7 of 'a1' is not wired"),
+             ("a1 a 0 0 0 0 0 o 0 MODULATE mark=1k space=1k Vlow=2", "Vhigh must be above Vlow"))
     for card, text in cases:
         done = run_cards(program, card, ["v1 a 0 1", "v2 b 0 1", card, "r1 o 0 1", ".tran 1 2"])
         checker.check(done.status != 0 and text in done.stderr, f"{card}: {done.stderr}")
@@ -139,7 +218,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("ltspice_devices")
-    for part in (outputs, varistors, modulators, parameters, refused):
+    for part in (outputs, varistors, modulators, quadratures, many, transconductors, parameters, refused):
         part(checker, program)
     return checker.finish()
 

@@ -370,6 +370,19 @@ def compare_many(checker, program):
                   in result.stderr, result.stderr[-500:])
 
 
+def compare_functions(checker, program):
+    """Modes of a tangent that the function itself does not have are no answers; those of a latch beside one are."""
+    for volts in (2, 300, 900, 1400):
+        card = "i=2.2e-15*(exp(abs(v(3))/22)-1)*sgn(v(3))"
+        done = run(program, f"a varistor\nb1 3 0 {card}\nr1 n 3 54m\nv1 n 0 {volts}\nr2 n 0 4.4g\n.op\n.end\n", method=None)
+        checker.check(done.status == 0 and "not determined" not in done.stderr, f"a varistor at {volts} V: {done.stderr}")
+        v = done.column("v(3)")[0]
+        checker.close(2.2e-15 * math.expm1(v / 22), (volts - v) / 54e-3, 1e-6 * max((volts - v) / 54e-3, 1e-6), f"its current at {volts} V")
+    for card in ("b2 p 0 v=v(q)*v(a)", "b2 p 0 v=exp(v(a))+v(q)", "b2 p 0 v=sqrt(v(a))"):
+        done = run(program, f"a latch\nv1 a 0 2\nb1 q 0 v=5*sgn(v(q)+1e-4*v(a)*v(a))\nr1 q 0 1k\n{card}\nr2 p 0 1k\n.op\n.end\n", method=None)
+        checker.check(done.status in (0, 4) and "v(q)" in done.stderr and "solutions of a circuit" in done.stderr, f"{card}: {done.stderr}")
+
+
 def main():
     program, glpk = sys.argv[1:]
     checker = Checker("cases")
@@ -385,6 +398,7 @@ def main():
         compare_commutation(checker, program, method)
         compare_drives(checker, program, method)
     compare_many(checker, program)
+    compare_functions(checker, program)
     return checker.finish()
 
 

@@ -1,0 +1,249 @@
+/* transconductor.c - LTspice's OTA: a current of the difference of two voltages, with limits.
+ *
+ *     Aname minus plus [plus2 minus2] 0 0 out com OTA [G=1 Ref=0 Iout=10u Isink= Vhigh=2 Vlow=0 Rout= Cout= linear]
+ *
+ * It puts out Iout tanh(G (v - Ref)/Iout), or with `linear` G (v - Ref), where v is v(plus,minus), times v(plus2,minus2)
+ * if pins 3 and 4 are wired. Rout and Cout lie across the output. An ideal diode each keeps that between Vlow and Vhigh. */
+#include "block_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N_PINS = 8, PIN_OUTPUT = 6, PIN_COMMON };
+
+enum { GAIN, REF, IOUT, ISINK, HIGH, LOW, ROUT, COUT, RCLAMP, N_PARAMETERS };
+
+static const char USAGE[] =
+    "an OTA is: Aname minus plus 0 0 0 0 out com OTA [G=1 Ref=0 Iout=10u Isink= Vhigh=2 Vlow=0 "
+    "Rout= Cout= linear]";
+
+/* LTspice's models of amplifiers write this for none. */
+static const double no_limit = 1e30;
+
+struct ota {
+    struct dalcs_block_card card;
+    int node[N_PINS];
+    struct dalcs_parameter p[N_PARAMETERS];
+    bool is_linear;
+};
+
+/* Noise, which is not simulated, and what an ideal clamp has no use for. */
+static bool is_ignored(const struct dalcs_token *name) {
+    static const char *const names[] = {"en", "enk", "in", "ink", "epsilon", "powerup"};
+    return dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]);
+}
+
+/* `linear` or `linear=1`; false: another word follows. *is_set stays where it is without effect. */
+static bool take_flag(struct dalcs_reader *reader, const char *word, bool *is_set, bool *failed) {
+    double value = 1;
+    if (!dalcs_reader_take_word(reader, word)) {
+        return false;
+    }
+    *failed = dalcs_reader_take(reader, DALCS_TOKEN_EQUAL) &&
+              !dalcs_reader_number(reader, DALCS_PLAIN, "1 or 0", &value);
+    *is_set = value != 0;
+    return true;
+}
+
+static int find_parameter(const struct ota *ota, const char *name) {
+    static const char *const others[][2] = {{"isource", "iout"}, {"isrc", "iout"}};
+    for (size_t k = 0; k < sizeof others / sizeof others[0]; k++) {
+        name = strcmp(name, others[k][0]) == 0 ? others[k][1] : name;
+    }
+    int k = 0;
+    while (k < N_PARAMETERS && strcmp(name, ota->p[k].name) != 0) {
+        k++;
+    }
+    return k;
+}
+
+static bool read_parameters(struct dalcs_reader *reader, struct ota *ota) {
+    bool failed = false;
+    bool is_asymmetric; /* as Isink= says */
+    while (!dalcs_reader_at_end(reader)) {
+        if (take_flag(reader, "linear", &ota->is_linear, &failed) ||
+            take_flag(reader, "asym", &is_asymmetric, &failed)) {
+            if (failed) {
+                return false;
+            }
+            continue;
+        }
+        const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
+        if (name == NULL) {
+            dalcs_reader_unexpected(reader);
+            return false;
+        }
+        const int k = find_parameter(ota, name->text);
+        if (k == N_PARAMETERS && is_ignored(name)) {
+            dalcs_builder_note(reader->builder, name, NULL,
+                               "'%s' has no meaning here and is ignored: noise and the powering up "
+                               "of an OTA are not simulated",
+                               name->text);
+            if (!dalcs_reader_skip_value(reader)) {
+                return false;
+            }
+            continue;
+        }
+        if (k == N_PARAMETERS) {
+            dalcs_builder_error(reader->builder, name, USAGE, "an OTA has no parameter '%s' here",
+                                name->text);
+            return false;
+        }
+        ota->p[k].place = name;
+        if (!dalcs_reader_number(reader, ota->p[k].quantity, "a value", &ota->p[k].value)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool check(struct ota *ota) {
+    struct dalcs_builder *builder = ota->card.builder;
+    const struct dalcs_token *name = ota->card.card->token;
+    struct dalcs_parameter *p = ota->p;
+    p[ISINK].value = fabs(p[ISINK].place != NULL ? p[ISINK].value : p[IOUT].value);
+    for (int pin = 4; pin < PIN_OUTPUT; pin++) {
+        if (ota->node[pin] != ota->node[PIN_COMMON]) {
+            dalcs_builder_error(builder, &name[1 + pin], "tie it to pin 8",
+                                "pin %d of '%s' means nothing for this function", pin + 1,
+                                name->text);
+            return false;
+        }
+    }
+    for (int k = ROUT; k < N_PARAMETERS; k++) {
+        if (p[k].value < 0) {
+            dalcs_builder_error(builder, p[k].place, USAGE, "'%s' cannot be negative", p[k].name);
+            return false;
+        }
+    }
+    if (!(p[HIGH].value > p[LOW].value)) {
+        dalcs_builder_error(builder, name, NULL, "Vhigh must be above Vlow");
+        return false;
+    }
+    if (!ota->is_linear && !(p[IOUT].value > 0 && p[ISINK].value > 0)) {
+        dalcs_builder_error(builder, name, "linear has no limit of the current",
+                            "Iout and Isink of '%s' are not 0", name->text);
+        return false;
+    }
+    return true;
+}
+
+/* limit tanh(what/limit) */
+static const struct dalcs_formula *soften(struct dalcs_formula_writer *w,
+                                          const struct dalcs_formula *what, double limit) {
+    const struct dalcs_formula *share =
+        dalcs_formula_operation(w, DALCS_MULTIPLY, dalcs_formula_number(w, 1 / limit), what);
+    return dalcs_formula_operation(w, DALCS_MULTIPLY, dalcs_formula_number(w, limit),
+                                   dalcs_formula_call(w, "tanh", 1, &share));
+}
+
+/* What flows out of pin 7, of what would without limits. */
+static const struct dalcs_formula *limited(struct dalcs_formula_writer *w, const struct ota *ota,
+                                           const struct dalcs_formula *what) {
+    const double up = ota->p[IOUT].value;
+    const double down = ota->p[ISINK].value;
+    if (ota->is_linear) {
+        return what;
+    }
+    if (up == down) {
+        return soften(w, what, up);
+    }
+    const struct dalcs_formula *back =
+        dalcs_formula_operation(w, DALCS_MULTIPLY, dalcs_formula_number(w, -1), what);
+    return dalcs_formula_operation(w, DALCS_SUBTRACT,
+                                   soften(w, dalcs_formula_call(w, "uramp", 1, &what), up),
+                                   soften(w, dalcs_formula_call(w, "uramp", 1, &back), down));
+}
+
+/* Into pin 7, as the current of an element is. */
+static const struct dalcs_formula *current_of(struct dalcs_formula_writer *w,
+                                              const struct ota *ota) {
+    const struct dalcs_token *pin = ota->card.card->token + 1;
+    const struct dalcs_formula *v =
+        dalcs_formula_signal(w, DALCS_FORMULA_VOLTAGE, &pin[1], &pin[0]);
+    if (ota->node[2] != ota->node[3]) {
+        v = dalcs_formula_operation(
+            w, DALCS_MULTIPLY, v, dalcs_formula_signal(w, DALCS_FORMULA_VOLTAGE, &pin[2], &pin[3]));
+    }
+    v = dalcs_formula_operation(w, DALCS_SUBTRACT, v, dalcs_formula_number(w, ota->p[REF].value));
+    v = dalcs_formula_operation(w, DALCS_MULTIPLY, dalcs_formula_number(w, ota->p[GAIN].value), v);
+    return dalcs_formula_operation(w, DALCS_MULTIPLY, dalcs_formula_number(w, -1),
+                                   limited(w, ota, v));
+}
+
+/* A diode that conducts where the output is beyond a level: its forward voltage, or a source where that lies on the
+ * other side of 0. */
+static bool add_clamp(const struct ota *ota, bool is_upper) {
+    const struct dalcs_block_card *c = &ota->card;
+    struct dalcs_circuit *circuit = c->builder->circuit;
+    const double level = ota->p[is_upper ? HIGH : LOW].value;
+    const char *what = is_upper ? "upper" : "lower";
+    const bool is_behind = is_upper ? level < 0 : level > 0;
+    if (fabs(level) > no_limit) {
+        return true;
+    }
+    const int common = ota->node[PIN_COMMON];
+    const int node =
+        is_behind ? dalcs_builder_inner_node(c->builder, what, c->card->token) : common;
+    const int output = ota->node[PIN_OUTPUT];
+    struct dalcs_device *d =
+        dalcs_block_add(c, DALCS_DIODE, what, is_upper ? output : node, is_upper ? node : output);
+    if (node < 0 || d == NULL) {
+        return false;
+    }
+    d->model = circuit->n_diode_models++;
+    circuit->diode_model[d->model] = (struct dalcs_diode_model){.name = "clamp",
+                                                                .ron = ota->p[RCLAMP].value,
+                                                                .roff = (double)INFINITY,
+                                                                .vfwd = is_behind ? 0 : fabs(level),
+                                                                .vrev = (double)INFINITY};
+    return !is_behind ||
+           dalcs_block_add_constant(c, DALCS_VSOURCE, is_upper ? "at_upper" : "at_lower",
+                                    (int[]){node, common}, level);
+}
+
+static bool add_across(const struct ota *ota, enum dalcs_device_kind kind, int k) {
+    const struct dalcs_parameter *p = &ota->p[k];
+    if (p->place == NULL || p->value == 0) {
+        return true;
+    }
+    struct dalcs_device *d =
+        dalcs_block_add(&ota->card, kind, p->name, ota->node[PIN_OUTPUT], ota->node[PIN_COMMON]);
+    if (d != NULL) {
+        d->value = p->value;
+    }
+    return d != NULL;
+}
+
+void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
+    struct ota ota = {.card = {.builder = builder, .card = card},
+                      .p = {[GAIN] = {"g", DALCS_PLAIN, false, 1, NULL},
+                            [REF] = {"ref", DALCS_VOLTAGE, false, 0, NULL},
+                            [IOUT] = {"iout", DALCS_CURRENT, false, 10e-6, NULL},
+                            [ISINK] = {"isink", DALCS_CURRENT, false, 0, NULL},
+                            [HIGH] = {"vhigh", DALCS_VOLTAGE, false, 2, NULL},
+                            [LOW] = {"vlow", DALCS_VOLTAGE, false, 0, NULL},
+                            [ROUT] = {"rout", DALCS_OHM, true, 0, NULL},
+                            [COUT] = {"cout", DALCS_FARAD, false, 0, NULL},
+                            [RCLAMP] = {"rclamp", DALCS_OHM, false, 0, NULL}}};
+    struct dalcs_formula_writer w;
+    if (!dalcs_reader_nodes(&reader, N_PINS, ota.node)) {
+        return;
+    }
+    reader.at++; /* the function */
+    if (!read_parameters(&reader, &ota) || !check(&ota)) {
+        return;
+    }
+    if (ota.node[PIN_OUTPUT] == ota.node[PIN_COMMON]) {
+        return; /* a source of noise alone */
+    }
+    struct dalcs_device *g =
+        dalcs_block_add(&ota.card, DALCS_VCCS, NULL, ota.node[PIN_OUTPUT], ota.node[PIN_COMMON]);
+    if (g == NULL || !dalcs_formula_writer_start(&w, builder, card->token)) {
+        return;
+    }
+    dalcs_behavioural_add_formula(builder, g, dalcs_formula_token(&w, current_of(&w, &ota)));
+    (void)(add_across(&ota, DALCS_RESISTOR, ROUT) && add_across(&ota, DALCS_CAPACITOR, COUT) &&
+           add_clamp(&ota, true) && add_clamp(&ota, false));
+}

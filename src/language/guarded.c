@@ -1,0 +1,203 @@
+/* guarded.c - what a formula does not choose has no value to be found: IF(v(a) > 1, p/v(a), 0) divides by nothing.
+ *
+ * Where a branch is chosen only where a quantity x is above a positive number c, x counts there as max(x, c/2), where it
+ * divides or is the argument of a root, a logarithm or a power: the same function where it is chosen, and one with a
+ * value elsewhere. Below a negative c it is min(x, c/2). Any number between 0 and c would do. */
+#include "language.h"
+
+#include "formula.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A quantity, as a branch sees it. */
+struct guard {
+    const struct dalcs_formula *quantity;
+    double bound; /* above 0: it is larger; below 0: it is smaller */
+    const struct guard *outer;
+};
+
+struct guarding {
+    struct dalcs_arena *arena;
+    int n_parts;     /* the next number */
+    size_t n_before; /* parts that have memo[] */
+    bool failed;     /* out of memory */
+};
+
+static bool is_same_name(const struct dalcs_token *a, const struct dalcs_token *b) {
+    return a == b || (a != NULL && b != NULL && strcmp(a->text, b->text) == 0);
+}
+
+static bool is_same(const struct dalcs_formula *a, const struct dalcs_formula *b) {
+    bool is = a == b;
+    if (!is && a->kind == b->kind && a->code == b->code && a->n == b->n &&
+        (a->kind != DALCS_FORMULA_NUMBER || a->number == b->number) &&
+        is_same_name(a->signal[0], b->signal[0]) && is_same_name(a->signal[1], b->signal[1]) &&
+        (a->kind != DALCS_FORMULA_CALL || strcmp(a->function, b->function) == 0)) {
+        is = true;
+        for (int k = 0; k < a->n && is; k++) {
+            is = is_same(a->argument[k], b->argument[k]);
+        }
+    }
+    return is;
+}
+
+static const struct guard *add_guard(struct guarding *g, const struct guard *outer,
+                                     const struct dalcs_formula *quantity, double limit,
+                                     bool is_above) {
+    if (quantity->kind == DALCS_FORMULA_NUMBER || !(is_above ? limit > 0 : limit < 0)) {
+        return outer;
+    }
+    struct guard *guard = dalcs_arena_alloc(g->arena, 1, sizeof *guard);
+    if (guard == NULL) {
+        g->failed = true;
+        return outer;
+    }
+    *guard = (struct guard){quantity, 0.5 * limit, outer};
+    return guard;
+}
+
+/* What is known where a condition is true, or where it is not. */
+static const struct guard *read_condition(struct guarding *g, const struct dalcs_formula *f,
+                                          bool is_true, const struct guard *guards) {
+    if (f->kind != DALCS_FORMULA_OPERATION) {
+        return guards;
+    }
+    const struct dalcs_formula *a = f->argument[0];
+    const struct dalcs_formula *b = f->n > 1 ? f->argument[1] : NULL;
+    const bool is_less = f->code == DALCS_LESS || f->code == DALCS_LESS_EQUAL;
+    switch (f->code) {
+    case DALCS_TO_LOGIC:
+        return read_condition(g, a, is_true, guards);
+    case DALCS_NOT:
+        return read_condition(g, a, !is_true, guards);
+    case DALCS_JUMP_AND:
+    case DALCS_JUMP_OR:
+        return (f->code == DALCS_JUMP_AND) == is_true
+                   ? read_condition(g, b, is_true, read_condition(g, a, is_true, guards))
+                   : guards;
+    case DALCS_LESS:
+    case DALCS_LESS_EQUAL:
+    case DALCS_GREATER:
+    case DALCS_GREATER_EQUAL:
+        return b->kind == DALCS_FORMULA_NUMBER
+                   ? add_guard(g, guards, a, b->number, is_less != is_true)
+               : a->kind == DALCS_FORMULA_NUMBER
+                   ? add_guard(g, guards, b, a->number, is_less == is_true)
+                   : guards;
+    default:
+        return guards;
+    }
+}
+
+/* Has a part no value for some values of its argument k? */
+static bool is_narrow(const struct dalcs_formula *f, int k) {
+    static const char *const names[] = {"sqrt", "ln", "log", "log10", "pow", "pwr", "pwrs"};
+    bool is = f->kind == DALCS_FORMULA_OPERATION &&
+              ((f->code == DALCS_DIVIDE && k == 1) || (f->code == DALCS_POWER && k == 0));
+    for (size_t j = 0; j < sizeof names / sizeof names[0] && !is; j++) {
+        is = f->kind == DALCS_FORMULA_CALL && k == 0 && strcmp(f->function, names[j]) == 0;
+    }
+    return is;
+}
+
+/* A part as another one is, of other arguments; NULL: out of memory. */
+static struct dalcs_formula *make_like(struct guarding *g, const struct dalcs_formula *f, int n,
+                                       const struct dalcs_formula *const *argument) {
+    struct dalcs_formula *made = dalcs_arena_alloc(g->arena, 1, sizeof *made);
+    const struct dalcs_formula **list =
+        dalcs_arena_alloc(g->arena, (size_t)n + 1, sizeof(const struct dalcs_formula *));
+    if (made == NULL || list == NULL) {
+        g->failed = true;
+        return NULL;
+    }
+    for (int k = 0; k < n; k++) {
+        list[k] = argument[k];
+    }
+    *made = *f;
+    made->number_of = g->n_parts++;
+    made->n = n;
+    made->argument = list;
+    return made;
+}
+
+/* max(x, bound) or min(x, bound). */
+static const struct dalcs_formula *hold(struct guarding *g, const struct dalcs_formula *x,
+                                        double bound) {
+    struct dalcs_formula *number = make_like(g, x, 0, NULL);
+    if (number == NULL) {
+        return x;
+    }
+    number->kind = DALCS_FORMULA_NUMBER;
+    number->number = bound;
+    struct dalcs_formula *held = make_like(g, x, 2, (const struct dalcs_formula *[]){x, number});
+    if (held == NULL) {
+        return x;
+    }
+    held->kind = DALCS_FORMULA_CALL;
+    held->function = bound > 0 ? "max" : "min";
+    return held;
+}
+
+static const struct dalcs_formula *rebuild(struct guarding *g, const struct dalcs_formula *f,
+                                           const struct guard *guards,
+                                           const struct dalcs_formula **memo);
+
+/* An argument of a part, which a condition may guard. */
+static const struct dalcs_formula *argument_of(struct guarding *g, const struct dalcs_formula *f,
+                                               int k, const struct guard *guards,
+                                               const struct dalcs_formula **memo) {
+    const struct dalcs_formula *x = f->argument[k];
+    const struct guard *known = f->kind == DALCS_FORMULA_CHOICE && k > 0
+                                    ? read_condition(g, f->argument[0], k == 1, guards)
+                                    : guards;
+    if (known != guards) { /* in this branch parts have other values */
+        const struct dalcs_formula **own =
+            dalcs_alloc(g->n_before, sizeof(const struct dalcs_formula *));
+        g->failed = g->failed || own == NULL;
+        const struct dalcs_formula *made = own != NULL ? rebuild(g, x, known, own) : x;
+        free(own);
+        return made;
+    }
+    const struct dalcs_formula *made = rebuild(g, x, guards, memo);
+    for (const struct guard *at = guards; at != NULL && is_narrow(f, k); at = at->outer) {
+        if (is_same(at->quantity, x)) {
+            return hold(g, made, at->bound);
+        }
+    }
+    return made;
+}
+
+static const struct dalcs_formula *rebuild(struct guarding *g, const struct dalcs_formula *f,
+                                           const struct guard *guards,
+                                           const struct dalcs_formula **memo) {
+    const struct dalcs_formula **known = &memo[f->number_of];
+    if (f->n == 0 || *known != NULL || g->failed) {
+        return *known != NULL ? *known : f;
+    }
+    const struct dalcs_formula **argument =
+        dalcs_alloc((size_t)f->n, sizeof(const struct dalcs_formula *));
+    bool is_new = false;
+    g->failed = g->failed || argument == NULL;
+    for (int k = 0; k < f->n && !g->failed; k++) {
+        argument[k] = argument_of(g, f, k, guards, memo);
+        is_new = is_new || argument[k] != f->argument[k];
+    }
+    const struct dalcs_formula *made = is_new && !g->failed ? make_like(g, f, f->n, argument) : f;
+    free(argument);
+    *known = made != NULL ? made : f;
+    return *known;
+}
+
+const struct dalcs_formula *dalcs_formula_guard(struct dalcs_language *language,
+                                                const struct dalcs_formula *formula, int n_parts) {
+    struct guarding g = {
+        .arena = language->arena, .n_parts = n_parts, .n_before = (size_t)formula->number_of + 1};
+    const struct dalcs_formula **memo =
+        dalcs_alloc(g.n_before, sizeof(const struct dalcs_formula *));
+    g.failed = memo == NULL;
+    const struct dalcs_formula *made = memo != NULL ? rebuild(&g, formula, NULL, memo) : formula;
+    free(memo);
+    language->out_of_memory = language->out_of_memory || g.failed;
+    return made;
+}
