@@ -78,20 +78,7 @@ static void write_multipliers(FILE *out, const struct dalcs_report *report) {
     fputs(report->steady.exact ? "\n" : " (nearly: the mode is not known all the time)\n", out);
 }
 
-static void write_envelope(FILE *out, const struct dalcs_report *report) {
-    char period[DALCS_QUANTITY_SIZE];
-    fprintf(out,
-            "  envelope  %ld periods of %s: %ld run, %ld leaps over the others, each off by %.2g "
-            "at most\n",
-            report->envelope.periods,
-            dalcs_quantity_write(period, report->envelope.period, "s", DIGITS),
-            report->envelope.run, report->envelope.leaps, report->envelope.worst);
-}
-
 void dalcs_steady_lines_write(FILE *out, const struct dalcs_report *report) {
-    if (report->envelope.present) {
-        write_envelope(out, report);
-    }
     if (!report->steady.present) {
         return;
     }
