@@ -33,9 +33,11 @@ struct dalcs_variation {
     struct dalcs_arena arena;
 };
 
-/* V = 1. The run is to tell it of its segments (dalcs_variation_observer). */
+/* V = 1. The run is to tell it of its segments (dalcs_variation_observer). modes_alone: no V, no more than which modes
+ * follow each other. */
 enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,
-                                        struct dalcs_radau *radau) DALCS_MUST_CHECK;
+                                        struct dalcs_radau *radau,
+                                        bool modes_alone) DALCS_MUST_CHECK;
 
 void dalcs_variation_finish(struct dalcs_variation *variation);
 

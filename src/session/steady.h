@@ -220,6 +220,9 @@ enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) DALCS_MUST_C
 /* Multipliers, verdict and messages into the report. */
 enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
+/* Averages and rms values of the last pass with means, alone. */
+enum dalcs_status dalcs_steady_report_signals(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
 /* The size of the largest multiplier of the last pass; 0 if it cannot be told. */
 double dalcs_steady_largest_multiplier(struct dalcs_steady *st);
 

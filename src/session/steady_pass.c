@@ -99,9 +99,15 @@ static void read_point(struct dalcs_steady *st, const struct dalcs_radau *radau)
     }
 }
 
+static void read_signature(struct dalcs_steady *st, const struct dalcs_variation *variation) {
+    st->signature = 0;
+    for (int k = 0; k < variation->n_parts; k++) {
+        st->signature = st->signature * 31 + variation->part[k].signature;
+    }
+}
+
 static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variation) {
     st->is_exact = true;
-    st->signature = 0;
     for (int k = 0; k < variation->n_parts; k++) {
         const struct dalcs_variation_part *v = &variation->part[k];
         memcpy(st->M + st->layout.first_of_M[k], v->v,
@@ -109,7 +115,6 @@ static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variat
         memcpy(st->first + st->layout.first[k], v->first, (size_t)v->n_x * sizeof(double));
         memcpy(st->last + st->layout.first[k], v->last, (size_t)v->n_x * sizeof(double));
         st->is_exact = st->is_exact && v->is_exact;
-        st->signature = st->signature * 31 + v->signature;
     }
 }
 
@@ -138,10 +143,11 @@ static enum dalcs_status start(struct dalcs_steady *st, struct dalcs_euler *e,
 static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler *e,
                                      struct dalcs_radau *radau, enum dalcs_steady_asked asked) {
     const bool with_M = asked == DALCS_STEADY_M;
+    const bool with_modes = st->run->s->near != NULL && !with_M; /* they tell two runs apart */
     struct dalcs_variation variation = {0};
     struct dalcs_observer observer;
-    if (with_M) {
-        DALCS_TRY(dalcs_variation_setup(&variation, radau));
+    if (with_M || with_modes) {
+        DALCS_TRY(dalcs_variation_setup(&variation, radau, !with_M));
         observer = dalcs_variation_observer(&variation);
         e->observer = &observer;
     }
@@ -153,9 +159,12 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler
     if (status == DALCS_OK) {
         read_point(st, radau);
     }
+    if (status == DALCS_OK && (with_M || with_modes)) {
+        read_signature(st, &variation);
+        status = variation.status;
+    }
     if (status == DALCS_OK && with_M) {
         read_M(st, &variation);
-        status = variation.status;
     }
     e->observer = NULL;
     dalcs_variation_finish(&variation);

@@ -319,6 +319,17 @@ B1 x 0 I=1e-4*v(x)*v(x)*v(x)
 .sens r1 c1
 .four 1k 3 v(x)
 """, {"r1": 1e3, "c1": 100e-9}),
+    "conducts": ("""Peak rectifier whose diode conducts at t = 0: its state there, with a smaller amplitude, blocks the diode
+V1 in 0 SIN(0 {amp} 1k 0 0 90)
+D1 in out
+C1 out 0 {c1}
+R1 out 0 1k
+.param amp={amp_value}
+.pss uic
+.sens param amp c1
+.meas pss v avg v(out)
+.meas pss low min v(out)
+""", {"amp": 10, "c1": 1e-5}),
     "exchange": ("""A switched capacitor that jumps
 Vin in 0 {vin}
 Va a 0 PULSE(0 1 0 0 0 4u 10u)
