@@ -224,9 +224,10 @@ enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *argume
         dalcs_cli_error(cli, "--multipliers-plot is one of 'dalcs steady'");
         return DALCS_E_OPTION;
     }
-    if (!dalcs_figure_can_write(path)) {
+    if (!dalcs_figure_can_write(path) && !is_page(path)) {
         dalcs_cli_error(
-            cli, "--multipliers-plot: unknown format of '%s': name it .svg, .png or .pdf", path);
+            cli, "--multipliers-plot: unknown format of '%s': name it .svg, .png, .pdf or .html",
+            path);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
