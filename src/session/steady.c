@@ -242,8 +242,8 @@ bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *
     return point->x != NULL && point->closed != NULL;
 }
 
-/* Where a leap leads no run need go. So growth without end that is found behind one counts for nothing: the search goes
- * back to where the first leap began, and goes on without any. */
+/* Where a leap leads no run need go. So growth without end, or no steady state, behind one counts for nothing: the search
+ * goes back to where the first leap began, and goes on without any. */
 struct search {
     struct dalcs_orbit_point run;         /* where it has come to */
     struct dalcs_orbit_point from, moved; /* work */
@@ -291,7 +291,10 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool
         return DALCS_E_NOMEM;
     }
     *found = *endless = false;
-    while (!*found && !*endless && s.total <= most_periods) {
+    while (!*found && !*endless && (s.total <= most_periods || (s.has_leapt && s.may_leap))) {
+        if (s.total > most_periods) {
+            go_back(st, &s);
+        }
         DALCS_TRY(dalcs_steady_pass(st, s.wait, DALCS_STEADY_PLAIN));
         dalcs_steady_take(st);
         s.total += s.wait;
