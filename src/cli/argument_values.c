@@ -349,6 +349,10 @@ enum dalcs_status dalcs_argument_seed(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_measures(struct dalcs_arguments *arguments,
                                           const struct dalcs_cli *cli, const char *path) {
     arguments->measures = path;
+    if (arguments->envelope) {
+        dalcs_cli_error(cli, "--measures is a table of .meas, which an envelope leaves out");
+        return DALCS_E_OPTION;
+    }
     if (dalcs_table_find_format(path) != &dalcs_csv_format) {
         dalcs_cli_error(cli, "--measures: '%s' is no name of a table: name it .csv", path);
         return DALCS_E_OPTION;

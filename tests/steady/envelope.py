@@ -189,6 +189,7 @@ def verb(case):
             (("--show", "1m,x"), tran, 2, "--show: 'x' is no time"),
             (("--stop", "-1"), tran, 2, "--stop: '-1' is not a number greater than 0"),
             (("--losses",), tran, 2, "--losses is one of"),
+            (("-o", "none", "--measures", "m.csv"), tran, 2, "--measures is a table of .meas"),
             (("--stop", "1m"), "* v\nV1 a 0 1\nR1 a b 1\nC1 b 0 1u\n", 3, "no source repeats"),
             (("--period", "1m"), tran, 2, "--period is one of")):
         done, _, _ = envelope(netlist, *options)
