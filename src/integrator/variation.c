@@ -133,6 +133,10 @@ static void meet_event(struct dalcs_variation_part *v, int row) {
     for (int k = 0; k < v->n_x; k++) {
         v->guard[k] *= -1.0 / rate;
     }
+    if (!isfinite(v->moved)) {
+        v->moved = part->segment.t_end;
+        memcpy(v->moves, v->guard, (size_t)v->n_x * sizeof(double));
+    }
     dalcs_step_values(part, part->segment.end, v->y);
     dalcs_orbit_rates_of(&v->rates, v->y, part->segment.end * part->segment.h, v->before);
     v->pending = true;
@@ -203,6 +207,7 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     v->part = part;
     v->n_x = part->kind == DALCS_PART_STEPPED && !modes_alone ? s->n_x : 0;
     v->is_exact = true;
+    v->moved = INFINITY;
     if (modes_alone) {
         return DALCS_OK;
     }
@@ -214,9 +219,11 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     v->after = dalcs_arena_alloc(arena, n, sizeof(double));
     v->first = dalcs_arena_alloc(arena, n, sizeof(double));
     v->last = dalcs_arena_alloc(arena, n, sizeof(double));
+    v->moves = dalcs_arena_alloc(arena, n, sizeof(double));
     v->y = dalcs_arena_alloc(arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
     if (v->v == NULL || v->in == NULL || v->out == NULL || v->guard == NULL || v->before == NULL ||
-        v->after == NULL || v->first == NULL || v->last == NULL || v->y == NULL) {
+        v->after == NULL || v->first == NULL || v->last == NULL || v->moves == NULL ||
+        v->y == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {

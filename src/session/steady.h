@@ -37,6 +37,8 @@ struct dalcs_steady {
     double *drift;                     /* [n_x] what grows by as much each period */
     double *first,
         *last; /* [n_x] derivatives of the states where the last pass with M began and ended */
+    double *
+        phase; /* [n_x] how the first event of that pass moves with the state where it began; 0: there was none */
     uint64_t signature; /* of the modes that followed each other */
 
     struct dalcs_steady_found { /* by the last pass with means */

@@ -36,6 +36,7 @@ static void hand_on(const struct dalcs_steady *st, struct dalcs_steady *to) {
     memcpy(to->scale, st->scale, n * sizeof(double));
     memcpy(to->first, st->first, n * sizeof(double));
     memcpy(to->last, st->last, n * sizeof(double));
+    memcpy(to->phase, st->phase, n * sizeof(double));
     to->period = st->period;
     to->is_exact = st->is_exact;
 }

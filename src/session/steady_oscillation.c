@@ -3,8 +3,7 @@
  * A run is watched for events that come again, in spans each twice as long as the one before, so that no time needs to be
  * known beforehand. The last event and the nearest one like it before are a guess of a period; Newton's method for state
  * and period (steady_free.c) starts in the longest time between events there, where nothing happens at the beginning or
- * the end. Where it fails the run goes on, after some bursts each time for as long as it took so far: what settles
- * slowly is far from its orbit for thousands of periods. A circuit that rests is nudged once: a symmetric one may rest where it cannot
+ * the end. Where it fails the run goes on. A circuit that rests is nudged once: a symmetric one may rest where it cannot
  * stay. */
 #include "steady.h"
 
@@ -21,10 +20,8 @@ enum {
     MOST_EVENTS = 512, /* that are watched in a span */
     FEW_EVENTS = 24,   /* a span with less is followed by one of twice the length */
     MOST_BURSTS = 24,
-    DENSE_BURSTS = 8,     /* that follow each other at once */
-    MOST_PERIODS = 32768, /* of which a run may have come before another burst */
     RESTS_FOR =
-        20, /* spans without events or change: the last one is a million times longer than the first */
+        20 /* spans without events or change: the last one is a million times longer than the first */
 };
 
 /* What moves less than this over a span, over its scale, does not move. */
@@ -39,8 +36,6 @@ struct search {
     struct dalcs_orbit_point run; /* where the run has come to */
     double *largest;              /* [n_x] of each state so far */
     double span;                  /* s, the next one */
-    double time;                  /* s, so far */
-    double guess;                 /* s, the last one of a period */
     int bursts, rests;
     bool nudged;
     bool rings; /* without an event */
@@ -131,8 +126,6 @@ static enum dalcs_status try_period(struct search *s, int from, int to, bool *fo
     const int n = repetitions(&s->watch, from, to);
     st->period = s->watch.event[to].t - s->watch.event[from].t;
     const double middle = calmest(&s->watch, from, to);
-    s->time += middle;
-    s->guess = st->period;
     DALCS_TRY(dalcs_steady_pass_watched(st, middle, NULL, NULL, NULL, NULL));
     dalcs_steady_take(st);
     dalcs_steady_copy_point(st, &s->run, &st->at);
@@ -145,11 +138,6 @@ static enum dalcs_status try_period(struct search *s, int from, int to, bool *fo
     }
     s->span = fmax(s->span, 2.0 * middle);
     dalcs_steady_copy_point(st, &st->at, &s->run);
-    if (s->bursts >= DENSE_BURSTS) {
-        DALCS_TRY(dalcs_steady_pass_watched(st, s->time, NULL, NULL, NULL, NULL));
-        dalcs_steady_take(st);
-        s->time *= 2.0;
-    }
     return DALCS_OK;
 }
 
@@ -169,7 +157,6 @@ static enum dalcs_status go_on(struct search *s, bool *found, bool *rests) {
     const bool is_still = st->has_point && s->watch.n == 0 && !has_moved(s);
     s->rests = is_still ? s->rests + 1 : 0;
     dalcs_steady_take(st);
-    s->time += s->span;
     s->span *= 2.0;
     if (s->rests >= RESTS_FOR && !s->nudged) {
         nudge_states(s);
@@ -196,8 +183,7 @@ enum dalcs_status dalcs_steady_oscillation(struct dalcs_steady *st, double guess
         *rests = true;
         return DALCS_OK;
     }
-    for (int k = 0; k < MOST_SPANS && s.bursts < MOST_BURSTS && !*found && !*rests && !s.rings &&
-                    (s.bursts <= DENSE_BURSTS || s.time <= MOST_PERIODS * s.guess);
+    for (int k = 0; k < MOST_SPANS && s.bursts < MOST_BURSTS && !*found && !*rests && !s.rings;
          k++) {
         status = go_on(&s, found, rests);
         dalcs_steady_watch_finish(&s.watch);

@@ -106,6 +106,24 @@ static void read_signature(struct dalcs_steady *st, const struct dalcs_variation
     }
 }
 
+/* Of the part whose first event comes first. */
+static void read_phase(struct dalcs_steady *st, const struct dalcs_variation *variation) {
+    const struct dalcs_variation_part *first = NULL;
+    int index = 0;
+    memset(st->phase, 0, (size_t)st->layout.n_x * sizeof(double));
+    for (int k = 0; k < variation->n_parts; k++) {
+        const struct dalcs_variation_part *v = &variation->part[k];
+        if (v->n_x > 0 && isfinite(v->moved) && (first == NULL || v->moved < first->moved)) {
+            first = v;
+            index = k;
+        }
+    }
+    if (first != NULL) {
+        memcpy(st->phase + st->layout.first[index], first->moves,
+               (size_t)first->n_x * sizeof(double));
+    }
+}
+
 static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variation) {
     st->is_exact = true;
     for (int k = 0; k < variation->n_parts; k++) {
@@ -165,6 +183,7 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler
     }
     if (status == DALCS_OK && with_M) {
         read_M(st, &variation);
+        read_phase(st, &variation);
     }
     e->observer = NULL;
     dalcs_variation_finish(&variation);
@@ -297,6 +316,7 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
         st->drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->first = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->last = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->phase = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->found.state =
             dalcs_arena_alloc(&r->s->arena, (size_t)network->n_states + 1, sizeof(double));
         st->found.average =
@@ -305,9 +325,10 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
             dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
         st->conserved = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->conserved));
         complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
-                   st->M != NULL && st->first != NULL && st->last != NULL && st->scale != NULL &&
-                   st->step != NULL && st->drift != NULL && st->found.state != NULL &&
-                   st->found.average != NULL && st->found.rms != NULL && st->conserved != NULL;
+                   st->M != NULL && st->phase != NULL && st->first != NULL && st->last != NULL &&
+                   st->scale != NULL && st->step != NULL && st->drift != NULL &&
+                   st->found.state != NULL && st->found.average != NULL && st->found.rms != NULL &&
+                   st->conserved != NULL;
     }
     if (!complete) {
         dalcs_steady_finish(st);
