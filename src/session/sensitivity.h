@@ -32,7 +32,7 @@ struct dalcs_steady_near {
 enum dalcs_status dalcs_steady_from_near(struct dalcs_steady *st, bool is_free,
                                          struct dalcs_steady_near *near) DALCS_MUST_CHECK;
 
-/* The others of what is asked: a period from the point. *measures: of which is to be told what it measures. */
+/* The others of what is asked: a period from the point, and st->found of it. */
 enum dalcs_status dalcs_steady_at_near(struct dalcs_steady *st, bool is_free,
                                        struct dalcs_steady_near *near) DALCS_MUST_CHECK;
 
