@@ -382,6 +382,14 @@ struct dalcs_run_options {
     bool loop_is_loaded; /* it is injected a current besides, as where the loop goes on takes one */
     int sideband;        /* as dalcs_report.response; 0: .ac's, else none */
 
+    bool
+        envelope; /* .env and nothing else; without one the .tran of the netlist becomes it, and sources that repeat
+                      are run for a few of their periods */
+    double envelope_stop; /* s, when it ends; 0: as .env or .tran say */
+    const double *
+        envelope_at; /* [n_envelope_at] times in s whose periods are written with all rows; none: .env's */
+    size_t n_envelope_at;
+
     size_t only_step; /* of .step: this one alone, counted from 1; 0: all */
 };
 

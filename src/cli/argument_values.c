@@ -2,12 +2,14 @@
 #include "argument_values.h"
 
 #include "figure.h"
+#include "memory.h"
 #include "settings.h"
 #include "table.h"
 #include "verb.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -136,6 +138,44 @@ enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
     return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
 }
 
+/* The options of `dalcs envelope` alone. */
+static enum dalcs_status check_envelope(const struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, const char *name) {
+    if (!arguments->envelope) {
+        dalcs_cli_error(cli, "%s is one of 'dalcs envelope'", name);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_stop(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    DALCS_TRY(check_envelope(arguments, cli, "--stop"));
+    return dalcs_verb_take_positive(cli, "--stop", text, &arguments->stop);
+}
+
+enum dalcs_status dalcs_argument_show(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    char time[64];
+    DALCS_TRY(check_envelope(arguments, cli, "--show"));
+    free(arguments->show);
+    arguments->n_show = 0;
+    arguments->show = dalcs_alloc(strlen(text) + 1, sizeof *arguments->show);
+    if (arguments->show == NULL) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
+        return DALCS_E_NOMEM;
+    }
+    for (const char *rest = text; rest != NULL; rest = strchr(rest, ','), rest += rest ? 1 : 0) {
+        double *value = &arguments->show[arguments->n_show++];
+        snprintf(time, sizeof time, "%.*s", (int)strcspn(rest, ","), rest);
+        if (dalcs_parse_number(time, value) != DALCS_OK || !(*value >= 0.0)) {
+            dalcs_cli_error(cli, "--show: '%s' is no time; write 0,10m,1", time);
+            return DALCS_E_OPTION;
+        }
+    }
+    return DALCS_OK;
+}
+
 static bool is_page(const char *path) {
     const char *dot = strrchr(path, '.');
     return dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
@@ -184,9 +224,10 @@ enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *argume
         dalcs_cli_error(cli, "--multipliers-plot is one of 'dalcs steady'");
         return DALCS_E_OPTION;
     }
-    if (!dalcs_figure_can_write(path)) {
+    if (!dalcs_figure_can_write(path) && !is_page(path)) {
         dalcs_cli_error(
-            cli, "--multipliers-plot: unknown format of '%s': name it .svg, .png or .pdf", path);
+            cli, "--multipliers-plot: unknown format of '%s': name it .svg, .png, .pdf or .html",
+            path);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
@@ -205,7 +246,7 @@ enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
 /* FROM:TO, either of which may be left out; NULL: the netlist's window. */
 enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
-    if (arguments->bode) {
+    if (arguments->bode || arguments->envelope) {
         dalcs_cli_error(cli, "--losses is one of 'dalcs run' and 'dalcs steady'");
         return DALCS_E_OPTION;
     }
@@ -244,7 +285,7 @@ enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_argument_losses_plot(struct dalcs_arguments *arguments,
                                              const struct dalcs_cli *cli, const char *path) {
-    if (arguments->bode) {
+    if (arguments->bode || arguments->envelope) {
         dalcs_cli_error(cli, "--losses-plot is one of 'dalcs run' and 'dalcs steady'");
         return DALCS_E_OPTION;
     }
@@ -270,7 +311,7 @@ enum dalcs_status dalcs_argument_set(struct dalcs_arguments *arguments, const st
 
 enum dalcs_status dalcs_argument_plot(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *path) {
-    const bool may_be_page = arguments->steady || arguments->bode;
+    const bool may_be_page = arguments->steady || arguments->bode || arguments->envelope;
     arguments->plot = path;
     if (!dalcs_figure_can_write(path) && !(is_page(path) && may_be_page)) {
         dalcs_cli_error(cli, "--plot: unknown format of '%s': name it %s", path,
@@ -308,6 +349,10 @@ enum dalcs_status dalcs_argument_seed(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_measures(struct dalcs_arguments *arguments,
                                           const struct dalcs_cli *cli, const char *path) {
     arguments->measures = path;
+    if (arguments->envelope) {
+        dalcs_cli_error(cli, "--measures is a table of .meas, which an envelope leaves out");
+        return DALCS_E_OPTION;
+    }
     if (dalcs_table_find_format(path) != &dalcs_csv_format) {
         dalcs_cli_error(cli, "--measures: '%s' is no name of a table: name it .csv", path);
         return DALCS_E_OPTION;

@@ -46,6 +46,13 @@ enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli,
                                         const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_stop(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli,
+                                      const char *text) DALCS_MUST_CHECK;
+/* T,T,... */
+enum dalcs_status dalcs_argument_show(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli,
+                                      const char *text) DALCS_MUST_CHECK;
 /* FROM:TO, either of which may be left out; NULL: the netlist's window. */
 enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli,

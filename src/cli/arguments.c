@@ -30,6 +30,8 @@ enum {
     SPLIT_STEPS,
     AUDIT,
     PERIOD,
+    STOP,
+    SHOW,
     FROM,
     TO,
     POINTS,
@@ -72,6 +74,8 @@ static const struct option option[] = {
     {"ascii", no_argument, NULL, ASCII},
     {"split-steps", no_argument, NULL, SPLIT_STEPS},
     {"period", required_argument, NULL, PERIOD},
+    {"stop", required_argument, NULL, STOP},
+    {"show", required_argument, NULL, SHOW},
     {"from", required_argument, NULL, FROM},
     {"to", required_argument, NULL, TO},
     {"points", required_argument, NULL, POINTS},
@@ -146,7 +150,10 @@ static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const stru
 }
 
 static const char *verb_of(const struct dalcs_arguments *arguments) {
-    return arguments->steady ? "steady" : arguments->bode ? "bode" : "run";
+    return arguments->steady     ? "steady"
+           : arguments->bode     ? "bode"
+           : arguments->envelope ? "envelope"
+                                 : "run";
 }
 
 static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
@@ -210,6 +217,10 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return dalcs_verb_take_count(cli, "--only", optarg, &arguments->only);
     case PERIOD:
         return dalcs_argument_period(arguments, cli, optarg);
+    case STOP:
+        return dalcs_argument_stop(arguments, cli, optarg);
+    case SHOW:
+        return dalcs_argument_show(arguments, cli, optarg);
     case SENSITIVITY:
         return dalcs_argument_sensitivity(arguments, cli);
     case BIFURCATION:
@@ -288,6 +299,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc, char **argv) {
     *arguments = (struct dalcs_arguments){.steady = strcmp(argv[0], "steady") == 0,
                                           .bode = strcmp(argv[0], "bode") == 0,
+                                          .envelope = strcmp(argv[0], "envelope") == 0,
                                           .seed = NAN,
                                           .losses_from = NAN,
                                           .losses_to = INFINITY};
@@ -333,6 +345,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
 void dalcs_arguments_finish(struct dalcs_arguments *arguments) {
     free(arguments->output);
     free(arguments->set);
+    free(arguments->show);
     free(arguments->default_output);
     free(arguments->default_dump);
     *arguments = (struct dalcs_arguments){0};

@@ -40,9 +40,13 @@ struct dalcs_arguments {
     bool ascii; /* raw files as text */
     bool batch; /* as ngspice -b: outputs are raw files whatever their names, tables are printed
                         when there is none */
-    const char *log;           /* of -b: where what is printed goes, or NULL */
-    bool steady;               /* the verb is `steady` */
-    double period;             /* s, of it; 0: it follows from the sources */
+    const char *log; /* of -b: where what is printed goes, or NULL */
+    bool steady;     /* the verb is `steady` */
+    double period;   /* s, of it; 0: it follows from the sources */
+    bool envelope;   /* the verb is `envelope` */
+    double stop;     /* s, of it; 0: the netlist's */
+    double *show;    /* [n_show] s, whose periods it writes with all rows; owned array */
+    size_t n_show;
     bool bode;                 /* the verb is `bode` */
     double bode_from, bode_to; /* Hz; 0: the netlist's, else those that the orbit has */
     size_t bode_points;        /* in a decade; 0: likewise */

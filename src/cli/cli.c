@@ -16,6 +16,8 @@ static const struct {
     {"run", "simulate a netlist and write its waveforms", dalcs_cli_run},
     {"steady", "the periodic steady state of a netlist and its stability", dalcs_cli_run},
     {"bode", "the frequency response around it, loop gain and margins", dalcs_cli_run},
+    {"envelope", "a slow start over up to millions of periods, most of them left out",
+     dalcs_cli_run},
     {"equations", "write the complementarity system of a netlist", dalcs_cli_equations},
     {"check", "what theory says of a netlist before it runs", dalcs_cli_check},
     {"audit", "which laws of a netlist a file of waveforms breaks", dalcs_cli_audit},

@@ -42,7 +42,7 @@ enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
         dalcs_outputs_finish(outputs);
         return status;
     }
-    if (arguments->plot && main == DALCS_TRANSIENT && stop > start) {
+    if (arguments->plot && main == DALCS_TRANSIENT && stop > start && !arguments->envelope) {
         outputs->figure = dalcs_alloc(1, sizeof *outputs->figure);
         if (!outputs->figure) {
             dalcs_outputs_finish(outputs);

@@ -1,6 +1,7 @@
 /* plot.c - `dalcs plot`: read a file of waveforms, choose, draw. */
 #include "plot.h"
 
+#include "decibels.h"
 #include "histogram.h"
 #include "margin_lines.h"
 #include "page.h"
@@ -133,25 +134,29 @@ static enum dalcs_status read_report(struct drawing *drawing) {
     return DALCS_OK;
 }
 
-/* Without signals of the caller's choice, the gain of a loop with its margins. */
+/* Without signals of the caller's choice, the gain of a loop with its margins, or of a run the response that it has
+ * found. group: both NULL, neither of them. */
+static enum dalcs_status choose_response(struct drawing *drawing, const char *group[2]) {
+    const bool of_run = drawing->run && drawing->run->response.present;
+    group[0] = group[1] = NULL;
+    return drawing->arguments->n_groups == 0 && (drawing->lines.loop || of_run)
+               ? dalcs_decibels_choose(&drawing->waveforms, drawing->lines.loop,
+                                       &drawing->lines.arena, group)
+               : DALCS_OK;
+}
+
 static enum dalcs_status select_signals(struct drawing *drawing) {
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
-    const char *group[2] = {NULL, NULL};
-    const bool of_loop = drawing->lines.loop && arguments->n_groups == 0;
-    for (int k = 0; k < 2 && of_loop; k++) {
-        group[k] = dalcs_arena_printf(&drawing->lines.arena, "%s(loop(%s))",
-                                      k == 0 ? "db" : "phase", drawing->lines.loop);
-        if (!group[k]) {
-            return DALCS_E_NOMEM;
-        }
-    }
-    if (!of_loop) {
+    const char *group[2];
+    DALCS_TRY(choose_response(drawing, group));
+    const bool is_chosen = group[0] != NULL;
+    if (!is_chosen || !drawing->lines.loop) {
         drawing->lines.n = 0;
     }
     DALCS_TRY(dalcs_selection_make(
-        &drawing->selection, &drawing->waveforms, of_loop ? group : arguments->group,
-        of_loop ? 2 : arguments->n_groups, arguments->from, arguments->to, &drawing->diag));
-    drawing->selection.continues = of_loop;
+        &drawing->selection, &drawing->waveforms, is_chosen ? group : arguments->group,
+        is_chosen ? 2 : arguments->n_groups, arguments->from, arguments->to, &drawing->diag));
+    drawing->selection.continues = is_chosen;
     if (drawing->waveforms
             .complex_values) { /* events are of the orbit, and the axis of frequencies */
         dalcs_conduction_finish(&drawing->conduction);

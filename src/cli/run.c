@@ -4,6 +4,7 @@
 #include "arguments.h"
 #include "bifurcation_chart.h"
 #include "bode_lines.h"
+#include "envelope_lines.h"
 #include "losses_chart.h"
 #include "losses_text.h"
 #include "measurements.h"
@@ -142,7 +143,7 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
         const bool is_of_steps = i < 3; /* which the search for an orbit takes, too */
-        if (is_plot && (arguments->steady || arguments->bode)) {
+        if (is_plot && (arguments->steady || arguments->bode || arguments->envelope)) {
             continue; /* it draws the file that is written */
         } else if (option[i].given && arguments->bode && !is_of_steps) {
             fprintf(cli->err, "dalcs: warning: %s is of waveforms: it has no effect\n",
@@ -159,13 +160,13 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 /* The one that a file with room for one result holds. */
 static enum dalcs_analysis main_analysis(const struct dalcs_request *request,
                                          const struct dalcs_arguments *arguments) {
-    return arguments->steady    ? DALCS_PERIODIC
-           : arguments->bode    ? DALCS_AC
-           : request->transient ? DALCS_TRANSIENT
-           : request->ac        ? DALCS_AC
-           : request->periodic  ? DALCS_PERIODIC
-           : request->dc_sweep  ? DALCS_DC_SWEEP
-                                : DALCS_OPERATING_POINT;
+    return arguments->steady                           ? DALCS_PERIODIC
+           : arguments->bode                           ? DALCS_AC
+           : arguments->envelope || request->transient ? DALCS_TRANSIENT
+           : request->ac                               ? DALCS_AC
+           : request->periodic                         ? DALCS_PERIODIC
+           : request->dc_sweep                         ? DALCS_DC_SWEEP
+                                                       : DALCS_OPERATING_POINT;
 }
 
 /* ---- The run -------------------------------------------------------------------------------- */
@@ -177,6 +178,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
         return;
     }
     dalcs_summary_write_run(out, report);
+    dalcs_envelope_lines_write(out, report);
     dalcs_steady_lines_write(out, report);
     dalcs_bode_lines_write(out, report);
     if (status != DALCS_OK) {
@@ -191,10 +193,13 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
 
     for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
         const struct dalcs_plot *plot = run->outputs.measure[shown[i]].plot;
-        if (report->envelope.present && shown[i] == DALCS_TRANSIENT) {
+        const bool is_envelope = report->envelope.present && shown[i] == DALCS_TRANSIENT;
+        if (is_envelope && plot != NULL && plot->n_steps > 1) {
             continue; /* rows at the beginnings of periods have no averages of them */
         }
-        if (plot != NULL && plot->n_steps > 1) {
+        if (is_envelope) {
+            dalcs_summary_write_ends(out, &run->outputs.measure[shown[i]], arguments->all_signals);
+        } else if (plot != NULL && plot->n_steps > 1) {
             dalcs_step_lines_write(out, &run->outputs.steps, shown[i]);
         } else {
             dalcs_summary_write_signals(out, &run->outputs.measure[shown[i]],
@@ -237,7 +242,7 @@ static enum dalcs_status draw_orbit(const struct dalcs_cli *cli,
                                     const struct dalcs_report *report) {
     for (size_t k = 0; k < arguments->n_outputs; k++) {
         const char *file = arguments->output[k];
-        if (arguments->steady || dalcs_table_find_format(file) == &dalcs_raw_format) {
+        if (!arguments->bode || dalcs_table_find_format(file) == &dalcs_raw_format) {
             return dalcs_cli_draw_file(cli, file, arguments->plot, report, arguments->quiet);
         }
     }
@@ -327,6 +332,10 @@ static struct dalcs_run_options options_of(const struct run *run,
     options.samples = (int)arguments->samples;
     options.settle = (int)arguments->settle;
     options.period = arguments->period;
+    options.envelope = arguments->envelope;
+    options.envelope_stop = arguments->stop;
+    options.envelope_at = arguments->show;
+    options.n_envelope_at = arguments->n_show;
     options.bode = arguments->bode;
     options.bode_from = arguments->bode_from;
     options.bode_to = arguments->bode_to;
@@ -385,7 +394,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
         status = draw_multipliers(run->cli, arguments, report);
     }
     if (status == DALCS_OK && files == DALCS_OK && arguments->plot != NULL &&
-        (arguments->steady || arguments->bode)) {
+        (arguments->steady || arguments->bode || arguments->envelope)) {
         status = draw_orbit(run->cli, arguments, report);
     }
     const enum dalcs_status measures =
@@ -418,7 +427,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     if (arguments->losses || arguments->losses_plot != NULL) {
         status = dalcs_session_ask_losses(session, arguments->losses_from, arguments->losses_to);
     }
-    if (status == DALCS_OK && arguments->steady) {
+    if (status == DALCS_OK && (arguments->steady || arguments->envelope)) {
         status = dalcs_session_ask_steady(session);
     }
     if (status == DALCS_OK && arguments->bode) {
@@ -518,9 +527,10 @@ enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv
         return dalcs_cli_exit(status);
     }
     if (arguments.help) {
-        fputs(arguments.steady ? dalcs_steady_help
-              : arguments.bode ? dalcs_bode_help
-                               : help,
+        fputs(arguments.steady     ? dalcs_steady_help
+              : arguments.bode     ? dalcs_bode_help
+              : arguments.envelope ? dalcs_envelope_help
+                                   : help,
               cli->out);
     } else {
         status = dalcs_paths_check(cli, &arguments);

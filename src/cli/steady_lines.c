@@ -26,8 +26,9 @@ const char dalcs_steady_help[] =
     "      --samples N     how many of these multiples for each value (default: 64); then files\n"
     "                      have them as rows\n"
     "      --settle N      periods before the first of them (default: 256)\n"
-    "      --multipliers-plot FILE   draw the multipliers and the unit circle: .svg, .png or "
-    ".pdf\n"
+    "      --multipliers-plot FILE   draw the multipliers and the unit circle: .svg, .png, .pdf "
+    "or\n"
+    "                      .html\n"
     "      --losses        print what each element takes on average over the orbit, the "
     "efficiency,\n"
     "                      power factors and THD\n"
@@ -78,20 +79,7 @@ static void write_multipliers(FILE *out, const struct dalcs_report *report) {
     fputs(report->steady.exact ? "\n" : " (nearly: the mode is not known all the time)\n", out);
 }
 
-static void write_envelope(FILE *out, const struct dalcs_report *report) {
-    char period[DALCS_QUANTITY_SIZE];
-    fprintf(out,
-            "  envelope  %ld periods of %s: %ld run, %ld leaps over the others, each off by %.2g "
-            "at most\n",
-            report->envelope.periods,
-            dalcs_quantity_write(period, report->envelope.period, "s", DIGITS),
-            report->envelope.run, report->envelope.leaps, report->envelope.worst);
-}
-
 void dalcs_steady_lines_write(FILE *out, const struct dalcs_report *report) {
-    if (report->envelope.present) {
-        write_envelope(out, report);
-    }
     if (!report->steady.present) {
         return;
     }

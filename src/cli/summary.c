@@ -196,7 +196,7 @@ static void write_cell(FILE *out, const struct dalcs_measure_signal *signal, dou
     fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit_name(unit), DIGITS));
 }
 
-static void write_head(FILE *out, const struct dalcs_plot *plot, int width) {
+static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool ends) {
     static const char *const head[] = {
         [DALCS_OPERATING_POINT] = "         op",
         [DALCS_TRANSIENT] = "        min         max     average         rms       final",
@@ -209,17 +209,17 @@ static void write_head(FILE *out, const struct dalcs_plot *plot, int width) {
     if (plot->analysis == DALCS_PERIODIC) {
         fputs("\n  one period", out);
     }
-    fprintf(out, "\n  %-*s %s\n", width, "signal", head[plot->analysis]);
+    fprintf(out, "\n  %-*s %s\n", width, "signal", ends ? "      final" : head[plot->analysis]);
 }
 
-static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i) {
+static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i, bool ends) {
     const struct dalcs_plot *plot = measure->plot;
     const struct dalcs_measure_signal *signal = &measure->signal[i];
-    if (plot->analysis != DALCS_OPERATING_POINT) {
+    if (plot->analysis != DALCS_OPERATING_POINT && !ends) {
         write_cell(out, signal, signal->min, plot->unit[i]);
         write_cell(out, signal, signal->max, plot->unit[i]);
     }
-    if (plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC) {
+    if ((plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC) && !ends) {
         write_cell(out, signal, dalcs_measure_average(measure, i), plot->unit[i]);
         write_cell(out, signal, dalcs_measure_rms(measure, i), plot->unit[i]);
     }
@@ -239,7 +239,7 @@ void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report) {
     fputs(report->n_sides > MAX_SIGNALS ? ", ...\n" : "\n", out);
 }
 
-void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all) {
+static void write_signals(FILE *out, const struct dalcs_measure *measure, bool all, bool ends) {
     const struct dalcs_plot *plot = measure->plot;
     if (!plot || measure->n_rows == 0 || plot->n_signals == 0) {
         return;
@@ -250,15 +250,23 @@ void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure,
         int length = (int)strlen(plot->name[i]);
         width = length > width ? length : width;
     }
-    write_head(out, plot, width);
+    write_head(out, plot, width, ends);
     for (size_t i = 0; i < n; i++) {
         fprintf(out, "  %-*s", width, plot->name[i]);
-        write_cells(out, measure, i);
+        write_cells(out, measure, i, ends);
         fputc('\n', out);
     }
     if (n < plot->n_signals) {
         fprintf(out, "  ... and %zu more: --all-signals\n", plot->n_signals - n);
     }
+}
+
+void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all) {
+    write_signals(out, measure, all, false);
+}
+
+void dalcs_summary_write_ends(FILE *out, const struct dalcs_measure *measure, bool all) {
+    write_signals(out, measure, all, true);
 }
 
 static void write_energy(FILE *out, const char *name, double joule, double largest) {

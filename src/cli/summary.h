@@ -15,6 +15,9 @@ void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report);
 /* A table, of the first 24 signals or of all; nothing when there were no rows. */
 void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all);
 
+/* Likewise, of rows with no averages: where they end. */
+void dalcs_summary_write_ends(FILE *out, const struct dalcs_measure *measure, bool all);
+
 /* The first few jumps, a sentence each. */
 void dalcs_summary_write_jumps(FILE *out, const struct dalcs_report *report);
 

@@ -133,6 +133,10 @@ static void meet_event(struct dalcs_variation_part *v, int row) {
     for (int k = 0; k < v->n_x; k++) {
         v->guard[k] *= -1.0 / rate;
     }
+    if (!isfinite(v->moved)) {
+        v->moved = part->segment.t_end;
+        memcpy(v->moves, v->guard, (size_t)v->n_x * sizeof(double));
+    }
     dalcs_step_values(part, part->segment.end, v->y);
     dalcs_orbit_rates_of(&v->rates, v->y, part->segment.end * part->segment.h, v->before);
     v->pending = true;
@@ -195,14 +199,18 @@ struct dalcs_observer dalcs_variation_observer(struct dalcs_variation *variation
 /* ---- Set up -------------------------------------------------------------------------------------- */
 
 static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_variation_part *v,
-                                    struct dalcs_radau_part *part) {
+                                    struct dalcs_radau_part *part, bool modes_alone) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const size_t n = (size_t)s->n_x;
     const size_t n_out = dalcs_stages_room(&part->stages);
     v->part = part;
-    v->n_x = part->kind == DALCS_PART_STEPPED ? s->n_x : 0;
+    v->n_x = part->kind == DALCS_PART_STEPPED && !modes_alone ? s->n_x : 0;
     v->is_exact = true;
+    v->moved = INFINITY;
+    if (modes_alone) {
+        return DALCS_OK;
+    }
     v->v = dalcs_arena_alloc(arena, n * n, sizeof(double));
     v->in = dalcs_arena_alloc(arena, (size_t)part->stages.n_in, sizeof(double));
     v->out = dalcs_arena_alloc(arena, n_out, sizeof(double));
@@ -211,9 +219,11 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     v->after = dalcs_arena_alloc(arena, n, sizeof(double));
     v->first = dalcs_arena_alloc(arena, n, sizeof(double));
     v->last = dalcs_arena_alloc(arena, n, sizeof(double));
+    v->moves = dalcs_arena_alloc(arena, n, sizeof(double));
     v->y = dalcs_arena_alloc(arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
     if (v->v == NULL || v->in == NULL || v->out == NULL || v->guard == NULL || v->before == NULL ||
-        v->after == NULL || v->first == NULL || v->last == NULL || v->y == NULL) {
+        v->after == NULL || v->first == NULL || v->last == NULL || v->moves == NULL ||
+        v->y == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {
@@ -223,13 +233,13 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
 }
 
 enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,
-                                        struct dalcs_radau *radau) {
+                                        struct dalcs_radau *radau, bool modes_alone) {
     *variation = (struct dalcs_variation){.radau = radau, .n_parts = radau->n_parts};
     variation->part =
         dalcs_arena_alloc(&variation->arena, (size_t)radau->n_parts, sizeof(*variation->part));
     enum dalcs_status status = variation->part != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (int k = 0; k < radau->n_parts && status == DALCS_OK; k++) {
-        status = part_setup(&variation->arena, &variation->part[k], &radau->part[k]);
+        status = part_setup(&variation->arena, &variation->part[k], &radau->part[k], modes_alone);
     }
     if (status != DALCS_OK) {
         dalcs_variation_finish(variation);

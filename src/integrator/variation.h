@@ -19,9 +19,11 @@ struct dalcs_variation_part {
     double *before, *after; /* [n_x] f- and f+ */
     double *y;              /* work */
     double *first, *last;   /* [n_x] derivatives of the states where the run begins and ends */
-    bool begun;             /* `first` is known */
-    bool pending;           /* an event has just been passed */
-    bool is_exact;          /* no step of implicit Euler, nothing that slides */
+    double *moves; /* [n_x] s, how the first event of the circuit's own moves with each column */
+    double moved;  /* s, when it comes; INFINITY: none has come yet */
+    bool begun;    /* `first` is known */
+    bool pending;  /* an event has just been passed */
+    bool is_exact; /* no step of implicit Euler, nothing that slides */
     uint64_t signature, last_mode; /* of the modes that followed each other */
 };
 
@@ -33,9 +35,11 @@ struct dalcs_variation {
     struct dalcs_arena arena;
 };
 
-/* V = 1. The run is to tell it of its segments (dalcs_variation_observer). */
+/* V = 1. The run is to tell it of its segments (dalcs_variation_observer). modes_alone: no V, no more than which modes
+ * follow each other. */
 enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,
-                                        struct dalcs_radau *radau) DALCS_MUST_CHECK;
+                                        struct dalcs_radau *radau,
+                                        bool modes_alone) DALCS_MUST_CHECK;
 
 void dalcs_variation_finish(struct dalcs_variation *variation);
 

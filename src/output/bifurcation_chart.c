@@ -1,16 +1,15 @@
 /* bifurcation_chart.c - a panel of dots for each state, coils first, and one of multipliers below. */
 #include "bifurcation_chart.h"
 
+#include "chart_file.h"
 #include "gnuplot_page.h"
 #include "memory.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-enum { MOST_STATES = 3, WIDTH = 1000, PANEL = 300, INCH = 100, MOST_TITLE = 90 };
+enum { MOST_STATES = 3, WIDTH = 1000, PANEL = 300, MOST_TITLE = 90 };
 
 /* Values over more than this are drawn on a logarithmic axis. */
 static const double wide = 100.0;
@@ -78,24 +77,6 @@ static void write_orbit(FILE *script, const char *name, const struct dalcs_bifur
     fputs("NaN NaN\nend_of_data\n", script);
 }
 
-static bool is_html(const char *path) {
-    const char *dot = strrchr(path, '.');
-    return strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0;
-}
-
-static void write_terminal(FILE *script, const char *path, int tall) {
-    const char *dot = strrchr(path, '.');
-    const char *looks = "font 'DejaVu Sans,12' noenhanced rounded background";
-    const char *background = dalcs_theme_light.background;
-    if (strcasecmp(dot, ".pdf") == 0) {
-        fprintf(script, "set terminal pdfcairo size %gin,%gin %s '%s'\n", (double)WIDTH / INCH,
-                (double)tall / INCH, looks, background);
-    } else {
-        fprintf(script, "set terminal %s size %d,%d %s '%s'\n",
-                strcasecmp(dot, ".png") == 0 ? "pngcairo" : "svg", WIDTH, tall, looks, background);
-    }
-}
-
 static void write_header(FILE *script, const struct dalcs_bifurcation_chart *chart,
                          const char *path, int n_panels) {
     const struct dalcs_theme *theme = &dalcs_theme_light;
@@ -106,7 +87,7 @@ static void write_header(FILE *script, const struct dalcs_bifurcation_chart *cha
         high = fmax(high, row_of(chart, k)[0]);
     }
     fputs("set encoding utf8\n", script);
-    write_terminal(script, path, 80 + PANEL * n_panels);
+    dalcs_chart_write_terminal(script, path, WIDTH, 80 + PANEL * n_panels);
     fprintf(script, "set multiplot layout %d,1 title ", n_panels);
     dalcs_gnuplot_write_quoted(script, chart->plot->title + strspn(chart->plot->title, "* "),
                                MOST_TITLE);
@@ -127,11 +108,12 @@ static void write_header(FILE *script, const struct dalcs_bifurcation_chart *cha
     fprintf(script, " textcolor rgb '%s'\n", theme->text);
 }
 
-static void write_script(FILE *script, const struct dalcs_bifurcation_chart *chart,
-                         const char *path) {
+static void write_script(FILE *script, const void *of, const char *path) {
+    const struct dalcs_bifurcation_chart *chart = of;
     const struct dalcs_theme *theme = &dalcs_theme_light;
     const size_t multiplier = 2 * chart->n_states;
     size_t state[MOST_STATES];
+    char label[4 * DALCS_GNUPLOT_MAX_NAME + 8];
     const int n = choose(chart, state);
     write_header(script, chart, path, n + 1);
     for (int k = 0; k < n; k++) {
@@ -140,7 +122,9 @@ static void write_script(FILE *script, const struct dalcs_bifurcation_chart *cha
         write_orbit(script, "stable", chart, s, true);
         write_orbit(script, "unstable", chart, s, false);
         fputs("set ylabel ", script);
-        dalcs_gnuplot_write_quoted(script, chart->plot->name[s], DALCS_GNUPLOT_MAX_NAME);
+        snprintf(label, sizeof label, "%.*s (%s)", DALCS_GNUPLOT_MAX_NAME, chart->plot->name[s],
+                 chart->plot->unit[s] == DALCS_AMPERE ? "A" : "V");
+        dalcs_gnuplot_write_quoted(script, label, (int)sizeof label);
         fprintf(script, " textcolor rgb '%s'\n", theme->text);
         fprintf(script,
                 "plot $run%zu using 1:2 with points pt 7 ps 0.2 lc rgb '%s' title 'run', "
@@ -157,66 +141,14 @@ static void write_script(FILE *script, const struct dalcs_bifurcation_chart *cha
             theme->text, multiplier, theme->curve[3], theme->text);
 }
 
-/* ---- The file ------------------------------------------------------------------------------------ */
-
-/* A page of one picture. It loads nothing. */
-static enum dalcs_status wrap(FILE *picture, FILE *page) {
-    char part[4096];
-    bool begun = false;
-    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-          "<title>Bifurcation diagram</title></head><body>\n",
-          page);
-    rewind(picture);
-    while (fgets(part, sizeof part, picture) != NULL) {
-        begun = begun || strncmp(part, "<svg", 4) == 0;
-        if (begun) {
-            fputs(part, page);
-        }
-    }
-    fputs("</body></html>\n", page);
-    return begun && !ferror(picture) && !ferror(page) ? DALCS_OK : DALCS_E_IO;
-}
-
-/* By a picture in a temporary file. */
-static enum dalcs_status draw_page(FILE *script, struct dalcs_atomic_file *file, char *message) {
-    struct dalcs_atomic_file picture = {.stream = tmpfile()};
-    FILE *page = file->stream;
-    if (picture.stream == NULL) {
-        return DALCS_E_IO;
-    }
-    enum dalcs_status status = dalcs_gnuplot_run(script, &picture, message);
-    status = status == DALCS_OK ? wrap(picture.stream, page) : status;
-    fclose(picture.stream);
-    return status;
-}
-
 enum dalcs_status dalcs_bifurcation_chart_draw(const struct dalcs_bifurcation_chart *chart,
                                                const char *path,
                                                char message[DALCS_GNUPLOT_MESSAGE]) {
-    struct dalcs_atomic_file file = {0};
-    FILE *script = tmpfile();
-    enum dalcs_status status = DALCS_E_IO;
-    message[0] = '\0';
     if (chart->plot == NULL || chart->n == 0) {
         snprintf(message, DALCS_GNUPLOT_MESSAGE, "there are no rows");
-    } else if (script != NULL) {
-        write_script(script, chart, path);
-        status = dalcs_atomic_file_open(&file, path);
-        if (status == DALCS_OK) {
-            status = is_html(path) ? draw_page(script, &file, message)
-                                   : dalcs_gnuplot_run(script, &file, message);
-        }
-        status = status == DALCS_OK ? dalcs_atomic_file_commit(&file) : status;
+        return DALCS_E_IO;
     }
-    if (status != DALCS_OK && message[0] == '\0') {
-        snprintf(message, DALCS_GNUPLOT_MESSAGE, "%s",
-                 strerror(file.error != 0 ? file.error : errno));
-    }
-    dalcs_atomic_file_discard(&file);
-    if (script != NULL) {
-        fclose(script);
-    }
-    return status;
+    return dalcs_chart_draw(write_script, chart, path, "Bifurcation diagram", message);
 }
 
 void dalcs_bifurcation_chart_finish(struct dalcs_bifurcation_chart *chart) {

@@ -2,21 +2,26 @@
  * conduction, then jumps, then switching by tables. */
 #include "losses_chart.h"
 
+#include "chart_file.h"
 #include "gnuplot_page.h"
 #include "memory.h"
 #include "quantity.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-enum { MOST_BARS = 24, MOST_NAME = 40, ROW = 26, AROUND = 130, WIDTH = 900, INCH = 100 };
+enum { MOST_BARS = 24, MOST_NAME = 40, ROW = 26, AROUND = 130, WIDTH = 900 };
 
 struct bar {
     const char *element;
     double part[3]; /* W: conduction, jumps, switching */
+};
+
+struct bars {
+    const char *title;
+    const struct bar *bar; /* [n] */
+    size_t n;
 };
 
 static double height(const struct bar *bar) {
@@ -58,19 +63,6 @@ static size_t list_bars(const struct dalcs_losses *l, struct bar *bar) {
     return n;
 }
 
-static void write_terminal(FILE *script, const char *path, int tall) {
-    const char *dot = strrchr(path, '.');
-    const char *looks = "font 'DejaVu Sans,12' noenhanced rounded background";
-    const char *background = dalcs_theme_light.background;
-    if (strcasecmp(dot, ".pdf") == 0) {
-        fprintf(script, "set terminal pdfcairo size %gin,%gin %s '%s'\n", (double)WIDTH / INCH,
-                (double)tall / INCH, looks, background);
-    } else {
-        fprintf(script, "set terminal %s size %d,%d %s '%s'\n",
-                strcasecmp(dot, ".svg") == 0 ? "svg" : "pngcairo", WIDTH, tall, looks, background);
-    }
-}
-
 static void write_boxes(FILE *script, const struct bar *bar, size_t n, double scale) {
     for (int part = 0; part < 3; part++) {
         fprintf(script, "$part%d << end_of_data\n", part);
@@ -87,16 +79,18 @@ static void write_boxes(FILE *script, const struct bar *bar, size_t n, double sc
     }
 }
 
-static void write_script(FILE *script, const char *title, const char *path, const struct bar *bar,
-                         size_t n_all) {
+static void write_script(FILE *script, const void *chart, const char *path) {
+    const struct bars *bars = chart;
+    const struct bar *bar = bars->bar;
+    const size_t n_all = bars->n;
     const struct dalcs_theme *theme = &dalcs_theme_light;
     const size_t n = n_all < MOST_BARS ? n_all : MOST_BARS;
     const double scale = dalcs_quantity_scale(height(&bar[0]));
     const char *prefix = dalcs_quantity_prefix(scale);
     fputs("set encoding utf8\n", script);
-    write_terminal(script, path, AROUND + ROW * (int)n);
+    dalcs_chart_write_terminal(script, path, WIDTH, AROUND + ROW * (int)n);
     fputs("set title ", script);
-    dalcs_gnuplot_write_quoted(script, title + strspn(title, "* "), 2 * MOST_NAME);
+    dalcs_gnuplot_write_quoted(script, bars->title + strspn(bars->title, "* "), 2 * MOST_NAME);
     fprintf(script,
             " textcolor rgb '%s'\nset border 3 lc rgb '%s'\nset grid xtics lc rgb '%s' lt 1\n"
             "set tics nomirror out scale 0.5 textcolor rgb '%s'\nset xzeroaxis lc rgb '%s' lt 1\n"
@@ -125,27 +119,17 @@ static void write_script(FILE *script, const char *title, const char *path, cons
 
 enum dalcs_status dalcs_losses_chart_draw(const struct dalcs_losses *losses, const char *title,
                                           const char *path, char message[DALCS_GNUPLOT_MESSAGE]) {
-    struct dalcs_atomic_file file = {0};
     struct bar *bar = dalcs_alloc(losses->n_elements, sizeof *bar);
-    FILE *script = tmpfile();
-    enum dalcs_status status = bar == NULL ? DALCS_E_NOMEM : DALCS_E_IO;
-    message[0] = '\0';
-    const size_t n = bar != NULL ? list_bars(losses, bar) : 0;
-    if (bar != NULL && n == 0) {
+    if (bar == NULL) {
+        snprintf(message, DALCS_GNUPLOT_MESSAGE, "%s", dalcs_status_text(DALCS_E_NOMEM));
+        return DALCS_E_NOMEM;
+    }
+    const struct bars bars = {title, bar, list_bars(losses, bar)};
+    enum dalcs_status status = DALCS_E_IO;
+    if (bars.n == 0) {
         snprintf(message, DALCS_GNUPLOT_MESSAGE, "no element but loads takes anything");
-    } else if (bar != NULL && script != NULL) {
-        write_script(script, title, path, bar, n);
-        status = dalcs_atomic_file_open(&file, path);
-        status = status == DALCS_OK ? dalcs_gnuplot_run(script, &file, message) : status;
-        status = status == DALCS_OK ? dalcs_atomic_file_commit(&file) : status;
-    }
-    if (status != DALCS_OK && message[0] == '\0') {
-        const int error = file.error != 0 ? file.error : errno;
-        snprintf(message, DALCS_GNUPLOT_MESSAGE, "%s", strerror(error));
-    }
-    dalcs_atomic_file_discard(&file);
-    if (script != NULL) {
-        fclose(script);
+    } else {
+        status = dalcs_chart_draw(write_script, &bars, path, "Losses", message);
     }
     free(bar);
     return status;

@@ -1,30 +1,15 @@
 /* multipliers_chart.c - what is inside the unit circle dies away; what is outside has the name of its state. */
 #include "multipliers_chart.h"
 
+#include "chart_file.h"
 #include "gnuplot_page.h"
 
-#include <errno.h>
 #include <math.h>
 #include <string.h>
-#include <strings.h>
 
-enum { SIZE = 700, INCH = 100, MOST_TITLE = 70, MOST_NAMES = 12 };
+enum { SIZE = 700, LEGEND = 30, MOST_TITLE = 70, MOST_NAMES = 12 };
 
 static const double margin = 1.15; /* of the plane around the circle, or around what leaves it */
-
-static void write_terminal(FILE *script, const char *path) {
-    const struct dalcs_theme *theme = &dalcs_theme_light;
-    const char *dot = strrchr(path, '.');
-    const char *looks = "font 'DejaVu Sans,12' noenhanced rounded background";
-    if (strcasecmp(dot, ".pdf") == 0) {
-        fprintf(script, "set terminal pdfcairo size %gin,%gin %s '%s'\n", (double)SIZE / INCH,
-                (double)SIZE / INCH, looks, theme->background);
-    } else {
-        fprintf(script, "set terminal %s size %d,%d %s '%s'\n",
-                strcasecmp(dot, ".svg") == 0 ? "svg" : "pngcairo", SIZE, SIZE, looks,
-                theme->background);
-    }
-}
 
 static void write_points(FILE *script, const char *name, const struct dalcs_floquet *m, size_t n) {
     fprintf(script, "$%s << end_of_data\n", name);
@@ -53,7 +38,8 @@ static void write_names(FILE *script, const struct dalcs_floquet *m, size_t n) {
     }
 }
 
-static void write_script(FILE *script, const struct dalcs_report *report, const char *path) {
+static void write_script(FILE *script, const void *chart, const char *path) {
+    const struct dalcs_report *report = chart;
     const struct dalcs_theme *theme = &dalcs_theme_light;
     const struct dalcs_floquet *m = report->steady.multiplier;
     const size_t n = report->steady.n_multipliers;
@@ -62,14 +48,14 @@ static void write_script(FILE *script, const struct dalcs_report *report, const 
     const double reach =
         margin * farthest(report->steady.doubled.multiplier, n_doubled, farthest(m, n, 1.0));
     fputs("set encoding utf8\n", script);
-    write_terminal(script, path);
+    dalcs_chart_write_terminal(script, path, SIZE, SIZE + LEGEND);
     fputs("set title ", script);
     dalcs_gnuplot_write_quoted(script, report->title + strspn(report->title, "* "), MOST_TITLE);
     fprintf(script,
             " textcolor rgb '%s'\nset border 3 lc rgb '%s'\nset grid lc rgb '%s' lt 1\n"
             "set tics nomirror out scale 0.5 textcolor rgb '%s'\n"
             "set xzeroaxis lc rgb '%s' lt 1\nset yzeroaxis lc rgb '%s' lt 1\n"
-            "set key bottom right textcolor rgb '%s'\nset size ratio -1\n"
+            "set key outside bottom center horizontal textcolor rgb '%s'\nset size ratio -1\n"
             "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n"
             "set xlabel 'real part' textcolor rgb '%s'\n"
             "set ylabel 'imaginary part' textcolor rgb '%s'\nset parametric\n"
@@ -94,23 +80,5 @@ static void write_script(FILE *script, const struct dalcs_report *report, const 
 
 enum dalcs_status dalcs_multipliers_chart_draw(const struct dalcs_report *report, const char *path,
                                                char message[DALCS_GNUPLOT_MESSAGE]) {
-    struct dalcs_atomic_file file = {0};
-    FILE *script = tmpfile();
-    enum dalcs_status status = DALCS_E_IO;
-    message[0] = '\0';
-    if (script != NULL) {
-        write_script(script, report, path);
-        status = dalcs_atomic_file_open(&file, path);
-        status = status == DALCS_OK ? dalcs_gnuplot_run(script, &file, message) : status;
-        status = status == DALCS_OK ? dalcs_atomic_file_commit(&file) : status;
-    }
-    if (status != DALCS_OK && message[0] == '\0') {
-        snprintf(message, DALCS_GNUPLOT_MESSAGE, "%s",
-                 strerror(file.error != 0 ? file.error : errno));
-    }
-    dalcs_atomic_file_discard(&file);
-    if (script != NULL) {
-        fclose(script);
-    }
-    return status;
+    return dalcs_chart_draw(write_script, report, path, "Multipliers", message);
 }

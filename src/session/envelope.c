@@ -26,7 +26,7 @@ static bool is_written(const struct dalcs_envelope *e, long n, long *next) {
 static enum dalcs_status refuse_period(struct dalcs_envelope *e) {
     char text[64];
     snprintf(text, sizeof text, "%.9g", e->rows.offset);
-    dalcs_diag_add(&e->run->s->diag, DALCS_ERROR, &e->run->s->circuit.transient.where,
+    dalcs_diag_add(&e->run->s->diag, DALCS_ERROR, dalcs_envelope_place(e->run),
                    "look at it with .tran", "the period at t = %s s could not be run", text);
     return DALCS_NOT_CONVERGED;
 }
@@ -86,7 +86,7 @@ static enum dalcs_status advance(struct dalcs_envelope *e) {
 /* ---- All of it ----------------------------------------------------------------------------------- */
 
 static enum dalcs_status refuse(struct dalcs_run *r, const char *hint, const char *text) {
-    dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.transient.where, hint, "%s", text);
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, dalcs_envelope_place(r), hint, "%s", text);
     return DALCS_E_NETLIST;
 }
 
@@ -102,7 +102,7 @@ static enum dalcs_status check(struct dalcs_run *r) {
     for (int k = 0; k < c->n_measures; k++) {
         measures = measures || c->measure[k].analysis == DALCS_MEASURED_TRAN;
     }
-    if (measures || r->options->at != NULL) {
+    if (measures || r->options->n_at > 0) {
         return refuse(r, "read them from the rows, or run .tran",
                       "measurements, losses and --at are of all periods, of which .env "
                       "leaves most out");

@@ -91,6 +91,11 @@ struct dalcs_envelope {
     struct dalcs_arena arena;
 };
 
+/* ---- envelope_asked.c --------------------------------------------------------------------------- */
+
+/* Where a message is about: the card, or NULL. */
+const struct dalcs_location *dalcs_envelope_place(const struct dalcs_run *r);
+
 /* ---- envelope_rows.c ---------------------------------------------------------------------------- */
 
 /* What the run of one period hands its rows to. */

@@ -59,11 +59,13 @@ void dalcs_warn_of_restless_gates(struct dalcs_run *r, struct dalcs_logic_run *l
 
 enum dalcs_status dalcs_check_gates(struct dalcs_run *r, enum dalcs_analysis analysis) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    const bool is_steady = analysis == DALCS_PERIODIC ? c->periodic.present || r->options->steady
-                           : analysis == DALCS_AC
-                               ? (c->ac.n > 0 && c->periodic.present) || r->options->bode
-                               : analysis == DALCS_TRANSIENT && c->transient.present &&
-                                     (c->transient.starts_steady || c->envelope.present);
+    const bool is_steady =
+        analysis == DALCS_PERIODIC ? c->periodic.present || r->options->steady
+        : analysis == DALCS_AC
+            ? (c->ac.n > 0 && c->periodic.present) || r->options->bode
+            : analysis == DALCS_TRANSIENT &&
+                  (r->options->envelope ||
+                   (c->transient.present && (c->transient.starts_steady || c->envelope.present)));
     const bool is_stepped =
         analysis == DALCS_TRANSIENT && c->transient.present && r->method == DALCS_METHOD_EULER;
     if (c->n_gates == 0 || (!is_steady && !is_stepped)) {

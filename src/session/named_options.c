@@ -14,12 +14,20 @@ static const struct {
 } OPTION[] = {
 
 #define AT(field) offsetof(struct dalcs_run_options, field)
-    {"method", METHOD, AT(method)},    {"tol", REAL, AT(tolerance)},
-    {"stages", WHOLE, AT(stages)},     {"step", REAL, AT(step)},
-    {"fill", REAL, AT(fill)},          {"curve", CURVE, AT(curve)},
-    {"compress", REAL, AT(compress)},  {"record", YES_OR_NO, AT(record)},
-    {"energy", YES_OR_NO, AT(energy)}, {"audit", AUDIT, AT(audit)},
-    {"steady", YES_OR_NO, AT(steady)}, {"period", REAL, AT(period)},
+    {"method", METHOD, AT(method)},
+    {"tol", REAL, AT(tolerance)},
+    {"stages", WHOLE, AT(stages)},
+    {"step", REAL, AT(step)},
+    {"fill", REAL, AT(fill)},
+    {"curve", CURVE, AT(curve)},
+    {"compress", REAL, AT(compress)},
+    {"record", YES_OR_NO, AT(record)},
+    {"energy", YES_OR_NO, AT(energy)},
+    {"audit", AUDIT, AT(audit)},
+    {"steady", YES_OR_NO, AT(steady)},
+    {"period", REAL, AT(period)},
+    {"envelope", YES_OR_NO, AT(envelope)},
+    {"envelope_stop", REAL, AT(envelope_stop)},
     {"only", COUNT, AT(only_step)},
 #undef AT
 };

@@ -222,6 +222,9 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
         }
         return circuit->periodic.present || r->options->steady ? dalcs_steady_run(r) : DALCS_OK;
     default:
+        if (r->options->envelope) {
+            DALCS_TRY(dalcs_envelope_ask(r));
+        }
         if (!circuit->transient.present) {
             return DALCS_OK;
         }
@@ -277,8 +280,10 @@ const enum dalcs_analysis dalcs_analyses_in_order[DALCS_N_IN_ORDER] = {
 enum dalcs_status dalcs_run_asked(struct dalcs_session *session,
                                   const struct dalcs_run_options *options,
                                   const struct dalcs_sink *sink) {
-    const enum dalcs_analysis alone = options->steady ? DALCS_PERIODIC : DALCS_AC;
-    return options->steady || options->bode
+    const enum dalcs_analysis alone = options->steady ? DALCS_PERIODIC
+                                      : options->bode ? DALCS_AC
+                                                      : DALCS_TRANSIENT;
+    return options->steady || options->bode || options->envelope
                ? dalcs_run_analyses(session, options, sink, NULL, &alone, 1)
                : dalcs_run_analyses(session, options, sink, NULL, dalcs_analyses_in_order,
                                     DALCS_N_IN_ORDER);
@@ -325,8 +330,10 @@ static enum dalcs_status run_stroboscope(struct dalcs_session *session,
 static enum dalcs_status run_circuit(struct dalcs_session *session,
                                      const struct dalcs_run_options *options,
                                      const struct dalcs_sink *sink) {
-    if (options->steady || options->bode) {
-        session->circuit.periodic.present = true; /* as if there were a .pss */
+    const bool is_alone = options->steady || options->bode || options->envelope;
+    if (is_alone) {
+        session->circuit.periodic.present =
+            session->circuit.periodic.present || !options->envelope; /* as if there were a .pss */
         DALCS_TRY(dalcs_steady_prepare(session));
     }
     DALCS_TRY(dalcs_steps_find(session));

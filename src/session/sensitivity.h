@@ -1,26 +1,43 @@
 /* sensitivity.h - what the measurements of a periodic steady state change by with a value of the netlist.
  *
- * The orbit of a circuit with a value p + d p is found by Newton's method from the orbit at p, with the M of its own, and
- * measured as that is. Differences of four such orbits, at d = h, -h, 2h and -2h, give derivatives to the fourth order
- * of h. The variation of the orbit itself would need, of each kind of measurement, a derivative of its own: of extremes,
- * crossings, products, quotients. Here whatever can be measured is differentiated by the measurement. The price is a
- * few periods for each value, where the adjoint takes one backward period for each measurement. */
+ * Differences of four circuits whose values are p + d, at d = h, -h, 2h and -2h, give derivatives to the fourth order of
+ * h. What is measured is a period along the tangent of the orbit (sensitivity_tangent.c), or, where that cannot be, the
+ * orbit of the other circuit, which Newton's method finds from this one. The variation of the orbit itself would need, of
+ * each kind of measurement, a derivative of its own: of extremes, crossings, products, quotients. Here whatever can be
+ * measured is differentiated by the measurement. */
 #ifndef DALCS_SENSITIVITY_H
 #define DALCS_SENSITIVITY_H
 
 #include "steady.h"
 
-/* Where the search for the orbit of another circuit begins, and what the orbit found is like. */
+enum dalcs_near_asked {
+    DALCS_NEAR_ORBIT,  /* the orbit that Newton's method finds from the point */
+    DALCS_NEAR_IMAGE,  /* a period from the point */
+    DALCS_NEAR_MEASURE /* what that measures, as if it were an orbit */
+};
+
+/* What is asked for of a circuit that differs by little, and what it is like. */
 struct dalcs_steady_near {
-    struct dalcs_orbit_point point;
+    enum dalcs_near_asked asked;
+    struct dalcs_orbit_point point; /* of the other's orbit, or beside it */
     int n_x, n_pairs;
     double period;      /* s, of it */
     uint64_t signature; /* out: of the modes that follow each other */
+    struct dalcs_steady
+        *orbit; /* out, unless NULL: where it is, with its M, as if it were this one's last pass */
+    double *image; /* [n_x] out: where a period leads to */
 };
 
 /* st->at becomes the orbit that Newton's method finds from there. DALCS_NOT_CONVERGED, without a message: none. */
 enum dalcs_status dalcs_steady_from_near(struct dalcs_steady *st, bool is_free,
                                          struct dalcs_steady_near *near) DALCS_MUST_CHECK;
+
+/* The others of what is asked: a period from the point, and st->found of it. */
+enum dalcs_status dalcs_steady_at_near(struct dalcs_steady *st, bool is_free,
+                                       struct dalcs_steady_near *near) DALCS_MUST_CHECK;
+
+/* Is there more to measure than averages and rms values, for which a period has to be run with rows? */
+bool dalcs_steady_near_measures(const struct dalcs_circuit *circuit);
 
 /* All of .sens around the orbit through st->at, into the report. */
 enum dalcs_status dalcs_sensitivities_run(struct dalcs_steady *st) DALCS_MUST_CHECK;

@@ -253,6 +253,9 @@ enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) DALCS_MUST_CHECK;
 /* Runs .env into r->sink. */
 enum dalcs_status dalcs_envelope_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
+/* What the run is asked for becomes the circuit's .env (envelope_asked.c). */
+enum dalcs_status dalcs_envelope_ask(struct dalcs_run *r) DALCS_MUST_CHECK;
+
 /* Runs .tran into r->sink. */
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 

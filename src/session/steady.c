@@ -242,38 +242,75 @@ bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *
     return point->x != NULL && point->closed != NULL;
 }
 
+/* Where a leap leads no run need go. So growth without end, or no steady state, behind one counts for nothing: the search
+ * goes back to where the first leap began, and goes on without any. */
+struct search {
+    struct dalcs_orbit_point run;         /* where it has come to */
+    struct dalcs_orbit_point from, moved; /* work */
+    struct dalcs_orbit_point before;      /* the first leap */
+    long wait, total, total_before; /* periods: of the next run, so far, before the first leap */
+    bool has_leapt, may_leap;
+};
+
+static bool make_points(struct dalcs_steady *st, struct search *s) {
+    return dalcs_steady_make_point(st, &s->run) && dalcs_steady_make_point(st, &s->from) &&
+           dalcs_steady_make_point(st, &s->moved) && dalcs_steady_make_point(st, &s->before);
+}
+
+static void go_back(struct dalcs_steady *st, struct search *s) {
+    dalcs_steady_copy_point(st, &st->at, &s->before);
+    s->wait = s->total = s->total_before;
+    s->may_leap = false;
+}
+
+/* From s->run, where a conserved quantity grows: a leap, or whether it grows for ever. */
+static enum dalcs_status leave(struct dalcs_steady *st, struct search *s, bool *endless) {
+    DALCS_TRY(leap(st, s->from.x, s->moved.x, endless));
+    if (!*endless && s->may_leap) {
+        if (!s->has_leapt) {
+            dalcs_steady_copy_point(st, &s->before, &s->run);
+            s->total_before = s->total;
+        }
+        s->has_leapt = true;
+        s->wait = 1;
+        return DALCS_OK;
+    }
+    DALCS_TRY(*endless ? drifts(st, &s->run, endless) : DALCS_OK);
+    if (*endless && s->has_leapt && s->may_leap) {
+        *endless = false;
+        go_back(st, s);
+    } else if (!*endless) {
+        dalcs_steady_copy_point(st, &st->at, &s->run);
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool *endless) {
-    struct dalcs_orbit_point run;
-    struct dalcs_orbit_point from;
-    struct dalcs_orbit_point moved;
-    if (!dalcs_steady_make_point(st, &run) || !dalcs_steady_make_point(st, &from) ||
-        !dalcs_steady_make_point(st, &moved)) {
+    struct search s = {.wait = 1, .may_leap = true};
+    if (!make_points(st, &s)) {
         return DALCS_E_NOMEM;
     }
     *found = *endless = false;
-    for (long wait = 1, total = 0; !*found && !*endless && total <= most_periods;) {
-        DALCS_TRY(dalcs_steady_pass(st, wait, DALCS_STEADY_PLAIN));
+    while (!*found && !*endless && (s.total <= most_periods || (s.has_leapt && s.may_leap))) {
+        if (s.total > most_periods) {
+            go_back(st, &s);
+        }
+        DALCS_TRY(dalcs_steady_pass(st, s.wait, DALCS_STEADY_PLAIN));
         dalcs_steady_take(st);
-        total += wait;
-        dalcs_steady_copy_point(st, &run, &st->at);
+        s.total += s.wait;
+        dalcs_steady_copy_point(st, &s.run, &st->at);
         st->is_stuck = false;
         DALCS_TRY(dalcs_steady_burst(st, found));
-        wait = total;
+        s.wait = s.total;
         if (!*found && st->is_stuck) {
-            DALCS_TRY(leap(st, from.x, moved.x, endless));
-            const bool leapt = !*endless;
-            DALCS_TRY(leapt ? DALCS_OK : drifts(st, &run, endless));
-            wait = leapt ? 1 : wait;
-            if (!leapt && !*endless) {
-                dalcs_steady_copy_point(st, &st->at, &run);
-            }
+            DALCS_TRY(leave(st, &s, endless));
         } else if (!*found) {
-            dalcs_steady_copy_point(st, &st->at, &run);
+            dalcs_steady_copy_point(st, &st->at, &s.run);
         }
     }
     if (!*found && !*endless) { /* what is told of the last period is of one of the run */
         enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN);
         return status < DALCS_OK ? status : DALCS_OK;
     }
-    return *found ? dalcs_steady_refine(st, &run) : DALCS_OK;
+    return *found ? dalcs_steady_refine(st, &s.run) : DALCS_OK;
 }

@@ -37,6 +37,8 @@ struct dalcs_steady {
     double *drift;                     /* [n_x] what grows by as much each period */
     double *first,
         *last; /* [n_x] derivatives of the states where the last pass with M began and ended */
+    double *
+        phase; /* [n_x] how the first event of that pass moves with the state where it began; 0: there was none */
     uint64_t signature; /* of the modes that followed each other */
 
     struct dalcs_steady_found { /* by the last pass with means */
@@ -219,6 +221,9 @@ enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) DALCS_MUST_C
 
 /* Multipliers, verdict and messages into the report. */
 enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* Averages and rms values of the last pass with means, alone. */
+enum dalcs_status dalcs_steady_report_signals(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
 /* The size of the largest multiplier of the last pass; 0 if it cannot be told. */
 double dalcs_steady_largest_multiplier(struct dalcs_steady *st);

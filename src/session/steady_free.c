@@ -1,12 +1,15 @@
 /* steady_free.c - a step of Newton's method for a state and a period: Phi(x, T) = x of a circuit that has no clock.
  *
  * Where the sources are constant an orbit may begin anywhere on itself, and M has the multiplier 1 of its flow: M f = f.
- * So a step d is to be orthogonal to the flow, and the period takes the place of what that leaves out:
+ * So a step d is to leave the first event of the pass, at t1, where it is, and the period takes the place of what that
+ * leaves out:
  *
- *     (1 - M) d - f- dT = Phi(x, T) - x,     f+ d = 0
+ *     (1 - M) d - f- dT = Phi(x, T) - x,     dt1/dx d = 0
  *
- * with the derivatives f+ and f- of the states where the pass begins and ends, in units in which energies are alike. That
- * is regular where 1 is a simple multiplier; where it is not, a quantity is conserved, and the least step keeps it nearly. */
+ * with the derivatives f- of the states where the pass ends. What is slow may be far away: the step is long then, but it
+ * stays between the same events, where one that is orthogonal to the flow would leave them along it. Without an event d
+ * is orthogonal to the flow, in units in which energies are alike. Either is regular where 1 is a simple multiplier;
+ * where it is not, a quantity is conserved, and the least step keeps it nearly. */
 #include "steady.h"
 
 #include <lapacke.h>
@@ -50,13 +53,16 @@ static void fill_system(const struct dalcs_steady *st, int system, struct border
 static bool fill_border(const struct dalcs_steady *st, struct bordered *w) {
     const int n = w->n - 1;
     double size = 0.0;
+    double of_event = 0.0;
     for (int x = 0; x < n; x++) {
         size = hypot(size, w->unit[x] * st->first[x]);
+        of_event = hypot(of_event, st->phase[x] / w->unit[x]);
         w->b[x] = w->unit[x] * (st->then.x[x] - st->at.x[x]);
         w->A[n * w->n + x] = -w->unit[x] * st->last[x] * st->period;
     }
     for (int x = 0; x < n && size > 0.0; x++) {
-        w->A[x * w->n + n] = w->unit[x] * st->first[x] / size;
+        w->A[x * w->n + n] = of_event > 0.0 ? st->phase[x] / w->unit[x] / of_event
+                                            : w->unit[x] * st->first[x] / size;
     }
     return size > 0.0;
 }

@@ -99,9 +99,33 @@ static void read_point(struct dalcs_steady *st, const struct dalcs_radau *radau)
     }
 }
 
+static void read_signature(struct dalcs_steady *st, const struct dalcs_variation *variation) {
+    st->signature = 0;
+    for (int k = 0; k < variation->n_parts; k++) {
+        st->signature = st->signature * 31 + variation->part[k].signature;
+    }
+}
+
+/* Of the part whose first event comes first. */
+static void read_phase(struct dalcs_steady *st, const struct dalcs_variation *variation) {
+    const struct dalcs_variation_part *first = NULL;
+    int index = 0;
+    memset(st->phase, 0, (size_t)st->layout.n_x * sizeof(double));
+    for (int k = 0; k < variation->n_parts; k++) {
+        const struct dalcs_variation_part *v = &variation->part[k];
+        if (v->n_x > 0 && isfinite(v->moved) && (first == NULL || v->moved < first->moved)) {
+            first = v;
+            index = k;
+        }
+    }
+    if (first != NULL) {
+        memcpy(st->phase + st->layout.first[index], first->moves,
+               (size_t)first->n_x * sizeof(double));
+    }
+}
+
 static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variation) {
     st->is_exact = true;
-    st->signature = 0;
     for (int k = 0; k < variation->n_parts; k++) {
         const struct dalcs_variation_part *v = &variation->part[k];
         memcpy(st->M + st->layout.first_of_M[k], v->v,
@@ -109,7 +133,6 @@ static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variat
         memcpy(st->first + st->layout.first[k], v->first, (size_t)v->n_x * sizeof(double));
         memcpy(st->last + st->layout.first[k], v->last, (size_t)v->n_x * sizeof(double));
         st->is_exact = st->is_exact && v->is_exact;
-        st->signature = st->signature * 31 + v->signature;
     }
 }
 
@@ -138,10 +161,11 @@ static enum dalcs_status start(struct dalcs_steady *st, struct dalcs_euler *e,
 static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler *e,
                                      struct dalcs_radau *radau, enum dalcs_steady_asked asked) {
     const bool with_M = asked == DALCS_STEADY_M;
+    const bool with_modes = st->run->s->near != NULL && !with_M; /* they tell two runs apart */
     struct dalcs_variation variation = {0};
     struct dalcs_observer observer;
-    if (with_M) {
-        DALCS_TRY(dalcs_variation_setup(&variation, radau));
+    if (with_M || with_modes) {
+        DALCS_TRY(dalcs_variation_setup(&variation, radau, !with_M));
         observer = dalcs_variation_observer(&variation);
         e->observer = &observer;
     }
@@ -153,9 +177,13 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler
     if (status == DALCS_OK) {
         read_point(st, radau);
     }
+    if (status == DALCS_OK && (with_M || with_modes)) {
+        read_signature(st, &variation);
+        status = variation.status;
+    }
     if (status == DALCS_OK && with_M) {
         read_M(st, &variation);
-        status = variation.status;
+        read_phase(st, &variation);
     }
     e->observer = NULL;
     dalcs_variation_finish(&variation);
@@ -288,6 +316,7 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
         st->drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->first = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->last = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->phase = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->found.state =
             dalcs_arena_alloc(&r->s->arena, (size_t)network->n_states + 1, sizeof(double));
         st->found.average =
@@ -296,9 +325,10 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
             dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
         st->conserved = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->conserved));
         complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
-                   st->M != NULL && st->first != NULL && st->last != NULL && st->scale != NULL &&
-                   st->step != NULL && st->drift != NULL && st->found.state != NULL &&
-                   st->found.average != NULL && st->found.rms != NULL && st->conserved != NULL;
+                   st->M != NULL && st->phase != NULL && st->first != NULL && st->last != NULL &&
+                   st->scale != NULL && st->step != NULL && st->drift != NULL &&
+                   st->found.state != NULL && st->found.average != NULL && st->found.rms != NULL &&
+                   st->conserved != NULL;
     }
     if (!complete) {
         dalcs_steady_finish(st);

@@ -203,7 +203,7 @@ static enum dalcs_status tell_conserved(struct dalcs_steady *st) {
     return DALCS_OK;
 }
 
-static enum dalcs_status tell_signals(struct dalcs_steady *st) {
+enum dalcs_status dalcs_steady_report_signals(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
     const struct dalcs_circuit *c = &s->circuit;
     const size_t n = (size_t)(c->n_computed > 0 ? c->n_named : c->n_shown);
@@ -293,5 +293,5 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
                               (n == 0 || hypot(m[0].re, m[0].im) < 1.0 - near_one);
     s->report.steady.verdict = verdict_of(st, m, n);
     DALCS_TRY(tell_conserved(st));
-    return s->report.steady.verdict != NULL ? tell_signals(st) : DALCS_E_NOMEM;
+    return s->report.steady.verdict != NULL ? dalcs_steady_report_signals(st) : DALCS_E_NOMEM;
 }

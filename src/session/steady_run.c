@@ -176,7 +176,8 @@ static enum dalcs_status run_period(struct dalcs_steady *st, bool is_silent) {
     r->orbit = NULL;
     r->orbit_end = NULL;
     r->options = options;
-    return status == DALCS_OK ? dalcs_steady_find_defect(st) : status;
+    const bool is_beside = r->s->near != NULL && r->s->near->asked != DALCS_NEAR_ORBIT;
+    return status == DALCS_OK && !is_beside ? dalcs_steady_find_defect(st) : status;
 }
 
 /* ---- A period as a .tran --------------------------------------------------------------------------- */
@@ -224,6 +225,11 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     const bool uic = c->transient.use_initial_conditions || c->periodic.use_initial_conditions;
     take_period(r, period, uic);
     DALCS_TRY(dalcs_steady_setup(st, r, period));
+    if (r->s->near != NULL && r->s->near->asked != DALCS_NEAR_ORBIT) {
+        DALCS_TRY(dalcs_steady_at_near(st, is_free, r->s->near));
+        take_period(r, st->period, uic);
+        return DALCS_OK;
+    }
     if (r->s->near != NULL) {
         DALCS_TRY(dalcs_steady_from_near(st, is_free, r->s->near));
         take_period(r, st->period, uic);
@@ -270,8 +276,13 @@ enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     struct dalcs_steady st = {0};
     struct dalcs_steady_kept kept;
     DALCS_TRY(dalcs_steady_keep(r, &kept));
+    const struct dalcs_steady_near *near = r->s->near;
+    const bool is_run =
+        near == NULL || near->asked == DALCS_NEAR_ORBIT ||
+        (near->asked == DALCS_NEAR_MEASURE && dalcs_steady_near_measures(&r->s->circuit));
     enum dalcs_status status = find_orbit(r, false, &st);
-    status = status == DALCS_OK && !r->s->anchor.is_sought ? run_period(&st, false) : status;
+    status =
+        status == DALCS_OK && !r->s->anchor.is_sought && is_run ? run_period(&st, false) : status;
     dalcs_steady_put_back(r, &kept, true);
     free(kept.stimulus);
     if (status == DALCS_OK && r->s->circuit.sensitivity.present && r->s->near == NULL) {

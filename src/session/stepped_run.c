@@ -106,8 +106,10 @@ static enum dalcs_status report_measured(struct measured *all, struct dalcs_sess
 
 static bool is_asked(const struct dalcs_circuit *circuit, const struct dalcs_run_options *options,
                      enum dalcs_analysis analysis) {
-    if (options->steady || options->bode) {
-        return analysis == (options->steady ? DALCS_PERIODIC : DALCS_AC);
+    if (options->steady || options->bode || options->envelope) {
+        return analysis == (options->steady ? DALCS_PERIODIC
+                            : options->bode ? DALCS_AC
+                                            : DALCS_TRANSIENT);
     }
     const bool asked[] = {[DALCS_OPERATING_POINT] = circuit->operating_point,
                           [DALCS_TRANSIENT] = circuit->transient.present,

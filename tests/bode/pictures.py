@@ -88,6 +88,33 @@ Vloop f z 0
     checker.check(-250.0 in tics and not any(60 < t <= 180 for t in tics), f"phase from {sorted(tics)}")
 
 
+def check_decibels(checker, program, folder):
+    """A response without a loop is drawn in dB; what is 0 but for rounding is left out."""
+    (folder / "db.cir").write_text("""A square wave that switches a filter
+Vin in 0 DC 1 AC 1
+Vhold hold 0 2
+Rhold hold in 1k
+Vclock clock 0 PULSE(0 1 0 0 0 2u 10u)
+S1 in sw clock 0 sm
+R1 sw out 100
+C1 out 0 100n
+R2 out 0 1k
+E1 small 0 out 0 {small}
+R3 small 0 1k
+.model sm SW(Ron=1 Roff=1k Vt=0.5)
+.param small=1e-12
+.save v(in) v(hold) v(out) v(small)
+.pss uic
+""")
+    for small, is_drawn in ("1e-12", True), ("1e-14", False):
+        done = run(program, folder, "bode", "db.cir", "--from", "100", "--to", "10k", "-q", "--set", f"small={small}",
+                   "--plot", "db.svg")
+        picture = (folder / "db.svg").read_text() if done.returncode == 0 else ""
+        checker.check("magnitude (dB)" in picture and "db(v(out))" in picture and "phase(v(out))" in picture
+                      and "v(hold)" not in picture, f"decibels: {done.stderr}")
+        checker.check(("v(small)" in picture) == is_drawn, f"a gain of {small}")
+
+
 def check_orbit(checker, program, folder):
     (folder / "orbit.cir").write_text(UNSTABLE)
     for ending in ("svg", "html"):
@@ -100,8 +127,12 @@ def check_orbit(checker, program, folder):
     picture = (folder / "m.svg").read_text()
     checker.check(not steady["stable"] and "i(l1)" in picture and "multipliers of a period" in picture, "multipliers")
     checker.check(("of the orbit of two periods" in picture) == ("doubled" in steady), "the orbit of two periods")
+    done = run(program, folder, "steady", "orbit.cir", "-q", "--multipliers-plot", "m.html")
+    page = (folder / "m.html").read_text() if done.returncode == 0 else ""
+    checker.check(page.startswith("<!DOCTYPE html>") and "multipliers of a period" in page and "http" not in
+                  page.replace("http://www.w3.org/", ""), f"a page of multipliers: {done.stderr}")
     for arguments, words in ((["run", "orbit.cir", "--multipliers-plot", "m.svg"], "one of 'dalcs steady'"),
-                             (["steady", "orbit.cir", "--multipliers-plot", "m.html"], "unknown format of 'm.html'"),
+                             (["steady", "orbit.cir", "--multipliers-plot", "m.txt"], "unknown format of 'm.txt'"),
                              (["steady", "orbit.cir", "--plot", "m.txt"], "name it .svg, .png, .pdf or .html")):
         done = run(program, folder, *arguments)
         checker.check(done.returncode == 2 and words in done.stderr, f"{arguments}: {done.stderr}")
@@ -111,7 +142,7 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("pictures")
     with tempfile.TemporaryDirectory() as name:
-        for look in (check_bode, check_phase, check_orbit):
+        for look in (check_bode, check_phase, check_decibels, check_orbit):
             look(checker, program, pathlib.Path(name))
     return checker.finish()
 

@@ -34,7 +34,7 @@ import dalcs_program  # pylint: disable=wrong-import-position,import-error
 BY_HAND = {"accuracy.md", "testing.md"}
 BLOCK = re.compile(r"^```(.*)\n((?:.*\n)*?)```$", re.MULTILINE)
 SAVED = re.compile(r"\bas `([\w.-]+)`[^\n]*:\s*\Z")
-COMMAND = re.compile(r"^ *(?:\$ |(?:build/)?dalcs (?:run|steady|bode|check|plot|compare|converge|equations) |"
+COMMAND = re.compile(r"^ *(?:\$ |(?:build/)?dalcs (?:run|steady|bode|envelope|check|plot|compare|converge|equations) |"
                      r"(?:\.ci|tools)/\w+|python3 |meson |ninja |gcc )", re.MULTILINE)
 MEASURED = re.compile(r" cpu|residual|wall| s for ")
 

@@ -22,6 +22,17 @@ import dalcs
 from half_wave import NETLIST, closes, opens, output
 
 SOURCE = pathlib.Path(sys.argv[1])
+BOOST = """Boost converter with a large output capacitor
+Vin in 0 12
+Vg g 0 PULSE(0 1 0 0 0 4u 10u)
+L1 in sw 50u
+S1 sw 0 g 0 sm
+D1 sw out
+C1 out 0 10m
+R1 out 0 100
+.model sm SW(Ron=10m Vt=0.5)
+.pss uic
+"""
 ENDLESS = SOURCE / "netlists" / "converters" / "buck_closed_loop.cir"
 
 
@@ -96,6 +107,12 @@ class Values(unittest.TestCase):
         for name, value in ("tol", "much"), ("audit", "maybe"), ("stages", 2.5), ("curve", "splines"):
             with self.assertRaisesRegex(dalcs.OptionError, name):
                 dalcs.run(NETLIST, **{name: value})
+
+    def test_envelope(self):
+        boost = dalcs.Circuit(BOOST).envelope(stop=0.1)
+        self.assertEqual((boost.analysis, boost.report["envelope"]["periods"]), ("tran", 10000))
+        self.assertLess(len(boost), 5000)
+        self.assertEqual(dalcs.Circuit(BOOST).envelope(stop=0.1, r1=50).report["envelope"]["periods"], 10000)
 
     def test_losses_jumps_steady_check(self):
         losses = dalcs.run(NETLIST, losses=(20e-3, 40e-3)).losses

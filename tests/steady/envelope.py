@@ -152,6 +152,57 @@ def beside(case):
     case.checker.check(starts >= 2, f"{starts} runs")
 
 
+def verb(case):
+    """`dalcs envelope` runs the .env of a netlist, or its .tran, or for as long as it is told; .meas and others are left out."""
+    check = case.checker.check
+
+    def envelope(netlist, *options):
+        (case.folder / "v.cir").write_text(netlist)
+        (case.folder / "v.json").unlink(missing_ok=True)
+        done = subprocess.run([case.program, "envelope", "v.cir", "-o", "v.csv", "--report", "v.json", *options],
+                              cwd=case.folder, capture_output=True, text=True, check=False)
+        rows = (case.folder / "v.csv").read_text() if done.returncode == 0 else ""
+        path = case.folder / "v.json"
+        return done, rows, json.loads(path.read_text()) if path.exists() else {}
+
+    done, of_card, report = envelope(f"* v\n{BOOST}.env 0.3 uic at=0.1\n.pss uic\n.meas pss x avg v(out)\n")
+    check(done.returncode == 0 and "envelope  30000 periods of 10 us" in done.stdout, f"card: {done.stdout} {done.stderr}")
+    check(list(report) and "steady" not in report and report["envelope"]["periods"] == 30000, f"card: {report.keys()}")
+    final = re.search(r"signal +final\n(?:.*\n)*?  v\(out\) +(\S+)  V\n", done.stdout)
+    last = of_card.splitlines()[-1].split(",")[of_card.splitlines()[0].split(",").index("v(out)")]
+    check(final and abs(float(final[1]) / float(last) - 1) < 1e-3, f"final: {done.stdout}")
+    tran = f"* v\n{BOOST}.tran 1u 0.3 0.2 uic\n.meas tran m max v(out)\n.four 100k v(out)\n"
+    done, of_tran, _ = envelope(tran, "--show", "0.1")
+    check(of_tran == of_card and "note: .meas: left out" in done.stderr, f".tran: {done.stderr}")
+    done, of_none, _ = envelope(f"* v\n{BOOST}.pss uic\n", "--stop", "0.3", "--show", "100m")
+    check(of_none == of_card, f"neither: {done.stderr}")
+    done, other, report = envelope(tran, "--stop", "0.1", "--show", "0,50m", "--set", "r1=50", "--plot", "v.html")
+    check(done.returncode == 0 and report["envelope"]["periods"] == 10000 and "wrote     v.html" in done.stdout,
+          f"--stop: {done.stdout} {done.stderr}")
+    check((case.folder / "v.html").exists() and other != of_card, "a page")
+    done, _, _ = envelope(tran + ".step r1 list 50 100\n")
+    check(done.returncode == 0 and done.stderr.count("left out") == 1, f".step: {done.stderr}")
+    for options, netlist, status, words in (
+            ((), f"* v\n{BOOST}", 2, "the netlist has neither .env nor .tran"),
+            ((), f"* v\n{BOOST}.tran 1u 1m uic=steady\n", 2, "leave uic=steady out"),
+            (("--stop", "1m", "--show", "2m"), f"* v\n{BOOST}", 2, "there is no period at 0.002 s: the run ends at 0.001 s"),
+            (("--show", "1m,x"), tran, 2, "--show: 'x' is no time"),
+            (("--stop", "-1"), tran, 2, "--stop: '-1' is not a number greater than 0"),
+            (("--losses",), tran, 2, "--losses is one of"),
+            (("-o", "none", "--measures", "m.csv"), tran, 2, "--measures is a table of .meas"),
+            (("--stop", "1m"), "* v\nV1 a 0 1\nR1 a b 1\nC1 b 0 1u\n", 3, "no source repeats"),
+            (("--period", "1m"), tran, 2, "--period is one of")):
+        done, _, _ = envelope(netlist, *options)
+        check(done.returncode == status and words in done.stderr, f"{options}: {done.returncode}, {done.stderr}")
+    done = subprocess.run([case.program, "run", "v.cir", "--stop", "1m"], cwd=case.folder, capture_output=True, text=True,
+                          check=False)
+    check(done.returncode == 2 and "--stop is one of 'dalcs envelope'" in done.stderr, done.stderr)
+    (case.folder / "v.cir").write_text(f"* v\n{BOOST}.env 0.01 uic\n")
+    done = subprocess.run([case.program, "run", "v.cir", "-q", "-o", "none"], cwd=case.folder, capture_output=True,
+                          text=True, check=False)
+    check(done.returncode == 0, f"-o none: {done.stderr}")
+
+
 def refused(case):
     case.refuses(f"* r\n{BOOST}.env 0.1 uic\n.meas tran m max v(out)\n", 3, "measurements, losses and --at", "c.cir:10:1")
     case.refuses(f"* r\n{BOOST}.env 0.1\n.tran 1u 1m\n", 3, "a second .tran, the first at")
@@ -173,6 +224,7 @@ def main():
         case.look_at("fine", BOOST, 1e-5, 50000, 150, 1e-8)
         written(case)
         beside(case)
+        verb(case)
         refused(case)
         return case.checker.finish()
 

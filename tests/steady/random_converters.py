@@ -22,6 +22,9 @@ import drawn  # pylint: disable=import-error
 NEAR = 1e-9
 MOST_PERIODS = 20000  # that a run may settle; a slower orbit has to last for a hundred periods
 LASTS = 100
+MOST_GROWING = 1000000  # the same beside an unstable orbit
+GROWS = 1e5  # what is beside an unstable orbit may have little of what grows
+ROUNDING = 1e-15  # V, A
 
 
 class Look:
@@ -53,6 +56,7 @@ class Look:
         worst = 0.0
         for kind, unit in (("c", "v("), ("l", "i(")):
             scale = max((signal["rms"] for name, signal in steady["signals"].items() if name.startswith(unit)), default=0.0)
+            scale = scale if scale > ROUNDING else 1.0  # where no diode conducts currents are rounding
             for name in other:
                 if name.rsplit(".", 1)[-1][0] == kind:
                     worst = max(worst, abs(one[name] - other[name]) / (scale or 1.0))
@@ -106,7 +110,7 @@ class Look:
         """A run that begins on the orbit stays there."""
         states = steady["states"]
         if not self.can_begin(states):
-            return "not looked at"
+            return self.stays(steady, largest)
         # a switch with a hysteresis may stand on either side then
         sides = ("on", "off") if " vh=" in self.case.netlist else ("",)
         finals = [self.after(begun(self.case.netlist, states, side), LASTS, steady["period"]) for side in sides]
@@ -117,6 +121,17 @@ class Look:
         worst = min(self.off(states, final, steady) for final in finals)
         self.check(worst <= near, f"after {LASTS} periods it is off by {worst:.2g}; {steady['verdict']}")
         return f"lasts, {worst:.1e}"
+
+    def stays(self, steady, largest):
+        """The same where a netlist cannot say how to begin: the run leaves the orbit of its own search."""
+        stop = LASTS * steady["period"]
+        done, report = self.run("run", self.case.netlist + f".tran {stop!r} {stop!r} {stop * (1 - 1e-9)!r} uic=steady\n.pss uic\n",
+                                "--tol", "1e-11", "--fill", "none")
+        if not self.check(done.returncode == 0, f"the run from the orbit: {done.stderr}"):
+            return "no run"
+        worst = self.off(steady["states"], report["final"], steady)
+        self.check(worst <= NEAR * max(1.0, largest ** LASTS), f"{LASTS} periods from the orbit it is off by {worst:.2g}")
+        return f"stays, {worst:.1e}"
 
     def can_begin(self, states):
         """What a run can begin with: not what is inside of a source or a subcircuit, nor a source that is late."""
@@ -129,7 +144,7 @@ class Look:
         if not self.can_begin(states):
             return "not looked at"
         beside = {name: value * (1 + 1e-6) + (1e-9 if value == 0 else 0) for name, value in states.items()}
-        periods = max(10, min(MOST_PERIODS, math.ceil(math.log(1e3) / math.log(largest)))) if largest > 1 else LASTS
+        periods = max(10, min(MOST_GROWING, math.ceil(math.log(GROWS) / math.log(largest)))) if largest > 1 else LASTS
         final = self.after(begun(self.case.netlist, beside), periods, steady["period"])
         if final is None:
             return "no run"

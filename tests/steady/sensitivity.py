@@ -319,6 +319,48 @@ B1 x 0 I=1e-4*v(x)*v(x)*v(x)
 .sens r1 c1
 .four 1k 3 v(x)
 """, {"r1": 1e3, "c1": 100e-9}),
+    "losses": ("""A boost converter with losses
+Vin in 0 {vin}
+L1 in x 50u
+Rl x sw {rl}
+Vg g 0 PULSE(0 1 0 0 0 4u 10u)
+S1 sw 0 g 0 sm
+D1 sw out dm
+C1 out e 22u
+Re e 0 {re}
+R1 out 0 20
+.model sm SW(Ron=20m Vt=0.5)
+.model dm D(Vfwd={dm(vfwd)} Ron=15m)
+.pss uic
+.sens vin rl re dm(vfwd)
+.meas pss pin avg -v(in)*i(vin)
+.meas pss pout avg v(out)*i(r1)
+.meas pss eta param='pout/pin'
+""", {"vin": 12, "rl": 0.05, "re": 0.08, "dm(vfwd)": 0.6}),
+    "half_wave": ("""A half-wave rectifier behind a source of 2 Ohm
+Vac in 0 SIN(0 20 50)
+Rs in a {rs}
+D1 a out dm
+C1 out 0 {c1}
+R1 out 0 {r1}
+.model dm D(Vfwd=0.7)
+.pss uic
+.sens rs c1 r1
+.four 50 5 i(d1)
+.meas pss ripple pp v(out)
+.meas pss opens when i(d1)=0.2 rise=1
+""", {"rs": 2, "c1": 1e-3, "r1": 200}),
+    "conducts": ("""Peak rectifier whose diode conducts at t = 0: its state there, with a smaller amplitude, blocks the diode
+V1 in 0 SIN(0 {amp} 1k 0 0 90)
+D1 in out
+C1 out 0 {c1}
+R1 out 0 1k
+.param amp={amp_value}
+.pss uic
+.sens param amp c1
+.meas pss v avg v(out)
+.meas pss low min v(out)
+""", {"amp": 10, "c1": 1e-5}),
     "exchange": ("""A switched capacitor that jumps
 Vin in 0 {vin}
 Va a 0 PULSE(0 1 0 0 0 4u 10u)

@@ -55,7 +55,8 @@ class Circuit:
             options = {name: value for name, value in options.items()
                        if name not in ("fill", "curve", "compress")}
         own = {name: value for name, value in more.items() if name not in c.OPTIONS}
-        session = self._read(losses, bool(options.get("steady")), {**(values or {}), **own}, seed)
+        alone = bool(options.get("steady") or options.get("envelope"))
+        session = self._read(losses, alone, {**(values or {}), **own}, seed)
         chosen = Options(options, at)
         return Result(session, session.run(chosen, progress, rows), bool(options.get("only")))
 
@@ -68,6 +69,16 @@ class Circuit:
         if period is not None:
             more["period"] = float(period)
         return self.run(values, steady=True, **more)
+
+    def envelope(self, values: Optional[Mapping[str, float]] = None, *,
+                 stop: Optional[float] = None, **more: Any) -> Result:
+        """A slow start, most of whose periods are left out: rows at the beginnings of those that are run.
+
+        stop    s; None: that of .env, else of .tran
+        """
+        if stop is not None:
+            more["envelope_stop"] = float(stop)
+        return self.run(values, envelope=True, **more)
 
     def sweep(self, grid: Optional[Grid] = None, *, workers: Optional[int] = None,
               each: Optional[Callable[[Result], Any]] = None, **options: Any) -> Sweep:

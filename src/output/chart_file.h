@@ -1,0 +1,20 @@
+/* chart_file.h - a script of gnuplot as a picture, or as a page that holds it. */
+#ifndef DALCS_CHART_FILE_H
+#define DALCS_CHART_FILE_H
+
+#include "gnuplot.h"
+
+#include <stdbool.h>
+
+/* Is that the name of a page? */
+bool dalcs_chart_is_page(const char *path);
+
+/* The terminal that the name of the file asks for; in pixels. */
+void dalcs_chart_write_terminal(FILE *script, const char *path, int width, int height);
+
+/* What `write` puts into a script, drawn; title: of a page. `message` says why it fails. */
+enum dalcs_status dalcs_chart_draw(void (*write)(FILE *script, const void *chart, const char *path),
+                                   const void *chart, const char *path, const char *title,
+                                   char message[DALCS_GNUPLOT_MESSAGE]) DALCS_MUST_CHECK;
+
+#endif
