@@ -267,6 +267,14 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
     return dalcs_measured_collect(builder);
 }
 
+/* Gates carry what a small change of a state does from one part of a circuit to another one: where steady states are
+ * looked for, all of it is one system. */
+static bool is_whole(const struct dalcs_builder *builder) {
+    const struct dalcs_circuit *c = builder->circuit;
+    return c->n_gates > 0 && (builder->netlist->asks_steady || c->periodic.present ||
+                              c->transient.starts_steady || c->envelope.present);
+}
+
 static enum dalcs_status build(struct dalcs_builder *builder) {
     const size_t n_cards = builder->deck->n_cards;
     unsigned char *class_of = dalcs_arena_alloc(&builder->scratch, n_cards, 1);
@@ -276,6 +284,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_slip_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(read_cards(builder, class_of));
+    builder->circuit->is_whole = is_whole(builder);
     dalcs_passive_add_default_rser(builder);
     dalcs_storage_resolve(builder);
     dalcs_controlled_resolve(builder);

@@ -3,7 +3,7 @@
  *
  * Decided are the voltages along V sources from ground, and along sources whose formula is decided itself: so are dead
  * times behind comparisons behind carriers. Not where .dc, .ac or a script may give a source another value than its
- * stimulus, which such a formula would not see. */
+ * stimulus, which such a formula would not see; nor where the outputs of gates move with small signals. */
 #include "behaviour.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 
 static bool is_free(const struct dalcs_builder *builder) {
     return builder->dc != NULL || builder->ac != NULL || builder->netlist->n_script_lines > 0 ||
-           builder->netlist->asks_response;
+           builder->netlist->asks_response || builder->circuit->is_whole;
 }
 
 /* Breadth first along V sources: end e of device i has the number 2 i + e, and 1. */

@@ -76,6 +76,12 @@ static void join_term(void *to, const struct dalcs_affine_term *term) {
     }
 }
 
+static void join_all(const struct dalcs_circuit *c, int *parent) {
+    for (int i = 1; i < c->n_devices && c->is_whole; i++) {
+        dalcs_union_join(parent, c->n_nodes, c->n_nodes + i);
+    }
+}
+
 /* Components hang together through anything but ground. Devices are vertices too, so that one
  * between ground and ground, or one that a coupling or a current control reaches, has its place. What
  * .ic says of two nodes takes one equation for both. */
@@ -107,6 +113,7 @@ static void find_components(struct dalcs_topology *t, const struct dalcs_circuit
             dalcs_union_join(parent, a, b);
         }
     }
+    join_all(c, parent);
     for (int n = 0; n < c->n_nodes; n++) {
         t->node_component[n] = -1;
     }

@@ -23,6 +23,10 @@ void dalcs_grid_init(struct dalcs_grid *grid, double h, double stop, int n_stimu
     grid->next_edge = next_edge(grid);
 }
 
+void dalcs_grid_disturb(struct dalcs_grid *grid, double due) {
+    grid->next_edge = fmin(next_edge(grid), due);
+}
+
 double dalcs_grid_advance(struct dalcs_grid *g, bool *jumps) {
     double from = g->t;
     double near = 4.0 * g->resolution;

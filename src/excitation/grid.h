@@ -24,6 +24,9 @@ void dalcs_grid_init(struct dalcs_grid *grid, double h, double stop, int n_stimu
 /* Advances grid->t to the next time and returns the step's length; *jumps: a source jumps there. */
 double dalcs_grid_advance(struct dalcs_grid *grid, bool *jumps);
 
+/* Stimuli have changed: their edges from grid->t on, and one at `due` (s). */
+void dalcs_grid_disturb(struct dalcs_grid *grid, double due);
+
 static inline bool dalcs_grid_at_end(const struct dalcs_grid *grid) {
     return grid->t >= grid->stop;
 }

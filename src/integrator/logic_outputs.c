@@ -1,6 +1,8 @@
 /* logic_outputs.c - what outputs show: points at the end of a stimulus, for what is past stands. */
 #include "logic_outputs.h"
 
+#include "logic_memory.h"
+
 #include <float.h>
 #include <math.h>
 
@@ -60,6 +62,9 @@ static enum dalcs_status show_sample(struct dalcs_logic_run *l, int k, double t)
     struct dalcs_logic_state *state = &l->network.state[k];
     struct dalcs_logic_output *o = &l->output[k];
     if (state->takes) {
+        if (l->observer != NULL) {
+            l->observer->took(l->observer->user, k);
+        }
         l->changed[g->output[0]] = true;
         DALCS_TRY(write(&l->circuit->stimulus[g->output[0]], &o->time, &o->value, o->capacity, t,
                         l->taken[k], 0.0, 1.0));
@@ -107,4 +112,24 @@ enum dalcs_status dalcs_logic_output_start(struct dalcs_logic_run *l, int k, boo
     }
     o->shown = l->network.state[k].seen;
     return DALCS_OK;
+}
+
+enum dalcs_status dalcs_logic_output_restore(struct dalcs_logic_run *l,
+                                             const struct dalcs_logic_pin *pin, double value) {
+    const struct dalcs_logic_gate *g = &l->network.gate[pin->gate];
+    struct dalcs_logic_output *o = &l->output[pin->gate];
+    struct dalcs_stimulus *s = &l->circuit->stimulus[pin->stimulus];
+    double **time = pin->which == 0 ? &o->time : &o->time_bar;
+    double **at = pin->which == 0 ? &o->value : &o->value_bar;
+    const double level = pin->holds                     ? value
+                         : g->kind == DALCS_GATE_SAMPLE ? o->shown
+                                                        : level_of(g, pin->which, o->shown);
+    const double lasts = level == g->high ? g->rise : g->fall;
+    const bool is_level = g->kind == DALCS_GATE_SAMPLE ||
+                          lasts * fabs(level - value) <= l->radau->resolution * (g->high - g->low);
+    bool changed = false;
+    DALCS_TRY(start(s, time, at, &o->capacity[2 * pin->which], is_level ? level : value, &changed));
+    return is_level ? DALCS_OK
+                    : write(s, time, at, &o->capacity[2 * pin->which], 0.0, level, lasts,
+                            g->high - g->low);
 }

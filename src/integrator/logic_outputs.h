@@ -4,6 +4,8 @@
 
 #include "logic_run.h"
 
+struct dalcs_logic_pin;
+
 /* Gate k at rest. *changed: it showed something else. */
 enum dalcs_status dalcs_logic_output_start(struct dalcs_logic_run *l, int k,
                                            bool *changed) DALCS_MUST_CHECK;
@@ -11,5 +13,11 @@ enum dalcs_status dalcs_logic_output_start(struct dalcs_logic_run *l, int k,
 /* What gate k has decided, from t on. */
 enum dalcs_status dalcs_logic_output_show(struct dalcs_logic_run *l, int k,
                                           double t) DALCS_MUST_CHECK;
+
+/* An output at the start of a run that goes on from another one: at `value`, and on its way from there if the gate shows
+ * another level. */
+enum dalcs_status dalcs_logic_output_restore(struct dalcs_logic_run *l,
+                                             const struct dalcs_logic_pin *pin,
+                                             double value) DALCS_MUST_CHECK;
 
 #endif

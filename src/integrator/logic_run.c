@@ -124,6 +124,11 @@ void dalcs_logic_run_finish(struct dalcs_logic_run *l) {
     *l = (struct dalcs_logic_run){0};
 }
 
+/* Times nearer than this are one, s. */
+static double resolution(const struct dalcs_logic_run *l) {
+    return l->radau != NULL ? l->radau->resolution : 4.0 * l->euler->grid.resolution;
+}
+
 /* ---- The queue -------------------------------------------------------------------------------------------- */
 
 static void queue(void *user, int gate, const struct dalcs_logic_state *next) {
@@ -134,7 +139,7 @@ static void queue(void *user, int gate, const struct dalcs_logic_state *next) {
     if (!dalcs_gate_has_delay(g)) {
         return;
     }
-    if (o->n_due > 0 && o->due[o->first_due + o->n_due - 1] >= due) {
+    if (o->n_due > 0 && o->due[o->first_due + o->n_due - 1].t >= due) {
         o->n_due--; /* there and back in no time, or back before it is there */
         return;
     }
@@ -147,7 +152,7 @@ static void queue(void *user, int gate, const struct dalcs_logic_state *next) {
         l->out_of_memory = true;
         return;
     }
-    o->due[end] = due;
+    o->due[end] = (struct dalcs_logic_due){due, l->instant};
     o->n_due++;
 }
 
@@ -155,7 +160,7 @@ double dalcs_logic_run_next(const struct dalcs_logic_run *l) {
     double next = INFINITY;
     for (int k = 0; l->circuit != NULL && k < l->network.n; k++) {
         const struct dalcs_logic_output *o = &l->output[k];
-        next = fmin(next, o->n_due > 0 ? fmin(o->ends, o->due[o->first_due]) : o->ends);
+        next = fmin(next, o->n_due > 0 ? fmin(o->ends, o->due[o->first_due].t) : o->ends);
     }
     return next;
 }
@@ -171,10 +176,20 @@ static void start_pulses(struct dalcs_logic_run *l, double t) {
         if (state->takes) {
             l->output[k].ends =
                 t + g->pulse.lead + (g->sampled >= 0 ? fmax(0.0, l->taken[k]) : g->pulse.length);
+            l->output[k].ends_since = ++l->number;
+            if (l->observer != NULL) {
+                l->observer->pulse(l->observer->user, k, l->number);
+            }
         } else if (state->count == 0) {
             l->output[k].ends = INFINITY;
         }
         state->takes = false;
+    }
+}
+
+static void tell_due(const struct dalcs_logic_run *l, long since) {
+    if (l->observer != NULL) {
+        l->observer->due(l->observer->user, since);
     }
 }
 
@@ -185,7 +200,8 @@ static bool end_pulses(struct dalcs_logic_run *l, double t) {
         const struct dalcs_logic_gate *g = &l->network.gate[k];
         struct dalcs_logic_state *state = &l->network.state[k];
         struct dalcs_logic_output *o = &l->output[k];
-        while (o->ends <= t + l->radau->resolution) {
+        while (o->ends <= t + resolution(l)) {
+            tell_due(l, o->ends_since);
             const bool rests = state->count == 1 && !g->pulse.is_retriggered;
             if (state->q) {
                 state->q = state->is_forced = false;
@@ -204,7 +220,8 @@ static bool release(struct dalcs_logic_run *l, double t) {
     bool any = end_pulses(l, t);
     for (int k = 0; k < l->network.n; k++) {
         struct dalcs_logic_output *o = &l->output[k];
-        while (o->n_due > 0 && o->due[o->first_due] <= t + l->radau->resolution) {
+        while (o->n_due > 0 && o->due[o->first_due].t <= t + resolution(l)) {
+            tell_due(l, o->due[o->first_due].since);
             l->network.state[k].seen = !l->network.state[k].seen;
             o->first_due++;
             o->n_due--;
@@ -267,8 +284,14 @@ static enum dalcs_status show_changes(struct dalcs_logic_run *l, double t, bool 
     return DALCS_OK;
 }
 
-/* All parts that the changes act on. */
+/* All parts that the changes act on; implicit Euler looks at what is just after t. */
 static enum dalcs_status disturb(struct dalcs_logic_run *l, double t) {
+    for (int k = 0; k < l->euler->n_components && l->radau == NULL; k++) {
+        dalcs_component_disturb(&l->euler->component[k], t);
+    }
+    if (l->radau == NULL) {
+        return dalcs_euler_cross(l->euler);
+    }
     for (int k = 0; k < l->radau->n_parts; k++) {
         struct dalcs_radau_part *part = &l->radau->part[k];
         if (!dalcs_radau_is_disturbed(part, l->changed)) {
@@ -302,6 +325,7 @@ enum dalcs_status dalcs_logic_run_at(struct dalcs_logic_run *l, double t) {
     const long most = 2L * (l->network.n + l->n_comparators + 1);
     bool acts = l->circuit != NULL;
     l->now = t;
+    l->instant = ++l->number;
     for (long round = 0; acts; round++) {
         read_bits(l);
         if (!settle(l, t, most)) {
@@ -318,5 +342,7 @@ enum dalcs_status dalcs_logic_run_at(struct dalcs_logic_run *l, double t) {
             DALCS_TRY(disturb(l, t));
         }
     }
-    return DALCS_OK;
+    return l->circuit != NULL && l->observer != NULL
+               ? l->observer->decided(l->observer->user, t, l->instant)
+               : DALCS_OK;
 }

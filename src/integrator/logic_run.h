@@ -9,10 +9,20 @@
 #include "logic_network.h"
 #include "radau_state.h"
 
+/* What is told while it goes on. An instant has a number from 1 on, and so has the end of a pulse: what comes due tells of
+ * which it comes. Numbers below 0 are of what was on its way when the run began (logic_memory.h). */
+struct dalcs_logic_observer {
+    void *user;
+    void (*due)(void *user, long since);              /* it comes, at this instant */
+    void (*took)(void *user, int gate);               /* a sample took what stood before */
+    void (*pulse)(void *user, int gate, long number); /* one begins, whose end has that number */
+    enum dalcs_status (*decided)(void *user, double t, long number); /* all that happens at t has */
+};
+
 struct dalcs_logic_run {
     struct dalcs_circuit *circuit; /* whose stimuli are written; NULL: there is no logic */
     struct dalcs_euler *euler;     /* whose switches are read */
-    struct dalcs_radau *radau;     /* on it; NULL: at rest alone */
+    struct dalcs_radau *radau;     /* on it; NULL: at rest alone, or steps of implicit Euler */
     struct dalcs_logic_network network;
     bool *bit; /* [n_comparators] */
     int n_comparators;
@@ -26,11 +36,17 @@ struct dalcs_logic_run {
         double *time, *value; /* of q, then of its complement */
         double *time_bar, *value_bar;
         size_t capacity[4];
-        double *due; /* [n_due] s, when q, as it was a delay before, is seen: it changes at each */
+
+        struct dalcs_logic_due { /* when q, as it was a delay before, is seen: it changes at each */
+            double t;            /* s */
+            long since;          /* the instant that it comes of */
+        } * due;                 /* [n_due] behind the first */
+
         size_t first_due, n_due, due_capacity;
         double
             ends; /* s, the pulse of a monostable, or what is behind it; INFINITY: there is none */
-    } * output;   /* [n gates] */
+        long ends_since; /* its number */
+    } * output;          /* [n gates] */
 
     void *cut_user;
     void (*on_cut)(void *user, int part,
@@ -41,6 +57,9 @@ struct dalcs_logic_run {
         taken; /* [n gates] V: what samples may take at t, as it was before anything happened there */
     bool *changed; /* [n_stimuli] in the present round */
     double now;    /* s, of the changes of q that the queue is told of */
+    long number;   /* the last one given */
+    long instant;  /* the number of this one */
+    const struct dalcs_logic_observer *observer; /* NULL: nobody asks */
     bool out_of_memory;
     struct dalcs_stimulus *as_built; /* [n_stimuli] what the circuit had */
 };
@@ -50,7 +69,8 @@ enum dalcs_status dalcs_logic_find_comparators(const struct dalcs_circuit *circu
                                                const struct dalcs_euler *euler,
                                                struct dalcs_logic_place *place) DALCS_MUST_CHECK;
 
-/* Does nothing where the circuit has no logic. radau, on that engine, may be NULL: nothing but rest is asked for. */
+/* Does nothing where the circuit has no logic. radau, on that engine, may be NULL: rest alone is asked for, or the run is
+ * one of implicit Euler. */
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
                                         struct dalcs_euler *euler,
                                         struct dalcs_radau *radau) DALCS_MUST_CHECK;

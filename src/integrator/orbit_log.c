@@ -14,7 +14,7 @@
 /* A control that differs by more than this part of its terms on the two sides of a time jumps there. */
 static const double jumps = 1e-9;
 
-/* So far before a time, over it, a piece of a source is asked for that ends there. */
+/* So far before a time, over it, a control is what it was. */
 static const double before = 1e-12;
 
 /* Two commands at one time move alike if they do to this part. */
@@ -22,18 +22,11 @@ static const double alike = 1e-9;
 
 /* ---- Commands ------------------------------------------------------------------------------------ */
 
-static double slope_of(const struct dalcs_stimulus *s, double t, struct dalcs_stimulus_term *term) {
-    struct dalcs_stimulus_piece piece = {.term = term};
-    dalcs_stimulus_course_at(s, t * (1.0 - before), &piece);
-    double slope = piece.slope;
-    for (int k = 0; k < piece.n_terms; k++) {
-        slope += term[k].omega * term[k].sine - term[k].decay * term[k].cosine;
-    }
-    return slope;
-}
-
-/* dt of the command of a pair that moves at t > 0, of the AC values of its sources. */
-static void find_command(const struct dalcs_radau_part *part, int pair, double t, double *dt) {
+/* dt of the command of a pair that moves at t > 0, of the small signals of its sources; by[n_pins] of the outputs of gates, or
+ * NULL. */
+static void find_command(const struct dalcs_orbit_log *log, const struct dalcs_radau_part *part,
+                         int pair, double t, double *dt, double *by) {
+    const struct dalcs_logic_memory *gates = log->gates != NULL ? log->gates->memory : NULL;
     const struct dalcs_control *control = &part->commands.control;
     const struct dalcs_csr *a = &part->component->system->direct_control;
     double left = dalcs_control_value(control, pair, t * (1.0 - before), DALCS_LEFT);
@@ -45,20 +38,30 @@ static void find_command(const struct dalcs_radau_part *part, int pair, double t
         const struct dalcs_stimulus *s = dalcs_control_stimulus(control, a->j[k]);
         if (s != NULL) {
             size += fabs(a->x[k] * dalcs_stimulus_value(s, t, DALCS_RIGHT));
-            slope += a->x[k] * slope_of(s, t, control->term);
-            moved[0] += a->x[k] * s->ac_real;
-            moved[1] += a->x[k] * s->ac_imaginary;
+            slope += a->x[k] * dalcs_slope_before(s, t, control->term);
+            const double complex small =
+                log->sources.of(log->sources.user, part->component->system->stimulus[a->j[k]]);
+            moved[0] += a->x[k] * creal(small);
+            moved[1] += a->x[k] * cimag(small);
         }
     }
-    bool is_edge = fabs(left - right) > jumps * size || slope == 0.0;
+    const double steep = slope * t * before; /* a ramp of no time goes as far from there to here */
+    bool is_edge = fabs(left + steep - right) > jumps * size || slope == 0.0;
     dt[0] = is_edge ? 0.0 : -moved[0] / slope;
     dt[1] = is_edge ? 0.0 : -moved[1] / slope;
+    for (int k = a->p[pair]; k < a->p[pair + 1] && by != NULL; k++) {
+        const int pin = dalcs_logic_pin_of(gates, part->component->system->stimulus[a->j[k]]);
+        if (pin >= 0 && !is_edge) {
+            by[pin] -= a->x[k] / slope;
+        }
+    }
 }
 
 static void take_command(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span, int pair,
                          double t, bool *any) {
     double dt[2];
-    find_command(p->rates.part, pair, t, dt);
+    double *by = !*any && span->gates != NULL ? span->gates->by : NULL;
+    find_command(p->log, p->rates.part, pair, t, dt, by);
     if (!*any) {
         span->moved[0] = dt[0];
         span->moved[1] = dt[1];
@@ -101,6 +104,22 @@ static enum dalcs_status meet_end(struct dalcs_orbit_part *p, struct dalcs_orbit
     return DALCS_OK;
 }
 
+/* But for outputs of gates. */
+static void leap_bystanders(const struct dalcs_orbit_part *p, struct dalcs_orbit_span *span) {
+    const struct dalcs_radau_part *part = p->rates.part;
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_bystanders *b = &part->excitation.bystanders;
+    for (int k = 0; k < b->n; k++) {
+        for (int i = 1; i < s->n_inputs; i++) {
+            const int pin = dalcs_logic_pin_of(p->log->gates->memory, s->stimulus[i]);
+            span->dy[b->column[k]] -= pin >= 0
+                                          ? b->gain[(size_t)k * (size_t)s->n_inputs + (size_t)i] *
+                                                span->gates->pin[pin].leap
+                                          : 0.0;
+        }
+    }
+}
+
 /* And what lies behind it. Sources alone decide bystanders, which do not jump for an event. */
 static void pass_end(struct dalcs_orbit_part *p, const double *f, const double *y) {
     const struct dalcs_radau_part *part = p->rates.part;
@@ -114,6 +133,9 @@ static void pass_end(struct dalcs_orbit_part *p, const double *f, const double *
     }
     for (int k = 0; k < b->n; k++) {
         span->dy[b->column[k]] = 0.0;
+    }
+    if (span->gates != NULL && span->gates->decides) {
+        leap_bystanders(p, span);
     }
     p->pending = false;
 }
@@ -162,8 +184,17 @@ static enum dalcs_status note_arguments(struct dalcs_orbit_part *p, struct dalcs
 static bool goes_on(const struct dalcs_orbit_part *p, const uint64_t *mode) {
     const struct dalcs_orbit_span *last =
         p->n > 0 && p->rates.part->smooth == NULL ? &p->span[p->n - 1] : NULL;
-    return last != NULL && last->df == NULL &&
+    return last != NULL && last->df == NULL && last->gates == NULL &&
            dalcs_mode_is(last->mode, mode, p->rates.part->stages.n_words);
+}
+
+/* What gates may do where the segment ends. */
+static enum dalcs_status end_at_gates(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span) {
+    const struct dalcs_radau_part *part = p->rates.part;
+    span->gates = dalcs_arena_alloc(&p->log->arena, 1, sizeof *span->gates);
+    return span->gates != NULL
+               ? dalcs_orbit_instant_begin(p->log->gates, span->gates, part, part->segment.t_end)
+               : DALCS_E_NOMEM;
 }
 
 static enum dalcs_status take_segment(struct dalcs_orbit_part *p) {
@@ -186,6 +217,9 @@ static enum dalcs_status take_segment(struct dalcs_orbit_part *p) {
         DALCS_TRY(note_arguments(p, span));
     }
     p->log->is_exact = p->log->is_exact && !part->segment.by_euler;
+    if (p->log->gates != NULL && part->segment.why != DALCS_END_OF_STEP) {
+        DALCS_TRY(end_at_gates(p, span));
+    }
     if (!part->segment.by_euler && part->guards.n_crossed > 0) {
         int row = dalcs_orbit_guard_row(part, part->guards.crossed[0]);
         span->rate = dalcs_orbit_guard_rate(part, row);
@@ -194,7 +228,8 @@ static enum dalcs_status take_segment(struct dalcs_orbit_part *p) {
     } else {
         find_commands(p, span);
     }
-    bool moves = span->row >= 0 || span->moved[0] != 0.0 || span->moved[1] != 0.0;
+    bool moves =
+        span->row >= 0 || span->moved[0] != 0.0 || span->moved[1] != 0.0 || span->gates != NULL;
     return moves ? meet_end(p, span) : DALCS_OK;
 }
 
@@ -257,6 +292,9 @@ static enum dalcs_status close_part(struct dalcs_orbit_part *p, double T) {
         return DALCS_OK;
     }
     p->span[p->n - 1].to = T;
+    if (p->log->gates != NULL) {
+        DALCS_TRY(dalcs_orbit_gates_close(p->log->gates));
+    }
     if (!p->pending) {
         DALCS_TRY(find_last_commands(p));
     }
@@ -271,6 +309,32 @@ enum dalcs_status dalcs_orbit_log_close(struct dalcs_orbit_log *log, double T) {
         log->status = close_part(&log->part[k], T);
     }
     return log->status;
+}
+
+/* ---- Gates --------------------------------------------------------------------------------------- */
+
+/* Where the last span ends, or at the start, or where nothing but gates is concerned. */
+static enum dalcs_status seen(void *user, const struct dalcs_logic_instant *instant) {
+    struct dalcs_orbit_log *log = user;
+    const struct dalcs_orbit_part *p = &log->part[0];
+    const struct dalcs_orbit_span *last = p->n > 0 ? &p->span[p->n - 1] : NULL;
+    struct dalcs_orbit_instant *at = last == NULL ? &log->gates->first
+                                     : last->gates != NULL && last->to == instant->t ? last->gates
+                                                                                     : NULL;
+    return dalcs_orbit_gates_note(log->gates, at, instant);
+}
+
+enum dalcs_status dalcs_orbit_log_watch(struct dalcs_orbit_log *log, struct dalcs_logic_run *logic,
+                                        const struct dalcs_logic_memory *memory) {
+    if (logic->circuit == NULL) {
+        return DALCS_OK;
+    }
+    log->gates = dalcs_arena_alloc(&log->arena, 1, sizeof *log->gates);
+    if (log->gates == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_orbit_gates_setup(log->gates, &log->arena, log->radau, logic, memory));
+    return dalcs_logic_watch_start(&log->gates->watch, logic, memory, log, seen);
 }
 
 /* ---- Set up -------------------------------------------------------------------------------------- */
@@ -290,8 +354,10 @@ static enum dalcs_status part_setup(struct dalcs_orbit_log *log, struct dalcs_or
     return dalcs_orbit_rates_setup(&p->rates, &log->arena, part);
 }
 
-enum dalcs_status dalcs_orbit_log_setup(struct dalcs_orbit_log *log, struct dalcs_radau *radau) {
-    *log = (struct dalcs_orbit_log){.radau = radau, .n_parts = radau->n_parts, .is_exact = true};
+enum dalcs_status dalcs_orbit_log_setup(struct dalcs_orbit_log *log, struct dalcs_radau *radau,
+                                        const struct dalcs_orbit_sources *sources) {
+    *log = (struct dalcs_orbit_log){
+        .radau = radau, .n_parts = radau->n_parts, .sources = *sources, .is_exact = true};
     log->part = dalcs_arena_alloc(&log->arena, (size_t)radau->n_parts, sizeof(*log->part));
     enum dalcs_status status = log->part != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (int k = 0; k < radau->n_parts && status == DALCS_OK; k++) {
@@ -306,6 +372,10 @@ enum dalcs_status dalcs_orbit_log_setup(struct dalcs_orbit_log *log, struct dalc
 void dalcs_orbit_log_finish(struct dalcs_orbit_log *log) {
     for (int k = 0; log->part != NULL && k < log->n_parts; k++) {
         free(log->part[k].span);
+    }
+    if (log->gates != NULL) {
+        dalcs_logic_watch_finish(&log->gates->watch);
+        free(log->gates->cause);
     }
     dalcs_arena_finish(&log->arena);
     *log = (struct dalcs_orbit_log){0};

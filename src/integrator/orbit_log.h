@@ -7,7 +7,9 @@
 #ifndef DALCS_ORBIT_LOG_H
 #define DALCS_ORBIT_LOG_H
 
-#include "orbit_rates.h"
+#include "orbit_gates.h"
+
+#include <complex.h>
 
 /* One mode, from one change of it to the next. */
 struct dalcs_orbit_span {
@@ -16,11 +18,12 @@ struct dalcs_orbit_span {
     int row;         /* of the guard in an answer that ends it; -1: none does */
     double rate;     /* of it, by time */
     double moved
-        [2];  /* s, re and im: how a command that ends it moves with the AC values of its sources */
-    double h; /* s, of the step that it is, where there are smooth sources */
+        [2]; /* s, re and im: how a command that ends it moves with the small signals of its sources */
+    double h;              /* s, of the step that it is, where there are smooth sources */
     double (*argument)[2]; /* [n_nodes][n_smooth] what they read at its nodes */
     double *df;            /* [n_x] f- - f+; NULL: nothing moves where it ends */
     double *dy;            /* [n_columns] y- - y+ */
+    struct dalcs_orbit_instant *gates; /* NULL: they do nothing where it ends */
 };
 
 struct dalcs_orbit_part {
@@ -41,12 +44,23 @@ struct dalcs_orbit_log {
         is_exact; /* no step of implicit Euler, no event that only touches, no two commands that move apart */
     int n_parts;
     struct dalcs_orbit_part *part; /* [n_parts] */
+
+    struct dalcs_orbit_sources { /* what their small signals are, by stimulus */
+        const void *user;
+        double complex (*of)(const void *user, int stimulus);
+    } sources;
+
+    struct dalcs_orbit_gates *gates; /* of the one part; NULL: there are none */
     struct dalcs_arena arena;
 };
 
-enum dalcs_status dalcs_orbit_log_setup(struct dalcs_orbit_log *log,
-                                        struct dalcs_radau *radau) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_orbit_log_setup(struct dalcs_orbit_log *log, struct dalcs_radau *radau,
+                                        const struct dalcs_orbit_sources *sources) DALCS_MUST_CHECK;
 void dalcs_orbit_log_finish(struct dalcs_orbit_log *log);
+
+/* Before the run starts: what its gates do, if there are any. */
+enum dalcs_status dalcs_orbit_log_watch(struct dalcs_orbit_log *log, struct dalcs_logic_run *logic,
+                                        const struct dalcs_logic_memory *memory) DALCS_MUST_CHECK;
 
 /* For radau->base->observer. */
 struct dalcs_observer dalcs_orbit_log_observer(struct dalcs_orbit_log *log);

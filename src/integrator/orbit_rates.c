@@ -51,11 +51,81 @@ double dalcs_orbit_weigh(const struct dalcs_stage_layout *l, const double *weigh
     return sum;
 }
 
-double dalcs_orbit_guard_rate(const struct dalcs_radau_part *part, int row) {
+double dalcs_orbit_row_rate(const struct dalcs_radau_part *part, int row, double theta) {
     double weight[DALCS_MAX_NODES];
-    derivative_weights(part->stages.method, part->segment.end, weight);
+    derivative_weights(part->stages.method, theta, weight);
     return dalcs_orbit_weigh(&part->stages.layout, weight, part->segment.out, row) /
            part->segment.h;
+}
+
+double dalcs_orbit_guard_rate(const struct dalcs_radau_part *part, int row) {
+    return dalcs_orbit_row_rate(part, row, part->segment.end);
+}
+
+/* So far before a time, over it, a piece of a source is asked for that ends there. */
+static const double before = 1e-12;
+
+static double slope_at(const struct dalcs_stimulus *s, double t, struct dalcs_stimulus_term *term) {
+    struct dalcs_stimulus_piece piece = {.term = term};
+    dalcs_stimulus_course_at(s, t, &piece);
+    double slope = piece.slope;
+    for (int k = 0; k < piece.n_terms; k++) {
+        slope += term[k].omega * term[k].sine - term[k].decay * term[k].cosine;
+    }
+    return slope;
+}
+
+double dalcs_slope_before(const struct dalcs_stimulus *s, double t,
+                          struct dalcs_stimulus_term *term) {
+    return slope_at(s, t * (1.0 - before), term);
+}
+
+double dalcs_slope_behind(const struct dalcs_stimulus *s, double t,
+                          struct dalcs_stimulus_term *term) {
+    return slope_at(s, t, term);
+}
+
+static double input_slope(const struct dalcs_radau_part *part, int input, double t, bool behind,
+                          struct dalcs_stimulus_term *term) {
+    const int index = part->component->system->stimulus[input];
+    const struct dalcs_stimulus *s = index >= 0 ? &part->component->circuit->stimulus[index] : NULL;
+    return s == NULL ? 0.0
+           : behind  ? dalcs_slope_behind(s, t, term)
+                     : dalcs_slope_before(s, t, term);
+}
+
+int dalcs_orbit_bystander(const struct dalcs_radau_part *part, int column) {
+    const struct dalcs_bystanders *b = &part->excitation.bystanders;
+    int found = -1;
+    for (int k = 0; k < b->n && found < 0; k++) {
+        found = b->column[k] == column ? k : -1;
+    }
+    return found;
+}
+
+double dalcs_orbit_probe_rate(const struct dalcs_radau_part *part, const struct dalcs_probe *probe,
+                              bool at_begin, struct dalcs_stimulus_term *term) {
+    const int n_inputs = part->component->system->n_inputs;
+    const double t = at_begin ? part->segment.t : part->segment.t_end;
+    double sum = 0.0;
+    for (int k = 0; probe->system >= 0 && k < probe->n_terms + probe->n_inputs; k++) {
+        const int index = probe->term[k].index;
+        const int bystander = k < probe->n_terms ? dalcs_orbit_bystander(part, index) : -1;
+        double value = 0.0;
+        if (k >= probe->n_terms) {
+            value = input_slope(part, index, t, at_begin, term);
+        } else if (bystander < 0) {
+            value = dalcs_orbit_row_rate(part, index, at_begin ? 0.0 : part->segment.end);
+        } else {
+            const double *gain =
+                part->excitation.bystanders.gain + (size_t)bystander * (size_t)n_inputs;
+            for (int i = 1; i < n_inputs; i++) {
+                value += gain[i] != 0.0 ? gain[i] * input_slope(part, i, t, at_begin, term) : 0.0;
+            }
+        }
+        sum += probe->term[k].coefficient * value;
+    }
+    return sum;
 }
 
 /* And in which units energies are alike. */

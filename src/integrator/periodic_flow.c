@@ -62,6 +62,12 @@ static enum dalcs_status fill_map(struct dalcs_periodic_flow *flow,
         DALCS_TRY(ask(flow, entry, x));
         memcpy(map->state + (size_t)x * size, flow->out, size * sizeof(double));
     }
+    for (int k = flow->n_x; k < flow->n_columns; k++) {
+        if (flow->pin_function[k - flow->n_x] >= 0) {
+            DALCS_TRY(ask(flow, entry, flow->n_x + 1 + flow->pin_function[k - flow->n_x]));
+            memcpy(map->state + (size_t)k * size, flow->out, size * sizeof(double));
+        }
+    }
     for (int f = 0; f < flow->n_driven; f++) {
         const struct dalcs_excitation_function *function = &flow->excitation.function[f];
         const double complex source = flow->source[function->input];
@@ -78,7 +84,7 @@ enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
                                           const struct dalcs_orbit_span *span, double t, double h,
                                           struct dalcs_flow_map **found) {
     const size_t size = dalcs_periodic_flow_size(flow);
-    const size_t n_x = (size_t)flow->n_x;
+    const size_t n_columns = (size_t)flow->n_columns;
     const size_t n_nodes = (size_t)flow->stages.layout.n_nodes;
     for (struct dalcs_flow_map *m = flow->map; m != NULL; m = m->next) {
         if (m->h == h && (flow->smooth == NULL || m->t == t) &&
@@ -93,7 +99,7 @@ enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
     }
     *map =
         (struct dalcs_flow_map){.mode = span->mode, .h = h, .t = t, .next = flow->map, .stamp = -1};
-    map->state = dalcs_arena_alloc(&flow->arena, n_x * size, sizeof(double));
+    map->state = dalcs_arena_alloc(&flow->arena, n_columns * size, sizeof(double));
     map->drive = dalcs_arena_alloc(&flow->arena, n_nodes * size, sizeof(double complex));
     map->driven = dalcs_arena_alloc(&flow->arena, size, sizeof(double complex));
     if (map->state == NULL || map->drive == NULL || map->driven == NULL) {
@@ -118,7 +124,7 @@ static void extrapolate(const struct dalcs_periodic_flow *flow, const struct dal
         for (int i = 0; i < c->s; i++) {
             start->by_source[x] += c->back[i] * map->drive[(i + 1) * stride + x];
         }
-        for (int k = 0; k < flow->n_x; k++) {
+        for (int k = 0; k < flow->n_columns; k++) {
             double sum = 0.0;
             for (int i = 0; i < c->s; i++) {
                 sum += c->back[i] * map->state[(size_t)k * size + (size_t)((i + 1) * stride + x)];
@@ -131,10 +137,11 @@ static void extrapolate(const struct dalcs_periodic_flow *flow, const struct dal
 /* The largest difference, in units in which energies are alike. */
 static double differ(const struct dalcs_periodic_flow *flow, const double *a, const double *b) {
     double most = 0.0;
-    for (int k = 0; k < flow->n_x; k++) {
+    for (int k = 0; k < flow->n_columns; k++) {
+        const double unit = k < flow->n_x ? flow->unit[k] : 1.0;
         for (int x = 0; x < flow->n_x; x++) {
             double other = b != NULL ? b[k * flow->n_x + x] : (x == k ? 1.0 : 0.0);
-            double off = fabs(a[k * flow->n_x + x] - other) * flow->unit[x] / flow->unit[k];
+            double off = fabs(a[k * flow->n_x + x] - other) * flow->unit[x] / unit;
             most = fmax(most, off);
         }
     }
@@ -145,9 +152,10 @@ static enum dalcs_status make_start(struct dalcs_periodic_flow *flow,
                                     const struct dalcs_orbit_span *span,
                                     struct dalcs_flow_start *start) {
     const size_t n = (size_t)flow->n_x;
-    double *before = dalcs_arena_alloc(&flow->arena, n * n, sizeof(double));
+    const size_t n_P = (size_t)flow->n_columns * n;
+    double *before = dalcs_arena_alloc(&flow->arena, n_P, sizeof(double));
     start->mode = span->mode;
-    start->P = dalcs_arena_alloc(&flow->arena, n * n, sizeof(double));
+    start->P = dalcs_arena_alloc(&flow->arena, n_P, sizeof(double));
     start->by_source = dalcs_arena_alloc(&flow->arena, n, sizeof(double complex));
     if (before == NULL || start->P == NULL || start->by_source == NULL) {
         return DALCS_E_NOMEM;
@@ -160,7 +168,7 @@ static enum dalcs_status make_start(struct dalcs_periodic_flow *flow,
         if (k > 0 && differ(flow, start->P, before) <= same_projection) {
             break;
         }
-        memcpy(before, start->P, n * n * sizeof(double));
+        memcpy(before, start->P, n_P * sizeof(double));
     }
     start->changes_nothing = differ(flow, start->P, NULL) <= same_projection;
     return DALCS_OK;
@@ -197,6 +205,25 @@ static void add_wave(struct dalcs_excitation *e, int input, int n_nodes) {
     }
 }
 
+/* Outputs of gates, each a level that is off for a while. */
+static void add_pins(struct dalcs_periodic_flow *flow) {
+    struct dalcs_excitation *e = &flow->excitation;
+    for (int k = 0; k < flow->n_columns - flow->n_x; k++) {
+        flow->pin_function[k] = -1;
+    }
+    for (int i = 1; i < flow->system->n_inputs && flow->n_columns > flow->n_x; i++) {
+        const int pin =
+            dalcs_logic_pin_of(flow->orbit->log->gates->memory, flow->system->stimulus[i]);
+        if (pin >= 0) {
+            flow->pin_function[pin] = e->n_functions;
+            e->wave[e->n_waves++] = (struct dalcs_excitation_wave){
+                .input = i, .first = e->n_functions, .n_functions = 1, .has_level = true};
+            e->function[e->n_functions++] =
+                (struct dalcs_excitation_function){.input = i, .shape = DALCS_EXCITATION_LEVEL};
+        }
+    }
+}
+
 /* Waves of the sources with a small signal, along Legendre polynomials, and of smooth sources; all else is no small
  * signal. */
 static enum dalcs_status drive_setup(struct dalcs_periodic_flow *flow, int n_nodes) {
@@ -204,8 +231,10 @@ static enum dalcs_status drive_setup(struct dalcs_periodic_flow *flow, int n_nod
     const size_t n = (size_t)flow->system->n_inputs;
     *e = (struct dalcs_excitation){
         .system = flow->system, .shortest_period = INFINITY, .next_edge = INFINITY};
-    e->wave = dalcs_arena_alloc(&e->arena, n, sizeof *e->wave);
-    e->function = dalcs_arena_alloc(&e->arena, n * (size_t)n_nodes, sizeof *e->function);
+    e->wave = dalcs_arena_alloc(&e->arena, 2 * n, sizeof *e->wave);
+    e->function =
+        dalcs_arena_alloc(&e->arena, n * (size_t)n_nodes + (size_t)(flow->n_columns - flow->n_x),
+                          sizeof *e->function);
     e->constant = dalcs_arena_alloc(&e->arena, n, sizeof(double));
     if (e->wave == NULL || e->function == NULL || e->constant == NULL) {
         return DALCS_E_NOMEM;
@@ -216,6 +245,7 @@ static enum dalcs_status drive_setup(struct dalcs_periodic_flow *flow, int n_nod
         }
     }
     flow->n_driven = e->n_functions;
+    add_pins(flow);
     for (int k = 0; k < flow->system->n_smooth; k++) {
         add_wave(e, flow->system->smooth[k].input, n_nodes);
     }
@@ -263,7 +293,9 @@ static enum dalcs_status setup(struct dalcs_periodic_flow *flow, const double co
     const size_t n_x = (size_t)flow->n_x;
     const size_t n_inputs = (size_t)flow->system->n_inputs;
     flow->source = dalcs_arena_alloc(&flow->arena, n_inputs, sizeof *flow->source);
-    if (flow->source == NULL) {
+    flow->pin_function = dalcs_arena_alloc(&flow->arena, (size_t)(flow->n_columns - flow->n_x) + 1,
+                                           sizeof *flow->pin_function);
+    if (flow->source == NULL || flow->pin_function == NULL) {
         return DALCS_E_NOMEM;
     }
     memcpy(flow->source, source, n_inputs * sizeof *source);
@@ -276,7 +308,12 @@ static enum dalcs_status setup(struct dalcs_periodic_flow *flow, const double co
         return DALCS_E_NOMEM;
     }
     if (flow->system->n_smooth > 0) {
-        DALCS_TRY(dalcs_flow_smooth_setup(flow, flow->n_driven));
+        const int n_pins = flow->n_columns - flow->n_x;
+        int first = flow->n_driven;
+        for (int k = 0; k < n_pins; k++) {
+            first += flow->pin_function[k] >= 0 ? 1 : 0;
+        }
+        DALCS_TRY(dalcs_flow_smooth_setup(flow, first));
     }
     return dalcs_periodic_pieces_make(flow);
 }
@@ -285,12 +322,15 @@ enum dalcs_status dalcs_periodic_flow_setup(struct dalcs_periodic_flow *flow,
                                             const struct dalcs_orbit_part *orbit,
                                             const struct dalcs_periodic_flow_asked *asked) {
     const struct dalcs_system *system = orbit->rates.part->component->system;
+    const struct dalcs_orbit_gates *gates = orbit->log->gates;
+    const int n_pins = gates != NULL ? gates->memory->n_pins : 0;
     *flow = (struct dalcs_periodic_flow){.orbit = orbit,
                                          .system = system,
                                          .asked = *asked,
                                          .fastest = asked->fastest,
                                          .period = asked->period,
                                          .n_x = system->n_x,
+                                         .n_columns = system->n_x + n_pins,
                                          .unit = orbit->rates.unit};
     enum dalcs_status status = setup(flow, asked->source);
     if (status != DALCS_OK) {

@@ -18,20 +18,21 @@ struct dalcs_flow_smooth;
 struct dalcs_flow_map {
     const uint64_t *mode;
     double h, t;
-    double *state; /* [n_x][n_nodes * stride] of unit states */
+    double *
+        state; /* [n_columns][n_nodes * stride] of unit states, and of outputs of gates that are off by 1 V */
     double complex
         *drive; /* [n_nodes][n_nodes * stride] of the sources along a Legendre polynomial each */
     struct dalcs_flow_map *next;
     /* at one frequency, periodic_response.c: */
     long stamp;
     double complex *driven; /* [n_nodes * stride] by the sources as they go, from 0 */
-    double complex *mean;   /* [n_x + 1][n_read] */
+    double complex *mean;   /* [n_columns + 1][n_read] */
 };
 
 /* What a new mode makes of states as it begins: x+ = P x- + by_source. */
 struct dalcs_flow_start {
     const uint64_t *mode;
-    double *P;                 /* [n_x][n_x] column after column */
+    double *P;                 /* [n_columns][n_x] column after column */
     double complex *by_source; /* [n_x] */
     bool changes_nothing;
     struct dalcs_flow_start *next;
@@ -47,6 +48,7 @@ struct dalcs_flow_piece {
 
 struct dalcs_periodic_flow_asked {
     const double complex *source;           /* [n_inputs] of the small signals */
+    bool is_still;                          /* they are not those of the log: no command moves */
     double fastest;                         /* rad/s, of them */
     double period;                          /* s */
     enum dalcs_status (*go_on)(void *user); /* asked for each span of a mode; else its status */
@@ -57,15 +59,16 @@ struct dalcs_periodic_flow {
     const struct dalcs_orbit_part *orbit;
     const struct dalcs_system *system;
     struct dalcs_periodic_flow_asked asked;
-    double fastest; /* rad/s */
-    double period;  /* s */
-    int n_x;
-    const double *unit;                                /* [n_x] */
-    double complex *source;                            /* [n_inputs] AC values */
+    double fastest;         /* rad/s */
+    double period;          /* s */
+    int n_x, n_columns;     /* states; and outputs of gates behind them */
+    const double *unit;     /* [n_x] */
+    double complex *source; /* [n_inputs] AC values */
     double legendre[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* coefficient k of the values at nodes */
     struct dalcs_excitation excitation;
     struct dalcs_stages stages;
     int n_driven;                     /* excitation functions of the small signals */
+    int *pin_function;                /* [n_columns - n_x] of each output behind them; -1: none */
     struct dalcs_flow_smooth *smooth; /* NULL: no smooth sources */
     struct dalcs_flow_map *map;       /* all of them */
     struct dalcs_flow_start *start;   /* likewise */
@@ -90,6 +93,12 @@ size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow);
 enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
                                           const struct dalcs_orbit_span *span, double t, double h,
                                           struct dalcs_flow_map **map) DALCS_MUST_CHECK;
+
+/* s: how the command that ends a span moves with the small signals, at the phase 0. */
+static inline double complex dalcs_periodic_flow_moved(const struct dalcs_periodic_flow *flow,
+                                                       const struct dalcs_orbit_span *span) {
+    return flow->asked.is_still ? 0.0 : span->moved[0] + I * span->moved[1];
+}
 
 /* How the mode of a span begins; NULL: with the states as they are. */
 enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,

@@ -15,10 +15,11 @@ enum { MOST_HALVINGS = 40, MOST_ROUGH = 256 };
 /* What goes through the pieces as they are made: what starts from unit states, and with the fastest signal. */
 struct probe {
     struct dalcs_periodic_flow *flow;
-    double complex *column;  /* [n_x + 1][n_x] */
+    int n; /* n_x, the fastest signal, and outputs of gates, each off by 1 V all the time */
+    double complex *column;  /* [n][n_x] */
     double complex *after;   /* likewise, behind a piece that is tried */
-    double *size;            /* [n_x + 1] the largest so far, in the units of energies */
-    double complex *dt;      /* [n_x + 1] s */
+    double *size;            /* [n] the largest so far, in the units of energies */
+    double complex *dt;      /* [n] s */
     double complex *at_node; /* [n_nodes] of one state */
     double complex drive[DALCS_MAX_NODES];
 };
@@ -40,7 +41,9 @@ static double complex row_at(const struct probe *p, const struct dalcs_flow_map 
     const struct dalcs_periodic_flow *flow = p->flow;
     const size_t size = dalcs_periodic_flow_size(flow);
     const size_t at = (size_t)node * (size_t)flow->stages.layout.stride + (size_t)row;
-    double complex sum = k == flow->n_x ? driven(p, map, t, at) : 0.0;
+    double complex sum = k == flow->n_x  ? driven(p, map, t, at)
+                         : k > flow->n_x ? map->state[(size_t)(k - 1) * size + at]
+                                         : 0.0;
     for (int x = 0; x < flow->n_x; x++) {
         sum += p->column[k * flow->n_x + x] * map->state[(size_t)x * size + at];
     }
@@ -92,16 +95,37 @@ static double rounding_of(const struct probe *p, const struct dalcs_flow_map *ma
     return DBL_EPSILON * flow->stages.layout.n_nodes * map->h * most;
 }
 
+/* The same of an output of a gate that is off by 1 V. */
+static double rounding_of_pin(const struct probe *p, const struct dalcs_flow_map *map, int k) {
+    const struct dalcs_periodic_flow *flow = p->flow;
+    const struct dalcs_csr *A = &flow->system->A;
+    const size_t size = dalcs_periodic_flow_size(flow);
+    const size_t stride = (size_t)flow->stages.layout.stride;
+    const double *state = map->state + (size_t)(k - 1) * size;
+    double most = 0.0;
+    for (int x = 0; x < flow->n_x; x++) {
+        for (size_t i = 0; i < size; i += stride) {
+            double terms = 0.0;
+            for (int m = A->p[x]; m < A->p[x + 1]; m++) {
+                terms += fabs(A->x[m] * state[i + (size_t)A->j[m]]);
+            }
+            most = fmax(most, terms / flow->unit[x]);
+        }
+    }
+    return DBL_EPSILON * flow->stages.layout.n_nodes * map->h * most;
+}
+
 /* Does the piece carry all of them? *tail: the worst, over their sizes. */
 static void try_piece(struct probe *p, const struct dalcs_flow_map *map, double t, double *tail) {
     const struct dalcs_periodic_flow *flow = p->flow;
     const int n = flow->stages.layout.n_nodes;
     dalcs_periodic_flow_drive(flow, flow->fastest * map->h, p->drive);
     *tail = fmax(cabs(p->drive[n - 1]), cabs(p->drive[n - 2]));
-    for (int k = 0; k <= flow->n_x; k++) {
+    for (int k = 0; k < p->n; k++) {
         double size;
         double of = find_tail(p, map, t, k, &size);
         size = k == flow->n_x ? fmax(size, rounding_of(p, map) / resolved) : size;
+        size = k > flow->n_x ? fmax(size, rounding_of_pin(p, map, k) / resolved) : size;
         *tail = of > 0.0 ? fmax(*tail, of / size) : *tail;
     }
 }
@@ -109,7 +133,7 @@ static void try_piece(struct probe *p, const struct dalcs_flow_map *map, double 
 static void accept(struct probe *p) {
     const struct dalcs_periodic_flow *flow = p->flow;
     const int n_x = flow->n_x;
-    for (int k = 0; k <= n_x; k++) {
+    for (int k = 0; k < p->n; k++) {
         for (int x = 0; x < n_x; x++) {
             p->column[k * n_x + x] = p->after[k * n_x + x];
             p->size[k] = fmax(p->size[k], flow->unit[x] * cabs(p->after[k * n_x + x]));
@@ -129,8 +153,8 @@ static void find_dt(struct probe *p, const struct dalcs_orbit_span *span,
                     const struct dalcs_flow_map *map, double t) {
     const int end = p->flow->stages.layout.n_nodes - 1;
     const double complex moved =
-        (span->moved[0] + I * span->moved[1]) * cexp(I * p->flow->fastest * span->to);
-    for (int k = 0; k <= p->flow->n_x; k++) {
+        dalcs_periodic_flow_moved(p->flow, span) * cexp(I * p->flow->fastest * span->to);
+    for (int k = 0; k < p->n; k++) {
         p->dt[k] = k == p->flow->n_x ? moved : 0.0;
         if (span->row >= 0) {
             p->dt[k] = -row_at(p, map, t, k, end, span->row) / span->rate;
@@ -140,7 +164,7 @@ static void find_dt(struct probe *p, const struct dalcs_orbit_span *span,
 
 static void end_span(struct probe *p, const struct dalcs_orbit_span *span) {
     const int n_x = p->flow->n_x;
-    for (int k = 0; k <= n_x; k++) {
+    for (int k = 0; k < p->n; k++) {
         for (int x = 0; x < n_x; x++) {
             p->column[k * n_x + x] += p->dt[k] * span->df[x];
         }
@@ -183,9 +207,11 @@ static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span
 static void begin_span(struct probe *p, const struct dalcs_flow_start *start, double t) {
     const struct dalcs_periodic_flow *flow = p->flow;
     const int n_x = flow->n_x;
-    for (int k = 0; k <= n_x && start != NULL; k++) {
+    for (int k = 0; k < p->n && start != NULL; k++) {
         for (int x = 0; x < n_x; x++) {
-            double complex sum = k == n_x ? start->by_source[x] * cexp(I * flow->fastest * t) : 0.0;
+            double complex sum = k == n_x  ? start->by_source[x] * cexp(I * flow->fastest * t)
+                                 : k > n_x ? start->P[(k - 1) * n_x + x]
+                                           : 0.0;
             for (int i = 0; i < n_x; i++) {
                 sum += start->P[i * n_x + x] * p->column[k * n_x + i];
             }
@@ -230,11 +256,12 @@ static enum dalcs_status cut_period(struct probe *p) {
 static enum dalcs_status probe_setup(struct probe *p, struct dalcs_periodic_flow *flow,
                                      struct dalcs_arena *arena) {
     const size_t n_x = (size_t)flow->n_x;
-    *p = (struct probe){.flow = flow};
-    p->column = dalcs_arena_alloc(arena, (n_x + 1) * n_x, sizeof(double complex));
-    p->after = dalcs_arena_alloc(arena, (n_x + 1) * n_x, sizeof(double complex));
-    p->size = dalcs_arena_alloc(arena, n_x + 1, sizeof(double));
-    p->dt = dalcs_arena_alloc(arena, n_x + 1, sizeof(double complex));
+    const size_t n = (size_t)flow->n_columns + 1;
+    *p = (struct probe){.flow = flow, .n = flow->n_columns + 1};
+    p->column = dalcs_arena_alloc(arena, n * n_x, sizeof(double complex));
+    p->after = dalcs_arena_alloc(arena, n * n_x, sizeof(double complex));
+    p->size = dalcs_arena_alloc(arena, n, sizeof(double));
+    p->dt = dalcs_arena_alloc(arena, n, sizeof(double complex));
     p->at_node = dalcs_arena_alloc(arena, DALCS_MAX_NODES, sizeof(double complex));
     if (p->column == NULL || p->after == NULL || p->size == NULL || p->dt == NULL ||
         p->at_node == NULL) {

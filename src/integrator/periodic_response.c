@@ -109,14 +109,15 @@ static void find_means(const struct dalcs_periodic_response *r, struct dalcs_flo
     const int stride = flow->stages.layout.stride;
     double complex weight[DALCS_MAX_NODES];
     mean_weights(flow, w * map->h, weight);
-    for (int k = 0; k <= flow->n_x; k++) {
+    const int n_columns = flow->n_columns;
+    for (int k = 0; k <= n_columns; k++) {
         const double *state = map->state + (size_t)k * dalcs_periodic_flow_size(flow);
         double complex *mean = map->mean + (size_t)k * (size_t)r->n_read;
         for (int m = 0; m < r->n_read; m++) {
             double complex sum = 0.0;
             for (int i = 0; i < n && !is_open(map, flow->system, r->read[m]); i++) {
                 const int at = i * stride + r->read[m];
-                sum += weight[i] * (k < flow->n_x ? state[at] : map->driven[at]);
+                sum += weight[i] * (k < n_columns ? state[at] : map->driven[at]);
             }
             mean[m] = sum;
         }
@@ -130,7 +131,7 @@ static void begin_piece(struct dalcs_periodic_response *r, const struct dalcs_fl
     const int n_x = r->flow->n_x;
     for (int x = 0; x < n_x; x++) {
         double complex sum = piece->start->by_source[x] * phase;
-        for (int k = 0; k < n_x; k++) {
+        for (int k = 0; k < r->flow->n_columns; k++) {
             sum += piece->start->P[k * n_x + x] * r->now[k];
         }
         r->next[x] = sum;
@@ -145,7 +146,7 @@ static double complex at_end(const struct dalcs_periodic_response *r,
     const struct dalcs_stage_layout *l = &flow->stages.layout;
     const size_t at = (size_t)(l->n_nodes - 1) * (size_t)l->stride + (size_t)row;
     double complex sum = phase * map->driven[at];
-    for (int k = 0; k < flow->n_x; k++) {
+    for (int k = 0; k < flow->n_columns; k++) {
         sum += r->now[k] * map->state[(size_t)k * dalcs_periodic_flow_size(flow) + at];
     }
     return sum;
@@ -154,10 +155,10 @@ static double complex at_end(const struct dalcs_periodic_response *r,
 /* y += what the piece has of them, with the phase that they are taken at where it begins. */
 static void add_means(struct dalcs_periodic_response *r, const struct dalcs_flow_map *map,
                       double complex phase, double complex taken) {
-    const int n_x = r->flow->n_x;
+    const int n_columns = r->flow->n_columns;
     const double complex part = taken * (map->h / r->flow->period);
-    for (int k = 0; k <= n_x; k++) {
-        const double complex factor = part * (k < n_x ? r->now[k] : phase);
+    for (int k = 0; k <= n_columns; k++) {
+        const double complex factor = part * (k < n_columns ? r->now[k] : phase);
         const double complex *mean = map->mean + (size_t)k * (size_t)r->n_read;
         for (int m = 0; m < r->n_read; m++) {
             r->y[r->read[m]] += factor * mean[m];
@@ -169,14 +170,54 @@ static double complex turn(double w, double t) {
     return cexp(I * fmod(w * t, dalcs_two_pi));
 }
 
+/* Where a piece ends, for gates. */
+struct end {
+    const struct dalcs_periodic_response *r;
+    const struct dalcs_flow_map *map;
+    double complex phase; /* where it begins */
+};
+
+static double complex row_at_end(void *user, int row) {
+    const struct end *end = user;
+    return at_end(end->r, end->map, end->phase, row);
+}
+
+/* How the event at the end of a piece is late. */
+static double complex find_dt(struct dalcs_periodic_response *r,
+                              const struct dalcs_flow_piece *piece, double complex phase,
+                              double w) {
+    const struct dalcs_orbit_span *end = piece->end;
+    double complex dt = end->row >= 0
+                            ? -at_end(r, piece->map, phase, end->row) / end->rate
+                            : r->drive * dalcs_periodic_flow_moved(r->flow, end) * turn(w, end->to);
+    if (end->gates != NULL) {
+        struct end of = {r, piece->map, phase};
+        const struct dalcs_piece_end there = {&of, row_at_end, r->drive * turn(w, end->to)};
+        dalcs_periodic_gates_meet(&r->gates, end, &there, r->now + r->flow->n_x, &dt);
+    }
+    return dt;
+}
+
+/* The numbers of gates at the end of the period. */
+static void end_gates(struct dalcs_periodic_response *r, double w) {
+    const struct dalcs_periodic_flow *flow = r->flow;
+    const struct dalcs_flow_piece *last = &flow->piece[flow->n - 1];
+    struct end of = {r, last->map, r->drive * turn(w, last->t)};
+    const struct dalcs_piece_end there = {&of, row_at_end, r->drive * turn(w, flow->period)};
+    dalcs_periodic_gates_end(&r->gates, &there, r->now + flow->n_x);
+}
+
 /* From r->now at the start to what it is at the end of the period. means: r->y grows, with everything at w + of. */
 static void go_through(struct dalcs_periodic_response *r, double w, double other, bool means) {
     const struct dalcs_periodic_flow *flow = r->flow;
     const int n_x = flow->n_x;
+    if (r->gates.log != NULL) {
+        dalcs_periodic_gates_begin(&r->gates, r->now + n_x);
+    }
     for (int p = 0; p < flow->n; p++) {
         const struct dalcs_flow_piece *piece = &flow->piece[p];
         struct dalcs_flow_map *map = piece->map;
-        const double complex phase = turn(w, piece->t);
+        const double complex phase = r->drive * turn(w, piece->t);
         if (map->stamp != r->stamp) {
             find_driven(r, map, w);
             find_means(r, map, other);
@@ -189,15 +230,17 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
             add_means(r, map, phase, conj(turn(other, piece->t)));
         }
         const struct dalcs_orbit_span *end = piece->end;
-        double complex dt = 0.0;
-        if (end != NULL) {
-            dt = end->row >= 0 ? -at_end(r, map, phase, end->row) / end->rate
-                               : (end->moved[0] + I * end->moved[1]) * turn(w, end->to);
+        const double complex dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;
+        if (p == flow->n - 1 && r->gates.log != NULL) {
+            end_gates(r, w);
         }
         for (int x = 0; x < n_x; x++) {
             r->next[x] = at_end(r, map, phase, x) + (end != NULL ? dt * end->df[x] : 0.0);
         }
         memcpy(r->now, r->next, (size_t)n_x * sizeof *r->now);
+        if (end != NULL && end->gates != NULL) {
+            dalcs_periodic_gates_pass(&r->gates, end, dt, r->now + n_x);
+        }
         for (int m = 0; m < r->n_read && means && end != NULL; m++) {
             r->y[r->read[m]] +=
                 dt * end->dy[r->read[m]] * conj(turn(other, end->to)) / flow->period;
@@ -205,13 +248,36 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
     }
 }
 
+/* What a period begins with, or ends with: states, outputs, and the other numbers of gates. */
+static double complex *number_at(struct dalcs_periodic_response *r, int k) {
+    return k < r->flow->n_columns ? &r->now[k] : &r->gates.number[k - r->flow->n_columns];
+}
+
+/* Column after column: gates let a small change go from any part to any other. */
+static void find_M(struct dalcs_periodic_response *r) {
+    r->drive = 0.0;
+    r->stamp++;
+    for (int column = 0; column < r->n_all; column++) {
+        for (int k = 0; k < r->n_all; k++) {
+            *number_at(r, k) = k == column ? 1.0 : 0.0;
+        }
+        go_through(r, 0.0, 0.0, false);
+        for (int k = 0; k < r->n_all; k++) {
+            r->M[(size_t)column * (size_t)r->n_all + (size_t)k] = creal(*number_at(r, k));
+        }
+    }
+    r->drive = 1.0;
+}
+
 static enum dalcs_status solve(struct dalcs_periodic_response *r, double w) {
-    const int n = r->flow->n_x;
+    const int n = r->n_all;
     const double complex turned = turn(w, r->flow->period);
     for (int k = 0; k < n * n; k++) {
-        r->A[k] = (k % n == k / n ? turned : 0.0) - r->flow->M[k];
+        r->A[k] = (k % n == k / n ? turned : 0.0) - r->M[k];
     }
-    memcpy(r->d, r->now, (size_t)n * sizeof *r->d);
+    for (int k = 0; k < n; k++) {
+        r->d[k] = *number_at(r, k);
+    }
     const int failed =
         n == 0 ? 0 : LAPACKE_zgesv(LAPACK_COL_MAJOR, n, 1, r->A, n, r->pivot, r->d, n);
     return failed == 0                          ? DALCS_OK
@@ -221,18 +287,19 @@ static enum dalcs_status solve(struct dalcs_periodic_response *r, double w) {
 
 enum dalcs_status dalcs_periodic_response_at(struct dalcs_periodic_response *r, double w,
                                              int sideband) {
-    const size_t n_x = (size_t)r->flow->n_x;
     const double other = w + sideband * dalcs_two_pi / r->flow->period;
     r->stamp++;
     for (int m = 0; m < r->n_read; m++) {
         r->y[r->read[m]] = 0.0;
     }
-    for (size_t x = 0; x < n_x; x++) {
-        r->now[x] = 0.0;
+    for (int k = 0; k < r->n_all; k++) {
+        *number_at(r, k) = 0.0;
     }
     go_through(r, w, other, false);
     DALCS_TRY(solve(r, w));
-    memcpy(r->now, r->d, n_x * sizeof *r->now);
+    for (int k = 0; k < r->n_all; k++) {
+        *number_at(r, k) = r->d[k];
+    }
     go_through(r, w, other, true);
     return DALCS_OK;
 }
@@ -243,29 +310,39 @@ enum dalcs_status dalcs_periodic_response_setup(struct dalcs_periodic_response *
                                                 struct dalcs_periodic_flow *flow,
                                                 const bool *is_read) {
     const int n_columns = dalcs_system_n_columns(flow->system);
-    const size_t n_x = (size_t)flow->n_x;
-    *r = (struct dalcs_periodic_response){.flow = flow};
+    const struct dalcs_orbit_gates *gates = flow->orbit->log->gates;
+    const size_t n_states = (size_t)flow->n_columns;
+    *r = (struct dalcs_periodic_response){.flow = flow, .drive = 1.0};
+    r->n_all = flow->n_x + (gates != NULL ? gates->memory->n_numbers : 0);
+    const size_t n_all = (size_t)r->n_all;
     r->read = dalcs_arena_alloc(&r->arena, (size_t)n_columns, sizeof(int));
     r->y = dalcs_arena_alloc(&r->arena, (size_t)n_columns, sizeof *r->y);
-    r->d = dalcs_arena_alloc(&r->arena, n_x, sizeof *r->d);
-    r->now = dalcs_arena_alloc(&r->arena, n_x, sizeof *r->now);
-    r->next = dalcs_arena_alloc(&r->arena, n_x, sizeof *r->next);
-    r->A = dalcs_arena_alloc(&r->arena, n_x * n_x, sizeof *r->A);
-    r->pivot = dalcs_arena_alloc(&r->arena, n_x, sizeof(int));
-    bool complete = r->read != NULL && r->y != NULL && r->d != NULL && r->now != NULL &&
-                    r->next != NULL && r->A != NULL && r->pivot != NULL;
+    r->d = dalcs_arena_alloc(&r->arena, n_all, sizeof *r->d);
+    r->now = dalcs_arena_alloc(&r->arena, n_states, sizeof *r->now);
+    r->next = dalcs_arena_alloc(&r->arena, n_states, sizeof *r->next);
+    r->A = dalcs_arena_alloc(&r->arena, n_all * n_all, sizeof *r->A);
+    r->M = gates != NULL ? dalcs_arena_alloc(&r->arena, n_all * n_all, sizeof *r->M) : flow->M;
+    r->pivot = dalcs_arena_alloc(&r->arena, n_all, sizeof(int));
+    bool complete = r->M != NULL && r->read != NULL && r->y != NULL && r->d != NULL &&
+                    r->now != NULL && r->next != NULL && r->A != NULL && r->pivot != NULL;
     for (int c = 0; c < n_columns && complete; c++) {
         if (is_read[c]) {
             r->read[r->n_read++] = c;
         }
     }
     for (struct dalcs_flow_map *map = flow->map; map != NULL && complete; map = map->next) {
-        map->mean = dalcs_arena_alloc(&r->arena, (n_x + 1) * (size_t)r->n_read, sizeof *map->mean);
+        map->mean =
+            dalcs_arena_alloc(&r->arena, (n_states + 1) * (size_t)r->n_read, sizeof *map->mean);
         complete = map->mean != NULL;
     }
+    complete = complete && (gates == NULL ||
+                            dalcs_periodic_gates_setup(&r->gates, &r->arena, flow) == DALCS_OK);
     if (!complete) {
         dalcs_periodic_response_finish(r);
         return DALCS_E_NOMEM;
+    }
+    if (gates != NULL) {
+        find_M(r);
     }
     return DALCS_OK;
 }

@@ -8,15 +8,19 @@
 #ifndef DALCS_PERIODIC_RESPONSE_H
 #define DALCS_PERIODIC_RESPONSE_H
 
-#include "periodic_flow.h"
+#include "periodic_gates.h"
 
 struct dalcs_periodic_response {
     struct dalcs_periodic_flow *flow;
-    int n_read, *read; /* [n_read] columns that are asked for */
-    double complex *y; /* [n_columns] those of the last frequency */
-    double complex *d; /* [n_x] the states, at the start of the period */
-    double complex *now, *next;
-    double complex *A; /* [n_x][n_x] */
+    int n_read, *read;                 /* [n_read] columns that are asked for */
+    double complex *y;                 /* [n_columns] those of the last frequency */
+    int n_all;                         /* states, and the numbers of gates */
+    double complex *d;                 /* [n_all] these at the start of the period */
+    double complex *now, *next;        /* [flow->n_columns] */
+    double complex *A;                 /* [n_all][n_all] */
+    double *M;                         /* [n_all][n_all] of the period */
+    double drive;                      /* 1: sources have their small signals; 0: none has */
+    struct dalcs_periodic_gates gates; /* log is NULL: there are none */
     int *pivot;
     long stamp;
     struct dalcs_arena arena;

@@ -38,7 +38,7 @@ static void pass_event(struct dalcs_variation_part *v) {
     const int stride = v->part->stages.layout.stride;
     memcpy(v->y, v->part->segment.out, (size_t)stride * sizeof(double));
     dalcs_orbit_rates_of(&v->rates, v->y, 0.0, v->after);
-    for (int k = 0; k < v->n_x; k++) {
+    for (int k = 0; k < v->n_columns; k++) {
         for (int x = 0; x < v->n_x; x++) {
             v->v[k * v->n_x + x] += (v->before[x] - v->after[x]) * v->guard[k];
         }
@@ -65,14 +65,22 @@ static bool project(struct dalcs_variation_part *v, double *column) {
             v->in[x] += c->back[i] * v->out[(i + 1) * stride + x];
         }
     }
-    return size_of(v, v->in, column) > sqrt(v->part->tolerance) * size_of(v, column, NULL);
+    double size = size_of(v, column, NULL);
+    if (v->gates != NULL) { /* an output that is off may drive it from 0 */
+        size = fmax(size, size_of(v, v->out + c->s * stride, NULL));
+    }
+    return size_of(v, v->in, column) > sqrt(v->part->tolerance) * size;
 }
 
-/* The step for v->in, which holds states alone. */
-static enum dalcs_status apply(struct dalcs_variation_part *v, struct dalcs_stage_entry *entry) {
+/* The step for v->in, which holds the states of column k. */
+static enum dalcs_status apply(struct dalcs_variation_part *v, struct dalcs_stage_entry *entry,
+                               int k) {
     struct dalcs_stages *stages = &v->part->stages;
     const size_t n_sources = (size_t)(stages->n_in - v->n_x);
     memset(v->in + v->n_x, 0, n_sources * sizeof(double));
+    if (v->gates != NULL) {
+        dalcs_gate_variation_drive(v->gates, k, v->in);
+    }
     DALCS_TRY(dalcs_stages_apply(stages, entry, v->in, v->out));
     if (v->part->smooth == NULL) {
         return DALCS_OK;
@@ -93,17 +101,20 @@ static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row, b
     if (part->smooth != NULL) {
         DALCS_TRY(dalcs_smooth_step_vary_begin(part, entry));
     }
-    for (int k = 0; k < v->n_x; k++) {
+    for (int k = 0; k < v->n_columns; k++) {
         double *column = v->v + k * v->n_x;
         memcpy(v->in, column, (size_t)v->n_x * sizeof(double));
-        DALCS_TRY(apply(v, entry));
+        DALCS_TRY(apply(v, entry, k));
         if (is_new && project(v, column)) {
-            DALCS_TRY(apply(v, entry));
+            DALCS_TRY(apply(v, entry, k));
         }
         for (int x = 0; x < v->n_x; x++) {
             column[x] = dalcs_orbit_weigh(&stages->layout, weight, v->out, x);
         }
         v->guard[k] = row >= 0 ? dalcs_orbit_weigh(&stages->layout, weight, v->out, row) : 0.0;
+        if (v->gates != NULL) {
+            dalcs_gate_variation_read(v->gates, k, weight, v->out);
+        }
     }
     return DALCS_OK;
 }
@@ -122,6 +133,13 @@ static void note_flow(struct dalcs_variation_part *v, double stop) {
     }
 }
 
+/* f- where the segment ends. */
+static void find_before(struct dalcs_variation_part *v) {
+    const struct dalcs_radau_part *part = v->part;
+    dalcs_step_values(part, part->segment.end, v->y);
+    dalcs_orbit_rates_of(&v->rates, v->y, part->segment.end * part->segment.h, v->before);
+}
+
 /* f- and dt of the event that ends the segment. */
 static void meet_event(struct dalcs_variation_part *v, int row) {
     const struct dalcs_radau_part *part = v->part;
@@ -130,16 +148,26 @@ static void meet_event(struct dalcs_variation_part *v, int row) {
         v->is_exact = false; /* it only touches its threshold */
         return;
     }
-    for (int k = 0; k < v->n_x; k++) {
+    for (int k = 0; k < v->n_columns; k++) {
         v->guard[k] *= -1.0 / rate;
     }
     if (!isfinite(v->moved)) {
         v->moved = part->segment.t_end;
-        memcpy(v->moves, v->guard, (size_t)v->n_x * sizeof(double));
+        memcpy(v->moves, v->guard, (size_t)v->n_columns * sizeof(double));
     }
-    dalcs_step_values(part, part->segment.end, v->y);
-    dalcs_orbit_rates_of(&v->rates, v->y, part->segment.end * part->segment.h, v->before);
+    find_before(v);
     v->pending = true;
+}
+
+/* Commands along the outputs of gates, and what gates may do where the segment ends. */
+static void meet_gates(struct dalcs_variation_part *v) {
+    bool moves;
+    if (!v->pending) {
+        find_before(v);
+    }
+    const bool is_known = v->pending;
+    dalcs_gate_variation_end(v->gates, &moves);
+    v->pending = is_known || moves;
 }
 
 static void segment(void *user, const struct dalcs_radau_part *present, const double *start) {
@@ -147,7 +175,7 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     struct dalcs_variation_part *v = &variation->part[present->index];
     (void)start;
     bool is_new = sign_mode(v);
-    if (v->n_x == 0 || variation->status < DALCS_OK) {
+    if (v->n_columns == 0 || variation->status < DALCS_OK) {
         return;
     }
     dalcs_recurrence_complete(v->part);
@@ -157,12 +185,20 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     v->is_exact = v->is_exact && !present->segment.by_euler;
     pass_event(v);
     note_flow(v, variation->radau->options.stop);
-    enum dalcs_status status = pass_segment(v, row, is_new);
+    if (v->gates != NULL) {
+        dalcs_gate_variation_begin(v->gates);
+    }
+    enum dalcs_status status = pass_segment(v, row, is_new || v->gates != NULL);
     if (status != DALCS_OK) {
         v->is_exact = false;
         variation->status = status < DALCS_OK ? status : variation->status;
-    } else if (ends_at_event) {
+        return;
+    }
+    if (ends_at_event) {
         meet_event(v, row);
+    }
+    if (v->gates != NULL) {
+        meet_gates(v);
     }
 }
 
@@ -199,27 +235,30 @@ struct dalcs_observer dalcs_variation_observer(struct dalcs_variation *variation
 /* ---- Set up -------------------------------------------------------------------------------------- */
 
 static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_variation_part *v,
-                                    struct dalcs_radau_part *part, bool modes_alone) {
+                                    struct dalcs_radau_part *part, int n_numbers,
+                                    bool modes_alone) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const size_t n = (size_t)s->n_x;
+    const size_t n_all = n + (size_t)n_numbers;
     const size_t n_out = dalcs_stages_room(&part->stages);
     v->part = part;
     v->n_x = part->kind == DALCS_PART_STEPPED && !modes_alone ? s->n_x : 0;
+    v->n_columns = part->kind == DALCS_PART_STEPPED && !modes_alone ? v->n_x + n_numbers : 0;
     v->is_exact = true;
     v->moved = INFINITY;
     if (modes_alone) {
         return DALCS_OK;
     }
-    v->v = dalcs_arena_alloc(arena, n * n, sizeof(double));
+    v->v = dalcs_arena_alloc(arena, n_all * n, sizeof(double));
     v->in = dalcs_arena_alloc(arena, (size_t)part->stages.n_in, sizeof(double));
     v->out = dalcs_arena_alloc(arena, n_out, sizeof(double));
-    v->guard = dalcs_arena_alloc(arena, n, sizeof(double));
+    v->guard = dalcs_arena_alloc(arena, n_all, sizeof(double));
     v->before = dalcs_arena_alloc(arena, n, sizeof(double));
     v->after = dalcs_arena_alloc(arena, n, sizeof(double));
     v->first = dalcs_arena_alloc(arena, n, sizeof(double));
     v->last = dalcs_arena_alloc(arena, n, sizeof(double));
-    v->moves = dalcs_arena_alloc(arena, n, sizeof(double));
+    v->moves = dalcs_arena_alloc(arena, n_all, sizeof(double));
     v->y = dalcs_arena_alloc(arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
     if (v->v == NULL || v->in == NULL || v->out == NULL || v->guard == NULL || v->before == NULL ||
         v->after == NULL || v->first == NULL || v->last == NULL || v->moves == NULL ||
@@ -232,14 +271,37 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     return dalcs_orbit_rates_setup(&v->rates, arena, part);
 }
 
+static enum dalcs_status gates_setup(struct dalcs_variation *variation,
+                                     struct dalcs_logic_run *logic,
+                                     const struct dalcs_logic_memory *memory) {
+    struct dalcs_variation_part *v = &variation->part[0];
+    struct dalcs_gate_variation *g = dalcs_arena_alloc(&variation->arena, 1, sizeof *g);
+    if (g == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_gate_variation_setup(g, &variation->arena, variation->radau, logic, memory));
+    g->event.dt = v->guard;
+    g->event.pending = &v->pending;
+    g->event.is_exact = &v->is_exact;
+    g->event.rates = &v->rates;
+    variation->gates = v->gates = g;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,
-                                        struct dalcs_radau *radau, bool modes_alone) {
+                                        struct dalcs_radau *radau, struct dalcs_logic_run *logic,
+                                        const struct dalcs_logic_memory *memory,
+                                        bool modes_alone) {
     *variation = (struct dalcs_variation){.radau = radau, .n_parts = radau->n_parts};
     variation->part =
         dalcs_arena_alloc(&variation->arena, (size_t)radau->n_parts, sizeof(*variation->part));
     enum dalcs_status status = variation->part != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (int k = 0; k < radau->n_parts && status == DALCS_OK; k++) {
-        status = part_setup(&variation->arena, &variation->part[k], &radau->part[k], modes_alone);
+        status = part_setup(&variation->arena, &variation->part[k], &radau->part[k],
+                            memory->n_numbers, modes_alone);
+    }
+    if (status == DALCS_OK && logic->circuit != NULL && !modes_alone) {
+        status = gates_setup(variation, logic, memory);
     }
     if (status != DALCS_OK) {
         dalcs_variation_finish(variation);
@@ -248,6 +310,9 @@ enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,
 }
 
 void dalcs_variation_finish(struct dalcs_variation *variation) {
+    if (variation->gates != NULL) {
+        dalcs_gate_variation_finish(variation->gates);
+    }
     dalcs_arena_finish(&variation->arena);
     *variation = (struct dalcs_variation){0};
 }

@@ -8,13 +8,15 @@
 #ifndef DALCS_VARIATION_H
 #define DALCS_VARIATION_H
 
-#include "orbit_rates.h"
+#include "gate_variation.h"
 
 struct dalcs_variation_part {
     struct dalcs_radau_part *part;
     int n_x;
-    double *v;                /* [n_x][n_x] column after column */
-    double *in, *out, *guard; /* of one column; [n_x] of a guard, then dt */
+    int n_columns;                      /* n_x, and the numbers of gates */
+    struct dalcs_gate_variation *gates; /* NULL: there are none */
+    double *v;                          /* [n_columns][n_x] column after column */
+    double *in, *out, *guard;           /* of one column; [n_columns] of a guard, then dt */
     struct dalcs_orbit_rates rates;
     double *before, *after; /* [n_x] f- and f+ */
     double *y;              /* work */
@@ -31,14 +33,16 @@ struct dalcs_variation {
     struct dalcs_radau *radau;
     enum dalcs_status status; /* of what could not be told while the run went on */
     int n_parts;
-    struct dalcs_variation_part *part; /* [n_parts] */
+    struct dalcs_variation_part *part;  /* [n_parts] */
+    struct dalcs_gate_variation *gates; /* of the one part, where there are gates; else NULL */
     struct dalcs_arena arena;
 };
 
-/* V = 1. The run is to tell it of its segments (dalcs_variation_observer). modes_alone: no V, no more than which modes
- * follow each other. */
+/* V = 1. The run is to tell it of its segments (dalcs_variation_observer), and its gates of what they do. modes_alone:
+ * no V, no more than which modes follow each other. */
 enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,
-                                        struct dalcs_radau *radau,
+                                        struct dalcs_radau *radau, struct dalcs_logic_run *logic,
+                                        const struct dalcs_logic_memory *memory,
                                         bool modes_alone) DALCS_MUST_CHECK;
 
 void dalcs_variation_finish(struct dalcs_variation *variation);

@@ -318,6 +318,41 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_audit_gates_go_on(struct dalcs_audit_gates *a,
+                                          const struct dalcs_logic_run *logic) {
+    for (int k = 0; a->gate != NULL && k < a->circuit->n_gates; k++) {
+        const struct dalcs_logic_gate *g = &a->circuit->gate[k];
+        const struct dalcs_logic_state *state = &logic->network.state[k];
+        const struct dalcs_logic_output *o = &logic->output[k];
+        struct audit_gate *s = &a->gate[k];
+        bool is_known = true;
+        DALCS_TRY(dalcs_grow(&s->due, &s->capacity, o->n_due + 1, sizeof(*s->due)));
+        for (size_t i = 0; i < o->n_due; i++) {
+            s->due[i] = o->due[o->first_due + i].t;
+        }
+        s->n_due = o->n_due;
+        s->is_lost = false;
+        s->was_seen = true;
+        s->q = state->q;
+        s->shown = o->shown;
+        s->clock = state->clock;
+        s->data = g->kind >= DALCS_GATE_FLIP_FLOP && g->kind <= DALCS_GATE_SR_LATCH &&
+                  reads(a, &g->input[DALCS_GATE_DATA], &is_known);
+        s->reset = (g->kind == DALCS_GATE_JK || g->kind == DALCS_GATE_SR ||
+                    g->kind == DALCS_GATE_SR_LATCH) &&
+                   reads(a, &g->input[DALCS_GATE_RESET], &is_known);
+        s->count = state->count;
+        s->ends = o->ends;
+        if (g->kind == DALCS_GATE_SAMPLE) {
+            s->held = a->circuit->stimulus[g->output[0]].u.pwl.v[0];
+        }
+        if (g->sampled >= 0) {
+            s->before = logic->taken[k];
+        }
+    }
+    return DALCS_OK;
+}
+
 static double potential(const struct dalcs_audit_gates *a, int node) {
     const int column = a->readout->node_column[node];
     const int system = column >= 0 ? a->node_system[node] : -1;
@@ -365,8 +400,9 @@ static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
     const bool tracks = reads(a, &g->input[DALCS_GATE_PRESET], &is_known);
     if (!s->is_lost && ((clock && !s->clock) || (s->q && !tracks))) {
         s->held = s->before;
-    } else if (!is_known || may_have_missed(a, g)) {
-        s->held = value; /* a pulse of no width may have been there */
+    } else if (!is_known || may_have_missed(a, g) || (s->is_lost && clock)) {
+        s->held =
+            value; /* a pulse of no width may have been there, or the clock has risen at the start */
     }
     s->is_lost = false;
     s->clock = clock;

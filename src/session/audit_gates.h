@@ -21,6 +21,11 @@ enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
                                           const struct dalcs_readout *readout) DALCS_MUST_CHECK;
 void dalcs_audit_gates_finish(struct dalcs_audit_gates *a);
 
+/* The run goes on from another one, with what gates remember of that; they have not decided yet. That a period ends with
+ * what it began with is looked at elsewhere. */
+enum dalcs_status dalcs_audit_gates_go_on(struct dalcs_audit_gates *a,
+                                          const struct dalcs_logic_run *logic) DALCS_MUST_CHECK;
+
 /* Nothing has happened at t yet: what samples may take. */
 enum dalcs_status dalcs_audit_gates_sample(struct dalcs_audit_gates *a, double t) DALCS_MUST_CHECK;
 

@@ -102,9 +102,10 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         a->tried = dalcs_arena_alloc(&a->arena, (size_t)(2 * n_x + 2 * n_elements), sizeof(double));
         status = a->tried != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
-    status = status == DALCS_OK ? dalcs_audit_gates_start(&a->gates, &run->s->circuit, radau,
-                                                          run->s->network.readout)
-                                : status;
+    if (status == DALCS_OK) {
+        status =
+            dalcs_audit_gates_start(&a->gates, &run->s->circuit, radau, run->s->network.readout);
+    }
     status = status == DALCS_OK ? create(a) : status;
     if (status != DALCS_OK) {
         dalcs_audit_run_finish(a);

@@ -174,6 +174,18 @@ static enum dalcs_status walk(struct dalcs_envelope *e, const struct dalcs_stead
     return e->rows.to->end(e->rows.to->user);
 }
 
+/* With gates the periods are those after which these are where they were; of a run from the start, which is forgotten. */
+static enum dalcs_status take_repeats(struct dalcs_envelope *e) {
+    int n;
+    DALCS_TRY(dalcs_envelope_sources_take(&e->sources, 0));
+    DALCS_TRY(dalcs_steady_find_repeats(&e->st, &n));
+    dalcs_steady_note_repeats(&e->st, n);
+    e->st.period *= n > 1 ? n : 1;
+    e->sources.period = e->st.period;
+    e->st.has_point = false;
+    return DALCS_OK;
+}
+
 static enum dalcs_status run(struct dalcs_envelope *e, const struct dalcs_steady_kept *kept) {
     struct dalcs_run *r = e->run;
     const struct dalcs_circuit *c = &r->s->circuit;
@@ -185,11 +197,12 @@ static enum dalcs_status run(struct dalcs_envelope *e, const struct dalcs_steady
         return refuse(r, "run .tran", "no source repeats: there are no periods to leave out");
     }
     e->sources.period = period;
-    e->rows.stop = c->transient.stop;
-    e->tolerance = c->envelope.tolerance > 0.0 ? c->envelope.tolerance : r->tolerance;
-    e->n_all = (long)fmax(0.0, ceil(e->rows.stop / period * (1.0 - 1e-12)) - 1.0);
     r->h = 1e-2 * period; /* no step depends on it */
     DALCS_TRY(dalcs_steady_setup(&e->st, r, period));
+    DALCS_TRY(c->n_gates > 0 ? take_repeats(e) : DALCS_OK);
+    e->rows.stop = c->transient.stop;
+    e->tolerance = c->envelope.tolerance > 0.0 ? c->envelope.tolerance : r->tolerance;
+    e->n_all = (long)fmax(0.0, ceil(e->rows.stop / e->st.period * (1.0 - 1e-12)) - 1.0);
     return make_room(e) ? walk(e, kept) : DALCS_E_NOMEM;
 }
 

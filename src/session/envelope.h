@@ -39,7 +39,8 @@ void dalcs_envelope_leap_error(const struct dalcs_envelope_leap *leap, const dou
 
 /* ---- envelope_sources.c ------------------------------------------------------------------------- */
 
-/* Sources that move slowly and do not repeat: PWL. In a run of one period each is the part of itself there. */
+/* Sources that do not repeat: PWL, and pulses that end, which are as good as PWL; EXP and sines that die away or end. In a
+ * run of one period each is the part of itself there. All periods are run in which one of the latter two goes on. */
 struct dalcs_envelope_sources {
     struct dalcs_run *run;
     double period; /* s */
@@ -50,7 +51,7 @@ struct dalcs_envelope_sources {
     struct dalcs_arena arena;
 };
 
-/* Before the period is looked for: they are levels then. Others that do not repeat are refused. */
+/* Before the period is looked for: they are levels then. What grows for ever is refused. */
 enum dalcs_status dalcs_envelope_sources_setup(struct dalcs_envelope_sources *s,
                                                struct dalcs_run *r) DALCS_MUST_CHECK;
 void dalcs_envelope_sources_finish(struct dalcs_envelope_sources *s);
@@ -59,7 +60,7 @@ void dalcs_envelope_sources_finish(struct dalcs_envelope_sources *s);
 enum dalcs_status dalcs_envelope_sources_take(struct dalcs_envelope_sources *s,
                                               long n) DALCS_MUST_CHECK;
 
-/* The first period from n on in which one of them turns a corner. */
+/* The first period from n on in which one of them turns a corner, or is curved. */
 long dalcs_envelope_sources_next_corner(const struct dalcs_envelope_sources *s, long n);
 
 /* The run. */

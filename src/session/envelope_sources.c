@@ -13,7 +13,7 @@ static double delay_of(const struct dalcs_stimulus *s) {
 }
 
 static bool is_level(const struct dalcs_stimulus *s) {
-    bool is = s->kind == DALCS_STIMULUS_DC || s->kind == DALCS_STIMULUS_FORMULA;
+    bool is = s->kind == DALCS_STIMULUS_DC || s->kind == DALCS_STIMULUS_FORMULA || s->is_written;
     if (s->kind == DALCS_STIMULUS_PULSE) {
         is = s->u.pulse.low == s->u.pulse.high;
     } else if (s->kind == DALCS_STIMULUS_SIN) {
@@ -22,12 +22,71 @@ static bool is_level(const struct dalcs_stimulus *s) {
     return is;
 }
 
+/* Of pulses that are written out as straight lines: four of each. */
+static const double most_pulses = 1e4;
+
+/* What dies away has done so after so many time constants, to the last bit: ln(2^53). */
+static const double time_constants = 36.8;
+
 static enum dalcs_status refuse(struct dalcs_run *r, int stimulus) {
     dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL,
                    "write it as PWL, which may be as long as the run",
-                   "'%s' neither repeats nor is a PWL: .env knows of no other slow sources",
+                   "'%s' neither repeats nor comes to an end: .env knows of no other slow sources",
                    dalcs_steady_source_name(&r->s->circuit, stimulus));
     return DALCS_E_OPTION;
+}
+
+/* s, when what is curved is so no longer; INFINITY: never. Of straight lines 0. */
+static double curved_until(const struct dalcs_stimulus *s) {
+    double until = 0.0;
+    if (s->kind == DALCS_STIMULUS_EXP) {
+        const bool falls = isfinite(s->u.exponential.fall_delay);
+        const double rise =
+            s->u.exponential.rise_delay + time_constants * s->u.exponential.rise_tau;
+        const double fall =
+            falls ? s->u.exponential.fall_delay + time_constants * s->u.exponential.fall_tau : 0.0;
+        until = fmax(rise, fall);
+    } else if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.n_cycles > 0.0) {
+        until = s->u.sine.delay + s->u.sine.n_cycles / s->u.sine.frequency;
+    } else if (s->kind == DALCS_STIMULUS_SIN) {
+        until = s->u.sine.damping > 0.0 ? s->u.sine.delay + time_constants / s->u.sine.damping
+                                        : (double)INFINITY;
+    }
+    return until;
+}
+
+/* A pulse that would not come again before the end. */
+static bool is_once(const struct dalcs_run *r, const struct dalcs_stimulus *s) {
+    return s->kind == DALCS_STIMULUS_PULSE && s->u.pulse.period >= r->s->circuit.transient.stop;
+}
+
+/* One pulse or some of them. */
+static enum dalcs_status write_lines(struct dalcs_envelope_sources *s, struct dalcs_stimulus *of) {
+    const bool is_one = is_once(s->run, of);
+    const size_t n_pulses = is_one ? 1 : (size_t)of->u.pulse.n_periods;
+    double *t = dalcs_arena_alloc(&s->arena, 4 * n_pulses + 1, sizeof *t);
+    double *v = dalcs_arena_alloc(&s->arena, 4 * n_pulses + 1, sizeof *v);
+    int n = 0;
+    if (t == NULL || v == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n_pulses; k++) {
+        const double from = of->u.pulse.delay + (is_one ? 0.0 : (double)k * of->u.pulse.period);
+        const double high = from + of->u.pulse.rise;
+        const double falls = high + of->u.pulse.width;
+        t[n] = from;
+        v[n++] = of->u.pulse.low;
+        t[n] = high;
+        v[n++] = of->u.pulse.high;
+        if (isfinite(falls)) {
+            t[n] = falls;
+            v[n++] = of->u.pulse.high;
+            t[n] = falls + of->u.pulse.fall;
+            v[n++] = of->u.pulse.low;
+        }
+    }
+    *of = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_PWL, .u.pwl = {.n = n, .t = t, .v = v}};
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_envelope_sources_setup(struct dalcs_envelope_sources *s,
@@ -44,13 +103,15 @@ enum dalcs_status dalcs_envelope_sources_setup(struct dalcs_envelope_sources *s,
         if (is_level(of)) {
             continue;
         }
-        if (dalcs_steady_repeats(of)) {
+        if (dalcs_steady_repeats(of) && !is_once(r, of)) {
             s->delay = fmax(s->delay, delay_of(of));
             continue;
         }
-        if (of->kind != DALCS_STIMULUS_PWL) {
+        const bool is_pulse = of->kind == DALCS_STIMULUS_PULSE;
+        if (isinf(curved_until(of)) || (is_pulse && of->u.pulse.n_periods > most_pulses)) {
             return refuse(r, i);
         }
+        DALCS_TRY(is_pulse ? write_lines(s, of) : DALCS_OK);
         s->index[s->n] = i;
         s->whole[s->n++] = *of;
         *of = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true};
@@ -60,6 +121,22 @@ enum dalcs_status dalcs_envelope_sources_setup(struct dalcs_envelope_sources *s,
 
 void dalcs_envelope_sources_finish(struct dalcs_envelope_sources *s) {
     dalcs_arena_finish(&s->arena);
+}
+
+/* A curve from then on, counted from there; what is over is a level. */
+static void take_curve(struct dalcs_stimulus *part, const struct dalcs_stimulus *whole,
+                       double from) {
+    *part = *whole;
+    if (from >= curved_until(whole)) {
+        *part = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC,
+                                        .dc = dalcs_stimulus_value(whole, from, DALCS_RIGHT),
+                                        .has_dc = true};
+    } else if (whole->kind == DALCS_STIMULUS_EXP) {
+        part->u.exponential.rise_delay -= from;
+        part->u.exponential.fall_delay -= from;
+    } else {
+        part->u.sine.delay -= from;
+    }
 }
 
 static enum dalcs_status take_part(struct dalcs_envelope_sources *s, int k, long n) {
@@ -95,7 +172,12 @@ static enum dalcs_status take_part(struct dalcs_envelope_sources *s, int k, long
 
 enum dalcs_status dalcs_envelope_sources_take(struct dalcs_envelope_sources *s, long n) {
     for (int k = 0; k < s->n; k++) {
-        DALCS_TRY(take_part(s, k, n));
+        if (s->whole[k].kind == DALCS_STIMULUS_PWL) {
+            DALCS_TRY(take_part(s, k, n));
+        } else {
+            take_curve(&s->run->s->circuit.stimulus[s->index[k]], &s->whole[k],
+                       (double)n * s->period);
+        }
     }
     return DALCS_OK;
 }
@@ -103,7 +185,11 @@ enum dalcs_status dalcs_envelope_sources_take(struct dalcs_envelope_sources *s, 
 long dalcs_envelope_sources_next_corner(const struct dalcs_envelope_sources *s, long n) {
     double next = INFINITY;
     for (int k = 0; k < s->n; k++) {
-        for (int i = 0; i < s->whole[k].u.pwl.n; i++) {
+        const bool is_curve = s->whole[k].kind != DALCS_STIMULUS_PWL;
+        if (is_curve && (double)n * s->period < curved_until(&s->whole[k])) {
+            return n;
+        }
+        for (int i = 0; !is_curve && i < s->whole[k].u.pwl.n; i++) {
             const double at = floor(s->whole[k].u.pwl.t[i] / s->period);
             next = at >= (double)n ? fmin(next, at) : next;
         }

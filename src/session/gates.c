@@ -57,31 +57,6 @@ void dalcs_warn_of_restless_gates(struct dalcs_run *r, struct dalcs_logic_run *l
                    "gates have no rest at the operating point: %s", names == NULL ? "" : names);
 }
 
-enum dalcs_status dalcs_check_gates(struct dalcs_run *r, enum dalcs_analysis analysis) {
-    const struct dalcs_circuit *c = &r->s->circuit;
-    const bool is_steady =
-        analysis == DALCS_PERIODIC ? c->periodic.present || r->options->steady
-        : analysis == DALCS_AC
-            ? (c->ac.n > 0 && c->periodic.present) || r->options->bode
-            : analysis == DALCS_TRANSIENT &&
-                  (r->options->envelope ||
-                   (c->transient.present && (c->transient.starts_steady || c->envelope.present)));
-    const bool is_stepped =
-        analysis == DALCS_TRANSIENT && c->transient.present && r->method == DALCS_METHOD_EULER;
-    if (c->n_gates == 0 || (!is_steady && !is_stepped)) {
-        return DALCS_OK;
-    }
-    dalcs_diag_add(&r->s->diag, DALCS_ERROR, &c->gate[0].where,
-                   is_steady ? "a .tran that is long enough, and .meas over its last period"
-                             : "leave method=euler out",
-                   is_steady ? "gates and flip-flops ('%s') have states that no steady state is "
-                               "looked for with"
-                             : "gates and flip-flops ('%s') are decided by events, which implicit "
-                               "Euler does not have",
-                   c->gate[0].name);
-    return DALCS_E_NETLIST;
-}
-
 enum dalcs_status dalcs_gate_samples_setup(struct dalcs_gate_samples *s,
                                            const struct dalcs_logic_run *logic) {
     *s = (struct dalcs_gate_samples){0};
@@ -114,6 +89,21 @@ enum dalcs_status dalcs_gate_samples_read(struct dalcs_gate_samples *s,
         logic->taken[logic->sample[k]] = s->rows.value[k].at[0];
     }
     return DALCS_OK;
+}
+
+static double read_probe(const struct dalcs_euler *e, const struct dalcs_probe *probe) {
+    const struct dalcs_component *c = probe->system >= 0 ? &e->component[probe->system] : NULL;
+    return c == NULL ? 0.0 : dalcs_probe_value(probe, c->y, c->u + c->system->n_x);
+}
+
+void dalcs_gates_read_euler(const struct dalcs_network *network, struct dalcs_logic_run *logic) {
+    const struct dalcs_circuit *c = logic->circuit;
+    for (int k = 0; k < logic->n_samples; k++) {
+        const int gate = logic->sample[k];
+        const struct dalcs_output *out = &network->output[c->measured[c->gate[gate].sampled]];
+        logic->taken[gate] =
+            read_probe(logic->euler, &out->plus) - read_probe(logic->euler, &out->minus);
+    }
 }
 
 void dalcs_gate_samples_finish(struct dalcs_gate_samples *s) {

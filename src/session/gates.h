@@ -18,9 +18,8 @@ enum dalcs_status dalcs_gates_operating_point(struct dalcs_euler *e, struct dalc
 /* Says so where they have found none. */
 void dalcs_warn_of_restless_gates(struct dalcs_run *r, struct dalcs_logic_run *logic);
 
-/* Analyses and methods that have no events. */
-enum dalcs_status dalcs_check_gates(struct dalcs_run *r,
-                                    enum dalcs_analysis analysis) DALCS_MUST_CHECK;
+/* What samples may take at the end of a step of implicit Euler. */
+void dalcs_gates_read_euler(const struct dalcs_network *network, struct dalcs_logic_run *logic);
 
 /* The rows of what samples take. Does nothing where there are none. */
 struct dalcs_gate_samples {

@@ -212,6 +212,7 @@ static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, struct dalcs_pe
     }
     mark_read(a, k, is_read);
     const struct dalcs_periodic_flow_asked asked = {.source = p->source,
+                                                    .is_still = of >= 0 && of != a->loop.device,
                                                     .fastest = fastest,
                                                     .period = a->st->period,
                                                     .go_on = go_on,
@@ -294,6 +295,11 @@ static void report(struct dalcs_periodic_ac *a) {
     }
 }
 
+static double complex source_of(const void *user, int stimulus) {
+    const struct dalcs_periodic_ac *a = user;
+    return dalcs_periodic_loop_source(a, a->loop.device, stimulus);
+}
+
 static enum dalcs_status look_around(struct dalcs_periodic_ac *a) {
     struct dalcs_run *r = a->run;
     struct dalcs_radau_options options = dalcs_transient_options(r, a->st->period);
@@ -303,7 +309,8 @@ static enum dalcs_status look_around(struct dalcs_periodic_ac *a) {
     DALCS_TRY(choose_sweep(a));
     DALCS_TRY(dalcs_periodic_loop_find(a));
     DALCS_TRY(dalcs_radau_setup(&a->radau, &a->euler, &options, &r->osnsp));
-    DALCS_TRY(dalcs_orbit_log_setup(&a->log, &a->radau));
+    const struct dalcs_orbit_sources sources = {a, source_of};
+    DALCS_TRY(dalcs_orbit_log_setup(&a->log, &a->radau, &sources));
     DALCS_TRY(dalcs_explain_failure(r, &a->euler,
                                     dalcs_steady_log(a->st, &a->euler, &a->radau, &a->log)));
     DALCS_TRY(dalcs_steady_find_defect(a->st));

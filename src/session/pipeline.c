@@ -4,7 +4,6 @@
 #include "pipeline.h"
 #include "computed.h"
 
-#include "gates.h"
 #include "stroboscope.h"
 
 #include "thinning.h"
@@ -204,7 +203,6 @@ static enum dalcs_status ignore_progress(void *user, double time, double stop) {
 
 static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis analysis) {
     const struct dalcs_circuit *circuit = &r->s->circuit;
-    DALCS_TRY(dalcs_check_gates(r, analysis));
     switch (analysis) {
     case DALCS_OPERATING_POINT:
         return circuit->operating_point ? dalcs_operating_point_run(r) : DALCS_OK;

@@ -30,7 +30,8 @@ struct dalcs_steady_anchor {
     bool is_sought; /* by a run of which nobody is to see anything */
     size_t step;
     int n_x, n_pairs;
-    double *x; /* heap */
+    double period; /* s */
+    double *x;     /* heap */
     bool *closed;
 };
 
@@ -210,11 +211,11 @@ enum dalcs_status dalcs_transient_run_thinned(struct dalcs_run *r) DALCS_MUST_CH
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
 
-/* Starts a .tran; radau is NULL with implicit Euler. logic: its gates, if there are any; NULL: it is a period of a search
- * for a steady state, of which the recorder is to know nothing. */
+/* Starts a .tran; radau is NULL with implicit Euler. logic: its gates, if there are any. has_rows: else it is a period of
+ * a search for a steady state, of which the recorder is to know nothing. */
 enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,
-                                        struct dalcs_radau *radau,
-                                        struct dalcs_logic_run *logic) DALCS_MUST_CHECK;
+                                        struct dalcs_radau *radau, struct dalcs_logic_run *logic,
+                                        bool has_rows) DALCS_MUST_CHECK;
 
 /* As dalcs_run_choose has chosen them. */
 struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, double stop);

@@ -21,9 +21,12 @@ static const double converged = 1e-11, good = 1e-10;
 /* Farther away than at first by this factor, twice, and a burst is over. */
 static const double far = 10.0;
 
-/* Has every switch that remembers come back to where it was? */
+/* Has every switch that remembers come back to where it was, and every gate? */
 static bool switches_return(const struct dalcs_steady *st) {
     bool do_ = true;
+    for (int k = st->layout.n_switches; k < st->layout.n_pairs; k++) {
+        do_ = do_ && st->at.closed[k] == st->then.closed[k];
+    }
     for (int k = 0; k < st->layout.n_systems; k++) {
         const struct dalcs_system *s = &st->run->s->network.system[k];
         for (int d = 0; d < s->n_pairs; d++) {
@@ -237,6 +240,7 @@ enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st, struct dalcs_orbi
 }
 
 bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point) {
+    point->layout = &st->layout;
     point->x = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_x + 1, sizeof(double));
     point->closed = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1, sizeof(bool));
     return point->x != NULL && point->closed != NULL;

@@ -6,24 +6,30 @@
 #ifndef DALCS_STEADY_H
 #define DALCS_STEADY_H
 
+#include "logic_memory.h"
 #include "session_internal.h"
 
+struct dalcs_logic_run;
 struct dalcs_orbit_log;
 struct dalcs_steady_watch;
 
-/* Where the states of the systems lie side by side. */
+/* Where the states of the systems lie side by side. What gates remember (logic_memory.h) lies behind: numbers behind the
+ * states, bits behind the pairs; all of the circuit is one system then. */
 struct dalcs_steady_layout {
     int n_systems;
-    int n_x, n_pairs;   /* of all */
-    int *first;         /* [n_systems + 1] state of each */
-    int *first_pair;    /* [n_systems + 1] */
-    size_t *first_of_M; /* [n_systems + 1] of its [n][n] in M, column after column */
+    int n_x, n_pairs;                 /* of all */
+    int n_states, n_switches;         /* of the systems alone */
+    struct dalcs_logic_memory memory; /* of no gates, too */
+    int *first;                       /* [n_systems + 1] state of each */
+    int *first_pair;                  /* [n_systems + 1] */
+    size_t *first_of_M;               /* [n_systems + 1] of its [n][n] in M, column after column */
 };
 
 /* States and the positions of switches. */
 struct dalcs_orbit_point {
-    double *x;    /* [n_x] V, A */
-    bool *closed; /* [n_pairs] switches */
+    double *x;    /* [n_x] V, A; of gates V, s */
+    bool *closed; /* [n_pairs] switches; bits of gates */
+    const struct dalcs_steady_layout *layout;
 };
 
 struct dalcs_steady {
@@ -122,17 +128,20 @@ void dalcs_steady_find_residual(struct dalcs_steady *st);
 /* Goes on from there. */
 void dalcs_steady_take(struct dalcs_steady *st);
 
-/* The start of a run at such a point. */
+/* The start of a run at such a point; gates decide then. */
 enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, struct dalcs_euler *e,
-                                     struct dalcs_radau *radau) DALCS_MUST_CHECK;
+                                     struct dalcs_radau *radau,
+                                     struct dalcs_logic_run *logic) DALCS_MUST_CHECK;
 
 /* One period from st->at, which the log is told of. */
 enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *e,
                                    struct dalcs_radau *radau,
                                    struct dalcs_orbit_log *log) DALCS_MUST_CHECK;
 
-/* Where the components are that have been evaluated. */
-void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *point);
+/* Where the components are that have been evaluated at t, and what gates remember. */
+enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
+                                    const struct dalcs_logic_run *logic, double t,
+                                    struct dalcs_orbit_point *point) DALCS_MUST_CHECK;
 
 /* ---- steady_newton.c --------------------------------------------------------------------------- */
 
@@ -141,8 +150,17 @@ void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *po
 enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
 /* What a state of a system is multiplied by, so that energies are alike: the square root of what it stores; of one that
- * stores nothing, 1 over its scale. */
+ * stores nothing, and of all beside gates, 1 over its scale. */
 double dalcs_steady_unit(const struct dalcs_steady *st, int system, int x);
+
+/* ---- steady_gates.c ---------------------------------------------------------------------------- */
+
+/* st->at becomes a point of a run, from which on gates are where they were after *n periods of the sources; 0: after no
+ * number that was tried. */
+enum dalcs_status dalcs_steady_find_repeats(struct dalcs_steady *st, int *n) DALCS_MUST_CHECK;
+
+/* A note, if that is more than one. */
+void dalcs_steady_note_repeats(struct dalcs_steady *st, int n);
 
 /* ---- steady_free.c ----------------------------------------------------------------------------- */
 
@@ -190,7 +208,7 @@ enum dalcs_status dalcs_steady_anchor_keep(struct dalcs_steady *st, bool leaves)
 
 /* As dalcs_steady_search, from the anchor of the step, if it has one; else, and where that leads to nothing that counts,
  * not *found, and st is as before. */
-enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves,
+enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves, bool is_free,
                                           bool *found) DALCS_MUST_CHECK;
 
 /* ---- periodic_ac.c ----------------------------------------------------------------------------- */
@@ -212,6 +230,19 @@ enum dalcs_status dalcs_steady_keep(struct dalcs_run *r,
 /* all: else the sources that repeat stay what they are behind their delays. */
 void dalcs_steady_put_back(struct dalcs_run *r, const struct dalcs_steady_kept *kept, bool all);
 
+/* ---- steady_failure.c -------------------------------------------------------------------------- */
+
+/* A message, and DALCS_E_OPTION. */
+enum dalcs_status dalcs_steady_refuse(struct dalcs_run *r, const char *hint,
+                                      const char *text) DALCS_MUST_CHECK;
+
+/* The last pass is the last period of a search; endless: st->drift goes on for ever. DALCS_NOT_CONVERGED. */
+enum dalcs_status dalcs_steady_tell_failure(struct dalcs_steady *st, bool endless) DALCS_MUST_CHECK;
+
+/* dalcs_steady_oscillation; without one a message says why. */
+enum dalcs_status dalcs_steady_find_oscillation(struct dalcs_steady *st,
+                                                double guess) DALCS_MUST_CHECK;
+
 /* ---- steady_run.c ------------------------------------------------------------------------------ */
 
 /* Is a run of a period that has just ended, in st->then, where it began? Else DALCS_NOT_CONVERGED and a message. */
@@ -225,7 +256,7 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) DALCS_MUST_CHECK;
 /* Averages and rms values of the last pass with means, alone. */
 enum dalcs_status dalcs_steady_report_signals(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
-/* The size of the largest multiplier of the last pass; 0 if it cannot be told. */
+/* The size of the largest multiplier of the last pass, but for that of a flow; 0 if it cannot be told. */
 double dalcs_steady_largest_multiplier(struct dalcs_steady *st);
 
 /* st->at is on an orbit of two periods `one`: its multipliers and the verdict into the report of that of one. */

@@ -26,7 +26,7 @@ static bool is_anchor(const struct dalcs_run *r) {
 
 /* May an orbit stand for others nearby? The last pass is of it. */
 static bool serves(struct dalcs_steady *st) {
-    return st->n_conserved == 0 && dalcs_steady_largest_multiplier(st) < 1.0;
+    return st->n_conserved == 0 && st->n_free == 0 && dalcs_steady_largest_multiplier(st) < 1.0;
 }
 
 void dalcs_steady_anchor_forget(struct dalcs_session *s) {
@@ -61,6 +61,7 @@ enum dalcs_status dalcs_steady_anchor_keep(struct dalcs_steady *st, bool leaves)
     }
     s->anchor.n_x = l->n_x;
     s->anchor.n_pairs = l->n_pairs;
+    s->anchor.period = st->period;
     s->anchor.serves = serves(st);
     memcpy(s->anchor.x, st->at.x, (size_t)l->n_x * sizeof(double));
     memcpy(s->anchor.closed, st->at.closed, (size_t)l->n_pairs * sizeof(bool));
@@ -72,8 +73,10 @@ static bool is_of(const struct dalcs_steady_anchor *anchor, const struct dalcs_r
     return anchor->is_known && anchor->step == anchor_of(r) && anchor->leaves == leaves;
 }
 
-enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves, bool *found) {
+enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves, bool is_free,
+                                          bool *found) {
     const struct dalcs_steady_anchor *a = &st->run->s->anchor;
+    const double period = st->period;
     struct dalcs_orbit_point best;
     *found = false;
     if (is_anchor(st->run) || !is_of(a, st->run, leaves) || !a->serves ||
@@ -86,11 +89,14 @@ enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves, 
     memcpy(st->at.x, a->x, (size_t)a->n_x * sizeof(double));
     memcpy(st->at.closed, a->closed, (size_t)a->n_pairs * sizeof(bool));
     st->has_point = true;
+    st->is_free = is_free;
+    st->period = is_free ? a->period : period;
     DALCS_TRY(dalcs_steady_burst(st, found));
     DALCS_TRY(*found ? dalcs_steady_refine(st, &best) : DALCS_OK);
     DALCS_TRY(*found ? dalcs_steady_next_step(st) : DALCS_OK);
     *found = *found && serves(st);
     st->has_point = *found;
+    st->period = *found ? st->period : period;
     return DALCS_OK;
 }
 

@@ -52,6 +52,9 @@ double dalcs_steady_unit(const struct dalcs_steady *st, int system, int x) {
     const struct dalcs_system *s = &st->run->s->network.system[system];
     const double scale = st->scale[st->layout.first[system] + x];
     double stored = 0.0;
+    if (st->layout.memory.n_numbers > 0) { /* times and voltages of gates have no energies */
+        return 1.0 / (scale > 0.0 ? scale : 1.0);
+    }
     for (int k = s->storage.p[x]; k < s->storage.p[x + 1]; k++) {
         stored += s->storage.j[k] == x ? s->storage.x[k] : 0.0;
     }
@@ -206,10 +209,9 @@ static enum dalcs_status solve(struct dalcs_steady *st, int system, struct newto
 }
 
 static enum dalcs_status newton_of(struct dalcs_steady *st, int system, struct dalcs_arena *arena) {
-    const struct dalcs_system *s = &st->run->s->network.system[system];
     const int first = st->layout.first[system];
     const double *M = st->M + st->layout.first_of_M[system];
-    struct newton w = {.n = s->n_x};
+    struct newton w = {.n = st->layout.first[system + 1] - first};
     if (w.n == 0) {
         return DALCS_OK;
     }

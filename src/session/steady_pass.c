@@ -1,6 +1,7 @@
 /* steady_pass.c - a run of some periods from a given point. */
 #include "steady.h"
 
+#include "gates.h"
 #include "orbit_log.h"
 #include "radau.h"
 #include "steady_means.h"
@@ -16,7 +17,8 @@
 static const double least_scale = 1e-5;
 
 enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, struct dalcs_euler *e,
-                                     struct dalcs_radau *radau) {
+                                     struct dalcs_radau *radau, struct dalcs_logic_run *logic) {
+    const struct dalcs_steady_layout *l = point->layout;
     struct dalcs_arena arena = {0};
     double **initial = dalcs_arena_alloc(&arena, (size_t)e->n_components, sizeof(*initial));
     if (initial == NULL) {
@@ -33,12 +35,28 @@ enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, stru
         }
         closed += c->system->n_pairs;
     }
-    enum dalcs_status status = dalcs_radau_start(radau, initial);
+    enum dalcs_status status = DALCS_OK;
+    if (logic->circuit != NULL) {
+        status = dalcs_logic_memory_restore(&l->memory, logic, point->x + l->n_states,
+                                            point->closed + l->n_switches);
+    }
+    status = status == DALCS_OK ? dalcs_radau_start(radau, initial) : status;
     dalcs_arena_finish(&arena);
     return status;
 }
 
-void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *point) {
+static enum dalcs_status read_gates(const struct dalcs_logic_run *logic, double t,
+                                    struct dalcs_orbit_point *point) {
+    const struct dalcs_steady_layout *l = point->layout;
+    return logic->circuit == NULL
+               ? DALCS_OK
+               : dalcs_logic_memory_save(&l->memory, logic, t, point->x + l->n_states,
+                                         point->closed + l->n_switches);
+}
+
+enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
+                                    const struct dalcs_logic_run *logic, double t,
+                                    struct dalcs_orbit_point *point) {
     double *x = point->x;
     bool *closed = point->closed;
     for (int k = 0; k < e->n_components; k++) {
@@ -50,32 +68,94 @@ void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *po
         x += c->system->n_x;
         closed += c->system->n_pairs;
     }
+    return read_gates(logic, t, point);
 }
 
-static enum dalcs_status go(struct dalcs_radau *radau, const struct dalcs_run *r,
-                            struct dalcs_steady_means *means,
-                            const struct dalcs_steady_watch *watch) {
+/* What a pass is made of. */
+struct pass {
+    struct dalcs_run *run;
+    struct dalcs_euler *euler;
+    struct dalcs_radau *radau;
+    struct dalcs_logic_run logic;
+    struct dalcs_gate_samples samples;
+    struct dalcs_steady_means *means; /* NULL: not asked for */
+    struct dalcs_steady_watch *watch; /* likewise */
+    const struct dalcs_logic_memory
+        *ramps; /* segments end where ramps of outputs do; NULL: they need not */
+    double t;   /* s, now */
+};
+
+/* All that happens at t; what does so at the end of a period belongs to the next one. */
+static enum dalcs_status pass_time(struct pass *p, double t) {
+    struct dalcs_radau *radau = p->radau;
+    const bool is_last = t >= radau->options.stop;
+    radau->base->t = t;
+    DALCS_TRY(p->means != NULL ? dalcs_steady_means_reach(p->means, t) : DALCS_OK);
+    if (p->means != NULL && is_last) {
+        DALCS_TRY(dalcs_radau_evaluate(radau, t, DALCS_LEFT));
+    }
+    DALCS_TRY(dalcs_gate_samples_read(&p->samples, &p->logic, t));
+    if (p->ramps != NULL && radau->part[0].kind == DALCS_PART_STEPPED &&
+        radau->part[0].segment.t < t && radau->part[0].segment.t_end > t) {
+        dalcs_radau_cut(&radau->part[0], t);
+    }
+    DALCS_TRY(dalcs_radau_pass(radau, t));
+    return is_last || p->logic.circuit == NULL ? DALCS_OK
+                                               : dalcs_transient_decide(p->run, &p->logic, t);
+}
+
+/* Of outputs that nothing reads but rows, too. */
+static double next_ramp_end(const struct pass *p) {
+    double next = INFINITY;
+    for (int k = 0; p->ramps != NULL && k < p->ramps->n_pins; k++) {
+        const struct dalcs_stimulus *s = &p->logic.circuit->stimulus[p->ramps->pin[k].stimulus];
+        const double end = s->u.pwl.t[s->u.pwl.n - 1];
+        next = end > p->t + p->radau->resolution ? fmin(next, end) : next;
+    }
+    return next;
+}
+
+/* The next time at which something happens; with gates what is as near to the end as times are told apart is the end. */
+static double next_time(struct pass *p) {
+    bool happens;
+    const double stop = p->radau->options.stop;
+    const double next = dalcs_radau_next_stop(p->radau, &happens);
+    const double due = fmin(dalcs_logic_run_next(&p->logic), next_ramp_end(p));
+    return due < next ? (due < stop - p->radau->resolution ? due : fmin(next, stop))
+                      : fmin(next, stop);
+}
+
+static enum dalcs_status go(struct pass *p) {
+    const struct dalcs_run *r = p->run;
+    const double stop = p->radau->options.stop;
     const long interval = dalcs_transient_progress_interval(&r->s->network);
     double t = 0.0;
     long n = 0;
-    DALCS_TRY(dalcs_run_progress(r, t, radau->options.stop)); /* passes are short, and many */
-    while (t < radau->options.stop && (watch == NULL || !dalcs_steady_watch_is_full(watch))) {
-        bool happens;
-        t = fmin(dalcs_radau_next_stop(radau, &happens), radau->options.stop);
-        radau->base->t = t;
-        DALCS_TRY(means != NULL ? dalcs_steady_means_reach(means, t) : DALCS_OK);
-        if (means != NULL && t >= radau->options.stop) {
-            DALCS_TRY(dalcs_radau_evaluate(radau, t, DALCS_LEFT));
-        }
-        DALCS_TRY(dalcs_radau_pass(radau, t));
+    DALCS_TRY(dalcs_run_progress(r, t, stop)); /* passes are short, and many */
+    while (t < stop && (p->watch == NULL || !dalcs_steady_watch_is_full(p->watch))) {
+        t = next_time(p);
+        DALCS_TRY(pass_time(p, t));
+        p->t = t;
         if (++n % interval == 0) {
-            DALCS_TRY(dalcs_run_progress(r, t, radau->options.stop));
+            DALCS_TRY(dalcs_run_progress(r, t, stop));
         }
     }
     return DALCS_OK;
 }
 
-static void read_point(struct dalcs_steady *st, const struct dalcs_radau *radau) {
+/* What numbers of gates are measured by: voltages by the largest in the circuit, times by the run. */
+static void scale_numbers(struct dalcs_steady *st, const struct dalcs_radau *radau, double volts) {
+    const struct dalcs_steady_layout *l = &st->layout;
+    for (int k = 0; k < l->memory.n_numbers; k++) {
+        int gate;
+        const enum dalcs_logic_number kind = dalcs_logic_number_kind(&l->memory, k, &gate);
+        const bool is_time = kind == DALCS_NUMBER_PULSE || kind == DALCS_NUMBER_DUE;
+        st->scale[l->n_states + k] = is_time ? radau->options.stop : volts;
+    }
+}
+
+static enum dalcs_status read_point(struct dalcs_steady *st, const struct pass *pass) {
+    const struct dalcs_radau *radau = pass->radau;
     const struct dalcs_steady_layout *l = &st->layout;
     double largest[2] = {0.0, 0.0};
     for (int k = 0; k < radau->n_parts; k++) {
@@ -97,6 +177,8 @@ static void read_point(struct dalcs_steady *st, const struct dalcs_radau *radau)
                                                     dalcs_osnsp_is_on(&part->component->osnsp, d);
         }
     }
+    scale_numbers(st, radau, largest[0]);
+    return read_gates(&pass->logic, radau->options.stop, &st->then);
 }
 
 static void read_signature(struct dalcs_steady *st, const struct dalcs_variation *variation) {
@@ -120,7 +202,7 @@ static void read_phase(struct dalcs_steady *st, const struct dalcs_variation *va
     }
     if (first != NULL) {
         memcpy(st->phase + st->layout.first[index], first->moves,
-               (size_t)first->n_x * sizeof(double));
+               (size_t)first->n_columns * sizeof(double));
     }
 }
 
@@ -128,54 +210,67 @@ static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variat
     st->is_exact = true;
     for (int k = 0; k < variation->n_parts; k++) {
         const struct dalcs_variation_part *v = &variation->part[k];
-        memcpy(st->M + st->layout.first_of_M[k], v->v,
-               (size_t)v->n_x * (size_t)v->n_x * sizeof(double));
-        memcpy(st->first + st->layout.first[k], v->first, (size_t)v->n_x * sizeof(double));
-        memcpy(st->last + st->layout.first[k], v->last, (size_t)v->n_x * sizeof(double));
+        const size_t n_x = (size_t)v->n_x;
+        const size_t n_rows = (size_t)(st->layout.first[k + 1] - st->layout.first[k]);
+        double *M = st->M + st->layout.first_of_M[k];
+        double *first = st->first + st->layout.first[k];
+        double *last = st->last + st->layout.first[k];
+        for (int c = 0; c < v->n_columns; c++) {
+            memcpy(M + (size_t)c * n_rows, v->v + (size_t)c * n_x, n_x * sizeof(double));
+        }
+        memcpy(first, v->first, n_x * sizeof(double));
+        memcpy(last, v->last, n_x * sizeof(double));
+        if (variation->gates != NULL) {
+            dalcs_gate_variation_put(variation->gates, M, first, last);
+        }
         st->is_exact = st->is_exact && v->is_exact;
     }
 }
 
 /* All periods once the run has started. */
-static enum dalcs_status go_with_means(struct dalcs_steady *st, struct dalcs_radau *radau) {
+static enum dalcs_status go_with_means(struct dalcs_steady *st, struct pass *p) {
     const struct dalcs_session *s = st->run->s;
     struct dalcs_steady_means means;
-    DALCS_TRY(dalcs_steady_means_setup(&means, &s->circuit, &s->network, radau));
-    enum dalcs_status status = go(radau, st->run, &means, NULL);
-    const double duration = radau->options.stop;
+    DALCS_TRY(dalcs_steady_means_setup(&means, &s->circuit, &s->network, p->radau));
+    p->means = &means;
+    enum dalcs_status status = go(p);
+    const double duration = p->radau->options.stop;
     for (int k = 0; k < s->network.n_outputs; k++) {
         st->found.average[k] = means.sum[k] / duration;
         st->found.rms[k] = sqrt(means.square[k] / duration);
     }
     dalcs_steady_means_finish(&means);
-    dalcs_recorder_states(&s->network, radau->base, st->found.state);
+    dalcs_recorder_states(&s->network, p->euler, st->found.state);
     return status;
 }
 
-static enum dalcs_status start(struct dalcs_steady *st, struct dalcs_euler *e,
-                               struct dalcs_radau *radau) {
-    return st->has_point ? dalcs_steady_start(&st->at, e, radau)
-                         : dalcs_transient_start(st->run, e, radau, NULL);
+static enum dalcs_status start(struct dalcs_steady *st, struct pass *p) {
+    const enum dalcs_status status =
+        st->has_point ? dalcs_steady_start(&st->at, p->euler, p->radau, &p->logic)
+                      : dalcs_transient_start(st->run, p->euler, p->radau, &p->logic, false);
+    return status == DALCS_OK && p->logic.circuit != NULL
+               ? dalcs_transient_decide(st->run, &p->logic, 0.0)
+               : status;
 }
 
-static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler *e,
-                                     struct dalcs_radau *radau, enum dalcs_steady_asked asked) {
+static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,
+                                     enum dalcs_steady_asked asked) {
     const bool with_M = asked == DALCS_STEADY_M;
     const bool with_modes = st->run->s->near != NULL && !with_M; /* they tell two runs apart */
     struct dalcs_variation variation = {0};
     struct dalcs_observer observer;
     if (with_M || with_modes) {
-        DALCS_TRY(dalcs_variation_setup(&variation, radau, !with_M));
+        DALCS_TRY(dalcs_variation_setup(&variation, p->radau, &p->logic, &st->layout.memory,
+                                        !with_M));
         observer = dalcs_variation_observer(&variation);
-        e->observer = &observer;
+        p->euler->observer = &observer;
     }
-    enum dalcs_status status = start(st, e, radau);
+    enum dalcs_status status = start(st, p);
     if (status == DALCS_OK) {
-        status =
-            asked == DALCS_STEADY_MEANS ? go_with_means(st, radau) : go(radau, st->run, NULL, NULL);
+        status = asked == DALCS_STEADY_MEANS ? go_with_means(st, p) : go(p);
     }
     if (status == DALCS_OK) {
-        read_point(st, radau);
+        status = read_point(st, p);
     }
     if (status == DALCS_OK && (with_M || with_modes)) {
         read_signature(st, &variation);
@@ -185,25 +280,51 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler
         read_M(st, &variation);
         read_phase(st, &variation);
     }
-    e->observer = NULL;
+    p->euler->observer = NULL;
+    p->logic.observer = NULL;
     dalcs_variation_finish(&variation);
     return status;
 }
 
-static enum dalcs_status run_watched(struct dalcs_steady *st, struct dalcs_euler *e,
-                                     struct dalcs_radau *radau, struct dalcs_steady_watch *watch) {
+static enum dalcs_status run_watched(struct dalcs_steady *st, struct pass *p) {
     struct dalcs_observer observer;
-    if (watch != NULL) {
-        observer = dalcs_steady_watch_observer(watch);
-        e->observer = &observer;
+    if (p->watch != NULL) {
+        observer = dalcs_steady_watch_observer(p->watch);
+        p->euler->observer = &observer;
+        dalcs_steady_watch_gates(p->watch, &p->logic);
     }
-    enum dalcs_status status = start(st, e, radau);
-    status = status == DALCS_OK ? go(radau, st->run, NULL, watch) : status;
-    e->observer = NULL;
+    enum dalcs_status status = start(st, p);
+    status = status == DALCS_OK ? go(p) : status;
+    p->euler->observer = NULL;
+    p->logic.observer = NULL;
     if (status == DALCS_OK) {
-        read_point(st, radau);
+        status = read_point(st, p);
     }
-    return status == DALCS_OK && watch != NULL ? watch->status : status;
+    return status == DALCS_OK && p->watch != NULL ? p->watch->status : status;
+}
+
+/* Behind the set up of the engine, which the caller owns. */
+static enum dalcs_status pass_setup(struct pass *p, struct dalcs_run *r, struct dalcs_euler *e,
+                                    struct dalcs_radau *radau) {
+    *p = (struct pass){.run = r, .euler = e, .radau = radau};
+    DALCS_TRY(dalcs_logic_run_setup(&p->logic, &r->s->circuit, e, radau));
+    return dalcs_gate_samples_setup(&p->samples, &p->logic);
+}
+
+static void pass_finish(struct pass *p) {
+    dalcs_gate_samples_finish(&p->samples);
+    dalcs_logic_run_finish(&p->logic);
+}
+
+static enum dalcs_status engine_setup(struct dalcs_run *r, struct dalcs_euler *e,
+                                      struct dalcs_radau *radau, double h, double stop) {
+    const struct dalcs_radau_options options = dalcs_transient_options(r, stop);
+    DALCS_TRY(dalcs_euler_setup(e, &r->s->circuit, &r->s->network, &r->osnsp, h, stop));
+    const enum dalcs_status status = dalcs_radau_setup(radau, e, &options, &r->osnsp);
+    if (status != DALCS_OK) {
+        dalcs_euler_finish(e);
+    }
+    return status;
 }
 
 enum dalcs_status dalcs_steady_pass_watched(struct dalcs_steady *st, double duration,
@@ -212,18 +333,19 @@ enum dalcs_status dalcs_steady_pass_watched(struct dalcs_steady *st, double dura
     struct dalcs_run *r = st->run;
     struct dalcs_euler e;
     struct dalcs_radau radau = {0};
-    const struct dalcs_radau_options options = dalcs_transient_options(r, duration);
-    DALCS_TRY(dalcs_euler_setup(&e, &r->s->circuit, &r->s->network, &r->osnsp, 1e-3 * duration,
-                                duration));
-    enum dalcs_status status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
+    struct pass p;
+    DALCS_TRY(engine_setup(r, &e, &radau, 1e-3 * duration, duration));
+    enum dalcs_status status = pass_setup(&p, r, &e, &radau);
+    p.watch = watch;
     if (status == DALCS_OK) {
-        status = run_watched(st, &e, &radau, watch);
+        status = run_watched(st, &p);
         r->s->report.work.steps += radau.steps;
     }
     if (status == DALCS_OK && watch != NULL) {
         *recurs = dalcs_steady_watch_recurs(watch, &radau, from, to);
     }
     status = dalcs_explain_failure(r, &e, status);
+    pass_finish(&p);
     dalcs_radau_finish(&radau);
     dalcs_euler_finish(&e);
     return status;
@@ -240,18 +362,18 @@ void dalcs_steady_find_residual(struct dalcs_steady *st) {
 enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
                                     enum dalcs_steady_asked asked) {
     struct dalcs_run *r = st->run;
-    const double stop = (double)n * st->period;
     struct dalcs_euler e;
     struct dalcs_radau radau = {0};
-    const struct dalcs_radau_options options = dalcs_transient_options(r, stop);
-    DALCS_TRY(dalcs_euler_setup(&e, &r->s->circuit, &r->s->network, &r->osnsp, r->h, stop));
-    enum dalcs_status status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
+    struct pass p;
+    DALCS_TRY(engine_setup(r, &e, &radau, r->h, (double)n * st->period));
+    enum dalcs_status status = pass_setup(&p, r, &e, &radau);
     if (status == DALCS_OK) {
-        status = run_periods(st, &e, &radau, asked);
+        status = run_periods(st, &p, asked);
         st->n.periods += n;
         r->s->report.work.steps += radau.steps;
     }
     status = asked == DALCS_STEADY_M ? status : dalcs_explain_failure(r, &e, status);
+    pass_finish(&p);
     dalcs_radau_finish(&radau);
     dalcs_euler_finish(&e);
     if (status == DALCS_OK && st->has_point) {
@@ -260,18 +382,27 @@ enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
     return status;
 }
 
+static enum dalcs_status run_logged(struct dalcs_steady *st, struct pass *p,
+                                    struct dalcs_orbit_log *log) {
+    struct dalcs_observer observer = dalcs_orbit_log_observer(log);
+    p->euler->observer = &observer;
+    p->ramps = p->logic.circuit != NULL ? &st->layout.memory : NULL;
+    DALCS_TRY(dalcs_orbit_log_watch(log, &p->logic, &st->layout.memory));
+    enum dalcs_status status = start(st, p);
+    status = status == DALCS_OK ? go(p) : status;
+    status = status == DALCS_OK ? log->status : status;
+    p->euler->observer = NULL;
+    status = status == DALCS_OK ? read_point(st, p) : status;
+    return status == DALCS_OK ? dalcs_orbit_log_close(log, st->period) : status;
+}
+
 enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *e,
                                    struct dalcs_radau *radau, struct dalcs_orbit_log *log) {
-    struct dalcs_observer observer = dalcs_orbit_log_observer(log);
-    e->observer = &observer;
-    enum dalcs_status status = dalcs_steady_start(&st->at, e, radau);
-    status = status == DALCS_OK ? go(radau, st->run, NULL, NULL) : status;
-    status = status == DALCS_OK ? log->status : status;
-    e->observer = NULL;
-    if (status == DALCS_OK) {
-        read_point(st, radau);
-    }
-    return status == DALCS_OK ? dalcs_orbit_log_close(log, st->period) : status;
+    struct pass p;
+    enum dalcs_status status = pass_setup(&p, st->run, e, radau);
+    status = status == DALCS_OK ? run_logged(st, &p, log) : status;
+    pass_finish(&p);
+    return status;
 }
 
 void dalcs_steady_take(struct dalcs_steady *st) {
@@ -279,65 +410,4 @@ void dalcs_steady_take(struct dalcs_steady *st) {
     st->at = st->then;
     st->then = point;
     st->has_point = true;
-}
-
-/* ---- Set up -------------------------------------------------------------------------------------- */
-
-static bool make_point(struct dalcs_arena *arena, const struct dalcs_steady_layout *l,
-                       struct dalcs_orbit_point *point) {
-    point->x = dalcs_arena_alloc(arena, (size_t)l->n_x + 1, sizeof(double));
-    point->closed = dalcs_arena_alloc(arena, (size_t)l->n_pairs + 1, sizeof(bool));
-    return point->x != NULL && point->closed != NULL;
-}
-
-enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *r, double period) {
-    const struct dalcs_network *network = &r->s->network;
-    const size_t n = (size_t)network->n_systems + 1;
-    *st = (struct dalcs_steady){.run = r, .period = period};
-    struct dalcs_steady_layout *l = &st->layout;
-    l->n_systems = network->n_systems;
-    l->first = dalcs_arena_alloc(&st->arena, n, sizeof(*l->first));
-    l->first_pair = dalcs_arena_alloc(&st->arena, n, sizeof(*l->first_pair));
-    l->first_of_M = dalcs_arena_alloc(&st->arena, n, sizeof(*l->first_of_M));
-    bool complete = l->first != NULL && l->first_pair != NULL && l->first_of_M != NULL;
-    for (int k = 0; k < l->n_systems && complete; k++) {
-        const struct dalcs_system *s = &network->system[k];
-        l->first[k + 1] = l->first[k] + s->n_x;
-        l->first_pair[k + 1] = l->first_pair[k] + s->n_pairs;
-        l->first_of_M[k + 1] = l->first_of_M[k] + (size_t)s->n_x * (size_t)s->n_x;
-        l->n_x = l->first[k + 1];
-        l->n_pairs = l->first_pair[k + 1];
-    }
-    if (complete) {
-        const size_t n_x = (size_t)l->n_x + 1;
-        st->M = dalcs_arena_alloc(&st->arena, l->first_of_M[l->n_systems] + 1, sizeof(double));
-        st->scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->step = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->first = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->last = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->phase = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->found.state =
-            dalcs_arena_alloc(&r->s->arena, (size_t)network->n_states + 1, sizeof(double));
-        st->found.average =
-            dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
-        st->found.rms =
-            dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
-        st->conserved = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->conserved));
-        complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
-                   st->M != NULL && st->phase != NULL && st->first != NULL && st->last != NULL &&
-                   st->scale != NULL && st->step != NULL && st->drift != NULL &&
-                   st->found.state != NULL && st->found.average != NULL && st->found.rms != NULL &&
-                   st->conserved != NULL;
-    }
-    if (!complete) {
-        dalcs_steady_finish(st);
-        return DALCS_E_NOMEM;
-    }
-    return DALCS_OK;
-}
-
-void dalcs_steady_finish(struct dalcs_steady *st) {
-    dalcs_arena_finish(&st->arena);
-    *st = (struct dalcs_steady){0};
 }

@@ -150,6 +150,10 @@ static enum dalcs_status look_into(struct clocks *c, struct dalcs_stimulus *s, c
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k < sum->n; k++) {
+        if (sum->part[k].of->is_written) {
+            part[k] = sum->part[k];
+            continue;
+        }
         of[k] = *sum->part[k].of;
         part[k] = (struct dalcs_stimulus_summand){sum->part[k].factor, &of[k]};
         DALCS_TRY(look_at(c, &of[k], name, true));
@@ -160,8 +164,8 @@ static enum dalcs_status look_into(struct clocks *c, struct dalcs_stimulus *s, c
 
 static enum dalcs_status look_at(struct clocks *c, struct dalcs_stimulus *s, const char *name,
                                  bool is_part) {
-    if (is_level(s)) {
-        return DALCS_OK;
+    if (is_level(s) || s->is_written) {
+        return DALCS_OK; /* what gates write, the run knows */
     }
     if (s->kind == DALCS_STIMULUS_FORMULA) {
         return look_into(c, s, name);

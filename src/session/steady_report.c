@@ -15,9 +15,23 @@ static const double near_one = 1e-9;
 /* Smaller than this beside 1 is none: nothing of it is left after one period. */
 static const double vanishes = 1e-12;
 
+/* "q(a1)": of what gates remember. */
+static const char *name_of_number(struct dalcs_steady *st, int number) {
+    static const char *const what[] = {
+        [DALCS_NUMBER_PIN] = "q", [DALCS_NUMBER_TAKEN] = "sample", [DALCS_NUMBER_PULSE] = "pulse"};
+    int gate;
+    const enum dalcs_logic_number kind = dalcs_logic_number_kind(&st->layout.memory, number, &gate);
+    return kind == DALCS_NUMBER_DUE ? "an edge on its way"
+                                    : dalcs_arena_printf(&st->run->s->arena, "%s(%s)", what[kind],
+                                                         st->run->s->circuit.gate[gate].name);
+}
+
 const char *dalcs_steady_name(struct dalcs_steady *st, int state) {
     const struct dalcs_network *n = &st->run->s->network;
     int k = 0;
+    if (state >= st->layout.n_states) {
+        return name_of_number(st, state - st->layout.n_states);
+    }
     while (state >= st->layout.first[k + 1]) {
         k++;
     }
@@ -242,7 +256,13 @@ static enum dalcs_status find_multipliers(struct dalcs_steady *st, struct dalcs_
 double dalcs_steady_largest_multiplier(struct dalcs_steady *st) {
     struct dalcs_floquet *m;
     size_t n;
-    return find_multipliers(st, &m, &n) == DALCS_OK && n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
+    if (find_multipliers(st, &m, &n) != DALCS_OK) {
+        return 0.0;
+    }
+    if (st->is_free) {
+        (void)take_out_flow(m, &n);
+    }
+    return n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
 }
 
 enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one) {

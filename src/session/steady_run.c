@@ -16,127 +16,6 @@ static const double rows_in_a_period = 1000.0;
  * has called good. */
 static const double most_defect = 1e-10;
 
-/* That a message names. */
-enum { MOST_STATES = 8 };
-
-static enum dalcs_status refuse(struct dalcs_run *r, const char *hint, const char *text) {
-    dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, hint, "%s", text);
-    return DALCS_E_OPTION;
-}
-
-/* ---- Failures in words --------------------------------------------------------------------------- */
-
-static const char *unit_of(const struct dalcs_steady *st, int state) {
-    int k = 0;
-    while (state >= st->layout.first[k + 1]) {
-        k++;
-    }
-    return st->run->s->network.system[k].column_is_current[state - st->layout.first[k]] ? "A" : "V";
-}
-
-/* "v(c2) rises by 3.33 mV and v(c1) falls by 3.33 mV": the states that move most, of the last pass. */
-static const char *moves_text(struct dalcs_steady *st) {
-    struct dalcs_arena *arena = &st->run->s->arena;
-    const char *text = "";
-    double most = INFINITY;
-    for (int told = 0; told < 2 && text != NULL; told++) {
-        int state = -1;
-        double next = 0.0;
-        for (int x = 0; x < st->layout.n_x; x++) {
-            double moves = fabs(st->step[x]) / (st->scale[x] > 0.0 ? st->scale[x] : 1.0);
-            bool is_next = moves > next && (moves < most || (moves == most && told > 0));
-            state = is_next ? x : state;
-            next = is_next ? moves : next;
-        }
-        if (state < 0 || (told > 0 && next < 1e-3 * most)) {
-            break;
-        }
-        char by[DALCS_QUANTITY_SIZE];
-        text = dalcs_arena_printf(
-            arena, "%s%s%s %s by %s", text, told > 0 ? " and " : "", dalcs_steady_name(st, state),
-            st->step[state] > 0.0 ? "rises" : "falls",
-            dalcs_quantity_write(by, fabs(st->step[state]), unit_of(st, state), 6));
-        st->step[state] = 0.0;
-        most = told == 0 ? next : most;
-    }
-    return text == NULL ? "" : text;
-}
-
-static enum dalcs_status tell_failure(struct dalcs_steady *st, bool endless) {
-    struct dalcs_session *s = st->run->s;
-    for (int x = 0; x < st->layout.n_x; x++) {
-        st->step[x] = st->then.x[x] - st->at.x[x];
-    }
-    if (endless) {
-        for (int x = 0; x < st->layout.n_x; x++) {
-            st->step[x] = st->drift[x];
-        }
-        dalcs_diag_add(
-            &s->diag, DALCS_ERROR, NULL,
-            "a source fills what nothing empties: give it a way out, or limit what commands it",
-            "there is no periodic steady state: each period %s, whatever they are", moves_text(st));
-        return DALCS_NOT_CONVERGED;
-    }
-    dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
-                   "look at it with .tran; a switch that follows the circuit may have a clock of "
-                   "its own",
-                   "no periodic steady state was found in %ld periods; in the last one %s",
-                   st->n.periods, moves_text(st));
-    return DALCS_NOT_CONVERGED;
-}
-
-static const char *states_text(struct dalcs_steady *st) {
-    struct dalcs_arena *arena = &st->run->s->arena;
-    const char *text = "";
-    for (int x = 0; x < st->layout.n_x && text != NULL; x++) {
-        char value[DALCS_QUANTITY_SIZE];
-        if (x == MOST_STATES) {
-            return dalcs_arena_printf(arena, "%s, ...", text);
-        }
-        text = dalcs_arena_printf(arena, "%s%s%s = %s", text, x > 0 ? ", " : "",
-                                  dalcs_steady_name(st, x),
-                                  dalcs_quantity_write(value, st->at.x[x], unit_of(st, x), 9));
-    }
-    return text == NULL ? "" : text;
-}
-
-/* Of a circuit without a clock. */
-static enum dalcs_status find_oscillation(struct dalcs_steady *st, double guess) {
-    struct dalcs_session *s = st->run->s;
-    bool found;
-    bool rests;
-    DALCS_TRY(dalcs_steady_oscillation(st, guess, &found, &rests));
-    if (rests && st->layout.n_x == 0) {
-        return refuse(st->run, ".op has what there is",
-                      "no source repeats, and nothing in the circuit has a memory");
-    }
-    if (rests) {
-        dalcs_diag_add(
-            &s->diag, DALCS_ERROR, NULL,
-            ".op has that state; if the circuit is to oscillate, start it with IC= and uic",
-            "there is no oscillation: no source repeats, and the circuit comes to rest, "
-            "at %s",
-            states_text(st));
-        return DALCS_NOT_CONVERGED;
-    }
-    if (!found && st->is_free_of_events) {
-        dalcs_diag_add(
-            &s->diag, DALCS_ERROR, NULL,
-            "what is linear rings at any amplitude, or moves on and on; look at it with "
-            ".tran",
-            "there is no oscillation of its own: no source repeats, and nothing switches "
-            "again and again");
-        return DALCS_NOT_CONVERGED;
-    }
-    if (!found) {
-        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
-                       "look at it with .tran; a guess of the period, .pss 10u, may help",
-                       "no source repeats, and no oscillation was found");
-        return DALCS_NOT_CONVERGED;
-    }
-    return DALCS_OK;
-}
-
 /* ---- The period ---------------------------------------------------------------------------------- */
 
 /* Is the run that has just ended, in st->then, where it began? */
@@ -202,29 +81,66 @@ static bool is_subharmonic(const struct dalcs_report *report) {
     return dalcs_steady_is_unstable(report) && m[0].im == 0.0 && m[0].re < 0.0;
 }
 
+/* With gates the period may be a multiple of that of the sources. */
+static enum dalcs_status take_repeats(struct dalcs_steady *st, bool uic) {
+    struct dalcs_run *r = st->run;
+    int n = 1;
+    if (r->s->circuit.n_gates == 0) {
+        return DALCS_OK;
+    }
+    if (r->s->near != NULL) {
+        n = (int)rint(r->s->near->period / st->period);
+    } else {
+        DALCS_TRY(dalcs_steady_find_repeats(st, &n));
+        dalcs_steady_note_repeats(st, n);
+    }
+    st->period *= n > 1 ? n : 1;
+    take_period(r, st->period, uic);
+    return DALCS_OK;
+}
+
+/* From the orbit of a step before, if that leads to one; else from where any run starts. */
+static enum dalcs_status search(struct dalcs_steady *st, bool is_free, bool leaves,
+                                double n_periods) {
+    const double guess = st->period;
+    bool found = false;
+    bool endless = false;
+    DALCS_TRY(n_periods == 1.0 ? dalcs_steady_anchor_try(st, leaves, is_free, &found) : DALCS_OK);
+    if (is_free) {
+        DALCS_TRY(found ? DALCS_OK : dalcs_steady_find_oscillation(st, guess));
+        st->period *= n_periods;
+        return n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK;
+    }
+    DALCS_TRY(found ? DALCS_OK : dalcs_steady_search(st, &found, &endless));
+    if (!found) {
+        return dalcs_steady_tell_failure(st, endless);
+    }
+    return n_periods > 1.0 ? dalcs_steady_replace(st, st->period / n_periods, (int)n_periods)
+                           : DALCS_OK;
+}
+
 /* st: set up from here on, to be finished by the caller. */
 static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dalcs_steady *st) {
     const struct dalcs_circuit *c = &r->s->circuit;
     double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
-    bool found = false;
-    bool endless;
     bool is_fixed = r->method != DALCS_METHOD_AUTO && r->options->step > 0.0;
     if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0 || is_fixed) {
-        return refuse(r, "leave the method, or the step, to the program",
-                      "a steady state needs steps whose error is controlled");
+        return dalcs_steady_refuse(r, "leave the method, or the step, to the program",
+                                   "a steady state needs steps whose error is controlled");
     }
     bool is_free;
     DALCS_TRY(dalcs_steady_find_period(r, period, leaves, &period, &is_free));
     const double n_periods = fmax(1.0, c->periodic.n_periods);
-    const double one = period;
-    period = is_free ? period : n_periods * period;
+    period *= is_free ? 1.0 : n_periods;
     if (c->periodic.oscillates && !is_free) {
-        return refuse(r, "leave osc out: the period follows from the sources",
-                      "osc is of circuits that oscillate by themselves, and here a source repeats");
+        return dalcs_steady_refuse(
+            r, "leave osc out: the period follows from the sources",
+            "osc is of circuits that oscillate by themselves, and here a source repeats");
     }
     const bool uic = c->transient.use_initial_conditions || c->periodic.use_initial_conditions;
     take_period(r, period, uic);
     DALCS_TRY(dalcs_steady_setup(st, r, period));
+    DALCS_TRY(is_free ? DALCS_OK : take_repeats(st, uic));
     if (r->s->near != NULL && r->s->near->asked != DALCS_NEAR_ORBIT) {
         DALCS_TRY(dalcs_steady_at_near(st, is_free, r->s->near));
         take_period(r, st->period, uic);
@@ -233,21 +149,11 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     if (r->s->near != NULL) {
         DALCS_TRY(dalcs_steady_from_near(st, is_free, r->s->near));
         take_period(r, st->period, uic);
-    } else if (is_free) {
-        DALCS_TRY(find_oscillation(st, period));
-        st->period *= n_periods;
-        DALCS_TRY(n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK);
-        take_period(r, st->period, uic);
     } else {
-        endless = false;
-        DALCS_TRY(n_periods == 1.0 ? dalcs_steady_anchor_try(st, leaves, &found) : DALCS_OK);
-        DALCS_TRY(found ? DALCS_OK : dalcs_steady_search(st, &found, &endless));
-        if (!found) {
-            return tell_failure(st, endless);
-        }
-        DALCS_TRY(n_periods > 1.0 ? dalcs_steady_replace(st, one, (int)n_periods) : DALCS_OK);
+        DALCS_TRY(search(st, is_free, leaves, n_periods));
+        take_period(r, st->period, uic);
     }
-    DALCS_TRY(is_free ? DALCS_OK : dalcs_steady_anchor_keep(st, leaves));
+    DALCS_TRY(is_free && n_periods > 1.0 ? DALCS_OK : dalcs_steady_anchor_keep(st, leaves));
     if (r->s->anchor.is_sought ||
         r->s->report.steady.present) { /* nobody asks, or its .pss has told */
         return DALCS_OK;
@@ -255,7 +161,7 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     DALCS_TRY(dalcs_steady_next_step(st)); /* how far it may be off, and what is conserved */
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
     DALCS_TRY(dalcs_steady_report(st));
-    return period == one && r->s->near == NULL && is_subharmonic(&r->s->report)
+    return n_periods == 1.0 && r->s->near == NULL && is_subharmonic(&r->s->report)
                ? dalcs_steady_look_for_double(st)
                : DALCS_OK;
 }
@@ -300,8 +206,8 @@ static enum dalcs_status look_at(struct dalcs_run *r,
     bool is_free;
     DALCS_TRY(dalcs_steady_find_period(r, period, false, &period, &is_free));
     if (is_free) {
-        return refuse(r, "give the circuit a clock",
-                      "samples are taken once in each period, and no source repeats");
+        return dalcs_steady_refuse(r, "give the circuit a clock",
+                                   "samples are taken once in each period, and no source repeats");
     }
     take_period(r, period,
                 c->transient.use_initial_conditions || c->periodic.use_initial_conditions);

@@ -22,9 +22,24 @@ static uint64_t direction_of(const struct dalcs_radau_part *part, const double *
     return (mode_of(part) << 1) + (part->x[0] > start[0] ? 1u : 0u);
 }
 
+static void note_event(struct dalcs_steady_watch *watch, const struct dalcs_radau_part *part,
+                       double t, const double *x, uint64_t kind) {
+    const size_t n_x = (size_t)part->component->system->n_x;
+    struct dalcs_steady_event *event = &watch->event[watch->n];
+    event->x = dalcs_arena_alloc(&watch->arena, n_x + 1, sizeof(double));
+    if (event->x == NULL) {
+        watch->status = DALCS_E_NOMEM;
+        return;
+    }
+    memcpy(event->x, x, n_x * sizeof(double));
+    event->t = t;
+    event->part = part->index;
+    event->kind = kind;
+    watch->n++;
+}
+
 static void segment(void *user, const struct dalcs_radau_part *part, const double *start) {
     struct dalcs_steady_watch *watch = user;
-    const size_t n_x = (size_t)part->component->system->n_x;
     watch->n_segments++;
     const uint64_t mode = part->smooth != NULL ? direction_of(part, start) : mode_of(part);
     const uint64_t before = watch->mode[part->index];
@@ -34,18 +49,59 @@ static void segment(void *user, const struct dalcs_radau_part *part, const doubl
     if (!is_event || watch->n == watch->most || watch->status != DALCS_OK) {
         return;
     }
-    struct dalcs_steady_event *event = &watch->event[watch->n];
-    event->x = dalcs_arena_alloc(&watch->arena, n_x, sizeof(double));
-    if (event->x == NULL) {
-        watch->status = DALCS_E_NOMEM;
+    note_event(watch, part, part->segment.t, start, (before * 0xff51afd7ed558ccdu) ^ mode);
+}
+
+/* ---- Gates ------------------------------------------------------------------------------------------------- */
+
+static void ignore_due(void *user, long since) {
+    (void)user;
+    (void)since;
+}
+
+static void ignore_taken(void *user, int gate) {
+    (void)user;
+    (void)gate;
+}
+
+static void ignore_pulse(void *user, int gate, long number) {
+    (void)user;
+    (void)gate;
+    (void)number;
+}
+
+static enum dalcs_status decided(void *user, double t, long number) {
+    struct dalcs_steady_watch *watch = user;
+    const struct dalcs_logic_run *logic = watch->gates.logic;
+    const struct dalcs_radau_part *part = &logic->radau->part[0];
+    uint64_t seen = 0;
+    (void)number;
+    for (int k = 0; k < logic->network.n; k++) {
+        seen = (seen ^ (logic->network.state[k].seen ? 1u : 2u)) * 0x9e3779b97f4a7c15u;
+        seen ^= seen >> 29;
+    }
+    const uint64_t before = watch->gates.seen;
+    watch->gates.seen = seen;
+    if (before != 0 && seen != before && watch->n < watch->most && watch->status == DALCS_OK) {
+        note_event(watch, part, t, part->x, (before * 0xff51afd7ed558ccdu) ^ seen);
+    }
+    return watch->status;
+}
+
+void dalcs_steady_watch_gates(struct dalcs_steady_watch *watch, struct dalcs_logic_run *logic) {
+    if (logic->circuit == NULL || logic->radau->part[0].component->system->n_pairs > 0) {
         return;
     }
-    memcpy(event->x, start, n_x * sizeof(double));
-    event->t = part->segment.t;
-    event->part = part->index;
-    event->kind = (before * 0xff51afd7ed558ccdu) ^ mode;
-    watch->n++;
+    watch->gates.logic = logic;
+    watch->gates.observer = (struct dalcs_logic_observer){.user = watch,
+                                                          .due = ignore_due,
+                                                          .took = ignore_taken,
+                                                          .pulse = ignore_pulse,
+                                                          .decided = decided};
+    logic->observer = &watch->gates.observer;
 }
+
+/* ---- The watch --------------------------------------------------------------------------------------------- */
 
 struct dalcs_observer dalcs_steady_watch_observer(struct dalcs_steady_watch *watch) {
     return dalcs_segments_observer(watch, segment);

@@ -1,7 +1,9 @@
-/* steady_watch.h - the events of a run: when a part goes from one mode to another, and where its states are then. */
+/* steady_watch.h - the events of a run: when a part goes from one mode to another, and where its states are then; where no
+ * part has modes, when gates turn over. */
 #ifndef DALCS_STEADY_WATCH_H
 #define DALCS_STEADY_WATCH_H
 
+#include "logic_run.h"
 #include "memory.h"
 #include "radau_state.h"
 
@@ -23,6 +25,13 @@ struct dalcs_steady_watch {
     int n_parts;
     uint64_t *mode; /* [n_parts] the last one, and whether there was one */
     bool *begun;
+
+    struct dalcs_watched_gates {
+        const struct dalcs_logic_run *logic;
+        struct dalcs_logic_observer observer;
+        uint64_t seen; /* by others, at the last instant */
+    } gates;
+
     struct dalcs_arena arena;
 };
 
@@ -33,6 +42,9 @@ enum dalcs_status dalcs_steady_watch_setup(struct dalcs_steady_watch *watch, int
 bool dalcs_steady_watch_is_full(const struct dalcs_steady_watch *watch);
 
 void dalcs_steady_watch_finish(struct dalcs_steady_watch *watch);
+
+/* If the circuit has gates and nothing else that turns over they are watched. */
+void dalcs_steady_watch_gates(struct dalcs_steady_watch *watch, struct dalcs_logic_run *logic);
 
 /* For radau->base->observer; user is the watch. */
 struct dalcs_observer dalcs_steady_watch_observer(struct dalcs_steady_watch *watch);

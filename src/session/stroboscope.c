@@ -28,7 +28,9 @@ static enum dalcs_status make_rows(struct rows *rows, struct dalcs_steady *st) {
     }
     for (int k = 0; k < st->layout.n_systems; k++) {
         for (int x = st->layout.first[k]; x < st->layout.first[k + 1]; x++) {
-            const bool is_current = s->network.system[k].column_is_current[x - st->layout.first[k]];
+            const struct dalcs_system *system = &s->network.system[k];
+            const int column = x - st->layout.first[k];
+            const bool is_current = column < system->n_x && system->column_is_current[column];
             const char *name = dalcs_steady_name(st, x);
             rows->name[x] = name != NULL ? dalcs_arena_copy(&s->arena, name, strlen(name)) : NULL;
             rows->name[n_x + x] =

@@ -6,6 +6,7 @@
 
 #include "audit_run.h"
 #include "energy.h"
+#include "gates.h"
 #include "losses_run.h"
 #include "measures.h"
 #include "steady.h"
@@ -41,26 +42,6 @@ static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
     return schedule;
 }
 
-static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler *e,
-                                         struct dalcs_measures *measures) {
-    struct dalcs_recorder *recorder = &r->s->recorder;
-    const long interval = dalcs_transient_progress_interval(&r->s->network);
-    while (!dalcs_grid_at_end(&e->grid)) {
-        DALCS_TRY(dalcs_euler_step(e));
-        DALCS_TRY(dalcs_recorder_step(recorder, e));
-        dalcs_measures_step(measures, e);
-        if (e->at_jump && !dalcs_grid_at_end(&e->grid)) {
-            DALCS_TRY(dalcs_euler_cross(e));
-            DALCS_TRY(dalcs_recorder_cross(recorder, e));
-            dalcs_measures_cross(measures, e);
-        }
-        if (e->steps % interval == 0) {
-            DALCS_TRY(dalcs_run_progress(r, e->t, e->grid.stop));
-        }
-    }
-    return DALCS_OK;
-}
-
 struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, double stop) {
     return (struct dalcs_radau_options){.tolerance = r->tolerance,
                                         .abstol = r->abstol,
@@ -83,6 +64,46 @@ struct parts {
     struct dalcs_audit_run audit;
     struct dalcs_logic_run logic;
 };
+
+/* What is just after a time at which sources jump, or gates decide. */
+static enum dalcs_status cross(struct dalcs_run *r, struct parts *p) {
+    struct dalcs_euler *e = &p->euler;
+    const bool has_gates = p->logic.circuit != NULL;
+    if (has_gates) {
+        dalcs_gates_read_euler(&r->s->network, &p->logic);
+    }
+    DALCS_TRY(e->at_jump ? dalcs_euler_cross(e) : DALCS_OK);
+    if (has_gates) {
+        DALCS_TRY(dalcs_transient_decide(r, &p->logic, e->t));
+        dalcs_grid_disturb(&e->grid, dalcs_logic_run_next(&p->logic));
+    }
+    if (e->at_jump || (has_gates && dalcs_sources_jump(&r->s->circuit, e->t))) {
+        DALCS_TRY(dalcs_recorder_cross(&r->s->recorder, e));
+        dalcs_measures_cross(&p->measures, e);
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct parts *p) {
+    struct dalcs_recorder *recorder = &r->s->recorder;
+    struct dalcs_euler *e = &p->euler;
+    const long interval = dalcs_transient_progress_interval(&r->s->network);
+    if (p->logic.circuit != NULL) {
+        dalcs_grid_disturb(&e->grid, dalcs_logic_run_next(&p->logic));
+    }
+    while (!dalcs_grid_at_end(&e->grid)) {
+        DALCS_TRY(dalcs_euler_step(e));
+        DALCS_TRY(dalcs_recorder_step(recorder, e));
+        dalcs_measures_step(&p->measures, e);
+        if ((e->at_jump || p->logic.circuit != NULL) && !dalcs_grid_at_end(&e->grid)) {
+            DALCS_TRY(cross(r, p));
+        }
+        if (e->steps % interval == 0) {
+            DALCS_TRY(dalcs_run_progress(r, e->t, e->grid.stop));
+        }
+    }
+    return DALCS_OK;
+}
 
 static struct dalcs_radau *radau_of(struct parts *p) {
     return p->is_euler ? NULL : &p->radau;
@@ -121,8 +142,8 @@ static enum dalcs_status set_up_others(struct dalcs_run *r, struct parts *p) {
         const struct dalcs_radau_options options =
             dalcs_transient_options(r, s->circuit.transient.stop);
         DALCS_TRY(dalcs_radau_setup(&p->radau, &p->euler, &options, &r->osnsp));
-        DALCS_TRY(dalcs_logic_run_setup(&p->logic, &s->circuit, &p->euler, &p->radau));
     }
+    DALCS_TRY(dalcs_logic_run_setup(&p->logic, &s->circuit, &p->euler, radau_of(p)));
     if (dalcs_run_wants_losses(r)) {
         DALCS_TRY(dalcs_losses_run_start(&p->losses, r, &p->euler, p->is_euler,
                                          p->is_euler ? 0.0 : p->radau.resolution));
@@ -138,7 +159,10 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
     struct dalcs_radau *radau = radau_of(p);
     struct dalcs_session *s = r->s;
     DALCS_TRY(dalcs_transient_report_methods(r, radau));
-    DALCS_TRY(dalcs_transient_start(r, e, radau, &p->logic));
+    DALCS_TRY(dalcs_transient_start(r, e, radau, &p->logic, true));
+    if (r->orbit != NULL && !p->is_euler) {
+        DALCS_TRY(dalcs_audit_gates_go_on(&p->audit.gates, &p->logic));
+    }
     DALCS_TRY(dalcs_transient_decide(r, &p->logic, 0.0));
     if (radau != NULL) {
         DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));
@@ -151,15 +175,15 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
     DALCS_TRY(dalcs_measures_start(&p->measures, r, e, radau));
     enum dalcs_status status =
         radau != NULL ? dalcs_transient_walk(r, radau, &p->measures, &p->audit, &p->logic)
-                      : step_to_the_end(r, e, &p->measures);
+                      : step_to_the_end(r, p);
     if (status == DALCS_OK && radau != NULL) {
         status = dalcs_radau_evaluate(radau, radau->options.stop, DALCS_LEFT);
     }
     dalcs_recorder_states(&s->network, e, s->final);
-    if (r->orbit_end != NULL) {
-        dalcs_steady_read(e, r->orbit_end);
-    }
     DALCS_TRY(status);
+    if (r->orbit_end != NULL) {
+        DALCS_TRY(dalcs_steady_read(e, &p->logic, s->circuit.transient.stop, r->orbit_end));
+    }
     if (dalcs_audit_run_fails(&p->audit)) {
         return DALCS_NOT_CONVERGED; /* the rows stay what they are: partial */
     }

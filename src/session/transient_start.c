@@ -98,10 +98,11 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
 }
 
 enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,
-                                        struct dalcs_radau *radau, struct dalcs_logic_run *logic) {
+                                        struct dalcs_radau *radau, struct dalcs_logic_run *logic,
+                                        bool has_rows) {
     const struct dalcs_circuit *c = &r->s->circuit;
     if (r->orbit != NULL) {
-        return dalcs_steady_start(r->orbit, e, radau);
+        return dalcs_steady_start(r->orbit, e, radau, logic);
     }
     if (logic != NULL) {
         bool changed;
@@ -117,7 +118,7 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
         return start_from_clamps(r, e, radau, logic);
     }
     DALCS_TRY(dalcs_gates_operating_point(e, logic, true));
-    if (logic != NULL && dalcs_sources_jump(c, 0.0)) {
+    if (has_rows && dalcs_sources_jump(c, 0.0)) {
         DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
         if (r->losses != NULL) {
             dalcs_losses_run_before_start(r->losses);

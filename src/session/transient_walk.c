@@ -239,7 +239,7 @@ static enum dalcs_status advance(struct transient *c) {
     }
     if (next.is_last) {
         c->t = stop;
-        return DALCS_OK;
+        return dalcs_gate_samples_read(&c->samples, c->logic, stop);
     }
     if (passes) {
         DALCS_TRY(pass(c, t));

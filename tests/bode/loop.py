@@ -59,6 +59,24 @@ def rows_of_gain(checker, program, folder):
         checker.check(abs(gain - own) <= 1e-12 * abs(own), f"gain {gain} for {own}")
 
 
+def commands_beside(checker, program, folder):
+    """Commands along ramps of sources with AC values of their own have no part in the gain of a loop."""
+    gains = []
+    for small in ("", " AC 3"):
+        text = ("A loop behind an open one\nVin in 0 12\nVc c 0 0.4" + small + "\nVtri t 0 PULSE(0 1 0 10u 0 0 10u)\n"
+                "E1 cmp 0 c t 1\nS1 in sw cmp 0 sm\nD1 0 sw\nL1 sw out 50u\nC1 out 0 20u\nR1 out 0 2\n"
+                "Vl out fb 0\nG1 out 0 fb 0 0.5\n.model sm SW(Ron=0 Vt=0)\n.pss uic\n.ac list 2k 30k loop=vl\n")
+        text = text.replace("list 2k 30k loop=vl", "loop=vl list 2k 30k")
+        (folder / "c.csv").unlink(missing_ok=True)
+        done, _, _ = response(program, folder, text)
+        if not checker.check(done.returncode == 0, f"a loop behind an open one: {done.stderr}"):
+            return
+        lines = (folder / "c.csv").read_text().splitlines()
+        at = lines[0].split(",").index("re(loop(vl))")
+        gains.append([complex(*map(float, line.split(",")[at:at + 2])) for line in lines[1:]])
+    checker.check(gains[0] == gains[1], f"gains {gains}")
+
+
 def compare_designs(checker, program, folder):
     """Loops of ten converters cross where |T| = 1, and their gain is what the closed loop's response says: with T
     from one injection, v(fb) = 1 / (1 + T)."""
@@ -145,7 +163,7 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("loop")
     with tempfile.TemporaryDirectory() as name:
-        for look in (margins, rows_of_gain, compare_designs, impedances, parts):
+        for look in (margins, rows_of_gain, commands_beside, compare_designs, impedances, parts):
             look(checker, program, pathlib.Path(name))
     return checker.finish()
 

@@ -104,12 +104,6 @@ def starts(checker, program):
 def words(checker, program):
     cards = ["v1 a 0 1", "a1 a 0 0 0 0 0 o 0 BUF", "r1 o x 1k", "c1 x 0 1u"]
     loop = ["a1 a 0 0 0 0 o 0 0 BUF", "r1 o a 1k", "c1 a 0 1u"]
-    for card, options, text in ((".pss 1m", (), "have states that no steady state is looked for with"),
-                                (".tran 1u 1m uic=steady", (), "have states that no steady state is looked for with")):
-        done = run(program, "\n".join(["x", *cards, card, ".end", ""]), method=None, options=options)
-        checker.check(done.status != 0 and text in done.stderr, f"{card}: {done.stderr}")
-    done = run(program, "\n".join(["x", *cards, ".tran 1u 1m", ".end", ""]), method="euler", step=1e-6)
-    checker.check(done.status != 0 and "which implicit Euler does not have" in done.stderr, done.stderr)
     done = run(program, "\n".join(["x", *loop, ".op", ".end", ""]), method=None, quiet=False)
     checker.check("gates have no rest at the operating point: a1" in done.stderr, done.stderr)
     done = run(program, "\n".join(["x", *cards, ".op", ".end", ""]), method=None, quiet=False)

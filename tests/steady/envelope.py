@@ -55,6 +55,22 @@ C1 out 0 10m
 R1 out 0 100
 .model sm SW(Ron=10m Vt=0.5)
 """
+LATCH = """Vin in 0 12
+Vclk clk 0 PULSE(0 1 0 0 0 100n 10u)
+S1 in sw q 0 sm
+D1 0 sw
+L1 sw x 22u
+Rs x out 10m
+C1 out 0 5m
+R1 out 0 2
+Vramp ramp 0 PULSE(0 0.4 0 10u 0 0 10u)
+B1 lim 0 V=v(ref)-v(ramp)-0.3*i(L1)
+A1 lim 0 0 0 0 over 0 0 SCHMITT Vt=0 Vh=0
+A2 clk over 0 0 0 0 q 0 SRFLOP Td=50n
+.model sm SW(Ron=10m Vt=0.5)
+"""
+HOLD = BUCK.replace("E1 cmp 0 ctl tri 1", "Vclk clk 0 PULSE(0 1 0 0 0 1u 10u)\nA1 ctl 0 clk 0 0 0 held 0 SAMPLEHOLD\n"
+                    "A2 clk 0 0 0 0 0 third 0 COUNTER cycles=3\nR9 third 0 1k\nE1 cmp 0 held tri 1")
 RECTIFIER = "V1 a 0 SIN(0 17 50)\nR1 a b 1\nD1 b out\nC1 out 0 1\nR2 out 0 100\n"
 
 
@@ -65,6 +81,11 @@ def circuits():
     yield "soft start", BUCK + "Vref ref 0 PWL(0 0 50m 5)\n", 1e-5, 10000, 10
     yield "thermal ladder", THERMAL, 1e-5, 100000, 1500
     yield "delayed clock", BOOST.replace("PULSE(0 1 0 ", "PULSE(0 1 33u "), 1e-5, 20000, 20
+    yield "latch, a pulse", LATCH + "Vref ref 0 PULSE(0.3 0.7 1m 2m 0 1 10)\n", 1e-5, 6000, 3
+    yield "latch, EXP", LATCH + "Vref ref 0 EXP(0.2 0.7 0 0.2m)\n", 1e-5, 6000, 3
+    yield "boost, two pulses", BOOST.replace("10m", "1m", 1) + "Iload out 0 PULSE(0 0.1 20m 0 0 30m 60m 2)\n", 1e-5, 15000, 3
+    yield "boost, a sine that dies away", BOOST.replace("10m", "1m", 1) + "Iload out 0 SIN(0 0.1 500 0 10k)\n", 1e-5, 6000, 2
+    yield "hold, a third of its clock", HOLD + "Vref ref 0 PWL(0 0 50m 5)\n", 3e-5, 3000, 3
     load = "Iload out 0 PWL(0 0 50m 0 50m 0.1 80m 0.1 90m 0.02)\n"
     yield "corners", BOOST.replace("10m", "1m", 1) + load, 1e-5, 15000, 3
     for kind in ("buck_ccm", "buck_dcm", "boost_dcm", "slow_rectifier", "six_pulse", "coupled", "llc", "multiplier",
@@ -210,7 +231,7 @@ def refused(case):
     case.refuses(f"* r\n{BOOST}.env -1\n", 3, "the stop time must be positive")
     case.refuses(f"* r\n{BOOST}.env 0.1 tol=0\n", 3, "tol is a positive number")
     case.refuses(f"* r\n{BOOST}.env 0.1 at=0.2\n", 3, "lies outside of the run")
-    case.refuses(f"* r\n{BOOST}V2 x 0 EXP(0 1 1m 1m)\nR9 x 0 1\n.env 0.1 uic\n", 2, "'v2' neither repeats nor is a PWL")
+    case.refuses(f"* r\n{BOOST}V2 x 0 SIN(0 1 50 0 -10)\nR9 x 0 1\n.env 0.1 uic\n", 2, "'v2' neither repeats nor comes to an end")
     case.refuses("* r\nV1 a 0 1\nR1 a b 1\nC1 b 0 1u\n.env 0.1 uic\n", 3, "no source repeats")
     case.refuses(f"* r\n{BOOST}.env 0.1 uic\n.options method=euler\n", 3, ".env needs steps whose error is controlled")
 

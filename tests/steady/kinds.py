@@ -4,6 +4,8 @@ Each function yields (name, netlist). The numbers are spread over sizes, duty cy
 quotients of the golden section, which repeat nowhere.
 """
 
+import gate_circuits
+
 GOLDEN = 0.6180339887498949
 
 
@@ -201,7 +203,14 @@ def interleaved():
         yield f"interleaved_{k}", text + SWITCH
 
 
+def gates():
+    """Circuits with gates, latches and samples."""
+    for name, text, level, _, _, _ in gate_circuits.CIRCUITS:
+        yield name, text.replace("{S}", repr(level)).split("\n", 1)[1]
+
+
 KINDS = {
+    "gates": gates,
     "buck_ccm": lambda: buck(True), "buck_dcm": lambda: buck(False),
     "boost_ccm": lambda: boost(True), "boost_dcm": lambda: boost(False),
     "flyback_ccm": lambda: flyback(True), "flyback_dcm": lambda: flyback(False),

@@ -13,6 +13,7 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import dalcs_program  # pylint: disable=wrong-import-position,import-error
+import gate_oscillators  # pylint: disable=wrong-import-position
 from kinds import between, part  # pylint: disable=wrong-import-position
 
 NEAR = 1e-9  # of the period
@@ -114,6 +115,7 @@ def negative_resistance():
 
 KINDS = {f.__name__: f for f in (relaxation, inverter, royer, hysteretic_buck, bang_bang_boost,
                                  ring, negative_resistance)}
+KINDS.update(gate_oscillators.KINDS)
 
 
 def run(program, folder, netlist, verb, *options):

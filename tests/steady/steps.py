@@ -13,7 +13,9 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import dalcs_program  # pylint: disable=wrong-import-position,import-error
+import gate_circuits  # pylint: disable=import-error
 import kinds  # pylint: disable=import-error
+import oscillators  # pylint: disable=import-error
 
 CASES = pathlib.Path(__file__).resolve().parent / "cases"
 NEAR = 1e-9  # of the largest of a column
@@ -39,6 +41,12 @@ def circuits():
                           ("hard_edges", "r1")):
         name, body = list(kinds.KINDS[kind]())[1]
         signal = {"multiplier": "b1", "slow_rectifier": "out"}.get(kind, "out")
+        yield name, body + ".pss uic\n", element, f".meas pss mean avg v({signal})\n.meas pss most max v({signal})\n"
+    for name, body, element, signal in (
+            ("hysteretic", list(oscillators.KINDS["hysteretic_buck"]())[1][0], "r1", "out"),
+            ("late comparator", list(oscillators.KINDS["late_hysteretic"]())[1][0], "r1", "out"),
+            ("latch", gate_circuits.PEAK_CURRENT.split("\n", 1)[1].replace("{S}", "5"), "r1", "out"),
+            ("counter", gate_circuits.DIVIDED.split("\n", 1)[1].replace("{S}", "0.5"), "r1", "out")):
         yield name, body + ".pss uic\n", element, f".meas pss mean avg v({signal})\n.meas pss most max v({signal})\n"
     # a controller that saturates; a charge that nothing determines; an orbit that no run stays on
     for name, element, signal in (("buck_vm", "r1", "out"), ("floating_charge", "r1", "m"),

@@ -1,0 +1,66 @@
+/* steady_setup.c - where states, switches and what gates remember lie side by side, and room for the search. */
+#include "steady.h"
+
+static bool make_point(struct dalcs_arena *arena, const struct dalcs_steady_layout *l,
+                       struct dalcs_orbit_point *point) {
+    point->layout = l;
+    point->x = dalcs_arena_alloc(arena, (size_t)l->n_x + 1, sizeof(double));
+    point->closed = dalcs_arena_alloc(arena, (size_t)l->n_pairs + 1, sizeof(bool));
+    return point->x != NULL && point->closed != NULL;
+}
+
+enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *r, double period) {
+    const struct dalcs_network *network = &r->s->network;
+    const size_t n = (size_t)network->n_systems + 1;
+    *st = (struct dalcs_steady){.run = r, .period = period};
+    struct dalcs_steady_layout *l = &st->layout;
+    DALCS_TRY(dalcs_logic_memory_setup(&l->memory, &st->arena, &r->s->circuit, period));
+    l->n_systems = network->n_systems;
+    l->first = dalcs_arena_alloc(&st->arena, n, sizeof(*l->first));
+    l->first_pair = dalcs_arena_alloc(&st->arena, n, sizeof(*l->first_pair));
+    l->first_of_M = dalcs_arena_alloc(&st->arena, n, sizeof(*l->first_of_M));
+    bool complete = l->first != NULL && l->first_pair != NULL && l->first_of_M != NULL;
+    for (int k = 0; k < l->n_systems && complete; k++) {
+        const struct dalcs_system *s = &network->system[k];
+        const int n_x = s->n_x + l->memory.n_numbers; /* with numbers there is one system */
+        l->first[k + 1] = l->first[k] + n_x;
+        l->first_pair[k + 1] = l->first_pair[k] + s->n_pairs;
+        l->first_of_M[k + 1] = l->first_of_M[k] + (size_t)n_x * (size_t)n_x;
+        l->n_x = l->first[k + 1];
+        l->n_pairs = l->first_pair[k + 1];
+    }
+    l->n_states = l->n_x - l->memory.n_numbers;
+    l->n_switches = l->n_pairs;
+    l->n_pairs += l->memory.n_bits;
+    if (complete) {
+        const size_t n_x = (size_t)l->n_x + 1;
+        st->M = dalcs_arena_alloc(&st->arena, l->first_of_M[l->n_systems] + 1, sizeof(double));
+        st->scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->step = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->first = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->last = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->phase = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->found.state =
+            dalcs_arena_alloc(&r->s->arena, (size_t)network->n_states + 1, sizeof(double));
+        st->found.average =
+            dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
+        st->found.rms =
+            dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
+        st->conserved = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->conserved));
+        complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
+                   st->M != NULL && st->phase != NULL && st->first != NULL && st->last != NULL && st->scale != NULL &&
+                   st->step != NULL && st->drift != NULL && st->found.state != NULL &&
+                   st->found.average != NULL && st->found.rms != NULL && st->conserved != NULL;
+    }
+    if (!complete) {
+        dalcs_steady_finish(st);
+        return DALCS_E_NOMEM;
+    }
+    return DALCS_OK;
+}
+
+void dalcs_steady_finish(struct dalcs_steady *st) {
+    dalcs_arena_finish(&st->arena);
+    *st = (struct dalcs_steady){0};
+}
