@@ -128,9 +128,6 @@ static inline size_t dalcs_stages_room(const struct dalcs_stages *stages) {
     return (size_t)stages->layout.n_fixed + (size_t)stages->method->s * n_columns + 8;
 }
 
-/* Is what is next to this pair awake? (stage_rest.h) */
-bool dalcs_stages_is_awake(const struct dalcs_stages *stages, int pair);
-
 /* How much more of the answer is rounding than in one from a dense map: 1 for those. */
 double dalcs_stage_rounding(const struct dalcs_stage_entry *entry);
 
