@@ -11,13 +11,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A control that differs by more than this part of its terms on the two sides of a time jumps there. */
-static const double jumps = 1e-9;
-
 /* So far before a time, over it, a piece of a source is asked for that ends there. */
 static const double before = 1e-12;
 
-/* Two commands at one time move alike if they do to this part. */
+/* Two commands at one time move alike if they do to this part, and a control that differs by more than that of its terms
+ * on the two sides of a time jumps there. */
 static const double alike = 1e-9;
 
 /* ---- Commands ------------------------------------------------------------------------------------ */
@@ -50,7 +48,7 @@ static void find_command(const struct dalcs_radau_part *part, int pair, double t
             moved[1] += a->x[k] * s->ac_imaginary;
         }
     }
-    bool is_edge = fabs(left - right) > jumps * size || slope == 0.0;
+    bool is_edge = fabs(left - right) > alike * size || slope == 0.0;
     dt[0] = is_edge ? 0.0 : -moved[0] / slope;
     dt[1] = is_edge ? 0.0 : -moved[1] / slope;
 }

@@ -5,9 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A factorisation that is worse than this has failed without saying so. */
-static const double largest_residual = 1e-6;
-
 /* And one that pivots next to 0 spoke against has not, if it is no worse than this: rounding. */
 static const double largest_of_doubtful = 1e-13;
 
@@ -275,7 +272,7 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
     memcpy(f->column_scale, m->column_scale, (size_t)m->n * sizeof(double));
     memcpy(entry->natural, f->column_scale, (size_t)dalcs_system_n_equations(s) * sizeof(double));
     enum dalcs_status status = factor_all(stages, entry, f, m, stages->rcond_min);
-    double largest = largest_residual;
+    double largest = dalcs_largest_residual;
     if (status == DALCS_OK) {
         remember_pivots(plan, m, f);
     } else if (status == DALCS_SINGULAR && s->n_pairs > 0) {

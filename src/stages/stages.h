@@ -17,6 +17,10 @@
 #include <stdint.h>
 #include <suitesparse/klu.h>
 
+/* Equations without derivatives hold to rounding, even if it is rounding of large conductances, unless
+ * a mode is singular and the states contradict it, which takes a circuit that is not passive. */
+static const double dalcs_largest_residual = 1e-6;
+
 struct dalcs_stage_entry;
 struct dalcs_stage_plan;
 struct dalcs_stage_workshop;

@@ -3,6 +3,7 @@
 
 #include "extremes.h"
 #include "present.h"
+#include "rounding.h"
 #include "smooth_newton.h"
 
 #include <float.h>
@@ -140,7 +141,7 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
         const double missed = dalcs_smooth_rest(of, x) - phi;
         double *known = value_at(part, k, m->s + 1);
         is_finite = is_finite && isfinite(missed);
-        *changes = *changes || fabs(missed - *known) > 4.0 * DBL_EPSILON * fabs(phi);
+        *changes = *changes || fabs(missed - *known) > dalcs_rounded * fabs(phi);
         *known = missed;
     }
     return is_finite;
