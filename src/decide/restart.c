@@ -72,20 +72,6 @@ static enum dalcs_status find_jump(struct dalcs_radau *r, struct dalcs_radau_par
     return dalcs_euler_find_jump(r->base, part->index, part->work.u);
 }
 
-/* What is left of a state that falls to 0, or of one that stays there, is as small as a certificate
- * allows: it is 0, for where nothing else is it would be a signal. */
-static void drop_remainders(const struct dalcs_radau_part *part, double *after) {
-    const struct dalcs_system *s = part->component->system;
-    double largest[2];
-    dalcs_micro_largest(part, largest);
-    for (int x = 0; x < s->n_x; x++) {
-        bool is_moved = fabs(after[x] - part->x[x]) > 0.5 * fabs(after[x]);
-        if (is_moved && fabs(after[x]) < dalcs_jump_remainder * largest[s->column_is_current[x]]) {
-            after[x] = 0.0;
-        }
-    }
-}
-
 /* The change of each state that is not worth a word: what is left of it where it falls to 0, over its own scale, or
  * rounding. */
 static void find_noise(const struct dalcs_radau_part *part, const double *after, double *noise) {
@@ -116,7 +102,6 @@ static const double *columns_before(struct dalcs_radau_part *part) {
 static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     struct dalcs_euler *e = r->base;
     e->t = part->segment.t;
-    drop_remainders(part, e->jump.after);
     find_noise(part, e->jump.after, e->noise);
     DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->segment.t, part->x,
                                       columns_before(part), part->work.y1));
