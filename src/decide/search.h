@@ -22,7 +22,6 @@ struct dalcs_search {
     bool front;   /* the latter */
     int refined;  /* times that a step was shortened for the signs at its start */
     bool closer;  /* micro-steps have looked for a mode that lasts for a small part of the step */
-    int flips_closer;
     bool untied; /* tied diodes have been looked at */
     bool opened; /* and are on their other sides now, to try */
     bool projected;
