@@ -310,26 +310,6 @@ void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
     }
 }
 
-void dalcs_stages_draw(const struct dalcs_stages *stages, int draw, const double *in,
-                       const double *scale, double *probe) {
-    const double stride = 0.6180339887498949 + 0.1 * draw; /* multiples of it are spread evenly */
-    double chance = 0.0;
-    for (int k = 0; k < stages->n_in; k++) {
-        double size = k < stages->system->n_x ? fmax(fabs(in[k]), scale[k]) : fabs(in[k]);
-        chance += stride;
-        chance -= chance >= 1.0 ? 1.0 : 0.0;
-        probe[k] = (chance < 0.5 ? chance - 1.0 : chance) * size;
-    }
-}
-
-enum dalcs_status dalcs_stages_try(struct dalcs_stages *stages,
-                                   const struct dalcs_stage_entry *entry, const double *probe,
-                                   double *out, double *drift) {
-    DALCS_TRY(dalcs_stage_factors_apply(stages, entry, probe, out));
-    dalcs_stage_factors_currents(stages, entry, drift);
-    return DALCS_OK;
-}
-
 int *dalcs_stage_note(struct dalcs_stage_entry *entry) {
     return &entry->note;
 }

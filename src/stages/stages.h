@@ -97,17 +97,6 @@ void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
                                     const struct dalcs_stage_entry *entry, const double *in,
                                     double *drift);
 
-/* probe[n_in]: as large as in[n_in], of a state at least scale[n_x], down to half of it, with signs of chance; another
- * one for each `draw`. */
-void dalcs_stages_draw(const struct dalcs_stages *stages, int draw, const double *in,
-                       const double *scale, double *probe);
-
-/* The answer out[n_fixed + n_clashes] to such a probe, and what goes with its drift, by an entry on factors: as chance
- * would have it no more than dalcs_stage_spread and dalcs_stage_spread_of_current, and of their size. */
-enum dalcs_status dalcs_stages_try(struct dalcs_stages *stages,
-                                   const struct dalcs_stage_entry *entry, const double *probe,
-                                   double *out, double *drift) DALCS_MUST_CHECK;
-
 /* As dalcs_stage_spread, of drift[k] by an entry with a map. */
 double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
                                      const struct dalcs_stage_entry *entry, int k, const double *in,

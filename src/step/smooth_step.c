@@ -204,7 +204,6 @@ static void take_tangents(struct dalcs_radau_part *part) {
         p->n_tangents = part->component->osnsp.n_tangents;
         dalcs_stages_forget(&part->stages);
         part->segment.entry = NULL;
-        part->scales.probe.entry = NULL;
         p->slope_h = 0.0;
     }
 }
