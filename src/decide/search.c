@@ -32,6 +32,7 @@ enum {
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
     MOST_JUMPS = 64, /* at one instant, as switches turn */
+    MOST_FLIPS_CLOSER = 2,
     MOST_REFINED = 4,
     FALL_BACK_LEAST = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
@@ -391,6 +392,10 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
         recovery * part->segment.h >= dalcs_length_shortest(r); /* else no micro-step sees it */
     if (recovery > 0.0 && recovery < briefly && is_resolved) {
         return ask_closer(r, part, search, recovery);
+    }
+    if (search->closer && search->flips_closer++ < MOST_FLIPS_CLOSER) {
+        dalcs_guards_flip(part);
+        return DALCS_OK;
     }
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
         return ask_from(r, part, search, dalcs_blocks_first_crossed(part));

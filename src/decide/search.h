@@ -22,8 +22,9 @@ struct dalcs_search {
     bool front;   /* the latter */
     int refined;  /* times that a step was shortened for the signs at its start */
     bool closer;  /* micro-steps have looked for a mode that lasts for a small part of the step */
-    bool untied;  /* tied diodes have been looked at */
-    bool opened;  /* and are on their other sides now, to try */
+    int flips_closer;
+    bool untied; /* tied diodes have been looked at */
+    bool opened; /* and are on their other sides now, to try */
     bool projected;
     bool settled;     /* the state has been moved by what no shorter step mended */
     bool states_free; /* in the mode of the last step, which has nothing to project on */
