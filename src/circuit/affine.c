@@ -1,5 +1,6 @@
 /* affine.c - sums of quantities with coefficients. */
 #include "behaviour.h"
+#include "rounding.h"
 
 #include <float.h>
 #include <math.h>
@@ -53,7 +54,7 @@ struct dalcs_affine dalcs_affine_add(struct dalcs_compiler *c, const struct dalc
         const double y = side >= 0 ? factor * b->term[j].coefficient : 0;
         t.coefficient = x + y;
         /* What is left of a difference of equals is rounding. */
-        if (fabs(t.coefficient) > 4 * DBL_EPSILON * fmax(fabs(x), fabs(y))) {
+        if (fabs(t.coefficient) > dalcs_rounded * fmax(fabs(x), fabs(y))) {
             term[sum.n++] = t;
         }
         i += side <= 0;
@@ -96,7 +97,7 @@ bool dalcs_affine_is_along(const struct dalcs_affine *a, const struct dalcs_affi
         const double wanted = *factor * direction->term[k].coefficient;
         const double found = a->term[k].coefficient;
         if (order(&a->term[k], &direction->term[k]) != 0 ||
-            fabs(found - wanted) > 16 * DBL_EPSILON * fabs(found)) {
+            fabs(found - wanted) > dalcs_sum_rounded * fabs(found)) {
             return false;
         }
     }

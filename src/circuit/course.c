@@ -1,6 +1,8 @@
 /* course.c - derivatives of a sum of stimuli, and going along it by a bound of the second. */
 #include "course.h"
 
+#include "rounding.h"
+
 #include <math.h>
 
 /* Just before a time means so many roundings of it earlier: none of the edges at it. */
@@ -85,7 +87,7 @@ void dalcs_course_look(const struct dalcs_stimulus_sum *sum, double t, enum dalc
     c->derivative[0] += c->rise;
     c->value = before ? dalcs_sum_value(sum, t, side) : c->value + c->straight;
     c->rounding =
-        dalcs_sum_rounded * (sizes.of[0] + fabs(c->value)) + dalcs_edge_rounded * t * sizes.of[1];
+        dalcs_sum_rounded * (sizes.of[0] + fabs(c->value)) + dalcs_rounded * t * sizes.of[1];
     for (int k = 0; k < DALCS_COURSE_ORDERS; k++) {
         c->rounded[k] = dalcs_sum_rounded * sizes.of[k + 1] + just_before * t * sizes.of[k + 2];
     }

@@ -34,10 +34,6 @@ void dalcs_course_look(const struct dalcs_stimulus_sum *sum, double t, enum dalc
 /* Is it above (1) or below (-1) a threshold just beyond the time? 0: it rests there. */
 int dalcs_course_side(const struct dalcs_course *course, double threshold);
 
-/* A sum of sources is right to so many roundings of its largest term, and a time to those that an edge may be off by
- * (stimulus.h). */
-static const double dalcs_sum_rounded = 16.0 * DBL_EPSILON, dalcs_edge_rounded = 4.0 * DBL_EPSILON;
-
 /* Times looked at in one search; a sum that never crosses must not cost its whole future. */
 enum { DALCS_COURSE_LOOKS = 256 };
 

@@ -6,6 +6,7 @@
  * and whose right limit is the start of the segment after it, both exact values of the card. */
 #include "formula_stimulus.h"
 #include "pi.h"
+#include "rounding.h"
 
 #include <float.h>
 #include <math.h>
@@ -13,7 +14,7 @@
 /* How far from an edge a time may be and still mean it. An edge is computed with three roundings and
  * a caller's time grid with about as many. */
 static double tolerance(double t, double delay) {
-    return 4 * DBL_EPSILON * fmax(fabs(t), fabs(delay));
+    return dalcs_rounded * fmax(fabs(t), fabs(delay));
 }
 
 /* ---- SIN ----------------------------------------------------------------------------------- */
@@ -107,7 +108,7 @@ static void collect_edges(const struct dalcs_stimulus *s, double t, double near,
     double period = s->u.pulse.period;
     /* An offset equal to the period but for rounding is the next period's start, not an edge of its
      * own a hair away from it. */
-    double end = isinf(period) ? (double)INFINITY : period * (1 - 4 * DBL_EPSILON);
+    double end = isinf(period) ? (double)INFINITY : period * (1 - dalcs_rounded);
     if (rise_end == 0 && fall_start >= end && s->u.pulse.n_periods == 0) {
         /* High for ever: the restarts change nothing. */
         fall_start = period = end = (double)INFINITY;

@@ -6,6 +6,7 @@
 #include "source_conflicts.h"
 
 #include "quantity.h"
+#include "rounding.h"
 #include "union_find.h"
 
 #include <float.h>
@@ -18,9 +19,8 @@ enum {
     MOST_TERMS = 60     /* of a sum that is looked at */
 };
 
-/* What sums of constants leave, over their sizes: certainly not 0, or 0 up to rounding. */
+/* What a sum of constants leaves, over its size, that is certainly not 0. */
 static const double surely = 1e-9;
-static const double rounding = 4.0 * DBL_EPSILON;
 
 /* Sources with a sign. */
 struct sum {
@@ -91,9 +91,9 @@ static enum verdict judge(const struct dalcs_circuit *c, const struct sum *s, do
             size += fabs(a->dc);
         }
     }
-    return fabs(*left) > surely * size      ? CONTRADICT
-           : fabs(*left) <= rounding * size ? AGREE
-                                            : UNKNOWN;
+    return fabs(*left) > surely * size           ? CONTRADICT
+           : fabs(*left) <= dalcs_rounded * size ? AGREE
+                                                 : UNKNOWN;
 }
 
 static void add_term(struct sum *s, int device, double sign) {

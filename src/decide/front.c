@@ -46,7 +46,6 @@ static void feed(struct front *f, int pair) {
 static bool is_tied(const struct front *f, int pair) {
     return f->s->pair[pair].kind == DALCS_PAIR_DIODE &&
            !dalcs_osnsp_is_on(&f->part->component->osnsp, pair) &&
-           dalcs_stages_is_awake(&f->part->stages, pair) &&
            fabs(f->end[dalcs_system_n_equations(f->s) + pair]) <= f->nothing;
 }
 

@@ -23,8 +23,8 @@ static const double steady = 0.99;
  * more than what the circuit does. So many inner tolerances are no such error. */
 static const double a_little_shorter = 1.0 / 32.0, beyond_error = 10.0;
 
-/* And a state that moves by less than this has not moved at all. */
-static const double rounding = 1e-15;
+/* An event's state may be off by so many inner tolerances. */
+static const double of_an_event = 1e3;
 
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u, enum dalcs_status status) {
@@ -99,7 +99,7 @@ void dalcs_micro_raise_to_drives(const struct dalcs_radau_part *part, double *la
 /* V or A: a state that changes by less has not: rounding of the largest of its unit, or what rounding of the other unit
  * drives. */
 double dalcs_micro_rounding(const struct dalcs_radau_part *part, int of, const double *largest) {
-    return fmax(rounding * largest[of], dalcs_step_crossed(part, of, largest));
+    return fmax(dalcs_jump_rounding * largest[of], dalcs_step_crossed(part, of, largest));
 }
 
 /* V, A: no less than |y[0..n-1]|. */
@@ -108,6 +108,10 @@ void dalcs_micro_raise(const struct dalcs_system *s, const double *y, int n, dou
         double *of = &largest[s->column_is_current[c]];
         *of = fmax(*of, fabs(y[c]));
     }
+}
+
+double dalcs_micro_noticeable(const struct dalcs_radau_part *part) {
+    return fmax(of_an_event * part->inner_tolerance, dalcs_smallest_jump);
 }
 
 /* The states just after part->segment.t from the micro-steps y1 and y2. Does any jump, and by more than the
@@ -123,7 +127,7 @@ bool dalcs_micro_extrapolate(const struct dalcs_radau_part *part, double *after,
     /* What the second one has of voltages and currents: the first one's hold the impulses of a jump over h, or what
      * reads them. */
     dalcs_micro_raise(s, part->work.y2, dalcs_system_n_equations(s), largest);
-    double smallest = fmax(1e3 * part->inner_tolerance, dalcs_micro_smallest_jump);
+    double smallest = dalcs_micro_noticeable(part);
     double driven[2] = {largest[0], largest[1]};
     dalcs_micro_raise_to_drives(part, driven);
     const double nothing[2] = {dalcs_micro_rounding(part, 0, driven),

@@ -7,9 +7,6 @@
 /* A micro-step over a longer one that it is compared with. */
 static const double dalcs_micro_shorter = 1.0 / 1024.0;
 
-/* States that move by less, over the largest of their unit, have not jumped. */
-static const double dalcs_micro_smallest_jump = 1e-9;
-
 /* Notes a failure at part->segment.t with the problem of sigma and u[n_x + n_inputs]; returns status. */
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u,
@@ -41,6 +38,10 @@ bool dalcs_micro_extrapolate(const struct dalcs_radau_part *part, double *after,
 
 /* The impulses of the micro-steps of length h (s) into r->base->charge and flux. */
 void dalcs_micro_impulses(struct dalcs_radau *r, const struct dalcs_radau_part *part, double h);
+
+/* Over the largest of its unit: a state that moves by more has jumped by more than the error that the state of an event
+ * has. */
+double dalcs_micro_noticeable(const struct dalcs_radau_part *part);
 
 /* V, A: the largest so far, and of the states, into largest[2]. */
 void dalcs_micro_largest(const struct dalcs_radau_part *part, double *largest);

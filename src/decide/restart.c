@@ -9,6 +9,7 @@
 #include "present.h"
 #include "recurrence.h"
 #include "step_error.h"
+#include "step_length.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,9 +19,6 @@ enum { LONGER_TRIES = 4 };
 
 /* How much farther a state goes in a shorter micro-step that has no limit. */
 static const double runaway = 4.0;
-
-/* A state this small after a jump, over the largest of its unit before, is 0. */
-static const double remainder_of_jump = 1e-12;
 
 /* Where a component is not passive, a state may jump although another one runs away, the farther the
  * shorter the micro-step: the derivative of an impulse. */
@@ -39,7 +37,7 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
         double before = fabs(longer[x] - part->x[x]);
         double now = fabs(part->work.y1[x] - part->x[x]);
         bool stays = fabs(part->work.y1[x] - longer[x]) < 0.5 * now;
-        bool moves = now > dalcs_micro_smallest_jump * largest[s->column_is_current[x]];
+        bool moves = now > dalcs_smallest_jump * largest[s->column_is_current[x]];
         jumps = jumps || (moves && stays);
         runs_away = runs_away || (moves && now > runaway * before);
     }
@@ -56,7 +54,7 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
 static bool is_noticeable(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     const double *after = r->base->jump.after;
-    double smallest = fmax(1e3 * part->inner_tolerance, dalcs_micro_smallest_jump);
+    double smallest = dalcs_micro_noticeable(part);
     bool noticeable = false;
     for (int x = 0; x < s->n_x && !noticeable; x++) {
         double scale = fmax(part->scales.unit[s->column_is_current[x]],
@@ -74,20 +72,6 @@ static enum dalcs_status find_jump(struct dalcs_radau *r, struct dalcs_radau_par
     return dalcs_euler_find_jump(r->base, part->index, part->work.u);
 }
 
-/* What is left of a state that falls to 0, or of one that stays there, is as small as a certificate
- * allows: it is 0, for where nothing else is it would be a signal. */
-static void drop_remainders(const struct dalcs_radau_part *part, double *after) {
-    const struct dalcs_system *s = part->component->system;
-    double largest[2];
-    dalcs_micro_largest(part, largest);
-    for (int x = 0; x < s->n_x; x++) {
-        bool is_moved = fabs(after[x] - part->x[x]) > 0.5 * fabs(after[x]);
-        if (is_moved && fabs(after[x]) < remainder_of_jump * largest[s->column_is_current[x]]) {
-            after[x] = 0.0;
-        }
-    }
-}
-
 /* The change of each state that is not worth a word: what is left of it where it falls to 0, over its own scale, or
  * rounding. */
 static void find_noise(const struct dalcs_radau_part *part, const double *after, double *noise) {
@@ -98,7 +82,7 @@ static void find_noise(const struct dalcs_radau_part *part, const double *after,
     for (int x = 0; x < s->n_x; x++) {
         double own = fmax(dalcs_step_scale(part, x, part->scales.unit),
                           fmax(fabs(part->x[x]), fabs(after[x])));
-        noise[x] = fmax(remainder_of_jump * own,
+        noise[x] = fmax(dalcs_jump_remainder * own,
                         dalcs_micro_rounding(part, s->column_is_current[x], largest));
     }
 }
@@ -118,7 +102,6 @@ static const double *columns_before(struct dalcs_radau_part *part) {
 static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     struct dalcs_euler *e = r->base;
     e->t = part->segment.t;
-    drop_remainders(part, e->jump.after);
     find_noise(part, e->jump.after, e->noise);
     DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->segment.t, part->x,
                                       columns_before(part), part->work.y1));
@@ -166,7 +149,7 @@ static enum dalcs_status find_limit(struct dalcs_radau *r, struct dalcs_radau_pa
     bool is_near;
     const double longest = *h;
     enum dalcs_status status = see_jump(r, part, *h, is_seen, &is_near);
-    while (status == DALCS_OK && !is_near && dalcs_micro_shorter * *h >= 64.0 * r->resolution) {
+    while (status == DALCS_OK && !is_near && dalcs_micro_shorter * *h >= dalcs_length_shortest(r)) {
         *h *= dalcs_micro_shorter;
         status = see_jump(r, part, *h, is_seen, &is_near);
     }
@@ -254,7 +237,7 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         if (!e->jump.is_covered) {
             return take_seen_jump(r, part, h);
         }
-        bool is_last = dalcs_micro_shorter * h < 64.0 * r->resolution;
+        bool is_last = dalcs_micro_shorter * h < dalcs_length_shortest(r);
         bool is_whole = e->jump.is_known ? dalcs_jumps_agree(s, part->x, part->work.after,
                                                              part->work.y1, e->jump.after)
                                          : is_last;
@@ -325,7 +308,7 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     bool noticeable;
     double closer;
     bool jumps = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
-    if (closer < 1.0 && !noticeable && closer * h >= 64.0 * r->resolution) {
+    if (closer < 1.0 && !noticeable && closer * h >= dalcs_length_shortest(r)) {
         DALCS_TRY(look_closer(r, part, closer, &h, &jumps, &noticeable));
     }
     if (leaps && noticeable) {

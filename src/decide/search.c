@@ -2,6 +2,7 @@
 #include "search.h"
 
 #include "blocks.h"
+#include "doubt.h"
 #include "guard_scale.h"
 #include "guards.h"
 #include "present.h"
@@ -20,9 +21,6 @@ static const double most_projected = 1e4;
 
 /* And errors that one or two steps half as long mend. */
 static const double nearly = 1e3;
-
-/* Errors over their unit that no smaller step mends are rounding's up to this. */
-static const double most_tolerated = 2e-13;
 
 /* A mode may be over after so little of a step. */
 static const double briefly = 1.0 / 64.0;
@@ -91,7 +89,7 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
     part->length.level = level;
     double h = ldexp(whole, part->length.tries - FALL_BACK);
     h = fmin(h, fmin(most, ldexp(whole, -FALL_BACK_LEAST)));
-    h = fmax(h, 64.0 * r->resolution);
+    h = fmax(h, dalcs_length_shortest(r));
     if (part->length.tries > 0 && fixed == 0.0) { /* however short the ladder's step has become */
         h = fmax(h, fmin(2.0 * part->length.fell_back, ldexp(part->length.longest, -FALL_BACK)));
     }
@@ -106,7 +104,7 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
 
 enum dalcs_status dalcs_search_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                         double limit, bool *slides) {
-    double h = fmax(slide_length(r, part), 64.0 * r->resolution);
+    double h = fmax(slide_length(r, part), dalcs_length_shortest(r));
     return dalcs_slide_step(r, part, fmin(h, limit - part->segment.t), slides);
 }
 
@@ -204,7 +202,7 @@ static bool is_worth_asking(const struct dalcs_radau_part *part, const struct da
 /* So short that a shorter one is not tried, unless that has just held. */
 static bool is_shortest(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     bool has_grown = !part->guards.fresh && part->length.held_level > part->length.level;
-    return dalcs_radau_ladder(part, part->length.level) < 64.0 * r->resolution && !has_grown;
+    return dalcs_radau_ladder(part, part->length.level) < dalcs_length_shortest(r) && !has_grown;
 }
 
 /* Will steps do that are not much shorter, though it is that short? They are no less exact for it: the last digit of the
@@ -218,8 +216,7 @@ static bool is_nearly_right(const struct dalcs_radau *r, const struct dalcs_rada
 /* No shorter step mends the error, and it is rounding's: is it let pass from now on? */
 static bool lets_pass(const struct dalcs_radau_part *part, struct dalcs_search *search,
                       const struct dalcs_step_quality *quality) {
-    bool is_rounding =
-        search->stuck >= STUCK && quality->of_unit < most_tolerated * part->segment.rounding;
+    bool is_rounding = search->stuck >= STUCK && quality->of_unit < dalcs_doubt_noise(part);
     if (is_rounding && isfinite(quality->ratio) && search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
         return true;
@@ -392,7 +389,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
     }
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
     bool is_resolved =
-        recovery * part->segment.h >= 64.0 * r->resolution; /* else no micro-step sees it */
+        recovery * part->segment.h >= dalcs_length_shortest(r); /* else no micro-step sees it */
     if (recovery > 0.0 && recovery < briefly && is_resolved) {
         return ask_closer(r, part, search, recovery);
     }

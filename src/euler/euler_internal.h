@@ -19,8 +19,4 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
                                          const double *u, double *y,
                                          double *length) DALCS_MUST_CHECK;
 
-/* V or A, and so of its impulses: what is left of a state that falls to 0, over the largest that it was; and of one
- * that has always been 0, over the physical scale of its unit. */
-static const double dalcs_jump_remainder = 1e-12, dalcs_jump_rounding = 1e-15;
-
 #endif

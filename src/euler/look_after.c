@@ -13,8 +13,6 @@ static const double micro_part[] = {1e-6, 1e-3, 1.0};
  * the micro-step, impulsive ones do not) and is more than rounding. */
 static const double jump_part = 0.5;
 
-static const double jump_floor = 1e-9;
-
 /* Where vanishing steps have a limit, half a micro-step moves the state as far as a whole one, or half
  * as far; with the derivative of an impulse it moves it twice as far. */
 static const double runaway = 1.5;
@@ -134,7 +132,8 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
     double limit[2];
     bool moved = false;
     for (int unit = 0; unit < 2; unit++) {
-        limit[unit] = jump_floor * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
+        limit[unit] =
+            dalcs_smallest_jump * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
     }
     for (int x = 0; x < s->n_x; x++) {
         moved = moved || fabs(y[x] - u[x]) > limit[s->column_is_current[x]];

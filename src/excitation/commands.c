@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include "extremes.h"
+#include "rounding.h"
 
 #include <float.h>
 #include <math.h>
@@ -186,7 +187,7 @@ bool dalcs_commands_obey(struct dalcs_commands *commands, double until) {
     bool moved = false;
     for (int k = 0; k < commands->n; k++) {
         struct dalcs_command *m = &commands->command[k];
-        if (m->next > until + 4 * DBL_EPSILON * until) {
+        if (m->next > until + dalcs_rounded * until) {
             continue;
         }
         if (m->moves) {

@@ -2,6 +2,7 @@
 #include "control_course.h"
 
 #include "course.h"
+#include "rounding.h"
 
 #include <math.h>
 
@@ -101,7 +102,7 @@ bool dalcs_control_follow(const struct dalcs_control *control, int pair, double 
         struct course c;
         look(control, pair, *t, &c);
         double rounding =
-            dalcs_sum_rounded * (c.size + fabs(threshold)) + dalcs_edge_rounded * *t * c.rate;
+            dalcs_sum_rounded * (c.size + fabs(threshold)) + dalcs_rounded * *t * c.rate;
         if (dalcs_course_advance(&c.of, sign, threshold, rounding, start, edge, t)) {
             return true;
         }

@@ -1,6 +1,9 @@
 /* excitation.c - which functions of time a system sees, and their coefficients. */
 #include "excitation.h"
 
+#include "pi.h"
+#include "rounding.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -59,7 +62,7 @@ static void add_wave(struct dalcs_excitation *excitation, int input,
         if (term->omega != 0.0) {
             add_function(excitation, wave, DALCS_EXCITATION_SINE, term);
             excitation->shortest_period =
-                fmin(excitation->shortest_period, 6.283185307179586 / fabs(term->omega));
+                fmin(excitation->shortest_period, dalcs_two_pi / fabs(term->omega));
         }
     }
 }
@@ -287,7 +290,7 @@ double dalcs_excitation_missed(const struct dalcs_excitation_function *f,
         missed -= method->test[k] * value[k];
         size += fabs(method->test[k] * value[k]);
     }
-    return fabs(missed) > 4.0 * DBL_EPSILON * size ? missed : next_derivative(f, method, h);
+    return fabs(missed) > dalcs_rounded * size ? missed : next_derivative(f, method, h);
 }
 
 void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t, double tau,

@@ -2,6 +2,7 @@
 #include "logic_outputs.h"
 
 #include "logic_memory.h"
+#include "rounding.h"
 
 #include <float.h>
 #include <math.h>
@@ -14,7 +15,7 @@ static enum dalcs_status write(struct dalcs_stimulus *s, double **time, double *
     const double now = dalcs_stimulus_value(s, t, DALCS_RIGHT);
     DALCS_TRY(dalcs_grow(time, &capacity[0], (size_t)n + 2, sizeof(**time)));
     DALCS_TRY(dalcs_grow(value, &capacity[1], (size_t)n + 2, sizeof(**value)));
-    const double near = 4.0 * DBL_EPSILON * t;
+    const double near = dalcs_rounded * t;
     while (n > 1 && (*time)[n - 1] > t + near) {
         n--;
     }

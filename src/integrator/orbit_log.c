@@ -11,13 +11,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A control that differs by more than this part of its terms on the two sides of a time jumps there. */
-static const double jumps = 1e-9;
-
-/* So far before a time, over it, a control is what it was. */
+/* So far before a time, over it, a control is what it was, and a piece of a source is asked for that ends there. */
 static const double before = 1e-12;
 
-/* Two commands at one time move alike if they do to this part. */
+/* Two commands at one time move alike if they do to this part, and a control that differs by more than that of its terms
+ * on the two sides of a time jumps there. */
 static const double alike = 1e-9;
 
 /* ---- Commands ------------------------------------------------------------------------------------ */
@@ -46,7 +44,7 @@ static void find_command(const struct dalcs_orbit_log *log, const struct dalcs_r
         }
     }
     const double steep = slope * t * before; /* a ramp of no time goes as far from there to here */
-    bool is_edge = fabs(left + steep - right) > jumps * size || slope == 0.0;
+    bool is_edge = fabs(left + steep - right) > alike * size || slope == 0.0;
     dt[0] = is_edge ? 0.0 : -moved[0] / slope;
     dt[1] = is_edge ? 0.0 : -moved[1] / slope;
     for (int k = a->p[pair]; k < a->p[pair + 1] && by != NULL; k++) {

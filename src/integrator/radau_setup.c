@@ -71,15 +71,6 @@ static size_t room_for_part(const struct dalcs_system *s) {
     return FOR_ALL + FOR_A_COLUMN * (size_t)dalcs_system_n_columns(s);
 }
 
-static bool allocate_probe(struct dalcs_radau_part *part) {
-    struct dalcs_lever_probe *p = &part->scales.probe;
-    size_t n_levered = (size_t)part->stages.n_levered;
-    p->rounding = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
-    p->drift = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
-    p->in = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
-    return p->rounding != NULL && p->drift != NULL && p->in != NULL;
-}
-
 static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
@@ -116,9 +107,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
                     part->work.w1 != NULL && part->work.after != NULL &&
                     part->work.before != NULL && part->used_input != NULL &&
                     part->scales.current_drift != NULL && part->scales.current_parts != NULL;
-    return complete && (dalcs_stages_have_maps(&part->stages) || allocate_probe(part))
-               ? DALCS_OK
-               : DALCS_E_NOMEM;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 /* Where a circuit carries no current, rounding must not be taken for one: its voltages could drive a

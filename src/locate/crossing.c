@@ -2,6 +2,7 @@
 #include "crossing.h"
 
 #include "quads.h"
+#include "rounding.h"
 #include "wide_vectors.h"
 
 #include <float.h>
@@ -176,7 +177,7 @@ DALCS_TWICE(void, bound_below,
         dalcs_quad_lower(&least, &first);
         dalcs_quad_unsign(&first);
         dalcs_quad_unsign(&rise);
-        double rounding = 4.0 * DBL_EPSILON * (1.0 + 2.0 * c->spread);
+        double rounding = dalcs_rounded * (1.0 + 2.0 * c->spread);
         least += lowest - c->spread * (highest - lowest) - rounding * (first + rise);
         dalcs_quad_store(bound + i, &least);
     }
@@ -214,7 +215,7 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
         double v = fabs(value[k * stride]);
         largest = v > largest ? v : largest;
     }
-    double rounding = 4.0 * DBL_EPSILON * (1.0 + c->bernstein_spread) * largest;
+    double rounding = dalcs_rounded * (1.0 + c->bernstein_spread) * largest;
     depth = depth > rounding ? depth : rounding;
     double least = b[0];
     for (int i = 1; i < n; i++) {

@@ -1,12 +1,11 @@
 /* doubt.c - the band of a guard. */
 #include "doubt.h"
 
+#include "guard_scale.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
-
-/* Where nothing else flows, a current is still a difference of those that flow elsewhere. */
-static const double last_digits = 256.0 * DBL_EPSILON;
 
 enum dalcs_status dalcs_doubt_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
@@ -123,8 +122,9 @@ double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, d
     if (!(part->segment.rounding > 1.0) || guard >= part->component->system->n_pairs) {
         return noise;
     }
+    /* where nothing else flows, a current is still a difference of those that flow elsewhere */
     double local = dalcs_doubt_noise(part) * spread_about(part, guard, unit);
-    return dalcs_smaller(noise, dalcs_larger(local, last_digits * scale));
+    return dalcs_smaller(noise, dalcs_larger(local, dalcs_control_rounded * scale));
 }
 
 /* What errors of all that a guard is made of come to, with noise that is a part of `of_noise`. */

@@ -8,17 +8,16 @@
 #include "guard_values.h"
 #include "pair_laws.h"
 #include "quads.h"
+#include "step_length.h"
 #include "tied.h"
 
 #include <math.h>
 
 /* The part of its doubt that counts in later steps where such a pair goes on falling, or stays where it is: a diode
- * that waits for the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
-static const double falling_part = 1e-3;
-
-/* One that comes down to 0 from above and goes up again, as that of a peak detector without a load at each peak, may
- * be on the other side by this part of its doubt. */
-static const double touching = 1e-3;
+ * that waits for the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. One that
+ * comes down to 0 from above and goes up again, as that of a peak detector without a load at each peak, may be on the
+ * other side by as much. */
+static const double part_of_doubt = 1e-3;
 
 /* A guard that begins a mode next to 0 is off by so many times that, as far as its beginning tells. */
 static const double began = 10.0;
@@ -156,7 +155,7 @@ static void find_doubtful(struct dalcs_radau_part *part) {
 /* Is a guard above 0 before times can be told apart? */
 static bool is_over_at_once(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                             const double *value, int stride) {
-    double instant = dalcs_smaller(1.0, 64.0 * r->resolution / part->segment.h);
+    double instant = dalcs_smaller(1.0, dalcs_length_shortest(r) / part->segment.h);
     return dalcs_guard_value_at(part, value, stride, instant) > 0.0;
 }
 
@@ -184,7 +183,7 @@ static double end_of_events(const struct dalcs_radau *r, const struct dalcs_rada
 static double doubt_at_first(struct dalcs_radau_part *part, const double *value, int stride,
                              double end, double doubt) {
     const struct dalcs_collocation *m = part->stages.method;
-    double least = dalcs_larger(began * fabs(value[0]), falling_part * doubt);
+    double least = dalcs_larger(began * fabs(value[0]), part_of_doubt * doubt);
     double depth = dalcs_smaller(doubt, dalcs_larger(least, part->segment.ratio * doubt));
     for (int k = 1; k <= m->s && m->node[k] <= end && !part->guards.may_dip; k++) {
         part->guards.may_dip = value[k * stride] < -least && value[k * stride] >= -depth;
@@ -205,7 +204,7 @@ static double doubt_of(struct dalcs_radau_part *part, int guard, const double *v
     }
     double doubt = dalcs_doubt_of_fall(part, guard, scale, unit);
     if (is_armed) {
-        return dalcs_larger(noise, touching * doubt);
+        return dalcs_larger(noise, part_of_doubt * doubt);
     }
     if (part->guards.fresh && guard < part->component->system->n_pairs &&
         dalcs_guard_has_crossed(part, guard, value, stride, unit)) {
@@ -216,7 +215,7 @@ static double doubt_of(struct dalcs_radau_part *part, int guard, const double *v
     if (part->guards.fresh) {
         return doubt_at_first(part, value, stride, end, doubt);
     }
-    return value[last * stride] < (1.0 - dalcs_guard_agreeing) * value[0] ? falling_part * doubt
+    return value[last * stride] < (1.0 - dalcs_guard_agreeing) * value[0] ? part_of_doubt * doubt
                                                                           : doubt;
 }
 
@@ -263,7 +262,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         double scale = dalcs_guard_scale(part, g, unit);
         double rounding = dalcs_guard_rounding(part, g, unit);
         double zero = dalcs_doubt_noise_about(part, g, scale, unit);
-        if (!part->guards.fresh && value[0] <= falling_part * band * scale &&
+        if (!part->guards.fresh && value[0] <= part_of_doubt * band * scale &&
             fabs(value[last * stride]) <= zero + rounding) {
             part->guards.armed[g] = false; /* what has died away has no sign any more */
         }
@@ -391,7 +390,7 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau_part *part, double end,
                                 const double *unit) {
     int n_pairs = part->component->system->n_pairs;
     double noise = dalcs_beyond_noise * dalcs_doubt_noise(part);
-    double least = fmax(falling_part * dalcs_doubt_band(part), noise);
+    double least = fmax(part_of_doubt * dalcs_doubt_band(part), noise);
     bool negative = false;
     for (int k = 0; k < part->guards.n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {
         int d = part->guards.doubtful[k];

@@ -44,22 +44,6 @@ static bool was_tied(const struct dalcs_radau_part *part, int pair, const double
     return is_closed && dalcs_tied_was_at_rest(part, pair, unit);
 }
 
-/* Does it share a node with a pair that has just changed sides? Then something did happen to it. */
-static bool is_beside_flipped(const struct dalcs_radau_part *part, int pair) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    const int *mine = part->laws.pair_row + 2 * pair;
-    bool found = false;
-    for (int d = 0; d < p->system->n_pairs && !found; d++) {
-        if (dalcs_guard_has_flipped(part, d)) {
-            const int *its = part->laws.pair_row + 2 * d;
-            for (int e = 0; e < 2; e++) {
-                found = found || (mine[e] >= 0 && (mine[e] == its[0] || mine[e] == its[1]));
-            }
-        }
-    }
-    return found;
-}
-
 /* An open pair without the least voltage, where all answers are the only ones: to close it would change nothing. */
 static bool is_settled(const struct dalcs_radau_part *part, int pair) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
@@ -78,7 +62,7 @@ bool dalcs_tied_stay(const struct dalcs_radau_part *part, bool is_determined, co
     for (int d = 0; d < n_pairs && !tied && !(n_pairs > DALCS_MANY_PAIRS && part->guards.flipped);
          d++) {
         tied = dalcs_tied_is(part, d, unit) && !is_settled(part, d) &&
-               !(is_determined && was_tied(part, d, unit) && !is_beside_flipped(part, d));
+               !(is_determined && was_tied(part, d, unit));
     }
     return tied;
 }

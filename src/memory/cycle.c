@@ -7,6 +7,7 @@
 #include "present.h"
 #include "quads.h"
 #include "recurrence.h"
+#include "rounding.h"
 #include "transition.h"
 
 #include <float.h>
@@ -133,7 +134,7 @@ static bool find_moves(const struct dalcs_radau_part *part, struct dalcs_leap_mo
         const struct dalcs_command *m = &part->commands.command[k];
         int way = m->is_on ? 0 : 1;
         double time = m->n[way] > 0 ? dalcs_command_time(m, way, m->n[way] - 1) : -1.0;
-        if (!(fabs(time - part->segment.t) <= 4.0 * DBL_EPSILON * part->segment.t)) {
+        if (!(fabs(time - part->segment.t) <= dalcs_rounded * part->segment.t)) {
             continue;
         }
         if (moment->n_moves == DALCS_MOST_MOVES) {

@@ -2,8 +2,10 @@
 #include "periodic.h"
 
 #include "extremes.h"
+#include "pi.h"
 #include "present.h"
 #include "recurrence.h"
+#include "rounding.h"
 
 #include <float.h>
 #include <math.h>
@@ -15,9 +17,6 @@ enum { MOST_PERIODS = 64 };
 
 /* Shorter runs have nothing to repeat. */
 static const double fewest_periods = 3.0;
-
-/* As good as rounding lets them. */
-static const double rounded = 4.0 * DBL_EPSILON;
 
 /* Over what they may miss: farther off they will hardly have come back a period later, and its segments
  * are not kept. */
@@ -109,10 +108,10 @@ static double common_period(const double *omega, int n_omegas) {
         bool is_common = true;
         for (int k = 0; k < n_omegas && is_common; k++) {
             double periods = n * omega[k] / slowest;
-            is_common = fabs(periods - rint(periods)) <= rounded * periods;
+            is_common = fabs(periods - rint(periods)) <= dalcs_rounded * periods;
         }
         if (is_common) {
-            return n * 6.283185307179586 / slowest;
+            return n * dalcs_two_pi / slowest;
         }
     }
     return 0.0;
@@ -182,14 +181,14 @@ static double distance(const struct dalcs_radau *r, const struct dalcs_radau_par
     const struct dalcs_osnsp *p = &part->component->osnsp;
     double to_come = (r->options.stop - part->segment.t) / periodic->period;
     /* In all periods to come together states may miss what a step may. */
-    double share = dalcs_larger(part->inner_tolerance / to_come, rounded);
+    double share = dalcs_larger(part->inner_tolerance / to_come, dalcs_rounded);
     double late = fabs(part->segment.t - periodic->since - periodic->period);
     if (late > same_event * periodic->period ||
         !dalcs_mode_is(periodic->mode, p->mode, p->n_words)) {
         return INFINITY;
     }
-    double farthest = late / dalcs_larger(rounded * part->segment.t,
-                                          share / 6.283185307179586 * periodic->period);
+    double farthest = late / dalcs_larger(dalcs_rounded * part->segment.t,
+                                          share / dalcs_two_pi * periodic->period);
     for (int x = 0; x < p->system->n_x; x++) {
         double off = fabs(part->x[x] - periodic->x[x]);
         if (off > farthest * share * part->scales.column[x]) {

@@ -1,6 +1,8 @@
 /* farkas.c - rows of a claim, and the combination of them. */
 #include "farkas.h"
 
+#include "rounding.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -11,9 +13,6 @@ static const double most_missed = 0.5;
 /* A sum is 0 where its terms cancel but for this part of them, 2^-36: refute.c gives weights so many digits. A coefficient
  * that nothing cancels is left whole, be it as small as it may, and so is what it could carry. */
 static const double cancelled = 0x1p-36;
-
-/* What sums of terms may be off by. */
-static const double digits = 16.0 * DBL_EPSILON;
 
 static void visit_row(const struct dalcs_csr *m, int row, double factor,
                       void (*add)(void *user, int column, double value), void *user) {
@@ -132,7 +131,7 @@ bool dalcs_claim_is_refuted(const struct dalcs_claim *claim, double *v, double *
             dalcs_claim_visit(claim, row, add_to, &to);
         }
     }
-    if (!(right > digits * right_size)) {
+    if (!(right > dalcs_sum_rounded * right_size)) {
         return false;
     }
     double missed = 0.0; /* what the combination may come to beside 0, for answers within reach */

@@ -17,11 +17,9 @@ enum { MOST_STEPS = 100, STUCK = 3 };
 
 static const double hardly_smaller = 0.9;
 
-/* A pair has decided when one of s1 and s2 is this much smaller than the other. */
+/* A pair has decided when one of s1 and s2 is this much smaller than the other, and no more than that is left of the
+ * equations, over their terms. */
 static const double decided = 1e-8;
-
-/* What is left of the equations by then, over their terms. */
-static const double equation_tolerance = 1e-8;
 
 /* Part of the way to the boundary that a step goes. */
 static const double boundary_part = 0.995;
@@ -300,7 +298,7 @@ static enum dalcs_status follow_path(struct interior *m) {
     double mu = mean_product(m, 0.0);
     int stuck = 0;
     for (int step = 0; step < MOST_STEPS && mu > 0.0 && stuck < STUCK; step++) {
-        if (find_rests(m) <= equation_tolerance && all_decided(m)) {
+        if (find_rests(m) <= decided && all_decided(m)) {
             break;
         }
         set_rows(m);

@@ -2,6 +2,7 @@
  *
  * ngspice has no edge without width: given a rise time of 0 it takes tstep. A short ramp centred on the
  * edge stands for it; where that would begin before time 0 it begins there. */
+#include "rounding.h"
 #include "spice.h"
 
 #include <float.h>
@@ -48,7 +49,7 @@ static const char *write_pulse(FILE *stream, const struct dalcs_stimulus *s, dou
                                double stop) {
     struct pulse p = {s->u.pulse.low,  s->u.pulse.high,  s->u.pulse.delay, s->u.pulse.rise,
                       s->u.pulse.fall, s->u.pulse.width, s->u.pulse.period};
-    if (p.rise + p.width + p.fall > p.period * (1.0 + 4.0 * DBL_EPSILON)) {
+    if (p.rise + p.width + p.fall > p.period * (1.0 + dalcs_rounded)) {
         return "PULSE longer than its period";
     }
     widen_edges(&p, edge);

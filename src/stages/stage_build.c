@@ -5,9 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A factorisation that is worse than this has failed without saying so. */
-static const double largest_residual = 1e-6;
-
 /* And one that pivots next to 0 spoke against has not, if it is no worse than this: rounding. */
 static const double largest_of_doubtful = 1e-13;
 
@@ -27,7 +24,6 @@ static enum dalcs_status list_order(const struct dalcs_stage_plan *plan,
     struct dalcs_stage_order *o = &f->order[system];
     size_t n = (size_t)m->n;
     int n_equations = f->n - f->n_pairs;
-    int n_awake = m->n - m->n_pairs;
     o->n = m->n;
     o->row_of = dalcs_alloc(n, sizeof(int));
     o->scale = dalcs_alloc(n, sizeof(double));
@@ -47,10 +43,9 @@ static enum dalcs_status list_order(const struct dalcs_stage_plan *plan,
     }
     for (int i = 0; i < m->n; i++) {
         int row = lu->from[i];
-        int unknown = lu->to[i];
         o->row_of[i] = m->row[row];
         o->scale[i] = m->row_scale[row];
-        o->position[unknown < n_awake ? m->column[unknown] : unknown - n_awake + n_equations] = i;
+        o->position[lu->to[i]] = i;
         at[o->row_of[i]] = i;
     }
     for (int k = 0; k < plan->n_waves; k++) {
@@ -110,17 +105,6 @@ static void remember_pivots(struct dalcs_stage_plan *plan, const struct dalcs_st
                             const struct dalcs_stage_factors *f) {
     for (int i = 0; i < m->n; i++) {
         plan->match[m->column[f->lu[0].to[i]]] = f->order[0].row_of[i];
-    }
-}
-
-/* Scales of the columns that are awake, 1 for the others. */
-static void spread_scales(const struct dalcs_stage_matrix *m, int n_equations, double *scale) {
-    int n_awake = m->n - m->n_pairs;
-    for (int c = 0; c < n_equations; c++) {
-        scale[c] = 1.0;
-    }
-    for (int c = 0; c < n_awake; c++) {
-        scale[m->column[c]] = m->column_scale[c];
     }
 }
 
@@ -223,14 +207,6 @@ static enum dalcs_status find_residual(struct dalcs_stages *stages,
     return status;
 }
 
-/* Scales of the mode's matrix, which its rows and columns are listed in. */
-static void keep_scales(const struct dalcs_stage_plan *plan, const struct dalcs_stage_matrix *m,
-                        struct dalcs_stage_factors *f) {
-    spread_scales(m, dalcs_stage_plan_n_equations(plan), f->column_scale);
-    memcpy(f->pair_scale, m->column_scale + plan->rest.n_awake,
-           (size_t)f->n_pairs * sizeof(double));
-}
-
 /* The same with choices in the place of rows that follow from others. */
 static enum dalcs_status factor_singular(struct dalcs_stages *stages,
                                          struct dalcs_stage_entry *entry,
@@ -246,7 +222,7 @@ static enum dalcs_status factor_singular(struct dalcs_stages *stages,
     }
     dalcs_stage_matrix_finish(m);
     DALCS_TRY(dalcs_stage_matrix_build(m, plan, f->n_pairs, f->pair, &f->singular, entry->h));
-    keep_scales(plan, m, f);
+    memcpy(f->column_scale, m->column_scale, (size_t)m->n * sizeof(double));
     return factor_all(stages, entry, f, m, stages->rcond_min);
 }
 
@@ -293,13 +269,13 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
                              f->function_share + k * DALCS_N_SHARES);
     }
     DALCS_TRY(dalcs_stage_matrix_build(m, plan, f->n_pairs, f->pair, &f->singular, entry->h));
-    keep_scales(plan, m, f);
+    memcpy(f->column_scale, m->column_scale, (size_t)m->n * sizeof(double));
     memcpy(entry->natural, f->column_scale, (size_t)dalcs_system_n_equations(s) * sizeof(double));
     enum dalcs_status status = factor_all(stages, entry, f, m, stages->rcond_min);
-    double largest = largest_residual;
+    double largest = dalcs_largest_residual;
     if (status == DALCS_OK) {
         remember_pivots(plan, m, f);
-    } else if (status == DALCS_SINGULAR && s->n_pairs > 0 && !plan->rest.any) {
+    } else if (status == DALCS_SINGULAR && s->n_pairs > 0) {
         DALCS_TRY(factor_doubtful(stages, entry, f, m, &largest));
     } else {
         return status;

@@ -38,8 +38,8 @@ static void find_drive_of_row(const struct dalcs_stage_plan *plan, const struct 
 static void find_drive(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
                        const struct dalcs_csr *drive, const double *y, double factor) {
     int n_equations = f->n - f->n_pairs;
-    for (int k = 0; k < plan->rest.n_awake; k++) {
-        find_drive_of_row(plan, drive, plan->rest.row[k], y, factor);
+    for (int r = 0; r < n_equations; r++) {
+        find_drive_of_row(plan, drive, r, y, factor);
     }
     for (int k = 0; k < f->n_pairs; k++) {
         find_drive_of_row(plan, drive, n_equations + f->pair[k], y, factor);
@@ -198,11 +198,12 @@ static void put_piece(const struct dalcs_stage_plan *plan, const struct dalcs_st
     }
 }
 
-static void put_run(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
-                    struct dalcs_stage_run run, enum kind kind, struct piece *piece, double *out) {
+/* Unknowns from `begin` up to `end`, of one kind, at all nodes. */
+static void put_kind(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
+                     int begin, int end, enum kind kind, struct piece *piece, double *out) {
     const struct dalcs_stage_layout *l = &plan->stages->layout;
-    for (int first = run.begin; first < run.end; first += DALCS_STAGE_PIECE) {
-        int count = run.end - first;
+    for (int first = begin; first < end; first += DALCS_STAGE_PIECE) {
+        int count = end - first;
         count = count < DALCS_STAGE_PIECE ? count : DALCS_STAGE_PIECE;
         unload(entry->factors, first, count, piece);
         for (int node = 0; node <= plan->stages->method->n_stages; node++) {
@@ -217,17 +218,14 @@ static void put_run(const struct dalcs_stage_plan *plan, const struct dalcs_stag
  * there. */
 static void put_columns(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
                         double *out) {
-    const struct dalcs_stage_rest *rest = &plan->rest;
     const struct dalcs_stage_factors *f = entry->factors;
+    int n_x = plan->stages->system->n_x;
+    int n_equations = f->n - f->n_pairs;
     struct piece piece;
     memset(&piece, 0, sizeof(piece));
-    for (int k = 0; k < rest->states.n; k++) {
-        put_run(plan, entry, rest->states.run[k], STATES, &piece, out);
-    }
-    for (int k = 0; k < rest->without.n; k++) {
-        put_run(plan, entry, rest->without.run[k], WITHOUT_MEMORY, &piece, out);
-    }
-    put_run(plan, entry, (struct dalcs_stage_run){f->n - f->n_pairs, f->n}, PAIRS, &piece, out);
+    put_kind(plan, entry, 0, n_x, STATES, &piece, out);
+    put_kind(plan, entry, n_x, n_equations, WITHOUT_MEMORY, &piece, out);
+    put_kind(plan, entry, n_equations, f->n, PAIRS, &piece, out);
 }
 
 static double find_w(const struct dalcs_stage_plan *plan, int pair, double constant, int share,
@@ -250,22 +248,16 @@ static void put_other_sides(const struct dalcs_stage_plan *plan,
     const struct dalcs_system *s = stages->system;
     int n_equations = dalcs_system_n_equations(s);
     double *lambda = columns + n_equations;
-    const struct dalcs_stage_runs *seen = &plan->rest.pairs;
-    for (int k = 0; k < seen->n; k++) {
-        for (int d = seen->run[k].begin; d < seen->run[k].end; d++) {
-            plan->guard[d] = dalcs_stage_is_on(entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE
-                                 ? lambda[d]
-                                 : find_w(plan, d, constant, share, columns);
-        }
+    for (int d = 0; d < s->n_pairs; d++) {
+        plan->guard[d] = dalcs_stage_is_on(entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE
+                             ? lambda[d]
+                             : find_w(plan, d, constant, share, columns);
     }
     for (int i = 0; with_watched && i < stages->n_watched; i++) {
         int d = stages->watched[i];
         columns[dalcs_system_n_columns(s) + i] = dalcs_csr_row_dot(&s->control, d, columns);
     }
-    for (int k = 0; k < seen->n; k++) {
-        memcpy(lambda + seen->run[k].begin, plan->guard + seen->run[k].begin,
-               (size_t)(seen->run[k].end - seen->run[k].begin) * sizeof(double));
-    }
+    memcpy(lambda, plan->guard, (size_t)s->n_pairs * sizeof(double));
 }
 
 /* How far the equations disagree at each stage: what is missed by those that should follow from the
@@ -285,27 +277,18 @@ static void put_clashes(const struct dalcs_stages *stages, const struct dalcs_st
     }
 }
 
-/* columns = factor times the real system's unknowns. */
-static void put_runs(const struct dalcs_stage_factors *f, const struct dalcs_stage_runs *runs,
-                     double factor, double *columns) {
-    const int *position = f->order[0].position;
-    const double *work = f->lu[0].work;
-    for (int k = 0; k < runs->n; k++) {
-        for (int u = runs->run[k].begin; u < runs->run[k].end; u++) {
-            columns[u] = factor * f->column_scale[u] * work[position[u]];
-        }
+/* columns = factor times the real system's states. */
+static void put_states(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
+                       double factor, double *columns) {
+    for (int x = 0; x < plan->stages->system->n_x; x++) {
+        columns[x] = factor * f->column_scale[x] * f->lu[0].work[f->order[0].position[x]];
     }
 }
 
-/* columns += the real system's unknowns. */
-static void add_runs(const struct dalcs_stage_factors *f, const struct dalcs_stage_runs *runs,
-                     double *columns) {
-    const int *position = f->order[0].position;
-    const double *work = f->lu[0].work;
-    for (int k = 0; k < runs->n; k++) {
-        for (int u = runs->run[k].begin; u < runs->run[k].end; u++) {
-            columns[u] += f->column_scale[u] * work[position[u]];
-        }
+/* columns += the real system's unknowns from `begin` up to `end`. */
+static void add_unknowns(const struct dalcs_stage_factors *f, int begin, int end, double *columns) {
+    for (int u = begin; u < end; u++) {
+        columns[u] += f->column_scale[u] * f->lu[0].work[f->order[0].position[u]];
     }
 }
 
@@ -315,7 +298,7 @@ static void add_real(const struct dalcs_stage_plan *plan, const struct dalcs_sta
     const struct dalcs_stage_factors *f = entry->factors;
     const double *work = f->lu[0].work;
     int n_equations = f->n - f->n_pairs;
-    add_runs(f, &plan->rest.without, columns);
+    add_unknowns(f, plan->stages->system->n_x, n_equations, columns);
     for (int k = 0; k < f->n_pairs; k++) {
         columns[n_equations + f->pair[k]] += f->pair_scale[k] * work[f->order[0].of_pair[k]];
     }
@@ -340,15 +323,15 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     put_clashes(stages, entry, in, out);
     find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
     solve(plan, f, 0, DALCS_SHARE_DRIFT);
-    put_runs(f, &plan->rest.states, 1.0, out + l->drift);
+    put_states(plan, f, 1.0, out + l->drift);
     add_real(plan, entry, out);
     if (n_x > 0) {
         /* What was added goes with states that are off by the drift: take that back as well. */
-        put_runs(f, &plan->rest.states, -1.0, plan->missed);
+        put_states(plan, f, -1.0, plan->missed);
         find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
         solve(plan, f, 0, DALCS_SHARE_NONE);
         add_real(plan, entry, out);
-        put_runs(f, &plan->rest.states, -1.0, plan->missed); /* what the filter leaves of it */
+        put_states(plan, f, -1.0, plan->missed); /* what the filter leaves of it */
     }
     for (int node = 0; node <= stages->method->n_stages; node++) {
         put_other_sides(plan, entry, in[n_x], node, true, out + node * l->stride);
@@ -356,7 +339,7 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     if (stages->excitation->is_curved) {
         memset(plan->rhs, 0, (size_t)(n_columns + f->singular.n) * sizeof(double));
         solve(plan, f, 0, DALCS_SHARE_RIPPLE_RATE);
-        add_runs(f, &plan->rest.states, out + l->ripple);
+        add_unknowns(f, 0, n_x, out + l->ripple);
         add_real(plan, entry, out + l->ripple);
         put_other_sides(plan, entry, 0.0, DALCS_SHARE_RIPPLE, false, out + l->ripple);
     }
@@ -370,7 +353,7 @@ void dalcs_stage_factors_currents(const struct dalcs_stages *stages,
     find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
     solve(plan, f, 0, DALCS_SHARE_NONE);
     memset(plan->missed, 0, (size_t)plan->n_rows * sizeof(double));
-    add_runs(f, &plan->rest.without, plan->missed);
+    add_unknowns(f, stages->system->n_x, f->n - f->n_pairs, plan->missed);
     for (int k = 0; k < stages->n_levered; k++) {
         drift[k] = plan->missed[stages->levered[k]];
     }

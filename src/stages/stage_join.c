@@ -1,12 +1,11 @@
 /* stage_join.c - finds nodes behind one resistor, and adds their rows to those of the nodes before it. */
 #include "stage_join.h"
 
+#include "rounding.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* What rounding leaves of a conductance that is taken off a sum. */
-static const double rounding = 4.0 * DBL_EPSILON;
 
 /* Equations without states between currents. */
 static bool is_law(const struct dalcs_system *s, int r) {
@@ -114,7 +113,7 @@ enum dalcs_status dalcs_stage_join_row(const struct dalcs_stage_join *join,
     for (int f = r; f >= 0; f = dalcs_stage_join_after(join, r, f)) {
         for (int k = s->A.p[f]; k < s->A.p[f + 1]; k++) {
             int c = s->A.j[k];
-            bool is_left = fabs(value[c]) > rounding * size[c];
+            bool is_left = fabs(value[c]) > dalcs_rounded * size[c];
             if (is_left && status == DALCS_OK) {
                 status = dalcs_triplets_add(t, c, r, factor * value[c]);
             }

@@ -9,13 +9,10 @@ enum { BALANCING_ROUNDS = 3 };
 
 static void list_rows(struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan,
                       const int *pair) {
-    const struct dalcs_stage_rest *rest = &plan->rest;
-    memcpy(m->row, rest->row, (size_t)rest->n_awake * sizeof(int));
-    memcpy(m->column, rest->column, (size_t)rest->n_awake * sizeof(int));
-    for (int k = 0; k < m->n_pairs; k++) {
-        int at = dalcs_system_n_equations(plan->stages->system) + pair[k];
-        m->row[rest->n_awake + k] = at;
-        m->column[rest->n_awake + k] = at;
+    int n_equations = dalcs_stage_plan_n_equations(plan);
+    for (int i = 0; i < m->n; i++) {
+        m->row[i] = i < n_equations ? i : n_equations + pair[i - n_equations];
+        m->column[i] = m->row[i];
     }
 }
 
@@ -161,7 +158,8 @@ enum dalcs_status dalcs_stage_matrix_build(struct dalcs_stage_matrix *m,
                                            const struct dalcs_stage_plan *plan, int n_pairs,
                                            const int *pair,
                                            const struct dalcs_stage_singular *choice, double h) {
-    *m = (struct dalcs_stage_matrix){.n = plan->rest.n_awake + n_pairs, .n_pairs = n_pairs};
+    *m = (struct dalcs_stage_matrix){.n = dalcs_stage_plan_n_equations(plan) + n_pairs,
+                                     .n_pairs = n_pairs};
     enum dalcs_status status = fill(m, plan, pair, choice, plan->stages->method->lambda / h);
     if (status != DALCS_OK) {
         dalcs_stage_matrix_finish(m);

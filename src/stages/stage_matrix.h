@@ -12,7 +12,7 @@
 struct dalcs_stage_matrix {
     int n;
     int n_pairs;       /* present; they come last */
-    int *row, *column; /* [n] of M, those of what is awake; row n_rows + k: choice k */
+    int *row, *column; /* [n] of M; row n_rows + k: choice k */
     int *p, *i;
     double *base, *P;
     double *row_scale, *column_scale; /* [n] */

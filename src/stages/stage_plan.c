@@ -158,8 +158,7 @@ static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs
     DALCS_TRY(fill_base(plan, s, plan->rhs));
     DALCS_TRY(fill_P(plan, s));
     DALCS_TRY(fill_drive(plan, plan->n_rows, &plan->drive));
-    DALCS_TRY(fill_drive(plan, s->n_x, &plan->drive_of_states));
-    return dalcs_stage_rest_setup(plan);
+    return fill_drive(plan, s->n_x, &plan->drive_of_states);
 }
 
 enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) {
@@ -191,21 +190,15 @@ static void forget(struct dalcs_stages *stages, struct dalcs_stage_analysis *a) 
     *a = (struct dalcs_stage_analysis){0};
 }
 
-void dalcs_stage_plan_forget(struct dalcs_stages *stages) {
-    struct dalcs_stage_plan *plan = stages->plan;
-    while (plan->n_analyses > 0) {
-        forget(stages, &plan->analysis[--plan->n_analyses]);
-    }
-}
-
 void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     struct dalcs_stage_plan *plan = stages->plan;
     if (plan == NULL) {
         return;
     }
-    dalcs_stage_plan_forget(stages);
+    while (plan->n_analyses > 0) {
+        forget(stages, &plan->analysis[--plan->n_analyses]);
+    }
     stages->plan = NULL;
-    dalcs_stage_rest_finish(&plan->rest);
     dalcs_stage_join_finish(&plan->join);
     dalcs_csr_finish(&plan->base);
     dalcs_csr_finish(&plan->P);

@@ -11,7 +11,6 @@
 #define DALCS_STAGE_PLAN_H
 
 #include "stage_join.h"
-#include "stage_rest.h"
 #include "stages.h"
 
 /* Unknowns are turned into stages in pieces of this many, which stay in the fastest cache. */
@@ -63,8 +62,6 @@ struct dalcs_stage_plan {
      * it hardly has to search, which takes quadratic time in a long multiplier. */
     int *match; /* [n_rows] */
 
-    struct dalcs_stage_rest rest;
-
     int n_analyses, most_analyses, most_kept;
     struct dalcs_stage_analysis *analysis; /* newest first */
 
@@ -92,8 +89,5 @@ enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const ui
                                            bool is_singular, int n, const int *row,
                                            const int *column, int *p, int *i,
                                            struct dalcs_stage_analysis **analysis) DALCS_MUST_CHECK;
-
-/* Forgets all of them: other rows and columns are at rest. */
-void dalcs_stage_plan_forget(struct dalcs_stages *stages);
 
 #endif

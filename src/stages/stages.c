@@ -248,50 +248,6 @@ bool dalcs_stages_have(struct dalcs_stages *stages, const uint64_t *mode, double
     return find(stages, mode, h) != NULL;
 }
 
-/* Factors serve as long as the same is at rest. */
-static void forget_all(struct dalcs_stages *stages) {
-    remove_all(stages);
-    dalcs_stage_plan_forget(stages);
-}
-
-static void wake_all(struct dalcs_stages *stages) {
-    forget_all(stages);
-    dalcs_stage_rest_end(stages->plan);
-}
-
-/* From the states x on, whatever stays 0 in the mode is left out, once the whole has been factored in
- * it, and what moves is awake. */
-static enum dalcs_status choose_rest(struct dalcs_stages *stages, const uint64_t *mode,
-                                     const double *x) {
-    struct dalcs_stage_plan *plan = stages->plan;
-    const struct dalcs_stage_entry *e = stages->newest;
-    if (plan == NULL || plan->rest.settled ||
-        (plan->rest.any && dalcs_stage_rest_allows(plan, mode, x))) {
-        return DALCS_OK;
-    }
-    bool is_known = e != NULL && dalcs_stage_update_can_be_base(e) && is_key(stages, e, mode, e->h);
-    if (!plan->rest.any && !is_known) {
-        return DALCS_OK;
-    }
-    bool was_any = plan->rest.any;
-    DALCS_TRY(dalcs_stage_rest_choose(plan, mode, x));
-    if (was_any || plan->rest.any) {
-        forget_all(stages);
-    }
-    return DALCS_OK;
-}
-
-/* A new entry of stages->key, which may need what is at rest. */
-static enum dalcs_status entry_make(struct dalcs_stages *stages, double h, bool of_its_own,
-                                    struct dalcs_stage_entry **entry) {
-    enum dalcs_status status = entry_create(stages, h, of_its_own, entry);
-    if (status == DALCS_SINGULAR && stages->plan != NULL && stages->plan->rest.any) {
-        wake_all(stages);
-        status = entry_create(stages, h, of_its_own, entry);
-    }
-    return status;
-}
-
 enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *mode, double h,
                                    struct dalcs_stage_entry **entry) {
     size_t words = (size_t)stages->n_words;
@@ -316,10 +272,7 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
     if (is_spent) {
         remove_entry(stages, e);
     }
-    if (stages->plan != NULL && !dalcs_stage_rest_allows(stages->plan, mode, NULL)) {
-        wake_all(stages);
-    }
-    DALCS_TRY(entry_make(stages, h, is_spent, &e));
+    DALCS_TRY(entry_create(stages, h, is_spent, &e));
     HASH_ADD_KEYPTR(hh, stages->entries, e->key, (words + 1) * sizeof(*mode), e);
     if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
         entry_destroy(stages, e);
@@ -357,26 +310,6 @@ void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
     }
 }
 
-void dalcs_stages_draw(const struct dalcs_stages *stages, int draw, const double *in,
-                       const double *scale, double *probe) {
-    const double stride = 0.6180339887498949 + 0.1 * draw; /* multiples of it are spread evenly */
-    double chance = 0.0;
-    for (int k = 0; k < stages->n_in; k++) {
-        double size = k < stages->system->n_x ? fmax(fabs(in[k]), scale[k]) : fabs(in[k]);
-        chance += stride;
-        chance -= chance >= 1.0 ? 1.0 : 0.0;
-        probe[k] = (chance < 0.5 ? chance - 1.0 : chance) * size;
-    }
-}
-
-enum dalcs_status dalcs_stages_try(struct dalcs_stages *stages,
-                                   const struct dalcs_stage_entry *entry, const double *probe,
-                                   double *out, double *drift) {
-    DALCS_TRY(dalcs_stage_factors_apply(stages, entry, probe, out));
-    dalcs_stage_factors_currents(stages, entry, drift);
-    return DALCS_OK;
-}
-
 int *dalcs_stage_note(struct dalcs_stage_entry *entry) {
     return &entry->note;
 }
@@ -384,7 +317,6 @@ int *dalcs_stage_note(struct dalcs_stage_entry *entry) {
 enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t *mode, double h,
                                     const double *in, double *out,
                                     struct dalcs_stage_entry **entry) {
-    DALCS_TRY(choose_rest(stages, mode, in));
     DALCS_TRY(dalcs_stages_get(stages, mode, h, entry));
     DALCS_TRY(dalcs_stages_apply(stages, *entry, in, out));
     if (!dalcs_stage_update_is_doubtful(stages, *entry)) {
@@ -392,11 +324,6 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
     }
     DALCS_TRY(dalcs_stages_get(stages, mode, h, entry)); /* with factors of its own */
     return dalcs_stages_apply(stages, *entry, in, out);
-}
-
-bool dalcs_stages_is_awake(const struct dalcs_stages *stages, int pair) {
-    const struct dalcs_stage_plan *plan = stages->plan;
-    return plan == NULL || dalcs_mode_has(plan->rest.may_close, pair);
 }
 
 void dalcs_stages_stay_near(struct dalcs_stages *stages, const uint64_t *mode, const double *y) {

@@ -17,6 +17,10 @@
 #include <stdint.h>
 #include <suitesparse/klu.h>
 
+/* Equations without derivatives hold to rounding, even if it is rounding of large conductances, unless
+ * a mode is singular and the states contradict it, which takes a circuit that is not passive. */
+static const double dalcs_largest_residual = 1e-6;
+
 struct dalcs_stage_entry;
 struct dalcs_stage_plan;
 struct dalcs_stage_workshop;
@@ -93,17 +97,6 @@ void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
                                     const struct dalcs_stage_entry *entry, const double *in,
                                     double *drift);
 
-/* probe[n_in]: as large as in[n_in], of a state at least scale[n_x], down to half of it, with signs of chance; another
- * one for each `draw`. */
-void dalcs_stages_draw(const struct dalcs_stages *stages, int draw, const double *in,
-                       const double *scale, double *probe);
-
-/* The answer out[n_fixed + n_clashes] to such a probe, and what goes with its drift, by an entry on factors: as chance
- * would have it no more than dalcs_stage_spread and dalcs_stage_spread_of_current, and of their size. */
-enum dalcs_status dalcs_stages_try(struct dalcs_stages *stages,
-                                   const struct dalcs_stage_entry *entry, const double *probe,
-                                   double *out, double *drift) DALCS_MUST_CHECK;
-
 /* As dalcs_stage_spread, of drift[k] by an entry with a map. */
 double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
                                      const struct dalcs_stage_entry *entry, int k, const double *in,
@@ -127,9 +120,6 @@ static inline size_t dalcs_stages_room(const struct dalcs_stages *stages) {
     const size_t n_columns = (size_t)dalcs_system_n_columns(stages->system);
     return (size_t)stages->layout.n_fixed + (size_t)stages->method->s * n_columns + 8;
 }
-
-/* Is what is next to this pair awake? (stage_rest.h) */
-bool dalcs_stages_is_awake(const struct dalcs_stages *stages, int pair);
 
 /* How much more of the answer is rounding than in one from a dense map: 1 for those. */
 double dalcs_stage_rounding(const struct dalcs_stage_entry *entry);

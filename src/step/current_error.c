@@ -49,9 +49,6 @@ static const double growth = 2.0;
 /* Voltages that errors of states move by no more than this, over what is allowed, are well known if states are. */
 static const double least_lever = 8.0;
 
-/* Probes of an entry on factors. */
-enum { PROBES = 2 };
-
 static double allowed_of(const struct dalcs_radau_part *part, int k, const double unit[2],
                          const double besides[2]) {
     int column = part->stages.levered[k];
@@ -110,7 +107,7 @@ static void raise_parts(struct dalcs_radau_part *part, const struct dalcs_stage_
 }
 
 /* Has a state a lever in this step? The note of an entry counts its steps until that is looked up again:
- * positive without a lever, negative with one. On factors it is not looked up, and the note is that of probes. */
+ * positive without a lever, negative with one. On factors it is not looked up. */
 static bool may_matter(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
                        const double unit[2], const double besides[2]) {
     int *note = dalcs_stage_note(entry);
@@ -130,31 +127,6 @@ static bool may_matter(struct dalcs_radau_part *part, struct dalcs_stage_entry *
     return has;
 }
 
-/* On factors no sum of all that states make of a voltage is known: probes of chance tell what rounding leaves in its
- * drift. The note of the entry counts the steps until they are made again. */
-static void know_rounding(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry) {
-    struct dalcs_stages *stages = &part->stages;
-    struct dalcs_lever_probe *p = &part->scales.probe;
-    int *note = dalcs_stage_note(entry);
-    if (dalcs_stage_has_map(entry) || (*note < 0 && p->entry == entry)) {
-        return;
-    }
-    *note = -STEPS_WITH;
-    p->entry = entry;
-    memset(p->rounding, 0, (size_t)stages->n_levered * sizeof(double));
-    for (int k = 0; k < PROBES; k++) {
-        dalcs_stages_draw(stages, k, part->segment.in, part->scales.column, p->in);
-        if (dalcs_stages_try(stages, entry, p->in, part->work.out_tried, p->drift) != DALCS_OK) {
-            continue;
-        }
-        for (int i = stages->n_currents; i < stages->n_levered; i++) {
-            double rounding = roundings * part->segment.rounding * fabs(p->drift[i]) +
-                              roundings_of_coils * fabs(part->work.out_tried[stages->levered[i]]);
-            p->rounding[i] = dalcs_larger(p->rounding[i], rounding);
-        }
-    }
-}
-
 /* What rounding may make of the drift of a current. */
 static double rounding_of(const struct dalcs_radau_part *part,
                           const struct dalcs_stage_entry *entry, int k) {
@@ -165,10 +137,8 @@ static double rounding_of(const struct dalcs_radau_part *part,
                                                          part->scales.column) +
                (is_current ? roundings_apart : roundings_of_coils) * part->scales.current_parts[k];
     }
-    double of_balanced = on_factors * dalcs_step_rounding(part, entry) *
-                         dalcs_stage_natural_units(entry)[stages->levered[k]];
-    return k < stages->n_currents ? of_balanced
-                                  : dalcs_larger(of_balanced, part->scales.probe.rounding[k]);
+    return on_factors * dalcs_step_rounding(part, entry) *
+           dalcs_stage_natural_units(entry)[stages->levered[k]];
 }
 
 void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
@@ -187,9 +157,6 @@ void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry
         double least = dalcs_larger(noticed, dalcs_smaller(*worst, 1.0));
         if (!(error > least * allowed)) {
             continue;
-        }
-        if (k >= stages->n_currents) {
-            know_rounding(part, entry);
         }
         if (!(error * pessimism > rounding_of(part, entry, k))) {
             continue;

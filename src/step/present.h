@@ -31,10 +31,6 @@ void dalcs_radau_go_after(const struct dalcs_radau *r, struct dalcs_radau_part *
  * capacitors are the derivatives. */
 static const double dalcs_worth_projecting = 1e-2;
 
-/* Equations without derivatives hold to rounding, even if it is rounding of large conductances, unless
- * a mode is singular and the states contradict it, which takes a circuit that is not passive. */
-static const double dalcs_largest_residual = 1e-6;
-
 /* Where t is in the present segment, which may end a rounding earlier. */
 static inline double dalcs_radau_theta(const struct dalcs_radau_part *part, double t) {
     double theta = (t - part->segment.t) / part->segment.h;

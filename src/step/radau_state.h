@@ -73,12 +73,6 @@ struct dalcs_part_scales {
     struct dalcs_column_kinds *kinds; /* see step_error.c */
     double *current_drift;            /* of these, in whole eights: current_error.c */
     double *current_parts;            /* [n_levered] what they are made of, at most; ditto */
-
-    struct dalcs_lever_probe {                 /* ditto */
-        const struct dalcs_stage_entry *entry; /* on factors, that was probed; NULL: none */
-        double *rounding;                      /* [n_levered] V, in the drift of voltages */
-        double *in, *drift;                    /* work, with out_tried */
-    } probe;
 };
 
 /* Which guards are on which side of 0, and how surely: guards.h, doubt.h, tied.h. */

@@ -3,6 +3,7 @@
 
 #include "extremes.h"
 #include "present.h"
+#include "rounding.h"
 #include "smooth_newton.h"
 
 #include <float.h>
@@ -140,7 +141,7 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
         const double missed = dalcs_smooth_rest(of, x) - phi;
         double *known = value_at(part, k, m->s + 1);
         is_finite = is_finite && isfinite(missed);
-        *changes = *changes || fabs(missed - *known) > 4.0 * DBL_EPSILON * fabs(phi);
+        *changes = *changes || fabs(missed - *known) > dalcs_rounded * fabs(phi);
         *known = missed;
     }
     return is_finite;
@@ -203,7 +204,6 @@ static void take_tangents(struct dalcs_radau_part *part) {
         p->n_tangents = part->component->osnsp.n_tangents;
         dalcs_stages_forget(&part->stages);
         part->segment.entry = NULL;
-        part->scales.probe.entry = NULL;
         p->slope_h = 0.0;
     }
 }

@@ -4,6 +4,7 @@
 #include "step_length.h"
 
 #include "extremes.h"
+#include "pi.h"
 #include "present.h"
 
 /* The error estimate may be this much smaller than what is allowed before the step is doubled. */
@@ -103,7 +104,7 @@ double dalcs_length_promising(const struct dalcs_radau_part *part) {
     }
     double size = m->test_size * m->test_factor * m->lambda / factorial;
     double angle = pow(part->inner_tolerance / size, 1.0 / (m->s + 1));
-    return angle * part->excitation.shortest_period / 6.283185307179586;
+    return angle * part->excitation.shortest_period / dalcs_two_pi;
 }
 
 /* Long moves end on every n-th rung, so that searches up and down the ladder meet on the same step

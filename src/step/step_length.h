@@ -3,12 +3,17 @@
 #define DALCS_STEP_LENGTH_H
 
 #include "radau_state.h"
+#include "rounding.h"
 
-#include <float.h>
 #include <math.h>
 
 /* Up or down at once. */
 enum { DALCS_LENGTH_MOST_RUNGS = 6 };
+
+/* s; in a shorter one the times of its nodes have less than six bits of their own. */
+static inline double dalcs_length_shortest(const struct dalcs_radau *r) {
+    return 64.0 * r->resolution;
+}
 
 /* s; the longest step worth trying. */
 double dalcs_length_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
@@ -19,7 +24,7 @@ double dalcs_length_of_spans(const struct dalcs_radau_part *part);
 
 /* Is a span (s) as long as from `from` to `to` (s), as far as rounded times can tell? */
 static inline bool dalcs_length_is_same(double span, double from, double to) {
-    return fabs(to - from - span) <= 4.0 * DBL_EPSILON * to;
+    return fabs(to - from - span) <= dalcs_rounded * to;
 }
 
 /* s; as the first span between commands that was as long, and steps were fitted to, had it; 0: there was none. */

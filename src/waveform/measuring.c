@@ -2,6 +2,7 @@
 #include "measuring.h"
 
 #include "memory.h"
+#include "rounding.h"
 
 #include <float.h>
 #include <math.h>
@@ -321,7 +322,7 @@ static void measure(const struct dalcs_measuring *m, struct dalcs_measured *item
     dalcs_instant_look(&item->instant[1], s, from, to);
     if (is_new && needs_value(item)) {
         double time = item->instant[0].time;
-        item->waits = time >= s->to - 16.0 * DBL_EPSILON * fabs(s->to);
+        item->waits = time >= s->to - dalcs_sum_rounded * fabs(s->to);
         if (!item->waits) {
             evaluate(m, item, time);
         }

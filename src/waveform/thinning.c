@@ -6,14 +6,12 @@
 #include "thinning.h"
 
 #include "memory.h"
+#include "rounding.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* What rounding may add to a signal on a line, over its scale. */
-static const double ROUNDING = 4.0 * DBL_EPSILON;
 
 static enum dalcs_status hand_on(struct dalcs_thinning *t, double time, const double *value) {
     enum dalcs_status status = t->to->row(t->to->user, time, value);
@@ -50,7 +48,7 @@ static void hold(struct dalcs_thinning *t, double time, const double *value) {
     t->held_time = time;
     memcpy(t->held, value, t->n_signals * sizeof(*value));
     for (size_t i = 0; i < t->n_signals; i++) {
-        double door = fmax(t->bound - ROUNDING, 0.0) * t->scale[i];
+        double door = fmax(t->bound - dalcs_rounded, 0.0) * t->scale[i];
         t->low[i] = fmax(t->low[i], (value[i] - door - t->kept[i]) / span);
         t->high[i] = fmin(t->high[i], (value[i] + door - t->kept[i]) / span);
     }
