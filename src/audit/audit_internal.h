@@ -95,6 +95,7 @@ struct audit_part {
     double cost;         /* of one instant, in instructions, about */
     bool has_smooth;     /* a source of a smooth function */
     bool has_formula;    /* one that bends or jumps: in no time it may be anything between */
+    bool has_reader;     /* what acts by a current: H, F, a formula */
     bool has_entered;    /* the state at its last event is in `before` */
     bool is_open;        /* `before` is the end of the stretch that was just left */
     bool was_integrated; /* an interval in it was looked at */
@@ -119,6 +120,7 @@ struct dalcs_audit {
     struct audit_net {
         int n_lambdas;
         int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
+        int *owner;        /* [n_nodes] the part that such a node is in; -1: none */
         bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
         bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
         bool *is_held;     /* [n_nodes] likewise, whatever it does */
@@ -143,8 +145,9 @@ struct dalcs_audit {
     struct audit_sums sums;
 
     struct audit_crossing {
-        int *cluster;   /* [n_nodes] work of crossing.c */
-        double *offset; /* [n_nodes] likewise */
+        int *cluster;                /* [n_nodes] work of crossing.c */
+        double *offset;              /* [n_nodes] likewise */
+        bool *is_firm, *has_impulse; /* [n_nodes] impulses.c */
     } crossing;
 
     struct audit_worst {
@@ -257,6 +260,10 @@ void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
 void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
                         const struct dalcs_audit_state *s);
 
+/* ... and what all nodes that ideal branches join with one have of that. Overwrites audit->crossing.cluster. */
+double audit_rounding_around(struct dalcs_audit *audit, const struct audit_part *part,
+                             const struct dalcs_audit_state *s, int node);
+
 /* V and A that the two branches of a diode are held to. */
 void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
                        double scale[2]);
@@ -275,6 +282,33 @@ double audit_flux_scale(const struct dalcs_audit *audit, const struct audit_part
 /* intervals.c: what holds between two times in one stretch. */
 void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,
                           double to);
+
+/* parts.c: do sources alone decide what controls a switch? */
+static inline bool audit_is_commanded(const struct dalcs_audit *audit, int switch_device) {
+    const struct dalcs_device *d = &audit->circuit->device[switch_device];
+    return d->control < 0 && audit->net.is_held[d->node[2]] && audit->net.is_held[d->node[3]];
+}
+
+/* Does a device join its two nodes, from one state to another in no time? */
+typedef bool audit_joins(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, int device);
+
+/* crossing.c: of the nodes of a part, into audit->crossing.cluster. */
+void audit_find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, audit_joins *join);
+audit_joins audit_passes_charge;
+
+/* impulses.c: nodes whose potential may be an impulse, as what reads a current that is one makes it. */
+void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after);
+
+void audit_forget_impulses(struct dalcs_audit *audit, const struct audit_part *part);
+
+/* Is such a node at one of its ends, or in what controls it? */
+bool audit_has_impulse(const struct dalcs_audit *audit, const struct dalcs_device *d);
 
 /* crossing.c: what holds from one side of an event to the other. */
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,

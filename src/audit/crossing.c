@@ -10,10 +10,23 @@
 
 #include "union_find.h"
 
-/* Does a switch remember its side? Then it may have been on the other one in between: it turns, a state jumps, and it
- * turns back on what it finds behind the jump. */
-static bool may_have_turned(const struct dalcs_audit *audit, int model) {
-    return audit->circuit->switch_model[model].vh > 0.0;
+/* The positions that a switch may have while states jump. It turns where its control reaches the threshold, and what jumps
+ * is what the circuit does thereafter: behind what sources alone decide, or what stands still, it is where it is seen. A
+ * control that jumps itself may have been beyond a threshold before, after or in between: a switch that remembers its side
+ * turns, a state jumps, and it turns back on what it finds behind the jump. */
+static void find_positions(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *before,
+                           const struct dalcs_audit_state *after, int device, bool may_be[2]) {
+    double half_width;
+    const double moved = fabs(audit_control(audit, after, device, &half_width) -
+                              audit_control(audit, before, device, &half_width));
+    const bool stands = moved <= part->tolerance * audit_control_scale(audit, part, device);
+    const bool now = after->is_closed[device];
+    const bool is_either = !audit_is_commanded(audit, device) && !stands;
+    const bool turns_back = is_either && half_width > 0.0;
+    const bool can_differ = is_either && before->is_closed[device] != now;
+    may_be[now] = true;
+    may_be[!now] = turns_back || can_differ;
 }
 
 /* Coils without leakage between them hand an impulse of current on: their fluxes stay what they are. */
@@ -27,11 +40,16 @@ static bool is_perfectly_coupled(const struct dalcs_audit *audit, const struct a
     return is;
 }
 
-/* May charge pass in no time? The impulse of a diode's current needs that it stands at its knee thereafter. */
-static bool passes_charge(const struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *before,
-                          const struct dalcs_audit_state *after, int device) {
+/* May charge pass in no time? The impulse of a diode's current needs that it stands at its knee thereafter, and one in a
+ * resistance an impulse of voltage. */
+bool audit_passes_charge(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
+    bool may_be[2];
+    if (audit_has_impulse(audit, d)) {
+        return d->kind != DALCS_INDUCTOR && d->kind != DALCS_CAPACITOR;
+    }
     switch (d->kind) {
     case DALCS_VSOURCE:
     case DALCS_VCVS:
@@ -43,9 +61,8 @@ static bool passes_charge(const struct dalcs_audit *audit, const struct audit_pa
     case DALCS_INDUCTOR:
         return is_perfectly_coupled(audit, part, device);
     case DALCS_SWITCH:
-        return audit->circuit->switch_model[d->model].ron == 0.0 &&
-               (before->is_closed[device] || after->is_closed[device] ||
-                may_have_turned(audit, d->model));
+        find_positions(audit, part, before, after, device, may_be);
+        return audit->circuit->switch_model[d->model].ron == 0.0 && may_be[true];
     case DALCS_DIODE: {
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
         const double v = audit_voltage(after, d);
@@ -63,31 +80,31 @@ static bool bounds_voltage(const struct dalcs_audit *audit, const struct audit_p
                            const struct dalcs_audit_state *before,
                            const struct dalcs_audit_state *after, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
+    bool may_be[2];
     switch (d->kind) {
-    case DALCS_RESISTOR:
     case DALCS_CAPACITOR:
     case DALCS_VSOURCE:
         return true;
+    case DALCS_RESISTOR:
+        return !audit_has_impulse(audit, d);
     case DALCS_SWITCH:
-        return isfinite(audit->circuit->switch_model[d->model].roff) ||
-               (before->is_closed[device] && after->is_closed[device] &&
-                !may_have_turned(audit, d->model));
+        find_positions(audit, part, before, after, device, may_be);
+        return !audit_has_impulse(audit, d) &&
+               (isfinite(audit->circuit->switch_model[d->model].roff) || !may_be[false]);
     case DALCS_DIODE: {
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
-        return isfinite(m->roff) || isfinite(m->vrev) ||
-               after->i[device] > part->tolerance * audit_amperes(audit, part, device);
+        return !audit_has_impulse(audit, d) &&
+               (isfinite(m->roff) || isfinite(m->vrev) ||
+                after->i[device] > part->tolerance * audit_amperes(audit, part, device));
     }
     default: /* I, E, F, G, H, formulas: whatever their controls have */
         return false;
     }
 }
 
-typedef bool joins(const struct dalcs_audit *, const struct audit_part *,
-                   const struct dalcs_audit_state *, const struct dalcs_audit_state *, int);
-
-static void find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *before,
-                          const struct dalcs_audit_state *after, joins *join) {
+void audit_find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, audit_joins *join) {
     audit->crossing.cluster[0] = 0;
     for (int k = 0; k < part->n_nodes; k++) {
         audit->crossing.cluster[part->node[k]] = part->node[k];
@@ -113,7 +130,7 @@ static void gather_charge(struct dalcs_audit *audit, const struct dalcs_device *
 static void check_charge(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after) {
-    find_clusters(audit, part, before, after, passes_charge);
+    audit_find_clusters(audit, part, before, after, audit_passes_charge);
     for (int k = 0; k < part->n_nodes; k++) {
         audit->sums.current[part->node[k]] = audit->sums.scale[part->node[k]] = 0.0;
     }
@@ -172,7 +189,7 @@ static void sum_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
 static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *before,
                        const struct dalcs_audit_state *after) {
-    find_clusters(audit, part, before, after, bounds_voltage);
+    audit_find_clusters(audit, part, before, after, bounds_voltage);
     sum_fluxes(audit, part, before, after);
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
@@ -231,7 +248,9 @@ static void check_changes(struct dalcs_audit *audit, const struct audit_part *pa
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
                           const struct dalcs_audit_state *before,
                           const struct dalcs_audit_state *after) {
+    audit_find_impulses(audit, part, before, after);
     check_charge(audit, part, before, after);
     check_flux(audit, part, before, after);
+    audit_forget_impulses(audit, part);
     check_changes(audit, part, before, after);
 }

@@ -5,7 +5,7 @@
 
 /* ---- Parts --------------------------------------------------------------------------------------- */
 
-static void count_members(struct dalcs_audit *audit, int *part_of_node) {
+static void count_members(struct dalcs_audit *audit, int *owner) {
     const struct dalcs_circuit *c = audit->circuit;
     for (int i = 0; i < c->n_devices; i++) {
         const int k = audit->options.device_part[i];
@@ -15,8 +15,8 @@ static void count_members(struct dalcs_audit *audit, int *part_of_node) {
         audit->part[k].n_devices++;
         for (int e = 0; e < 2; e++) {
             const int node = audit->net.node_of[c->device[i].node[e]];
-            if (node != 0 && part_of_node[node] < 0) {
-                part_of_node[node] = k;
+            if (node != 0 && owner[node] < 0) {
+                owner[node] = k;
                 audit->part[k].n_nodes++;
             }
         }
@@ -36,7 +36,8 @@ static void see_conductance(struct audit_part *part, double g) {
     }
 }
 
-static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
+static void list_members(struct dalcs_audit *audit) {
+    const int *owner = audit->net.owner;
     const struct dalcs_circuit *c = audit->circuit;
     for (int k = 0; k < audit->options.n_parts; k++) {
         audit->part[k].n_devices = audit->part[k].n_nodes = audit->part[k].n_couplings = 0;
@@ -53,6 +54,7 @@ static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
             const bool is_charged = d->kind == DALCS_CAPACITOR;
             audit->net.has_charge[audit->net.node_of[d->node[e]]] |= is_charged;
         }
+        part->has_reader |= d->behaviour != NULL || d->kind == DALCS_CCVS || d->kind == DALCS_CCCS;
         part->has_smooth |= d->behaviour != NULL && d->behaviour->smooth != NULL;
         part->has_formula |= d->behaviour != NULL && d->behaviour->n_pairs > 0;
         if (d->kind == DALCS_RESISTOR) {
@@ -68,8 +70,8 @@ static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
         }
     }
     for (int node = 1; node < c->n_nodes; node++) {
-        if (part_of_node[node] >= 0) {
-            struct audit_part *part = &audit->part[part_of_node[node]];
+        if (owner[node] >= 0) {
+            struct audit_part *part = &audit->part[owner[node]];
             part->node[part->n_nodes++] = node;
         }
     }
@@ -84,15 +86,15 @@ static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
 static enum dalcs_status make_parts(struct dalcs_audit *audit) {
     struct dalcs_arena *arena = &audit->arena;
     const struct dalcs_circuit *c = audit->circuit;
-    int *part_of_node = dalcs_arena_alloc(arena, (size_t)c->n_nodes, sizeof(int));
+    int *owner = audit->net.owner = dalcs_arena_alloc(arena, (size_t)c->n_nodes, sizeof(int));
     audit->part = dalcs_arena_alloc(arena, (size_t)audit->options.n_parts, sizeof(*audit->part));
-    if (part_of_node == NULL || audit->part == NULL) {
+    if (owner == NULL || audit->part == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int n = 0; n < c->n_nodes; n++) {
-        part_of_node[n] = -1;
+        owner[n] = -1;
     }
-    count_members(audit, part_of_node);
+    count_members(audit, owner);
     for (int k = 0; k < audit->options.n_parts; k++) {
         struct audit_part *part = &audit->part[k];
         part->device = dalcs_arena_alloc(arena, (size_t)part->n_devices, sizeof(int));
@@ -105,7 +107,7 @@ static enum dalcs_status make_parts(struct dalcs_audit *audit) {
         }
         part->tolerance = audit->options.tolerance[k];
     }
-    list_members(audit, part_of_node);
+    list_members(audit);
     return DALCS_OK;
 }
 
@@ -173,6 +175,9 @@ static enum dalcs_status make_sums(struct dalcs_audit *audit) {
     audit->scale.lambda =
         dalcs_arena_alloc(&audit->arena, (size_t)audit->net.n_lambdas, sizeof(double));
     audit->crossing.cluster = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
+    audit->crossing.is_firm = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    audit->crossing.has_impulse = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    complete = complete && audit->crossing.is_firm != NULL && audit->crossing.has_impulse != NULL;
     return complete && audit->scale.lambda != NULL && audit->crossing.cluster != NULL
                ? DALCS_OK
                : DALCS_E_NOMEM;
@@ -233,6 +238,39 @@ static enum dalcs_status find_formula_parts(struct dalcs_audit *audit) {
     return DALCS_OK;
 }
 
+/* Does it hold one of its nodes with the other, by what is held already? Sources, and E and formulas without pairs that
+ * read only such. */
+static bool hands_on(const struct dalcs_audit *audit, const struct dalcs_device *d) {
+    const bool *is_held = audit->net.is_held;
+    if (d->behaviour == NULL) {
+        return d->kind == DALCS_VSOURCE ||
+               (d->kind == DALCS_VCVS && is_held[d->node[2]] && is_held[d->node[3]]);
+    }
+    const struct dalcs_affine *f = &d->behaviour->output;
+    bool only = d->kind == DALCS_VCVS && d->behaviour->n_pairs == 0 && d->behaviour->smooth == NULL;
+    for (int k = 0; k < f->n && only; k++) {
+        only = f->term[k].kind == DALCS_QUANTITY_STIMULUS ||
+               (f->term[k].kind == DALCS_QUANTITY_VOLTAGE && is_held[f->term[k].index]);
+    }
+    return only;
+}
+
+/* Nodes that sources alone decide, whatever lies between. */
+static void find_held(const struct dalcs_audit *audit) {
+    const struct dalcs_circuit *c = audit->circuit;
+    bool grows = true;
+    while (grows) {
+        grows = false;
+        for (int i = 0; i < c->n_devices; i++) {
+            const struct dalcs_device *d = &c->device[i];
+            bool *held[2] = {&audit->net.is_held[d->node[0]], &audit->net.is_held[d->node[1]]};
+            if (*held[0] != *held[1] && hands_on(audit, d)) {
+                *held[0] = *held[1] = grows = true;
+            }
+        }
+    }
+}
+
 static void find_fed(const struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
     audit->net.is_fed[0] = audit->net.is_held[0] = true;
@@ -240,7 +278,6 @@ static void find_fed(const struct dalcs_audit *audit) {
         const struct dalcs_device *d = &c->device[i];
         if (d->kind == DALCS_VSOURCE && (d->node[0] == 0 || d->node[1] == 0)) {
             const struct dalcs_stimulus *s = &c->stimulus[d->stimulus];
-            audit->net.is_held[d->node[d->node[0] == 0]] = true;
             audit->net.is_fed[d->node[d->node[0] == 0]] =
                 dalcs_stimulus_value(s, 0.0, DALCS_LEFT) ==
                 dalcs_stimulus_value(s, 0.0, DALCS_RIGHT);
@@ -261,6 +298,7 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
         return DALCS_E_NOMEM;
     }
     find_fed(audit);
+    find_held(audit);
     merge_shorts(audit);
     DALCS_TRY(number_lambdas(audit));
     DALCS_TRY(find_formula_parts(audit));
