@@ -241,6 +241,9 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
         audit_check_crossing(audit, part, &audit->before, &audit->now);
         audit->budget.credit -= part->cost;
     }
+    if (!part->has_entered && stretch->from == 0.0) {
+        audit_check_start(audit, part, &audit->now);
+    }
     part->watch->saw_beginning = true;
     part->has_entered = true;
     part->is_open = false;
@@ -317,7 +320,9 @@ void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stret
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,
                          double work) {
     dalcs_audit_earn(audit, work);
-    if (is_drawn(audit, audit->part[part].cost)) {
+    const bool is_first = !audit->part[part].has_entered;
+    audit->part[part].has_entered = true;
+    if (is_first || is_drawn(audit, audit->part[part].cost)) {
         audit->now.t = t;
         audit->now.side = side;
         look(audit, part, &audit->now);

@@ -135,6 +135,11 @@ struct dalcs_audit_options {
     double share; /* of the work of the run that samples may cost */
     double vntol, abstol;
     bool is_start;          /* the run begins as the netlist says, not where another one ended */
+    enum dalcs_audit_origin {
+        DALCS_AUDIT_FROM_ANYWHERE,
+        DALCS_AUDIT_FROM_INITIAL, /* what IC= says, 0 where there is none */
+        DALCS_AUDIT_FROM_REST     /* an operating point that no source leaves by a jump */
+    } origin;
     double resolution;      /* s; times closer than this are one */
     const int *device_part; /* [n_devices] the part that a device is in, -1: none */
     int n_parts;

@@ -147,6 +147,7 @@ struct dalcs_audit {
     struct audit_crossing {
         int *cluster;                /* [n_nodes] work of crossing.c */
         double *offset;              /* [n_nodes] likewise */
+        double *stored; /* [n_devices] V, A: of capacitors and coils, before */
         bool *is_firm, *has_impulse; /* [n_nodes] impulses.c */
     } crossing;
 
@@ -309,6 +310,15 @@ void audit_forget_impulses(struct dalcs_audit *audit, const struct audit_part *p
 
 /* Is such a node at one of its ends, or in what controls it? */
 bool audit_has_impulse(const struct dalcs_audit *audit, const struct dalcs_device *d);
+
+/* crossing.c: charges and fluxes, from audit->crossing.stored on. `before` is `after` where nothing else was before. */
+void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
+                      const struct dalcs_audit_state *before,
+                      const struct dalcs_audit_state *after);
+
+/* start.c: does the part begin as the netlist says? */
+void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *first);
 
 /* crossing.c: what holds from one side of an event to the other. */
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,

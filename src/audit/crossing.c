@@ -22,7 +22,7 @@ static void find_positions(const struct dalcs_audit *audit, const struct audit_p
                               audit_control(audit, before, device, &half_width));
     const bool stands = moved <= part->tolerance * audit_control_scale(audit, part, device);
     const bool now = after->is_closed[device];
-    const bool is_either = !audit_is_commanded(audit, device) && !stands;
+    const bool is_either = !audit_is_commanded(audit, device) && (!stands || before == after);
     const bool turns_back = is_either && half_width > 0.0;
     const bool can_differ = is_either && before->is_closed[device] != now;
     may_be[now] = true;
@@ -139,7 +139,8 @@ static void check_charge(struct dalcs_audit *audit, const struct audit_part *par
         if (d->kind != DALCS_CAPACITOR) {
             continue;
         }
-        const double charge = d->value * (audit_voltage(after, d) - audit_voltage(before, d));
+        const double charge =
+            d->value * (audit_voltage(after, d) - audit->crossing.stored[part->device[k]]);
         const double scale = d->value * audit_volts(audit, part, d->node[0], d->node[1]);
         gather_charge(audit, d, 0, charge, scale);
         gather_charge(audit, d, 1, -charge, scale);
@@ -167,13 +168,14 @@ static int find_root(const struct dalcs_audit *audit, int node, double *flux) {
 }
 
 static void sum_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
-                       const struct dalcs_audit_state *before,
                        const struct dalcs_audit_state *after) {
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
         audit->sums.flux[device] =
-            d->kind == DALCS_INDUCTOR ? d->value * (after->i[device] - before->i[device]) : 0.0;
+            d->kind == DALCS_INDUCTOR
+                ? d->value * (after->i[device] - audit->crossing.stored[device])
+                : 0.0;
     }
     for (int k = 0; k < part->n_couplings; k++) {
         const struct dalcs_coupling *m = &audit->circuit->coupling[part->coupling[k]];
@@ -181,8 +183,8 @@ static void sum_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
         const int b = m->inductor[1];
         const double mutual =
             m->k * sqrt(audit->circuit->device[a].value * audit->circuit->device[b].value);
-        audit->sums.flux[a] += mutual * (after->i[b] - before->i[b]);
-        audit->sums.flux[b] += mutual * (after->i[a] - before->i[a]);
+        audit->sums.flux[a] += mutual * (after->i[b] - audit->crossing.stored[b]);
+        audit->sums.flux[b] += mutual * (after->i[a] - audit->crossing.stored[a]);
     }
 }
 
@@ -190,7 +192,7 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *before,
                        const struct dalcs_audit_state *after) {
     audit_find_clusters(audit, part, before, after, bounds_voltage);
-    sum_fluxes(audit, part, before, after);
+    sum_fluxes(audit, part, after);
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
         audit->crossing.cluster[node] = dalcs_union_find(audit->crossing.cluster, node);
@@ -245,12 +247,24 @@ static void check_changes(struct dalcs_audit *audit, const struct audit_part *pa
     }
 }
 
-void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
-                          const struct dalcs_audit_state *before,
-                          const struct dalcs_audit_state *after) {
+void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
+                      const struct dalcs_audit_state *before,
+                      const struct dalcs_audit_state *after) {
     audit_find_impulses(audit, part, before, after);
     check_charge(audit, part, before, after);
     check_flux(audit, part, before, after);
     audit_forget_impulses(audit, part);
+}
+
+void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
+                          const struct dalcs_audit_state *before,
+                          const struct dalcs_audit_state *after) {
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        audit->crossing.stored[device] =
+            d->kind == DALCS_CAPACITOR ? audit_voltage(before, d) : before->i[device];
+    }
+    audit_check_jump(audit, part, before, after);
     check_changes(audit, part, before, after);
 }

@@ -157,7 +157,8 @@ static enum dalcs_status make_sums(struct dalcs_audit *audit) {
     const size_t n_devices = (size_t)audit->circuit->n_devices;
     double **per_node[] = {&audit->sums.current, &audit->sums.scale, &audit->sums.rounding,
                            &audit->scale.v, &audit->crossing.offset};
-    double **per_device[] = {&audit->sums.flux, &audit->scale.i};
+    double **per_device[] = {&audit->sums.flux, &audit->scale.i,
+                             &audit->crossing.stored};
     bool complete = true;
     for (size_t k = 0; k < sizeof per_node / sizeof *per_node; k++) {
         *per_node[k] = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(double));

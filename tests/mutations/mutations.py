@@ -343,12 +343,12 @@ def verdict(program, netlist, where):
     return ("noticed" if "more than" in proof else "passes"), said
 
 
-def main():
+def run_all(mutations, suite):
     build, source = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
     if shutil.which("ninja") is None:
         return SKIPPED
-    checker = Checker("mutations")
-    for name, (file, old, new, netlist) in MUTATIONS.items():
+    checker = Checker(suite)
+    for name, (file, old, new, netlist) in mutations.items():
         if sys.argv[3:] and name not in sys.argv[3:]:
             continue
         with tempfile.TemporaryDirectory() as directory:
@@ -364,4 +364,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_all(MUTATIONS, "mutations"))
