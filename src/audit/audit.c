@@ -208,9 +208,11 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
         return false;
     }
     const bool asks = audit_watch_asks(audit, stretch, can_look_inside(audit, stretch));
+    part->watch->has_turned =
+        part->n_latches > 0 && audit_latches_turn(audit, part) && !part->watch->saw_beginning;
     dalcs_audit_earn(audit, work);
     part->at.is_drawn = audit->budget.credit >= audit->budget.threshold;
-    const bool passes = !asks && !part->at.is_drawn;
+    const bool passes = !asks && !part->at.is_drawn && !part->watch->has_turned;
     if (passes) {
         leave_behind(part);
     }
@@ -260,6 +262,19 @@ static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretc
     audit_screen_rescale(audit, part);
 }
 
+/* The switches that have changed over where it begins. */
+static void look_at_turn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_part *part = &audit->part[stretch->part];
+    audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
+    audit->now.t = stretch->from;
+    audit->now.side = DALCS_RIGHT;
+    audit->reader.read(audit->reader.user, stretch->part, &audit->now);
+    audit_note_scales(audit, part, &audit->before);
+    audit_note_scales(audit, part, &audit->now);
+    audit_check_changes(audit, part, &audit->before, &audit->now);
+    audit->budget.spent += part->cost;
+}
+
 /* A mode that is new is looked at by the screen that is made of it, from a state in it. */
 static bool is_settled(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
@@ -275,7 +290,12 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     take_up(part, stretch);
     audit->budget.credit -= stretch->first_look;
     raise_scales(audit, stretch->part);
-    if (part->watch->makes && is_settled(audit, stretch)) {
+    if (part->watch->has_turned) {
+        look_at_turn(audit, stretch);
+    }
+    const bool is_seen = part->watch->has_turned && !part->watch->makes;
+    if ((is_seen && part->watch->asked < 0.0 && !part->at.is_drawn && !stretch->is_last) ||
+        (part->watch->makes && is_settled(audit, stretch))) {
         leave_behind(part);
         return;
     }

@@ -65,6 +65,8 @@ struct audit_watch {
     bool is_put_off;    /* the present one does not begin there */
     bool saw_beginning; /* its beginning was looked at */
     bool makes;         /* a screen is to be made of the present stretch */
+    bool knows_sides;   /* that switches with hysteresis had in the stretch before */
+    bool has_turned;    /* one of them is on the other now */
     double asked;       /* s: a time in it that asks for a look; < 0: none does */
 };
 
@@ -73,6 +75,8 @@ struct audit_part {
     int n_devices, *device;
     int n_nodes, *node;
     int n_couplings, *coupling;
+    int n_latches, *latch; /* its switches with hysteresis */
+    bool *was_closed;      /* [n_latches] */
     double tolerance;
 
     struct audit_floor {     /* of scales */
@@ -94,7 +98,7 @@ struct audit_part {
 
     double cost;         /* of one instant, in instructions, about */
     bool has_smooth;     /* a source of a smooth function */
-    bool has_formula;    /* one that bends or jumps: in no time it may be anything between */
+    bool has_formula;    /* one that jumps: in no time it may be anything between */
     bool has_reader;     /* what acts by a current: H, F, a formula */
     bool has_entered;    /* the state at its last event is in `before` */
     bool is_open;        /* `before` is the end of the stretch that was just left */
@@ -147,7 +151,7 @@ struct dalcs_audit {
     struct audit_crossing {
         int *cluster;                /* [n_nodes] work of crossing.c */
         double *offset;              /* [n_nodes] likewise */
-        double *stored; /* [n_devices] V, A: of capacitors and coils, before */
+        double *stored;              /* [n_devices] V, A: of capacitors and coils, before */
         bool *is_firm, *has_impulse; /* [n_nodes] impulses.c */
     } crossing;
 
@@ -254,6 +258,9 @@ extern const double audit_gauss_node[AUDIT_GAUSS], audit_gauss_weight[AUDIT_GAUS
 /* formulas.c, laws.c */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device);
+/* ... is a pair of a formula where it may change sides? */
+bool audit_behaviour_may_turn(const struct dalcs_audit *audit, const struct audit_part *part,
+                              const struct dalcs_audit_state *s, int device);
 void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
                         const struct dalcs_audit_state *s, int device);
 
@@ -315,6 +322,15 @@ bool audit_has_impulse(const struct dalcs_audit *audit, const struct dalcs_devic
 void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
                       const struct dalcs_audit_state *before,
                       const struct dalcs_audit_state *after);
+
+/* changes.c: does a switch with hysteresis stand on another side than in the stretch before? Screens tell no change within
+ * a hysteresis. */
+bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part);
+
+/* changes.c: switches that are on other sides. */
+void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after);
 
 /* start.c: does the part begin as the netlist says? */
 void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,

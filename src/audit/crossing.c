@@ -221,31 +221,7 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
     }
 }
 
-/* ---- Positions ----------------------------------------------------------------------------------- */
-
-/* A switch changes over where its control reaches the threshold on that side, before or behind the event.
- * Not where the control may have been beyond it in between: what a formula jumps to while pairs change sides
- * one after the other, a latch keeps. */
-static void check_changes(struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *before,
-                          const struct dalcs_audit_state *after) {
-    for (int k = 0; k < part->n_devices && !part->has_formula; k++) {
-        const int device = part->device[k];
-        if (audit->circuit->device[device].kind != DALCS_SWITCH ||
-            before->is_closed[device] == after->is_closed[device]) {
-            continue;
-        }
-        double half_width;
-        const double control[2] = {audit_control(audit, before, device, &half_width),
-                                   audit_control(audit, after, device, &half_width)};
-        double short_of = after->is_closed[device] ? half_width - fmax(control[0], control[1])
-                                                   : half_width + fmin(control[0], control[1]);
-        short_of -= short_of > 0.0 ? audit_control_slack(audit, part, after, device) : 0.0;
-        audit_find(audit, part, DALCS_AUDIT_POSITION, device, short_of,
-                   audit_control_scale(audit, part, device), after->t);
-        audit->count.positions++;
-    }
-}
+/* ---- Both --------------------------------------------------------------------------------------- */
 
 void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
                       const struct dalcs_audit_state *before,
@@ -266,5 +242,5 @@ void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
             d->kind == DALCS_CAPACITOR ? audit_voltage(before, d) : before->i[device];
     }
     audit_check_jump(audit, part, before, after);
-    check_changes(audit, part, before, after);
+    audit_check_changes(audit, part, before, after);
 }

@@ -130,6 +130,22 @@ static double pair_defect(struct dalcs_audit *audit, const struct audit_part *pa
  * where a gate closes it on amperes. */
 static const double soon = 1e-6;
 
+bool audit_behaviour_may_turn(const struct dalcs_audit *audit, const struct audit_part *part,
+                              const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
+    const bool as_is = audit->net.is_inner != NULL && audit->net.is_inner[device];
+    bool may = false;
+    for (int k = 0; k < b->n_pairs && !may; k++) {
+        const int pair = audit->net.first_lambda[device] + k;
+        double size;
+        double terms;
+        const double w = affine_value(audit, part, s, device, as_is, &b->w[k], &size, &terms);
+        may = fabs(w) <= part->tolerance * size &&
+              fabs(s->lambda[pair]) <= part->tolerance * audit->scale.lambda[pair];
+    }
+    return may;
+}
+
 /* Signs and complementarity. In a part of a formula they are those of what the run has there: how near that is to what
  * the formula says is in the value of the whole. */
 static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,

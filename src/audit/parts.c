@@ -5,6 +5,11 @@
 
 /* ---- Parts --------------------------------------------------------------------------------------- */
 
+static bool remembers(const struct dalcs_circuit *c, int device) {
+    const struct dalcs_device *d = &c->device[device];
+    return d->kind == DALCS_SWITCH && c->switch_model[d->model].vh != 0.0;
+}
+
 static void count_members(struct dalcs_audit *audit, int *owner) {
     const struct dalcs_circuit *c = audit->circuit;
     for (int i = 0; i < c->n_devices; i++) {
@@ -13,6 +18,7 @@ static void count_members(struct dalcs_audit *audit, int *owner) {
             continue;
         }
         audit->part[k].n_devices++;
+        audit->part[k].n_latches += remembers(c, i) ? 1 : 0;
         for (int e = 0; e < 2; e++) {
             const int node = audit->net.node_of[c->device[i].node[e]];
             if (node != 0 && owner[node] < 0) {
@@ -36,11 +42,34 @@ static void see_conductance(struct audit_part *part, double g) {
     }
 }
 
+/* Of a pair (pairs.c): w = lambda / g + ... is a kink, w = H - another lambda ends its rise at H, and what is neither is a
+ * step. */
+static bool is_step(const struct dalcs_affine *w, int pair) {
+    double own = 0.0;
+    for (int i = 0; i < w->n; i++) {
+        const struct dalcs_affine_term *term = &w->term[i];
+        own += term->kind == DALCS_QUANTITY_PAIR && term->index == pair ? term->coefficient : 0.0;
+    }
+    const bool is_end =
+        w->n == 1 && w->term[0].kind == DALCS_QUANTITY_PAIR && w->term[0].coefficient < 0.0;
+    return !(own > 0.0) && !is_end;
+}
+
+/* May it jump where what it reads does not? */
+static bool jumps(const struct dalcs_behaviour *b) {
+    bool may = false;
+    for (int k = 0; b != NULL && k < b->n_pairs && !may; k++) {
+        may = is_step(&b->w[k], k);
+    }
+    return may;
+}
+
 static void list_members(struct dalcs_audit *audit) {
     const int *owner = audit->net.owner;
     const struct dalcs_circuit *c = audit->circuit;
     for (int k = 0; k < audit->options.n_parts; k++) {
         audit->part[k].n_devices = audit->part[k].n_nodes = audit->part[k].n_couplings = 0;
+        audit->part[k].n_latches = 0;
     }
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
@@ -50,13 +79,16 @@ static void list_members(struct dalcs_audit *audit) {
         }
         struct audit_part *part = &audit->part[k];
         part->device[part->n_devices++] = i;
+        if (remembers(c, i)) {
+            part->latch[part->n_latches++] = i;
+        }
         for (int e = 0; e < 2; e++) {
             const bool is_charged = d->kind == DALCS_CAPACITOR;
             audit->net.has_charge[audit->net.node_of[d->node[e]]] |= is_charged;
         }
         part->has_reader |= d->behaviour != NULL || d->kind == DALCS_CCVS || d->kind == DALCS_CCCS;
         part->has_smooth |= d->behaviour != NULL && d->behaviour->smooth != NULL;
-        part->has_formula |= d->behaviour != NULL && d->behaviour->n_pairs > 0;
+        part->has_formula |= jumps(d->behaviour);
         if (d->kind == DALCS_RESISTOR) {
             see_conductance(part, fabs(1.0 / d->value));
         } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
@@ -101,8 +133,10 @@ static enum dalcs_status make_parts(struct dalcs_audit *audit) {
         part->node = dalcs_arena_alloc(arena, (size_t)part->n_nodes, sizeof(int));
         part->watch = dalcs_arena_alloc(arena, 1, sizeof(*part->watch));
         part->coupling = dalcs_arena_alloc(arena, (size_t)part->n_couplings, sizeof(int));
+        part->latch = dalcs_arena_alloc(arena, (size_t)part->n_latches, sizeof(int));
+        part->was_closed = dalcs_arena_alloc(arena, (size_t)part->n_latches, sizeof(bool));
         if (part->watch == NULL || part->device == NULL || part->node == NULL ||
-            part->coupling == NULL) {
+            part->coupling == NULL || part->latch == NULL || part->was_closed == NULL) {
             return DALCS_E_NOMEM;
         }
         part->tolerance = audit->options.tolerance[k];
@@ -157,8 +191,7 @@ static enum dalcs_status make_sums(struct dalcs_audit *audit) {
     const size_t n_devices = (size_t)audit->circuit->n_devices;
     double **per_node[] = {&audit->sums.current, &audit->sums.scale, &audit->sums.rounding,
                            &audit->scale.v, &audit->crossing.offset};
-    double **per_device[] = {&audit->sums.flux, &audit->scale.i,
-                             &audit->crossing.stored};
+    double **per_device[] = {&audit->sums.flux, &audit->scale.i, &audit->crossing.stored};
     bool complete = true;
     for (size_t k = 0; k < sizeof per_node / sizeof *per_node; k++) {
         *per_node[k] = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(double));

@@ -45,7 +45,7 @@ vg g 0 PULSE(1 0 1m 0 0 0.5m 1m)
 CONTROLLER = """a thyristor with a holding current on a coil, beside a latch that its current turns
 v1 a 0 SIN(0 325 50)
 vg g 0 PULSE(0 2 3m 0 0 0.2m 20m)
-a1 a b g scr
+a1 a b g 0 scr
 l1 b c 30m
 r1 c 0 20
 .model scr thyristor(vgt=1 ih=0.5)
@@ -193,7 +193,7 @@ MUTATIONS = {
     "coupled coils help where they should oppose": (
         "dalcs/network.c", "double mutual = m->k * sqrt", "double mutual = -m->k * sqrt", FLYBACK),
     "a thyristor turns off above its holding current": (
-        "dalcs/stamp_device.c", ".turn_off = m->vt - m->vh}", ".turn_off = m->vt - 0.8 * m->vh}", CONTROLLER),
+        "dalcs/stamp_device.c", ".turn_off = m->vt - m->vh}", ".turn_off = m->vt - 0.9 * m->vh}", CONTROLLER),
     "a latch is set where both inputs are high": (
         "integrator/logic_network.c", "return !reset && (set || q);", "return set || (!reset && q);", GATES),
     "an edge comes 1 ns after its delay": (
@@ -232,6 +232,10 @@ MUTATIONS = {
         "    memcpy(part->segment.in, part->x, (size_t)s->n_x * sizeof(double));\n"
         "    part->segment.in[s->n_x] = 1.0;\n", RESTING),
     "an oscillator's switch turns early, once in many": (
+        "integrator/segment.c", "    double t_end = part->segment.t + theta * part->segment.h;\n",
+        "    theta *= part->guards.n_crossed > 0 && part->segment.t > 10e-3 && part->segment.t < 10.4e-3 ? 0.99 : 1.0;\n"
+        "    double t_end = part->segment.t + theta * part->segment.h;\n", RELAY),
+    "the end of a segment of many is put too early": (
         "integrator/segment.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
         "    t_end -= part->guards.n_crossed > 0 && part->segment.t > 10e-3 && part->segment.t < 10.4e-3 "
         "? 1e-2 * (t_end - part->segment.t) : 0.0;\n"
