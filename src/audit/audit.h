@@ -122,6 +122,7 @@ enum dalcs_audit_law {
     DALCS_AUDIT_POSITION, /* of a switch against its control */
     DALCS_AUDIT_ENERGY,   /* of a part */
     DALCS_AUDIT_PERIOD,   /* likewise: where a leap over periods leads to, against steps */
+    DALCS_AUDIT_ROW,      /* of a signal: what was written of it, against the waveform */
     DALCS_AUDIT_N_LAWS
 };
 
@@ -181,6 +182,10 @@ void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stret
 /* A part without memory at time t. */
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,
                          double work);
+
+/* A row: value[n_signals] at a time that can be read. */
+void dalcs_audit_row(struct dalcs_audit *audit, double t, enum dalcs_side side,
+                     const double *value);
 
 /* A finding of another one than the auditor, on its scale. */
 void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,

@@ -104,19 +104,21 @@ static enum dalcs_status list_stepped(struct dalcs_audit_run *a) {
 enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_run *run,
                                         struct dalcs_euler *euler, struct dalcs_radau *radau) {
     *a = (struct dalcs_audit_run){
-        .run = run, .euler = euler, .radau = radau, .tried_time = INFINITY};
+        .run = run, .euler = euler, .radau = radau, .tried_time = INFINITY, .landed = INFINITY};
     if (run->options->audit == DALCS_AUDIT_OFF || run->s->network.readout == NULL ||
         run->fixed_step > 0.0 /* whose error nobody controls */) {
         return DALCS_OK;
     }
     a->row_work = row_work * run->s->network.n_outputs;
-    enum dalcs_status status = dalcs_audit_members_make(a);
+    a->row = dalcs_arena_alloc(&a->arena, (size_t)run->s->network.n_outputs, sizeof(double));
+    enum dalcs_status status = a->row != NULL ? dalcs_audit_members_make(a) : DALCS_E_NOMEM;
     status = status == DALCS_OK ? list_stepped(a) : status;
     if (status == DALCS_OK && radau->cycling != NULL) {
         const int n_x = radau->cycling->component->system->n_x;
         const int n_elements = n_x * (n_x + 1);
         a->tried = dalcs_arena_alloc(&a->arena, (size_t)(2 * n_x + 2 * n_elements), sizeof(double));
-        status = a->tried != NULL ? DALCS_OK : DALCS_E_NOMEM;
+        a->passed = dalcs_arena_alloc(&a->arena, (size_t)n_x, sizeof(double));
+        status = a->tried != NULL && a->passed != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     status = status == DALCS_OK ? dalcs_audit_gates_start(&a->gates, &run->s->circuit, radau,
                                                           run->s->network.readout)
@@ -210,10 +212,50 @@ void dalcs_audit_run_enter_now(struct dalcs_audit_run *a) {
     }
 }
 
-void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side side, long n) {
+/* Instructions of a comparison of all parts and outputs. */
+static double checking_work(const struct dalcs_audit_run *a) {
+    double work = a->row_work;
+    for (int k = 0; k < a->radau->n_parts; k++) {
+        work += state_work(a, k);
+    }
+    for (int i = 0; i < a->n_stepped; i++) {
+        const int k = a->stepped[i];
+        work += a->radau->part[k].segment.late != NULL ? a->part[k].elements : 0.0;
+    }
+    return work;
+}
+
+/* Some of n rows are compared with the waveform. Not those on the right of an event, which are joined to what they were on
+ * its left within the tolerance (rows.h). */
+static void check_rows(struct dalcs_audit_run *a, const struct dalcs_rows *rows,
+                       enum dalcs_side side, int n) {
+    const bool is_full = a->run->options->audit == DALCS_AUDIT_FULL;
+    if (side == DALCS_RIGHT) {
+        return;
+    }
+    a->row_credit += share * a->row_work * n;
+    if (!is_full && a->has_checked_row && a->row_credit < a->row_threshold) {
+        return;
+    }
+    const double work = checking_work(a);
+    a->row_credit -= work;
+    a->row_threshold = 2.0 * work * dalcs_audit_chance(a->audit);
+    a->has_checked_row = true;
+    const int first = is_full ? 0 : (int)(dalcs_audit_chance(a->audit) * n);
+    for (int i = first; i < n && (is_full || i == first); i++) {
+        for (int k = 0; k < rows->n_outputs; k++) {
+            a->row[k] = rows->value[k].at[i];
+        }
+        dalcs_audit_row(a->audit, rows->time.at[i], side, a->row);
+    }
+}
+
+void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_rows *rows, double t,
+                          enum dalcs_side side, int n) {
     if (a->audit == NULL) {
         return;
     }
+    check_rows(a, rows, side, n);
     dalcs_audit_earn(a->audit, a->row_work * (double)n);
     a->has_rows = true;
     for (int k = 0; a->n_stepped < a->radau->n_parts && k < a->radau->n_parts; k++) {

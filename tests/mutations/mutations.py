@@ -320,6 +320,7 @@ def mutant(build, source, file, old, new, where):
     return program
 
 
+FEW = {BUCK, SLOW, APART, LEAPS}
 AT = "4.9e-3\n"  # s, so that there are few rows
 OFTEN = "".join(f"{k}.1e-3\n" for k in range(20))
 
@@ -328,7 +329,7 @@ def verdict(program, netlist, where):
     """("passes" | "noticed" | "broken" | "fails otherwise", what the run said)."""
     (where / "circuit.cir").write_text(netlist + ".end\n")
     (where / "at").write_text(OFTEN if netlist == LEAPS else AT)
-    few_rows = ["--at", str(where / "at")] if netlist in (BUCK, SLOW, APART, LEAPS) else []
+    few_rows = ["--at", str(where / "at")] if netlist in FEW else []
     try:
         command = [str(program), "run", str(where / "circuit.cir"), "-o", str(where / "out.csv")]
         ran = subprocess.run(command + few_rows, capture_output=True, text=True, timeout=60)
