@@ -10,8 +10,8 @@ enum { TRIED_PERIODS = 3 };
 
 /* What a leap passes over holds no longer where its states are others: signs are linear in these. Behind one that took a state
  * by so much of its scale a whole period is stepped, so that all its signs are asked. From rest to where a circuit settles
- * that are ten or so. */
-static const double far = 0.1;
+ * that are a few. */
+static const double far = 0.25;
 
 static bool is_on_probation(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;

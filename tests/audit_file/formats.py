@@ -287,11 +287,23 @@ def check_twins(checker, program, folder):
     checker.check("'v(out)' and 'V(OUT)' are both the voltage of node 'out'" in found.stderr, f"twins: {found.stderr}")
 
 
+def check_two_rests(checker, program, folder):
+    """An `op` of a simulator, with the DC values, and the one that a .tran begins at."""
+    netlist = "rest\nV1 a 0 DC 5 SIN(1 1 1k)\nR1 a b 1k\nC1 b 0 1u\nR2 b 0 1k\n{}\n"
+    for analysis in (".op", ".tran 10u 1m"):
+        table = simulate(program, netlist.format(analysis))
+        table.rows = table.rows[:1]
+        found = audit(program, folder, netlist.format(".tran 10u 1m"), table)
+        checker.check(found.status == 0 and found.answer["laws"], f"rest of {analysis}: {found.answer}")
+        found = audit(program, folder, netlist.format(".tran 10u 1m"), table.scaled("v(a)", 1.5))
+        checker.check(found.status == 1, f"rest of {analysis} with another v(a)")
+
+
 def main(program, root):
     checker = dalcs_program.Checker("files of other programs")
     with tempfile.TemporaryDirectory() as folder:
         for check in (check_ltspice, check_names, check_missing, check_digits, check_round_times, check_refusals, check_text,
-                      check_steps, check_rest, check_units, check_rows, check_twins):
+                      check_steps, check_rest, check_units, check_rows, check_twins, check_two_rests):
             check(checker, program, folder)
         check_schema(checker, program, folder, root)
     return checker.finish()
