@@ -110,8 +110,8 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         return DALCS_OK;
     }
     a->row_work = row_work * run->s->network.n_outputs;
-    a->row = dalcs_arena_alloc(&a->arena, (size_t)run->s->network.n_outputs, sizeof(double));
-    enum dalcs_status status = a->row != NULL ? dalcs_audit_members_make(a) : DALCS_E_NOMEM;
+    a->rows.value = dalcs_arena_alloc(&a->arena, (size_t)run->s->network.n_outputs, sizeof(double));
+    enum dalcs_status status = a->rows.value != NULL ? dalcs_audit_members_make(a) : DALCS_E_NOMEM;
     status = status == DALCS_OK ? list_stepped(a) : status;
     if (status == DALCS_OK && radau->cycling != NULL) {
         const int n_x = radau->cycling->component->system->n_x;
@@ -233,20 +233,20 @@ static void check_rows(struct dalcs_audit_run *a, const struct dalcs_rows *rows,
     if (side == DALCS_RIGHT) {
         return;
     }
-    a->row_credit += share * a->row_work * n;
-    if (!is_full && a->has_checked_row && a->row_credit < a->row_threshold) {
+    a->rows.credit += share * a->row_work * n;
+    if (!is_full && a->rows.has_checked && a->rows.credit < a->rows.threshold) {
         return;
     }
     const double work = checking_work(a);
-    a->row_credit -= work;
-    a->row_threshold = 2.0 * work * dalcs_audit_chance(a->audit);
-    a->has_checked_row = true;
+    a->rows.credit -= work;
+    a->rows.threshold = 2.0 * work * dalcs_audit_chance(a->audit);
+    a->rows.has_checked = true;
     const int first = is_full ? 0 : (int)(dalcs_audit_chance(a->audit) * n);
     for (int i = first; i < n && (is_full || i == first); i++) {
         for (int k = 0; k < rows->n_outputs; k++) {
-            a->row[k] = rows->value[k].at[i];
+            a->rows.value[k] = rows->value[k].at[i];
         }
-        dalcs_audit_row(a->audit, rows->time.at[i], side, a->row);
+        dalcs_audit_row(a->audit, rows->time.at[i], side, a->rows.value);
     }
 }
 

@@ -15,19 +15,23 @@ struct dalcs_audit_run {
     struct dalcs_run *run;
     struct dalcs_euler *euler;
     struct dalcs_radau *radau;
-    struct dalcs_audit *audit;        /* NULL: nothing is audited */
-    struct audit_members *part;       /* [n_systems] */
-    int *stepped, n_stepped;          /* parts with segments */
-    double row_work;                  /* of a row, in instructions */
-    double *row;                      /* [n_outputs] one of them */
-    double row_credit, row_threshold; /* instructions that comparisons of rows may cost */
-    bool has_checked_row;             /* at least one */
-    double *passed;      /* states from which a whole period was stepped last, behind a leap */
-    double landed;       /* s, where a leap ended from which one has to be; INFINITY: none */
+    struct dalcs_audit *audit;  /* NULL: nothing is audited */
+    struct audit_members *part; /* [n_systems] */
+    int *stepped, n_stepped;    /* parts with segments */
+    double row_work;            /* of a row, in instructions */
+
+    struct audit_rows {
+        double *value;            /* [n_outputs] of one of them */
+        double credit, threshold; /* instructions that comparisons may cost */
+        bool has_checked;         /* at least one */
+    } rows;
+
     int *pair_of_lambda; /* [n_lambdas] in its system */
     double *tried;       /* states that a leap would lead to, and work */
     double leap_time;    /* s, where one began */
     double tried_time;   /* s, when; INFINITY: none is tried */
+    double *passed;      /* states from which a whole period was stepped last, behind a leap */
+    double landed;       /* s, where a leap ended from which one has to be; INFINITY: none */
     bool was_left;       /* a segment that was looked at ended at the present time */
     bool has_rows;       /* since the last segment ended */
     bool has_passed;     /* a leap was compared, at least once */
