@@ -208,8 +208,9 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
         return false;
     }
     const bool asks = audit_watch_asks(audit, stretch, can_look_inside(audit, stretch));
+    const uint64_t key = stretch->stored != NULL ? stretch->stored->key : 0;
     part->watch->has_turned =
-        part->n_latches > 0 && audit_latches_turn(audit, part) && !part->watch->saw_beginning;
+        part->n_latches > 0 && audit_latches_turn(audit, part, key) && !part->watch->saw_beginning;
     dalcs_audit_earn(audit, work);
     part->at.is_drawn = audit->budget.credit >= audit->budget.threshold;
     const bool passes = !asks && !part->at.is_drawn && !part->watch->has_turned;
@@ -269,8 +270,6 @@ static void look_at_turn(struct dalcs_audit *audit, const struct dalcs_audit_str
     audit->now.t = stretch->from;
     audit->now.side = DALCS_RIGHT;
     audit->reader.read(audit->reader.user, stretch->part, &audit->now);
-    audit_note_scales(audit, part, &audit->before);
-    audit_note_scales(audit, part, &audit->now);
     audit_check_changes(audit, part, &audit->before, &audit->now);
     audit->budget.spent += part->cost;
 }

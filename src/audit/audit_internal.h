@@ -65,6 +65,7 @@ struct audit_watch {
     bool is_put_off;    /* the present one does not begin there */
     bool saw_beginning; /* its beginning was looked at */
     bool makes;         /* a screen is to be made of the present stretch */
+    uint64_t key;       /* of the stretch before; 0: it had none */
     bool knows_sides;   /* that switches with hysteresis had in the stretch before */
     bool has_turned;    /* one of them is on the other now */
     double asked;       /* s: a time in it that asks for a look; < 0: none does */
@@ -324,8 +325,8 @@ void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
                       const struct dalcs_audit_state *after);
 
 /* changes.c: does a switch with hysteresis stand on another side than in the stretch before? Screens tell no change within
- * a hysteresis. */
-bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part);
+ * a hysteresis. key: of its polynomials, the same only in the same mode; 0: there are none. */
+bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint64_t key);
 
 /* changes.c: switches that are on other sides. */
 void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *part,

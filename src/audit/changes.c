@@ -90,9 +90,13 @@ static bool is_asked(const struct dalcs_audit *audit, int device) {
     return !audit_is_commanded(audit, device) || audit->budget.credit >= 0.0;
 }
 
-bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part) {
+bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint64_t key) {
     struct audit_watch *watch = part->watch;
     bool turn = false;
+    if (key != 0 && key == watch->key) {
+        return false;
+    }
+    watch->key = key;
     for (int k = 0; k < part->n_latches; k++) {
         const int device = part->latch[k];
         const bool now =
