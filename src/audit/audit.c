@@ -201,6 +201,8 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     audit->count.stretches++;
     part->at.past = part->at.length;
     part->at.length = stretch->to - stretch->from;
+    part->at.past_coarse = part->at.was_coarse;
+    part->at.was_coarse = stretch->rule == DALCS_AUDIT_COARSE;
     part->watch->asked = -1.0;
     /* a screen is linear: it knows no smooth function */
     part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL || part->has_smooth;
@@ -259,6 +261,7 @@ static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
         part->is_open = true;
     }
+    part->at.from_coarse = part->at.past_coarse;
     look_at_beginning(audit, stretch, part->at.past);
     audit_screen_rescale(audit, part);
 }
@@ -270,6 +273,7 @@ static void look_at_turn(struct dalcs_audit *audit, const struct dalcs_audit_str
     audit->now.t = stretch->from;
     audit->now.side = DALCS_RIGHT;
     audit->reader.read(audit->reader.user, stretch->part, &audit->now);
+    part->at.from_coarse = part->at.past_coarse;
     audit_check_changes(audit, part, &audit->before, &audit->now);
     audit->budget.spent += part->cost;
 }
@@ -333,6 +337,7 @@ void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
     take_up(part, stretch);
     raise_scales(audit, index);
+    part->at.from_coarse = part->at.was_coarse;
     look_at_beginning(audit, stretch, part->at.length);
 }
 

@@ -94,7 +94,10 @@ struct audit_part {
         double lateness;   /* s, that an event may be early by, while its far side is looked at */
         double slope;      /* 1/s: most that a derivative in it may be of what it is of */
         bool is_coarse;
-        bool is_drawn; /* for a closer look */
+        bool was_coarse,
+            past_coarse;  /* the stretch that was complete last, and the one before that */
+        bool from_coarse; /* the one before the event that is looked at */
+        bool is_drawn;    /* for a closer look */
     } at;
 
     double cost;         /* of one instant, in instructions, about */

@@ -2,7 +2,8 @@
  *
  * A switch changes over where its control reaches the threshold on that side. What it does then may take the control far
  * beyond, so only the side before the event tells, unless something else happened at that time that may have moved the
- * control: a source has an edge, or another switch or a diode was where it changes over, too. */
+ * control: a source has an edge, or another switch or a diode was where it changes over, too. A step of implicit Euler ends
+ * before what it ends at. */
 #include "audit_internal.h"
 
 /* By how much a control is short of the threshold behind which a switch closes, or opens. */
@@ -76,7 +77,8 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
         const bool closes = after->is_closed[device];
         double off = short_of(audit, before, device, closes);
         const double scale = audit_control_scale(audit, part, device);
-        if (off > part->tolerance * scale && has_other_cause(audit, part, before, device)) {
+        if (off > part->tolerance * scale &&
+            (part->at.from_coarse || has_other_cause(audit, part, before, device))) {
             off = fmin(off, short_of(audit, after, device, closes));
         }
         off -= off > 0.0 ? audit_control_slack(audit, part, after, device) : 0.0;

@@ -35,10 +35,8 @@ static void settle(struct dalcs_audit *audit, struct audit_screen *screen) {
     }
 }
 
-/* In the order of time: what a source is at the start it was at the end of the stretch before, if that was asked. */
 double audit_worst_guard_between(struct dalcs_audit *audit, struct audit_screen *screen,
                                  double from, double to, double t) {
-    const double first = worst_at(audit, screen, from);
     const double worst = worst_at(audit, screen, t);
     screen->guarded_from = INFINITY;
     if (worst == 0.0) {
@@ -46,5 +44,5 @@ double audit_worst_guard_between(struct dalcs_audit *audit, struct audit_screen 
     }
     return screen->guarded_from <= from && to <= screen->guarded_to
                ? 0.0
-               : fmax(worst, fmax(first, worst_at(audit, screen, to)));
+               : fmax(worst, fmax(worst_at(audit, screen, from), worst_at(audit, screen, to)));
 }
