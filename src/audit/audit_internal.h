@@ -127,9 +127,11 @@ struct dalcs_audit {
 
     struct audit_net {
         int n_lambdas;
-        int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
-        int *owner;        /* [n_nodes] the part that such a node is in; -1: none */
-        bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
+        int *node_of;     /* [n_nodes] that stands for all that shorts join with it */
+        int *owner;       /* [n_nodes] the part that such a node is in; -1: none */
+        bool *has_charge; /* [n_nodes] a capacitor hangs on it */
+        bool *
+            is_read; /* [n_nodes] ground, or a device of a part hangs on it: states have its voltage */
         bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
         bool *is_held;     /* [n_nodes] likewise, whatever it does */
         int *first_lambda; /* [n_devices] */

@@ -12,8 +12,12 @@ static bool remembers(const struct dalcs_circuit *c, int device) {
 
 static void count_members(struct dalcs_audit *audit, int *owner) {
     const struct dalcs_circuit *c = audit->circuit;
+    audit->net.is_read[0] = true;
     for (int i = 0; i < c->n_devices; i++) {
         const int k = audit->options.device_part[i];
+        for (int e = 0; e < 2 && k >= 0; e++) {
+            audit->net.is_read[c->device[i].node[e]] = true;
+        }
         if (k < 0 || audit->net.is_merged[i]) {
             continue;
         }
@@ -323,12 +327,13 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     const size_t n_nodes = (size_t)audit->circuit->n_nodes;
     audit->net.node_of = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
     audit->net.has_charge = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    audit->net.is_read = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_fed = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_held = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_merged =
         dalcs_arena_alloc(&audit->arena, (size_t)audit->circuit->n_devices, sizeof(bool));
-    if (audit->net.is_merged == NULL || audit->net.is_held == NULL || audit->net.node_of == NULL ||
-        audit->net.has_charge == NULL || audit->net.is_fed == NULL) {
+    if (audit->net.is_merged == NULL || audit->net.is_read == NULL || audit->net.is_held == NULL ||
+        audit->net.node_of == NULL || audit->net.has_charge == NULL || audit->net.is_fed == NULL) {
         return DALCS_E_NOMEM;
     }
     find_fed(audit);

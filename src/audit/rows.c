@@ -22,6 +22,9 @@ static void check_signal(struct dalcs_audit *audit, int index, double value) {
     if (signal->kind == DALCS_SIGNAL_VOLTAGE) {
         const double *v = s->v;
         const int *node = signal->node;
+        if (!audit->net.is_read[node[0]] || !audit->net.is_read[node[1]]) {
+            return; /* behind a short, of which no part is */
+        }
         const double is = v[node[0]] - v[node[1]];
         audit_find(audit, part, DALCS_AUDIT_ROW, index,
                    fabs(value - is) - AUDIT_ROUNDING * (fabs(v[node[0]]) + fabs(v[node[1]])),

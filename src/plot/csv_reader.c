@@ -243,7 +243,8 @@ enum dalcs_status dalcs_waveforms_read_csv(struct dalcs_waveforms *waveforms, co
         if (read_row(&reader, waveforms->value + waveforms->n_rows * n, waveforms)) {
             waveforms->n_rows++;
         } else if (!unended) { /* a last line without its end may be cut short */
-            return refuse_row(waveforms, reader, line, path, diag);
+            return n > 1 ? refuse_row(waveforms, reader, line, path, diag) /* it is a table */
+                         : refuse(&reader, path, diag);
         }
         end_line(&reader);
     }
