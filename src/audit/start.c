@@ -2,7 +2,8 @@
  *
  * With uic capacitors and coils have what IC= says, or jump from there as they do at an event. Else the circuit rests:
  * currents that are no capacitor's cancel at each set of nodes that ideal branches join, and no voltage is across a coil.
- * An ideal branch may carry at once what a capacitor behind it takes from a source that moves, so no node alone is asked. */
+ * An ideal branch may carry at once what a capacitor behind it takes from a source that moves, so no node alone is asked.
+ * A law has one unit: where it is asked as a charge or a flux elsewhere, here it is that of a step. */
 #include "audit_internal.h"
 
 #include "union_find.h"
@@ -57,9 +58,11 @@ static void check_currents(struct dalcs_audit *audit, const struct audit_part *p
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
         if (dalcs_union_find(cluster, node) == node) {
-            audit_find(audit, part, DALCS_AUDIT_KCL, node,
-                       fabs(sums->current[node]) - sums->rounding[node] - audit->options.abstol,
-                       sums->scale[node], first->t);
+            const double duration = audit->net.has_charge[node] ? part->at.step : 1.0;
+            const double off =
+                fabs(sums->current[node]) - sums->rounding[node] - audit->options.abstol;
+            audit_find(audit, part, DALCS_AUDIT_KCL, node, off * duration,
+                       sums->scale[node] * duration, first->t);
         }
     }
 }
@@ -82,10 +85,10 @@ static void check_coils(struct dalcs_audit *audit, const struct audit_part *part
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
         if (d->kind == DALCS_INDUCTOR) {
-            audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
-                       fabs(audit_voltage(first, d)) - 2.0 * audit->sums.volts -
-                           audit->options.vntol,
-                       audit_volts(audit, part, d->node[0], d->node[1]), first->t);
+            const double off =
+                fabs(audit_voltage(first, d)) - 2.0 * audit->sums.volts - audit->options.vntol;
+            audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off * part->at.step,
+                       audit_volts(audit, part, d->node[0], d->node[1]) * part->at.step, first->t);
         }
     }
 }
