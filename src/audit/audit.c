@@ -201,6 +201,8 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     audit->count.stretches++;
     part->at.past = part->at.length;
     part->at.length = stretch->to - stretch->from;
+    part->at.past_coarse = part->at.was_coarse;
+    part->at.was_coarse = stretch->rule == DALCS_AUDIT_COARSE;
     part->watch->asked = -1.0;
     /* a screen is linear: it knows no smooth function */
     part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL || part->has_smooth;
@@ -208,9 +210,12 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
         return false;
     }
     const bool asks = audit_watch_asks(audit, stretch, can_look_inside(audit, stretch));
+    const uint64_t key = stretch->stored != NULL ? stretch->stored->key : 0;
+    part->watch->has_turned =
+        part->n_latches > 0 && audit_latches_turn(audit, part, key) && !part->watch->saw_beginning;
     dalcs_audit_earn(audit, work);
     part->at.is_drawn = audit->budget.credit >= audit->budget.threshold;
-    const bool passes = !asks && !part->at.is_drawn;
+    const bool passes = !asks && !part->at.is_drawn && !part->watch->has_turned;
     if (passes) {
         leave_behind(part);
     }
@@ -241,6 +246,9 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
         audit_check_crossing(audit, part, &audit->before, &audit->now);
         audit->budget.credit -= part->cost;
     }
+    if (!part->has_entered && stretch->from == 0.0) {
+        audit_check_start(audit, part, &audit->now);
+    }
     part->watch->saw_beginning = true;
     part->has_entered = true;
     part->is_open = false;
@@ -253,8 +261,21 @@ static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
         part->is_open = true;
     }
+    part->at.from_coarse = part->at.past_coarse;
     look_at_beginning(audit, stretch, part->at.past);
     audit_screen_rescale(audit, part);
+}
+
+/* The switches that have changed over where it begins. */
+static void look_at_turn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_part *part = &audit->part[stretch->part];
+    audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
+    audit->now.t = stretch->from;
+    audit->now.side = DALCS_RIGHT;
+    audit->reader.read(audit->reader.user, stretch->part, &audit->now);
+    part->at.from_coarse = part->at.past_coarse;
+    audit_check_changes(audit, part, &audit->before, &audit->now);
+    audit->budget.spent += part->cost;
 }
 
 /* A mode that is new is looked at by the screen that is made of it, from a state in it. */
@@ -272,7 +293,12 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     take_up(part, stretch);
     audit->budget.credit -= stretch->first_look;
     raise_scales(audit, stretch->part);
-    if (part->watch->makes && is_settled(audit, stretch)) {
+    if (part->watch->has_turned) {
+        look_at_turn(audit, stretch);
+    }
+    const bool is_seen = part->watch->has_turned && !part->watch->makes;
+    if ((is_seen && part->watch->asked < 0.0 && !part->at.is_drawn && !stretch->is_last) ||
+        (part->watch->makes && is_settled(audit, stretch))) {
         leave_behind(part);
         return;
     }
@@ -311,13 +337,16 @@ void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
     take_up(part, stretch);
     raise_scales(audit, index);
+    part->at.from_coarse = part->at.was_coarse;
     look_at_beginning(audit, stretch, part->at.length);
 }
 
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,
                          double work) {
     dalcs_audit_earn(audit, work);
-    if (is_drawn(audit, audit->part[part].cost)) {
+    const bool is_first = !audit->part[part].has_entered;
+    audit->part[part].has_entered = true;
+    if (is_first || is_drawn(audit, audit->part[part].cost)) {
         audit->now.t = t;
         audit->now.side = side;
         look(audit, part, &audit->now);

@@ -85,6 +85,8 @@ struct dalcs_audit_reader {
                         struct dalcs_audit_row *row);
     void (*add_lambda)(void *user, int part, int lambda, double factor,
                        struct dalcs_audit_row *row);
+    /* Of a switch, in the present stretch. */
+    bool (*is_closed)(void *user, int part, int device);
     /* The state where the stretch before the present one ended. */
     void (*read_before)(void *user, int part, struct dalcs_audit_state *state);
     /* The state of the part at state->t, as the limit from state->side. */
@@ -100,6 +102,7 @@ struct dalcs_audit_stretch {
     double step;       /* s, of the method: rounding of stored charge is a current over it */
     int degree;        /* of its polynomials over such a step */
     double first_look; /* what the first look at it takes besides, in instructions, about */
+    bool is_cut;       /* it went on, and nobody follows it */
     bool is_last; /* of the part: an interval is looked at for the scales that the run ends with */
 
     /* NULL: nothing that holds at all its times, steps of implicit Euler or means of two positions */
@@ -119,6 +122,7 @@ enum dalcs_audit_law {
     DALCS_AUDIT_POSITION, /* of a switch against its control */
     DALCS_AUDIT_ENERGY,   /* of a part */
     DALCS_AUDIT_PERIOD,   /* likewise: where a leap over periods leads to, against steps */
+    DALCS_AUDIT_ROW,      /* of a signal: what was written of it, against the waveform */
     DALCS_AUDIT_N_LAWS
 };
 
@@ -134,7 +138,14 @@ struct dalcs_audit_options {
 
     double share; /* of the work of the run that samples may cost */
     double vntol, abstol;
-    bool is_start;          /* the run begins as the netlist says, not where another one ended */
+    bool is_start; /* the run begins as the netlist says, not where another one ended */
+
+    enum dalcs_audit_origin {
+        DALCS_AUDIT_FROM_ANYWHERE,
+        DALCS_AUDIT_FROM_INITIAL, /* what IC= says, 0 where there is none */
+        DALCS_AUDIT_FROM_REST     /* an operating point that no source leaves by a jump */
+    } origin;
+
     double resolution;      /* s; times closer than this are one */
     const int *device_part; /* [n_devices] the part that a device is in, -1: none */
     int n_parts;
@@ -171,6 +182,10 @@ void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stret
 /* A part without memory at time t. */
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,
                          double work);
+
+/* A row: value[n_signals] at a time that can be read. */
+void dalcs_audit_row(struct dalcs_audit *audit, double t, enum dalcs_side side,
+                     const double *value);
 
 /* A finding of another one than the auditor, on its scale. */
 void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,

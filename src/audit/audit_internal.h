@@ -65,6 +65,9 @@ struct audit_watch {
     bool is_put_off;    /* the present one does not begin there */
     bool saw_beginning; /* its beginning was looked at */
     bool makes;         /* a screen is to be made of the present stretch */
+    uint64_t key;       /* of the stretch before; 0: it had none */
+    bool knows_sides;   /* that switches with hysteresis had in the stretch before */
+    bool has_turned;    /* one of them is on the other now */
     double asked;       /* s: a time in it that asks for a look; < 0: none does */
 };
 
@@ -73,6 +76,8 @@ struct audit_part {
     int n_devices, *device;
     int n_nodes, *node;
     int n_couplings, *coupling;
+    int n_latches, *latch; /* its switches with hysteresis */
+    bool *was_closed;      /* [n_latches] */
     double tolerance;
 
     struct audit_floor {     /* of scales */
@@ -89,12 +94,16 @@ struct audit_part {
         double lateness;   /* s, that an event may be early by, while its far side is looked at */
         double slope;      /* 1/s: most that a derivative in it may be of what it is of */
         bool is_coarse;
-        bool is_drawn; /* for a closer look */
+        bool was_coarse,
+            past_coarse;  /* the stretch that was complete last, and the one before that */
+        bool from_coarse; /* the one before the event that is looked at */
+        bool is_drawn;    /* for a closer look */
     } at;
 
     double cost;         /* of one instant, in instructions, about */
     bool has_smooth;     /* a source of a smooth function */
-    bool has_formula;    /* one that bends or jumps: in no time it may be anything between */
+    bool has_formula;    /* one that jumps: in no time it may be anything between */
+    bool has_reader;     /* what acts by a current: H, F, a formula */
     bool has_entered;    /* the state at its last event is in `before` */
     bool is_open;        /* `before` is the end of the stretch that was just left */
     bool was_integrated; /* an interval in it was looked at */
@@ -118,8 +127,11 @@ struct dalcs_audit {
 
     struct audit_net {
         int n_lambdas;
-        int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
-        bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
+        int *node_of;     /* [n_nodes] that stands for all that shorts join with it */
+        int *owner;       /* [n_nodes] the part that such a node is in; -1: none */
+        bool *has_charge; /* [n_nodes] a capacitor hangs on it */
+        bool *
+            is_read; /* [n_nodes] ground, or a device of a part hangs on it: states have its voltage */
         bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
         bool *is_held;     /* [n_nodes] likewise, whatever it does */
         int *first_lambda; /* [n_devices] */
@@ -143,8 +155,10 @@ struct dalcs_audit {
     struct audit_sums sums;
 
     struct audit_crossing {
-        int *cluster;   /* [n_nodes] work of crossing.c */
-        double *offset; /* [n_nodes] likewise */
+        int *cluster;                /* [n_nodes] work of crossing.c */
+        double *offset;              /* [n_nodes] likewise */
+        double *stored;              /* [n_devices] V, A: of capacitors and coils, before */
+        bool *is_firm, *has_impulse; /* [n_nodes] impulses.c */
     } crossing;
 
     struct audit_worst {
@@ -250,12 +264,19 @@ extern const double audit_gauss_node[AUDIT_GAUSS], audit_gauss_weight[AUDIT_GAUS
 /* formulas.c, laws.c */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device);
+/* ... is a pair of a formula where it may change sides? */
+bool audit_behaviour_may_turn(const struct dalcs_audit *audit, const struct audit_part *part,
+                              const struct dalcs_audit_state *s, int device);
 void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
                         const struct dalcs_audit_state *s, int device);
 
 /* kirchhoff.c: what leaves each node of a part, audit->sums, with its scale and rounding. */
 void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
                         const struct dalcs_audit_state *s);
+
+/* ... and what all nodes that ideal branches join with one have of that. Overwrites audit->crossing.cluster. */
+double audit_rounding_around(struct dalcs_audit *audit, const struct audit_part *part,
+                             const struct dalcs_audit_state *s, int node);
 
 /* V and A that the two branches of a diode are held to. */
 void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
@@ -276,6 +297,23 @@ double audit_flux_scale(const struct dalcs_audit *audit, const struct audit_part
 void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,
                           double to);
 
+/* parts.c: do sources alone decide what controls a switch? */
+static inline bool audit_is_commanded(const struct dalcs_audit *audit, int switch_device) {
+    const struct dalcs_device *d = &audit->circuit->device[switch_device];
+    return d->control < 0 && audit->net.is_held[d->node[2]] && audit->net.is_held[d->node[3]];
+}
+
+/* Does a device join its two nodes, from one state to another in no time? */
+typedef bool audit_joins(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, int device);
+
+/* crossing.c: of the nodes of a part, into audit->crossing.cluster. */
+void audit_find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, audit_joins *join);
+audit_joins audit_passes_charge;
+
 /* crossing.c: how charge may pass through a branch while an event takes place; from its first node to its second is
  * forward. */
 enum { AUDIT_FORWARD = 1, AUDIT_BACKWARD = 2 };
@@ -284,10 +322,38 @@ int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_par
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after, int device);
 
-/* impulses.c: where diodes let it pass one way only. */
+/* directions.c: where diodes let it pass one way only. */
 void audit_check_directions(struct dalcs_audit *audit, const struct audit_part *part,
                             const struct dalcs_audit_state *before,
                             const struct dalcs_audit_state *after);
+
+/* impulses.c: nodes whose potential may be an impulse, as what reads a current that is one makes it. */
+void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after);
+
+void audit_forget_impulses(struct dalcs_audit *audit, const struct audit_part *part);
+
+/* Is such a node at one of its ends, or in what controls it? */
+bool audit_has_impulse(const struct dalcs_audit *audit, const struct dalcs_device *d);
+
+/* crossing.c: charges and fluxes, from audit->crossing.stored on. `before` is `after` where nothing else was before. */
+void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
+                      const struct dalcs_audit_state *before,
+                      const struct dalcs_audit_state *after);
+
+/* changes.c: does a switch with hysteresis stand on another side than in the stretch before? Screens tell no change within
+ * a hysteresis. key: of its polynomials, the same only in the same mode; 0: there are none. */
+bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint64_t key);
+
+/* changes.c: switches that are on other sides. */
+void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after);
+
+/* start.c: does the part begin as the netlist says? */
+void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *first);
 
 /* crossing.c: what holds from one side of an event to the other. */
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,

@@ -10,10 +10,23 @@
 
 #include "union_find.h"
 
-/* Does a switch remember its side? Then it may have been on the other one in between: it turns, a state jumps, and it
- * turns back on what it finds behind the jump. */
-static bool may_have_turned(const struct dalcs_audit *audit, int model) {
-    return audit->circuit->switch_model[model].vh > 0.0;
+/* The positions that a switch may have while states jump. It turns where its control reaches the threshold, and what jumps
+ * is what the circuit does thereafter: behind what sources alone decide, or what stands still, it is where it is seen. A
+ * control that jumps itself may have been beyond a threshold before, after or in between: a switch that remembers its side
+ * turns, a state jumps, and it turns back on what it finds behind the jump. */
+static void find_positions(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *before,
+                           const struct dalcs_audit_state *after, int device, bool may_be[2]) {
+    double half_width;
+    const double moved = fabs(audit_control(audit, after, device, &half_width) -
+                              audit_control(audit, before, device, &half_width));
+    const bool stands = moved <= part->tolerance * audit_control_scale(audit, part, device);
+    const bool now = after->is_closed[device];
+    const bool is_either = !audit_is_commanded(audit, device) && (!stands || before == after);
+    const bool turns_back = is_either && half_width > 0.0;
+    const bool can_differ = is_either && before->is_closed[device] != now;
+    may_be[now] = true;
+    may_be[!now] = turns_back || can_differ;
 }
 
 /* Coils without leakage between them hand an impulse of current on: their fluxes stay what they are. */
@@ -27,12 +40,18 @@ static bool is_perfectly_coupled(const struct dalcs_audit *audit, const struct a
     return is;
 }
 
-/* Which way may charge pass in no time? The impulse of a diode's current needs that it stands at its knee thereafter. */
+/* Which way may charge pass in no time? The impulse of a diode's current needs that it stands at its knee thereafter, and
+ * one in a resistance an impulse of voltage. */
 int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     bool both = false;
+    bool may_be[2];
+    if (audit_has_impulse(audit, d)) {
+        both = d->kind != DALCS_INDUCTOR && d->kind != DALCS_CAPACITOR;
+        return both ? AUDIT_FORWARD | AUDIT_BACKWARD : 0;
+    }
     switch (d->kind) {
     case DALCS_VSOURCE:
     case DALCS_VCVS:
@@ -47,9 +66,8 @@ int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_par
         both = is_perfectly_coupled(audit, part, device);
         break;
     case DALCS_SWITCH:
-        both = audit->circuit->switch_model[d->model].ron == 0.0 &&
-               (before->is_closed[device] || after->is_closed[device] ||
-                may_have_turned(audit, d->model));
+        find_positions(audit, part, before, after, device, may_be);
+        both = audit->circuit->switch_model[d->model].ron == 0.0 && may_be[true];
         break;
     case DALCS_DIODE: {
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
@@ -64,9 +82,9 @@ int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_par
     return both ? AUDIT_FORWARD | AUDIT_BACKWARD : 0;
 }
 
-static bool passes_charge(const struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *before,
-                          const struct dalcs_audit_state *after, int device) {
+bool audit_passes_charge(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, int device) {
     return audit_ways_of_charge(audit, part, before, after, device) != 0;
 }
 
@@ -75,31 +93,31 @@ static bool bounds_voltage(const struct dalcs_audit *audit, const struct audit_p
                            const struct dalcs_audit_state *before,
                            const struct dalcs_audit_state *after, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
+    bool may_be[2];
     switch (d->kind) {
-    case DALCS_RESISTOR:
     case DALCS_CAPACITOR:
     case DALCS_VSOURCE:
         return true;
+    case DALCS_RESISTOR:
+        return !audit_has_impulse(audit, d);
     case DALCS_SWITCH:
-        return isfinite(audit->circuit->switch_model[d->model].roff) ||
-               (before->is_closed[device] && after->is_closed[device] &&
-                !may_have_turned(audit, d->model));
+        find_positions(audit, part, before, after, device, may_be);
+        return !audit_has_impulse(audit, d) &&
+               (isfinite(audit->circuit->switch_model[d->model].roff) || !may_be[false]);
     case DALCS_DIODE: {
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
-        return isfinite(m->roff) || isfinite(m->vrev) ||
-               after->i[device] > part->tolerance * audit_amperes(audit, part, device);
+        return !audit_has_impulse(audit, d) &&
+               (isfinite(m->roff) || isfinite(m->vrev) ||
+                after->i[device] > part->tolerance * audit_amperes(audit, part, device));
     }
     default: /* I, E, F, G, H, formulas: whatever their controls have */
         return false;
     }
 }
 
-typedef bool joins(const struct dalcs_audit *, const struct audit_part *,
-                   const struct dalcs_audit_state *, const struct dalcs_audit_state *, int);
-
-static void find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *before,
-                          const struct dalcs_audit_state *after, joins *join) {
+void audit_find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after, audit_joins *join) {
     audit->crossing.cluster[0] = 0;
     for (int k = 0; k < part->n_nodes; k++) {
         audit->crossing.cluster[part->node[k]] = part->node[k];
@@ -125,7 +143,7 @@ static void gather_charge(struct dalcs_audit *audit, const struct dalcs_device *
 static void check_charge(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after) {
-    find_clusters(audit, part, before, after, passes_charge);
+    audit_find_clusters(audit, part, before, after, audit_passes_charge);
     for (int k = 0; k < part->n_nodes; k++) {
         audit->sums.current[part->node[k]] = audit->sums.scale[part->node[k]] = 0.0;
     }
@@ -134,7 +152,8 @@ static void check_charge(struct dalcs_audit *audit, const struct audit_part *par
         if (d->kind != DALCS_CAPACITOR) {
             continue;
         }
-        const double charge = d->value * (audit_voltage(after, d) - audit_voltage(before, d));
+        const double charge =
+            d->value * (audit_voltage(after, d) - audit->crossing.stored[part->device[k]]);
         const double scale = d->value * audit_volts(audit, part, d->node[0], d->node[1]);
         gather_charge(audit, d, 0, charge, scale);
         gather_charge(audit, d, 1, -charge, scale);
@@ -162,13 +181,14 @@ static int find_root(const struct dalcs_audit *audit, int node, double *flux) {
 }
 
 static void sum_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
-                       const struct dalcs_audit_state *before,
                        const struct dalcs_audit_state *after) {
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
         audit->sums.flux[device] =
-            d->kind == DALCS_INDUCTOR ? d->value * (after->i[device] - before->i[device]) : 0.0;
+            d->kind == DALCS_INDUCTOR
+                ? d->value * (after->i[device] - audit->crossing.stored[device])
+                : 0.0;
     }
     for (int k = 0; k < part->n_couplings; k++) {
         const struct dalcs_coupling *m = &audit->circuit->coupling[part->coupling[k]];
@@ -176,16 +196,16 @@ static void sum_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
         const int b = m->inductor[1];
         const double mutual =
             m->k * sqrt(audit->circuit->device[a].value * audit->circuit->device[b].value);
-        audit->sums.flux[a] += mutual * (after->i[b] - before->i[b]);
-        audit->sums.flux[b] += mutual * (after->i[a] - before->i[a]);
+        audit->sums.flux[a] += mutual * (after->i[b] - audit->crossing.stored[b]);
+        audit->sums.flux[b] += mutual * (after->i[a] - audit->crossing.stored[a]);
     }
 }
 
 static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *before,
                        const struct dalcs_audit_state *after) {
-    find_clusters(audit, part, before, after, bounds_voltage);
-    sum_fluxes(audit, part, before, after);
+    audit_find_clusters(audit, part, before, after, bounds_voltage);
+    sum_fluxes(audit, part, after);
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
         audit->crossing.cluster[node] = dalcs_union_find(audit->crossing.cluster, node);
@@ -214,37 +234,27 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
     }
 }
 
-/* ---- Positions ----------------------------------------------------------------------------------- */
+/* ---- Both --------------------------------------------------------------------------------------- */
 
-/* A switch changes over where its control reaches the threshold on that side, before or behind the event.
- * Not where the control may have been beyond it in between: what a formula jumps to while pairs change sides
- * one after the other, a latch keeps. */
-static void check_changes(struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *before,
-                          const struct dalcs_audit_state *after) {
-    for (int k = 0; k < part->n_devices && !part->has_formula; k++) {
-        const int device = part->device[k];
-        if (audit->circuit->device[device].kind != DALCS_SWITCH ||
-            before->is_closed[device] == after->is_closed[device]) {
-            continue;
-        }
-        double half_width;
-        const double control[2] = {audit_control(audit, before, device, &half_width),
-                                   audit_control(audit, after, device, &half_width)};
-        double short_of = after->is_closed[device] ? half_width - fmax(control[0], control[1])
-                                                   : half_width + fmin(control[0], control[1]);
-        short_of -= short_of > 0.0 ? audit_control_slack(audit, part, after, device) : 0.0;
-        audit_find(audit, part, DALCS_AUDIT_POSITION, device, short_of,
-                   audit_control_scale(audit, part, device), after->t);
-        audit->count.positions++;
-    }
+void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
+                      const struct dalcs_audit_state *before,
+                      const struct dalcs_audit_state *after) {
+    audit_find_impulses(audit, part, before, after);
+    check_charge(audit, part, before, after);
+    audit_check_directions(audit, part, before, after);
+    check_flux(audit, part, before, after);
+    audit_forget_impulses(audit, part);
 }
 
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
                           const struct dalcs_audit_state *before,
                           const struct dalcs_audit_state *after) {
-    check_charge(audit, part, before, after);
-    audit_check_directions(audit, part, before, after);
-    check_flux(audit, part, before, after);
-    check_changes(audit, part, before, after);
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        audit->crossing.stored[device] =
+            d->kind == DALCS_CAPACITOR ? audit_voltage(before, d) : before->i[device];
+    }
+    audit_check_jump(audit, part, before, after);
+    audit_check_changes(audit, part, before, after);
 }

@@ -86,7 +86,9 @@ struct file_audit {
     const struct dalcs_wave_table *table;
     double tolerance;
     bool is_at_rest; /* an operating point: no charge and no flux changes */
-    double ramp;     /* s; a jump of a source may take so long in the file */
+    bool
+        is_before; /* ... the one that a .tran begins at, where sources may have other values than DC */
+    double ramp; /* s; a jump of a source may take so long in the file */
     int *node_of;
     int *first_branch, *branch; /* devices at each node, no shorts and loops */
     int n_potentials;
@@ -140,6 +142,9 @@ struct file_number file_cell(const struct file_audit *a, size_t row, size_t colu
 struct file_number file_potential_at(const struct file_audit *a, size_t row, int node);
 
 /* What a source has at a row: all that it has as far as the time is known. */
+/* Of an operating point, which file.c's columns have: is it that of the .tran? */
+bool file_rests_before(const struct file_audit *a);
+
 struct file_number file_stimulus(const struct file_audit *a, const struct file_row *row,
                                  int stimulus);
 

@@ -127,8 +127,31 @@ static bool take_difference(struct file_audit *a, const int node[2], size_t colu
     return true;
 }
 
+static bool are_equal(const struct dalcs_wave_table *t, size_t a, size_t b) {
+    bool equal = true;
+    for (size_t k = 0; k < t->n_rows && equal; k++) {
+        equal = t->value[k * t->n_columns + a] == t->value[k * t->n_columns + b];
+    }
+    return equal;
+}
+
+/* Another column of the same node, with other numbers. */
+static void note_twin(const struct file_audit *a, int node, size_t column,
+                      struct dalcs_diag *diag) {
+    const struct file_potential *p =
+        a->potential_of[node] >= 0 ? &a->potential[a->potential_of[node]] : NULL;
+    if (p != NULL && p->base == 0 && p->column != column && p->column > 0 &&
+        !are_equal(a->table, p->column, column)) {
+        dalcs_diag_add(diag, DALCS_WARNING, NULL, NULL,
+                       "columns '%s' and '%s' are both the voltage of node '%s', and differ: the "
+                       "first one is taken",
+                       a->table->name[p->column], a->table->name[column],
+                       a->circuit->node_name[node]);
+    }
+}
+
 /* Potentials of ground's neighbours first, then what differences make of them, again and again. */
-static void find_potentials(struct finder *f) {
+static void find_potentials(struct finder *f, struct dalcs_diag *diag) {
     struct file_audit *a = f->a;
     for (bool more = true, direct = true; more; direct = false) {
         more = false;
@@ -138,6 +161,9 @@ static void find_potentials(struct finder *f) {
                 continue;
             }
             a->is_used[c] = true;
+            if (direct && node[1] == 0) {
+                note_twin(a, node[0], c, diag);
+            }
             if (!direct || node[0] == 0 || node[1] == 0) {
                 more = take_difference(a, node, c) || more;
             }
@@ -207,7 +233,7 @@ enum dalcs_status file_find_columns(struct file_audit *a, struct dalcs_diag *dia
     struct finder f = {.a = a};
     enum dalcs_status status = list_names(&f);
     if (status == DALCS_OK) {
-        find_potentials(&f);
+        find_potentials(&f, diag);
         share_potentials(a);
         find_currents(&f);
         bool any = false;

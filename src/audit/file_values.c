@@ -12,6 +12,35 @@ static void widen(double *low, double *high, double value) {
 /* Edges that a window of time is searched for, at most: what a source is at these it may be. */
 enum { MOST_EDGES = 16 };
 
+/* Of the first row; not a number: it is in no column of its own. */
+static double potential(const struct file_audit *a, int node) {
+    const struct file_potential *p =
+        a->potential_of[node] >= 0 ? &a->potential[a->potential_of[node]] : NULL;
+    return node == 0                                    ? 0.0
+           : p != NULL && p->base == 0 && p->column > 0 ? a->table->value[p->column]
+                                                        : (double)NAN;
+}
+
+/* The simulator's own `op` takes the DC values although the netlist has a .tran: the first source that tells the two apart
+ * says which it was. */
+bool file_rests_before(const struct file_audit *a) {
+    const struct dalcs_circuit *c = a->circuit;
+    bool before = c->transient.present;
+    for (int d = 0; d < c->n_devices && before; d++) {
+        const struct dalcs_device *device = &c->device[d];
+        if (device->kind != DALCS_VSOURCE || c->stimulus[device->stimulus].is_written) {
+            continue;
+        }
+        const double is = potential(a, device->node[0]) - potential(a, device->node[1]);
+        const double of_tran = dalcs_stimulus_operating_value(&c->stimulus[device->stimulus], true);
+        const double of_op = dalcs_stimulus_operating_value(&c->stimulus[device->stimulus], false);
+        if (isfinite(is) && of_tran != of_op) {
+            return fabs(is - of_tran) <= fabs(is - of_op);
+        }
+    }
+    return before;
+}
+
 struct file_number file_stimulus(const struct file_audit *a, const struct file_row *row,
                                  int stimulus) {
     const struct dalcs_stimulus *s = &a->circuit->stimulus[stimulus];
@@ -19,7 +48,7 @@ struct file_number file_stimulus(const struct file_audit *a, const struct file_r
         return (struct file_number){0};
     }
     if (a->is_at_rest) {
-        return file_exactly(dalcs_stimulus_operating_value(s, a->circuit->transient.present));
+        return file_exactly(dalcs_stimulus_operating_value(s, a->is_before));
     }
     const double first = dalcs_stimulus_value(s, row->t, row->is_right ? DALCS_RIGHT : DALCS_LEFT);
     double low = first, high = first;

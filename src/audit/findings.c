@@ -5,6 +5,7 @@
 
 int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law) {
     return law == DALCS_AUDIT_KCL      ? audit->circuit->n_nodes
+           : law == DALCS_AUDIT_ROW    ? audit->circuit->n_signals
            : law >= DALCS_AUDIT_ENERGY ? audit->options.n_parts
                                        : audit->circuit->n_devices;
 }
@@ -90,6 +91,9 @@ void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law 
         break;
     case DALCS_AUDIT_ENERGY:
         snprintf(text, size, "the energy balance");
+        break;
+    case DALCS_AUDIT_ROW:
+        snprintf(text, size, "the rows of %s", c->signal[index].name);
         break;
     default:
         snprintf(text, size, "periods leapt over");

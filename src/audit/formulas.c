@@ -117,23 +117,56 @@ static double rounding_read(const struct dalcs_audit *audit, const struct dalcs_
     return rounding;
 }
 
+/* How far a pair is from complementarity, over its scales; what is more than rounding. */
+static double pair_defect(struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *s, int device, int k) {
+    const struct dalcs_affine *of = &audit->circuit->device[device].behaviour->w[k];
+    const bool as_is = audit->net.is_inner != NULL && audit->net.is_inner[device];
+    const int pair = audit->net.first_lambda[device] + k;
+    double size;
+    double terms;
+    const double w = affine_value(audit, part, s, device, as_is, of, &size, &terms);
+    raise_lambdas(audit, device, k, of, size);
+    const double lambda = audit_ratio(s->lambda[pair], audit->scale.lambda[pair]);
+    return fabs(fmin(lambda, audit_ratio(w, size))) - AUDIT_ROUNDING;
+}
+
+/* A pair may change sides a millionth of a step late: what is read goes on meanwhile by no more than that times its slope,
+ * which for a polynomial is bounded (V. Markov). A microampere that a triac tells from nothing passes in picoseconds
+ * where a gate closes it on amperes. */
+static const double soon = 1e-6;
+
+bool audit_behaviour_may_turn(const struct dalcs_audit *audit, const struct audit_part *part,
+                              const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
+    const bool as_is = audit->net.is_inner != NULL && audit->net.is_inner[device];
+    bool may = false;
+    for (int k = 0; k < b->n_pairs && !may; k++) {
+        const int pair = audit->net.first_lambda[device] + k;
+        double size;
+        double terms;
+        const double w = affine_value(audit, part, s, device, as_is, &b->w[k], &size, &terms);
+        may = fabs(w) <= part->tolerance * size &&
+              fabs(s->lambda[pair]) <= part->tolerance * audit->scale.lambda[pair];
+    }
+    return may;
+}
+
 /* Signs and complementarity. In a part of a formula they are those of what the run has there: how near that is to what
  * the formula says is in the value of the whole. */
 static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,
                         const struct dalcs_audit_state *s, int device, double held) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    const bool as_is = audit->net.is_inner != NULL && audit->net.is_inner[device];
     const enum dalcs_audit_law law =
         d->kind == DALCS_VCVS ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
     for (int k = 0; k < d->behaviour->n_pairs; k++) {
-        double size;
-        double terms;
-        const int pair = audit->net.first_lambda[device] + k;
-        const double w =
-            affine_value(audit, part, s, device, as_is, &d->behaviour->w[k], &size, &terms);
-        raise_lambdas(audit, device, k, &d->behaviour->w[k], size);
-        const double lambda = audit_ratio(s->lambda[pair], audit->scale.lambda[pair]);
-        const double over = fabs(fmin(lambda, audit_ratio(w, size))) - AUDIT_ROUNDING;
+        double over = pair_defect(audit, part, s, device, k);
+        if (over > part->tolerance && part->at.lateness > 0.0) {
+            audit->shifted.side = s->side;
+            audit->shifted.t = s->t + fmax(part->at.lateness, soon * part->at.step);
+            audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
+            over = fmin(over, pair_defect(audit, part, &audit->shifted, device, k));
+        }
         audit_find(audit, part, law, device, over * held, held, s->t);
     }
 }

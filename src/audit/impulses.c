@@ -1,113 +1,157 @@
-/* impulses.c - which way charge may have gone in no time.
+/* impulses.c - nodes whose potential may be an impulse.
  *
- * The impulse of a diode's current has a sign as its current has (Heemels, Schumacher and Weiland 1999): what nodes have
- * gained has come along branches from nodes that lost it. So of all nodes from which charge can reach one, none
- * outside can have given them any, and together they hold no more than before; of all that charge from one can reach,
- * no less (Gale 1957: a flow exists only if every such set allows it). */
+ * Where capacitors jump, the current through what joins them is an impulse. H, F and formulas that read it put one out:
+ * an impulse of voltage across what hangs there, or of current into it. It goes along resistances, and moves charge
+ * through them and flux in coils, as far as nodes that capacitors and sources tie to ground. */
 #include "audit_internal.h"
 
-/* Branches are gone through so many times, in both orders, for a set; where chains of diodes lead farther, there is none. */
-enum { MOST_SWEEPS = 32 };
+#include "union_find.h"
 
-/* The node that gained most (sign 1), or lost most (-1), of what it is held to; -1: none did by more than the tolerance. */
-static int find_extreme(const struct dalcs_audit *audit, const struct audit_part *part,
-                        double sign) {
-    double most = part->tolerance;
-    int extreme = -1;
-    for (int k = 0; k < part->n_nodes; k++) {
-        const int node = part->node[k];
-        const double share =
-            audit_ratio(sign * audit->crossing.offset[node], audit->sums.scale[node]);
-        if (share > most) {
-            most = share;
-            extreme = node;
-        }
-    }
-    return extreme;
+static bool has(const struct dalcs_audit *audit, int node) {
+    return audit->crossing.has_impulse[audit->net.node_of[node]];
 }
 
-/* Joins an end of a branch to the set, if charge can go between it and one in the set, as `sign` has it. */
-static bool extend(const struct dalcs_audit *audit, const struct dalcs_device *d, int way,
-                   double sign) {
-    int *in = audit->crossing.cluster;
-    const int end[2] = {audit->net.node_of[d->node[0]], audit->net.node_of[d->node[1]]};
-    bool found = false;
-    for (int from = 0; from < 2; from++) {
-        const int outer = sign > 0.0 ? end[from] : end[1 - from];
-        const int inner = sign > 0.0 ? end[1 - from] : end[from];
-        if ((way & (from == 0 ? AUDIT_FORWARD : AUDIT_BACKWARD)) != 0 && in[inner] && !in[outer]) {
-            in[outer] = 1;
-            found = true;
-        }
-    }
-    return found;
+static bool reads_voltage(const struct dalcs_device *d) {
+    return d->behaviour == NULL && (d->kind == DALCS_VCVS || d->kind == DALCS_VCCS);
 }
 
-/* The set of a node, in crossing.cluster. Not where ground is in it, which has all charge there is, or where it is not
- * complete. */
-static bool find_set(const struct dalcs_audit *audit, const struct audit_part *part,
-                     const struct dalcs_audit_state *before, const struct dalcs_audit_state *after,
-                     int node, double sign) {
-    int *in = audit->crossing.cluster;
-    in[0] = 0;
-    for (int k = 0; k < part->n_nodes; k++) {
-        in[part->node[k]] = part->node[k] == node;
-    }
-    bool grows = true;
-    for (int sweep = 0; sweep < MOST_SWEEPS && grows && !in[0]; sweep++) {
-        grows = false;
-        for (int k = 0; k < part->n_devices; k++) {
-            const int device = part->device[sweep % 2 == 0 ? k : part->n_devices - 1 - k];
-            const int way = audit_ways_of_charge(audit, part, before, after, device);
-            grows = extend(audit, &audit->circuit->device[device], way, sign) || grows;
-        }
-    }
-    return !grows && !in[0];
+bool audit_has_impulse(const struct dalcs_audit *audit, const struct dalcs_device *d) {
+    return has(audit, d->node[0]) || has(audit, d->node[1]) ||
+           (d->kind == DALCS_VCCS && reads_voltage(d) &&
+            (has(audit, d->node[2]) || has(audit, d->node[3])));
 }
 
-static void check_set(struct dalcs_audit *audit, const struct audit_part *part,
-                      const struct dalcs_audit_state *after, int node, double sign) {
-    double charge = 0.0;
-    double scale = 0.0;
+/* Clusters with a capacitor that jumped, in offset[] of their roots: in all that joins their nodes an impulse may be. */
+static bool mark_jumps(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *before,
+                       const struct dalcs_audit_state *after) {
+    bool jumps = false;
+    double *has_jumped = audit->crossing.offset;
+    audit_find_clusters(audit, part, before, after, audit_passes_charge);
+    has_jumped[0] = 0.0;
     for (int k = 0; k < part->n_nodes; k++) {
-        if (audit->crossing.cluster[part->node[k]]) {
-            charge += sign * audit->crossing.offset[part->node[k]];
-            scale += audit->sums.scale[part->node[k]];
-        }
-    }
-    audit_find(audit, part, DALCS_AUDIT_KCL, node, charge - AUDIT_ROUNDING * scale, scale,
-               after->t);
-}
-
-/* Of each node: the charge that it gained, in crossing.offset, and what that is held to, in sums.scale. */
-static void gather(struct dalcs_audit *audit, const struct audit_part *part,
-                   const struct dalcs_audit_state *before, const struct dalcs_audit_state *after) {
-    for (int k = 0; k < part->n_nodes; k++) {
-        audit->crossing.offset[part->node[k]] = audit->sums.scale[part->node[k]] = 0.0;
+        has_jumped[part->node[k]] = 0.0;
     }
     for (int k = 0; k < part->n_devices; k++) {
         const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
-        if (d->kind != DALCS_CAPACITOR) {
-            continue;
+        const double volts = audit_volts(audit, part, d->node[0], d->node[1]);
+        if (d->kind == DALCS_CAPACITOR &&
+            fabs(audit_voltage(after, d) - audit_voltage(before, d)) > part->tolerance * volts) {
+            for (int e = 0; e < 2; e++) {
+                has_jumped[dalcs_union_find(audit->crossing.cluster,
+                                            audit->net.node_of[d->node[e]])] = 1.0;
+            }
+            jumps = true;
         }
-        const double charge = d->value * (audit_voltage(after, d) - audit_voltage(before, d));
-        const double scale = d->value * audit_volts(audit, part, d->node[0], d->node[1]);
-        for (int end = 0; end < 2; end++) {
-            const int node = audit->net.node_of[d->node[end]];
-            audit->crossing.offset[node] += end == 0 ? charge : -charge;
-            audit->sums.scale[node] += scale;
+    }
+    return jumps;
+}
+
+/* Tied to ground by what no impulse of voltage is across. */
+static bool is_tie(const struct dalcs_audit *audit, const struct audit_part *part,
+                   const struct dalcs_audit_state *before, const struct dalcs_audit_state *after,
+                   int device) {
+    (void)part, (void)before, (void)after;
+    const enum dalcs_device_kind kind = audit->circuit->device[device].kind;
+    return kind == DALCS_CAPACITOR || kind == DALCS_VSOURCE;
+}
+
+struct reading {
+    const struct dalcs_audit *audit;
+    const struct audit_part *part;
+    bool current, voltage; /* of which one is read that is an impulse */
+};
+
+/* While audit->crossing.cluster is that of mark_jumps(). What another part has is finite here. */
+static bool reads_impulse(const struct reading *r, int control) {
+    const struct dalcs_device *d = &r->audit->circuit->device[control];
+    const int node = r->audit->net.node_of[d->node[d->node[0] == 0]];
+    const bool is_own = r->audit->net.owner[node] == (int)(r->part - r->audit->part);
+    return is_own &&
+           r->audit->crossing.offset[dalcs_union_find(r->audit->crossing.cluster, node)] != 0.0;
+}
+
+static void note_term(void *to, const struct dalcs_affine_term *term) {
+    struct reading *r = to;
+    r->current |= term->kind == DALCS_QUANTITY_CURRENT && reads_impulse(r, term->index);
+    r->voltage |= term->kind == DALCS_QUANTITY_VOLTAGE && has(r->audit, term->index);
+}
+
+/* What acts by a current. */
+static bool acts_by_current(const struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_device *d) {
+    struct reading r = {.audit = audit, .part = part};
+    dalcs_behaviour_visit(d->behaviour, note_term, &r);
+    return r.current || ((d->kind == DALCS_CCVS || d->kind == DALCS_CCCS) && d->behaviour == NULL &&
+                         reads_impulse(&r, d->control));
+}
+
+static bool acts_by_voltage(const struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_device *d) {
+    struct reading r = {.audit = audit, .part = part};
+    dalcs_behaviour_visit(d->behaviour, note_term, &r);
+    return r.voltage || (reads_voltage(d) && (has(audit, d->node[2]) || has(audit, d->node[3])));
+}
+
+/* The ends of a device that are not firm get it; whether one had none. */
+static bool spread(struct dalcs_audit *audit, const struct dalcs_device *d) {
+    bool is_new = false;
+    for (int e = 0; e < 2; e++) {
+        const int node = audit->net.node_of[d->node[e]];
+        if (!audit->crossing.is_firm[node] && !audit->crossing.has_impulse[node]) {
+            audit->crossing.has_impulse[node] = is_new = true;
+        }
+    }
+    return is_new;
+}
+
+static void spread_all(struct dalcs_audit *audit, const struct audit_part *part) {
+    bool grows = true;
+    while (grows) {
+        grows = false;
+        for (int k = 0; k < part->n_devices; k++) {
+            const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+            const bool leads = d->kind != DALCS_INDUCTOR && d->kind != DALCS_ISOURCE &&
+                               (has(audit, d->node[0]) || has(audit, d->node[1]));
+            if (leads || acts_by_voltage(audit, part, d)) {
+                grows = spread(audit, d) || grows;
+            }
         }
     }
 }
 
-void audit_check_directions(struct dalcs_audit *audit, const struct audit_part *part,
-                            const struct dalcs_audit_state *before,
-                            const struct dalcs_audit_state *after) {
-    gather(audit, part, before, after);
-    for (double sign = 1.0; sign >= -1.0; sign -= 2.0) {
-        const int node = find_extreme(audit, part, sign);
-        if (node >= 0 && find_set(audit, part, before, after, node, sign)) {
-            check_set(audit, part, after, node, sign);
+void audit_forget_impulses(struct dalcs_audit *audit, const struct audit_part *part) {
+    for (int k = 0; k < part->n_nodes; k++) {
+        audit->crossing.has_impulse[part->node[k]] = false;
+    }
+}
+
+void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after) {
+    if (!part->has_reader || !mark_jumps(audit, part, before, after)) {
+        return;
+    }
+    bool any = false;
+    double *acts = audit->sums.flux; /* of devices: free until fluxes are added up */
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        acts[device] = acts_by_current(audit, part, &audit->circuit->device[device]) ? 1.0 : 0.0;
+        any = any || acts[device] != 0.0;
+    }
+    if (!any) {
+        return;
+    }
+    audit_find_clusters(audit, part, before, after, is_tie);
+    audit->crossing.is_firm[0] = true;
+    for (int k = 0; k < part->n_nodes; k++) {
+        const int node = part->node[k];
+        audit->crossing.is_firm[node] = dalcs_union_find(audit->crossing.cluster, node) == 0;
+    }
+    for (int k = 0; k < part->n_devices; k++) {
+        if (acts[part->device[k]] != 0.0) {
+            (void)spread(audit, &audit->circuit->device[part->device[k]]);
         }
     }
+    spread_all(audit, part);
 }

@@ -110,10 +110,12 @@ static void judge(struct dalcs_audit *audit, const struct audit_part *part, doub
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
         if (audit->net.has_charge[node]) {
-            audit_find(audit, part, DALCS_AUDIT_KCL, node,
-                       fabs(audit->sums.current[node]) - audit->sums.rounding[node] -
-                           audit->options.abstol * duration,
-                       audit->sums.scale[node], time);
+            double off = fabs(audit->sums.current[node]) - audit->options.abstol * duration;
+            const double allowed =
+                audit->sums.rounding[node] + part->tolerance * audit->sums.scale[node];
+            off -= off > allowed ? audit_rounding_around(audit, part, &audit->later, node)
+                                 : audit->sums.rounding[node];
+            audit_find(audit, part, DALCS_AUDIT_KCL, node, off, audit->sums.scale[node], time);
         }
     }
     for (int k = 0; k < part->n_devices; k++) {

@@ -1,6 +1,8 @@
 /* kirchhoff.c - what leaves each node, with its rounding, and all that holds at one time. */
 #include "audit_internal.h"
 
+#include "union_find.h"
+
 static void leave(const struct dalcs_audit *audit, int node, double current, double scale,
                   double rounding) {
     node = audit->net.node_of[node];
@@ -102,6 +104,40 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
     part->floor.ampere = fmax(1e-5 * ampere, 1e-6 * (has_any ? part->floor.least : 1.0) * volt);
 }
 
+/* What ideal branches hand on: an impedance of nothing is no barrier for a current that rounding makes. */
+static bool hands_on(const struct dalcs_audit *audit, const struct audit_part *part,
+                     const struct dalcs_audit_state *before, const struct dalcs_audit_state *s,
+                     int device) {
+    (void)part, (void)before;
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    switch (d->kind) {
+    case DALCS_VSOURCE:
+    case DALCS_VCVS:
+    case DALCS_CCVS:
+        return true;
+    case DALCS_RESISTOR:
+        return d->value == 0.0;
+    case DALCS_SWITCH:
+        return s->is_closed[device];
+    case DALCS_DIODE:
+        return s->i[device] != 0.0;
+    default:
+        return false;
+    }
+}
+
+double audit_rounding_around(struct dalcs_audit *audit, const struct audit_part *part,
+                             const struct dalcs_audit_state *s, int node) {
+    double sum = 0.0;
+    audit_find_clusters(audit, part, s, s, hands_on);
+    const int root = dalcs_union_find(audit->crossing.cluster, node);
+    for (int k = 0; k < part->n_nodes; k++) {
+        const bool is_near = dalcs_union_find(audit->crossing.cluster, part->node[k]) == root;
+        sum += is_near ? audit->sums.rounding[part->node[k]] : 0.0;
+    }
+    return sum;
+}
+
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s) {
     audit->count.instants++;
@@ -112,10 +148,12 @@ void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
         if (!audit->net.has_charge[node]) {
-            audit_find(audit, part, DALCS_AUDIT_KCL, node,
-                       fabs(audit->sums.current[node]) - audit->sums.rounding[node] -
-                           audit->options.abstol,
-                       audit->sums.scale[node], s->t);
+            double off = fabs(audit->sums.current[node]) - audit->options.abstol;
+            const double allowed =
+                audit->sums.rounding[node] + part->tolerance * audit->sums.scale[node];
+            off -= off > allowed ? audit_rounding_around(audit, part, s, node)
+                                 : audit->sums.rounding[node];
+            audit_find(audit, part, DALCS_AUDIT_KCL, node, off, audit->sums.scale[node], s->t);
         }
     }
 }

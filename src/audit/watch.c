@@ -36,7 +36,8 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
         audit->reader.complete(audit->reader.user, stretch->part);
     }
     audit_screen_ask(audit, watch, screen, &q, answer);
-    if (length - p->end * p->step > q.near) {
+    const double over = length - p->end * p->step;
+    if (over > q.near || (!stretch->is_cut && -over > q.near)) {
         answer->worst = INFINITY;
     }
     audit->budget.spent +=

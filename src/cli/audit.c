@@ -1,6 +1,7 @@
 /* audit.c - `dalcs audit`: which laws of a netlist a file of waveforms breaks. */
 #include "cli.h"
 
+#include "audit_columns.h"
 #include "audit_text.h"
 #include "verb.h"
 #include "waveforms.h"
@@ -174,6 +175,7 @@ static enum dalcs_status read_one(const struct arguments *arguments,
                                   struct dalcs_waveforms *waveforms, size_t plot,
                                   struct dalcs_diag *diag) {
     DALCS_TRY(dalcs_waveforms_read_file(waveforms, arguments->file, plot, diag));
+    DALCS_TRY(dalcs_audit_take_units(waveforms));
     put_time_first(waveforms);
     return DALCS_OK;
 }
@@ -207,12 +209,16 @@ static enum dalcs_status read_file(const struct arguments *arguments,
                        arguments->file, n, n == 1 ? "" : "s", run);
         return DALCS_E_OPTION;
     }
+    if (arguments->run == 0) {
+        DALCS_TRY(dalcs_audit_check_order(waveforms, arguments->file, first, end, diag));
+    }
     if (n > 1 && arguments->run == 0) {
         dalcs_diag_add(diag, DALCS_NOTE, NULL, NULL,
                        "time starts again: this is the first of %zu runs; --run N takes another",
                        n);
     }
     dalcs_waveforms_keep_rows(waveforms, first, end);
+    dalcs_audit_note_gaps(waveforms, diag);
     return DALCS_OK;
 }
 

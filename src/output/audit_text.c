@@ -111,9 +111,11 @@ void dalcs_audit_write_text(FILE *stream, const struct dalcs_table_audit *audit,
                             bool all) {
     char from[DALCS_QUANTITY_SIZE], to[DALCS_QUANTITY_SIZE];
     fprintf(stream, "%s\n", audit->title != NULL ? audit->title : audit->netlist);
-    fprintf(stream, "  file      %s: %zu rows from %s to %s, %zu signals of the circuit\n", file,
-            audit->n_rows, dalcs_quantity_write(from, audit->from, "s", TIME_DIGITS),
-            dalcs_quantity_write(to, audit->to, "s", TIME_DIGITS), audit->n_used);
+    fprintf(stream, "  file      %s: %zu row%s from %s to %s, %zu signal%s of the circuit\n", file,
+            audit->n_rows, audit->n_rows == 1 ? "" : "s",
+            dalcs_quantity_write(from, audit->from, "s", TIME_DIGITS),
+            dalcs_quantity_write(to, audit->to, "s", TIME_DIGITS), audit->n_used,
+            audit->n_used == 1 ? "" : "s");
     fprintf(stream,
             "  allowed   %g of each signal's largest value, and what digits and lines between rows "
             "leave open\n",

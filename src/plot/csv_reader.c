@@ -13,18 +13,20 @@ struct reader {
     long line;
 };
 
-/* The separator of a header: the first that stands outside of quotes and parentheses. */
+/* The separator of a header: the first that stands outside of quotes and parentheses, a blank where there is no other. */
 static char find_separator(const char *text, const char *end) {
     int depth = 0;
     bool quoted = false;
+    char separator = '\0';
     for (const char *c = text; c < end && *c != '\n'; c++) {
         quoted = *c == '"' ? !quoted : quoted;
         depth += *c == '(' ? 1 : *c == ')' ? -1 : 0;
-        if (!quoted && depth <= 0 && strchr(",;\t ", *c) && *c != '\0') {
+        if (!quoted && depth <= 0 && strchr(",;\t", *c) && *c != '\0') {
             return *c;
         }
+        separator = !quoted && depth <= 0 && *c == ' ' ? ' ' : separator;
     }
-    return ',';
+    return separator != '\0' ? separator : ',';
 }
 
 static bool at_line_end(const struct reader *reader) {
@@ -114,6 +116,50 @@ static enum dalcs_status refuse(const struct reader *reader, const char *path,
     return DALCS_E_OPTION;
 }
 
+/* An empty field is no number. */
+static bool read_number(struct reader *reader, double *value) {
+    skip_blanks(reader);
+    if (at_line_end(reader) || *reader->at == reader->separator) {
+        *value = NAN;
+        return true;
+    }
+    char *rest = NULL;
+    *value = strtod(reader->at, &rest);
+    bool found = rest != reader->at && rest <= reader->end;
+    reader->at = found ? rest : reader->at;
+    return found;
+}
+
+/* Of a row: which of its fields is no number, or how many it has. */
+static enum dalcs_status refuse_row(const struct dalcs_waveforms *waveforms, struct reader reader,
+                                    const char *line, const char *path, struct dalcs_diag *diag) {
+    size_t n = 0;
+    double value;
+    bool more = true;
+    reader.at = line;
+    while (more && read_number(&reader, &value)) {
+        n++;
+        more = take_separator(&reader);
+    }
+    const size_t wanted = waveforms->n_columns;
+    if (at_line_end(&reader) && n != wanted) {
+        dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL,
+                       "'%s': line %ld has %zu value%s, and the first line has %zu names", path,
+                       reader.line, n, n == 1 ? "" : "s", wanted);
+    } else if (at_line_end(&reader)) {
+        dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "'%s': line %ld has no value of '%s'", path,
+                       reader.line, waveforms->name[0]);
+    } else {
+        const size_t column = n < wanted ? n : wanted - 1;
+        size_t length = strcspn(reader.at, ",;\t\r\n");
+        length = length < 20 ? length : 20;
+        dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL,
+                       "'%s': line %ld: '%.*s' is no number for '%s'", path, reader.line,
+                       (int)length, reader.at, waveforms->name[column]);
+    }
+    return DALCS_E_OPTION;
+}
+
 static bool is_text(const char *name, size_t length) {
     for (size_t i = 0; i < length; i++) {
         if ((unsigned char)name[i] < 0x20 || name[i] == 0x7f) {
@@ -156,20 +202,6 @@ static enum dalcs_status read_header(struct dalcs_waveforms *waveforms, struct r
         end_line(reader);
     }
     return whole ? DALCS_OK : refuse(reader, path, diag);
-}
-
-/* An empty field is no number. */
-static bool read_number(struct reader *reader, double *value) {
-    skip_blanks(reader);
-    if (at_line_end(reader) || *reader->at == reader->separator) {
-        *value = NAN;
-        return true;
-    }
-    char *rest = NULL;
-    *value = strtod(reader->at, &rest);
-    bool found = rest != reader->at && rest <= reader->end;
-    reader->at = found ? rest : reader->at;
-    return found;
 }
 
 /* A table of many runs says in its last column why one failed. */
@@ -219,12 +251,14 @@ enum dalcs_status dalcs_waveforms_read_csv(struct dalcs_waveforms *waveforms, co
             end_line(&reader);
             continue;
         }
+        const char *line = reader.at;
         DALCS_TRY(dalcs_grow(&waveforms->value, &capacity, (waveforms->n_rows + 1) * n,
                              sizeof *waveforms->value));
         if (read_row(&reader, waveforms->value + waveforms->n_rows * n, waveforms)) {
             waveforms->n_rows++;
         } else if (!unended) { /* a last line without its end may be cut short */
-            return refuse(&reader, path, diag);
+            return n > 1 ? refuse_row(waveforms, reader, line, path, diag) /* it is a table */
+                         : refuse(&reader, path, diag);
         }
         end_line(&reader);
     }

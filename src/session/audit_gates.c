@@ -251,17 +251,25 @@ static enum dalcs_status expect(struct audit_gate *s, bool q, double due) {
     return DALCS_OK;
 }
 
-/* What it has to show by t. *is_near: it changes about then, and which side t is on is rounding. */
-static void go_to(struct audit_gate *s, double t, double near, bool *is_near) {
+/* What it has to show by t. *is_near: it changes about then, and which side t is on is rounding. *last: when it last had to
+ * change since it was looked at, if it did. */
+static void go_to(struct audit_gate *s, double t, double near, bool *is_near, double *last) {
     *is_near = false;
     while (s->first_due < s->n_due && s->due[s->first_due] <= t + near) {
         *is_near = *is_near || s->due[s->first_due] > t - near;
+        *last = s->due[s->first_due];
         s->shown = !s->shown;
         s->first_due++;
     }
     if (s->first_due == s->n_due) {
         s->first_due = s->n_due = 0;
     }
+}
+
+/* The time of the last change that was written; its ramp may go on. */
+static double changed_at(const struct dalcs_audit_gates *a, int k) {
+    const struct dalcs_stimulus *s = &a->circuit->stimulus[shown_by(&a->circuit->gate[k])];
+    return s->u.pwl.n > 1 ? s->u.pwl.t[s->u.pwl.n - 2] : -INFINITY;
 }
 
 static struct verdict decide(const struct dalcs_audit_gates *a, int k, bool now, double t) {
@@ -312,9 +320,12 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
     s->is_lost = is_open;
     const bool q = v.is_held ? s->q : v.q;
     bool is_near;
+    double last = -INFINITY;
+    const double near = 4.0 * a->radau->resolution;
     DALCS_TRY(expect(s, q, t + (v.is_forced ? g->forced_delay : g->delay)[q]));
-    go_to(s, t, 4.0 * a->radau->resolution, &is_near);
-    *is_wrong = !is_open && !is_near && s->shown != now;
+    go_to(s, t, near, &is_near, &last);
+    const bool is_late = last > -INFINITY && s->shown == now && changed_at(a, k) > last + near;
+    *is_wrong = !is_open && !is_near && (s->shown != now || is_late);
     return DALCS_OK;
 }
 

@@ -8,9 +8,23 @@
 
 enum { TRIED_PERIODS = 3 };
 
+/* What a leap passes over holds no longer where its states are others: signs are linear in these. Behind one that took a state
+ * by so much of its scale a whole period is stepped, so that all its signs are asked. From rest to where a circuit settles
+ * that are a few. */
+static const double far = 0.25;
+
+static bool is_on_probation(struct dalcs_audit_run *a) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    const double near = 4.0 * a->radau->resolution;
+    if (part->segment.t + near >= a->landed + dalcs_cycle_period(part->memory.cycle)) {
+        a->landed = INFINITY;
+    }
+    return a->landed < INFINITY;
+}
+
 enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until, bool *may) {
     const struct dalcs_radau_part *part = a->radau->cycling;
-    *may = a->tried_time == INFINITY;
+    *may = a->tried_time == INFINITY && !(a->audit != NULL && is_on_probation(a));
     if (a->audit == NULL || !*may || a->was_tried) {
         a->was_tried = false;
         return DALCS_OK;
@@ -41,6 +55,9 @@ void dalcs_audit_run_start_leap(struct dalcs_audit_run *a) {
     if (a->audit != NULL) {
         memcpy(a->tried, part->x, (size_t)part->component->system->n_x * sizeof(double));
         a->leap_time = part->segment.t;
+        if (!a->has_passed) {
+            memcpy(a->passed, part->x, (size_t)part->component->system->n_x * sizeof(double));
+        }
     }
 }
 
@@ -97,6 +114,10 @@ void dalcs_audit_run_end_leap(struct dalcs_audit_run *a) {
     }
     dalcs_audit_put_off(a->audit, part->index);
     const int n_x = part->component->system->n_x;
+    if (distance(part, a->passed) > far) {
+        a->landed = part->segment.t;
+        memcpy(a->passed, part->x, (size_t)n_x * sizeof(double));
+    }
     const double elements = (double)n_x * (n_x + 1);
     const double periods =
         rint((part->segment.t - a->leap_time) / dalcs_cycle_period(part->memory.cycle));
@@ -115,7 +136,13 @@ static const double landing_work = 10000.0;
 
 double dalcs_audit_run_until(struct dalcs_audit_run *a, double until) {
     const struct dalcs_radau_part *part = a->radau->cycling;
-    if (a->audit == NULL || !(until < INFINITY) || !dalcs_audit_may(a->audit, landing_work)) {
+    if (a->audit == NULL) {
+        return until;
+    }
+    /* so that there is one behind the last leap of all */
+    const double last = a->radau->options.stop - dalcs_cycle_period(part->memory.cycle);
+    until = until > last && last > part->segment.t ? last : until;
+    if (!(until < INFINITY) || !dalcs_audit_may(a->audit, landing_work)) {
         return until;
     }
     return part->segment.t + dalcs_audit_chance(a->audit) * (until - part->segment.t);

@@ -65,6 +65,12 @@ static void read_state(void *user, int part, struct dalcs_audit_state *s) {
     copy_answer(a, part, c->y, c->osnsp.mode, s);
 }
 
+static bool is_closed(void *user, int part, int device) {
+    const struct dalcs_audit_run *a = user;
+    return dalcs_osnsp_is_on(&a->radau->part[part].component->osnsp,
+                             a->run->s->network.readout->first_pair[device]);
+}
+
 static void raise(double *largest, double value) {
     *largest = value > *largest ? value : *largest;
 }
@@ -199,6 +205,7 @@ struct dalcs_audit_stretch *dalcs_audit_reader_stretch(struct dalcs_audit_run *a
     struct dalcs_audit_stretch *stretch = &m->stretch;
     stretch->from = part->segment.t;
     stretch->to = to;
+    stretch->is_cut = to < part->segment.t_end;
     stretch->step = part->segment.h;
     stretch->rule = part->segment.by_euler ? DALCS_AUDIT_COARSE : DALCS_AUDIT_SMOOTH;
     stretch->stored = store(m, part);
@@ -275,6 +282,7 @@ struct dalcs_audit_reader dalcs_audit_reader_of(struct dalcs_audit_run *a) {
                                        .add_voltage = add_voltage,
                                        .add_current = add_current,
                                        .add_lambda = add_lambda,
+                                       .is_closed = is_closed,
                                        .read_before = read_before,
                                        .read = read_state,
                                        .raise = raise_scales};

@@ -1,6 +1,8 @@
 /* audit_run.c - which segments are handed to the auditor, and when. */
 #include "audit_reader.h"
 
+#include "transient.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -32,6 +34,19 @@ static double state_work(const struct dalcs_audit_run *a, int part) {
     return value_work * dalcs_system_n_columns(c->system) + source_work * c->n_varying;
 }
 
+/* Of gates and sources that jump at 0 the operating point is not what the run begins with. */
+static enum dalcs_audit_origin origin_of(const struct dalcs_run *run) {
+    const struct dalcs_circuit *c = &run->s->circuit;
+    if (run->orbit != NULL || run->s->network.held != NULL || c->n_initial_conditions > 0) {
+        return DALCS_AUDIT_FROM_ANYWHERE;
+    }
+    if (c->transient.use_initial_conditions) {
+        return DALCS_AUDIT_FROM_INITIAL;
+    }
+    return c->n_gates > 0 || dalcs_sources_jump(c, 0.0) ? DALCS_AUDIT_FROM_ANYWHERE
+                                                        : DALCS_AUDIT_FROM_REST;
+}
+
 static enum dalcs_status create(struct dalcs_audit_run *a) {
     const struct dalcs_run *run = a->run;
     const int n = run->s->network.n_systems;
@@ -49,6 +64,7 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
                                                 .resolution = a->radau->resolution,
                                                 .vntol = run->vntol,
                                                 .is_start = run->s->network.held == NULL,
+                                                .origin = origin_of(run),
                                                 .abstol = run->abstol,
                                                 .device_part =
                                                     run->s->network.readout->device_system,
@@ -88,19 +104,21 @@ static enum dalcs_status list_stepped(struct dalcs_audit_run *a) {
 enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_run *run,
                                         struct dalcs_euler *euler, struct dalcs_radau *radau) {
     *a = (struct dalcs_audit_run){
-        .run = run, .euler = euler, .radau = radau, .tried_time = INFINITY};
+        .run = run, .euler = euler, .radau = radau, .tried_time = INFINITY, .landed = INFINITY};
     if (run->options->audit == DALCS_AUDIT_OFF || run->s->network.readout == NULL ||
         run->fixed_step > 0.0 /* whose error nobody controls */) {
         return DALCS_OK;
     }
     a->row_work = row_work * run->s->network.n_outputs;
-    enum dalcs_status status = dalcs_audit_members_make(a);
+    a->rows.value = dalcs_arena_alloc(&a->arena, (size_t)run->s->network.n_outputs, sizeof(double));
+    enum dalcs_status status = a->rows.value != NULL ? dalcs_audit_members_make(a) : DALCS_E_NOMEM;
     status = status == DALCS_OK ? list_stepped(a) : status;
     if (status == DALCS_OK && radau->cycling != NULL) {
         const int n_x = radau->cycling->component->system->n_x;
         const int n_elements = n_x * (n_x + 1);
         a->tried = dalcs_arena_alloc(&a->arena, (size_t)(2 * n_x + 2 * n_elements), sizeof(double));
-        status = a->tried != NULL ? DALCS_OK : DALCS_E_NOMEM;
+        a->passed = dalcs_arena_alloc(&a->arena, (size_t)n_x, sizeof(double));
+        status = a->tried != NULL && a->passed != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     if (status == DALCS_OK) {
         status =
@@ -195,10 +213,50 @@ void dalcs_audit_run_enter_now(struct dalcs_audit_run *a) {
     }
 }
 
-void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side side, long n) {
+/* Instructions of a comparison of all parts and outputs. */
+static double checking_work(const struct dalcs_audit_run *a) {
+    double work = a->row_work;
+    for (int k = 0; k < a->radau->n_parts; k++) {
+        work += state_work(a, k);
+    }
+    for (int i = 0; i < a->n_stepped; i++) {
+        const int k = a->stepped[i];
+        work += a->radau->part[k].segment.late != NULL ? a->part[k].elements : 0.0;
+    }
+    return work;
+}
+
+/* Some of n rows are compared with the waveform. Not those on the right of an event, which are joined to what they were on
+ * its left within the tolerance (rows.h). */
+static void check_rows(struct dalcs_audit_run *a, const struct dalcs_rows *rows,
+                       enum dalcs_side side, int n) {
+    const bool is_full = a->run->options->audit == DALCS_AUDIT_FULL;
+    if (side == DALCS_RIGHT) {
+        return;
+    }
+    a->rows.credit += share * a->row_work * n;
+    if (!is_full && a->rows.has_checked && a->rows.credit < a->rows.threshold) {
+        return;
+    }
+    const double work = checking_work(a);
+    a->rows.credit -= work;
+    a->rows.threshold = 2.0 * work * dalcs_audit_chance(a->audit);
+    a->rows.has_checked = true;
+    const int first = is_full ? 0 : (int)(dalcs_audit_chance(a->audit) * n);
+    for (int i = first; i < n && (is_full || i == first); i++) {
+        for (int k = 0; k < rows->n_outputs; k++) {
+            a->rows.value[k] = rows->value[k].at[i];
+        }
+        dalcs_audit_row(a->audit, rows->time.at[i], side, a->rows.value);
+    }
+}
+
+void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_rows *rows, double t,
+                          enum dalcs_side side, int n) {
     if (a->audit == NULL) {
         return;
     }
+    check_rows(a, rows, side, n);
     dalcs_audit_earn(a->audit, a->row_work * (double)n);
     a->has_rows = true;
     for (int k = 0; a->n_stepped < a->radau->n_parts && k < a->radau->n_parts; k++) {

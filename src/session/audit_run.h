@@ -7,6 +7,7 @@
 #include "audit.h"
 #include "audit_gates.h"
 #include "radau.h"
+#include "rows.h"
 
 #include <math.h>
 
@@ -18,15 +19,24 @@ struct dalcs_audit_run {
     struct audit_members *part; /* [n_systems] */
     int *stepped, n_stepped;    /* parts with segments */
     double row_work;            /* of a row, in instructions */
-    int *pair_of_lambda;        /* [n_lambdas] in its system */
-    double *tried;              /* states that a leap would lead to, and work */
-    double leap_time;           /* s, where one began */
-    double tried_time;          /* s, when; INFINITY: none is tried */
-    bool was_left;              /* a segment that was looked at ended at the present time */
-    bool has_rows;              /* since the last segment ended */
-    bool has_passed;            /* a leap was compared, at least once */
-    bool has_tried;             /* at least once */
-    bool was_tried;             /* the next leap needs no trial */
+
+    struct audit_rows {
+        double *value;            /* [n_outputs] of one of them */
+        double credit, threshold; /* instructions that comparisons may cost */
+        bool has_checked;         /* at least one */
+    } rows;
+
+    int *pair_of_lambda; /* [n_lambdas] in its system */
+    double *tried;       /* states that a leap would lead to, and work */
+    double leap_time;    /* s, where one began */
+    double tried_time;   /* s, when; INFINITY: none is tried */
+    double *passed;      /* states from which a whole period was stepped last, behind a leap */
+    double landed;       /* s, where a leap ended from which one has to be; INFINITY: none */
+    bool was_left;       /* a segment that was looked at ended at the present time */
+    bool has_rows;       /* since the last segment ended */
+    bool has_passed;     /* a leap was compared, at least once */
+    bool has_tried;      /* at least once */
+    bool was_tried;      /* the next leap needs no trial */
     struct dalcs_audit_gates gates;
     struct dalcs_arena arena;
 };
@@ -64,7 +74,8 @@ void dalcs_audit_run_start_leap(struct dalcs_audit_run *a);
 void dalcs_audit_run_end_leap(struct dalcs_audit_run *a);
 
 /* Rows were made, the last of them at t. */
-void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side side, long n);
+void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_rows *rows, double t,
+                          enum dalcs_side side, int n);
 
 /* Into the report. A message where a defect is more than is allowed, and DALCS_NOT_CONVERGED where that ends the
  * run. */

@@ -77,7 +77,7 @@ static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_
         dalcs_rows_join(&c->rows, c->recorder->row); /* the row on the left was the last one */
     }
     DALCS_TRY(dalcs_recorder_row(c->recorder, &c->rows, c->t, is_due));
-    dalcs_audit_run_rows(c->audit, c->t, side, 1);
+    dalcs_audit_run_rows(c->audit, &c->rows, c->t, side, 1);
     c->next_row = dalcs_recorder_due(c->recorder);
     return DALCS_OK;
 }
@@ -93,7 +93,7 @@ static enum dalcs_status rows(struct transient *c, double until, bool ends) {
         DALCS_TRY(dalcs_rows_fill(&c->rows, time, n, DALCS_LEFT, &n));
         c->t = time[n - 1];
         DALCS_TRY(dalcs_recorder_rows(c->recorder, &c->rows, time, n, n_due));
-        dalcs_audit_run_rows(c->audit, c->t, DALCS_LEFT, n);
+        dalcs_audit_run_rows(c->audit, &c->rows, c->t, DALCS_LEFT, n);
         c->next_row = dalcs_recorder_due(c->recorder);
         DALCS_TRY(tell_progress(c, n));
     }

@@ -229,11 +229,81 @@ def check_rest(checker, program, folder):
         checker.check(found.status == 1, f"an operating point with another {signal}")
 
 
+HEADERS = "headers\nV1 in 0 SIN(0 10 50)\nD1 in out\nC1 out 0 20u\nR1 out 0 1k\n.tran 20u 40m uic\n"
+
+
+def check_units(checker, program, folder):
+    table = simulate(program, HEADERS)
+    made = table.copy()
+    made.names = ["time (s)"] + [f"{name} ({'V' if name[0] == 'v' else 'A'})" for name in table.names[1:]]
+    plain = audit(program, folder, HEADERS, table).answer["laws"]
+    checker.check(audit(program, folder, HEADERS, made).answer["laws"] == plain, "units in the header")
+    for column, unit, factor in (("time", "ms", 1e3), ("v(out)", "mV", 1e3), ("i(d1)", "kA", 1e-3), ("i(v1)", "µA", 1e6)):
+        made = table.scaled(column, factor)
+        made.names[table.index(column)] = f"{column} [{unit}]"
+        found = audit(program, folder, HEADERS, made)
+        checker.check(found.status == 0 and len(found.answer["laws"]) == len(plain), f"{column} in {unit}: {found.text[:300]}")
+        made = table.scaled(column, 1.1 * factor)
+        made.names[table.index(column)] = f"{column} [{unit}]"
+        checker.check(audit(program, folder, HEADERS, made).status == 1, f"{column} in {unit}, a tenth too large")
+
+
+def check_rows(checker, program, folder):
+    table = simulate(program, HEADERS)
+    exchanged = table.copy()
+    exchanged.rows[700], exchanged.rows[701] = exchanged.rows[701], exchanged.rows[700]
+    found = audit(program, folder, HEADERS, exchanged)
+    checker.check(found.status == 2 and "the time goes back from" in found.stderr and "at row 702" in found.stderr,
+                  f"rows that are exchanged: {found.stderr}")
+    twice = table.copy()
+    twice.rows += [list(row) for row in table.rows]
+    found = audit(program, folder, HEADERS, twice)
+    checker.check(found.status == 0 and "the first of 2 runs" in found.stderr, f"two runs: {found.stderr}")
+    for value in ("nan", "inf", ""):
+        lines = table.csv().splitlines()
+        cells = lines[500].split(",")
+        cells[table.index("v(out)")] = value
+        lines[500] = ",".join(cells)
+        found = audit(program, folder, HEADERS, "\n".join(lines) + "\n")
+        checker.check(found.status == 0 and "1 value is no number, the first one that of 'v(out)'" in found.stderr,
+                      f"{value!r}: {found.stderr}")
+    for line, said in (("1,2", "line 501 has 2 values, and the first line has"), ("1,x,3", "line 501: 'x' is no number for")):
+        lines = table.csv().splitlines()
+        lines[500] = line
+        found = audit(program, folder, HEADERS, "\n".join(lines) + "\n")
+        checker.check(found.status == 2 and said in found.stderr, f"{line}: {found.stderr}")
+
+
+def check_twins(checker, program, folder):
+    table = simulate(program, HEADERS)
+    made = table.copy()
+    made.names.append("V(OUT)")
+    for row in made.rows:
+        row.append(row[table.index("v(out)")])
+    checker.check("both the voltage" not in audit(program, folder, HEADERS, made).stderr, "the same column twice")
+    for row in made.rows:
+        row[-1] *= 2.0
+    found = audit(program, folder, HEADERS, made)
+    checker.check("'v(out)' and 'V(OUT)' are both the voltage of node 'out'" in found.stderr, f"twins: {found.stderr}")
+
+
+def check_two_rests(checker, program, folder):
+    """An `op` of a simulator, with the DC values, and the one that a .tran begins at."""
+    netlist = "rest\nV1 a 0 DC 5 SIN(1 1 1k)\nR1 a b 1k\nC1 b 0 1u\nR2 b 0 1k\n{}\n"
+    for analysis in (".op", ".tran 10u 1m"):
+        table = simulate(program, netlist.format(analysis))
+        table.rows = table.rows[:1]
+        found = audit(program, folder, netlist.format(".tran 10u 1m"), table)
+        checker.check(found.status == 0 and found.answer["laws"], f"rest of {analysis}: {found.answer}")
+        found = audit(program, folder, netlist.format(".tran 10u 1m"), table.scaled("v(a)", 1.5))
+        checker.check(found.status == 1, f"rest of {analysis} with another v(a)")
+
+
 def main(program, root):
     checker = dalcs_program.Checker("files of other programs")
     with tempfile.TemporaryDirectory() as folder:
         for check in (check_ltspice, check_names, check_missing, check_digits, check_round_times, check_refusals, check_text,
-                      check_steps, check_rest):
+                      check_steps, check_rest, check_units, check_rows, check_twins, check_two_rests):
             check(checker, program, folder)
         check_schema(checker, program, folder, root)
     return checker.finish()

@@ -348,6 +348,7 @@ def mutant(build, source, file, old, new, where):
     return program
 
 
+FEW = {BUCK, SLOW, APART, LEAPS}
 AT = "4.9e-3\n"  # s, so that there are few rows
 OFTEN = "".join(f"{k}.1e-3\n" for k in range(20))
 
@@ -356,7 +357,7 @@ def verdict(program, netlist, where):
     """("passes" | "noticed" | "broken" | "fails otherwise", what the run said)."""
     (where / "circuit.cir").write_text(netlist + ".end\n")
     (where / "at").write_text(OFTEN if netlist == LEAPS else AT)
-    few_rows = ["--at", str(where / "at")] if netlist in (BUCK, SLOW, APART, LEAPS) else []
+    few_rows = ["--at", str(where / "at")] if netlist in FEW else []
     try:
         command = [str(program), "run", str(where / "circuit.cir"), "-o", str(where / "out.csv")]
         ran = subprocess.run(command + few_rows, capture_output=True, text=True, timeout=60)
@@ -371,12 +372,12 @@ def verdict(program, netlist, where):
     return ("noticed" if "more than" in proof else "passes"), said
 
 
-def main():
+def run_all(mutations, suite):
     build, source = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
     if shutil.which("ninja") is None:
         return SKIPPED
-    checker = Checker("mutations")
-    for name, (file, old, new, netlist) in MUTATIONS.items():
+    checker = Checker(suite)
+    for name, (file, old, new, netlist) in mutations.items():
         if sys.argv[3:] and name not in sys.argv[3:]:
             continue
         with tempfile.TemporaryDirectory() as directory:
@@ -392,4 +393,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_all(MUTATIONS, "mutations"))

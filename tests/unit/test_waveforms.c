@@ -147,8 +147,10 @@ START_TEST(test_broken_files) {
     refuse_text("", 0, "holds no waveforms: line 1");
     refuse_text("hello\nworld\n", 0, "holds no waveforms: line 2");
     refuse_text("0,1\n2,3\n", 0, "holds no waveforms: line 1");
-    refuse_text("time,v(a)\n0,1\n1\n2,3\n", 0, "holds no waveforms: line 3");
-    refuse_text("time,v(a)\n0,1,2\n", 0, "holds no waveforms: line 2");
+    refuse_text("time,v(a)\n0,1\n1\n2,3\n", 0,
+                "line 3 has 1 value, and the first line has 2 names");
+    refuse_text("time,v(a)\n0,1,2\n", 0, "line 2 has 3 values, and the first line has 2 names");
+    refuse_text("time,v(a)\n0,1\n1,x\n", 0, "line 3: 'x' is no number for 'v(a)'");
     refuse_text("Title: t\nPlotname: x\n", 0, "no 'Binary:' or 'Values:'");
     refuse_text("Title: t\nFlags: real\nBinary:\n", 0, "does not list its variables");
     refuse_text("Title: t\nNo. Variables: 99999999999999999999\nNo. Points: 5\nVariables:\n"

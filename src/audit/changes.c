@@ -1,0 +1,112 @@
+/* changes.c - switches that change over: what their controls say of it.
+ *
+ * A switch changes over where its control reaches the threshold on that side. What it does then may take the control far
+ * beyond, so only the side before the event tells, unless something else happened at that time that may have moved the
+ * control: a source has an edge, or another switch or a diode was where it changes over, too. A step of implicit Euler ends
+ * before what it ends at. */
+#include "audit_internal.h"
+
+/* By how much a control is short of the threshold behind which a switch closes, or opens. */
+static double short_of(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                       int device, bool closes) {
+    double half_width;
+    const double control = audit_control(audit, s, device, &half_width);
+    return half_width + (closes ? -control : control);
+}
+
+/* ---- Causes -------------------------------------------------------------------------------------- */
+
+static bool sources_bend(const struct dalcs_audit *audit, double t) {
+    const struct dalcs_circuit *c = audit->circuit;
+    const double near = 4.0 * audit->options.resolution;
+    bool bend = false;
+    for (int k = 0; k < c->n_stimuli && !bend; k++) {
+        const struct dalcs_stimulus *s = &c->stimulus[k];
+        bend = s->kind != DALCS_STIMULUS_DC && dalcs_stimulus_next_edge(s, t - near) <= t + near;
+    }
+    return bend;
+}
+
+/* Is a diode where it changes over? It carries next to nothing, and stands next to its knee. */
+static bool is_at_corner(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+    double scale[2];
+    audit_diode_scale(audit, part, device, scale);
+    const double v = audit_voltage(s, d);
+    const double own = s->i[device] - (isfinite(m->roff) ? v / m->roff : 0.0);
+    const bool is_at_knee = fabs(v - m->vfwd) <= part->tolerance * scale[0] ||
+                            (isfinite(m->vrev) && fabs(v + m->vrev) <= part->tolerance * scale[0]);
+    return is_at_knee && fabs(own) <= part->tolerance * scale[1];
+}
+
+/* Has something else happened that may have moved what controls a switch? */
+static bool has_other_cause(const struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_audit_state *before, int but) {
+    bool has = sources_bend(audit, before->t);
+    for (int k = 0; k < part->n_devices && !has; k++) {
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        if (d->behaviour != NULL) {
+            has = d->behaviour->n_pairs > 0 && d->behaviour->smooth == NULL &&
+                  audit_behaviour_may_turn(audit, part, before, device);
+        } else if (d->kind == DALCS_DIODE) {
+            has = is_at_corner(audit, part, before, device);
+        } else if (d->kind == DALCS_SWITCH && device != but) {
+            has = short_of(audit, before, device, !before->is_closed[device]) <=
+                  part->tolerance * audit_control_scale(audit, part, device);
+        }
+    }
+    return has;
+}
+
+/* ---- Changes ------------------------------------------------------------------------------------- */
+
+/* Not where the control may have been beyond it in between: what a formula jumps to while pairs change sides one after the
+ * other, a latch keeps. */
+void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after) {
+    for (int k = 0; k < part->n_devices && !part->has_formula; k++) {
+        const int device = part->device[k];
+        if (audit->circuit->device[device].kind != DALCS_SWITCH ||
+            before->is_closed[device] == after->is_closed[device]) {
+            continue;
+        }
+        const bool closes = after->is_closed[device];
+        double off = short_of(audit, before, device, closes);
+        const double scale = audit_control_scale(audit, part, device);
+        if (off > part->tolerance * scale &&
+            (part->at.from_coarse || has_other_cause(audit, part, before, device))) {
+            off = fmin(off, short_of(audit, after, device, closes));
+        }
+        off -= off > 0.0 ? audit_control_slack(audit, part, after, device) : 0.0;
+        audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, scale, after->t);
+        audit->count.positions++;
+    }
+}
+
+/* One that sources alone move is asked while the run can afford it: guards.c asks for the thresholds behind it. */
+static bool is_asked(const struct dalcs_audit *audit, int device) {
+    return !audit_is_commanded(audit, device) || audit->budget.credit >= 0.0;
+}
+
+bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint64_t key) {
+    struct audit_watch *watch = part->watch;
+    bool turn = false;
+    if (key != 0 && key == watch->key) {
+        return false;
+    }
+    watch->key = key;
+    for (int k = 0; k < part->n_latches; k++) {
+        const int device = part->latch[k];
+        const bool now =
+            audit->reader.is_closed(audit->reader.user, (int)(part - audit->part), device);
+        turn = turn || (now != part->was_closed[k] && is_asked(audit, device));
+        part->was_closed[k] = now;
+    }
+    turn = turn && watch->knows_sides && !watch->is_put_off && !part->has_formula;
+    watch->knows_sides = part->n_latches > 0;
+    return turn;
+}

@@ -1,0 +1,106 @@
+/* start.c - where a run begins.
+ *
+ * With uic capacitors and coils have what IC= says, or jump from there as they do at an event. Else the circuit rests:
+ * currents that are no capacitor's cancel at each set of nodes that ideal branches join, and no voltage is across a coil.
+ * An ideal branch may carry at once what a capacitor behind it takes from a source that moves, so no node alone is asked.
+ * A law has one unit: where it is asked as a charge or a flux elsewhere, here it is that of a step. */
+#include "audit_internal.h"
+
+#include "union_find.h"
+
+static void check_initial(struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *first) {
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        audit->crossing.stored[part->device[k]] = d->has_initial ? d->initial : 0.0;
+    }
+    audit_check_jump(audit, part, first, first);
+}
+
+static bool is_ideal(const struct dalcs_audit *audit, const struct audit_part *part,
+                     const struct dalcs_audit_state *before, const struct dalcs_audit_state *first,
+                     int device) {
+    (void)part, (void)before;
+    const struct dalcs_circuit *c = audit->circuit;
+    const struct dalcs_device *d = &c->device[device];
+    switch (d->kind) {
+    case DALCS_VSOURCE:
+    case DALCS_VCVS:
+        return true;
+    case DALCS_RESISTOR:
+        return d->value == 0.0;
+    case DALCS_SWITCH:
+        return first->is_closed[device] && c->switch_model[d->model].ron == 0.0;
+    case DALCS_DIODE: {
+        const struct dalcs_diode_model *m = &c->diode_model[d->model];
+        return first->i[device] != 0.0 && (m->ron == 0.0 || m->rrev == 0.0);
+    }
+    default:
+        return false;
+    }
+}
+
+static void check_currents(struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *first) {
+    int *cluster = audit->crossing.cluster;
+    struct audit_sums *sums = &audit->sums;
+    audit_sum_currents(audit, part, first);
+    audit_find_clusters(audit, part, first, first, is_ideal);
+    for (int k = 0; k < part->n_nodes; k++) {
+        const int node = part->node[k];
+        const int root = dalcs_union_find(cluster, node);
+        if (root != node) {
+            sums->current[root] += sums->current[node];
+            sums->scale[root] += sums->scale[node];
+            sums->rounding[root] += sums->rounding[node];
+        }
+    }
+    for (int k = 0; k < part->n_nodes; k++) {
+        const int node = part->node[k];
+        if (dalcs_union_find(cluster, node) == node) {
+            const double duration = audit->net.has_charge[node] ? part->at.step : 1.0;
+            const double off =
+                fabs(sums->current[node]) - sums->rounding[node] - audit->options.abstol;
+            audit_find(audit, part, DALCS_AUDIT_KCL, node, off * duration,
+                       sums->scale[node] * duration, first->t);
+        }
+    }
+}
+
+/* What drives a current that moves makes a voltage across a coil. */
+static bool has_moving_current(const struct dalcs_audit *audit, const struct audit_part *part) {
+    bool has = false;
+    for (int k = 0; k < part->n_devices && !has; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        has = d->kind == DALCS_VCCS ||
+              (d->kind == DALCS_ISOURCE &&
+               audit->circuit->stimulus[d->stimulus].kind != DALCS_STIMULUS_DC);
+    }
+    return has;
+}
+
+static void check_coils(struct dalcs_audit *audit, const struct audit_part *part,
+                        const struct dalcs_audit_state *first) {
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        if (d->kind == DALCS_INDUCTOR) {
+            const double off =
+                fabs(audit_voltage(first, d)) - 2.0 * audit->sums.volts - audit->options.vntol;
+            audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off * part->at.step,
+                       audit_volts(audit, part, d->node[0], d->node[1]) * part->at.step, first->t);
+        }
+    }
+}
+
+void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *first) {
+    if (audit->options.origin == DALCS_AUDIT_FROM_INITIAL) {
+        check_initial(audit, part, first);
+    } else if (audit->options.origin == DALCS_AUDIT_FROM_REST && !part->has_reader) {
+        check_currents(audit, part, first);
+        if (!has_moving_current(audit, part)) {
+            check_coils(audit, part, first);
+        }
+    }
+}

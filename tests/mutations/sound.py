@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Right waveforms of circuits that look as if a law were broken: the audit finds nothing in them, drawn or full.
+
+usage: sound.py PROGRAM
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker  # noqa: E402
+
+EDGE = "V1 a 0 PULSE(0 1 1m 0 0 2m 10m)\n"
+DRIVEN = EDGE + "E1 u 0 a 0 1\nC1 u 0 1m\n"
+READ = "R1 d 0 1k\nR3 d f 1k\nC3 f 0 1u\n.tran 0.1m 5m\n"
+TRIAC = "V1 a 0 SIN(0 325 50)\nR1 a c 10\nL1 c b 10m\nA1 b 0 g t1\nVg g 0 PULSE(0 2 4m 0 0 0.5m 10m)\n"
+
+# name: (netlist, options, {(signal, time): value})
+CIRCUITS = {
+    "H reads an impulse into an RC": (DRIVEN + "H1 d 0 E1 -1\n" + READ, [], {("v(f)", 1e-3): 1.0}),
+    "F reads an impulse into R and an RC": (DRIVEN + "F1 0 d E1 -1\n" + READ, [], {("v(f)", 1e-3): 500.0}),
+    "B reads an impulse into an RC": (DRIVEN + "B1 d 0 V=-i(E1)\n" + READ, [], {("v(f)", 1e-3): 1.0}),
+    "E of H reads an impulse into an RC": (
+        DRIVEN + "H1 d 0 E1 -1\nE2 h 0 d 0 3\nR3 h f 1k\nC3 f 0 1u\n.tran 0.1m 5m\n", [], {("v(f)", 1e-3): 3.0}),
+    "G of H reads an impulse into a capacitor": (
+        DRIVEN + "H1 d 0 E1 -1\nG2 0 f d 0 1m\nR3 f 0 1k\nC3 f 0 1u\n.tran 0.1m 5m\n", [], {("v(f)", 1e-3): 1.0}),
+    "H reads an impulse into an RL": (
+        DRIVEN + "H1 d 0 E1 -1\nR1 d 0 1k\nL3 d f 1\nR3 f 0 1k\n.tran 0.1m 5m\n", [], {("i(l3)", 1e-3): 1e-3}),
+    "a triac that tells microamperes from tens of amperes": (
+        TRIAC + ".model t1 triac(Vgt=1 Ioff=1u)\n.tran 0.1m 60m\n", ["--tol", "1e-10"], {}),
+    "rounding of a resistor through ideal branches": (
+        "v1 b bs 0\ns1 bs bt g 0 m0\ne1 bt bu 0 0 1\nr0 bu bv 0\nv2 g 0 1\nr2 b c 9\nv11 c 0 SIN(0 10 60)\n"
+        "c1 bv bw 1n\n.model m0 SW(vt=0.5)\n.tran 1u 1m uic\n", [], {}),
+    "an oscillator without resistance, above its threshold at the start": (
+        "v1 in 0 10\nr1 in a 10k\nc1 a 0 100n ic=8\ns1 a 0 a 0 sw\n.model sw SW(vt=4 vh=2 ron=0)\n.tran 20u 5m uic\n",
+        [], {}),
+    "a source on a capacitor, from rest": (
+        "v1 a 0 SIN(1 5 1k)\nc1 a 0 1u\nr1 a b 10\nc2 b 0 1u\nd1 b c\nc3 c 0 1u\nr3 c 0 1k\nl1 b d 1m\nr4 d 0 10\n"
+        ".tran 20u 2m\n", [], {}),
+    "a current source in a coil, from rest": (
+        "i1 0 a SIN(1 5 1k)\nl1 a b 1m\nr1 b 0 10\nd1 0 b\n.tran 20u 2m\n", [], {}),
+    "an ideal peak detector, from rest": (
+        "v1 a 0 SIN(0 5 1k)\nd1 a b\nc1 b 0 1u\nr1 b 0 10k\ns1 b c a 0 sw\nc2 c 0 1u\nr2 c 0 1k\n"
+        ".model sw SW(vt=1 ron=0)\n.tran 20u 4m\n", [], {}),
+    "initial voltages that cannot be": (
+        "v1 a 0 5\nc1 a b 1u ic=1\nc2 b 0 2u ic=1\nc3 c 0 1u ic=9\nd1 c b\nl1 d 0 1m ic=1\nl2 d e 2m ic=0\nr1 e 0 1k\n"
+        ".tran 20u 3m uic\n", [], {}),
+    "perfectly coupled coils with initial currents": (
+        "l1 a 0 1m ic=1\nl2 b 0 4m ic=0.5\nk1 l1 l2 1\nr1 a 0 10\nr2 b 0 10\n.tran 20u 3m uic\n", [], {}),
+    "capacitors that a gate through E and B joins": (
+        "vp p 0 PULSE(0 1 10u 0 0 40u 100u)\ne1 g 0 p 0 2\nv1 in 0 10\ns1 in x g 0 sw\nc1 x 0 1u\ns2 x y g2 0 sw\n"
+        "c2 y 0 1u\nb1 g2 0 V=2-v(g)\nr1 y 0 1k\n.model sw SW(vt=1 vh=0.2 ron=0)\n.tran 1u 1m uic\n", [], {}),
+    "a spark gap on the voltage across it": (
+        "v1 in 0 10\nr1 in a1 1k\nc1 a1 b1 1u\nr2 b1 0 1k\nr3 a1 a2 1k\nc2 a2 b2 1u\nr4 b1 b2 1k\ns1 a1 b2 a1 b1 sp\n"
+        "s2 a2 o a2 b2 sp\nrl o 0 10k\n.model sp SW(vt=6 vh=3 ron=0.1)\n.tran 0.1m 60m uic\n", [], {}),
+}
+
+
+def value_of(rows, signal, time):
+    """On the right of an event at that time."""
+    names, *lines = (line.split(",") for line in rows.splitlines())
+    return [float(line[names.index(signal)]) for line in lines if abs(float(line[0]) - time) < 1e-12][-1]
+
+
+def main():
+    program = sys.argv[1]
+    checker = Checker("sound")
+    for name, (netlist, options, values) in CIRCUITS.items():
+        for how in ("sample", "full"):
+            with tempfile.TemporaryDirectory() as directory:
+                where = pathlib.Path(directory)
+                (where / "c.cir").write_text(f"{name}\n{netlist}.end\n")
+                ran = subprocess.run([program, "run", str(where / "c.cir"), "-o", str(where / "c.csv"), "--audit", how, *options],
+                                     capture_output=True, text=True, check=False)
+                proof = next((line for line in ran.stdout.splitlines() if line.startswith("  proof")), "")
+                checker.check(ran.returncode == 0 and proof and "more than" not in proof,
+                              f"{name}, {how}: {ran.returncode} {proof} {ran.stderr}")
+                for (signal, time), value in values.items():
+                    is_value = value_of((where / "c.csv").read_text(), signal, time) if ran.returncode == 0 else None
+                    checker.check(is_value is not None and abs(is_value - value) < 1e-6 * abs(value),
+                                  f"{name}: {signal} is {is_value}, not {value}")
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
