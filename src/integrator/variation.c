@@ -290,8 +290,7 @@ static enum dalcs_status gates_setup(struct dalcs_variation *variation,
 
 enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,
                                         struct dalcs_radau *radau, struct dalcs_logic_run *logic,
-                                        const struct dalcs_logic_memory *memory,
-                                        bool modes_alone) {
+                                        const struct dalcs_logic_memory *memory, bool modes_alone) {
     *variation = (struct dalcs_variation){.radau = radau, .n_parts = radau->n_parts};
     variation->part =
         dalcs_arena_alloc(&variation->arena, (size_t)radau->n_parts, sizeof(*variation->part));
