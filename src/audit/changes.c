@@ -41,9 +41,19 @@ static bool is_at_corner(const struct dalcs_audit *audit, const struct audit_par
     return is_at_knee && fabs(own) <= part->tolerance * scale[1];
 }
 
+/* Is a switch where it changes over? Its control is known to what it moves by within the resolution of time. */
+static bool is_at_threshold(struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_audit_state *before,
+                            const struct dalcs_audit_state *after, int device) {
+    const double off = short_of(audit, before, device, !before->is_closed[device]);
+    const double allowed = part->tolerance * audit_control_scale(audit, part, device);
+    return off <= allowed || off <= allowed + audit_control_slack(audit, part, after, device);
+}
+
 /* Has something else happened that may have moved what controls a switch? */
-static bool has_other_cause(const struct dalcs_audit *audit, const struct audit_part *part,
-                            const struct dalcs_audit_state *before, int but) {
+static bool has_other_cause(struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_audit_state *before,
+                            const struct dalcs_audit_state *after, int but) {
     bool has = sources_bend(audit, before->t);
     for (int k = 0; k < part->n_devices && !has; k++) {
         const int device = part->device[k];
@@ -54,8 +64,7 @@ static bool has_other_cause(const struct dalcs_audit *audit, const struct audit_
         } else if (d->kind == DALCS_DIODE) {
             has = is_at_corner(audit, part, before, device);
         } else if (d->kind == DALCS_SWITCH && device != but) {
-            has = short_of(audit, before, device, !before->is_closed[device]) <=
-                  part->tolerance * audit_control_scale(audit, part, device);
+            has = is_at_threshold(audit, part, before, after, device);
         }
     }
     return has;
@@ -63,8 +72,12 @@ static bool has_other_cause(const struct dalcs_audit *audit, const struct audit_
 
 /* ---- Changes ------------------------------------------------------------------------------------- */
 
-/* Not where the control may have been beyond it in between: what a formula jumps to while pairs change sides one after the
- * other, a latch keeps. */
+static double half_width_of(const struct dalcs_audit *audit, int device) {
+    return fabs(audit->circuit->switch_model[audit->circuit->device[device].model].vh);
+}
+
+/* Not where the control may have been beyond it in between: what it jumps to while others change sides one after the
+ * other, a latch keeps. Thyristors open so: the diode blocks, then the voltage opens the latch, which takes it back. */
 void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after) {
@@ -78,8 +91,11 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
         double off = short_of(audit, before, device, closes);
         const double scale = audit_control_scale(audit, part, device);
         if (off > part->tolerance * scale &&
-            (part->at.from_coarse || has_other_cause(audit, part, before, device))) {
-            off = fmin(off, short_of(audit, after, device, closes));
+            (part->at.from_coarse || has_other_cause(audit, part, before, after, device))) {
+            const bool remembers = half_width_of(audit, device) > 0.0;
+            off = remembers && !audit_is_commanded(audit, device)
+                      ? 0.0
+                      : fmin(off, short_of(audit, after, device, closes));
         }
         off -= off > 0.0 ? audit_control_slack(audit, part, after, device) : 0.0;
         audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, scale, after->t);

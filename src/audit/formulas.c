@@ -86,10 +86,16 @@ static bool is_own(const struct dalcs_affine_term *term, int row) {
 }
 
 /* The lambdas of a row's own cell are held to the scale of the argument that they are added to: it has lambdas of earlier
- * pairs only. A number in it is exact and may be a limit that nothing comes near: it is no scale. */
+ * pairs only. A number in it is exact and may be a limit that nothing comes near: it is no scale. The height that a lambda
+ * jumps or saturates at is. */
 static void raise_lambdas(struct dalcs_audit *audit, int device, int row,
                           const struct dalcs_affine *a, double size) {
     double *scale = audit->scale.lambda + audit->net.first_lambda[device];
+    const bool is_room = a->n == 1; /* H - lambda, of the pair before */
+    if (is_room) {
+        double *of = &scale[a->term[0].index];
+        *of = fmax(*of, a->constant);
+    }
     size -= fabs(a->constant);
     for (int k = 0; k < a->n; k++) {
         if (is_own(&a->term[k], row)) {

@@ -111,8 +111,6 @@ static enum dalcs_exit refuse_verb(const struct dalcs_cli *cli, const char *word
         const char *nearest = dalcs_names_nearest_of(option, 2, word);
         dalcs_cli_error(cli, "unknown option '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
                         nearest ? nearest : "", nearest ? "'?" : "");
-    } else if (strpbrk(word, "./") != NULL) {
-        dalcs_cli_error(cli, "there is no file '%s'", word);
     } else {
         const char *nearest = verb_for(word);
         if (nearest == NULL && strpbrk(word, "./") != NULL) {

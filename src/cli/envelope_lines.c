@@ -19,7 +19,8 @@ const char dalcs_envelope_help[] =
     "      --stop T        when it ends, s (default: that of .env or .tran)\n"
     "      --show T,T,...  times in s whose periods are written with all rows, as the first and "
     "the\n"
-    "                      last one are (default: at= of .env)\n" DALCS_RUN_OPTIONS "\n"
+    "                      last one are (default: at= of .env)\n" DALCS_RUN_OPTIONS
+        DALCS_LAST_OPTIONS "\n"
     "examples:\n"
     "  dalcs envelope boost.cir\n"
     "  dalcs envelope boost.cir --stop 10 --show 0.1,3 -o start.csv --plot start.html\n"

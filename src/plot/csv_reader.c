@@ -130,6 +130,12 @@ static bool read_number(struct reader *reader, double *value) {
     return found;
 }
 
+static bool begins_with_number(struct reader reader, const char *line) {
+    double value;
+    reader.at = line;
+    return read_number(&reader, &value);
+}
+
 /* Of a row: which of its fields is no number, or how many it has. */
 static enum dalcs_status refuse_row(const struct dalcs_waveforms *waveforms, struct reader reader,
                                     const char *line, const char *path, struct dalcs_diag *diag) {
@@ -257,8 +263,9 @@ enum dalcs_status dalcs_waveforms_read_csv(struct dalcs_waveforms *waveforms, co
         if (read_row(&reader, waveforms->value + waveforms->n_rows * n, waveforms)) {
             waveforms->n_rows++;
         } else if (!unended) { /* a last line without its end may be cut short */
-            return n > 1 ? refuse_row(waveforms, reader, line, path, diag) /* it is a table */
-                         : refuse(&reader, path, diag);
+            return waveforms->n_rows > 0 || begins_with_number(reader, line)
+                       ? refuse_row(waveforms, reader, line, path, diag)
+                       : refuse(&reader, path, diag); /* it is no table */
         }
         end_line(&reader);
     }

@@ -435,7 +435,7 @@ class Results(Case):
         self.assertEqual(done.returncode, 4)
         self.assertIn("No space left on device", done.stderr)
         done = subprocess.run([DALCS, "none.cir"], cwd=self.folder, capture_output=True, text=True, check=False)
-        self.assertEqual((done.returncode, done.stderr), (2, "dalcs: error: there is no file 'none.cir'\n"))
+        self.assertEqual((done.returncode, done.stderr), (4, "dalcs: error: cannot read 'none.cir': No such file or directory\n"))
 
     def test_standard_input(self):
         self.path("part.inc").write_text("R1 out 0 1k\n")
