@@ -260,8 +260,8 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,
     struct dalcs_variation variation = {0};
     struct dalcs_observer observer;
     if (with_M || with_modes) {
-        DALCS_TRY(dalcs_variation_setup(&variation, p->radau, &p->logic, &st->layout.memory,
-                                        !with_M));
+        DALCS_TRY(
+            dalcs_variation_setup(&variation, p->radau, &p->logic, &st->layout.memory, !with_M));
         observer = dalcs_variation_observer(&variation);
         p->euler->observer = &observer;
     }
