@@ -13,12 +13,6 @@ const char *dalcs_plot_title(const struct dalcs_waveforms *waveforms, const char
                                                                     : file;
 }
 
-static enum dalcs_status refuse_page(struct dalcs_diag *diag, const char *what) {
-    dalcs_diag_add(diag, DALCS_ERROR, NULL, "give -o a name that ends in .svg, .png or .pdf",
-                   "a %s is a picture, no page", what);
-    return DALCS_E_OPTION;
-}
-
 static enum dalcs_status tell_failure(const struct dalcs_cli *cli, enum dalcs_status status,
                                       const char *path, const char *message) {
     if (status != DALCS_OK) {
@@ -55,7 +49,10 @@ static enum dalcs_status draw_family(const struct dalcs_cli *cli,
                                   .theme = arguments->theme};
     char message[DALCS_GNUPLOT_MESSAGE];
     if (arguments->output == NULL) {
-        return refuse_page(diag, "family");
+        dalcs_diag_add(diag, DALCS_ERROR, NULL,
+                       "give -o a name that ends in .svg, .png, .pdf or .html",
+                       "a family of curves is not drawn as text");
+        return DALCS_E_OPTION;
     }
     DALCS_TRY(dalcs_family_make(&family, waveforms, arguments->group, arguments->n_groups,
                                 arguments->from, arguments->to, arguments->family, diag));
@@ -71,9 +68,6 @@ enum dalcs_status dalcs_plot_chart_draw(const struct dalcs_cli *cli,
                                         struct dalcs_diag *diag) {
     struct dalcs_waveforms waveforms;
     const bool is_tornado = arguments->tornado != NULL;
-    if (arguments->is_page) {
-        return refuse_page(diag, is_tornado ? "tornado" : "family");
-    }
     enum dalcs_status status =
         dalcs_waveforms_read_file(&waveforms, arguments->file, arguments->plot, diag);
     if (status != DALCS_OK) {

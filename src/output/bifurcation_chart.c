@@ -87,7 +87,7 @@ static void write_header(FILE *script, const struct dalcs_bifurcation_chart *cha
         high = fmax(high, row_of(chart, k)[0]);
     }
     fputs("set encoding utf8\n", script);
-    dalcs_chart_write_terminal(script, path, WIDTH, 80 + PANEL * n_panels);
+    dalcs_chart_write_terminal(script, path, &dalcs_theme_light, WIDTH, 80 + PANEL * n_panels);
     fprintf(script, "set multiplot layout %d,1 title ", n_panels);
     dalcs_gnuplot_write_quoted(script, chart->plot->title + strspn(chart->plot->title, "* "),
                                MOST_TITLE);

@@ -1,7 +1,7 @@
 /* chart_file.c - runs gnuplot; a page has its picture in itself, and loads nothing. */
 #include "chart_file.h"
 
-#include "theme.h"
+#include "gnuplot_page.h"
 
 #include <errno.h>
 #include <string.h>
@@ -18,9 +18,10 @@ bool dalcs_chart_is_page(const char *path) {
     return ends_in(path, ".html") || ends_in(path, ".htm");
 }
 
-void dalcs_chart_write_terminal(FILE *script, const char *path, int width, int height) {
+void dalcs_chart_write_terminal(FILE *script, const char *path, const struct dalcs_theme *theme,
+                                int width, int height) {
     const char *looks = "font 'DejaVu Sans,12' noenhanced rounded background";
-    const char *background = dalcs_theme_light.background;
+    const char *background = theme->background;
     if (ends_in(path, ".pdf")) {
         fprintf(script, "set terminal pdfcairo size %gin,%gin %s '%s'\n", (double)width / INCH,
                 (double)height / INCH, looks, background);
@@ -28,6 +29,18 @@ void dalcs_chart_write_terminal(FILE *script, const char *path, int width, int h
         fprintf(script, "set terminal %s size %d,%d %s '%s'\n",
                 ends_in(path, ".png") ? "pngcairo" : "svg", width, height, looks, background);
     }
+}
+
+void dalcs_chart_begin_script(FILE *script, const char *path, const struct dalcs_theme *theme,
+                              int width, int height, const char *title) {
+    fputs("set encoding utf8\n", script);
+    dalcs_chart_write_terminal(script, path, theme, width, height);
+    fputs("set title ", script);
+    dalcs_gnuplot_write_quoted(script, title + strspn(title, "* "), width / 11);
+    fprintf(script,
+            " textcolor rgb '%s'\nset border 3 lc rgb '%s'\nset grid lc rgb '%s' lt 1\n"
+            "set tics nomirror out scale 0.5 textcolor rgb '%s'\nset key textcolor rgb '%s'\n",
+            theme->text, theme->border, theme->grid, theme->text, theme->text);
 }
 
 static enum dalcs_status wrap(FILE *picture, const char *title, FILE *page) {

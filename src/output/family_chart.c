@@ -2,11 +2,10 @@
  * lightness, also for colour-blind eyes and in grey. */
 #include "family_chart.h"
 
-#include "chart_script.h"
+#include "chart_file.h"
 #include "gnuplot_page.h"
 #include "quantity.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,7 +60,8 @@ static double prefix_scale(const char *unit, double largest) {
     return is_plain ? 1 : dalcs_quantity_scale(largest);
 }
 
-static void write_script(FILE *script, const struct dalcs_family *f, const char *path) {
+static void write_script(FILE *script, const void *chart, const char *path) {
+    const struct dalcs_family *f = chart;
     double largest = 0;
     double least = f->value[0];
     double most = f->value[0];
@@ -75,7 +75,7 @@ static void write_script(FILE *script, const struct dalcs_family *f, const char 
     const double scale = prefix_scale(f->unit, largest);
     const double end = fmax(fabs(f->curve[0].start), fabs(f->curve[0].stop));
     const double time_scale = f->axis.logarithmic ? 1 : prefix_scale(f->axis.unit, end);
-    dalcs_chart_script_begin(script, path, WIDTH, HEIGHT, f->theme, f->title);
+    dalcs_chart_begin_script(script, path, f->theme, WIDTH, HEIGHT, f->title);
     write_label(script, "x", f->axis.quantity, f->axis.unit, time_scale, f->theme);
     write_label(script, "y", f->signal, f->unit, scale, f->theme);
     write_label(script, "cb", f->by, "", 1, f->theme);
@@ -99,15 +99,7 @@ static void write_script(FILE *script, const struct dalcs_family *f, const char 
 
 enum dalcs_status dalcs_family_chart_draw(const struct dalcs_family *family, const char *path,
                                           char message[DALCS_GNUPLOT_MESSAGE]) {
-    FILE *script = tmpfile();
-    if (script == NULL) {
-        snprintf(message, DALCS_GNUPLOT_MESSAGE, "%s", strerror(errno));
-        return DALCS_E_IO;
-    }
-    write_script(script, family, path);
-    const enum dalcs_status status = dalcs_chart_script_draw(script, path, message);
-    fclose(script);
-    return status;
+    return dalcs_chart_draw(write_script, family, path, "Family of curves", message);
 }
 
 void dalcs_family_finish(struct dalcs_family *family) {

@@ -88,7 +88,7 @@ static void write_script(FILE *script, const void *chart, const char *path) {
     const double scale = dalcs_quantity_scale(height(&bar[0]));
     const char *prefix = dalcs_quantity_prefix(scale);
     fputs("set encoding utf8\n", script);
-    dalcs_chart_write_terminal(script, path, WIDTH, AROUND + ROW * (int)n);
+    dalcs_chart_write_terminal(script, path, &dalcs_theme_light, WIDTH, AROUND + ROW * (int)n);
     fputs("set title ", script);
     dalcs_gnuplot_write_quoted(script, bars->title + strspn(bars->title, "* "), 2 * MOST_NAME);
     fprintf(script,

@@ -48,7 +48,7 @@ static void write_script(FILE *script, const void *chart, const char *path) {
     const double reach =
         margin * farthest(report->steady.doubled.multiplier, n_doubled, farthest(m, n, 1.0));
     fputs("set encoding utf8\n", script);
-    dalcs_chart_write_terminal(script, path, SIZE, SIZE + LEGEND);
+    dalcs_chart_write_terminal(script, path, &dalcs_theme_light, SIZE, SIZE + LEGEND);
     fputs("set title ", script);
     dalcs_gnuplot_write_quoted(script, report->title + strspn(report->title, "* "), MOST_TITLE);
     fprintf(script,

@@ -1,11 +1,10 @@
 /* tornado_chart.c - a bar for each value, from the result at its low end to that at its high end, around the middle. */
 #include "tornado_chart.h"
 
-#include "chart_script.h"
+#include "chart_file.h"
 #include "gnuplot_page.h"
 #include "quantity.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,11 +62,12 @@ static void write_name(FILE *script, const struct dalcs_tornado_bar *bar, double
     fprintf(script, " %g", y);
 }
 
-static void write_script(FILE *script, const struct dalcs_tornado *t, const char *path) {
+static void write_script(FILE *script, const void *chart, const char *path) {
+    const struct dalcs_tornado *t = chart;
     const struct dalcs_theme *theme = t->theme;
     const size_t n = t->n < MOST_BARS ? t->n : MOST_BARS;
     char label[MOST_NAME + 48];
-    dalcs_chart_script_begin(script, path, WIDTH, AROUND + ROW * (int)n, theme, t->title);
+    dalcs_chart_begin_script(script, path, theme, WIDTH, AROUND + ROW * (int)n, t->title);
     snprintf(label, sizeof label, "%.*s%s", MOST_NAME, t->result,
              n < t->n ? ", by the values that move it farthest" : "");
     fprintf(script,
@@ -97,15 +97,7 @@ static void write_script(FILE *script, const struct dalcs_tornado *t, const char
 
 enum dalcs_status dalcs_tornado_chart_draw(const struct dalcs_tornado *tornado, const char *path,
                                            char message[DALCS_GNUPLOT_MESSAGE]) {
-    FILE *script = tmpfile();
-    if (script == NULL) {
-        snprintf(message, DALCS_GNUPLOT_MESSAGE, "%s", strerror(errno));
-        return DALCS_E_IO;
-    }
-    write_script(script, tornado, path);
-    const enum dalcs_status status = dalcs_chart_script_draw(script, path, message);
-    fclose(script);
-    return status;
+    return dalcs_chart_draw(write_script, tornado, path, "Tornado chart", message);
 }
 
 /* ---- As text ---------------------------------------------------------------------------------- */

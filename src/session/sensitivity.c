@@ -59,7 +59,7 @@ static enum dalcs_status run_orbit(struct dalcs_sensitivities *s,
     if (status == DALCS_OK) {
         dalcs_sensitivity_take(s, &other, which, same);
     }
-    dalcs_sensitivity_finish(&other);
+    dalcs_session_finish_other(&other);
     return status <= DALCS_OK || is_first ? status : DALCS_OK;
 }
 

@@ -48,18 +48,6 @@ enum dalcs_status dalcs_sensitivity_build(struct dalcs_sensitivities *s,
     return DALCS_OK;
 }
 
-void dalcs_sensitivity_finish(struct dalcs_session *other) {
-    dalcs_session_forget_run(other);
-    if (other->has_network) {
-        dalcs_network_finish(&other->network);
-    }
-    if (other->has_circuit) {
-        dalcs_circuit_finish(&other->circuit);
-    }
-    dalcs_diag_finish(&other->diag);
-    dalcs_arena_finish(&other->arena);
-}
-
 enum dalcs_status dalcs_sensitivity_run(struct dalcs_sensitivities *s, struct dalcs_session *other,
                                         struct dalcs_steady_near *near, bool *same) {
     const struct dalcs_sink sink = {

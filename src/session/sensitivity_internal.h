@@ -27,7 +27,6 @@ struct dalcs_sensitivities {
 enum dalcs_status dalcs_sensitivity_build(struct dalcs_sensitivities *s,
                                           const struct dalcs_override *override, size_t n,
                                           struct dalcs_session *other) DALCS_MUST_CHECK;
-void dalcs_sensitivity_finish(struct dalcs_session *other);
 
 /* Runs what is asked for. *same: that succeeds, and the modes follow each other as on s's orbit. Errors alone are
  * returned, of a circuit with another value no more than those that end everything. */

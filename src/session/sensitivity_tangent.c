@@ -82,7 +82,7 @@ enum dalcs_status dalcs_sensitivity_along_tangent(struct dalcs_sensitivities *s,
     status = status == DALCS_OK && *same ? find_tangent(s, &b, same) : status;
     status = status == DALCS_OK && *same ? measure_all(s, &b, same) : status;
     for (int k = PLUS; k < N_ORBITS; k++) {
-        dalcs_sensitivity_finish(&b.circuit[k]);
+        dalcs_session_finish_other(&b.circuit[k]);
     }
     return status;
 }

@@ -34,18 +34,24 @@ void dalcs_session_forget_run(struct dalcs_session *s) {
     s->has_report = false;
 }
 
+void dalcs_session_finish_other(struct dalcs_session *other) {
+    dalcs_session_forget_run(other);
+    if (other->has_network) {
+        dalcs_network_finish(&other->network);
+    }
+    if (other->has_circuit) {
+        dalcs_circuit_finish(&other->circuit);
+    }
+    dalcs_diag_finish(&other->diag);
+    dalcs_arena_finish(&other->arena);
+}
+
 void dalcs_session_destroy(struct dalcs_session *session) {
     if (session == NULL) {
         return;
     }
-    dalcs_session_forget_run(session);
     dalcs_steady_anchor_forget(session);
-    if (session->has_network) {
-        dalcs_network_finish(&session->network);
-    }
-    if (session->has_circuit) {
-        dalcs_circuit_finish(&session->circuit);
-    }
+    dalcs_session_finish_other(session);
     if (session->has_netlist) {
         dalcs_netlist_finish(&session->netlist);
     }
@@ -53,8 +59,6 @@ void dalcs_session_destroy(struct dalcs_session *session) {
     free(session->own);
     free(session->document);
     dalcs_spice_names_finish(&session->spice);
-    dalcs_diag_finish(&session->diag);
-    dalcs_arena_finish(&session->arena);
     dalcs_arena_finish(&session->checked);
     dalcs_arena_finish(&session->audited);
     free(session);

@@ -211,6 +211,9 @@ enum dalcs_status dalcs_transient_run_thinned(struct dalcs_run *r) DALCS_MUST_CH
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
 
+/* Frees a session that another one made of its own netlist, with other values. */
+void dalcs_session_finish_other(struct dalcs_session *other);
+
 /* Starts a .tran; radau is NULL with implicit Euler. logic: its gates, if there are any. has_rows: else it is a period of
  * a search for a steady state, of which the recorder is to know nothing. */
 enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,

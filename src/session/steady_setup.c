@@ -49,9 +49,10 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
             dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
         st->conserved = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->conserved));
         complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
-                   st->M != NULL && st->phase != NULL && st->first != NULL && st->last != NULL && st->scale != NULL &&
-                   st->step != NULL && st->drift != NULL && st->found.state != NULL &&
-                   st->found.average != NULL && st->found.rms != NULL && st->conserved != NULL;
+                   st->M != NULL && st->phase != NULL && st->first != NULL && st->last != NULL &&
+                   st->scale != NULL && st->step != NULL && st->drift != NULL &&
+                   st->found.state != NULL && st->found.average != NULL && st->found.rms != NULL &&
+                   st->conserved != NULL;
     }
     if (!complete) {
         dalcs_steady_finish(st);

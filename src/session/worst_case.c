@@ -51,18 +51,6 @@ static enum dalcs_status build(const struct dalcs_worst_case *w,
     return DALCS_OK;
 }
 
-static void finish(struct dalcs_session *other) {
-    dalcs_session_forget_run(other);
-    if (other->has_network) {
-        dalcs_network_finish(&other->network);
-    }
-    if (other->has_circuit) {
-        dalcs_circuit_finish(&other->circuit);
-    }
-    dalcs_diag_finish(&other->diag);
-    dalcs_arena_finish(&other->arena);
-}
-
 /* The sentence of the first error, else the status in words. */
 static const char *reason_of(struct dalcs_arena *arena, const struct dalcs_diag *diag,
                              enum dalcs_status status) {
@@ -162,7 +150,7 @@ static enum dalcs_status run_corner(struct dalcs_worst_case *w, const signed cha
         read_values(w, &other.circuit, w->n_runs % 2 == 1 ? -1 : 1, (w->n_runs - 1) / 2);
     }
     w->n_runs++;
-    finish(&other);
+    dalcs_session_finish_other(&other);
     return status;
 }
 

@@ -232,6 +232,9 @@ class Plot(unittest.TestCase):
         texts = self.texts("tornado.svg")
         for text in "r1 (950 to 1.05 k)", "lot(rb) (-1 to 1)", "low end", "high end", "y", "worst.csv":
             self.assertIn(text, texts)
+        self.plot("worst.csv", "-s", "y", "--tornado", "-o", "t.html", "-q")
+        page = (self.folder / "t.html").read_text()
+        self.assertTrue("<svg" in page and "low end" in page)
         self.plot("worst.csv", "-s", "y", "--tornado", "-o", "t.png", "-q", "--theme", "dark")
         self.assertTrue((self.folder / "t.png").read_bytes().startswith(b"\x89PNG"))
         for arguments, message in [
@@ -242,7 +245,6 @@ class Plot(unittest.TestCase):
                 (["plane.csv", "-s", "y", "--tornado=a,b,a"], "'a' is constant in the table, or follows from"),
                 (["worst.csv", "-s", "y", "--tornado=z"], "'z' is constant in the table"),
                 (["plane.csv", "--tornado=a"], "a tornado is of one column"),
-                (["plane.csv", "-s", "y", "--tornado=a", "-o", "a.html"], "a tornado is a picture, no page"),
                 (["plane.csv", "-s", "y", "--tornado=a", "--family"], "--tornado or --family, not both"),
                 (["plane.csv", "-s", "y", "--tornado=a", "--events"], "leave out --report and --events")]:
             self.assertIn(message, self.refused(*arguments), arguments)
@@ -271,7 +273,7 @@ class Plot(unittest.TestCase):
                     (["--family=in", "-s", "v(out)", "-o", "x.svg"], "the file has no column 'in'"),
                     (["--family=v(in)", "-s", "v(out)", "-o", "x.svg"], "'v(in)' does not have one value in each run"),
                     (["--family", "-o", "x.svg"], "a family is of one signal"),
-                    (["--family", "-s", "v(out)"], "a family is a picture"),
+                    (["--family", "-s", "v(out)"], "a family of curves is not drawn as text"),
                     (["--family", "-s", "v(no)", "-o", "x.svg"], "no signal 'v(no)'")]:
                 self.assertIn(message, self.refused(name, *arguments), arguments)
         self.assertIn("a family is of several runs, and the file has 1",
