@@ -59,15 +59,60 @@ static bool skip_temperature(struct dalcs_reader *reader) {
     return true;
 }
 
+/* Is it 0 or 1, or steps otherwise? */
+static bool is_stepped(const struct dalcs_formula *f) {
+    static const char *const steps[] = {"u",   "stp",   "buf",  "inv",  "sgn",
+                                        "int", "floor", "ceil", "nint", "round"};
+    return (f->kind == DALCS_FORMULA_OPERATION && f->code >= DALCS_EQUAL &&
+            f->code <= DALCS_GREATER_EQUAL) ||
+           (f->kind == DALCS_FORMULA_OPERATION &&
+            (f->code == DALCS_NOT || f->code == DALCS_TO_LOGIC || f->code == DALCS_JUMP_AND ||
+             f->code == DALCS_JUMP_OR)) ||
+           (f->kind == DALCS_FORMULA_CALL &&
+            dalcs_builder_is_one_of(f->function, steps, sizeof steps / sizeof steps[0]));
+}
+
+/* Which nodes of the element's two a formula follows, as bits; not those that only choose between parts of it. */
+static int nodes_followed(const struct dalcs_card *card, const struct dalcs_formula *f) {
+    int nodes = 0;
+    for (int k = 0; k < 4 && f->kind == DALCS_FORMULA_VOLTAGE; k++) {
+        const struct dalcs_token *signal = f->signal[k / 2];
+        const int node = k % 2;
+        if (signal != NULL && strcmp(signal->text, card->token[1 + node].text) == 0) {
+            nodes |= 1 << node;
+        }
+    }
+    for (int k = f->kind == DALCS_FORMULA_CHOICE ? 1 : 0; k < f->n && !is_stepped(f); k++) {
+        nodes |= nodes_followed(card, f->argument[k]);
+    }
+    return nodes;
+}
+
+/* A resistance R(v) by its own voltage is a current v / R(v): of v = R(v) i also v = 0 is a root where R(0) = 0, with any
+ * current, and a state could jump there. */
+static bool is_by_own_voltage(const struct dalcs_card *card, const struct dalcs_device *device,
+                              const struct dalcs_formula *f) {
+    int nodes = nodes_followed(card, f);
+    const bool follows = nodes != 0;
+    for (int node = 0; node < 2; node++) {
+        nodes |= device->node[node] == 0 ? 1 << node : 0;
+    }
+    return follows && nodes == 3;
+}
+
 /* The voltage or current of an element whose card has a formula of its voltage, current, resistance or power, n alike
  * in parallel. */
 static const struct dalcs_token *of_element(struct dalcs_builder *builder,
                                             const struct dalcs_card *card,
                                             const struct dalcs_token *token, char quantity,
-                                            double n) {
+                                            bool makes_current, double n) {
     const struct dalcs_formula *f = token->formula;
     struct dalcs_formula_writer w = {builder, token, f->text, f->number_of + 1};
-    if (quantity == 'r') {
+    if (quantity == 'r' && makes_current) {
+        f = dalcs_formula_operation(
+            &w, DALCS_DIVIDE,
+            dalcs_formula_signal(&w, DALCS_FORMULA_VOLTAGE, &card->token[1], &card->token[2]), f);
+    } else if (quantity == 'r') {
         f = dalcs_formula_operation(
             &w, DALCS_MULTIPLY, dalcs_formula_signal(&w, DALCS_FORMULA_CURRENT, card->token, NULL),
             f);
@@ -76,7 +121,7 @@ static const struct dalcs_token *of_element(struct dalcs_builder *builder,
             &w, DALCS_DIVIDE, f,
             dalcs_formula_signal(&w, DALCS_FORMULA_VOLTAGE, &card->token[1], &card->token[2]));
     }
-    const double factor = quantity == 'r' ? 1 / n : n;
+    const double factor = quantity == 'r' && !makes_current ? 1 / n : n;
     if (n != 1) {
         f = dalcs_formula_operation(&w, DALCS_MULTIPLY, dalcs_formula_number(&w, factor), f);
     }
@@ -84,11 +129,15 @@ static const struct dalcs_token *of_element(struct dalcs_builder *builder,
 }
 
 /* The end of such a card. */
-static void add_element(struct dalcs_reader *reader, const struct dalcs_device *device,
+static void add_element(struct dalcs_reader *reader, struct dalcs_device *device,
                         const struct dalcs_token *token, char quantity, double n) {
     if (dalcs_reader_end(reader)) {
+        const bool makes_current =
+            quantity == 'r' && is_by_own_voltage(reader->card, device, token->formula);
+        device->kind = makes_current ? DALCS_VCCS : device->kind;
         dalcs_behavioural_add_formula(
-            reader->builder, device, of_element(reader->builder, reader->card, token, quantity, n));
+            reader->builder, device,
+            of_element(reader->builder, reader->card, token, quantity, makes_current, n));
     }
 }
 

@@ -80,8 +80,8 @@ static int nearest(const double *number, int n, double x) {
 }
 
 double dalcs_piecewise_on_line(const struct dalcs_piecewise *f, int k, double s) {
-    double at[3];
-    double value[3];
+    double at[3] = {0};
+    double value[3] = {0};
     const int from = nearest(at, points_of(f, k, at, value), s);
     const double slope = dalcs_piecewise_slope(f, k);
     return slope == 0 ? value[from] : value[from] + slope * (s - at[from]);
@@ -89,8 +89,8 @@ double dalcs_piecewise_on_line(const struct dalcs_piecewise *f, int k, double s)
 
 /* Where the line before knot k, which is not flat, is y. */
 static double reaches(const struct dalcs_piecewise *f, int k, double y) {
-    double at[3];
-    double value[3];
+    double at[3] = {0};
+    double value[3] = {0};
     const int from = nearest(value, points_of(f, k, at, value), y);
     return at[from] + (y - value[from]) / dalcs_piecewise_slope(f, k);
 }

@@ -178,10 +178,16 @@ enum dalcs_status dalcs_crashes_watch(struct dalcs_crashes *crashes, const char 
 
 /* ---- Threads ---------------------------------------------------------------------------------- */
 
+static _Thread_local stack_t stack_before;
+
 void dalcs_crashes_enter_thread(void) {
     static _Thread_local char room[STACK]; /* that of the thread may be what overflowed */
     const stack_t stack = {.ss_sp = room, .ss_size = sizeof room};
-    (void)sigaltstack(&stack, NULL);
+    (void)sigaltstack(&stack, &stack_before);
+}
+
+void dalcs_crashes_leave_thread(void) {
+    (void)sigaltstack(&stack_before, NULL); /* AddressSanitizer takes back the one that it made */
 }
 
 void dalcs_crashes_begin(size_t step) {

@@ -25,8 +25,9 @@ bool dalcs_crashes_go_on(void);
 enum dalcs_status dalcs_crashes_watch(struct dalcs_crashes *crashes, const char *partial,
                                       bool goes_on) DALCS_MUST_CHECK;
 
-/* Each thread: before its first step; and around each step. */
+/* Each thread: before its first step and behind its last; and around each step. */
 void dalcs_crashes_enter_thread(void);
+void dalcs_crashes_leave_thread(void);
 void dalcs_crashes_begin(size_t step);
 void dalcs_crashes_end(void);
 

@@ -305,6 +305,7 @@ static void *work(void *user) {
         }
     }
     pthread_mutex_unlock(&crew->lock);
+    dalcs_crashes_leave_thread();
     dalcs_session_destroy(w.session);
     return NULL;
 }
