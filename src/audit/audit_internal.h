@@ -297,6 +297,9 @@ double audit_flux_scale(const struct dalcs_audit *audit, const struct audit_part
 void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,
                           double to);
 
+/* parts.c: is it a switch with hysteresis? */
+bool audit_remembers(const struct dalcs_circuit *circuit, int device);
+
 /* parts.c: do sources alone decide what controls a switch? */
 static inline bool audit_is_commanded(const struct dalcs_audit *audit, int switch_device) {
     const struct dalcs_device *d = &audit->circuit->device[switch_device];
@@ -321,6 +324,10 @@ enum { AUDIT_FORWARD = 1, AUDIT_BACKWARD = 2 };
 int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after, int device);
+
+/* crossing.c: what the first plate of a capacitor gained across an event, and what that is held to. */
+double audit_charge_gained(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *after, int device, double *scale);
 
 /* directions.c: where diodes let it pass one way only. */
 void audit_check_directions(struct dalcs_audit *audit, const struct audit_part *part,

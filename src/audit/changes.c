@@ -72,10 +72,6 @@ static bool has_other_cause(struct dalcs_audit *audit, const struct audit_part *
 
 /* ---- Changes ------------------------------------------------------------------------------------- */
 
-static double half_width_of(const struct dalcs_audit *audit, int device) {
-    return fabs(audit->circuit->switch_model[audit->circuit->device[device].model].vh);
-}
-
 /* Not where the control may have been beyond it in between: what it jumps to while others change sides one after the
  * other, a latch keeps. Thyristors open so: the diode blocks, then the voltage opens the latch, which takes it back. */
 void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *part,
@@ -92,8 +88,7 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
         const double scale = audit_control_scale(audit, part, device);
         if (off > part->tolerance * scale &&
             (part->at.from_coarse || has_other_cause(audit, part, before, after, device))) {
-            const bool remembers = half_width_of(audit, device) > 0.0;
-            off = remembers && !audit_is_commanded(audit, device)
+            off = audit_remembers(audit->circuit, device) && !audit_is_commanded(audit, device)
                       ? 0.0
                       : fmin(off, short_of(audit, after, device, closes));
         }

@@ -133,6 +133,13 @@ void audit_find_clusters(const struct dalcs_audit *audit, const struct audit_par
 
 /* ---- Charge -------------------------------------------------------------------------------------- */
 
+double audit_charge_gained(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *after, int device, double *scale) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    *scale = d->value * audit_volts(audit, part, d->node[0], d->node[1]);
+    return d->value * (audit_voltage(after, d) - audit->crossing.stored[device]);
+}
+
 static void gather_charge(struct dalcs_audit *audit, const struct dalcs_device *d, int end,
                           double charge, double scale) {
     const int cluster = dalcs_union_find(audit->crossing.cluster, audit->net.node_of[d->node[end]]);
@@ -161,9 +168,8 @@ static void check_charge(struct dalcs_audit *audit, const struct audit_part *par
         if (d->kind != DALCS_CAPACITOR) {
             continue;
         }
-        const double charge =
-            d->value * (audit_voltage(after, d) - audit->crossing.stored[part->device[k]]);
-        const double scale = d->value * audit_volts(audit, part, d->node[0], d->node[1]);
+        double scale;
+        const double charge = audit_charge_gained(audit, part, after, part->device[k], &scale);
         gather_charge(audit, d, 0, charge, scale);
         gather_charge(audit, d, 1, -charge, scale);
     }

@@ -90,9 +90,8 @@ static void gather(struct dalcs_audit *audit, const struct audit_part *part,
         if (d->kind != DALCS_CAPACITOR) {
             continue;
         }
-        const double charge =
-            d->value * (audit_voltage(after, d) - audit->crossing.stored[part->device[k]]);
-        const double scale = d->value * audit_volts(audit, part, d->node[0], d->node[1]);
+        double scale;
+        const double charge = audit_charge_gained(audit, part, after, part->device[k], &scale);
         for (int end = 0; end < 2; end++) {
             const int node = audit->net.node_of[d->node[end]];
             audit->crossing.offset[node] += end == 0 ? charge : -charge;

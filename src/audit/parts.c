@@ -5,7 +5,7 @@
 
 /* ---- Parts --------------------------------------------------------------------------------------- */
 
-static bool remembers(const struct dalcs_circuit *c, int device) {
+bool audit_remembers(const struct dalcs_circuit *c, int device) {
     const struct dalcs_device *d = &c->device[device];
     return d->kind == DALCS_SWITCH && c->switch_model[d->model].vh != 0.0;
 }
@@ -22,7 +22,7 @@ static void count_members(struct dalcs_audit *audit, int *owner) {
             continue;
         }
         audit->part[k].n_devices++;
-        audit->part[k].n_latches += remembers(c, i) ? 1 : 0;
+        audit->part[k].n_latches += audit_remembers(c, i) ? 1 : 0;
         for (int e = 0; e < 2; e++) {
             const int node = audit->net.node_of[c->device[i].node[e]];
             if (node != 0 && owner[node] < 0) {
@@ -83,7 +83,7 @@ static void list_members(struct dalcs_audit *audit) {
         }
         struct audit_part *part = &audit->part[k];
         part->device[part->n_devices++] = i;
-        if (remembers(c, i)) {
+        if (audit_remembers(c, i)) {
             part->latch[part->n_latches++] = i;
         }
         for (int e = 0; e < 2; e++) {

@@ -85,12 +85,16 @@ static const double beyond_stages = 16.0;
 
 static void check_coils(struct dalcs_audit *audit, const struct audit_part *part,
                         const struct dalcs_audit_state *first) {
-    audit->shifted.side = DALCS_LEFT;
-    audit->shifted.t = first->t + part->at.step;
-    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
+    bool is_read = false;
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
+        if (d->kind == DALCS_INDUCTOR && !is_read) {
+            audit->shifted.side = DALCS_LEFT;
+            audit->shifted.t = first->t + part->at.step;
+            audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
+            is_read = true;
+        }
         if (d->kind == DALCS_INDUCTOR) {
             const double slope =
                 fabs(audit_voltage(&audit->shifted, d) - audit_voltage(first, d)) / part->at.step;
