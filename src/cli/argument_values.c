@@ -165,9 +165,10 @@ enum dalcs_status dalcs_argument_show(struct dalcs_arguments *arguments,
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_E_NOMEM;
     }
-    for (const char *rest = text; rest != NULL; rest = strchr(rest, ','), rest += rest ? 1 : 0) {
+    for (size_t start = 0, length; start <= strlen(text); start += length + 1) {
         double *value = &arguments->show[arguments->n_show++];
-        snprintf(time, sizeof time, "%.*s", (int)strcspn(rest, ","), rest);
+        length = strcspn(text + start, ",");
+        snprintf(time, sizeof time, "%.*s", (int)length, text + start);
         if (dalcs_parse_number(time, value) != DALCS_OK || !(*value >= 0.0)) {
             dalcs_cli_error(cli, "--show: '%s' is no time; write 0,10m,1", time);
             return DALCS_E_OPTION;
