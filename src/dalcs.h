@@ -32,6 +32,7 @@ extern "C" {
     ENTRY(DALCS_SINGULAR, 1, "singular matrix")                                                    \
     ENTRY(DALCS_NOT_CONVERGED, 2, "no certified solution of the one-step problem was found")       \
     ENTRY(DALCS_INFEASIBLE, 3, "the one-step problem has no solution")                             \
+    ENTRY(DALCS_REFUTED, 4, "the audit finds a law broken in the waveform")                        \
     ENTRY(DALCS_E_NOMEM, -1, "out of memory")                                                      \
     ENTRY(DALCS_E_IO, -2, "input/output error")                                                    \
     ENTRY(DALCS_E_NETLIST, -3, "error in the netlist")                                             \
@@ -366,7 +367,7 @@ struct dalcs_run_options {
                               see doc/output.md); this and the bound may change the last bits of
                               results */
     size_t max_events;  /* events and jumps kept when recording, 1e6 */
-    enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_NOT_CONVERGED */
+    enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_REFUTED */
     const char *dump_path;       /* where to write an OSNSP that failed; NULL: nowhere */
 
     bool steady; /* the periodic steady state and nothing else, as if .pss were the only analysis */
@@ -416,7 +417,8 @@ void dalcs_run_options_set_times(struct dalcs_run_options *options, const double
 /* Runs .op, .dc, .ac and .tran, whichever the netlist has, for each .step, with options and a sink that
  * are read during the call only. DALCS_E_NETLIST: no netlist was read. DALCS_E_OPTION: a message says
  * which. What a callback returned, where that ended the run. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the
- * messages name the time and the elements; rows already handed to the sink stay true. A second run
+ * messages name the time and the elements; rows already handed to the sink stay true. DALCS_REFUTED: they name the law
+ * that the rows break, and where. A second run
  * replaces the report of the first. With .step the report is that of the last step that was run, but for
  * its work and measurements, which are of all. */
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,

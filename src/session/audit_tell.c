@@ -61,7 +61,7 @@ static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
         "%s, and %.2g is allowed",
         name, found->defect, dalcs_quantity_write(time, found->time, "s", 9),
         dalcs_audit_most_allowed(a));
-    return DALCS_NOT_CONVERGED;
+    return DALCS_REFUTED;
 }
 
 /* Where the run fell back to implicit Euler, nobody controls the error: it is told. */

@@ -185,7 +185,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
         DALCS_TRY(dalcs_steady_read(e, &p->logic, s->circuit.transient.stop, r->orbit_end));
     }
     if (dalcs_audit_run_fails(&p->audit)) {
-        return DALCS_NOT_CONVERGED; /* the rows stay what they are: partial */
+        return DALCS_REFUTED; /* the rows stay what they are: partial */
     }
     return r->sink->end(r->sink->user);
 }

@@ -107,6 +107,7 @@ static void run(struct dalcs_session *s, bool is_short, bool print) {
     case DALCS_SINGULAR:
     case DALCS_NOT_CONVERGED:
     case DALCS_INFEASIBLE:
+    case DALCS_REFUTED:
     case DALCS_E_NETLIST:
     case DALCS_E_LIMIT:
     case DALCS_E_OPTION:

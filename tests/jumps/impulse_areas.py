@@ -14,13 +14,15 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from dalcs_program import Checker, run, some_of  # noqa: E402
 
-# what drives the impulse of i(v1) at 1 ms and at 3 ms: cards and charges (C)
+# what drives the impulse of i(v1) at 1 ms, or as the run starts with uic, and at 3 ms: cards and charges (C)
 ACTS = {
     "a capacitor": ("v1 a 0 pulse(0 1 1m 0 0 2m 10m)\nc1 a 0 1m", 1e-3, -1e-3),
     "a capacitor at 400 V": ("v1 a 0 pulse(0 400 1m 0 0 2m 10m)\nc1 a 0 2u\nr1 a 0 1k", 8e-4, -8e-4),
     "a capacitor at 1 mV": ("v1 a 0 pulse(0 1m 1m 0 0 2m 10m)\nc1 a 0 1n", 1e-12, -1e-12),
     "two in series": ("v1 a 0 pulse(0 3 1m 0 0 2m 10m)\nc1 a b 1u\nc2 b 0 2u\nrb b 0 1g", 2e-6, -2e-6),
     "one behind a diode": ("v1 a 0 pulse(0 5 1m 0 0 2m 10m)\nd1 a b d\nc1 b 0 10u\nr1 b 0 1meg", 5e-5, 0.0),
+    "a capacitor from the start": ("v1 a 0 1\nc1 a 0 1m", 1e-3, 0.0),
+    "two diodes from the start": ("v1 a 0 -20\nc1 b 0 5u\nd1 b x d\nd2 x a d\nrx x 0 1g", -1e-4, 0.0),
     "one behind a switch": ("v1 a 0 5\nvg g 0 pulse(0 1 1m 0 0 9m 20m)\ns1 a b g 0 s\nc1 b 0 10u\nr1 b 0 1t", 5e-5, 0.0),
 }
 # what reads it: cards, the state, its change over the charge for a positive and a negative one (1/F, ...)
@@ -44,7 +46,9 @@ METHODS = ["auto", "lobatto", "euler"]
 def main():
     checker = Checker("impulse_areas")
     for (acts, (cards, *charges)), (reads, (more, state, up, down)) in some_of(itertools.product(ACTS.items(), READS.items())):
-        text = "\n".join([acts, cards, more, ".model d d", ".model s sw(ron=0 vt=0.5)", ".tran 0.1m 5m", ".end", ""])
+        at_start = acts.endswith("start")
+        tran = f".tran 0.1m 5m {'uic' if at_start else ''}"
+        text = "\n".join([acts, cards, more, ".model d d", ".model s sw(ron=0 vt=0.5)", tran, ".end", ""])
         for method in METHODS:
             what = f"{acts}, {reads}, {method}"
             outcome = run(sys.argv[1], text, method=method, options=["--audit", "full"])
@@ -52,7 +56,7 @@ def main():
                 continue
             jumps = [(j["time"], j["states"][state]) for j in outcome.report["jumps"] if state in j["states"]]
             largest = max(abs(charge * way) for charge in charges for way in (up, down, 1e3))
-            for time, charge in zip((1e-3, 3e-3), charges):
+            for time, charge in zip((0.0 if at_start else 1e-3, 3e-3), charges):
                 here = sum(s["after"] - s["before"] for at, s in jumps if abs(at - time) < 1e-12)
                 checker.close(here, charge * (up if charge > 0.0 else down), 1e-7 * largest, f"{what}: {state} at {time}")
     return checker.finish()

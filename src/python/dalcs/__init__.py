@@ -30,14 +30,15 @@ from typing import Any, Callable, Dict, List, Mapping, Optional
 from . import _library
 from ._circuit import Circuit
 from ._equations import System
-from ._errors import Cancelled, Error, NetlistError, NoSolution, OptionError
+from ._errors import Cancelled, Error, NetlistError, NoSolution, OptionError, WrongWaveform
 from ._result import Result, Table
 from ._session import Netlist, Number
 from ._sweep import Grid, Sweep
 
 __version__: str = _library.lib.dalcs_version().decode()
 __all__ = ["Cancelled", "Circuit", "Error", "NetlistError", "NoSolution", "OptionError", "Result",
-           "Sweep", "System", "Table", "check", "equations", "run", "steady", "sweep", "variants"]
+           "Sweep", "System", "Table", "WrongWaveform", "check", "equations", "run", "steady", "sweep",
+           "variants"]
 
 
 def run(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,

@@ -11,7 +11,7 @@ from ctypes import CFUNCTYPE, POINTER, c_bool, c_char_p, c_double, c_int, c_size
 
 from . import _where
 
-OK, SINGULAR, NOT_CONVERGED, INFEASIBLE = 0, 1, 2, 3
+OK, SINGULAR, NOT_CONVERGED, INFEASIBLE, REFUTED = 0, 1, 2, 3, 4
 E_NOMEM, E_NETLIST, E_OPTION, E_CANCELLED = -1, -3, -4, -6
 
 ANALYSES = ("op", "tran", "dc", "ac", "pss")
