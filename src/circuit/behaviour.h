@@ -123,6 +123,15 @@ const struct dalcs_form *dalcs_form_add(struct dalcs_compiler *c, const struct d
 const struct dalcs_form *dalcs_form_scale(struct dalcs_compiler *c, double factor,
                                           const struct dalcs_form *a);
 
+/* Of values of 0 and 1: 1 - logic; a or b. */
+const struct dalcs_form *dalcs_form_negated(struct dalcs_compiler *c,
+                                            const struct dalcs_form *logic);
+const struct dalcs_form *dalcs_form_either(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                           const struct dalcs_form *b);
+
+/* Of its numbers: constants, coefficients, slopes and heights. */
+double dalcs_form_largest(const struct dalcs_form *v);
+
 /* outer(a) */
 const struct dalcs_form *dalcs_form_apply(struct dalcs_compiler *c,
                                           const struct dalcs_piecewise *outer,
@@ -267,7 +276,8 @@ const struct dalcs_form *dalcs_memory_form(struct dalcs_compiler *c, const struc
 /* steps (quantity - less); less NULL: nothing. A condition is 1 where it is not 0. */
 struct dalcs_commutation {
     const struct dalcs_formula *steps, *quantity, *less;
-    bool is_condition;
+    bool is_condition; /* of a choice: 0 where it is false, 1 where it is true */
+    bool is_opposite;  /* or the other way round */
 };
 
 /* The product, made by parts that are added to the circuit: the array of devices moves. NULL: the first

@@ -114,7 +114,9 @@ static const struct dalcs_levels *steps_of(struct dalcs_compiler *c,
                                            const struct dalcs_commutation *what) {
     const struct dalcs_form *form = dalcs_compile(c, what->steps);
     if (what->is_condition) {
-        return dalcs_levels_of(c, dalcs_form_to_logic(c, form));
+        const struct dalcs_form *logic = dalcs_form_to_logic(c, form);
+        return dalcs_levels_of(c, logic != NULL && what->is_opposite ? dalcs_form_negated(c, logic)
+                                                                     : logic);
     }
     const struct dalcs_levels *levels = dalcs_levels_of(c, form);
     return levels != NULL ? levels : dalcs_levels_of(c, scaled_steps(c, what->steps, form));
