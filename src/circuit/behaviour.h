@@ -129,6 +129,10 @@ const struct dalcs_form *dalcs_form_negated(struct dalcs_compiler *c,
 const struct dalcs_form *dalcs_form_either(struct dalcs_compiler *c, const struct dalcs_form *a,
                                            const struct dalcs_form *b);
 
+/* 1 / a, of what has steps only, none of them to 0; NULL: it is no such value. */
+const struct dalcs_form *dalcs_form_reciprocal(struct dalcs_compiler *c,
+                                               const struct dalcs_form *a);
+
 /* Of its numbers: constants, coefficients, slopes and heights. */
 double dalcs_form_largest(const struct dalcs_form *v);
 
@@ -278,6 +282,7 @@ struct dalcs_commutation {
     const struct dalcs_formula *steps, *quantity, *less;
     bool is_condition; /* of a choice: 0 where it is false, 1 where it is true */
     bool is_opposite;  /* or the other way round */
+    bool is_over;      /* 1 over the steps */
 };
 
 /* The product, made by parts that are added to the circuit: the array of devices moves. NULL: the first

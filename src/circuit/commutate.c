@@ -112,7 +112,9 @@ static const struct dalcs_form *scaled_steps(struct dalcs_compiler *c,
 
 static const struct dalcs_levels *steps_of(struct dalcs_compiler *c,
                                            const struct dalcs_commutation *what) {
-    const struct dalcs_form *form = dalcs_compile(c, what->steps);
+    const struct dalcs_form *steps = dalcs_compile(c, what->steps);
+    const struct dalcs_form *form =
+        steps != NULL && what->is_over ? dalcs_form_reciprocal(c, steps) : steps;
     if (what->is_condition) {
         const struct dalcs_form *logic = dalcs_form_to_logic(c, form);
         return dalcs_levels_of(c, logic != NULL && what->is_opposite ? dalcs_form_negated(c, logic)

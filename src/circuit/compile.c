@@ -80,6 +80,17 @@ static const struct dalcs_form *multiply(struct dalcs_compiler *c, const struct 
 
 static const struct dalcs_form *divide(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                        const struct dalcs_form *a, const struct dalcs_form *b) {
+    const struct dalcs_form *over = dalcs_form_is_number(b) ? NULL : dalcs_form_reciprocal(c, b);
+    if (over != NULL) {
+        const struct dalcs_commutation what = {
+            .steps = f->argument[1], .quantity = f->argument[0], .is_over = true};
+        const struct dalcs_form *product;
+        const enum dalcs_product kind = dalcs_form_multiply(c, a, over, &product);
+        product = kind == DALCS_PRODUCT_IS ? product : dalcs_commutate(c, &what);
+        if (product != NULL || c->failed) {
+            return product;
+        }
+    }
     if (!dalcs_form_is_number(b)) {
         return dalcs_smooth_form(c, f, DALCS_SMOOTH_QUOTIENT, 2,
                                  (const struct dalcs_form *[]){a, b});

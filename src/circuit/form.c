@@ -203,6 +203,42 @@ static const struct dalcs_form *from_one(struct dalcs_compiler *c,
     return keep(c, value);
 }
 
+/* 1 over each value of a staircase; NULL: one of them is 0. */
+static const struct dalcs_form *over_staircase(struct dalcs_compiler *c,
+                                               const struct dalcs_form_part *steps) {
+    struct dalcs_form_part over = {.direction = steps->direction};
+    bool has_zero = false;
+    if (!check(c, dalcs_piecewise_scale(c->arena, &steps->f, 1, &over.f))) {
+        return NULL;
+    }
+    for (int k = 0; k < over.f.n; k++) {
+        struct dalcs_knot *knot = &over.f.knot[k];
+        has_zero = has_zero || knot->left == 0 || knot->right == 0;
+        const double between =
+            knot->left != knot->right ? (knot->value - knot->left) / (knot->right - knot->left) : 0;
+        knot->left = 1 / knot->left;
+        knot->right = 1 / knot->right;
+        knot->value = knot->left + between * (knot->right - knot->left);
+    }
+    over.f.zero = 1 / over.f.zero;
+    return has_zero ? NULL : from_one(c, &over);
+}
+
+const struct dalcs_form *dalcs_form_reciprocal(struct dalcs_compiler *c,
+                                               const struct dalcs_form *a) {
+    if (is_staircase(a) && a->affine.constant == 0) {
+        return over_staircase(c, &a->part[0]);
+    }
+    const struct dalcs_levels *levels = dalcs_levels_of(c, a);
+    if (levels == NULL || levels->n != 1 || levels->base == 0 ||
+        levels->base + levels->level[0].height == 0) {
+        return NULL;
+    }
+    const double base = 1 / levels->base;
+    const double other = 1 / (levels->base + levels->level[0].height);
+    return dalcs_form_add(c, dalcs_form_number(c, base), other - base, levels->level[0].logic);
+}
+
 const struct dalcs_form *dalcs_form_apply(struct dalcs_compiler *c,
                                           const struct dalcs_piecewise *outer,
                                           const struct dalcs_form *a) {
