@@ -19,13 +19,17 @@ enum {
     BARS_GAP = 30,
     MARGIN = 78,
     LABEL = 16, /* of the margin, to the middle of the text */
-    CHARACTER = 10
+    CHARACTER = 10,
+    LEGEND = 66
 };
+
+static const double LEGEND_CHARACTER = 9.84, VIEWS_GAP = 30.0;
 
 enum { MAX_BARS = 16, TICS = 5 };
 
-static int panel_height(int n_panels) {
-    return n_panels == 1 ? 598 : n_panels == 2 ? 281 : 220;
+static int panel_height(int n_panels, int width) {
+    const int height = n_panels == 1 ? 598 : n_panels == 2 ? 281 : 220;
+    return height * width / DALCS_FIGURE_WIDTH;
 }
 
 static bool has_extension(const char *path, const char *extension) {
@@ -107,12 +111,12 @@ static int left_margin(const struct dalcs_figure *figure, size_t n_bars) {
 }
 
 static void lay_out_columns(struct dalcs_gnuplot_page *page, const struct dalcs_figure *figure) {
-    double left = (double)left_margin(figure, page->n_bars) / DALCS_GNUPLOT_WIDTH;
-    double right = 0.945 - 0.0082 * longest_name(figure);
+    double left = (double)left_margin(figure, page->n_bars) / page->width;
+    double right = 1.0 - (LEGEND + LEGEND_CHARACTER * longest_name(figure)) / page->width;
     double middle = 0.5 * (left + right);
-    double gap = left + 0.025;
+    double gap = left + VIEWS_GAP / page->width;
     bool two = figure->n_views > 1;
-    double label = (double)(LABEL - axis_margin(figure)) / DALCS_GNUPLOT_WIDTH;
+    double label = (double)(LABEL - axis_margin(figure)) / page->width;
     page->place[0] = (struct dalcs_gnuplot_place){.left = left,
                                                   .right = two ? middle - 0.5 * gap : right,
                                                   .label = left + label,
@@ -124,7 +128,8 @@ static void lay_out_columns(struct dalcs_gnuplot_page *page, const struct dalcs_
 }
 
 struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figure) {
-    struct dalcs_gnuplot_page page = {.font = has_extension(figure->path, ".svg") ? 14 : 11};
+    struct dalcs_gnuplot_page page = {.width = figure->width,
+                                      .font = has_extension(figure->path, ".svg") ? 14 : 11};
     for (int p = 0; p < figure->n_panels; p++) {
         if (figure->panel[p].n > 0) {
             page.panel[page.n_panels++] = p;
@@ -134,7 +139,8 @@ struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figur
         size_t n = figure->conduction->n;
         page.n_bars = n < MAX_BARS ? n : MAX_BARS;
     }
-    const int each = panel_height(page.n_panels), top = TOP + (figure->marks ? MARKS : 0);
+    const int each = panel_height(page.n_panels, page.width);
+    const int top = TOP + (figure->marks ? MARKS : 0);
     const int bars = page.n_bars > 0 ? BARS_GAP + BAR * (int)page.n_bars : 0;
     page.height = top + page.n_panels * each + (page.n_panels - 1) * GAP + bars + BOTTOM;
     const double height = page.height;
