@@ -20,16 +20,26 @@ enum {
     MARGIN = 78,
     LABEL = 16, /* of the margin, to the middle of the text */
     CHARACTER = 10,
-    LEGEND = 66
+    NUMBER_CHARACTER = 9,
+    LEGEND = 66,
+    LEGEND_ROW = 28,
+    LEAST_PANEL = 130
 };
 
 static const double LEGEND_CHARACTER = 9.84, VIEWS_GAP = 30.0;
 
-enum { MAX_BARS = 16, TICS = 5 };
+enum { MAX_BARS = 16, TICS = 5, MOST_NUMBERS = 8 /* that gnuplot writes by itself */ };
 
-static int panel_height(int n_panels, int width) {
+/* In proportion to the width, with room for the numbers of the axis and for the legend. */
+static int panel_height(const struct dalcs_figure *figure, int n_panels) {
     const int height = n_panels == 1 ? 598 : n_panels == 2 ? 281 : 220;
-    return height * width / DALCS_FIGURE_WIDTH;
+    int least = LEAST_PANEL;
+    for (int p = 0; p < figure->n_panels; p++) {
+        const int legend = LEGEND_ROW * figure->panel[p].n;
+        least = legend > least ? legend : least;
+    }
+    const int wanted = height * figure->width / DALCS_FIGURE_WIDTH;
+    return wanted > least ? wanted : least;
 }
 
 static bool has_extension(const char *path, const char *extension) {
@@ -139,7 +149,7 @@ struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figur
         size_t n = figure->conduction->n;
         page.n_bars = n < MAX_BARS ? n : MAX_BARS;
     }
-    const int each = panel_height(page.n_panels, page.width);
+    const int each = panel_height(figure, page.n_panels);
     const int top = TOP + (figure->marks ? MARKS : 0);
     const int bars = page.n_bars > 0 ? BARS_GAP + BAR * (int)page.n_bars : 0;
     page.height = top + page.n_panels * each + (page.n_panels - 1) * GAP + bars + BOTTOM;
@@ -187,6 +197,26 @@ void dalcs_gnuplot_write_margins(FILE *stream, const struct dalcs_gnuplot_page *
     fprintf(stream, "set bmargin at screen %.4f\nset tmargin at screen %.4f\n", bottom, top);
 }
 
+/* gnuplot does not ask whether the numbers of a narrow axis touch. */
+static void write_distance(FILE *stream, const struct dalcs_gnuplot_page *page, int v, double start,
+                           double stop) {
+    const double room = (page->place[v].right - page->place[v].left) * page->width;
+    const double range = stop - start;
+    const int length =
+        count_whole_digits(fmax(fabs(start), fabs(stop))) + count_decimals(range) + 2;
+    const double least = range * NUMBER_CHARACTER * length / room;
+    const double power = pow(10.0, floor(log10(least)));
+    const double step = least <= power         ? power
+                        : least <= 2.0 * power ? 2.0 * power
+                        : least <= 5.0 * power ? 5.0 * power
+                                               : 10.0 * power;
+    if (range > 0.0 && step > range / MOST_NUMBERS) {
+        fprintf(stream, "set xtics %.12g\n", step);
+    } else {
+        fputs("set xtics autofreq\n", stream);
+    }
+}
+
 void dalcs_gnuplot_write_axis(FILE *stream, const struct dalcs_figure *figure,
                               const struct dalcs_gnuplot_page *page, int v) {
     const char *prefix = dalcs_quantity_prefix(page->time_scale);
@@ -203,8 +233,9 @@ void dalcs_gnuplot_write_axis(FILE *stream, const struct dalcs_figure *figure,
     if (figure->axis.logarithmic) {
         fputs("set format x '%.0s%c'\n", stream);
     } else {
-        fprintf(stream, "set format x '%%.%dg'\n",
-                dalcs_gnuplot_count_digits(figure->view[v].start / page->time_scale,
-                                           figure->view[v].stop / page->time_scale));
+        const double start = figure->view[v].start / page->time_scale;
+        const double stop = figure->view[v].stop / page->time_scale;
+        fprintf(stream, "set format x '%%.%dg'\n", dalcs_gnuplot_count_digits(start, stop));
+        write_distance(stream, page, v, start, stop);
     }
 }
