@@ -15,7 +15,7 @@ struct dalcs_gnuplot_place {
 /* Heights are parts of the page's, from below. */
 struct dalcs_gnuplot_page {
     int width, height; /* in pixels */
-    int font;   /* size, in the terminal's units */
+    int font;          /* size, in the terminal's units */
     int n_panels;
     int panel[DALCS_FIGURE_MAX_PANELS]; /* those that hold something */
     double top[DALCS_FIGURE_MAX_PANELS], bottom[DALCS_FIGURE_MAX_PANELS];
