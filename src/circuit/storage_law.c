@@ -145,13 +145,13 @@ static bool check_lines(struct dalcs_builder *builder, const struct dalcs_token 
         const double slope = dalcs_piecewise_slope(f, k);
         const double at = f->knot[k < f->n ? k : f->n - 1].at;
         if (k < f->n && f->knot[k].left != f->knot[k].right) {
-            dalcs_builder_error(builder, place, "a steep line is what can be",
+            dalcs_builder_error(builder, place, "write a steep line in place of the jump",
                                 "the %s jumps at a %s of %g %s", word->what, word->of, at,
                                 word->unit);
             return false;
         }
         if (slope < 0) {
-            dalcs_builder_error(builder, place, "it has to rise, or to stay where it is",
+            dalcs_builder_error(builder, place, "it must rise or stay constant",
                                 "the %s falls %s a %s of %g %s", word->what,
                                 k < f->n ? "below" : "above", word->of, at, word->unit);
             return false;
@@ -220,8 +220,8 @@ static bool check_smooth(struct dalcs_builder *builder, const struct dalcs_token
         if (fall != 0) {
             dalcs_builder_warn(
                 builder, place, "limit(x, low, high) in the place of x lets it stay where it is",
-                "the %s falls %s a %s of about %.2g %s: nothing has an answer there", word->what,
-                fall > 0 ? "above" : "below", word->of, fall, word->unit);
+                "the %s falls %s a %s of about %.2g %s: the circuit has no solution there",
+                word->what, fall > 0 ? "above" : "below", word->of, fall, word->unit);
         }
     }
     return true;

@@ -132,7 +132,7 @@ enum dalcs_status dalcs_argument_audit(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
     if (!arguments->steady && !arguments->bode) {
-        dalcs_cli_error(cli, "--period is one of 'dalcs steady' and 'dalcs bode'");
+        dalcs_cli_error(cli, "--period is an option of 'dalcs steady' and 'dalcs bode'");
         return DALCS_E_OPTION;
     }
     return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
@@ -142,7 +142,7 @@ enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
 static enum dalcs_status check_envelope(const struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *name) {
     if (!arguments->envelope) {
-        dalcs_cli_error(cli, "%s is one of 'dalcs envelope'", name);
+        dalcs_cli_error(cli, "%s is an option of 'dalcs envelope'", name);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
@@ -188,7 +188,7 @@ enum { SAMPLES = 64, SETTLE = 256, MOST_SAMPLES = 1000000 };
 static enum dalcs_status take_samples(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli) {
     if (!arguments->steady) {
-        dalcs_cli_error(cli, "--bifurcation, --samples and --settle are of 'dalcs steady'");
+        dalcs_cli_error(cli, "--bifurcation, --samples and --settle are options of 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     arguments->samples = arguments->samples > 0 ? arguments->samples : SAMPLES;
@@ -222,7 +222,7 @@ enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *argume
                                                   const struct dalcs_cli *cli, const char *path) {
     arguments->multipliers_plot = path;
     if (!arguments->steady) {
-        dalcs_cli_error(cli, "--multipliers-plot is one of 'dalcs steady'");
+        dalcs_cli_error(cli, "--multipliers-plot is an option of 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     if (!dalcs_figure_can_write(path) && !is_page(path)) {
@@ -238,7 +238,7 @@ enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
                                              const struct dalcs_cli *cli) {
     arguments->sensitivity = true;
     if (!arguments->steady) {
-        dalcs_cli_error(cli, "--sensitivity is one of 'dalcs steady'");
+        dalcs_cli_error(cli, "--sensitivity is an option of 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
@@ -248,12 +248,13 @@ enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
     if (arguments->bode || arguments->envelope) {
-        dalcs_cli_error(cli, "--losses is one of 'dalcs run' and 'dalcs steady'");
+        dalcs_cli_error(cli, "--losses is an option of 'dalcs run' and 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     if (arguments->steady && text != NULL) {
         dalcs_cli_error(
-            cli, "--losses: those of a steady state are of all of its orbit: leave the window out");
+            cli,
+            "--losses: those of a steady state are over its whole orbit: leave the window out");
         return DALCS_E_OPTION;
     }
     arguments->losses = true;
@@ -277,7 +278,7 @@ enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
         DALCS_TRY(parse_number(cli, "--losses", colon + 1, &arguments->losses_to));
     }
     if (!(arguments->losses_from >= 0.0 && arguments->losses_from < arguments->losses_to)) {
-        dalcs_cli_error(cli, "--losses: '%s' does not begin at 0 or later and before it ends",
+        dalcs_cli_error(cli, "--losses: '%s' is no window: write FROM:TO with 0 <= FROM < TO",
                         text);
         return DALCS_E_OPTION;
     }
@@ -287,7 +288,7 @@ enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_losses_plot(struct dalcs_arguments *arguments,
                                              const struct dalcs_cli *cli, const char *path) {
     if (arguments->bode || arguments->envelope) {
-        dalcs_cli_error(cli, "--losses-plot is one of 'dalcs run' and 'dalcs steady'");
+        dalcs_cli_error(cli, "--losses-plot is an option of 'dalcs run' and 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     arguments->losses_plot = path;

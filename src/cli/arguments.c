@@ -129,7 +129,7 @@ static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const stru
         while (option[k].val != code) {
             k++;
         }
-        dalcs_cli_error(cli, "--%s is one of 'dalcs bode'", option[k].name);
+        dalcs_cli_error(cli, "--%s is an option of 'dalcs bode'", option[k].name);
         return DALCS_E_OPTION;
     }
     switch (code) {

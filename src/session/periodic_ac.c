@@ -30,9 +30,9 @@ static double probe(const struct dalcs_periodic_ac *a, const struct dalcs_probe 
 static enum dalcs_status refuse_frequency(const struct dalcs_periodic_ac *a, double frequency) {
     struct dalcs_run *r = a->run;
     dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
-                   "a quantity that no period changes, as the charge of a floating node, answers "
-                   "without bound there: give it a way out, or begin at another frequency",
-                   "at %.9g Hz there is no single answer", frequency);
+                   "a quantity that no period changes, such as the charge of a floating node, has "
+                   "an unbounded response there: add a path for it, or begin at another frequency",
+                   "at %.9g Hz the response is not unique", frequency);
     return DALCS_SINGULAR;
 }
 
@@ -176,10 +176,10 @@ static enum dalcs_status refuse_rough(const struct dalcs_periodic_ac *a) {
     struct dalcs_run *r = a->run;
     dalcs_diag_add(
         &r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
-        "elements that are nearly nothing or nearly ideal, such as a coupling next to 1, "
-        "may be left out; or inject a small sine in .tran",
-        "the response is not found: polynomials do not carry small signals through the "
-        "period, however short its pieces are");
+        "leave out elements of nearly no effect, or make nearly ideal ones ideal, such as a "
+        "coupling next to 1; or inject a small sine in .tran",
+        "the response was not found: small signals are not accurate enough over a period, "
+        "however short its segments are");
     return DALCS_NOT_CONVERGED;
 }
 

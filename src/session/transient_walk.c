@@ -253,11 +253,12 @@ static enum dalcs_status advance(struct transient *c) {
 
 static void note_end_of_filling(struct dalcs_run *r, const struct dalcs_filling *filling) {
     if (isfinite(filling->ended)) {
-        dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL,
-                       "--fill with a larger bound, or none, or a later tstart",
-                       "%zu rows, and %zu for each that there is anyway, were added up to t = %.9g "
-                       "s: from there on there are no more",
-                       FILLING_LIMIT.most, FILLING_LIMIT.for_each, filling->ended);
+        dalcs_diag_add(
+            &r->s->diag, DALCS_NOTE, NULL,
+            "--fill with a larger bound or none, or a later tstart, leaves more for the rest",
+            "%zu added rows, and %zu for each row of .tran, are the limit: it is reached at "
+            "t = %.9g s, and no rows are added after that",
+            FILLING_LIMIT.most, FILLING_LIMIT.for_each, filling->ended);
         dalcs_transient_warn_of_coarse_rows(r, &r->s->recorder.schedule, filling->ended);
     }
 }

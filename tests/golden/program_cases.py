@@ -285,8 +285,8 @@ class Results(Case):
     def test_end_of_filling(self):
         """A file has an end, and what it lacks is said."""
         done = self.dalcs("run", self.write(SINE), "--fill", "1e-14", "--curve", "lines", "-o", "out.raw")
-        self.assertRegex(done.stderr, r"note: 100000 rows, and 4 for each that there is anyway, were added up to t = "
-                                      r"\S+ s: from there on there are no more\n  hint: --fill")
+        self.assertRegex(done.stderr, r"note: 100000 added rows, and 4 for each row of .tran, are the limit: it is reached at t = "
+                                      r"\S+ s, and no rows are added after that\n  hint: --fill")
         points = re.search(rb"No. Points: (\d+)", self.path("out.raw").read_bytes()[:1000])
         self.assertTrue(100000 < int(points[1]) < 100020, points[1])
 

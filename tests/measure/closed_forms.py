@@ -309,7 +309,7 @@ R3 free 0 1
         "few": "'v(in)' rises through 2 only 2 times between 0 s and 2 ms, not 5",
         "outside": "AT=5 ms does not lie between 0 s and 2 ms",
         "empty": "there is nothing to measure: the run goes from 0 s to 2 ms",
-        "ratio": "'v(in)/v(in,in)' has no value everywhere",
+        "ratio": "'v(in)/v(in,in)' is undefined at some of its times",
         "follows": "it needs 'never', which could not be measured",
         "order": "TARG at 65.4949 us does not come after TRIG at 1.06549 ms",
     }
