@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 double dalcs_settings_value(const char *text, size_t *name_length) {
     const char *equal = strchr(text, '=');
@@ -24,6 +25,22 @@ enum dalcs_status dalcs_settings_check(const struct dalcs_cli *cli, const char *
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
+}
+
+size_t dalcs_settings_threads(const struct dalcs_arguments *arguments) {
+    const long here = sysconf(_SC_NPROCESSORS_ONLN);
+    return arguments->jobs > 0 ? arguments->jobs : here > 0 ? (size_t)here : 1;
+}
+
+enum dalcs_status dalcs_settings_prepare(struct dalcs_session *session,
+                                         const struct dalcs_arguments *arguments) {
+    if (arguments->n_set > 0) {
+        DALCS_TRY(dalcs_session_keep_netlist(session));
+    }
+    if (!isnan(arguments->seed)) {
+        DALCS_TRY(dalcs_session_set_seed(session, arguments->seed));
+    }
+    return dalcs_session_set_transient(session, arguments->transient, arguments->tstop);
 }
 
 enum dalcs_status dalcs_settings_apply(struct dalcs_session *session,
