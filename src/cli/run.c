@@ -471,11 +471,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
         return status;
     }
-    if (run.has_script && (arguments->transient != NULL || arguments->tstop != NULL)) {
-        dalcs_cli_error(cli, "%s: a .control block says what is run here, 'tran' among it",
-                        arguments->transient != NULL ? "--tran" : "--tstop");
-        return DALCS_E_OPTION;
-    }
+    DALCS_TRY(dalcs_settings_check_script(cli, session, arguments));
     bool is_table;
     DALCS_TRY(dalcs_variants_ask(cli, arguments, session, run.has_script, &is_table));
     if (is_table) {

@@ -18,6 +18,11 @@ size_t dalcs_settings_threads(const struct dalcs_arguments *arguments);
 enum dalcs_status dalcs_settings_prepare(struct dalcs_session *session,
                                          const struct dalcs_arguments *arguments) DALCS_MUST_CHECK;
 
+/* A .control block with a `tran` of its own does not take --tran and --tstop: DALCS_E_OPTION, with a message. */
+enum dalcs_status
+dalcs_settings_check_script(const struct dalcs_cli *cli, const struct dalcs_session *session,
+                            const struct dalcs_arguments *arguments) DALCS_MUST_CHECK;
+
 /* All of them for a netlist that was read and is kept; the session's messages say what is wrong. */
 enum dalcs_status dalcs_settings_apply(struct dalcs_session *session,
                                        const struct dalcs_arguments *arguments) DALCS_MUST_CHECK;

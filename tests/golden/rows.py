@@ -106,6 +106,13 @@ class Transient(Case):
         self.write("\n".join(card for card in CIRCUIT.splitlines() if not card.startswith(".tran")))
         self.assertEqual(self.rows("--tran", "50u 300u uic", "--fill", "none"), rows)
 
+    def test_what_a_block_runs(self):
+        """`run` is of the netlist's .tran, and so are those behind the first."""
+        self.write(CIRCUIT.replace(".end", ".control\nrun\nwrite b.raw v(out)\nprint time[length(time)-1]\n.endc"))
+        self.assertIn("= 7.000000e-04", self.run_it("--tstop", "0.7m").stdout)
+        self.write(CIRCUIT.replace(".end", ".tran 10u 5m uic"))
+        self.assertEqual(self.rows("--tran", "50u 300u uic", "--fill", "none")[-1][0], 300e-6)
+
     def test_in_each_thread(self):
         """Of .step, whose threads read the netlist themselves."""
         self.write(CIRCUIT.replace(".end", ".step param r list 1k 2k 4k"))
@@ -123,8 +130,9 @@ class Transient(Case):
         self.assertIn("--tstop: '0' is not a number greater than 0", self.run_it("--tstop", "0", status=2).stderr)
         self.assertIn("'dalcs envelope' has --stop", self.run_it("--tstop", "1", status=2, verb="envelope").stderr)
         self.assertIn("--tran is one of 'dalcs run'", self.run_it("--tran", "1", status=2, verb="bode").stderr)
-        self.write(CIRCUIT.replace(".end", ".control\nrun\n.endc"))
-        self.assertIn("a .control block says what is run", self.run_it("--tstop", "1m", status=2).stderr)
+        self.write(CIRCUIT.replace(".end", ".control\n tran 1u 2m\n.endc"))
+        self.assertIn("--tstop is of the netlist's .tran: the .control block has 'tran 1u 2m'",
+                      self.run_it("--tstop", "1m", status=2).stderr)
         self.write(CIRCUIT.replace(".tran 100u 2m uic", ".op").replace(".meas", "*"))
         said = self.run_it("--tstop", "1m", status=3).stderr
         self.assertIn("the netlist has no .tran that could end at another time", said)

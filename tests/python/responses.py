@@ -167,6 +167,8 @@ class Responses(unittest.TestCase):
                     call(path)
                 error = caught.exception
                 self.assertEqual((error.file, error.line, error.element), (str(path), 10, "c1"))
+        rests = failure(dalcs.NoSolution, "RC\nV1 in 0 AC 1\nR1 in out 1k\nC1 out 0 1u\n")
+        self.assertIn("a run with .ac dec 20 1 1meg has the response", str(rests))
         silent = failure(dalcs.Error, BUCK.replace(" AC 1", ""), frequencies=[1e3])
         self.assertIn("no source has an AC value", silent.message)
 
