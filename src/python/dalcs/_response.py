@@ -22,6 +22,15 @@ class Response(Result):
     values       [n, m] complex; result["v(out)"] is one column
     loop         [n] complex, the gain of the loop that was asked for; None without one
     decibels(name), phase(name)   [n] dB, [n] degrees
+
+    >>> import dalcs
+    >>> response = dalcs.bode('''An RC behind a chopper that does nothing to its small signal
+    ... Vin in 0 PULSE(0 1 0 0 0 5u 10u) AC 1
+    ... R1 in out 1k
+    ... C1 out 0 159.15494n
+    ... ''', frequencies=[100.0, 1e3, 1e4])
+    >>> response.decibels("v(out)").round(2).tolist(), response.phase("v(out)").round(1).tolist()
+    ([-0.04, -3.01, -20.04], [-5.7, -45.0, -84.3])
     """
 
     @property

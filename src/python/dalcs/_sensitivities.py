@@ -26,6 +26,19 @@ class Sensitivities:
     relative      [m, p] per cent by one per cent of a value; NaN where the result is 0
 
     table["vout"] is a row as a dict by parameter.
+
+    >>> import dalcs
+    >>> found = dalcs.steady('''A divider behind a square wave
+    ... V1 in 0 PULSE(0 10 0 0 0 5u 10u)
+    ... R1 in out 1k
+    ... R2 out 0 1k
+    ... C1 out 0 10n
+    ... .meas pss mean avg v(out)
+    ... ''', sensitivities=True).sensitivities
+    >>> f"{1e3 * found['mean']['r1']:.3f} V by 1 kOhm"
+    '-1.250 V by 1 kOhm'
+    >>> dict(zip(found.parameters, abs(found.relative[found.results.index("mean")]).round(6).tolist()))
+    {'r1': 0.5, 'r2': 0.5, 'c1': 0.0}
     """
 
     def __init__(self, found: Mapping[str, Any]) -> None:
