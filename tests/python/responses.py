@@ -214,6 +214,17 @@ class Sensitivities(unittest.TestCase):
         self.assertEqual(found.to_pandas().loc["peak", "vin"], found["peak"]["vin"])
 
 
+class WorstCases(unittest.TestCase):
+    def test_threads(self):
+        text = ("t\nV1 in 0 10\nR1 in out 1k DEV=5%\nR2 out 0 1k DEV=5%\nC1 out 0 1u DEV=10%\n.tran 10u 1m\n"
+                ".meas tran v find v(out) at=1m\n.wcase\n")
+        one, three = (dalcs.run(text, workers=n, rows=False).report["worst_case"] for n in (1, 3))
+        self.assertEqual(one, three)
+        self.assertAlmostEqual(one["results"][0]["largest"], 10 * 1.05 / (1.05 + 0.95), delta=1e-9)
+        with self.assertRaisesRegex(ValueError, "a .wcase is a part of one run"):
+            dalcs.variants(text)
+
+
 class Envelopes(unittest.TestCase):
     def test_function(self):
         text = BOOST.replace("C1 out 0 100u", "C1 out 0 10m")

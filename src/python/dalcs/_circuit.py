@@ -151,7 +151,7 @@ class Circuit:
         """
         points = self._read(values=values, seed=seed).steps()
         if not points:
-            raise ValueError("the netlist has neither .step nor .mc")
+            raise ValueError("the netlist has neither .step nor .mc; a .wcase is a part of one run()")
         return variants_of(self.run, points, workers, each, done, {**options, "values": values, "seed": seed})
 
     def check(self, values: Optional[Mapping[str, Number]] = None, *,
