@@ -51,8 +51,9 @@ static bool check_times(struct dalcs_builder *builder, const struct dalcs_transi
 static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *transient) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     struct dalcs_builder *builder = reader->builder;
-    /* noop is Xyce's word for it */
-    if (dalcs_reader_take_word(reader, "uic") || dalcs_reader_take_word(reader, "noop")) {
+    /* noop is Xyce's word for it, skipbp PSpice's */
+    if (dalcs_reader_take_word(reader, "uic") || dalcs_reader_take_word(reader, "noop") ||
+        dalcs_reader_take_word(reader, "skipbp")) {
         transient->use_initial_conditions = true;
         if (dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
             transient->starts_steady = dalcs_reader_take_word(reader, "steady");

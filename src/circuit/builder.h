@@ -42,6 +42,8 @@ struct dalcs_model {
     const struct dalcs_block *block;
     struct dalcs_transistor *transistor;
     const struct dalcs_token *beyond; /* of R, L or C: what would change values; else NULL */
+    bool has_value;                   /* of R, L or C: that of a card without one, */
+    double value;                     /* and PSpice's factor of one that has its own */
 };
 
 enum dalcs_hidden {
@@ -117,6 +119,7 @@ struct dalcs_builder {
 
     struct dalcs_names initial_pairs; /* "0 4": index of the condition on nodes 0 and 4 */
     bool names_signals;               /* a .save or .print was seen */
+    bool saves_currents;              /* .options savecurrents was */
     struct dalcs_names signals;       /* name -> index of signal */
     struct dalcs_signal *signal;      /* heap */
     size_t n_signals;
@@ -513,9 +516,9 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
                      enum dalcs_model_kind kind);
 /* The same of a switch whose control is a formula, of a voltage or of a current. */
 int dalcs_model_find_switch(struct dalcs_builder *builder, const struct dalcs_token *name);
-/* Takes the name of a model of R, L or C (letter), if one follows: nothing depends on it. False after
- * an error. */
-bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter);
+/* Takes the name of a model of R, L or C (letter), if one follows: *taken is it, else it stays. False after an error. */
+bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter,
+                              const struct dalcs_model **taken);
 void dalcs_analysis_parse_env(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card);
@@ -565,6 +568,9 @@ void dalcs_initial_check(struct dalcs_builder *builder);
 /* .save, .print, .plot and .probe */
 void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_signals_add_default(struct dalcs_builder *builder);
+
+/* The current of each element. */
+void dalcs_signals_add_currents(struct dalcs_builder *builder);
 /* The place of a signal that a formula names among builder->measured; -1 when out of memory. */
 int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal signal);
 

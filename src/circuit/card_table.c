@@ -54,6 +54,8 @@ static const struct dot_card DOT_CARDS[] = {
     {".print", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
     {".plot", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
     {".probe", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
+    {".probe64", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
+    {".probe/csdf", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
     {".meas", DALCS_CARD_MEASURE, NULL, NULL, NOTHING, NULL},
     {".measure", DALCS_CARD_MEASURE, NULL, NULL, NOTHING, NULL},
     {".four", DALCS_CARD_FOURIER, NULL, NULL, NOTHING, NULL},
@@ -77,7 +79,8 @@ static const struct dot_card DOT_CARDS[] = {
 };
 
 /* Without a meaning for ideal elements; accepted. */
-static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot", ".preprocess"};
+static const char *const IGNORED[] = {".temp",   ".width",      ".prot",
+                                      ".unprot", ".preprocess", ".stmlib"};
 
 /* Analyses that this simulator will not have. */
 static const char *const NEVER[] = {".noise", ".pz",  ".disto",   ".tf",   ".sp",

@@ -296,6 +296,10 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     if (builder->n_signals == 0) {
         dalcs_signals_add_default(builder);
     }
+    if (builder->saves_currents) {
+        builder->names_signals = true; /* some of them are there already */
+        dalcs_signals_add_currents(builder);
+    }
     dalcs_losses_collect(builder);
     if (builder->out_of_memory) {
         return DALCS_E_NOMEM;

@@ -121,7 +121,7 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
 }
 
 /* ngspice's alli and LTspice's i(*): the current of each element. */
-static void add_currents(struct dalcs_builder *builder) {
+void dalcs_signals_add_currents(struct dalcs_builder *builder) {
     for (int k = 0; k < builder->circuit->n_devices; k++) {
         if (!dalcs_builder_is_inner(builder->circuit->device[k].name)) {
             add_current(builder, k);
@@ -187,7 +187,7 @@ static bool read_current(struct dalcs_reader *reader) {
         return false;
     }
     if (strcmp(name->text, "*") == 0) {
-        add_currents(reader->builder);
+        dalcs_signals_add_currents(reader->builder);
         return true;
     }
     const int device = dalcs_builder_find_device(reader->builder, name);
@@ -420,6 +420,49 @@ static bool read_formula(struct dalcs_reader *reader) {
     return true;
 }
 
+static void add_power(struct dalcs_builder *builder, char letter, int device) {
+    struct dalcs_signal_formula formula;
+    const char *own = dalcs_arena_printf(&builder->circuit->arena, "%c(%s)", letter,
+                                         builder->circuit->device[device].name);
+    builder->out_of_memory = builder->out_of_memory || own == NULL;
+    if (own != NULL && dalcs_computed_power(builder, device, &formula)) {
+        add_computed(builder, own, &formula);
+    }
+}
+
+/* Of each element that has one: ngspice's allp, PSpice's w(alias(*)). */
+static void add_powers(struct dalcs_builder *builder, char letter) {
+    for (int k = 0; k < builder->circuit->n_devices; k++) {
+        if (!dalcs_builder_is_inner(builder->circuit->device[k].name) &&
+            dalcs_signal_formula_has_power(builder, k)) {
+            add_power(builder, letter, k);
+        }
+    }
+}
+
+/* v(alias(*)), i(alias(*)), w(alias(*)) on PSpice's .probe: all of them; d(...) and noise(...): nothing that there is
+ * here. False: another form. */
+static bool read_all_of(struct dalcs_reader *reader) {
+    static const char *const begin[] = {"(", "alias", "(", "*", ")", ")"};
+    struct dalcs_builder *builder = reader->builder;
+    const char letter = dalcs_reader_peek(reader, 0)->text[0];
+    for (int k = 0; k < 6; k++) {
+        const struct dalcs_token *token = dalcs_reader_peek(reader, k + 1);
+        if (token == NULL || strcmp(token->text, begin[k]) != 0) {
+            return false;
+        }
+    }
+    reader->at += 7;
+    if (letter == 'v') {
+        add_voltages(builder);
+    } else if (letter == 'i') {
+        dalcs_signals_add_currents(builder);
+    } else if (letter == 'w') {
+        add_powers(builder, letter);
+    }
+    return true;
+}
+
 /* w(r1) or p(r1) of an element with two terminals, whose power is that of its own voltage; false: of another. */
 static bool read_power(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
@@ -431,16 +474,10 @@ static bool read_power(struct dalcs_reader *reader) {
         return false;
     }
     const int device = dalcs_names_find(&builder->devices, name->text);
-    struct dalcs_signal_formula formula;
     if (device < 0 || !dalcs_signal_formula_has_power(builder, device)) {
         return false;
     }
-    const char *own = dalcs_arena_printf(&builder->circuit->arena, "%c(%s)", letter->text[0],
-                                         builder->circuit->device[device].name);
-    builder->out_of_memory = builder->out_of_memory || own == NULL;
-    if (own != NULL && dalcs_computed_power(builder, device, &formula)) {
-        add_computed(builder, own, &formula);
-    }
+    add_power(builder, letter->text[0], device);
     reader->at += 4;
     return true;
 }
@@ -473,6 +510,11 @@ static void skip_inner(struct dalcs_reader *reader) {
     reader->at++;
 }
 
+/* .probe, .probe64, .probe/csdf */
+static bool is_probe(const struct dalcs_card *card) {
+    return strncmp(card->token->text, ".probe", strlen(".probe")) == 0;
+}
+
 static bool read_signal(struct dalcs_reader *reader) {
     static const char *const within[] = {"p", "w", "n"};
     struct dalcs_builder *builder = reader->builder;
@@ -496,13 +538,20 @@ static bool read_signal(struct dalcs_reader *reader) {
             return true;
         }
         if (dalcs_reader_take_word(reader, "alli")) {
-            if (strcmp(reader->card->token->text, ".probe") == 0) {
+            if (is_probe(reader->card)) {
                 dalcs_signals_add_default(builder);
             }
-            add_currents(builder);
+            dalcs_signals_add_currents(builder);
+            return true;
+        }
+        if (dalcs_reader_take_word(reader, "allp")) {
+            add_powers(builder, 'p');
             return true;
         }
         return token->text[0] == '@' ? read_device_current(reader) : read_plain_node(reader);
+    }
+    if (read_all_of(reader)) {
+        return true;
     }
     const struct part_name *part = part_of(token->text);
     if (part != NULL) {
@@ -612,7 +661,7 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
     }
     if (dalcs_reader_at_end(&reader)) {
         /* A bare .probe records everything, as in PSpice. */
-        if (strcmp(name, ".probe") == 0) {
+        if (is_probe(card)) {
             dalcs_signals_add_default(builder);
         } else {
             dalcs_reader_missing(&reader, "a signal");

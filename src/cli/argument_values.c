@@ -13,6 +13,32 @@
 #include <string.h>
 #include <strings.h>
 
+/* What makes a file of this name, for which -o is not. */
+static const char *who_writes(const char *path) {
+    static const char *const other[][2] = {
+        {".parquet", "; in Python dalcs.run(...).to_pandas().to_parquet(...) writes it"},
+        {".feather", "; in Python dalcs.run(...).to_pandas().to_feather(...) writes it"},
+        {".xlsx", "; in Python dalcs.run(...).to_pandas().to_excel(...) writes it"},
+        {".h5", "; in Python dalcs.run(...).to_pandas().to_hdf(...) writes it"},
+        {".hdf5", "; in Python dalcs.run(...).to_pandas().to_hdf(...) writes it"},
+        {".nc", "; in Python dalcs.run(...).to_xarray().to_netcdf(...) writes it"},
+        {".npy", "; in Python dalcs.run(...).values is an array of NumPy"},
+        {".npz", "; in Python dalcs.run(...).values is an array of NumPy"},
+        {".mat", "; in Python dalcs.run(...).values goes into scipy.io.savemat"},
+        {".json", "; --report FILE.json says what the run did"},
+        {".svg", "; --plot FILE.svg draws"},
+        {".png", "; --plot FILE.png draws"},
+        {".pdf", "; --plot FILE.pdf draws"},
+        {".html", "; 'dalcs plot' makes a page of a .raw file"}};
+    const char *dot = strrchr(path, '.');
+    for (size_t k = 0; dot != NULL && k < sizeof other / sizeof other[0]; k++) {
+        if (strcasecmp(dot, other[k][0]) == 0) {
+            return other[k][1];
+        }
+    }
+    return "";
+}
+
 enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *path) {
     if (strcmp(path, "none") == 0) {
@@ -20,7 +46,8 @@ enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
         return DALCS_OK;
     }
     if (!dalcs_table_find_format(path)) {
-        dalcs_cli_error(cli, "unknown format of '%s': name it .csv or .raw", path);
+        dalcs_cli_error(cli, "unknown format of '%s': name it .csv or .raw%s", path,
+                        who_writes(path));
         return DALCS_E_OPTION;
     }
     arguments->output[arguments->n_outputs++] = path;
@@ -127,54 +154,6 @@ enum dalcs_status dalcs_argument_audit(struct dalcs_arguments *arguments,
     }
     dalcs_cli_error(cli, "--audit: '%s' is none of sample, full and off", text);
     return DALCS_E_OPTION;
-}
-
-enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
-                                        const struct dalcs_cli *cli, const char *text) {
-    if (!arguments->steady && !arguments->bode) {
-        dalcs_cli_error(cli, "--period is an option of 'dalcs steady' and 'dalcs bode'");
-        return DALCS_E_OPTION;
-    }
-    return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
-}
-
-/* The options of `dalcs envelope` alone. */
-static enum dalcs_status check_envelope(const struct dalcs_arguments *arguments,
-                                        const struct dalcs_cli *cli, const char *name) {
-    if (!arguments->envelope) {
-        dalcs_cli_error(cli, "%s is an option of 'dalcs envelope'", name);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_argument_stop(struct dalcs_arguments *arguments,
-                                      const struct dalcs_cli *cli, const char *text) {
-    DALCS_TRY(check_envelope(arguments, cli, "--stop"));
-    return dalcs_verb_take_positive(cli, "--stop", text, &arguments->stop);
-}
-
-enum dalcs_status dalcs_argument_show(struct dalcs_arguments *arguments,
-                                      const struct dalcs_cli *cli, const char *text) {
-    char time[64];
-    DALCS_TRY(check_envelope(arguments, cli, "--show"));
-    free(arguments->show);
-    arguments->n_show = 0;
-    arguments->show = dalcs_alloc(strlen(text) + 1, sizeof *arguments->show);
-    if (arguments->show == NULL) {
-        dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
-        return DALCS_E_NOMEM;
-    }
-    for (size_t start = 0, length; start <= strlen(text); start += length + 1) {
-        double *value = &arguments->show[arguments->n_show++];
-        length = strcspn(text + start, ",");
-        snprintf(time, sizeof time, "%.*s", (int)length, text + start);
-        if (dalcs_parse_number(time, value) != DALCS_OK || !(*value >= 0.0)) {
-            dalcs_cli_error(cli, "--show: '%s' is no time; write 0,10m,1", time);
-            return DALCS_E_OPTION;
-        }
-    }
-    return DALCS_OK;
 }
 
 static bool is_page(const char *path) {

@@ -107,7 +107,10 @@ enum dalcs_status dalcs_steady_find_oscillation(struct dalcs_steady *st, double 
     if (rests) {
         dalcs_diag_add(
             &s->diag, DALCS_ERROR, NULL,
-            ".op has that state; if the circuit is to oscillate, start it with IC= and uic",
+            st->run->options->bode
+                ? "a run with .ac dec 20 1 1meg has the response around that state; if the circuit "
+                  "is to oscillate, start it with IC= and uic"
+                : ".op has that state; if the circuit is to oscillate, start it with IC= and uic",
             "there is no oscillation: no source repeats, and the circuit comes to rest, "
             "at %s",
             states_text(st));
