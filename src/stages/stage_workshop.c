@@ -4,6 +4,7 @@
 #include "extended.h"
 #include "stage_choice.h"
 #include "stage_matrix.h"
+#include "stage_shift.h"
 #include "wide_vectors.h"
 
 #include <math.h>
@@ -70,6 +71,9 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->filtered = dalcs_carve(storage, &used, 2 * b->room, sizeof(double));
     b->defect = dalcs_carve(storage, &used, n_x, sizeof(*b->defect));
     b->lasting = dalcs_carve(storage, &used, n_x, sizeof(*b->lasting));
+    b->moment =
+        dalcs_carve(storage, &used, dalcs_stage_shift_room((int)n, b->n_rhs), sizeof(double));
+    b->shift = dalcs_carve(storage, &used, n_rhs * n_x, sizeof(double));
     b->guard = dalcs_carve(storage, &used, n_pairs * DALCS_LANES, sizeof(double));
     b->residual = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
     b->in = dalcs_carve(storage, &used, (size_t)b->stages->n_in, sizeof(double));
@@ -587,6 +591,9 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
         DALCS_TRY(solve_real(b, &is_lossy));
         DALCS_TRY(solve_pairs(b, is_lossy));
         take_real(b);
+        if (!entry->frees_states) {
+            dalcs_stage_shift_find(b);
+        }
     }
     b->is_known = b->n_followers > 0;
     return DALCS_OK;
