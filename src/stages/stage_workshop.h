@@ -25,10 +25,11 @@ struct dalcs_stage_workshop {
     uint64_t *mode;                   /* of the last map */
     bool is_known; /* what is eliminated below serves a map of this mode with another step length */
     double *plain_base, *plain_P, *plain_rhs; /* base, P and rhs before they were balanced */
-    double *base;                             /* [n][n] balanced S without P, by columns */
+    int *nonzero_p, *nonzero_i;               /* by columns, where base or P have something */
+    double *base;                             /* balanced S without P, of the nonzeros */
     double *P;                                /* [n_x][n_x] balanced */
     double *rhs;        /* [n_rhs][n] balanced: unit states, constants, unit waves */
-    double *S;          /* [n][n] the real one, balanced */
+    double *size;       /* of the nonzeros of the real S, before they were balanced */
     long double *whole; /* [n][n + n_rhs] S without P by rows, then followers as pivots */
     int n_kept, n_followers;
     int *kept, *kept_row;   /* [n_kept] unknowns and rows of the systems: states first */
