@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Inverters with any number of legs: the currents of coils in closed form, and rectifiers behind filters.
 
-usage: inverters.py PROGRAM [MOST_SWITCHES]
+usage: inverter_legs.py PROGRAM [MOST_SWITCHES]
 
 A leg is two switches with a diode across each, of which a sine above or below a triangle closes one. So its output is
 at one rail or the other, whatever its current does. The loads R and L of all legs meet in a star that nothing else
@@ -148,7 +148,7 @@ def check_filters(checker, program, switches, models):
 def main():
     program = sys.argv[1]
     most = int(sys.argv[2]) if sys.argv[2:] else 36
-    checker = Checker("inverters")
+    checker = Checker("inverter legs")
     for models in MODELS:
         for switches in (n for n in (2, 6, 12, 36) if n <= most):
             check_coils(checker, program, switches, models)
