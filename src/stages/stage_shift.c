@@ -6,47 +6,52 @@
 
 /* A step in which states move so little by themselves that what they move is what the mode does not allow, as in the
  * shortest steps of projection.c. */
-static const double moment = 0x1p-30;
+static const double at_once = 0x1p-30;
 
-/* The real system of what is kept, of implicit Euler over so short a step. */
-static void fill_moment(const struct dalcs_stage_workshop *b, double h) {
-    const double sigma = b->stages->method->lambda / h;
+/* What is kept without its rates, with its right-hand sides, by rows. */
+static void fill_moment(const struct dalcs_stage_workshop *b, double *to) {
     const int n = b->n_kept;
     const int width = dalcs_dense_row(n, b->n_rhs);
-    for (int i = 0; i < n; i++) {
-        double *row = b->moment + i * width;
+    for (int i = 0; i < n; i++, to += width) {
         const long double *from = b->whole + b->kept_row[i] * (b->n + b->n_rhs);
         for (int j = 0; j < n; j++) {
-            row[j] = (double)from[b->kept[j]];
+            to[j] = (double)from[b->kept[j]];
         }
         for (int j = n; j < width; j++) {
-            row[j] = j < n + b->n_rhs ? (double)from[b->n + j - n] : 0.0;
-        }
-        for (int j = 0; j < b->n_x && i < b->n_x; j++) {
-            row[j] += sigma * b->P[j * b->n_x + i];
+            to[j] = j < n + b->n_rhs ? (double)from[b->n + j - n] : 0.0;
         }
     }
 }
 
-/* b->shift += weight times what a step of implicit Euler of length h, over lambda, adds to the states. */
-static void add_shift(struct dalcs_stage_workshop *b, double h, double weight) {
+/* That is solved for a step of implicit Euler of length h, over lambda. */
+static bool solve_moment(const struct dalcs_stage_workshop *b, double h, double *moment) {
+    const double sigma = b->stages->method->lambda / h;
     const int width = dalcs_dense_row(b->n_kept, b->n_rhs);
-    fill_moment(b, h);
-    bool is_regular = dalcs_dense_solve(b->n_kept, b->n_rhs, b->moment) > 0.0;
+    for (int j = 0; j < b->n_x; j++) {
+        for (int i = 0; i < b->n_x; i++) {
+            moment[i * width + j] += sigma * b->P[j * b->n_x + i];
+        }
+    }
+    return dalcs_dense_solve(b->n_kept, b->n_rhs, moment) > 0.0;
+}
+
+/* The limit of what such a step adds to the states as it gets shorter, from two by extrapolation. What goes on by itself
+ * moves states in proportion to the step, and cancels. */
+void dalcs_stage_shift_find(struct dalcs_stage_workshop *b) {
+    const int width = dalcs_dense_row(b->n_kept, b->n_rhs);
+    double *half = b->moment;
+    double *all = half + b->n_kept * width;
+    fill_moment(b, half);
+    memcpy(all, half, (size_t)(b->n_kept * width) * sizeof(*all));
+    bool is_regular = solve_moment(b, 0.5 * at_once * b->entry->h, half);
+    is_regular = solve_moment(b, at_once * b->entry->h, all) && is_regular;
     for (int j = 0; j < b->n_rhs; j++) {
         for (int x = 0; x < b->n_x; x++) {
-            double step = b->moment[x * width + b->n_kept + j] * b->column_scale[x];
-            b->shift[j * b->n_x + x] += is_regular ? weight * step : NAN;
+            int at = x * width + b->n_kept + j;
+            double shift = (2.0 * half[at] - all[at]) * b->column_scale[x];
+            b->shift[j * b->n_x + x] = is_regular ? shift : NAN;
         }
     }
-}
-
-/* How far the mode moves states at once: the limit of a step of implicit Euler as it gets shorter, from two by
- * extrapolation. What goes on by itself moves states in proportion to the step, and cancels. */
-void dalcs_stage_shift_find(struct dalcs_stage_workshop *b) {
-    memset(b->shift, 0, (size_t)(b->n_rhs * b->n_x) * sizeof(double));
-    add_shift(b, 0.5 * moment * b->entry->h, 2.0);
-    add_shift(b, moment * b->entry->h, -1.0);
 }
 
 /* A source is what it is at the start. */

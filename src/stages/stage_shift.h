@@ -9,9 +9,9 @@
 #include "dense_solve.h"
 #include "stage_workshop.h"
 
-/* Of a workshop's moment, for up to n unknowns. */
+/* Of a workshop's two moments, for up to n unknowns. */
 static inline size_t dalcs_stage_shift_room(int n, int n_rhs) {
-    return (size_t)n * (size_t)dalcs_dense_row(n, n_rhs);
+    return 2 * (size_t)n * (size_t)dalcs_dense_row(n, n_rhs);
 }
 
 /* b->shift, once the workshop's unknowns without memory are eliminated. */

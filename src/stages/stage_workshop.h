@@ -55,11 +55,10 @@ struct dalcs_stage_workshop {
     double *filtered; /* [2][room] what these make of it */
     struct dalcs_extended *defect;  /* [n_x] that of the states */
     struct dalcs_extended *lasting; /* [n_x] and what they make of that */
-    double
-        *moment; /* [n_kept][n_kept + n_rhs, in whole quads] the real system of a very short step */
-    double *shift;      /* [n_rhs][n_x] how far the mode moves states at once */
-    double *guard;      /* [n_pairs][lanes] */
-    double *residual;   /* [n] */
+    double *moment;   /* [2][n_kept][n_kept + n_rhs, in whole quads] real systems of short steps */
+    double *shift;    /* [n_rhs][n_x] how far the mode moves states at once */
+    double *guard;    /* [n_pairs][lanes] */
+    double *residual; /* [n] */
     bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
     double *in;         /* [n_in] of such a map */
     struct dalcs_stage_functions functions;
