@@ -13,6 +13,7 @@ void dalcs_lu_patterns_finish(struct dalcs_lu_patterns *patterns, klu_common *co
     for (int k = 0; k < patterns->n; k++) {
         forget(&patterns->known[k], common);
     }
+    free(patterns->known);
     *patterns = (struct dalcs_lu_patterns){0};
 }
 
@@ -35,6 +36,12 @@ static enum dalcs_status analyse(struct dalcs_lu_patterns *patterns, klu_common 
     const size_t n_starts = (size_t)n + 1;
     const size_t n_entries = (size_t)p[n];
     struct dalcs_lu_pattern made = {.n = n, .keeps_diagonal = keeps_diagonal};
+    if (patterns->known == NULL) {
+        patterns->known = dalcs_alloc(DALCS_LU_PATTERNS, sizeof(*patterns->known));
+    }
+    if (patterns->known == NULL) {
+        return DALCS_E_NOMEM;
+    }
     DALCS_TRY(dalcs_lu_analyze(&made.symbolic, common, n, p, i));
     made.p = malloc((n_starts + n_entries) * sizeof(*made.p));
     if (made.p == NULL) {

@@ -20,7 +20,7 @@ struct dalcs_lu_patterns {
         bool keeps_diagonal;
         int *p; /* [n + 1], behind it i[p[n]] */
         klu_symbolic *symbolic;
-    } known[DALCS_LU_PATTERNS]; /* the latest first */
+    } * known; /* [DALCS_LU_PATTERNS] the latest first; NULL: there was none yet */
 };
 
 /* dalcs_lu_factor() by an analysis that is there, or that is kept. */
