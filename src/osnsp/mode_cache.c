@@ -258,9 +258,9 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
     }
     enum dalcs_status status =
         dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, dalcs_far_apart);
-    return status > DALCS_OK
-               ? dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL, least_rcond(p))
-               : status;
+    return status > DALCS_OK ? dalcs_lu_factor_again(&e->lu, &p->patterns, &p->klu, a->n, a->p,
+                                                     a->i, a->x, least_rcond(p))
+                             : status;
 }
 
 /* Is the least pivot no more than rounding of what was subtracted in it? Columns far apart make the estimate of the
@@ -396,6 +396,7 @@ void dalcs_modes_finish(struct dalcs_osnsp *p) {
         free(p->form[k]);
     }
     p->n_forms = 0;
+    dalcs_lu_patterns_finish(&p->patterns, &p->klu);
     free(p->matched_row);
     p->matched_row = NULL;
     p->n_matched = 0;

@@ -13,7 +13,7 @@
 #ifndef DALCS_OSNSP_H
 #define DALCS_OSNSP_H
 
-#include "lu.h"
+#include "lu_patterns.h"
 #include "partition.h"
 #include "step_form.h"
 
@@ -75,6 +75,7 @@ struct dalcs_osnsp {
     double *given;                      /* [n_x + n_inputs] inputs with their values */
     int n_tangents;                     /* times that their lines in the equations were changed */
     klu_common klu;
+    struct dalcs_lu_patterns patterns; /* of modes */
     int n_words;
     uint64_t *mode; /* [n_words] bit d: w_d = 0 */
     double *w;      /* [n_pairs] of the last answer */

@@ -110,7 +110,7 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
     enum dalcs_status status = dalcs_modes_factor_small(p, &entry->lu, n, a.p, a.i, a.x, 0.0);
     if (status > DALCS_OK) {
         dalcs_lu_keep_diagonal(&p->klu, true);
-        status = dalcs_lu_factor(&entry->lu, &p->klu, n, a.p, a.i, a.x, NULL, 0.0);
+        status = dalcs_lu_factor_again(&entry->lu, &p->patterns, &p->klu, n, a.p, a.i, a.x, 0.0);
         dalcs_lu_keep_diagonal(&p->klu, false);
     }
     dalcs_columns_finish(&a);

@@ -2,6 +2,7 @@
  * of the few solutions that the workshop has for unit states and unit inputs. */
 #include "dense_map.h"
 #include "extremes.h"
+#include "stage_shift.h"
 #include "stage_workshop.h"
 #include "wide_vectors.h"
 
@@ -28,12 +29,17 @@ DALCS_TWICE(void, find_guards,
             (b, rhs_column, share)) {
     const struct dalcs_system *s = b->system;
     const double *constant = b->stages->excitation->constant;
-    memset(b->guard, 0, (size_t)(s->n_pairs * DALCS_LANES) * sizeof(double));
     for (int d = 0; d < s->n_pairs; d++) {
-        if (dalcs_stage_is_on(b->entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE) {
+        if (dalcs_stage_is_on(b->entry, d)) {
             continue;
         }
         double *w = b->guard + d * DALCS_LANES;
+        for (int i = 0; i < DALCS_LANES; i++) {
+            w[i] = 0.0;
+        }
+        if (s->pair[d].kind != DALCS_PAIR_DIODE) {
+            continue;
+        }
         for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
             int c = b->place[s->C.j[k]];
             if (c >= 0) {
@@ -115,7 +121,9 @@ static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_colu
         int from = b->follows_p[f];
         int to = b->follows_p[f + 1];
         struct dalcs_extended_row row;
-        b->follows_x[to - 1] = dalcs_extended_of(dalcs_stage_workshop_drive(b, f, rhs_column));
+        long double own = dalcs_stage_workshop_drive(b, f, rhs_column);
+        b->follows_x[to - 1] = dalcs_extended_of(own);
+        to -= own == 0.0L ? 1 : 0; /* most are driven by no source */
         dalcs_extended_combine(m->s + 1, to - from, b->follows_x + from, b->stage,
                                b->follows_j + from, &row);
         put_stages(b, b->follower[f], &row, 0.0);
@@ -236,25 +244,18 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     to->currents += b->entry->current_rows;
 }
 
-/* residual += value * column of n entries, with room for whole quads behind both. Returns the largest
- * term, at least `largest`. */
-DALCS_TWICE(double, add_terms,
-            (int n, const double *column, double value, double *residual, double largest),
-            (n, column, value, residual, largest)) {
-    dalcs_quad most = {largest};
-    for (int r = 0; r < n; r += DALCS_QUAD) {
-        dalcs_quad term;
-        dalcs_quad sum;
-        dalcs_quad_load(&term, column + r);
-        dalcs_quad_load(&sum, residual + r);
-        term *= value;
-        dalcs_quad_keep(&term, n - r);
-        sum += term;
-        dalcs_quad_store(residual + r, &sum);
-        dalcs_quad_unsign(&term);
-        dalcs_quad_raise(&most, &term);
+/* b->residual += value * what column c has in the equations without derivatives. Returns the largest term, at least
+ * `largest`. */
+static double add_terms(const struct dalcs_stage_workshop *b, int c, double value, double largest) {
+    for (int k = b->nonzero_p[c]; k < b->nonzero_p[c + 1]; k++) {
+        int r = b->nonzero_i[k] - b->n_x;
+        if (r >= 0) {
+            double term = b->base[k] * value;
+            b->residual[r] += term;
+            largest = dalcs_larger(fabs(term), largest);
+        }
     }
-    return dalcs_quad_largest(&most);
+    return largest;
 }
 
 /* How well the rounded answer at the last stage satisfies the equations without derivatives, in
@@ -280,8 +281,7 @@ static void check_column(struct dalcs_stage_workshop *b, int column, int rhs_col
     for (int c = 0; c < b->n; c++) {
         double increment = b->lanes[c * DALCS_LANES + last] - (is_state && c == column ? 1.0 : 0.0);
         if (increment != 0.0) {
-            largest = add_terms(n_z, b->base + c * b->n + b->n_x, increment / b->column_scale[c],
-                                b->residual, largest);
+            largest = add_terms(b, c, increment / b->column_scale[c], largest);
         }
     }
     double worst = 0.0;
@@ -338,14 +338,18 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     entry->n_clashes = b->nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
     entry->current_rows = dalcs_dense_map_rows(stages->n_levered);
-    int all_rows = entry->rows + entry->current_rows;
+    int all_rows = entry->rows + entry->current_rows + (entry->frees_states ? 0 : b->n_x);
     entry->map = dalcs_dense_map_alloc(all_rows, n_columns(b));
     if (entry->map == NULL) {
         return DALCS_E_NOMEM;
     }
     entry->current_map = entry->map + entry->rows * n_columns(b);
+    entry->shift_map = entry->current_map + entry->current_rows * n_columns(b);
     entry->bytes += (size_t)all_rows * (size_t)n_columns(b) * sizeof(double);
     fill_map(b, function);
+    if (!entry->frees_states) {
+        dalcs_stage_shift_fill(b, function);
+    }
     return DALCS_OK;
 }
 

@@ -2,9 +2,10 @@
 #include "stage_workshop.h"
 
 #include "extended.h"
+#include "extremes.h"
 #include "stage_choice.h"
 #include "stage_matrix.h"
-#include "wide_vectors.h"
+#include "stage_shift.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,18 +37,20 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->room = (size_t)dalcs_quads_of((int)n);
     b->wave_column = dalcs_carve(storage, &used, (size_t)s->n_inputs, sizeof(int));
     b->place = dalcs_carve(storage, &used, all, sizeof(int));
-    b->row_scale = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
+    b->row_scale = dalcs_carve(storage, &used, n, sizeof(double));
     b->column_scale = dalcs_carve(storage, &used, n, sizeof(double));
     b->mode = dalcs_carve(storage, &used, (size_t)b->stages->n_words, sizeof(*b->mode));
     b->plain_base = dalcs_carve(storage, &used, n * n, sizeof(double));
     b->plain_P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
     b->plain_rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
-    b->base = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
+    b->nonzero_p = dalcs_carve(storage, &used, n + 1, sizeof(int));
+    b->nonzero_i = dalcs_carve(storage, &used, n * n, sizeof(int));
+    b->base = dalcs_carve(storage, &used, n * n, sizeof(double));
     b->P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
     b->rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
     b->whole_row_scale = dalcs_carve(storage, &used, n, sizeof(double));
     b->whole_column_scale = dalcs_carve(storage, &used, n, sizeof(double));
-    b->S = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
+    b->size = dalcs_carve(storage, &used, n * n, sizeof(double));
     b->of_real = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
     b->of_pairs = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(*b->of_pairs));
     b->filled = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(bool));
@@ -70,18 +73,18 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->filtered = dalcs_carve(storage, &used, 2 * b->room, sizeof(double));
     b->defect = dalcs_carve(storage, &used, n_x, sizeof(*b->defect));
     b->lasting = dalcs_carve(storage, &used, n_x, sizeof(*b->lasting));
+    b->moment =
+        dalcs_carve(storage, &used, dalcs_stage_shift_room((int)n, b->n_rhs), sizeof(double));
+    b->shift = dalcs_carve(storage, &used, n_rhs * n_x, sizeof(double));
     b->guard = dalcs_carve(storage, &used, n_pairs * DALCS_LANES, sizeof(double));
-    b->residual = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
+    b->residual = dalcs_carve(storage, &used, n, sizeof(double));
     b->in = dalcs_carve(storage, &used, (size_t)b->stages->n_in, sizeof(double));
     return used;
 }
 
-/* What is read before it is written has to be numbers: a quad behind matrices. */
+/* What is read before it is written has to be numbers: of whole quads. */
 static void clear(struct dalcs_stage_workshop *b) {
-    memset(b->base, 0, (size_t)((char *)b->P - (char *)b->base));
-    memset(b->S, 0, (size_t)((char *)b->of_real - (char *)b->S));
     memset(b->real, 0, (size_t)((char *)b->stage - (char *)b->real));
-    memset(b->residual, 0, (size_t)((char *)b->in - (char *)b->residual));
 }
 
 static bool is_driven(const struct dalcs_csr *a, const double *constant) {
@@ -180,6 +183,20 @@ static void add_inputs(const struct dalcs_stage_workshop *b, const struct dalcs_
     }
 }
 
+static void list_nonzeros(struct dalcs_stage_workshop *b) {
+    int n = 0;
+    b->nonzero_p[0] = 0;
+    for (int j = 0; j < b->n; j++) {
+        const double *column = b->plain_base + j * b->n;
+        const double *of_rates = j < b->n_x ? b->plain_P + j * b->n_x : NULL;
+        for (int i = 0; i < b->n; i++) {
+            b->nonzero_i[n] = i;
+            n += column[i] != 0.0 || (of_rates != NULL && i < b->n_x && of_rates[i] != 0.0) ? 1 : 0;
+        }
+        b->nonzero_p[j + 1] = n;
+    }
+}
+
 static void fill(struct dalcs_stage_workshop *b) {
     const struct dalcs_system *s = b->system;
     int n_equations = dalcs_system_n_equations(s);
@@ -200,72 +217,63 @@ static void fill(struct dalcs_stage_workshop *b) {
             b->plain_P[s->P.j[k] * b->n_x + i] = s->P.x[k];
         }
     }
+    list_nonzeros(b);
 }
 
-/* Both with room for whole quads in S and in row_scale. */
-DALCS_TWICE(void, balance_rows,
-            (int n, const double *S, const double *column_scale, double *row_scale),
-            (n, S, column_scale, row_scale)) {
-    for (int i = 0; i < n; i += DALCS_QUAD) {
-        dalcs_quad largest = {0.0};
-        for (int j = 0; j < n; j++) {
-            dalcs_quad a;
-            dalcs_quad_load(&a, S + j * n + i);
-            dalcs_quad_unsign(&a);
-            a *= column_scale[j];
-            dalcs_quad_raise(&largest, &a);
+static void balance_rows(const struct dalcs_stage_workshop *b) {
+    memset(b->row_scale, 0, (size_t)b->n * sizeof(double));
+    for (int j = 0; j < b->n; j++) {
+        for (int k = b->nonzero_p[j]; k < b->nonzero_p[j + 1]; k++) {
+            double *largest = &b->row_scale[b->nonzero_i[k]];
+            *largest = dalcs_larger(b->size[k] * b->column_scale[j], *largest);
         }
-        dalcs_quad_store(row_scale + i, &largest);
     }
-    for (int i = 0; i < dalcs_quads_of(n); i++) {
-        row_scale[i] = i < n ? dalcs_stage_matrix_scale(row_scale[i]) : 0.0;
+    for (int i = 0; i < b->n; i++) {
+        b->row_scale[i] = dalcs_stage_matrix_scale(b->row_scale[i]);
     }
 }
 
-DALCS_TWICE(void, balance_columns,
-            (int n, const double *S, const double *row_scale, double *column_scale),
-            (n, S, row_scale, column_scale)) {
-    for (int j = 0; j < n; j++) {
-        dalcs_quad largest = {0.0};
-        for (int i = 0; i < n; i += DALCS_QUAD) {
-            dalcs_quad a;
-            dalcs_quad scale;
-            dalcs_quad_load(&a, S + j * n + i);
-            dalcs_quad_load(&scale, row_scale + i);
-            dalcs_quad_unsign(&a);
-            a *= scale;
-            dalcs_quad_raise(&largest, &a);
+static void balance_columns(const struct dalcs_stage_workshop *b) {
+    for (int j = 0; j < b->n; j++) {
+        double largest = 0.0;
+        for (int k = b->nonzero_p[j]; k < b->nonzero_p[j + 1]; k++) {
+            largest = dalcs_larger(b->size[k] * b->row_scale[b->nonzero_i[k]], largest);
         }
-        column_scale[j] = dalcs_stage_matrix_scale(dalcs_quad_largest(&largest));
+        b->column_scale[j] = dalcs_stage_matrix_scale(largest);
+    }
+}
+
+/* Those of S at the real eigenvalue. */
+static void find_sizes(const struct dalcs_stage_workshop *b) {
+    double sigma = b->stages->method->lambda / b->entry->h;
+    for (int j = 0; j < b->n; j++) {
+        for (int k = b->nonzero_p[j]; k < b->nonzero_p[j + 1]; k++) {
+            int i = b->nonzero_i[k];
+            double rate = i < b->n_x && j < b->n_x ? b->plain_P[j * b->n_x + i] : 0.0;
+            b->size[k] = fabs(b->plain_base[j * b->n + i] + sigma * rate);
+        }
     }
 }
 
 /* Rows and columns of |S| at the real eigenvalue get a largest entry near 1. */
 static void balance(struct dalcs_stage_workshop *b) {
     int n = b->n;
-    double sigma = b->stages->method->lambda / b->entry->h;
     for (int i = 0; i < n; i++) {
-        b->row_scale[i] = 1.0;
         b->column_scale[i] = 1.0;
     }
-    memcpy(b->S, b->plain_base, (size_t)n * (size_t)n * sizeof(double));
-    for (int j = 0; j < b->n_x; j++) {
-        for (int i = 0; i < b->n_x; i++) {
-            b->S[j * n + i] += sigma * b->plain_P[j * b->n_x + i];
-        }
-    }
+    find_sizes(b);
     for (int round = 0; round < BALANCING_ROUNDS; round++) {
-        balance_rows(n, b->S, b->column_scale, b->row_scale);
-        balance_columns(n, b->S, b->row_scale, b->column_scale);
+        balance_rows(b);
+        balance_columns(b);
     }
     for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            double scale = b->row_scale[i] * b->column_scale[j];
-            b->base[j * n + i] = b->plain_base[j * n + i] * scale;
-            b->S[j * n + i] *= scale;
-            if (j < b->n_x && i < b->n_x) {
-                b->P[j * b->n_x + i] = b->plain_P[j * b->n_x + i] * scale;
-            }
+        for (int k = b->nonzero_p[j]; k < b->nonzero_p[j + 1]; k++) {
+            int i = b->nonzero_i[k];
+            b->base[k] = b->plain_base[j * n + i] * (b->row_scale[i] * b->column_scale[j]);
+        }
+        for (int i = 0; i < b->n_x && j < b->n_x; i++) {
+            b->P[j * b->n_x + i] =
+                b->plain_P[j * b->n_x + i] * (b->row_scale[i] * b->column_scale[j]);
         }
     }
     memcpy(b->entry->natural, b->column_scale,
@@ -295,14 +303,19 @@ static void fill_whole(struct dalcs_stage_workshop *b) {
     for (int i = 0; i < n; i++) {
         long double *row = b->whole + i * (n + b->n_rhs);
         for (int j = 0; j < n; j++) {
-            row[j] = b->base[j * n + i];
-        }
-        for (int j = 0; j < n && b->nullity > 0; j++) {
-            row[j] += border(b, i, b->choice, n, j);
+            row[j] = 0.0L;
         }
         for (int j = 0; j < b->n_rhs; j++) {
             row[n + j] = b->rhs[j * n + i];
             row[n + j] += b->nullity > 0 ? border(b, i, b->chosen, b->n_rhs, j) : 0.0;
+        }
+    }
+    for (int j = 0; j < n; j++) {
+        for (int k = b->nonzero_p[j]; k < b->nonzero_p[j + 1]; k++) {
+            b->whole[b->nonzero_i[k] * (n + b->n_rhs) + j] = b->base[k];
+        }
+        for (int i = 0; i < n && b->nullity > 0; i++) {
+            b->whole[i * (n + b->n_rhs) + j] += border(b, i, b->choice, n, j);
         }
     }
 }
@@ -587,6 +600,9 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
         DALCS_TRY(solve_real(b, &is_lossy));
         DALCS_TRY(solve_pairs(b, is_lossy));
         take_real(b);
+        if (!entry->frees_states) {
+            dalcs_stage_shift_find(b);
+        }
     }
     b->is_known = b->n_followers > 0;
     return DALCS_OK;

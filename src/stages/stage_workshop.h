@@ -25,10 +25,11 @@ struct dalcs_stage_workshop {
     uint64_t *mode;                   /* of the last map */
     bool is_known; /* what is eliminated below serves a map of this mode with another step length */
     double *plain_base, *plain_P, *plain_rhs; /* base, P and rhs before they were balanced */
-    double *base;                             /* [n][n] balanced S without P, by columns */
+    int *nonzero_p, *nonzero_i;               /* by columns, where base or P have something */
+    double *base;                             /* balanced S without P, of the nonzeros */
     double *P;                                /* [n_x][n_x] balanced */
     double *rhs;        /* [n_rhs][n] balanced: unit states, constants, unit waves */
-    double *S;          /* [n][n] the real one, balanced */
+    double *size;       /* of the nonzeros of the real S, before they were balanced */
     long double *whole; /* [n][n + n_rhs] S without P by rows, then followers as pivots */
     int n_kept, n_followers;
     int *kept, *kept_row;   /* [n_kept] unknowns and rows of the systems: states first */
@@ -54,8 +55,10 @@ struct dalcs_stage_workshop {
     double *filtered; /* [2][room] what these make of it */
     struct dalcs_extended *defect;  /* [n_x] that of the states */
     struct dalcs_extended *lasting; /* [n_x] and what they make of that */
-    double *guard;                  /* [n_pairs][lanes] */
-    double *residual;               /* [n] */
+    double *moment;   /* [2][n_kept][n_kept + n_rhs, in whole quads] real systems of short steps */
+    double *shift;    /* [n_rhs][n_x] how far the mode moves states at once */
+    double *guard;    /* [n_pairs][lanes] */
+    double *residual; /* [n] */
     bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
     double *in;         /* [n_in] of such a map */
     struct dalcs_stage_functions functions;
