@@ -328,6 +328,10 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
 }
 
+void dalcs_audit_has_no_rest(struct dalcs_audit *audit, int part) {
+    audit->part[part].is_restless = true;
+}
+
 void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     const int index = stretch->part;
     struct audit_part *part = &audit->part[index];

@@ -162,6 +162,9 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
 
 void dalcs_audit_destroy(struct dalcs_audit *audit);
 
+/* Of a part that oscillates for ever, a switch that opens what closes it, there is no operating point: it begins somewhere. */
+void dalcs_audit_has_no_rest(struct dalcs_audit *audit, int part);
+
 /* A stretch is complete, which took so much work, in instructions, about: need nobody look at it more closely? Where
  * somebody must, and at the last one in any case, dalcs_audit_leave() follows. */
 bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,

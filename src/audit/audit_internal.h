@@ -104,6 +104,7 @@ struct audit_part {
     bool has_smooth;     /* a source of a smooth function */
     bool has_formula;    /* one that jumps: in no time it may be anything between */
     bool has_reader;     /* what acts by a current: H, F, a formula */
+    bool is_restless;    /* it had no operating point to begin with */
     bool has_entered;    /* the state at its last event is in `before` */
     bool is_open;        /* `before` is the end of the stretch that was just left */
     bool was_integrated; /* an interval in it was looked at */

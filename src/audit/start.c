@@ -111,7 +111,8 @@ void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *first) {
     if (audit->options.origin == DALCS_AUDIT_FROM_INITIAL) {
         check_initial(audit, part, first);
-    } else if (audit->options.origin == DALCS_AUDIT_FROM_REST && !part->has_reader) {
+    } else if (audit->options.origin == DALCS_AUDIT_FROM_REST && !part->has_reader &&
+               !part->is_restless) {
         check_currents(audit, part, first);
         if (!has_moving_current(audit, part)) {
             check_coils(audit, part, first);

@@ -73,6 +73,9 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
 /* f - g x of one source. */
 double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x);
 
+/* What rounding of its arguments makes of it. */
+double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x);
+
 /* The arguments x[n_smooth][2] in columns y[n_columns]. */
 void dalcs_smooth_arguments(const struct dalcs_system *system, const double *y, double (*x)[2]);
 

@@ -213,25 +213,18 @@ static bool is_nearly_right(const struct dalcs_radau *r, const struct dalcs_rada
            dalcs_radau_ladder(part, part->length.level) >= 8.0 * r->resolution;
 }
 
-/* No shorter step mends the error, and it is rounding's: is it let pass from now on? */
-static bool lets_pass(const struct dalcs_radau_part *part, struct dalcs_search *search,
-                      const struct dalcs_step_quality *quality) {
-    bool is_rounding = search->stuck >= STUCK && quality->of_unit < dalcs_doubt_noise(part);
-    if (is_rounding && isfinite(quality->ratio) && search->tolerated == 1.0) {
-        search->tolerated = 4.0 * quality->ratio;
-        return true;
-    }
-    /* What allowed errors of states are levered up to, and shorter steps see as well, is that of a coil that is cut
-     * off. Maps know where that is. */
-    bool is_levered =
-        part->segment.rounding > 1.0 && search->stuck >= LEVERED_STUCK && quality->own <= 1.0;
-    search->spared = search->spared || is_levered;
-    return is_levered;
+/* Are states where they should be, and only voltages off that errors of theirs are levered up to, of a coil that is cut off?
+ * Maps know where that is. Then nothing is wrong with mode and state. */
+static bool is_levered(const struct dalcs_radau_part *part,
+                       const struct dalcs_step_quality *quality) {
+    return part->segment.rounding > 1.0 && quality->own <= 1.0;
 }
 
-enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       struct dalcs_search *search,
-                                       const struct dalcs_step_quality *quality, bool *done) {
+/* What may be wrong but for the length of the step: a guess, or the state. *answered: there is another try. */
+static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                    struct dalcs_search *search,
+                                    const struct dalcs_step_quality *quality, bool *answered) {
+    *answered = true;
     if (search->guessed) {
         return dalcs_search_refuse(part, search);
     }
@@ -246,10 +239,36 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
     }
     bool asked = search->restarts > 0 || !part->guards.fresh;
     bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
-    if (quality->own < most_projected && may_project && dalcs_projection_sees(part, false)) {
-        bool moved;
-        DALCS_TRY(dalcs_search_project(r, part, search, &moved));
-        if (moved) {
+    *answered = false;
+    return quality->own < most_projected && may_project && dalcs_projection_sees(part, false)
+               ? dalcs_search_project(r, part, search, answered)
+               : DALCS_OK;
+}
+
+/* No shorter step mends the error, and it is rounding's: is it let pass from now on? */
+static bool lets_pass(const struct dalcs_radau_part *part, struct dalcs_search *search,
+                      const struct dalcs_step_quality *quality) {
+    bool is_rounding = search->stuck >= STUCK && quality->of_unit < dalcs_doubt_noise(part);
+    if (is_rounding && isfinite(quality->ratio) && search->tolerated == 1.0) {
+        search->tolerated = 4.0 * quality->ratio;
+        return true;
+    }
+    if (search->stuck < LEVERED_STUCK || !is_levered(part, quality)) {
+        return false;
+    }
+    search->spared = true; /* shorter steps see it as well */
+    search->stuck = 0;     /* another error is compared from now on */
+    search->ratio_before = INFINITY;
+    return true;
+}
+
+enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       struct dalcs_search *search,
+                                       const struct dalcs_step_quality *quality, bool *done) {
+    if (!is_levered(part, quality)) {
+        bool answered;
+        DALCS_TRY(doubt_mode(r, part, search, quality, &answered));
+        if (answered) {
             return DALCS_OK;
         }
     }
@@ -360,15 +379,29 @@ static enum dalcs_status turn_switches(struct dalcs_radau *r, struct dalcs_radau
     return DALCS_OK;
 }
 
-/* All that has crossed. */
-static bool are_switches_that_remember(const struct dalcs_radau_part *part) {
+static bool is_switch_that_remembers(const struct dalcs_radau_part *part, int guard) {
     const struct dalcs_system *s = part->component->system;
-    bool all = part->guards.n_crossed > 0;
-    for (int k = 0; k < part->guards.n_crossed && all; k++) {
-        int guard = part->guards.crossed[k];
-        all = guard >= s->n_pairs && dalcs_pair_remembers(&s->pair[dalcs_guard_pair(part, guard)]);
+    return guard >= s->n_pairs && dalcs_pair_remembers(&s->pair[dalcs_guard_pair(part, guard)]);
+}
+
+/* Is all that has crossed such switches? What the one-step problem has said of diodes it has said with the switches where
+ * they stand, so once it was asked these come first, and what else has crossed is left out. */
+static bool leave_switches_that_remember(struct dalcs_radau_part *part, bool asked) {
+    struct dalcs_part_guards *g = &part->guards;
+    int n = 0;
+    for (int k = 0; k < g->n_crossed; k++) {
+        n += is_switch_that_remembers(part, g->crossed[k]) ? 1 : 0;
     }
-    return all;
+    if (n == 0 || (n < g->n_crossed && !asked)) {
+        return false;
+    }
+    n = 0;
+    for (int k = 0; k < g->n_crossed; k++) {
+        g->crossed[n] = g->crossed[k];
+        n += is_switch_that_remembers(part, g->crossed[k]) ? 1 : 0;
+    }
+    g->n_crossed = n;
+    return true;
 }
 
 enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -384,7 +417,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
     if (search->opened) {
         return tie_crossed(part, search);
     }
-    if (are_switches_that_remember(part)) {
+    if (leave_switches_that_remember(part, search->restarts > 0)) {
         return turn_switches(r, part, search);
     }
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;

@@ -149,6 +149,9 @@ static void enter(struct dalcs_audit_run *a, int k) {
 
 void dalcs_audit_run_begin(struct dalcs_audit_run *a) {
     for (int i = 0; a->audit != NULL && i < a->n_stepped; i++) {
+        if (a->euler->component[a->stepped[i]].restless != NULL) {
+            dalcs_audit_has_no_rest(a->audit, a->stepped[i]);
+        }
         enter(a, a->stepped[i]);
     }
 }

@@ -550,8 +550,13 @@ class Summary(Case):
                    ".model m SW(Vt=0.5)\n{}\n.end\n")
         self.write(flutter.format(".op"))
         done = self.dalcs("run", "a.cir", "-q")
-        self.assertEqual(done.stderr, "dalcs: warning: a switch and the voltage that controls it "
-                         "do not agree, open or closed; the values are those of its last command\n")
+        self.assertEqual(done.stderr, "dalcs: warning: at the operating point 's1' and what controls it do not "
+                         "agree: closed it opens, open it closes; it is left as it stood\n")
+        self.write("an oscillator without an operating point\nV1 in 0 12\nS1 in a 0 o m\nD1 0 a\nL1 a o 100u\n"
+                   "C1 o 0 100u\nR1 o 0 5\n.model m SW(Vt=-5 Vh=0.05)\n.tran 1u 1m\n.end\n")
+        done = self.dalcs("run", "a.cir", "-q")
+        self.assertRegex(done.stderr, r"^dalcs: warning: at the operating point 's1' and what controls it .*\n"
+                         r"  hint: with uic, and IC= where it matters, a run starts without one\n$")
         self.write(flutter.format("C1 a c 1n\nV2 c 0 SIN(0 1 1k)\nR2 c 0 1\n.tran 100u 200u"))
         done = self.dalcs("run", "a.cir", "-q", "--method", "euler")
         self.assertRegex(done.stderr, r"^dalcs: warning: in \d+ one-step problems a switch and the "
