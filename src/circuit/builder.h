@@ -208,6 +208,10 @@ struct dalcs_location dalcs_builder_keep_location(struct dalcs_builder *builder,
 /* The index of a node, made when new; -1 when out of memory. */
 int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *token);
 
+/* The same of a name that may be of none, without an error: -1. */
+int dalcs_builder_look_up_node(struct dalcs_builder *builder, const char *name);
+int dalcs_builder_look_up_device(struct dalcs_builder *builder, const char *name);
+
 /* The index of a node that an element names; else an error, and -1. */
 int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token);
 

@@ -262,6 +262,10 @@ const char *dalcs_function_refusal(const char *name) {
     return NULL;
 }
 
+bool dalcs_function_is_noise(const char *name) {
+    return strcmp(name, "rand") == 0 || strcmp(name, "random") == 0 || strcmp(name, "white") == 0;
+}
+
 bool dalcs_function_remembers(const char *name, int *least, int *most) {
     const bool is_derivative = strcmp(name, "ddt") == 0;
     *least = 1;

@@ -402,8 +402,9 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
 /* A card that is not of a flat netlist of numbers. */
 static bool is_language(const struct dalcs_token *name) {
     static const char *const words[] = {
-        ".param", ".params", ".csparam", ".global_param", ".func", ".subckt", ".ends", ".global",
-        ".if",    ".elseif", ".else",    ".endif",        ".step", ".wcase",  ".wc"};
+        ".param",  ".params", ".csparam", ".global_param", ".func",   ".function",
+        ".subckt", ".ends",   ".global",  ".if",           ".elseif", ".else",
+        ".endif",  ".step",   ".wcase",   ".wc",           ".params:"};
     for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
         if (strcmp(name->text, words[k]) == 0) {
             return true;
