@@ -184,6 +184,16 @@ void dalcs_gate_readers_finish(struct dalcs_gate_readers *readers);
 /* ---- carrier.c ------------------------------------------------------------------------------------ */
 
 /* A sawtooth, a triangle or a staircase of time; NULL: something else, or out of memory. */
+/* A multiple of one voltage and a number, where the source of its node has two values; NULL: it has others. */
+const struct dalcs_form *dalcs_commutation_steps(struct dalcs_compiler *c,
+                                                 const struct dalcs_formula *f,
+                                                 const struct dalcs_form *form);
+
+/* delay(x, t) (delay.c). */
+size_t dalcs_delay_pending(const struct dalcs_builder *builder); /* stimuli that they will have */
+bool dalcs_delay_is(const struct dalcs_formula *f);
+const struct dalcs_form *dalcs_delay_form(struct dalcs_compiler *c, const struct dalcs_formula *f);
+
 /* rand(x), random(x) and white(x) of a straight line in time (noise.c). NULL: it is another formula, or an error. */
 const struct dalcs_form *dalcs_noise_form(struct dalcs_compiler *c, const struct dalcs_formula *f);
 

@@ -245,6 +245,11 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_stimuli += n_limits;
         }
         table->n_inner += count_parasitics(card) + count_storage(card);
+        const size_t n_delays = dalcs_delay_count(builder, card);
+        table->n_inner += n_delays * DALCS_GATE_DEVICES;
+        table->n_stimuli += 2 * n_delays;
+        table->n_gates += n_delays;
+        table->n_gate_inputs += n_delays;
         table->n_stimuli += dalcs_core_count(card);
         table->n_inner += is_load(card) ? 2 : 0;
         if (dalcs_card_is_logic(card)) {

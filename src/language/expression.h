@@ -119,6 +119,9 @@ const struct dalcs_function *dalcs_function_find(const char *name, enum dalcs_di
 const char *dalcs_function_refusal(const char *name);
 
 /* ddt(x), idt(x, first, reset) and sdt: of a source's formula alone, which becomes a capacitor with it. */
+/* LTspice's delay(x, t) and absdelay(x, t). */
+bool dalcs_function_is_delay(const char *name);
+
 /* LTspice's rand(x), random(x) and white(x): a random value for each whole x. */
 bool dalcs_function_is_noise(const char *name);
 

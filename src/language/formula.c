@@ -260,13 +260,11 @@ static void check_call(struct work *w, const struct frame *f, const struct dalcs
     int least;
     int most;
     if (dalcs_scope_find_function(w->scope, o->u.name) != NULL ||
-        dalcs_function_is_noise(o->u.name) || dalcs_function_remembers(o->u.name, &least, &most)) {
+        dalcs_function_is_noise(o->u.name) || dalcs_function_is_delay(o->u.name) ||
+        dalcs_function_remembers(o->u.name, &least, &most)) {
         return;
     }
-    const char *hint =
-        strcmp(o->u.name, "delay") == 0
-            ? "a line of coils and capacitors delays, or BUF with td= of a signal of two levels"
-            : dalcs_function_refusal(o->u.name);
+    const char *hint = dalcs_function_refusal(o->u.name);
     fail(w, f, o, hint, "'%s(...)' is not a function of the values at one time", o->u.name);
 }
 
@@ -324,8 +322,10 @@ static void call(struct work *w, const struct frame *f, const struct dalcs_opera
         call_memory(w, f, o, least, most);
         return;
     }
-    if (dalcs_function_is_noise(o->u.name) && o->count == 1 && w->variable == NULL) {
-        push_over(w, f, o, DALCS_FORMULA_CALL, 1);
+    const bool is_noise = dalcs_function_is_noise(o->u.name) && o->count == 1;
+    const bool is_delay = dalcs_function_is_delay(o->u.name) && (o->count == 2 || o->count == 3);
+    if ((is_noise || is_delay) && w->variable == NULL) {
+        push_over(w, f, o, DALCS_FORMULA_CALL, o->count);
         return;
     }
     const struct dalcs_function *function =

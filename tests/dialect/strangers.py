@@ -223,9 +223,50 @@ def changing(checker):
     checker.check(done is None or "begins at 0" in done.stderr, f"{done and done.stderr}")
 
 
+# ---- Delays -------------------------------------------------------------------------------------------------------
+
+def delays(checker):
+    # Of a source: as the source is later, between its edges and on them.
+    for words, value in (("PULSE(1 3 0.2m 0.2m 0.2m 1 2)", lambda t: 1 + min(max(t - 0.2e-3, 0) * 1e4, 2)),
+                         ("SIN(1 2 1k)", lambda t: 1 + (2 * math.sin(2 * math.pi * 1e3 * t) if t > 0 else 0)),
+                         ("PWL(0 1 0.5m 3 0.7m 0)", lambda t: 1 + max(t, 0) * 4e3 if t < 0.5e-3 else 3 - (t - 0.5e-3) * 1.5e4),
+                         ("EXP(0 2 0.1m 0.2m)", lambda t: 2 * (1 - math.exp(-(t - 0.1e-3) / 0.2e-3)) if t > 0.1e-3 else 0), ("2", lambda t: 2)):
+        for seconds in (0, 50e-6, 0.3e-3, 2e-3):
+            checker.ends(f"V1 a 0 {words}\nR1 a 0 1k\nB1 b 0 V=delay(v(a), {seconds!r})*2-1\nR2 b 0 1k\n.tran 10u 0.65m",
+                         {"v(b)": 2 * value(0.65e-3 - seconds) - 1})
+    # Of a signal of two values: a gate, a comparison, a formula, beside others.
+    wave = "V1 a 0 SIN(0 1 1k)\nR1 a 0 1k\n"
+    def bits(expression, name, extra=""):
+        return f"{wave}{extra}B1 b 0 V={expression}\nR2 b 0 1k\n.tran 10u 2.2m\n.meas tran up when v(b)=2.5 rise=2\n" \
+               f".meas tran down when v(b)=2.5 fall=1\n", {"up": 1e-3 + name, "down": 0.5e-3 + name}
+    for expression, extra in (("delay(v(q), 70u)", "Bq q 0 V=v(a)>0 ? 5 : 0\nRq q 0 1k\n"), ("delay(v(a)>0 ? 5 : 0, 70u)", ""),
+                              ("5*delay(u(v(a)), 70u)", ""), ("delay(v(q), 70u, 80u)", "A1 a 0 0 0 0 0 q 0 BUF Vhigh=5 Ref=0\nRq q 0 1k\n"),
+                              ("absdelay(v(q), 70u)", "Bq q 0 V=if(v(a)>0, 5, 0)\nRq q 0 1k\n"),
+                              ("delay(v(q), d)", ".param d=70u\nBq q 0 V=5*(v(a)>0)\nRq q 0 1k\n"),
+                              ("delay(5*v(q), 70u)", "Bq q 0 V=v(a)>0\nRq q 0 1k\n"), ("delay(delay(v(q), 30u), 40u)", "Bq q 0 V=5*(v(a)>0)\nRq q 0 1k\n")):
+        netlist, wanted = bits(expression, 70e-6, extra)
+        checker.measures(netlist, wanted, 1e-7)
+    # A dead time: high where the comparison and the same 100 us earlier both are.
+    checker.measures(f"{wave}Bq q 0 V=v(a)>0\nRq q 0 1k\nBh h 0 V=v(q)>0.5 & delay(v(q),100u)>0.5 ? 10 : 0\nRh h 0 1k\n"
+                     "Bl l 0 V=v(q)>0.5 | delay(v(q),100u)>0.5 ? 0 : 10\nRl l 0 1k\n.tran 10u 4m\n"
+                     ".meas tran high avg v(h) from=1m to=4m\n.meas tran low avg v(l) from=1m to=4m", {"high": 4, "low": 4}, 1e-7)
+    for formula, words in (("delay(v(c), 1u)", "neither a V source"), ("delay(v(a)*v(c), 1u)", "neither a V source"), ("delay(v(a), -1)", "0 or more"),
+                           ("delay(v(a), v(c))", "0 or more")):
+        done = checker.run(f"V1 a 0 SIN(0 1 1k)\nR1 a c 1k\nC1 c 0 1u\nB1 b 0 V={formula}\nR2 b 0 1k\n.tran 10u 1m", 3)
+        checker.check(done is None or words in done.stderr, f"{formula}: {done and done.stderr}")
+
+
+def currents(checker):
+    """F and H with value=, which are G and E."""
+    circuit = "V1 a 0 10\nR1 a c 1k\nV2 c 0 0\nRb b 0 1k\n.op\n"
+    for card, value in (("F1 0 b value={2*i(V2)}", 20), ("F1 0 b VALUE = {i(V2)*v(a)/5}", 20), ("H1 b 0 value={2k*i(V2)}", 20), ("H1 b 0 value={v(a)*2}", 20),
+                        ("F1 b 0 value {-2*i(R1)}", 20), ("H1 b 0 VALUE={i(V2)>1m ? 20 : 0}", 20), ("F1 0 b V2 2", 20), ("H1 b 0 V2 2k", 20)):
+        checker.ends(circuit + card, {"v(b)": value})
+
+
 def main():
     checker = Strangers("strangers")
-    for kind in (signals, measurements, parameters, others, noise, changing):
+    for kind in (signals, measurements, parameters, others, noise, changing, delays, currents):
         kind(checker)
     return checker.finish()
 
