@@ -262,7 +262,8 @@ static bool check_pins(struct dalcs_builder *builder, const struct card *c) {
 }
 
 static bool has_output(struct dalcs_builder *builder, const struct card *c) {
-    const bool has = is_wired(c, PIN_OUTPUT) || is_wired(c, PIN_INVERTED);
+    const bool has_complement = c->function->kind != DALCS_GATE_SAMPLE;
+    const bool has = is_wired(c, PIN_OUTPUT) || (has_complement && is_wired(c, PIN_INVERTED));
     if (!has) {
         dalcs_builder_warn(builder, c->card->token, USAGE,
                            "no output of '%s' is wired: the element is left out",
@@ -286,7 +287,7 @@ static void take_pins(struct card *c) {
     }
     for (int k = 0; k < 2; k++) {
         const int pin = k == 0 ? PIN_OUTPUT : PIN_INVERTED;
-        of->node[k] = is_wired(c, pin) ? c->node[pin] : -1;
+        of->node[k] = is_wired(c, pin) && !(is_sample && k == 1) ? c->node[pin] : -1;
     }
     of->common = common;
     of->sampled = (struct dalcs_logic_sampled){c->node[0], c->node[1]};
