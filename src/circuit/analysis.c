@@ -74,6 +74,14 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
                            token->text);
         return true;
     }
+    if (dalcs_reader_take_word(reader, "trace")) { /* gnucap's: how much it prints */
+        dalcs_builder_note(builder, token, NULL, "'%s' has no meaning here and is ignored",
+                           token->text);
+        const struct dalcs_token *what = dalcs_reader_peek(reader, 0);
+        reader->at +=
+            what != NULL && what->kind == DALCS_TOKEN_WORD && !dalcs_reader_is_number(what);
+        return true;
+    }
     if (dalcs_reader_take_word(reader, "startup")) {
         builder->startup = token;
         return true;

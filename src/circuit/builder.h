@@ -107,6 +107,7 @@ struct dalcs_builder {
     const struct dalcs_logic_card *gate_card; /* the last of all, each points to the one before */
     const struct dalcs_oscillator
         *oscillator;                     /* likewise: code models that wait for their control */
+    const struct dalcs_delay *delay;     /* likewise: delay() in formulas */
     const struct dalcs_storage *storage; /* likewise: coils and capacitors that are no lines */
 
     const struct dalcs_token *pss;  /* so with .pss */
@@ -210,6 +211,10 @@ struct dalcs_location dalcs_builder_keep_location(struct dalcs_builder *builder,
 
 /* The index of a node, made when new; -1 when out of memory. */
 int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *token);
+
+/* The same of a name that may be of none, without an error: -1. */
+int dalcs_builder_look_up_node(struct dalcs_builder *builder, const char *name);
+int dalcs_builder_look_up_device(struct dalcs_builder *builder, const char *name);
 
 /* The index of a node that an element names; else an error, and -1. */
 int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token);
@@ -424,6 +429,10 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
 /* LTspice's VARISTOR and MODULATE; false: another function. */
 /* LTspice's OTA. */
 void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* delay() in the formulas of a card: how many, and their sources when all formulas are compiled. */
+size_t dalcs_delay_count(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_delay_resolve(struct dalcs_builder *builder);
+
 bool dalcs_analog_function_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* After the word POLY, on a device that has its own nodes. */
 void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device);

@@ -290,6 +290,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_controlled_resolve(builder);
     dalcs_transistor_resolve(builder);
     dalcs_behavioural_resolve(builder);
+    dalcs_delay_resolve(builder);
     dalcs_logic_resolve(builder);
     dalcs_model_check(builder);
     check_presence(builder);

@@ -380,6 +380,12 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
 
 static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
                                             const struct dalcs_formula *f) {
+    if (f->kind == DALCS_FORMULA_CALL && f->n == 1 && dalcs_function_is_noise(f->function)) {
+        return dalcs_noise_form(c, f);
+    }
+    if (dalcs_delay_is(f) && f->n >= 2) {
+        return dalcs_delay_form(c, f);
+    }
     const struct dalcs_form *carrier = dalcs_carrier(c, f);
     if (carrier != NULL) {
         return carrier;

@@ -161,6 +161,13 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
         values->has_value = true;
         return dalcs_core_read(reader, name, &values->core);
     }
+    if (strcmp(name->text, "ac") == 0 && device->kind == DALCS_RESISTOR) {
+        dalcs_builder_warn(
+            builder, name, "write a second netlist for .ac with this value",
+            "a resistance of .ac alone is ignored: '%s' has the other one there, too",
+            reader->card->token->text);
+        return dalcs_reader_number(reader, DALCS_OHM, "a resistance", &ignored);
+    }
     if (may_have(device->kind, name->text)) {
         return dalcs_parasitic_read(reader, name, &values->parasitics);
     }
@@ -232,6 +239,9 @@ static void expand_storage(struct dalcs_builder *builder, const struct dalcs_car
     const double m = values->multiplier > 0 ? values->multiplier : 1;
     const bool has_core = values->core.first != NULL;
     struct dalcs_core_stop stop;
+    if (!has_core && dalcs_storage_follow(builder, card, device, &values->law, m)) {
+        return;
+    }
     if (has_core && !dalcs_core_make(builder, card, &values->core, m, &values->law, &stop)) {
         return;
     }

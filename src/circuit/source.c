@@ -16,6 +16,7 @@ static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
     static const double degree = 3.14159265358979323846 / 180.0;
     double value[2] = {1.0, 0.0};
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    const bool is_open = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
     for (int k = 0; k < 2; k++) {
         const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
         if (next == NULL || !dalcs_reader_is_number(next)) {
@@ -25,6 +26,10 @@ static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                                       &value[k])) {
             return false;
         }
+    }
+    if (is_open && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(reader, "')'");
+        return false;
     }
     stimulus->ac_real = value[0] * cos(value[1] * degree);
     stimulus->ac_imaginary = value[0] * sin(value[1] * degree);

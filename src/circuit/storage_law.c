@@ -24,7 +24,7 @@ double dalcs_storage_function_at(const struct dalcs_builder *builder,
 const struct dalcs_formula *dalcs_storage_function_write(struct dalcs_formula_writer *w,
                                                          const struct dalcs_storage_function *f,
                                                          const struct dalcs_formula *argument) {
-    return dalcs_storage_formula_copy(w, NULL, f->formula, argument);
+    return dalcs_storage_formula_copy(w, NULL, f->formula, argument, false);
 }
 
 /* x as the variable of a formula. */
@@ -60,7 +60,7 @@ static bool find_lines(struct dalcs_builder *builder, const struct dalcs_token *
         return false;
     }
     const struct dalcs_formula *own = dalcs_storage_formula_copy(
-        &w, NULL, formula, dalcs_formula_signal(&w, DALCS_FORMULA_CURRENT, element, NULL));
+        &w, NULL, formula, dalcs_formula_signal(&w, DALCS_FORMULA_CURRENT, element, NULL), false);
     struct dalcs_compiler c = {
         .builder = builder, .arena = &builder->scratch, .element = element, .is_silent = true};
     c.n_forms = own != NULL ? (size_t)own->number_of + 1 : 0;
@@ -238,7 +238,8 @@ static const struct dalcs_formula *read(struct dalcs_formula_writer *w,
     if (m != 1 && is_coil) {
         x = times(w, 1 / m, x);
     }
-    const struct dalcs_formula *f = dalcs_storage_formula_copy(w, card, law->formula->formula, x);
+    const struct dalcs_formula *f =
+        dalcs_storage_formula_copy(w, card, law->formula->formula, x, false);
     const double factor = !is_coil ? m : law->is_slope ? 1 / m : 1;
     return f != NULL && factor != 1 ? times(w, factor, f) : f;
 }

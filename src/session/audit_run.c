@@ -34,8 +34,8 @@ static double state_work(const struct dalcs_audit_run *a, int part) {
     return value_work * dalcs_system_n_columns(c->system) + source_work * c->n_varying;
 }
 
-/* Of gates and sources that jump at 0 the operating point is not what the run begins with. */
-static enum dalcs_audit_origin origin_of(const struct dalcs_run *run) {
+/* Of gates, and of sources and switches that jump at 0, the operating point is not what the run begins with. */
+static enum dalcs_audit_origin origin_of(const struct dalcs_run *run, struct dalcs_radau *radau) {
     const struct dalcs_circuit *c = &run->s->circuit;
     if (run->orbit != NULL || run->s->network.held != NULL || c->n_initial_conditions > 0) {
         return DALCS_AUDIT_FROM_ANYWHERE;
@@ -43,8 +43,9 @@ static enum dalcs_audit_origin origin_of(const struct dalcs_run *run) {
     if (c->transient.use_initial_conditions) {
         return DALCS_AUDIT_FROM_INITIAL;
     }
-    return c->n_gates > 0 || dalcs_sources_jump(c, 0.0) ? DALCS_AUDIT_FROM_ANYWHERE
-                                                        : DALCS_AUDIT_FROM_REST;
+    return c->n_gates > 0 || dalcs_transient_begins_with_a_jump(c, radau)
+               ? DALCS_AUDIT_FROM_ANYWHERE
+               : DALCS_AUDIT_FROM_REST;
 }
 
 static enum dalcs_status create(struct dalcs_audit_run *a) {
@@ -64,7 +65,7 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
                                                 .resolution = a->radau->resolution,
                                                 .vntol = run->vntol,
                                                 .is_start = run->s->network.held == NULL,
-                                                .origin = origin_of(run),
+                                                .origin = origin_of(run, a->radau),
                                                 .abstol = run->abstol,
                                                 .device_part =
                                                     run->s->network.readout->device_system,
