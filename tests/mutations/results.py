@@ -117,6 +117,17 @@ MUTATIONS = {
         "waveform/recorder.c", "            *to = value[k];\n", "            *to = value[k > 0 ? k - 1 : 0];\n", METER),
     "columns of rows change places": (
         "waveform/recorder.c", "double *to = r->row + i;", "double *to = r->row + (i + 1) % n_shown;", METER),
+    "the summary's rms values are of trapezoids": (
+        "cli/measure.c", "(before * before + before * v + v * v) / 3.0", "(before * before + v * v) / 2.0", METER),
+    "the summary's averages are over the time from 0": (
+        "cli/measure.c", "double duration = measure->last_time - measure->first_time;\n    const struct dalcs_measure_signal *s = "
+        "&measure->signal[signal];\n    return duration > 0.0 ? s->integral", "double duration = 2.0 * measure->last_time;\n"
+        "    const struct dalcs_measure_signal *s = &measure->signal[signal];\n    return duration > 0.0 ? s->integral", METER),
+    "volts and amperes change places in the summary": (
+        "session/pipeline.c", "n->output[i].is_current ? DALCS_AMPERE", "!n->output[i].is_current ? DALCS_AMPERE", METER),
+    "each row of a file has the values of the one before": (
+        "output/csv.c", "write_row(csv, stream, time[k], value + k * csv->n_values);",
+        "write_row(csv, stream, time[k], value + (k > 0 ? k - 1 : 0) * csv->n_values);", METER),
     "rows on the right of an event are those on its left": (
         "waveform/recorder.c", "        r->row[i] = rows->value[i].at[0];\n",
         "        r->row[i] = is_due ? rows->value[i].at[0] : r->row[i];\n", SHARED),
