@@ -371,9 +371,10 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after);
 
-/* start.c: does the part begin as the netlist says? */
+/* start.c: does the part begin as the netlist says? `stored`: of the step that begins there; NULL: there is none. */
 void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
-                       const struct dalcs_audit_state *first);
+                       const struct dalcs_audit_state *first,
+                       const struct dalcs_audit_polynomials *stored);
 
 /* crossing.c: what holds from one side of an event to the other. */
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,

@@ -26,6 +26,9 @@ struct dalcs_audit_number {
 double dalcs_audit_signal(struct dalcs_audit *audit, int index, double t, enum dalcs_side side,
                           double *doubt);
 
+/* What it is held to; 0: nobody knows. */
+double dalcs_audit_signal_scale(const struct dalcs_audit *audit, int index);
+
 /* What was asked for may be another value from now on. */
 void dalcs_audit_forget_asked(struct dalcs_audit *audit);
 

@@ -66,6 +66,17 @@ double dalcs_audit_signal(struct dalcs_audit *audit, int index, double t, enum d
     return value;
 }
 
+double dalcs_audit_signal_scale(const struct dalcs_audit *audit, int index) {
+    const struct dalcs_signal *signal = &audit->circuit->signal[index];
+    const int own = dalcs_audit_part_of(audit, index);
+    if (own < 0) {
+        return 0.0;
+    }
+    return signal->kind == DALCS_SIGNAL_VOLTAGE
+               ? audit_volts(audit, &audit->part[own], signal->node[0], signal->node[1])
+               : audit_amperes(audit, &audit->part[own], signal->device);
+}
+
 void dalcs_audit_forget_asked(struct dalcs_audit *audit) {
     for (int k = 0; k < audit->options.n_parts; k++) {
         audit->part[k].asked_at = -1.0;

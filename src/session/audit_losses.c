@@ -97,8 +97,13 @@ void dalcs_audit_losses_begin(struct dalcs_audit_losses *a, const struct dalcs_l
     }
 }
 
-static double largest_in(const struct dalcs_stretch *s, int signal) {
-    return fabs(s->coefficient[signal][0]) + dalcs_stretch_spread(s->coefficient[signal]);
+/* What a signal is held to: its largest value so far, where the auditor knows that, else in the stretch. */
+static double scale_of(const struct dalcs_audit_losses *a, const struct dalcs_stretch *s,
+                       int signal) {
+    const double *coefficient = s->coefficient[signal];
+    const double largest = fabs(coefficient[0]) + dalcs_stretch_spread(coefficient);
+    const int index = a->run->run->s->circuit.measured[signal];
+    return fmax(largest, dalcs_audit_signal_scale(a->run->audit, index));
 }
 
 void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
@@ -110,8 +115,8 @@ void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_los
     const struct dalcs_loss *now = &sum->device[a->device], *then = &a->before;
     const double from = fmax(stretch->from, sum->from);
     const double to = fmin(stretch->to, sum->to);
-    const double volt = largest_in(stretch, of->voltage);
-    const double ampere = largest_in(stretch, of->current);
+    const double volt = scale_of(a, stretch, of->voltage);
+    const double ampere = scale_of(a, stretch, of->current);
 
     const struct {
         int which, power;
