@@ -37,7 +37,8 @@ enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
                                      enum dalcs_analysis main, double start, double stop) {
     *outputs = (struct dalcs_outputs){.report_path = arguments->report,
                                       .has_summary = !arguments->quiet,
-                                      .is_audited = arguments->audit != DALCS_AUDIT_OFF};
+                                      .is_audited = arguments->audit != DALCS_AUDIT_OFF,
+                                      .audit.is_full = arguments->audit == DALCS_AUDIT_FULL};
     enum dalcs_status status = init_tables(outputs, arguments, ascii, main);
     if (status != DALCS_OK) {
         dalcs_outputs_finish(outputs);
@@ -89,11 +90,15 @@ enum dalcs_status dalcs_outputs_rows(struct dalcs_outputs *outputs, size_t n, co
     const size_t n_values = (measure->plot->is_complex ? 2 : 1) * measure->plot->n_signals;
     const bool is_drawn = outputs->drawn && outputs->drawn == measure->plot;
     outputs->n_rows += n;
+    const bool is_audited = outputs->is_audited && outputs->has_summary;
+    if (is_audited) {
+        dalcs_table_audit_before(&outputs->audit, measure);
+    }
     for (size_t k = 0; k < n && outputs->has_summary; k++) {
         dalcs_measure_row(measure, time[k], value + k * n_values);
     }
-    for (size_t k = 0; k < n && outputs->is_audited; k++) {
-        dalcs_table_audit_row(&outputs->audit, time[k], value + k * n_values);
+    if (outputs->is_audited) {
+        dalcs_table_audit_after(&outputs->audit, is_audited ? measure : NULL, n, time, value);
     }
     for (size_t k = 0; k < n && is_drawn; k++) {
         dalcs_figure_row(outputs->figure, time[k], value + k * n_values);

@@ -1,4 +1,4 @@
-/* table_audit.c - a signal of the summary's table added up again, and a row of each file read again. */
+/* table_audit.c - rows of the summary's table added up again, and a row of each file read again. */
 #include "table_audit.h"
 
 #include "memory.h"
@@ -9,8 +9,15 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Sums of so many rows that each are rounded twice go this far apart, at most as a random walk does; of the largest value. */
-static const double apart = 16.0 * DBL_EPSILON;
+/* Of the largest value: a sum and what is added to it are rounded a few times. */
+static const double rounding = 16.0 * DBL_EPSILON;
+
+/* Rows are looked at again after so many, on an average: a look takes some 40 instructions a row, a row 20 and more for each
+ * signal that it has. */
+static const double rows_between = 4000.0;
+
+/* ... but for the first looks, which are so many rows apart; at least so many rows are looked at together. */
+enum { FIRST_LOOKS = 6, ROWS_APART = 60, LEAST_ROWS = 4 };
 
 /* Bytes of a file at a time; a line of a header or a table is taken in pieces. */
 enum { PIECE = 1 << 14 };
@@ -25,46 +32,90 @@ static double draw(struct dalcs_table_audit_sums *a) {
 enum dalcs_status dalcs_table_audit_begin(struct dalcs_table_audit_sums *a,
                                           const struct dalcs_plot *plot) {
     const uint64_t seed = a->seed;
+    const bool is_full = a->is_full;
     dalcs_table_audit_finish(a);
     if (plot->n_signals == 0 ||
         (plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC)) {
         return DALCS_OK;
     }
     a->seed = seed;
+    a->is_full = is_full;
     a->plot = plot;
-    a->signal = (size_t)(draw(a) * (double)plot->n_signals);
     a->row = dalcs_alloc(1 + plot->n_signals, sizeof(double));
     return a->row != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-/* Simpson's rule, which is exact for squares of lines. */
-static void add(struct dalcs_table_audit_sums *a, double time, double value) {
-    const double length = time - a->time;
-    const double middle = 0.5 * (a->value + value);
-    a->mean += length * middle;
-    a->square += length / 6.0 * (a->value * a->value + 4.0 * middle * middle + value * value);
-    a->least = value < a->least ? value : a->least;
-    a->most = value > a->most ? value : a->most;
+static bool looks(const struct dalcs_table_audit_sums *a) {
+    return a->wrong == NULL && (a->is_full || a->n_rows >= a->next_look);
 }
 
-void dalcs_table_audit_row(struct dalcs_table_audit_sums *a, double time, const double *value) {
-    if (a->plot == NULL) {
+void dalcs_table_audit_before(struct dalcs_table_audit_sums *a,
+                              const struct dalcs_measure *measure) {
+    if (a->plot != NULL && looks(a)) {
+        a->signal = (size_t)(draw(a) * (double)a->plot->n_signals);
+        a->before = measure->signal[a->signal];
+        a->time = measure->last_time;
+    }
+}
+
+/* Rows are added up by Simpson's rule, which is exact for squares of lines. */
+static const char *compare(const struct dalcs_table_audit_sums *a,
+                           const struct dalcs_measure_signal *now, size_t n, const double *time,
+                           const double *value) {
+    const struct dalcs_measure_signal *then = &a->before;
+    const bool is_first = a->n_rows == 0;
+    double last = is_first ? value[a->signal] : then->final;
+    double t = is_first ? time[0] : a->time;
+    double least = is_first ? last : then->min, most = is_first ? last : then->max;
+    double sum = 0.0, square = 0.0;
+    const double begin = t;
+    for (size_t k = 0; k < n; k++) {
+        const double v = value[k * a->plot->n_signals + a->signal];
+        const double middle = 0.5 * (last + v);
+        sum += (time[k] - t) * middle;
+        square += (time[k] - t) / 6.0 * (last * last + 4.0 * middle * middle + v * v);
+        least = v < least ? v : least;
+        most = v > most ? v : most;
+        last = v;
+        t = time[k];
+    }
+    const double largest = fmax(fabs(least), fabs(most));
+    const double off = rounding * ((double)n * largest * (t - begin) + fabs(now->integral));
+    const double off_square =
+        rounding * ((double)n * largest * largest * (t - begin) + fabs(now->square_integral));
+    return now->min != least                                      ? "the minimum"
+           : now->max != most                                     ? "the maximum"
+           : now->final != last                                   ? "the final value"
+           : !(fabs(now->integral - then->integral - sum) <= off) ? "the average"
+           : !(fabs(now->square_integral - then->square_integral - square) <= off_square)
+               ? "the rms value"
+               : a->wrong;
+}
+
+void dalcs_table_audit_after(struct dalcs_table_audit_sums *a, const struct dalcs_measure *measure,
+                             size_t n, const double *time, const double *value) {
+    const size_t width = a->plot != NULL ? a->plot->n_signals : 0;
+    if (width == 0 || n == 0) {
         return;
     }
-    const double of = value[a->signal];
     if (a->n_rows == 0) {
-        a->first = time;
-        a->least = a->most = of;
-    } else {
-        add(a, time, of);
+        a->first = time[0];
     }
-    a->time = time;
-    a->value = of;
-    a->n_rows++;
-    if (draw(a) * (double)a->n_rows < 1.0) { /* each row is as likely to be kept */
-        a->kept = a->n_rows - 1;
-        a->row[0] = time;
-        memcpy(a->row + 1, value, a->plot->n_signals * sizeof(double));
+    if (measure != NULL && looks(a)) {
+        a->wrong = compare(a, &measure->signal[a->signal], n, time, value);
+        a->n_looks += n >= LEAST_ROWS ? 1 : 0;
+        a->next_look =
+            a->n_rows + n +
+            (n < LEAST_ROWS ? 0
+                            : (size_t)(2.0 * draw(a) *
+                                       (a->n_looks < FIRST_LOOKS ? ROWS_APART : rows_between)));
+    }
+    a->n_rows += n;
+    if (draw(a) * (double)a->n_rows < (double)n) { /* each row is as likely to be kept */
+        const size_t k = (size_t)(draw(a) * (double)n);
+        a->kept = a->n_rows - n + k;
+        a->row[0] = time[k];
+        memcpy(a->row + 1, value + k * width, width * sizeof(double));
     }
 }
 
@@ -83,27 +134,33 @@ static bool has_its_unit(const struct dalcs_plot *plot, size_t signal) {
            plot->unit[signal] == (name[0] == 'v' ? DALCS_VOLT : DALCS_AMPERE);
 }
 
+/* What is told of its sums. */
+static const char *told_wrong(const struct dalcs_table_audit_sums *a,
+                              const struct dalcs_measure *measure) {
+    const struct dalcs_measure_signal *s = &measure->signal[a->signal];
+    const double length = measure->last_time - a->first;
+    const double mean = dalcs_measure_average(measure, a->signal);
+    const double rms = dalcs_measure_rms(measure, a->signal);
+    if (!has_its_unit(a->plot, a->signal)) {
+        return "the unit";
+    }
+    if (!(length > 0.0)) {
+        return mean != s->final ? "the average" : NULL;
+    }
+    return !(fabs(mean * length - s->integral) <= rounding * fabs(s->integral)) ? "the average"
+           : !(rms >= 0.0 &&
+               fabs(rms * rms * length - s->square_integral) <= rounding * s->square_integral)
+               ? "the rms value"
+               : NULL;
+}
+
 enum dalcs_status dalcs_table_audit_summary(const struct dalcs_table_audit_sums *a,
                                             const struct dalcs_measure *measure,
                                             const struct dalcs_cli *cli) {
     if (a->plot == NULL || a->n_rows == 0 || measure->plot != a->plot) {
         return DALCS_OK;
     }
-    const struct dalcs_measure_signal *s = &measure->signal[a->signal];
-    const double length = a->time - a->first;
-    const double largest = fmax(fabs(a->least), fabs(a->most));
-    const double off = apart * sqrt((double)a->n_rows) * largest;
-    const double mean = length > 0.0 ? a->mean / length : a->value;
-    const double square = length > 0.0 ? a->square / length : a->value * a->value;
-    const double rms = dalcs_measure_rms(measure, a->signal);
-    const char *const what =
-        s->min != a->least                                                 ? "the minimum"
-        : s->max != a->most                                                ? "the maximum"
-        : s->final != a->value                                             ? "the final value"
-        : fabs(dalcs_measure_average(measure, a->signal) - mean) > off     ? "the average"
-        : !(rms >= 0.0 && fabs(rms * rms - square) <= 2.0 * off * largest) ? "the rms value"
-        : !has_its_unit(a->plot, a->signal)                                ? "the unit"
-                                                                           : NULL;
+    const char *what = a->wrong != NULL ? a->wrong : told_wrong(a, measure);
     if (what == NULL) {
         return DALCS_OK;
     }

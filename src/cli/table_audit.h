@@ -1,7 +1,7 @@
 /* table_audit.h - what leaves the program of rows, checked once more: the table of the summary, and a row of each file.
  *
- * One signal of a plot, which is drawn, is added up a second time, and one row, which is drawn likewise, is kept and looked
- * for in the files that were written. Both cost little beside writing a row. */
+ * What some rows add to one signal, all of which are drawn, is added up a second time. One row, which is drawn likewise, is
+ * kept and looked for in the files that were written. Both cost little beside writing rows. */
 #ifndef DALCS_TABLE_AUDIT_H
 #define DALCS_TABLE_AUDIT_H
 
@@ -14,18 +14,25 @@
 struct dalcs_table_audit_sums {
     const struct dalcs_plot *plot; /* borrowed; NULL: none over time */
     uint64_t seed;
-    size_t n_rows;
-    size_t signal;      /* that is added up */
-    double time, value; /* of the last row */
-    double first, least, most;
-    double mean, square; /* integrals of the lines between rows, and of their squares */
-    size_t kept;         /* the number of the row that is kept */
-    double *row;         /* [1 + n_signals] its time and values; heap */
+    bool is_full;     /* all rows of a signal, else those that are drawn */
+    size_t n_rows;    /* so far */
+    size_t next_look; /* the row at which rows are looked at again */
+    int n_looks;
+    size_t signal; /* that is added up; before some rows and behind them: */
+    struct dalcs_measure_signal before;
+    double time, first; /* of the last row in front of them, and of the first of all */
+    const char *wrong;  /* what of it is another number; NULL: nothing */
+    size_t kept;        /* the number of the row that is kept */
+    double *row;        /* [1 + n_signals] its time and values; heap */
 };
 
 enum dalcs_status dalcs_table_audit_begin(struct dalcs_table_audit_sums *a,
                                           const struct dalcs_plot *plot) DALCS_MUST_CHECK;
-void dalcs_table_audit_row(struct dalcs_table_audit_sums *a, double time, const double *value);
+/* Rows that are about to be measured, and that were. */
+void dalcs_table_audit_before(struct dalcs_table_audit_sums *a,
+                              const struct dalcs_measure *measure);
+void dalcs_table_audit_after(struct dalcs_table_audit_sums *a, const struct dalcs_measure *measure,
+                             size_t n, const double *time, const double *value);
 
 /* Against what the summary says; DALCS_E_INTERNAL, and a message, where it says something else. */
 enum dalcs_status dalcs_table_audit_summary(const struct dalcs_table_audit_sums *a,

@@ -3,11 +3,12 @@
 
 #include "audit_told.h"
 
-/* Instructions of a comparison and a device, about; what they may cost of an instant at which something happens. */
-static const double device_work = 100.0, instant_work = 10000.0, share = 0.03;
+/* Instructions of a comparison, about, and of a device in it; of an instant at which something happens, and what
+ * comparisons may cost of it. */
+static const double look_work = 1500.0, device_work = 300.0, instant_work = 10000.0, share = 0.005;
 
-/* Instants that are compared whatever that costs. */
-enum { FEW = 2 };
+/* Instants of which something is told that are compared whatever that costs. */
+enum { FEW = 4 };
 
 /* Of the report, that are looked at for what was told last of a device. */
 enum { MOST_EVENTS = 64 };
@@ -33,21 +34,36 @@ static void read_both(const struct dalcs_audit_run *a, int part, double t) {
 
 /* ---- Events --------------------------------------------------------------------------------------- */
 
-/* What was told last of a device, not too long ago; NULL: nothing was. */
-static const struct dalcs_event *last_event(const struct dalcs_audit_run *a, const char *name) {
+/* What was told last of a device, of the first n events and not too long ago; NULL: nothing was. */
+static const struct dalcs_event *last_event(const struct dalcs_audit_run *a, const char *name,
+                                            size_t n) {
     const struct dalcs_recorder *r = &a->run->s->recorder;
     const size_t first = r->n_events > MOST_EVENTS ? r->n_events - MOST_EVENTS : 0;
     const struct dalcs_event *last = NULL;
-    for (size_t k = r->n_events; k > first && last == NULL; k--) {
+    for (size_t k = n; k > first && last == NULL; k--) {
         last = strcmp(r->event[k - 1].element, name) == 0 ? &r->event[k - 1] : NULL;
     }
     return last;
 }
 
+/* One with breakdown has events of two branches. */
+static bool has_one_pair(const struct dalcs_audit_run *a, int device) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    const struct dalcs_device *d = &c->device[device];
+    return d->kind == DALCS_SWITCH || !isfinite(c->diode_model[d->model].vrev);
+}
+
 static void check_event(const struct dalcs_audit_run *a, int device, double t) {
     const struct dalcs_recorder *r = &a->run->s->recorder;
-    const struct dalcs_event *last = last_event(a, a->run->s->circuit.device[device].name);
+    const char *name = a->run->s->circuit.device[device].name;
+    const struct dalcs_event *last = last_event(a, name, r->n_events);
     if (last == NULL) {
+        return;
+    }
+    const struct dalcs_event *past = last_event(a, name, (size_t)(last - r->event));
+    if (past != NULL && past->on == last->on && has_one_pair(a, device)) {
+        dalcs_audit_add_to(a->audit, DALCS_AUDIT_EVENT, device, 1.0,
+                           t); /* one between is not told */
         return;
     }
     const bool is_new = last >= r->event + a->told.n_events;
@@ -120,11 +136,8 @@ static void check_jump(const struct dalcs_audit_run *a, size_t number, double t)
 
 /* ---- At an instant -------------------------------------------------------------------------------- */
 
-void dalcs_audit_run_told(struct dalcs_audit_run *a, double t) {
+void dalcs_audit_run_told_now(struct dalcs_audit_run *a, double t) {
     const struct dalcs_recorder *r = &a->run->s->recorder;
-    if (a->audit == NULL || !r->keep) {
-        return;
-    }
     struct audit_told *told = &a->told;
     const int n = a->run->s->circuit.n_devices;
     const bool is_full = a->run->options->audit == DALCS_AUDIT_FULL;
@@ -137,8 +150,9 @@ void dalcs_audit_run_told(struct dalcs_audit_run *a, double t) {
             check_events(a, t);
         }
         told->n_looked++;
-        told->credit -= device_work * n;
-        told->threshold = 2.0 * device_work * n * dalcs_audit_run_chance(a);
+        const double work = look_work + device_work * n;
+        told->credit -= work;
+        told->threshold = 2.0 * work * dalcs_audit_run_chance(a);
     }
     dalcs_audit_run_tell(a, t);
 }

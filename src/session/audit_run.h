@@ -71,8 +71,15 @@ static inline void dalcs_audit_run_enter(struct dalcs_audit_run *a) {
     }
 }
 
-/* Segments have been passed at t: what the report tells of it by now. */
-void dalcs_audit_run_told(struct dalcs_audit_run *a, double t);
+/* Segments have been passed at t: what the report tells of it by now, if that is anything. */
+void dalcs_audit_run_told_now(struct dalcs_audit_run *a, double t);
+
+static inline void dalcs_audit_run_told(struct dalcs_audit_run *a, double t) {
+    const struct dalcs_recorder *r = &a->run->s->recorder;
+    if (a->audit != NULL && (r->n_events > a->told.n_events || r->n_jumps > a->told.n_jumps)) {
+        dalcs_audit_run_told_now(a, t);
+    }
+}
 
 /* What the report has by now is not asked. */
 void dalcs_audit_run_tell(struct dalcs_audit_run *a, double t);
