@@ -90,14 +90,15 @@ enum dalcs_status dalcs_outputs_rows(struct dalcs_outputs *outputs, size_t n, co
     const size_t n_values = (measure->plot->is_complex ? 2 : 1) * measure->plot->n_signals;
     const bool is_drawn = outputs->drawn && outputs->drawn == measure->plot;
     outputs->n_rows += n;
-    const bool is_audited = outputs->is_audited && outputs->has_summary;
+    const bool is_due = outputs->is_audited && dalcs_table_audit_is_due(&outputs->audit, n);
+    const bool is_audited = is_due && outputs->has_summary;
     if (is_audited) {
         dalcs_table_audit_before(&outputs->audit, measure);
     }
     for (size_t k = 0; k < n && outputs->has_summary; k++) {
         dalcs_measure_row(measure, time[k], value + k * n_values);
     }
-    if (outputs->is_audited) {
+    if (is_due) {
         dalcs_table_audit_after(&outputs->audit, is_audited ? measure : NULL, n, time, value);
     }
     for (size_t k = 0; k < n && is_drawn; k++) {

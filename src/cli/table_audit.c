@@ -17,7 +17,7 @@ static const double rounding = 16.0 * DBL_EPSILON;
 static const double rows_between = 4000.0;
 
 /* ... but for the first looks, which are so many rows apart; at least so many rows are looked at together. */
-enum { FIRST_LOOKS = 6, ROWS_APART = 60, LEAST_ROWS = 4 };
+enum { FIRST_LOOKS = 6, ROWS_APART = 60, LEAST_ROWS = 2 };
 
 /* Bytes of a file at a time; a line of a header or a table is taken in pieces. */
 enum { PIECE = 1 << 14 };
@@ -111,11 +111,13 @@ void dalcs_table_audit_after(struct dalcs_table_audit_sums *a, const struct dalc
                                        (a->n_looks < FIRST_LOOKS ? ROWS_APART : rows_between)));
     }
     a->n_rows += n;
-    if (draw(a) * (double)a->n_rows < (double)n) { /* each row is as likely to be kept */
-        const size_t k = (size_t)(draw(a) * (double)n);
-        a->kept = a->n_rows - n + k;
+    while (a->n_rows >
+           a->next_kept) { /* each row is as likely to be kept (K.-H. Li, ACM TOMS 20, 1994) */
+        const size_t k = a->next_kept - (a->n_rows - n);
+        a->kept = a->next_kept;
         a->row[0] = time[k];
         memcpy(a->row + 1, value + k * width, width * sizeof(double));
+        a->next_kept = 1 + (size_t)((double)(a->kept + 1) / (1.0 - draw(a)));
     }
 }
 

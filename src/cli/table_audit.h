@@ -14,9 +14,9 @@
 struct dalcs_table_audit_sums {
     const struct dalcs_plot *plot; /* borrowed; NULL: none over time */
     uint64_t seed;
-    bool is_full;     /* all rows of a signal, else those that are drawn */
-    size_t n_rows;    /* so far */
-    size_t next_look; /* the row at which rows are looked at again */
+    bool is_full;                /* all rows of a signal, else those that are drawn */
+    size_t n_rows;               /* so far */
+    size_t next_look, next_kept; /* rows: the next that are looked at, and the next that is kept */
     int n_looks;
     size_t signal; /* that is added up; before some rows and behind them: */
     struct dalcs_measure_signal before;
@@ -28,6 +28,15 @@ struct dalcs_table_audit_sums {
 
 enum dalcs_status dalcs_table_audit_begin(struct dalcs_table_audit_sums *a,
                                           const struct dalcs_plot *plot) DALCS_MUST_CHECK;
+
+/* Is there anything to do about the next n rows? If not, only their number counts. */
+static inline bool dalcs_table_audit_is_due(struct dalcs_table_audit_sums *a, size_t n) {
+    const size_t until = a->n_rows + n;
+    const bool is_due = a->is_full || until > a->next_look || until > a->next_kept;
+    a->n_rows = is_due ? a->n_rows : until;
+    return is_due;
+}
+
 /* Rows that are about to be measured, and that were. */
 void dalcs_table_audit_before(struct dalcs_table_audit_sums *a,
                               const struct dalcs_measure *measure);
