@@ -7,6 +7,12 @@
 /* Of the tolerance: a row on the right of an event that is so close to the one on its left is made equal to it (rows.h). */
 static const double joins = 0.125;
 
+/* ... over a scale that may be that of its unit, as those of diodes that block are. */
+static double largest_of_unit(const struct audit_part *part, const struct dalcs_signal *signal) {
+    return signal->kind == DALCS_SIGNAL_VOLTAGE ? part->floor.largest_volt
+                                                : part->floor.ampere / 1e-5;
+}
+
 static void check_signal(struct dalcs_audit *audit, int index, double value, bool may_be_joined) {
     const int own = dalcs_audit_part_of(audit, index);
     if (own < 0) {
@@ -15,7 +21,9 @@ static void check_signal(struct dalcs_audit *audit, int index, double value, boo
     const struct audit_part *part = &audit->part[own];
     struct audit_signal of;
     const double is = audit_signal_value(audit, &audit->now, index, &of);
-    const double joined = may_be_joined ? joins * audit->options.failure * of.scale : 0.0;
+    const double joined = may_be_joined ? joins * audit->options.failure *
+                                              largest_of_unit(part, &audit->circuit->signal[index])
+                                        : 0.0;
     audit_find(audit, part, DALCS_AUDIT_ROW, index, fabs(value - is) - of.rounding - joined,
                of.scale, audit->now.t);
 }

@@ -83,6 +83,9 @@ static const char *compare(const struct dalcs_table_audit_sums *a,
     const double off = rounding * ((double)n * largest * (t - begin) + fabs(now->integral));
     const double off_square =
         rounding * ((double)n * largest * largest * (t - begin) + fabs(now->square_integral));
+    if (!isfinite(now->integral) || !isfinite(now->square_integral)) {
+        return a->wrong; /* beyond all numbers */
+    }
     return now->min != least                                      ? "the minimum"
            : now->max != most                                     ? "the maximum"
            : now->final != last                                   ? "the final value"
@@ -145,6 +148,9 @@ static const char *told_wrong(const struct dalcs_table_audit_sums *a,
     const double rms = dalcs_measure_rms(measure, a->signal);
     if (!has_its_unit(a->plot, a->signal)) {
         return "the unit";
+    }
+    if (!isfinite(s->integral) || !isfinite(s->square_integral / length)) {
+        return NULL; /* beyond all numbers */
     }
     if (!(length > 0.0)) {
         return mean != s->final ? "the average" : NULL;

@@ -87,7 +87,9 @@ static void check_events(struct dalcs_audit_run *a, double t) {
         dalcs_audit_look_behind(a->audit, part, t + dalcs_audit_run_chance(a) * (end - t));
         for (int k = 0; k < c->n_devices; k++) {
             const bool is_here = a->run->s->network.readout->device_system[k] == part;
-            if (is_here &&
+            const bool is_card =
+                strchr(c->device[k].name, '(') == NULL; /* else a part of another */
+            if (is_here && is_card &&
                 (c->device[k].kind == DALCS_SWITCH || c->device[k].kind == DALCS_DIODE)) {
                 check_event(a, k, t);
             }

@@ -289,8 +289,7 @@ static enum dalcs_status tell_harmonics(struct dalcs_measures *measures, struct 
                                    .n_harmonics = n_lines,
                                    .magnitude = magnitude,
                                    .phase = phase};
-        dalcs_audit_fourier_told(&measures->audit, m, (int)k,
-                                 &fourier[r->s->report.n_fourier - 1]);
+        dalcs_audit_fourier_told(&measures->audit, m, (int)k, &fourier[r->s->report.n_fourier - 1]);
     }
     return fourier == NULL ? DALCS_E_NOMEM : DALCS_OK;
 }
