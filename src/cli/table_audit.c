@@ -83,7 +83,7 @@ static const char *compare(const struct dalcs_table_audit_sums *a,
     const double off = rounding * ((double)n * largest * (t - begin) + fabs(now->integral));
     const double off_square =
         rounding * ((double)n * largest * largest * (t - begin) + fabs(now->square_integral));
-    if (!isfinite(now->integral) || !isfinite(now->square_integral)) {
+    if (!isfinite(now->square_integral) || !isfinite(square) || !isfinite(sum)) {
         return a->wrong; /* beyond all numbers */
     }
     return now->min != least                                      ? "the minimum"
