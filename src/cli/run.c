@@ -395,6 +395,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     } else if (status != DALCS_OK && status != DALCS_E_IO && *n_written == n_before) {
         dalcs_cli_error(run->cli, "%s", dalcs_status_text(status));
     }
+    if (status == DALCS_OK) {
+        status = dalcs_outputs_audit(&run->outputs, run->cli);
+    }
     const struct dalcs_report *report = dalcs_session_report(session);
     write_summary(run, arguments, report, status);
     enum dalcs_status files = dalcs_outputs_close(

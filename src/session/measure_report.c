@@ -289,6 +289,7 @@ static enum dalcs_status tell_harmonics(struct dalcs_measures *measures, struct 
                                    .n_harmonics = n_lines,
                                    .magnitude = magnitude,
                                    .phase = phase};
+        dalcs_audit_fourier_told(&measures->audit, m, (int)k, &fourier[r->s->report.n_fourier - 1]);
     }
     return fourier == NULL ? DALCS_E_NOMEM : DALCS_OK;
 }
@@ -339,6 +340,7 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
             fail(&result, "a time that earlier measurements give has no value");
         } else {
             tell(&result, r->result);
+            dalcs_audit_measures_told(&measures->audit, m, k, measurement);
         }
         if (result.out_of_memory) {
             return DALCS_E_NOMEM;

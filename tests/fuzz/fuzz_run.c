@@ -134,6 +134,7 @@ static bool is_expected(const char *text) {
                                            "division by 0",
                                            "is not finite",
                                            "is not a number",
+                                           "larger than any number",
                                            "a power of"};
     for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
         if (strstr(text, expected[k]) != NULL) {
