@@ -100,7 +100,7 @@ void dalcs_audit_run_end_leap(struct dalcs_audit_run *a);
 void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
                           const double *time, enum dalcs_side side, int n);
 
-/* Into the report. A message where a defect is more than is allowed, and DALCS_NOT_CONVERGED where that ends the
+/* Into the report. A message where a defect is more than is allowed, and DALCS_REFUTED where that ends the
  * run. */
 enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) DALCS_MUST_CHECK;
 
