@@ -222,6 +222,9 @@ static inline double audit_ratio(double value, double scale) {
 /* Sums of a dozen terms that were each rounded once or twice. */
 #define AUDIT_ROUNDING (16.0 * 0x1p-52)
 
+/* An event is within 1e-11 of the stop time, and so is the start of a run: so many resolutions, which are 2^-50 of it. */
+#define AUDIT_PROMISED 0x1p13
+
 static inline double audit_voltage(const struct dalcs_audit_state *s,
                                    const struct dalcs_device *d) {
     return s->v[d->node[0]] - s->v[d->node[1]];
