@@ -166,6 +166,7 @@ struct dalcs_audit {
         double *offset;              /* [n_nodes] likewise */
         double *stored;              /* [n_devices] V, A: of capacitors and coils, before */
         bool *is_firm, *has_impulse; /* [n_nodes] impulses.c */
+        bool coils_jump;             /* and E, G or a formula may read the voltage across one */
     } crossing;
 
     struct audit_worst {

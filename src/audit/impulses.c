@@ -16,10 +16,19 @@ static bool reads_voltage(const struct dalcs_device *d) {
     return d->behaviour == NULL && (d->kind == DALCS_VCVS || d->kind == DALCS_VCCS);
 }
 
+static bool is_loose(const struct dalcs_audit *audit, int node) {
+    return !audit->crossing.is_firm[audit->net.node_of[node]];
+}
+
+/* Of a node that a G reads: where a coil jumps each that nothing ties may have one. */
+static bool may_have(const struct dalcs_audit *audit, int node) {
+    return has(audit, node) || (audit->crossing.coils_jump && is_loose(audit, node));
+}
+
 bool audit_has_impulse(const struct dalcs_audit *audit, const struct dalcs_device *d) {
     return has(audit, d->node[0]) || has(audit, d->node[1]) ||
            (d->kind == DALCS_VCCS && reads_voltage(d) &&
-            (has(audit, d->node[2]) || has(audit, d->node[3])));
+            (may_have(audit, d->node[2]) || may_have(audit, d->node[3])));
 }
 
 /* Clusters with a capacitor that jumped, in offset[] of their roots: in all that joins their nodes an impulse may be. */
@@ -123,6 +132,7 @@ static void spread_all(struct dalcs_audit *audit, const struct audit_part *part)
 }
 
 void audit_forget_impulses(struct dalcs_audit *audit, const struct audit_part *part) {
+    audit->crossing.coils_jump = false;
     for (int k = 0; k < part->n_nodes; k++) {
         audit->crossing.has_impulse[part->node[k]] = false;
     }
@@ -142,6 +152,19 @@ static bool has_jumping_coil(const struct dalcs_audit *audit, const struct audit
         has = is_jumping_coil(audit, part, after, part->device[k]);
     }
     return has;
+}
+
+static void note_loose(void *to, const struct dalcs_affine_term *term) {
+    struct reading *r = to;
+    r->voltage |= term->kind == DALCS_QUANTITY_VOLTAGE && is_loose(r->audit, term->index);
+}
+
+/* Does it read a node whose voltage may be an impulse where a coil jumps? */
+static bool reads_loose(const struct dalcs_audit *audit, const struct dalcs_device *d) {
+    struct reading r = {.audit = audit};
+    dalcs_behaviour_visit(d->behaviour, note_loose, &r);
+    return r.voltage ||
+           (reads_voltage(d) && (is_loose(audit, d->node[2]) || is_loose(audit, d->node[3])));
 }
 
 /* Marks in acts[] what puts out an impulse of a current that it reads. */
@@ -173,11 +196,11 @@ void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *par
         const int node = part->node[k];
         audit->crossing.is_firm[node] = dalcs_union_find(audit->crossing.cluster, node) == 0;
     }
+    audit->crossing.coils_jump = by_coils;
     for (int k = 0; k < part->n_devices; k++) {
-        const int device = part->device[k];
-        if ((by_currents && acts[device] != 0.0) ||
-            (by_coils && is_jumping_coil(audit, part, after, device))) {
-            (void)spread(audit, &audit->circuit->device[device]);
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        if ((by_currents && acts[part->device[k]] != 0.0) || (by_coils && reads_loose(audit, d))) {
+            (void)spread(audit, d);
         }
     }
     spread_all(audit, part);

@@ -109,8 +109,12 @@ static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_par
     struct dalcs_euler *e = r->base;
     e->t = part->segment.t;
     find_noise(part, e->jump.after, e->noise);
+    double *behind =
+        part->component->scratch; /* the second step's: the first one has the impulses */
+    memcpy(behind, part->work.y2,
+           (size_t)dalcs_system_n_columns(part->component->system) * sizeof(double));
     DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->segment.t, part->x,
-                                      columns_before(part), part->work.y2));
+                                      columns_before(part), behind));
     memcpy(part->x, e->jump.after, (size_t)part->component->system->n_x * sizeof(double));
     part->segment.jumped = true;
     return DALCS_OK;
