@@ -3,10 +3,7 @@
 
 #include "extended.h"
 #include "stage_choice.h"
-#include "stage_matrix.h"
-#include "wide_vectors.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,13 +13,6 @@ static const double doubtful_pivot = 1e-9;
 /* Below this pivot (balanced) an elimination in long double leaves of a solution that is 1 more than 32 roundings of a
  * double, which is what current_error.c takes for rounding: 2^-63 over it is 2^-47. */
 static const long double lossy_pivot = 0x1p-16L;
-
-/* The smallest pivot (balanced) that makes an unknown a follower. */
-static const long double least_follower = 1e-2L;
-
-enum { BALANCING_ROUNDS = 3 };
-
-/* ---- Room ---------------------------------------------------------------------------------- */
 
 /* For as many unknowns as a map may have. Returns the bytes of it all. */
 static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
@@ -133,255 +123,6 @@ void dalcs_stage_workshop_destroy(struct dalcs_stage_workshop *workshop) {
         free(workshop->storage);
         free(workshop);
     }
-}
-
-/* ---- The equations ------------------------------------------------------------------------- */
-
-/* Column of a system's column in the unknowns; -1 for an open pair. */
-static void place_columns(const struct dalcs_stage_workshop *b) {
-    int n_equations = dalcs_system_n_equations(b->system);
-    for (int c = 0; c < n_equations; c++) {
-        b->place[c] = c;
-    }
-    for (int d = 0; d < b->system->n_pairs; d++) {
-        b->place[n_equations + d] = -1;
-    }
-    for (int k = 0; k < b->entry->n_on; k++) {
-        b->place[n_equations + b->entry->on[k]] = n_equations + k;
-    }
-}
-
-/* Adds sign * row of a matrix to a row of the base and, for its states, to the right-hand sides with
- * the opposite sign. */
-static void add_row(const struct dalcs_stage_workshop *b, const struct dalcs_csr *a, int from,
-                    int to, double sign) {
-    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
-        int column = b->place[a->j[k]];
-        if (column < 0) {
-            continue;
-        }
-        b->plain_base[column * b->n + to] += sign * a->x[k];
-        if (column < b->n_x) {
-            b->plain_rhs[column * b->n + to] -= sign * a->x[k];
-        }
-    }
-}
-
-static void add_inputs(const struct dalcs_stage_workshop *b, const struct dalcs_csr *a, int from,
-                       int to, double sign) {
-    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
-        int wave = b->wave_column[a->j[k]];
-        if (wave >= 0) {
-            b->plain_rhs[wave * b->n + to] += sign * a->x[k];
-        } else {
-            b->plain_rhs[b->n_x * b->n + to] +=
-                sign * a->x[k] * b->stages->excitation->constant[a->j[k]];
-        }
-    }
-}
-
-static void fill(struct dalcs_stage_workshop *b) {
-    const struct dalcs_system *s = b->system;
-    int n_equations = dalcs_system_n_equations(s);
-    memset(b->plain_base, 0, (size_t)b->n * (size_t)b->n * sizeof(double));
-    memset(b->plain_P, 0, (size_t)b->n_x * (size_t)b->n_x * sizeof(double));
-    memset(b->plain_rhs, 0, (size_t)b->n * (size_t)b->n_rhs * sizeof(double));
-    place_columns(b);
-    for (int r = 0; r < n_equations; r++) {
-        add_row(b, &s->A, r, r, -1.0);
-        add_inputs(b, &s->E, r, r, 1.0);
-    }
-    for (int k = 0; k < b->entry->n_on; k++) {
-        add_row(b, &s->C, b->entry->on[k], n_equations + k, 1.0);
-        add_inputs(b, &s->F, b->entry->on[k], n_equations + k, -1.0);
-    }
-    for (int i = 0; i < b->n_x; i++) {
-        for (int k = s->P.p[i]; k < s->P.p[i + 1]; k++) {
-            b->plain_P[s->P.j[k] * b->n_x + i] = s->P.x[k];
-        }
-    }
-}
-
-/* Both with room for whole quads in S and in row_scale. */
-DALCS_TWICE(void, balance_rows,
-            (int n, const double *S, const double *column_scale, double *row_scale),
-            (n, S, column_scale, row_scale)) {
-    for (int i = 0; i < n; i += DALCS_QUAD) {
-        dalcs_quad largest = {0.0};
-        for (int j = 0; j < n; j++) {
-            dalcs_quad a;
-            dalcs_quad_load(&a, S + j * n + i);
-            dalcs_quad_unsign(&a);
-            a *= column_scale[j];
-            dalcs_quad_raise(&largest, &a);
-        }
-        dalcs_quad_store(row_scale + i, &largest);
-    }
-    for (int i = 0; i < dalcs_quads_of(n); i++) {
-        row_scale[i] = i < n ? dalcs_stage_matrix_scale(row_scale[i]) : 0.0;
-    }
-}
-
-DALCS_TWICE(void, balance_columns,
-            (int n, const double *S, const double *row_scale, double *column_scale),
-            (n, S, row_scale, column_scale)) {
-    for (int j = 0; j < n; j++) {
-        dalcs_quad largest = {0.0};
-        for (int i = 0; i < n; i += DALCS_QUAD) {
-            dalcs_quad a;
-            dalcs_quad scale;
-            dalcs_quad_load(&a, S + j * n + i);
-            dalcs_quad_load(&scale, row_scale + i);
-            dalcs_quad_unsign(&a);
-            a *= scale;
-            dalcs_quad_raise(&largest, &a);
-        }
-        column_scale[j] = dalcs_stage_matrix_scale(dalcs_quad_largest(&largest));
-    }
-}
-
-/* Rows and columns of |S| at the real eigenvalue get a largest entry near 1. */
-static void balance(struct dalcs_stage_workshop *b) {
-    int n = b->n;
-    double sigma = b->stages->method->lambda / b->entry->h;
-    for (int i = 0; i < n; i++) {
-        b->row_scale[i] = 1.0;
-        b->column_scale[i] = 1.0;
-    }
-    memcpy(b->S, b->plain_base, (size_t)n * (size_t)n * sizeof(double));
-    for (int j = 0; j < b->n_x; j++) {
-        for (int i = 0; i < b->n_x; i++) {
-            b->S[j * n + i] += sigma * b->plain_P[j * b->n_x + i];
-        }
-    }
-    for (int round = 0; round < BALANCING_ROUNDS; round++) {
-        balance_rows(n, b->S, b->column_scale, b->row_scale);
-        balance_columns(n, b->S, b->row_scale, b->column_scale);
-    }
-    for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            double scale = b->row_scale[i] * b->column_scale[j];
-            b->base[j * n + i] = b->plain_base[j * n + i] * scale;
-            b->S[j * n + i] *= scale;
-            if (j < b->n_x && i < b->n_x) {
-                b->P[j * b->n_x + i] = b->plain_P[j * b->n_x + i] * scale;
-            }
-        }
-    }
-    memcpy(b->entry->natural, b->column_scale,
-           (size_t)dalcs_system_n_equations(b->system) * sizeof(double));
-    for (int j = 0; j < b->n_rhs; j++) {
-        for (int i = 0; i < n; i++) {
-            b->rhs[j * n + i] = b->plain_rhs[j * n + i] * b->row_scale[i];
-        }
-    }
-}
-
-/* What the conditions of a singular mode add to S, and to its right-hand sides: stage_choice.h. */
-static double border(const struct dalcs_stage_workshop *b, int i, const double *of_choice, int n,
-                     int j) {
-    double sum = 0.0;
-    for (int k = 0; k < b->nullity; k++) {
-        sum += b->left[k * b->n + i] * of_choice[k * n + j];
-    }
-    return sum;
-}
-
-/* S without P and its right-hand sides, by rows. */
-static void fill_whole(struct dalcs_stage_workshop *b) {
-    int n = b->n;
-    memcpy(b->whole_row_scale, b->row_scale, (size_t)n * sizeof(double));
-    memcpy(b->whole_column_scale, b->column_scale, (size_t)n * sizeof(double));
-    for (int i = 0; i < n; i++) {
-        long double *row = b->whole + i * (n + b->n_rhs);
-        for (int j = 0; j < n; j++) {
-            row[j] = b->base[j * n + i];
-        }
-        for (int j = 0; j < n && b->nullity > 0; j++) {
-            row[j] += border(b, i, b->choice, n, j);
-        }
-        for (int j = 0; j < b->n_rhs; j++) {
-            row[n + j] = b->rhs[j * n + i];
-            row[n + j] += b->nullity > 0 ? border(b, i, b->chosen, b->n_rhs, j) : 0.0;
-        }
-    }
-}
-
-/* What followers take of what is kept. */
-static void list_followers(struct dalcs_stage_workshop *b) {
-    int entries = 0;
-    b->follows_p[0] = 0;
-    for (int f = 0; f < b->n_followers; f++) {
-        const long double *row = b->whole + b->row_of[b->follower[f]] * (b->n + b->n_rhs);
-        for (int k = 0; k < b->n_kept; k++) {
-            if (row[b->kept[k]] != 0.0L) {
-                b->follows_j[entries] = k;
-                b->follows_x[entries++] = dalcs_extended_of(-row[b->kept[k]]);
-            }
-        }
-        b->follows_j[entries++] = b->n_kept;
-        b->follows_p[f + 1] = entries;
-    }
-}
-
-/* What the equations without derivatives say of an unknown without memory is the same for every
- * eigenvalue: those that they determine are solved for once. What is kept are the states and, where the
- * index is 2, what only derivatives determine. */
-static void eliminate_followers(struct dalcs_stage_workshop *b) {
-    int n = b->n;
-    b->n_kept = b->n_x;
-    b->n_followers = 0;
-    dalcs_extended_eliminate(b->n_x, n, n + b->n_rhs, least_follower, b->whole, b->row_of);
-    for (int r = 0; r < n; r++) {
-        b->owner[r] = -1;
-    }
-    for (int c = 0; c < b->n_x; c++) {
-        b->kept[c] = c;
-        b->kept_row[c] = c;
-    }
-    for (int c = b->n_x; c < n; c++) {
-        if (b->row_of[c] < 0) {
-            b->kept[b->n_kept++] = c;
-        } else {
-            b->owner[b->row_of[c]] = c;
-            b->follower[b->n_followers++] = c;
-        }
-    }
-    for (int r = b->n_x, k = b->n_x; r < n; r++) {
-        if (b->owner[r] < 0) {
-            b->kept_row[k++] = r;
-        }
-    }
-    list_followers(b);
-}
-
-/* Brings what was eliminated for another step length to the present scales. All are powers of 2: no digit
- * is lost. */
-static void rescale_followers(struct dalcs_stage_workshop *b) {
-    int n = b->n;
-    for (int i = 0; i < n; i++) {
-        b->whole_row_scale[i] = b->row_scale[i] / b->whole_row_scale[i];
-        b->whole_column_scale[i] = b->column_scale[i] / b->whole_column_scale[i];
-    }
-    for (int r = 0; r < n; r++) {
-        long double *row = b->whole + r * (n + b->n_rhs);
-        int of = b->owner[r];
-        double scale = of < 0 ? b->whole_row_scale[r] : 1.0 / b->whole_column_scale[of];
-        for (int k = 0; k < b->n_kept; k++) {
-            row[b->kept[k]] *= scale * b->whole_column_scale[b->kept[k]];
-        }
-        for (int j = n; j < n + b->n_rhs; j++) {
-            row[j] *= scale;
-        }
-    }
-    for (int k = 0; k < b->nullity; k++) {
-        for (int i = 0; i < n; i++) {
-            b->left[k * n + i] /= b->whole_row_scale[i];
-        }
-    }
-    memcpy(b->whole_row_scale, b->row_scale, (size_t)n * sizeof(double));
-    memcpy(b->whole_column_scale, b->column_scale, (size_t)n * sizeof(double));
-    list_followers(b);
 }
 
 /* The real system of what is kept, with its right-hand sides. */
@@ -516,18 +257,16 @@ static bool solve_kept_well(struct dalcs_stage_workshop *b) {
 /* is_lossy: it takes more digits. */
 static enum dalcs_status solve_real(struct dalcs_stage_workshop *b, bool *is_lossy) {
     if (b->is_known) {
-        rescale_followers(b);
+        dalcs_workshop_rescale(b);
     } else {
-        fill_whole(b);
-        eliminate_followers(b);
+        dalcs_workshop_eliminate(b);
     }
     long double pivot = solve_kept(b);
     if (pivot < doubtful_pivot && b->nullity == 0) {
         b->is_known = false;
         DALCS_TRY(dalcs_stage_choice_find(b));
         if (b->nullity > 0) {
-            fill_whole(b);
-            eliminate_followers(b);
+            dalcs_workshop_eliminate(b);
             pivot = solve_kept(b);
         }
     }
@@ -574,14 +313,14 @@ static void recall(struct dalcs_stage_workshop *b) {
     b->nullity = 0;
     dalcs_arena_finish(&b->arena);
     memcpy(b->mode, b->entry->mode, (size_t)b->stages->n_words * sizeof(*b->mode));
-    fill(b);
+    dalcs_workshop_fill(b);
 }
 
 enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
                                              struct dalcs_stage_entry *entry) {
     b->entry = entry;
     recall(b);
-    balance(b);
+    dalcs_workshop_balance(b);
     if (b->n > 0) {
         bool is_lossy;
         DALCS_TRY(solve_real(b, &is_lossy));

@@ -86,4 +86,18 @@ static inline double *dalcs_stage_workshop_reals(struct dalcs_arena *arena, int 
     return dalcs_arena_alloc(arena, (size_t)(n > 0 ? n : 1), sizeof(double));
 }
 
+void dalcs_workshop_fill(struct dalcs_stage_workshop *b);
+
+/* Rows and columns of |S| at the real eigenvalue get a largest entry near 1. */
+void dalcs_workshop_balance(struct dalcs_stage_workshop *b);
+
+/* What the equations without derivatives say of an unknown without memory is the same for every
+ * eigenvalue: those that they determine are solved for once. What is kept are the states and, where the
+ * index is 2, what only derivatives determine. */
+void dalcs_workshop_eliminate(struct dalcs_stage_workshop *b);
+
+/* Brings what was eliminated for another step length to the present scales. All are powers of 2: no digit
+ * is lost. */
+void dalcs_workshop_rescale(struct dalcs_stage_workshop *b);
+
 #endif

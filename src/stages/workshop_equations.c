@@ -1,0 +1,148 @@
+/* workshop_equations.c - the equations of the stages in one mode, and their scales. */
+#include "stage_workshop.h"
+
+#include "stage_matrix.h"
+#include "wide_vectors.h"
+
+#include <string.h>
+
+enum { BALANCING_ROUNDS = 3 };
+
+/* Column of a system's column in the unknowns; -1 for an open pair. */
+static void place_columns(const struct dalcs_stage_workshop *b) {
+    int n_equations = dalcs_system_n_equations(b->system);
+    for (int c = 0; c < n_equations; c++) {
+        b->place[c] = c;
+    }
+    for (int d = 0; d < b->system->n_pairs; d++) {
+        b->place[n_equations + d] = -1;
+    }
+    for (int k = 0; k < b->entry->n_on; k++) {
+        b->place[n_equations + b->entry->on[k]] = n_equations + k;
+    }
+}
+
+/* Adds sign * row of a matrix to a row of the base and, for its states, to the right-hand sides with
+ * the opposite sign. */
+static void add_row(const struct dalcs_stage_workshop *b, const struct dalcs_csr *a, int from,
+                    int to, double sign) {
+    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+        int column = b->place[a->j[k]];
+        if (column < 0) {
+            continue;
+        }
+        b->plain_base[column * b->n + to] += sign * a->x[k];
+        if (column < b->n_x) {
+            b->plain_rhs[column * b->n + to] -= sign * a->x[k];
+        }
+    }
+}
+
+static void add_inputs(const struct dalcs_stage_workshop *b, const struct dalcs_csr *a, int from,
+                       int to, double sign) {
+    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+        int wave = b->wave_column[a->j[k]];
+        if (wave >= 0) {
+            b->plain_rhs[wave * b->n + to] += sign * a->x[k];
+        } else {
+            b->plain_rhs[b->n_x * b->n + to] +=
+                sign * a->x[k] * b->stages->excitation->constant[a->j[k]];
+        }
+    }
+}
+
+void dalcs_workshop_fill(struct dalcs_stage_workshop *b) {
+    const struct dalcs_system *s = b->system;
+    int n_equations = dalcs_system_n_equations(s);
+    memset(b->plain_base, 0, (size_t)b->n * (size_t)b->n * sizeof(double));
+    memset(b->plain_P, 0, (size_t)b->n_x * (size_t)b->n_x * sizeof(double));
+    memset(b->plain_rhs, 0, (size_t)b->n * (size_t)b->n_rhs * sizeof(double));
+    place_columns(b);
+    for (int r = 0; r < n_equations; r++) {
+        add_row(b, &s->A, r, r, -1.0);
+        add_inputs(b, &s->E, r, r, 1.0);
+    }
+    for (int k = 0; k < b->entry->n_on; k++) {
+        add_row(b, &s->C, b->entry->on[k], n_equations + k, 1.0);
+        add_inputs(b, &s->F, b->entry->on[k], n_equations + k, -1.0);
+    }
+    for (int i = 0; i < b->n_x; i++) {
+        for (int k = s->P.p[i]; k < s->P.p[i + 1]; k++) {
+            b->plain_P[s->P.j[k] * b->n_x + i] = s->P.x[k];
+        }
+    }
+}
+
+/* Both with room for whole quads in S and in row_scale. */
+DALCS_TWICE(void, balance_rows,
+            (int n, const double *S, const double *column_scale, double *row_scale),
+            (n, S, column_scale, row_scale)) {
+    for (int i = 0; i < n; i += DALCS_QUAD) {
+        dalcs_quad largest = {0.0};
+        for (int j = 0; j < n; j++) {
+            dalcs_quad a;
+            dalcs_quad_load(&a, S + j * n + i);
+            dalcs_quad_unsign(&a);
+            a *= column_scale[j];
+            dalcs_quad_raise(&largest, &a);
+        }
+        dalcs_quad_store(row_scale + i, &largest);
+    }
+    for (int i = 0; i < dalcs_quads_of(n); i++) {
+        row_scale[i] = i < n ? dalcs_stage_matrix_scale(row_scale[i]) : 0.0;
+    }
+}
+
+DALCS_TWICE(void, balance_columns,
+            (int n, const double *S, const double *row_scale, double *column_scale),
+            (n, S, row_scale, column_scale)) {
+    for (int j = 0; j < n; j++) {
+        dalcs_quad largest = {0.0};
+        for (int i = 0; i < n; i += DALCS_QUAD) {
+            dalcs_quad a;
+            dalcs_quad scale;
+            dalcs_quad_load(&a, S + j * n + i);
+            dalcs_quad_load(&scale, row_scale + i);
+            dalcs_quad_unsign(&a);
+            a *= scale;
+            dalcs_quad_raise(&largest, &a);
+        }
+        column_scale[j] = dalcs_stage_matrix_scale(dalcs_quad_largest(&largest));
+    }
+}
+
+void dalcs_workshop_balance(struct dalcs_stage_workshop *b) {
+    int n = b->n;
+    double sigma = b->stages->method->lambda / b->entry->h;
+    for (int i = 0; i < n; i++) {
+        b->row_scale[i] = 1.0;
+        b->column_scale[i] = 1.0;
+    }
+    memcpy(b->S, b->plain_base, (size_t)n * (size_t)n * sizeof(double));
+    for (int j = 0; j < b->n_x; j++) {
+        for (int i = 0; i < b->n_x; i++) {
+            b->S[j * n + i] += sigma * b->plain_P[j * b->n_x + i];
+        }
+    }
+    for (int round = 0; round < BALANCING_ROUNDS; round++) {
+        balance_rows(n, b->S, b->column_scale, b->row_scale);
+        balance_columns(n, b->S, b->row_scale, b->column_scale);
+    }
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++) {
+            double scale = b->row_scale[i] * b->column_scale[j];
+            b->base[j * n + i] = b->plain_base[j * n + i] * scale;
+            b->S[j * n + i] *= scale;
+            if (j < b->n_x && i < b->n_x) {
+                b->P[j * b->n_x + i] = b->plain_P[j * b->n_x + i] * scale;
+            }
+        }
+    }
+    memcpy(b->entry->natural, b->column_scale,
+           (size_t)dalcs_system_n_equations(b->system) * sizeof(double));
+    for (int j = 0; j < b->n_rhs; j++) {
+        for (int i = 0; i < n; i++) {
+            b->rhs[j * n + i] = b->plain_rhs[j * n + i] * b->row_scale[i];
+        }
+    }
+}
