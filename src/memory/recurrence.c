@@ -12,7 +12,6 @@
 #include "step_length.h"
 #include "transition.h"
 
-#include <float.h>
 #include <math.h>
 
 /* A map for a span costs as much as looking for some thirty segments, and with it a period costs next to

@@ -221,15 +221,15 @@ MUTATIONS = {
         "excitation/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",
         "    m->next = dalcs_command_time(m, way, m->n[way]) * (1.0 - 1e-4);\n", FLYBACK),
     "an event of a diode is skipped": (
-        "locate/guards.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 0 && ",
+        "locate/first_fall.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 0 && ",
         BRIDGE),
     "a map is stale": (
         "stages/stages.c", "return e->h == h && ", "return (e->h == h || e->h == 0.5 * h) && ",
         FILTER),
     "a leap one period too far": (
-        "memory/cycle.c", "        put_off(r, part, n);\n", "        put_off(r, part, n + 1);\n", BUCK),
+        "memory/cycle_leap.c", "        put_off(r, part, n);\n", "        put_off(r, part, n + 1);\n", BUCK),
     "a leap tells of fewer periods than it took": (
-        "memory/cycle.c", "(size_t)n_x * sizeof(double));\n    return n;\n",
+        "memory/cycle_leap.c", "(size_t)n_x * sizeof(double));\n    return n;\n",
         "(size_t)n_x * sizeof(double));\n    return n > 2 ? n - 1 : n;\n", BUCK),
     "a state is nudged by 1e-7": (
         "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
@@ -302,7 +302,7 @@ MUTATIONS = {
         "integrator/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
         "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
     "one leap of many is nudged by 1e-6": (
-        "memory/cycle.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",
+        "memory/cycle_leap.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",
         "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n"
         + once(5, "", "part->x[0] *= 1.0 + 1e-6;") + "\n    return n;\n", LEAPS),
 }
