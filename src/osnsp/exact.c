@@ -3,7 +3,6 @@
 #include "whole.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Changes of the mode that are of all pairs with a wrong sign at once, before they are of one. */
 enum { ROUNDS_AT_ONCE = 10 };

@@ -47,11 +47,16 @@ enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) DALCS_MUS
 enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
                                   struct dalcs_mode_entry **entry) DALCS_MUST_CHECK;
 
-/* Factors of a small matrix by columns of which little will be asked. DALCS_SINGULAR: it is not small, or more has to be
- * known of it than plain elimination tells. */
-enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
-                                           const int *start, const int *row, const double *value,
-                                           double apart);
+/* Counts the bytes of a map that was just added to the entry. */
+void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, size_t bytes);
+
+void dalcs_modes_finish(struct dalcs_osnsp *p);
+
+/* ---- mode_factors.c ------------------------------------------------------------------------ */
+
+/* Of p->mode in p->form[0], into the entry. */
+enum dalcs_status dalcs_modes_factor_plain(struct dalcs_osnsp *p,
+                                           struct dalcs_mode_entry *entry) DALCS_MUST_CHECK;
 
 /* Pivots of a mode that is not clearly regular. */
 static const double dalcs_far_apart = 1e-6;
@@ -69,10 +74,11 @@ enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n,
 
 void dalcs_columns_finish(struct dalcs_columns *a);
 
-/* Counts the bytes of a map that was just added to the entry. */
-void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, size_t bytes);
-
-void dalcs_modes_finish(struct dalcs_osnsp *p);
+/* Factors of a small matrix by columns of which little will be asked. DALCS_SINGULAR: it is not small, or more has to be
+ * known of it than plain elimination tells. */
+enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu,
+                                           const struct dalcs_columns *a,
+                                           double apart) DALCS_MUST_CHECK;
 
 /* ---- smooth.c ------------------------------------------------------------------------------ */
 

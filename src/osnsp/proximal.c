@@ -107,7 +107,7 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
         a.p[c + 1] = out;
     }
     /* The weights make it nonsingular; only an exact zero pivot is refused. */
-    enum dalcs_status status = dalcs_modes_factor_small(p, &entry->lu, n, a.p, a.i, a.x, 0.0);
+    enum dalcs_status status = dalcs_modes_factor_small(p, &entry->lu, &a, 0.0);
     if (status > DALCS_OK) {
         dalcs_lu_keep_diagonal(&p->klu, true);
         status = dalcs_lu_factor(&entry->lu, &p->klu, n, a.p, a.i, a.x, NULL, 0.0);

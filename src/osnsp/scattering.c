@@ -11,8 +11,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Changes of the mode from one that is right but for rounding. */
 enum { MOST_CHANGES = 60 };

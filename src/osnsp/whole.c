@@ -4,8 +4,6 @@
 #include "null_space.h"
 #include "osnsp_internal.h"
 
-#include <float.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,8 +90,8 @@ static enum dalcs_status put_columns(const struct dalcs_whole *whole,
 static enum dalcs_status factor(struct dalcs_whole *whole, const struct dalcs_triplets *t) {
     struct dalcs_csr columns = {0};
     DALCS_TRY(put_columns(whole, t, &columns));
-    enum dalcs_status status = dalcs_modes_factor_small(whole->p, &whole->lu, whole->n, columns.p,
-                                                        columns.j, columns.x, dalcs_far_apart);
+    const struct dalcs_columns a = {whole->n, columns.p, columns.j, columns.x};
+    enum dalcs_status status = dalcs_modes_factor_small(whole->p, &whole->lu, &a, dalcs_far_apart);
     if (status > DALCS_OK) {
         klu_common common;
         dalcs_lu_common_init(&common);
