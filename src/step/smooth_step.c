@@ -6,7 +6,6 @@
 #include "rounding.h"
 #include "smooth_newton.h"
 
-#include <float.h>
 #include <math.h>
 
 /* The part of what a step's error may be that is left to Newton's method (kappa of Hairer and Wanner, section IV.8). */
