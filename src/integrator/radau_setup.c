@@ -148,9 +148,9 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     const struct dalcs_collocation *method = dalcs_collocation_of(r->options.family, choice.stages);
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system, method));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
-    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, method,
-                                 choice.map_limit, osnsp->rcond_min,
-                                 osnsp->cache_bytes / (size_t)r->n_parts));
+    const struct dalcs_stage_limits limits = {choice.map_limit, osnsp->rcond_min,
+                                              osnsp->cache_bytes / (size_t)r->n_parts};
+    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, method, &limits));
     part->stages.block_of = c->osnsp.partition.block_of;
     part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : unseen_part * part->inner_tolerance;
     DALCS_TRY(dalcs_arena_reserve(&part->arena, room_for_part(c->system)));

@@ -86,8 +86,7 @@ static enum dalcs_status factor_all(struct dalcs_stages *stages, struct dalcs_st
                                     struct dalcs_stage_factors *f, struct dalcs_stage_matrix *m,
                                     double rcond_min) {
     struct dalcs_stage_analysis *a;
-    DALCS_TRY(dalcs_stage_plan_analyze(stages, entry->mode, f->singular.n > 0, m->n, m->row,
-                                       m->column, m->p, m->i, &a));
+    DALCS_TRY(dalcs_stage_plan_analyze(stages, entry->mode, f->singular.n > 0, m, &a));
     for (int q = 0; q < f->n_systems; q++) {
         double re;
         double im;
@@ -121,9 +120,9 @@ static void drop_systems(struct dalcs_stage_factors *f) {
     }
 }
 
-double dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
-                                       const struct dalcs_stage_entry *entry, int r, int node,
-                                       const double *in, const double *y, double *terms) {
+struct dalcs_row_miss dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
+                                                      const struct dalcs_stage_entry *entry, int r,
+                                                      int node, const double *in, const double *y) {
     const struct dalcs_stage_plan *plan = stages->plan;
     const struct dalcs_system *s = stages->system;
     int n_equations = dalcs_system_n_equations(s);
@@ -131,24 +130,24 @@ double dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
     const struct dalcs_csr *a = is_pair ? &s->C : &s->A;
     int from = is_pair ? r - n_equations : r;
     double missed = in[s->n_x] * plan->constant[r];
-    *terms = fabs(missed);
+    double terms = fabs(missed);
     for (int k = a->p[from]; k < a->p[from + 1]; k++) {
         if (a->j[k] >= n_equations && !dalcs_stage_is_on(entry, a->j[k] - n_equations)) {
             continue; /* y has its w there */
         }
         double term = (is_pair ? -a->x[k] : a->x[k]) * y[a->j[k]];
         missed += term;
-        *terms += fabs(term);
+        terms += fabs(term);
         if (a->j[k] < s->n_x) { /* solved for as an increment over this */
-            *terms += fabs(a->x[k] * in[a->j[k]]);
+            terms += fabs(a->x[k] * in[a->j[k]]);
         }
     }
     for (int k = plan->wave_begin[r]; k < plan->wave_begin[r + 1]; k++) {
         double term = plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + node];
         missed += term;
-        *terms += fabs(term);
+        terms += fabs(term);
     }
-    return missed;
+    return (struct dalcs_row_miss){missed, terms};
 }
 
 double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
@@ -170,11 +169,10 @@ double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
             (r >= n_equations && !dalcs_stage_is_on(entry, r - n_equations))) {
             continue;
         }
-        double terms;
-        double missed =
-            dalcs_stage_factors_miss_of_row(stages, entry, r, stages->method->s, in, y, &terms);
-        worst = missed != missed ? INFINITY : fmax(worst, scale * fabs(missed));
-        size = fmax(size, scale * terms);
+        struct dalcs_row_miss miss =
+            dalcs_stage_factors_miss_of_row(stages, entry, r, stages->method->s, in, y);
+        worst = miss.missed != miss.missed ? INFINITY : fmax(worst, scale * fabs(miss.missed));
+        size = fmax(size, scale * miss.terms);
     }
     return size > 0.0 ? worst / size : 0.0;
 }

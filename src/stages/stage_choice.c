@@ -7,7 +7,7 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
 /* What a null vector does to a diode, beside its largest entry, is rounding up to this: currents around a
  * loop of sources are nothing to diodes. */

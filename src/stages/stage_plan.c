@@ -2,6 +2,7 @@
 #include "stage_plan.h"
 
 #include "lu.h"
+#include "stage_matrix.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +17,7 @@ static enum dalcs_status fill_base(struct dalcs_stage_plan *plan, const struct d
     enum dalcs_status status = DALCS_OK;
     int n_equations = dalcs_system_n_equations(s);
     for (int r = 0; r < n_equations && status == DALCS_OK; r++) {
-        status = dalcs_stage_join_row(&plan->join, s, r, -1.0, work, work + plan->n_rows, &t);
+        status = dalcs_stage_join_row(&plan->join, s, r, -1.0, work, &t);
     }
     for (int d = 0; d < s->n_pairs; d++) {
         for (int k = s->C.p[d]; k < s->C.p[d + 1] && status == DALCS_OK; k++) {
@@ -221,15 +222,17 @@ void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     free(plan);
 }
 
-/* A copy of i with each column's match first; NULL when out of memory. */
-static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, const int *row,
-                               const int *column, const int *p, const int *i) {
-    int *first = dalcs_alloc((size_t)p[n], sizeof(int));
-    for (int c = 0; first != NULL && c < n; c++) {
-        int match = plan->match[column[c]];
+/* A copy of m->i with each column's match first; NULL when out of memory. */
+static int *list_matches_first(const struct dalcs_stage_plan *plan,
+                               const struct dalcs_stage_matrix *m) {
+    const int *p = m->p;
+    const int *i = m->i;
+    int *first = dalcs_alloc((size_t)p[m->n], sizeof(int));
+    for (int c = 0; first != NULL && c < m->n; c++) {
+        int match = plan->match[m->column[c]];
         for (int k = p[c]; k < p[c + 1]; k++) {
             first[k] = i[k];
-            if (row[i[k]] == match) {
+            if (m->row[i[k]] == match) {
                 first[k] = first[p[c]];
                 first[p[c]] = i[k];
             }
@@ -239,15 +242,15 @@ static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, const
 }
 
 static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mode,
-                                 bool is_singular, int n, const int *row, const int *column, int *p,
-                                 const int *i, struct dalcs_stage_analysis *a) {
+                                 bool is_singular, const struct dalcs_stage_matrix *m,
+                                 struct dalcs_stage_analysis *a) {
     size_t words = (size_t)stages->n_words;
-    int *first = list_matches_first(stages->plan, n, row, column, p, i);
+    int *first = list_matches_first(stages->plan, m);
     *a = (struct dalcs_stage_analysis){.mode = dalcs_alloc(words, sizeof(*mode)),
                                        .is_singular = is_singular};
     enum dalcs_status status = DALCS_E_NOMEM;
     if (first != NULL && a->mode != NULL) {
-        status = dalcs_lu_analyze(&a->symbolic, &stages->klu, n, p, first);
+        status = dalcs_lu_analyze(&a->symbolic, &stages->klu, m->n, m->p, first);
     }
     free(first);
     if (status != DALCS_OK) {
@@ -259,8 +262,7 @@ static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mo
 }
 
 enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode,
-                                           bool is_singular, int n, const int *row,
-                                           const int *column, int *p, int *i,
+                                           bool is_singular, const struct dalcs_stage_matrix *m,
                                            struct dalcs_stage_analysis **analysis) {
     struct dalcs_stage_plan *plan = stages->plan;
     size_t bytes = (size_t)stages->n_words * sizeof(*mode);
@@ -275,7 +277,7 @@ enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const ui
     if (at < plan->n_analyses) {
         found = plan->analysis[at];
     } else {
-        DALCS_TRY(analyze(stages, mode, is_singular, n, row, column, p, i, &found));
+        DALCS_TRY(analyze(stages, mode, is_singular, m, &found));
         if (at == plan->most_analyses) {
             forget(stages, &plan->analysis[--at]);
         } else {

@@ -83,11 +83,11 @@ enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) DALCS_MUST_C
 
 void dalcs_stage_plan_destroy(struct dalcs_stages *stages);
 
-/* KLU's analysis of a mode's pattern (p, i), whose rows and columns are row[n] and column[n] of M. It
- * belongs to the plan and stays until the next call. */
+struct dalcs_stage_matrix;
+
+/* KLU's analysis of the pattern of a mode's matrix. It belongs to the plan and stays until the next call. */
 enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode,
-                                           bool is_singular, int n, const int *row,
-                                           const int *column, int *p, int *i,
+                                           bool is_singular, const struct dalcs_stage_matrix *m,
                                            struct dalcs_stage_analysis **analysis) DALCS_MUST_CHECK;
 
 #endif

@@ -64,10 +64,16 @@ struct dalcs_stages {
     struct dalcs_stage_workshop *workshop; /* what makes dense maps; NULL until there are any */
 };
 
+struct dalcs_stage_limits {
+    int dense_limit;   /* unknowns up to which a step is a dense map */
+    double rcond_min;  /* of factors */
+    size_t most_bytes; /* of all entries */
+};
+
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
                                      const struct dalcs_excitation *excitation,
-                                     const struct dalcs_collocation *method, int dense_limit,
-                                     double rcond_min, size_t most_bytes) DALCS_MUST_CHECK;
+                                     const struct dalcs_collocation *method,
+                                     const struct dalcs_stage_limits *limits) DALCS_MUST_CHECK;
 
 void dalcs_stages_finish(struct dalcs_stages *stages);
 

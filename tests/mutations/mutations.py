@@ -224,7 +224,7 @@ MUTATIONS = {
         "locate/first_fall.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 0 && ",
         BRIDGE),
     "a map is stale": (
-        "stages/stages.c", "return e->h == h && ", "return (e->h == h || e->h == 0.5 * h) && ",
+        "stages/stage_cache.c", "return e->h == h && ", "return (e->h == h || e->h == 0.5 * h) && ",
         FILTER),
     "a leap one period too far": (
         "memory/cycle_leap.c", "        put_off(r, part, n);\n", "        put_off(r, part, n + 1);\n", BUCK),

@@ -25,8 +25,8 @@ static void jump(const char *text) {
         inputs[i] = dalcs_stimulus_value(&t.circuit.stimulus[s->stimulus[i]], 0.0, DALCS_RIGHT);
     }
     ck_assert_int_eq(dalcs_jumps_build(&jumps, &t.circuit, &t.network, &options), DALCS_OK);
-    ck_assert_int_eq(
-        dalcs_jumps_solve(&jumps, 0, &mode, t.network.initial[0], inputs, &answer), DALCS_OK);
+    ck_assert_int_eq(dalcs_jumps_solve(&jumps, 0, &mode, t.network.initial[0], inputs, &answer),
+                     DALCS_OK);
 }
 
 static void finish(void) {

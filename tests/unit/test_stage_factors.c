@@ -67,16 +67,16 @@ static void setup(struct both *b, const char *netlist, int s, bool general) {
     ck_assert_int_eq(dalcs_excitation_setup(&b->excitation, &b->text.circuit, b->system, NULL),
                      DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&b->dense, b->system, &b->excitation,
-                                        dalcs_collocation_of(DALCS_RADAU_IIA, s), 1000000, 1e-14,
-                                        SIZE_MAX),
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, s),
+                                        &(struct dalcs_stage_limits){1000000, 1e-14, SIZE_MAX}),
                      DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&b->sparse, b->system, &b->excitation,
-                                        dalcs_collocation_of(DALCS_RADAU_IIA, s), 0, 1e-14,
-                                        SIZE_MAX),
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, s),
+                                        &(struct dalcs_stage_limits){0, 1e-14, SIZE_MAX}),
                      DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&b->updated, b->system, &b->excitation,
-                                        dalcs_collocation_of(DALCS_RADAU_IIA, s), 0, 1e-14,
-                                        SIZE_MAX),
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, s),
+                                        &(struct dalcs_stage_limits){0, 1e-14, SIZE_MAX}),
                      DALCS_OK);
     b->sparse.update_trust = 0;
 }

@@ -19,8 +19,8 @@ static void start_with(const char *text, int n_stages, size_t most_bytes) {
     s = &t.network.system[0];
     ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s, NULL), DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&stages, s, &x,
-                                        dalcs_collocation_of(DALCS_RADAU_IIA, n_stages), 64, 1e-14,
-                                        most_bytes),
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, n_stages),
+                                        &(struct dalcs_stage_limits){64, 1e-14, most_bytes}),
                      DALCS_OK);
 }
 
