@@ -240,7 +240,7 @@ MUTATIONS = {
     "hysteresis is half as wide": (
         "dalcs/stamp_device.c", ".turn_off = m->vt - m->vh}", ".turn_off = m->vt}", HYSTERESIS),
     "an event comes late": (
-        "integrator/segment.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
+        "integrator/accept.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
         "    t_end += part->guards.n_crossed > 0 ? 1e-3 * part->segment.h : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BRIDGE),
     "a switch starts on the other side": (
@@ -275,7 +275,7 @@ MUTATIONS = {
         "    static long calls_;\n    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, "
         "++calls_ == 3210 ? 0.5 * part->segment.h : part->segment.h,", SLOW),
     "one event of 200 comes late": (
-        "integrator/segment.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
+        "integrator/accept.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
         "    t_end += part->guards.n_crossed > 0 && part->segment.t > 1.0 && part->segment.t < 1.01 "
         "? 1e-3 * part->segment.h : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BEAT),
