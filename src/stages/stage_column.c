@@ -19,23 +19,23 @@ static inline void add_lanes(double *to, double factor, const double *from) {
     }
 }
 
-/* The other side of the pairs, b->guard: lambda where closed, w where open, from the unknowns in b->lanes
+/* The other side of the pairs, b->column.guard: lambda where closed, w where open, from the unknowns in b->column.lanes
  * and from the share of the source column (rhs_column < 0: none) in the lanes. */
 DALCS_TWICE(void, find_guards,
             (const struct dalcs_stage_workshop *b, int rhs_column, const double *share),
             (b, rhs_column, share)) {
     const struct dalcs_system *s = b->system;
     const double *constant = b->stages->excitation->constant;
-    memset(b->guard, 0, (size_t)(s->n_pairs * DALCS_LANES) * sizeof(double));
+    memset(b->column.guard, 0, (size_t)(s->n_pairs * DALCS_LANES) * sizeof(double));
     for (int d = 0; d < s->n_pairs; d++) {
         if (dalcs_stage_is_on(b->entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE) {
             continue;
         }
-        double *w = b->guard + d * DALCS_LANES;
+        double *w = b->column.guard + d * DALCS_LANES;
         for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
             int c = b->place[s->C.j[k]];
             if (c >= 0) {
-                add_lanes(w, s->C.x[k], b->lanes + c * DALCS_LANES);
+                add_lanes(w, s->C.x[k], b->column.lanes + c * DALCS_LANES);
             }
         }
         for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
@@ -47,9 +47,9 @@ DALCS_TWICE(void, find_guards,
             }
         }
     }
-    const double *lambda = b->lanes + dalcs_system_n_equations(s) * DALCS_LANES;
+    const double *lambda = b->column.lanes + dalcs_system_n_equations(s) * DALCS_LANES;
     for (int k = 0; k < b->entry->n_on; k++) {
-        memcpy(b->guard + b->entry->on[k] * DALCS_LANES, lambda + k * DALCS_LANES,
+        memcpy(b->column.guard + b->entry->on[k] * DALCS_LANES, lambda + k * DALCS_LANES,
                DALCS_LANES * sizeof(double));
     }
 }
@@ -59,10 +59,10 @@ static void put_columns(const struct dalcs_stage_workshop *b, int lane, double *
     int n_equations = dalcs_system_n_equations(b->system);
 #pragma GCC unroll 4
     for (int c = 0; c < n_equations; c++) {
-        out[c] = b->lanes[c * DALCS_LANES + lane];
+        out[c] = b->column.lanes[c * DALCS_LANES + lane];
     }
     for (int d = 0; d < b->system->n_pairs; d++) {
-        out[n_equations + d] = b->guard[d * DALCS_LANES + lane];
+        out[n_equations + d] = b->column.guard[d * DALCS_LANES + lane];
     }
 }
 
@@ -79,15 +79,15 @@ static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const
     return v;
 }
 
-/* The stages of an unknown from its row, unscaled increments over unit, into b->lanes, and, before the filter, where
- * the polynomial through them alone starts, into b->start. */
+/* The stages of an unknown from its row, unscaled increments over unit, into b->column.lanes, and, before the filter, where
+ * the polynomial through them alone starts, into b->column.start. */
 static void put_stages(const struct dalcs_stage_workshop *b, int unknown,
                        const struct dalcs_extended_row *row, double unit) {
     int s = b->stages->method->s;
     int n_stages = b->stages->method->n_stages;
-    double scale = b->column_scale[unknown];
-    dalcs_extended_round(n_stages, row, scale, unit, b->lanes + unknown * DALCS_LANES + 1);
-    b->start[unknown] = dalcs_extended_scaled(row->high[s], row->low[s], scale);
+    double scale = b->eq.column_scale[unknown];
+    dalcs_extended_round(n_stages, row, scale, unit, b->column.lanes + unknown * DALCS_LANES + 1);
+    b->column.start[unknown] = dalcs_extended_scaled(row->high[s], row->low[s], scale);
 }
 
 /* The stages of what is kept, as increments, and then of the followers. */
@@ -95,40 +95,42 @@ static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_colu
                         const struct dalcs_stage_drive *drive) {
     const struct dalcs_collocation *m = b->stages->method;
     int n_parts = 1 + 2 * m->n_pairs;
-    const struct dalcs_extended *part = b->part + rhs_column * b->n_kept * DALCS_SOLUTION_PARTS;
-    for (int r = 0; r < b->n_kept; r++, part += DALCS_SOLUTION_PARTS) {
-        bool is_unit = column < b->n_x && b->kept[r] == column;
-        dalcs_extended_combine(m->s + 1, n_parts, part, drive->of_part, NULL, &b->stage[r]);
-        put_stages(b, b->kept[r], &b->stage[r], is_unit ? 1.0 : 0.0);
+    const struct dalcs_extended *part =
+        b->solved.part + rhs_column * b->kept.n_kept * DALCS_SOLUTION_PARTS;
+    for (int r = 0; r < b->kept.n_kept; r++, part += DALCS_SOLUTION_PARTS) {
+        bool is_unit = column < b->n_x && b->kept.kept[r] == column;
+        dalcs_extended_combine(m->s + 1, n_parts, part, drive->of_part, NULL, &b->column.stage[r]);
+        put_stages(b, b->kept.kept[r], &b->column.stage[r], is_unit ? 1.0 : 0.0);
     }
-    b->stage[b->n_kept] = *drive->stages;
-    for (int f = 0; f < b->n_followers; f++) {
-        int from = b->follows_p[f];
-        int to = b->follows_p[f + 1];
+    b->column.stage[b->kept.n_kept] = *drive->stages;
+    for (int f = 0; f < b->kept.n_followers; f++) {
+        int from = b->kept.follows_p[f];
+        int to = b->kept.follows_p[f + 1];
         struct dalcs_extended_row row;
-        b->follows_x[to - 1] = dalcs_extended_of(dalcs_stage_workshop_drive(b, f, rhs_column));
-        dalcs_extended_combine(m->s + 1, to - from, b->follows_x + from, b->stage,
-                               b->follows_j + from, &row);
-        put_stages(b, b->follower[f], &row, 0.0);
+        b->kept.follows_x[to - 1] = dalcs_extended_of(dalcs_stage_workshop_drive(b, f, rhs_column));
+        dalcs_extended_combine(m->s + 1, to - from, b->kept.follows_x + from, b->column.stage,
+                               b->kept.follows_j + from, &row);
+        put_stages(b, b->kept.follower[f], &row, 0.0);
     }
 }
 
-/* What implicit Euler makes of unknowns [from, to) from what is missed in the first n rows of b->of_missed, into
- * b->filtered, over their scales. */
+/* What implicit Euler makes of unknowns [from, to) from what is missed in the first n rows of b->column.of_missed, into
+ * b->column.filtered, over their scales. */
 static void filter(const struct dalcs_stage_workshop *b, int n, const struct dalcs_extended *missed,
                    int from, int to) {
     from -= from % DALCS_QUAD;
-    dalcs_extended_combine_long(b->room, to - from, n, missed, b->real + from, b->of_missed,
-                                b->filtered + from);
+    dalcs_extended_combine_long(b->solved.room, to - from, n, missed, b->solved.real + from,
+                                b->column.of_missed, b->column.filtered + from);
 }
 
 static struct dalcs_extended filtered(const struct dalcs_stage_workshop *b, int r) {
-    return dalcs_extended_scaled(b->filtered[r], b->filtered[b->room + (size_t)r],
-                                 b->column_scale[r]);
+    return dalcs_extended_scaled(b->column.filtered[r],
+                                 b->column.filtered[b->solved.room + (size_t)r],
+                                 b->eq.column_scale[r]);
 }
 
-/* The start and what sources do between the nodes into b->lanes, and the defect at the start after the
- * filter into b->defect. */
+/* The start and what sources do between the nodes into b->column.lanes, and the defect at the start after the
+ * filter into b->column.defect. */
 static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_column,
                        const double *share) {
     const struct dalcs_collocation *m = b->stages->method;
@@ -139,27 +141,31 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     for (int i = 1; i <= m->n_stages; i++) {
         source_drift -= m->exact_back[i - 1] * share[i];
     }
-    b->missed[n_x] = dalcs_extended_of(source_drift);
-    b->of_missed[n_x] = rhs_column;
+    b->column.missed[n_x] = dalcs_extended_of(source_drift);
+    b->column.of_missed[n_x] = rhs_column;
     for (int x = 0; x < n_x; x++) {
-        b->missed[x] = (struct dalcs_extended){-b->start[x].high, -b->start[x].low};
+        b->column.missed[x] =
+            (struct dalcs_extended){-b->column.start[x].high, -b->column.start[x].low};
     }
-    filter(b, n_missed, b->missed, 0, n_x);
+    filter(b, n_missed, b->column.missed, 0, n_x);
     /* What is added to the others goes with states that are off by their defects: less that. */
     for (int x = 0; x < n_x; x++) {
-        b->lanes[x * DALCS_LANES] = x == column ? 1.0 : 0.0;
-        b->defect[x] = filtered(b, x);
-        b->missed[x] = dalcs_extended_plus(
-            b->missed[x], (struct dalcs_extended){-b->defect[x].high, -b->defect[x].low});
+        b->column.lanes[x * DALCS_LANES] = x == column ? 1.0 : 0.0;
+        b->column.defect[x] = filtered(b, x);
+        b->column.missed[x] = dalcs_extended_plus(
+            b->column.missed[x],
+            (struct dalcs_extended){-b->column.defect[x].high, -b->column.defect[x].low});
     }
-    filter(b, n_missed, b->missed, n_x, n);
+    filter(b, n_missed, b->column.missed, n_x, n);
     for (int r = n_x; r < n; r++) {
-        b->lanes[r * DALCS_LANES] = dalcs_extended_plus(b->start[r], filtered(b, r)).high;
+        b->column.lanes[r * DALCS_LANES] =
+            dalcs_extended_plus(b->column.start[r], filtered(b, r)).high;
     }
-    const double *real = b->real + 2 * b->room * (size_t)rhs_column;
+    const double *real = b->solved.real + 2 * b->solved.room * (size_t)rhs_column;
     double ripple = share[DALCS_RIPPLE_LANE] * m->test_factor;
     for (int r = 0; r < n; r++) {
-        b->lanes[r * DALCS_LANES + DALCS_RIPPLE_LANE] = real[r] * b->column_scale[r] * ripple;
+        b->column.lanes[r * DALCS_LANES + DALCS_RIPPLE_LANE] =
+            real[r] * b->eq.column_scale[r] * ripple;
     }
 }
 
@@ -168,11 +174,11 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
 static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
     const struct dalcs_stages *stages = b->stages;
     if (stages->n_levered > 0) {
-        filter(b, b->n_x, b->defect, 0, b->n_x);
+        filter(b, b->n_x, b->column.defect, 0, b->n_x);
         for (int x = 0; x < b->n_x; x++) {
-            b->lasting[x] = filtered(b, x);
+            b->column.lasting[x] = filtered(b, x);
         }
-        filter(b, b->n_x, b->lasting, b->n_x, b->n - b->entry->n_on);
+        filter(b, b->n_x, b->column.lasting, b->n_x, b->n - b->entry->n_on);
     }
     for (int k = 0; k < b->entry->current_rows; k++) {
         out[k] = k < stages->n_levered ? filtered(b, stages->levered[k]).high : 0.0;
@@ -199,16 +205,16 @@ void dalcs_stage_column_fill(struct dalcs_stage_workshop *b, int column, int rhs
         }
     }
     for (int x = 0; x < b->n_x; x++) {
-        out[l->drift + x] = b->defect[x].high;
+        out[l->drift + x] = b->column.defect[x].high;
     }
     fill_currents(b, to->currents);
     if (b->stages->excitation->is_curved) {
         put_columns(b, DALCS_RIPPLE_LANE, out + l->ripple);
     }
-    for (int k = 0; k < b->nullity; k++) {
+    for (int k = 0; k < b->open.nullity; k++) {
         double clash = 0.0;
         for (int i = s->n_x; i < b->n && !is_state; i++) {
-            clash += b->left[k * b->n + i] * b->rhs[rhs_column * b->n + i];
+            clash += b->open.left[k * b->n + i] * b->eq.rhs[rhs_column * b->n + i];
         }
         for (int i = 1; i <= m->s; i++) {
             out[l->n_fixed + k * m->s + i - 1] = clash * share[i];
@@ -247,30 +253,31 @@ void dalcs_stage_column_check(struct dalcs_stage_workshop *b, int column, int rh
     int last = b->stages->method->s;
     int n_z = b->n - b->n_x;
     bool is_state = column < b->n_x;
-    if (b->nullity > 0 && !is_state) {
+    if (b->open.nullity > 0 && !is_state) {
         return;
     }
     /* what a state of 1 is in balanced units: where it stays as it is all else is rounding of that */
-    double largest = is_state ? 1.0 / b->column_scale[column] : 0.0;
+    double largest = is_state ? 1.0 / b->eq.column_scale[column] : 0.0;
     for (int r = 0; r < n_z; r++) {
-        double drive = b->rhs[rhs_column * b->n + b->n_x + r];
-        b->residual[r] = -drive * (is_state ? 1.0 : share);
+        double drive = b->eq.rhs[rhs_column * b->n + b->n_x + r];
+        b->column.residual[r] = -drive * (is_state ? 1.0 : share);
         largest = dalcs_larger(largest, fabs(drive)); /* a sine may be near 0 just there */
     }
     /* likewise, what a source would drive a state to that the mode holds at 0 */
     for (int x = 0; x < b->n_x && !is_state; x++) {
-        largest = dalcs_larger(largest, fabs(b->rhs[rhs_column * b->n + x]));
+        largest = dalcs_larger(largest, fabs(b->eq.rhs[rhs_column * b->n + x]));
     }
     for (int c = 0; c < b->n; c++) {
-        double increment = b->lanes[c * DALCS_LANES + last] - (is_state && c == column ? 1.0 : 0.0);
+        double increment =
+            b->column.lanes[c * DALCS_LANES + last] - (is_state && c == column ? 1.0 : 0.0);
         if (increment != 0.0) {
-            largest = add_terms(n_z, b->base + c * b->n + b->n_x, increment / b->column_scale[c],
-                                b->residual, largest);
+            largest = add_terms(n_z, b->eq.base + c * b->n + b->n_x,
+                                increment / b->eq.column_scale[c], b->column.residual, largest);
         }
     }
     double worst = 0.0;
     for (int r = 0; r < n_z; r++) {
-        worst = dalcs_larger(worst, fabs(b->residual[r]));
+        worst = dalcs_larger(worst, fabs(b->column.residual[r]));
     }
     b->entry->residual = dalcs_larger(b->entry->residual, largest > 0.0 ? worst / largest : 0.0);
 }

@@ -19,7 +19,7 @@ static void fill_map(struct dalcs_stage_workshop *b, const struct dalcs_stage_fu
     double share[DALCS_LANES] = {0.0};
     const struct dalcs_stage_drive constant = {share, &one, m->exact_to};
     struct dalcs_map_column to = {b->entry->map, b->entry->current_map};
-    memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
+    memset(b->column.lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int x = 0; x < b->n_x; x++) {
         dalcs_stage_column_fill(b, x, x, &constant, &to);
         dalcs_stage_column_check(b, x, x, 0.0);
@@ -52,7 +52,7 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
         return DALCS_E_NOMEM;
     }
     DALCS_TRY(dalcs_stage_workshop_solve(b, entry));
-    entry->n_clashes = b->nullity * stages->method->s;
+    entry->n_clashes = b->open.nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
     entry->current_rows = dalcs_dense_map_rows(stages->n_levered);
     int all_rows = entry->rows + entry->current_rows;
@@ -76,12 +76,12 @@ const double *dalcs_stage_map_input(const struct dalcs_stages *stages, const dou
         return in;
     }
     for (int k = 0; k < b->n_x; k++) {
-        b->in[k] = in[k];
+        b->column.in[k] = in[k];
     }
     for (int k = b->n_x + 1; k < stages->n_in; k++) {
-        b->in[k - 1] = in[k];
+        b->column.in[k - 1] = in[k];
     }
-    return b->in;
+    return b->column.in;
 }
 
 void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,

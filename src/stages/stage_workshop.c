@@ -23,55 +23,56 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     size_t all = (size_t)dalcs_system_n_columns(s);
     size_t n = all < (size_t)b->stages->dense_limit ? all : (size_t)b->stages->dense_limit;
     size_t used = 0;
-    b->room = (size_t)dalcs_quads_of((int)n);
+    b->solved.room = (size_t)dalcs_quads_of((int)n);
     b->wave_column = dalcs_carve(storage, &used, (size_t)s->n_inputs, sizeof(int));
     b->place = dalcs_carve(storage, &used, all, sizeof(int));
-    b->row_scale = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
-    b->column_scale = dalcs_carve(storage, &used, n, sizeof(double));
+    b->eq.row_scale = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
+    b->eq.column_scale = dalcs_carve(storage, &used, n, sizeof(double));
     b->mode = dalcs_carve(storage, &used, (size_t)b->stages->n_words, sizeof(*b->mode));
-    b->plain_base = dalcs_carve(storage, &used, n * n, sizeof(double));
-    b->plain_P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
-    b->plain_rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
-    b->base = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
-    b->P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
-    b->rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
-    b->whole_row_scale = dalcs_carve(storage, &used, n, sizeof(double));
-    b->whole_column_scale = dalcs_carve(storage, &used, n, sizeof(double));
-    b->S = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
-    b->of_real = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
-    b->of_pairs = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(*b->of_pairs));
-    b->filled = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(bool));
-    b->whole = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
-    b->part = dalcs_carve(storage, &used, n * n_rhs * DALCS_SOLUTION_PARTS, sizeof(*b->part));
-    b->real = dalcs_carve(storage, &used, n_rhs * 2 * b->room, sizeof(double));
-    b->stage = dalcs_carve(storage, &used, n + 1, sizeof(*b->stage));
-    b->follows_x = dalcs_carve(storage, &used, n * n, sizeof(*b->follows_x));
-    b->follows_j = dalcs_carve(storage, &used, n * n, sizeof(int));
-    b->follows_p = dalcs_carve(storage, &used, n + 1, sizeof(int));
-    b->follower = dalcs_carve(storage, &used, n, sizeof(int));
-    b->kept = dalcs_carve(storage, &used, n, sizeof(int));
-    b->kept_row = dalcs_carve(storage, &used, n, sizeof(int));
-    b->row_of = dalcs_carve(storage, &used, n, sizeof(int));
-    b->owner = dalcs_carve(storage, &used, n, sizeof(int));
-    b->lanes = dalcs_carve(storage, &used, n * DALCS_LANES, sizeof(double));
-    b->start = dalcs_carve(storage, &used, n, sizeof(*b->start));
-    b->missed = dalcs_carve(storage, &used, n_x + 1, sizeof(*b->missed));
-    b->of_missed = dalcs_carve(storage, &used, n_x + 1, sizeof(int));
-    b->filtered = dalcs_carve(storage, &used, 2 * b->room, sizeof(double));
-    b->defect = dalcs_carve(storage, &used, n_x, sizeof(*b->defect));
-    b->lasting = dalcs_carve(storage, &used, n_x, sizeof(*b->lasting));
-    b->guard = dalcs_carve(storage, &used, n_pairs * DALCS_LANES, sizeof(double));
-    b->residual = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
-    b->in = dalcs_carve(storage, &used, (size_t)b->stages->n_in, sizeof(double));
+    b->eq.plain_base = dalcs_carve(storage, &used, n * n, sizeof(double));
+    b->eq.plain_P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
+    b->eq.plain_rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
+    b->eq.base = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
+    b->eq.P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
+    b->eq.rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
+    b->kept.whole_row_scale = dalcs_carve(storage, &used, n, sizeof(double));
+    b->kept.whole_column_scale = dalcs_carve(storage, &used, n, sizeof(double));
+    b->eq.S = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
+    b->solved.of_real = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
+    b->solved.of_pairs = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(*b->solved.of_pairs));
+    b->solved.filled = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(bool));
+    b->kept.whole = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
+    b->solved.part =
+        dalcs_carve(storage, &used, n * n_rhs * DALCS_SOLUTION_PARTS, sizeof(*b->solved.part));
+    b->solved.real = dalcs_carve(storage, &used, n_rhs * 2 * b->solved.room, sizeof(double));
+    b->column.stage = dalcs_carve(storage, &used, n + 1, sizeof(*b->column.stage));
+    b->kept.follows_x = dalcs_carve(storage, &used, n * n, sizeof(*b->kept.follows_x));
+    b->kept.follows_j = dalcs_carve(storage, &used, n * n, sizeof(int));
+    b->kept.follows_p = dalcs_carve(storage, &used, n + 1, sizeof(int));
+    b->kept.follower = dalcs_carve(storage, &used, n, sizeof(int));
+    b->kept.kept = dalcs_carve(storage, &used, n, sizeof(int));
+    b->kept.kept_row = dalcs_carve(storage, &used, n, sizeof(int));
+    b->kept.row_of = dalcs_carve(storage, &used, n, sizeof(int));
+    b->kept.owner = dalcs_carve(storage, &used, n, sizeof(int));
+    b->column.lanes = dalcs_carve(storage, &used, n * DALCS_LANES, sizeof(double));
+    b->column.start = dalcs_carve(storage, &used, n, sizeof(*b->column.start));
+    b->column.missed = dalcs_carve(storage, &used, n_x + 1, sizeof(*b->column.missed));
+    b->column.of_missed = dalcs_carve(storage, &used, n_x + 1, sizeof(int));
+    b->column.filtered = dalcs_carve(storage, &used, 2 * b->solved.room, sizeof(double));
+    b->column.defect = dalcs_carve(storage, &used, n_x, sizeof(*b->column.defect));
+    b->column.lasting = dalcs_carve(storage, &used, n_x, sizeof(*b->column.lasting));
+    b->column.guard = dalcs_carve(storage, &used, n_pairs * DALCS_LANES, sizeof(double));
+    b->column.residual = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
+    b->column.in = dalcs_carve(storage, &used, (size_t)b->stages->n_in, sizeof(double));
     return used;
 }
 
 /* What is read before it is written has to be numbers: a quad behind matrices. */
 static void clear(struct dalcs_stage_workshop *b) {
-    memset(b->base, 0, (size_t)((char *)b->P - (char *)b->base));
-    memset(b->S, 0, (size_t)((char *)b->of_real - (char *)b->S));
-    memset(b->real, 0, (size_t)((char *)b->stage - (char *)b->real));
-    memset(b->residual, 0, (size_t)((char *)b->in - (char *)b->residual));
+    memset(b->eq.base, 0, (size_t)((char *)b->eq.P - (char *)b->eq.base));
+    memset(b->eq.S, 0, (size_t)((char *)b->solved.of_real - (char *)b->eq.S));
+    memset(b->solved.real, 0, (size_t)((char *)b->column.stage - (char *)b->solved.real));
+    memset(b->column.residual, 0, (size_t)((char *)b->column.in - (char *)b->column.residual));
 }
 
 static bool is_driven(const struct dalcs_csr *a, const double *constant) {
@@ -106,7 +107,7 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
         b->wave_column[k] = -1;
     }
     for (int x = 0; x < b->n_x; x++) {
-        b->of_missed[x] = x;
+        b->column.of_missed[x] = x;
     }
     for (int w = e->n_waves - 1; w >= 0; w--) {
         b->wave_column[e->wave[w].input] = b->n_x + 1 + w;
@@ -128,16 +129,16 @@ void dalcs_stage_workshop_destroy(struct dalcs_stage_workshop *workshop) {
 /* The real system of what is kept, with its right-hand sides. */
 static void fill_real(const struct dalcs_stage_workshop *b) {
     long double sigma = b->stages->method->exact_lambda / b->entry->h;
-    int n = b->n_kept;
+    int n = b->kept.n_kept;
     for (int i = 0; i < n; i++) {
-        long double *row = b->of_real + i * (n + b->n_rhs);
-        const long double *from = b->whole + b->kept_row[i] * (b->n + b->n_rhs);
+        long double *row = b->solved.of_real + i * (n + b->n_rhs);
+        const long double *from = b->kept.whole + b->kept.kept_row[i] * (b->n + b->n_rhs);
         for (int j = 0; j < n; j++) {
-            row[j] = from[b->kept[j]];
+            row[j] = from[b->kept.kept[j]];
         }
         memcpy(row + n, from + b->n, (size_t)b->n_rhs * sizeof(*row));
         for (int j = 0; j < b->n_x && i < b->n_x; j++) {
-            row[j] += sigma * b->P[j * b->n_x + i];
+            row[j] += sigma * b->eq.P[j * b->n_x + i];
         }
     }
 }
@@ -155,22 +156,22 @@ static void put_four(long double re, struct dalcs_extended_four *to) {
 
 /* Four systems likewise, with these for d/dt. */
 static void fill_four(const struct dalcs_stage_workshop *b, const long double complex *sigma) {
-    int n = b->n_kept;
+    int n = b->kept.n_kept;
     int width = n + b->n_rhs;
     for (int i = 0; i < n; i++) {
-        struct dalcs_extended_four *row = b->of_pairs + i * width;
-        bool *filled = b->filled + i * width;
-        const long double *from = b->whole + b->kept_row[i] * (b->n + b->n_rhs);
+        struct dalcs_extended_four *row = b->solved.of_pairs + i * width;
+        bool *filled = b->solved.filled + i * width;
+        const long double *from = b->kept.whole + b->kept.kept_row[i] * (b->n + b->n_rhs);
         for (int j = 0; j < width; j++) {
-            long double a = from[j < n ? b->kept[j] : b->n + j - n];
+            long double a = from[j < n ? b->kept.kept[j] : b->n + j - n];
             put_four(a, &row[j]);
             filled[j] = a != 0.0L;
         }
         for (int j = 0; j < b->n_x && i < b->n_x; j++) {
-            double of_rate = b->P[j * b->n_x + i];
+            double of_rate = b->eq.P[j * b->n_x + i];
             for (int p = 0; p < DALCS_QUAD && of_rate != 0.0; p++) {
                 struct dalcs_extended re =
-                    dalcs_extended_of(from[b->kept[j]] + creall(sigma[p]) * of_rate);
+                    dalcs_extended_of(from[b->kept.kept[j]] + creall(sigma[p]) * of_rate);
                 struct dalcs_extended im = dalcs_extended_of(cimagl(sigma[p]) * of_rate);
                 row[j].re[p] = re.high;
                 row[j].re_low[p] = re.low;
@@ -184,12 +185,13 @@ static void fill_four(const struct dalcs_stage_workshop *b, const long double co
 
 static struct dalcs_extended *parts_of(const struct dalcs_stage_workshop *b, int rhs_column,
                                        int kept) {
-    return b->part + (rhs_column * b->n_kept + kept) * DALCS_SOLUTION_PARTS;
+    return b->solved.part + (rhs_column * b->kept.n_kept + kept) * DALCS_SOLUTION_PARTS;
 }
 
 static void take_pairs(const struct dalcs_stage_workshop *b) {
-    for (int i = 0; i < b->n_kept; i++) {
-        const struct dalcs_extended_four *x = b->of_pairs + i * (b->n_kept + b->n_rhs) + b->n_kept;
+    for (int i = 0; i < b->kept.n_kept; i++) {
+        const struct dalcs_extended_four *x =
+            b->solved.of_pairs + i * (b->kept.n_kept + b->n_rhs) + b->kept.n_kept;
         for (int j = 0; j < b->n_rhs; j++) {
             struct dalcs_extended *part = parts_of(b, j, i) + 1;
             for (int p = 0; p < b->stages->method->n_pairs; p++) {
@@ -203,39 +205,40 @@ static void take_pairs(const struct dalcs_stage_workshop *b) {
 /* The solution of the real eigenvalue, of all unknowns. */
 static void take_real(const struct dalcs_stage_workshop *b) {
     for (int j = 0; j < b->n_rhs; j++) {
-        double *high = b->real + 2 * b->room * (size_t)j;
-        double *low = high + b->room;
-        for (int k = 0; k < b->n_kept; k++) {
+        double *high = b->solved.real + 2 * b->solved.room * (size_t)j;
+        double *low = high + b->solved.room;
+        for (int k = 0; k < b->kept.n_kept; k++) {
             struct dalcs_extended *part = parts_of(b, j, k);
-            *part = dalcs_extended_of(b->of_real[k * (b->n_kept + b->n_rhs) + b->n_kept + j]);
-            high[b->kept[k]] = part->high;
-            low[b->kept[k]] = part->low;
+            *part = dalcs_extended_of(
+                b->solved.of_real[k * (b->kept.n_kept + b->n_rhs) + b->kept.n_kept + j]);
+            high[b->kept.kept[k]] = part->high;
+            low[b->kept.kept[k]] = part->low;
         }
-        for (int f = 0; f < b->n_followers; f++) {
+        for (int f = 0; f < b->kept.n_followers; f++) {
             long double y = dalcs_stage_workshop_drive(b, f, j);
-            for (int k = b->follows_p[f]; k < b->follows_p[f + 1] - 1; k++) {
-                y += dalcs_extended_value(b->follows_x[k]) *
-                     dalcs_extended_value(*parts_of(b, j, b->follows_j[k]));
+            for (int k = b->kept.follows_p[f]; k < b->kept.follows_p[f + 1] - 1; k++) {
+                y += dalcs_extended_value(b->kept.follows_x[k]) *
+                     dalcs_extended_value(*parts_of(b, j, b->kept.follows_j[k]));
             }
             struct dalcs_extended value = dalcs_extended_of(y);
-            high[b->follower[f]] = value.high;
-            low[b->follower[f]] = value.low;
+            high[b->kept.follower[f]] = value.high;
+            low[b->kept.follower[f]] = value.low;
         }
     }
 }
 
 static long double solve_kept(struct dalcs_stage_workshop *b) {
     fill_real(b);
-    return dalcs_extended_solve(b->n_kept, b->n_rhs, b->of_real, NULL);
+    return dalcs_extended_solve(b->kept.n_kept, b->n_rhs, b->solved.of_real, NULL);
 }
 
 /* The real system as one of the four that were solved last has it. */
 static void take_well(const struct dalcs_stage_workshop *b, int lane) {
-    const int width = b->n_kept + b->n_rhs;
-    for (int i = 0; i < b->n_kept; i++) {
-        for (int j = b->n_kept; j < width; j++) {
-            const struct dalcs_extended_four *x = &b->of_pairs[i * width + j];
-            b->of_real[i * width + j] = (long double)x->re[lane] + x->re_low[lane];
+    const int width = b->kept.n_kept + b->n_rhs;
+    for (int i = 0; i < b->kept.n_kept; i++) {
+        for (int j = b->kept.n_kept; j < width; j++) {
+            const struct dalcs_extended_four *x = &b->solved.of_pairs[i * width + j];
+            b->solved.of_real[i * width + j] = (long double)x->re[lane] + x->re_low[lane];
         }
     }
 }
@@ -247,7 +250,8 @@ static bool solve_kept_well(struct dalcs_stage_workshop *b) {
         sigma[p] = b->stages->method->exact_lambda / b->entry->h;
     }
     fill_four(b, sigma);
-    if (!(dalcs_extended_solve_four(b->n_kept, b->n_rhs, b->of_pairs, b->filled) > 0.0)) {
+    if (!(dalcs_extended_solve_four(b->kept.n_kept, b->n_rhs, b->solved.of_pairs,
+                                    b->solved.filled) > 0.0)) {
         return false;
     }
     take_well(b, 0);
@@ -262,15 +266,15 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b, bool *is_los
         dalcs_workshop_eliminate(b);
     }
     long double pivot = solve_kept(b);
-    if (pivot < doubtful_pivot && b->nullity == 0) {
+    if (pivot < doubtful_pivot && b->open.nullity == 0) {
         b->is_known = false;
         DALCS_TRY(dalcs_stage_choice_find(b));
-        if (b->nullity > 0) {
+        if (b->open.nullity > 0) {
             dalcs_workshop_eliminate(b);
             pivot = solve_kept(b);
         }
     }
-    b->entry->frees_states = b->n_kept == b->n_x && b->nullity == 0;
+    b->entry->frees_states = b->kept.n_kept == b->n_x && b->open.nullity == 0;
     *is_lossy = pivot < lossy_pivot && b->stages->method->n_pairs > 0;
     return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }
@@ -293,7 +297,8 @@ static enum dalcs_status solve_pairs(struct dalcs_stage_workshop *b, bool is_los
         sigma[m->n_pairs] = m->exact_lambda / b->entry->h;
     }
     fill_four(b, sigma);
-    double pivot = dalcs_extended_solve_four(b->n_kept, b->n_rhs, b->of_pairs, b->filled);
+    double pivot =
+        dalcs_extended_solve_four(b->kept.n_kept, b->n_rhs, b->solved.of_pairs, b->solved.filled);
     if (has_place) {
         take_well(b, m->n_pairs);
     }
@@ -310,7 +315,7 @@ static void recall(struct dalcs_stage_workshop *b) {
         return;
     }
     b->n = b->entry->n;
-    b->nullity = 0;
+    b->open.nullity = 0;
     dalcs_arena_finish(&b->arena);
     memcpy(b->mode, b->entry->mode, (size_t)b->stages->n_words * sizeof(*b->mode));
     dalcs_workshop_fill(b);
@@ -327,6 +332,6 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
         DALCS_TRY(solve_pairs(b, is_lossy));
         take_real(b);
     }
-    b->is_known = b->n_followers > 0;
+    b->is_known = b->kept.n_followers > 0;
     return DALCS_OK;
 }

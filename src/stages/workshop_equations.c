@@ -31,9 +31,9 @@ static void add_row(const struct dalcs_stage_workshop *b, const struct dalcs_csr
         if (column < 0) {
             continue;
         }
-        b->plain_base[column * b->n + to] += sign * a->x[k];
+        b->eq.plain_base[column * b->n + to] += sign * a->x[k];
         if (column < b->n_x) {
-            b->plain_rhs[column * b->n + to] -= sign * a->x[k];
+            b->eq.plain_rhs[column * b->n + to] -= sign * a->x[k];
         }
     }
 }
@@ -43,9 +43,9 @@ static void add_inputs(const struct dalcs_stage_workshop *b, const struct dalcs_
     for (int k = a->p[from]; k < a->p[from + 1]; k++) {
         int wave = b->wave_column[a->j[k]];
         if (wave >= 0) {
-            b->plain_rhs[wave * b->n + to] += sign * a->x[k];
+            b->eq.plain_rhs[wave * b->n + to] += sign * a->x[k];
         } else {
-            b->plain_rhs[b->n_x * b->n + to] +=
+            b->eq.plain_rhs[b->n_x * b->n + to] +=
                 sign * a->x[k] * b->stages->excitation->constant[a->j[k]];
         }
     }
@@ -54,9 +54,9 @@ static void add_inputs(const struct dalcs_stage_workshop *b, const struct dalcs_
 void dalcs_workshop_fill(struct dalcs_stage_workshop *b) {
     const struct dalcs_system *s = b->system;
     int n_equations = dalcs_system_n_equations(s);
-    memset(b->plain_base, 0, (size_t)b->n * (size_t)b->n * sizeof(double));
-    memset(b->plain_P, 0, (size_t)b->n_x * (size_t)b->n_x * sizeof(double));
-    memset(b->plain_rhs, 0, (size_t)b->n * (size_t)b->n_rhs * sizeof(double));
+    memset(b->eq.plain_base, 0, (size_t)b->n * (size_t)b->n * sizeof(double));
+    memset(b->eq.plain_P, 0, (size_t)b->n_x * (size_t)b->n_x * sizeof(double));
+    memset(b->eq.plain_rhs, 0, (size_t)b->n * (size_t)b->n_rhs * sizeof(double));
     place_columns(b);
     for (int r = 0; r < n_equations; r++) {
         add_row(b, &s->A, r, r, -1.0);
@@ -68,7 +68,7 @@ void dalcs_workshop_fill(struct dalcs_stage_workshop *b) {
     }
     for (int i = 0; i < b->n_x; i++) {
         for (int k = s->P.p[i]; k < s->P.p[i + 1]; k++) {
-            b->plain_P[s->P.j[k] * b->n_x + i] = s->P.x[k];
+            b->eq.plain_P[s->P.j[k] * b->n_x + i] = s->P.x[k];
         }
     }
 }
@@ -115,34 +115,34 @@ void dalcs_workshop_balance(struct dalcs_stage_workshop *b) {
     int n = b->n;
     double sigma = b->stages->method->lambda / b->entry->h;
     for (int i = 0; i < n; i++) {
-        b->row_scale[i] = 1.0;
-        b->column_scale[i] = 1.0;
+        b->eq.row_scale[i] = 1.0;
+        b->eq.column_scale[i] = 1.0;
     }
-    memcpy(b->S, b->plain_base, (size_t)n * (size_t)n * sizeof(double));
+    memcpy(b->eq.S, b->eq.plain_base, (size_t)n * (size_t)n * sizeof(double));
     for (int j = 0; j < b->n_x; j++) {
         for (int i = 0; i < b->n_x; i++) {
-            b->S[j * n + i] += sigma * b->plain_P[j * b->n_x + i];
+            b->eq.S[j * n + i] += sigma * b->eq.plain_P[j * b->n_x + i];
         }
     }
     for (int round = 0; round < BALANCING_ROUNDS; round++) {
-        balance_rows(n, b->S, b->column_scale, b->row_scale);
-        balance_columns(n, b->S, b->row_scale, b->column_scale);
+        balance_rows(n, b->eq.S, b->eq.column_scale, b->eq.row_scale);
+        balance_columns(n, b->eq.S, b->eq.row_scale, b->eq.column_scale);
     }
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++) {
-            double scale = b->row_scale[i] * b->column_scale[j];
-            b->base[j * n + i] = b->plain_base[j * n + i] * scale;
-            b->S[j * n + i] *= scale;
+            double scale = b->eq.row_scale[i] * b->eq.column_scale[j];
+            b->eq.base[j * n + i] = b->eq.plain_base[j * n + i] * scale;
+            b->eq.S[j * n + i] *= scale;
             if (j < b->n_x && i < b->n_x) {
-                b->P[j * b->n_x + i] = b->plain_P[j * b->n_x + i] * scale;
+                b->eq.P[j * b->n_x + i] = b->eq.plain_P[j * b->n_x + i] * scale;
             }
         }
     }
-    memcpy(b->entry->natural, b->column_scale,
+    memcpy(b->entry->natural, b->eq.column_scale,
            (size_t)dalcs_system_n_equations(b->system) * sizeof(double));
     for (int j = 0; j < b->n_rhs; j++) {
         for (int i = 0; i < n; i++) {
-            b->rhs[j * n + i] = b->plain_rhs[j * n + i] * b->row_scale[i];
+            b->eq.rhs[j * n + i] = b->eq.plain_rhs[j * n + i] * b->eq.row_scale[i];
         }
     }
 }
