@@ -28,7 +28,7 @@ static bool are_right_before(const struct dalcs_radau_part *part, int block, con
     const struct dalcs_osnsp *p = &part->component->osnsp;
     bool right = true;
     for (int d = 0; d < p->system->n_pairs && right; d++) {
-        if (!p->is_diode[d] || block_of(part, d) >= block) {
+        if (!p->lists.is_diode[d] || block_of(part, d) >= block) {
             continue;
         }
         double work[DALCS_MAX_NODES];
@@ -57,7 +57,7 @@ int dalcs_blocks_first_wrong(const struct dalcs_radau_part *part, const double *
 void dalcs_blocks_put_back(struct dalcs_radau_part *part, int block, const uint64_t *mode) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     for (int d = 0; block > 0 && d < p->system->n_pairs; d++) {
-        if (p->is_diode[d] && block_of(part, d) < block) {
+        if (p->lists.is_diode[d] && block_of(part, d) < block) {
             dalcs_osnsp_command(p, d, dalcs_mode_has(mode, d));
         }
     }

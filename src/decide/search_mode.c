@@ -218,7 +218,7 @@ static enum dalcs_status ask_of_tied(struct dalcs_radau *r, struct dalcs_radau_p
     bool is_off;
     DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only, &is_off));
     for (int d = 0; d < p->system->n_pairs; d++) {
-        if (!part->guards.tied[d] && p->is_diode[d]) {
+        if (!part->guards.tied[d] && p->lists.is_diode[d]) {
             dalcs_osnsp_command(p, d, dalcs_mode_has(part->work.mode_tied, d));
         }
     }

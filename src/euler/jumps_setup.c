@@ -72,7 +72,7 @@ static enum dalcs_status part_setup(struct dalcs_jump_part *part,
                                     const struct dalcs_osnsp_options *options) {
     const struct dalcs_system *s = &impulse->system[k];
     DALCS_TRY(dalcs_osnsp_setup(&part->osnsp, s, options));
-    part->osnsp.refines = true;
+    part->osnsp.asks.refines = true;
     part->u = dalcs_alloc((size_t)(s->n_x + s->n_inputs), sizeof(double));
     part->y = dalcs_alloc((size_t)dalcs_system_n_columns(s), sizeof(double));
     part->state = dalcs_alloc((size_t)s->n_x, sizeof(int));

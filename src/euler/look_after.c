@@ -43,7 +43,7 @@ static enum dalcs_status refuse_derivative(struct dalcs_euler *e, int k, const d
 static void find_noise(struct dalcs_euler *e, int k, const double *before) {
     const struct dalcs_component *c = &e->component[k];
     const struct dalcs_system *s = c->system;
-    const struct dalcs_step_form *f = c->osnsp.form[0];
+    const struct dalcs_step_form *f = c->osnsp.cache.form[0];
     double unit[2];
     for (int of = 0; of < 2; of++) {
         unit[of] = fmax(c->scale[of], fmax(largest_state(s, before, of == 1),
@@ -86,8 +86,9 @@ static void extrapolate_impulses(struct dalcs_euler *e, int k, double h) {
     for (int d = 0; d < c->system->n_pairs; d++) {
         double charge = h * lambda[d] - e->charge[d];
         double flux = h * c->osnsp.w[d] - e->flux[d];
-        differ = differ || (c->osnsp.is_diode[d] && (charge < -jump_part * fabs(e->charge[d]) ||
-                                                     flux < -jump_part * fabs(e->flux[d])));
+        differ =
+            differ || (c->osnsp.lists.is_diode[d] && (charge < -jump_part * fabs(e->charge[d]) ||
+                                                      flux < -jump_part * fabs(e->flux[d])));
     }
     for (int d = 0; d < c->system->n_pairs; d++) {
         double *impulse[2] = {&e->charge[d], &e->flux[d]};

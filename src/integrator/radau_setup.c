@@ -135,7 +135,7 @@ static bool may_recur(const struct dalcs_radau *r, const struct dalcs_radau_part
 static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                     const struct dalcs_osnsp_options *osnsp) {
     struct dalcs_component *c = part->component;
-    c->osnsp.is_passing = true;
+    c->osnsp.asks.is_passing = true;
     bool steps = has_memory_or_sides(c->system);
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
     struct dalcs_conductances g = dalcs_conductances_find(c->system, r->options.stop);

@@ -66,7 +66,7 @@ void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *
                           dalcs_system_n_equations(p->system);
     bool *armed = part->guards.armed;
     for (int d = 0; d < n_pairs; d++) {
-        if (p->is_diode[d] && !(at_end && armed[d])) {
+        if (p->lists.is_diode[d] && !(at_end && armed[d])) {
             double scale = unit[dalcs_osnsp_is_on(p, d)];
             armed[d] =
                 value[d] > band * scale ||

@@ -44,9 +44,9 @@ struct interior {
 
 static void finish(struct interior *m) {
     dalcs_lu_finish(&m->lu);
-    dalcs_lu_drop(&m->kept, false, &m->p->klu);
+    dalcs_lu_drop(&m->kept, false, &m->p->cache.klu);
     if (m->symbolic != NULL) {
-        klu_free_symbolic(&m->symbolic, &m->p->klu);
+        klu_free_symbolic(&m->symbolic, &m->p->cache.klu);
     }
     free(m->start);
     free(m->row);
@@ -57,7 +57,7 @@ static void finish(struct interior *m) {
 
 /* The pattern of K and its diagonal. */
 static void fill_pattern(struct interior *m) {
-    const struct dalcs_csr *K = &m->p->form[0]->K;
+    const struct dalcs_csr *K = &m->p->cache.form[0]->K;
     int out = 0;
     for (int c = 0; c < m->n + m->n_pairs; c++) {
         bool seen = false;
@@ -74,7 +74,7 @@ static void fill_pattern(struct interior *m) {
 
 static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
                                enum dalcs_weights weights) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     *m = (struct interior){.p = p, .weights = weights, .n = f->n, .n_pairs = f->n_pairs};
     size_t n_pairs = (size_t)f->n_pairs;
     size_t order = (size_t)(f->n + f->n_pairs);
@@ -98,10 +98,10 @@ static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
         dalcs_proximal_weights(p, d, weights, &m->on[d], &m->off[d]);
     }
     fill_pattern(m);
-    dalcs_lu_keep_diagonal(&p->klu, true);
+    dalcs_lu_keep_diagonal(&p->cache.klu, true);
     enum dalcs_status status =
-        dalcs_lu_analyze(&m->symbolic, &p->klu, (int)order, m->start, m->row);
-    dalcs_lu_keep_diagonal(&p->klu, false);
+        dalcs_lu_analyze(&m->symbolic, &p->cache.klu, (int)order, m->start, m->row);
+    dalcs_lu_keep_diagonal(&p->cache.klu, false);
     if (status != DALCS_OK) {
         finish(m);
     }
@@ -109,12 +109,12 @@ static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
 }
 
 static bool is_diode(const struct interior *m, int d) {
-    return m->p->is_diode[d];
+    return m->p->lists.is_diode[d];
 }
 
 /* Factors the equations with the rows a w + b lambda of the pairs. */
 static enum dalcs_status factor(struct interior *m) {
-    const struct dalcs_csr *K = &m->p->form[0]->K;
+    const struct dalcs_csr *K = &m->p->cache.form[0]->K;
     double unknown_weight = dalcs_proximal_unknown_weight(m->p);
     for (int c = 0; c < m->n + m->n_pairs; c++) {
         double diagonal = c < m->n ? unknown_weight : m->b[c - m->n];
@@ -132,12 +132,12 @@ static enum dalcs_status factor(struct interior *m) {
     }
     dalcs_lu_finish(&m->lu);
     m->p->counters.factorizations++;
-    return dalcs_lu_factor_analyzed(&m->lu, &m->p->klu, m->symbolic, &m->kept, false, m->start,
-                                    m->row, m->value, 0.0);
+    return dalcs_lu_factor_analyzed(&m->lu, &m->p->cache.klu, m->symbolic, &m->kept, false,
+                                    m->start, m->row, m->value, 0.0);
 }
 
 static double voltage_of(const struct interior *m, int d, const double *y) {
-    const struct dalcs_csr *W = &m->p->form[0]->W;
+    const struct dalcs_csr *W = &m->p->cache.form[0]->W;
     double w = 0.0;
     for (int k = W->p[d]; k < W->p[d + 1]; k++) {
         w += W->x[k] * y[W->j[k]];
@@ -148,13 +148,13 @@ static double voltage_of(const struct interior *m, int d, const double *y) {
 /* What the equations and the definitions of s1 and s2 are off by; the largest over its terms. */
 static double find_rests(struct interior *m) {
     const struct dalcs_osnsp *p = m->p;
-    const struct dalcs_csr *K = &p->form[0]->K;
+    const struct dalcs_csr *K = &p->cache.form[0]->K;
     double unknown_weight = dalcs_proximal_unknown_weight(p);
     double size = 0.0;
     double worst = 0.0;
     for (int i = 0; i < m->n; i++) {
-        m->rest[i] = p->right[i] + unknown_weight * (p->centre[i] - m->y[i]);
-        size = fmax(size, fabs(p->right[i]));
+        m->rest[i] = p->work.right[i] + unknown_weight * (p->work.centre[i] - m->y[i]);
+        size = fmax(size, fabs(p->work.right[i]));
     }
     for (int c = 0; c < m->n + m->n_pairs; c++) {
         for (int k = K->p[c]; k < K->p[c + 1]; k++) {
@@ -168,10 +168,10 @@ static double find_rests(struct interior *m) {
         worst = fmax(worst, fabs(m->rest[i]));
     }
     for (int d = 0; d < m->n_pairs; d++) {
-        double w = voltage_of(m, d, m->y) - p->right[m->n + d];
+        double w = voltage_of(m, d, m->y) - p->work.right[m->n + d];
         double lambda = m->y[m->n + d];
-        m->rest1[d] = w + m->on[d] * (lambda - p->centre[m->n + d]) - m->s1[d];
-        m->rest2[d] = lambda + m->off[d] * (w - p->centre_w[d]) - m->s2[d];
+        m->rest1[d] = w + m->on[d] * (lambda - p->work.centre[m->n + d]) - m->s1[d];
+        m->rest2[d] = lambda + m->off[d] * (w - p->work.centre_w[d]) - m->s2[d];
         if (is_diode(m, d)) {
             worst = fmax(worst, fmax(fabs(m->rest1[d]), fabs(m->rest2[d])));
             size = fmax(size, fmax(m->s1[d], m->s2[d]));

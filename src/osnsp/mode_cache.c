@@ -8,17 +8,17 @@
 enum { MAX_FORMS = 32 };
 
 static void unlink_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    *(e->newer != NULL ? &e->newer->older : &p->newest) = e->older;
-    *(e->older != NULL ? &e->older->newer : &p->oldest) = e->newer;
+    *(e->newer != NULL ? &e->newer->older : &p->cache.newest) = e->older;
+    *(e->older != NULL ? &e->older->newer : &p->cache.oldest) = e->newer;
     e->newer = NULL;
     e->older = NULL;
 }
 
 static void link_newest(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    e->older = p->newest;
+    e->older = p->cache.newest;
     e->newer = NULL;
-    *(p->newest != NULL ? &p->newest->newer : &p->oldest) = e;
-    p->newest = e;
+    *(p->cache.newest != NULL ? &p->cache.newest->newer : &p->cache.oldest) = e;
+    p->cache.newest = e;
 }
 
 static void entry_destroy(struct dalcs_mode_entry *e) {
@@ -33,9 +33,9 @@ static void entry_destroy(struct dalcs_mode_entry *e) {
 }
 
 static void remove_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    HASH_DELETE(hh, p->entries, e);
+    HASH_DELETE(hh, p->cache.entries, e);
     unlink_entry(p, e);
-    p->entry_bytes -= e->bytes;
+    p->cache.entry_bytes -= e->bytes;
     entry_destroy(e);
 }
 
@@ -43,40 +43,40 @@ static void remove_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
 enum { MIN_ENTRIES = 4 };
 
 static void make_room(struct dalcs_osnsp *p, const struct dalcs_mode_entry *keep) {
-    while (p->entry_bytes > p->options.cache_bytes && HASH_COUNT(p->entries) > MIN_ENTRIES &&
-           p->oldest != keep) {
-        remove_entry(p, p->oldest);
+    while (p->cache.entry_bytes > p->options.cache_bytes &&
+           HASH_COUNT(p->cache.entries) > MIN_ENTRIES && p->cache.oldest != keep) {
+        remove_entry(p, p->cache.oldest);
     }
 }
 
 void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, size_t bytes) {
     entry->bytes += bytes;
-    p->entry_bytes += bytes;
+    p->cache.entry_bytes += bytes;
     make_room(p, entry);
 }
 
 static void remove_form(struct dalcs_osnsp *p, int k) {
-    for (struct dalcs_mode_entry *e = p->newest; e != NULL;) {
+    for (struct dalcs_mode_entry *e = p->cache.newest; e != NULL;) {
         struct dalcs_mode_entry *next = e->older;
-        if ((uint32_t)(e->key[p->n_words] >> 8) == p->form_id[k]) {
+        if ((uint32_t)(e->key[p->n_words] >> 8) == p->cache.form_id[k]) {
             remove_entry(p, e);
         }
         e = next;
     }
-    dalcs_step_form_finish(p->form[k]);
-    free(p->form[k]);
+    dalcs_step_form_finish(p->cache.form[k]);
+    free(p->cache.form[k]);
 }
 
 enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) {
     int k = 0;
-    while (k < p->n_forms && p->form[k]->sigma != sigma) {
+    while (k < p->cache.n_forms && p->cache.form[k]->sigma != sigma) {
         k++;
     }
     struct dalcs_step_form *form;
     uint32_t id;
-    if (k < p->n_forms) {
-        form = p->form[k];
-        id = p->form_id[k];
+    if (k < p->cache.n_forms) {
+        form = p->cache.form[k];
+        id = p->cache.form_id[k];
     } else {
         form = dalcs_alloc(1, sizeof(*form));
         if (form == NULL) {
@@ -87,20 +87,20 @@ enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) {
             free(form);
             return status;
         }
-        id = p->next_form_id++;
-        if (p->n_forms == MAX_FORMS) {
-            remove_form(p, --p->n_forms);
+        id = p->cache.next_form_id++;
+        if (p->cache.n_forms == MAX_FORMS) {
+            remove_form(p, --p->cache.n_forms);
         }
-        k = p->n_forms++;
+        k = p->cache.n_forms++;
     }
-    memmove(p->form + 1, p->form, (size_t)k * sizeof(*p->form));
-    memmove(p->form_id + 1, p->form_id, (size_t)k * sizeof(*p->form_id));
-    p->form[0] = form;
-    p->form_id[0] = id;
+    memmove(p->cache.form + 1, p->cache.form, (size_t)k * sizeof(*p->cache.form));
+    memmove(p->cache.form_id + 1, p->cache.form_id, (size_t)k * sizeof(*p->cache.form_id));
+    p->cache.form[0] = form;
+    p->cache.form_id[0] = id;
     return DALCS_OK;
 }
 
-/* Of p->key and p->mode, without factors; its key and list are behind it. */
+/* Of p->work.key and p->mode, without factors; its key and list are behind it. */
 static struct dalcs_mode_entry *entry_alloc(const struct dalcs_osnsp *p) {
     int n_pairs = p->system->n_pairs;
     int n_on = 0;
@@ -116,7 +116,7 @@ static struct dalcs_mode_entry *entry_alloc(const struct dalcs_osnsp *p) {
     }
     e->bytes = bytes;
     e->key = (void *)(e + 1);
-    memcpy(e->key, p->key, key_bytes);
+    memcpy(e->key, p->work.key, key_bytes);
     e->on = (void *)(e->key + p->n_words + 1);
     for (int d = 0; d < n_pairs; d++) {
         if (dalcs_osnsp_is_on(p, d)) {
@@ -160,30 +160,31 @@ static bool is_key(const uint64_t *key, const uint64_t *mode, size_t words, uint
 enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
                                   struct dalcs_mode_entry **entry) {
     size_t words = (size_t)p->n_words;
-    uint64_t last_word = (uint64_t)p->form_id[0] << 8 | (uint64_t)p->insists << 7 | (uint64_t)kind;
-    if (p->newest != NULL && is_key(p->newest->key, p->mode, words, last_word)) {
-        *entry = p->newest; /* as in most steps */
+    uint64_t last_word =
+        (uint64_t)p->cache.form_id[0] << 8 | (uint64_t)p->asks.insists << 7 | (uint64_t)kind;
+    if (p->cache.newest != NULL && is_key(p->cache.newest->key, p->mode, words, last_word)) {
+        *entry = p->cache.newest; /* as in most steps */
         p->counters.cache_hits++;
         return DALCS_OK;
     }
-    memcpy(p->key, p->mode, words * sizeof(*p->key));
-    p->key[words] = last_word;
-    size_t key_bytes = (words + 1) * sizeof(*p->key);
+    memcpy(p->work.key, p->mode, words * sizeof(*p->work.key));
+    p->work.key[words] = last_word;
+    size_t key_bytes = (words + 1) * sizeof(*p->work.key);
     struct dalcs_mode_entry *e;
-    HASH_FIND(hh, p->entries, p->key, key_bytes, e);
+    HASH_FIND(hh, p->cache.entries, p->work.key, key_bytes, e);
     if (e != NULL) {
         p->counters.cache_hits++;
         unlink_entry(p, e);
         link_newest(p, e);
     } else {
         DALCS_TRY(entry_create(p, kind, &e));
-        HASH_ADD_KEYPTR(hh, p->entries, e->key, key_bytes, e);
+        HASH_ADD_KEYPTR(hh, p->cache.entries, e->key, key_bytes, e);
         if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
             entry_destroy(e);
             return DALCS_E_NOMEM;
         }
         link_newest(p, e);
-        p->entry_bytes += e->bytes;
+        p->cache.entry_bytes += e->bytes;
         make_room(p, e);
     }
     *entry = e;
@@ -191,15 +192,15 @@ enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
 }
 
 void dalcs_modes_finish(struct dalcs_osnsp *p) {
-    while (p->oldest != NULL) {
-        remove_entry(p, p->oldest);
+    while (p->cache.oldest != NULL) {
+        remove_entry(p, p->cache.oldest);
     }
-    for (int k = 0; k < p->n_forms; k++) {
-        dalcs_step_form_finish(p->form[k]);
-        free(p->form[k]);
+    for (int k = 0; k < p->cache.n_forms; k++) {
+        dalcs_step_form_finish(p->cache.form[k]);
+        free(p->cache.form[k]);
     }
-    p->n_forms = 0;
-    free(p->matched_row);
-    p->matched_row = NULL;
-    p->n_matched = 0;
+    p->cache.n_forms = 0;
+    free(p->cache.matched_row);
+    p->cache.matched_row = NULL;
+    p->cache.n_matched = 0;
 }

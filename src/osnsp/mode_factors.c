@@ -41,11 +41,11 @@ enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n, size_t n_e
     return DALCS_OK;
 }
 
-/* The plain matrix of the entry's mode in p->form[0]: equations and the w rows of closed pairs. */
+/* The plain matrix of the entry's mode in p->cache.form[0]: equations and the w rows of closed pairs. */
 static enum dalcs_status fill_plain_matrix(const struct dalcs_osnsp *p,
                                            const struct dalcs_mode_entry *e,
                                            struct dalcs_columns *a) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     *a = (struct dalcs_columns){.n = f->n + e->n_on};
     int *slot = dalcs_alloc((size_t)(f->n + f->n_pairs), sizeof(*slot));
     if (slot == NULL) {
@@ -85,7 +85,7 @@ void dalcs_columns_finish(struct dalcs_columns *a) {
 
 /* Where the rows and unknowns of the factors are in R and in y, so that a step needs no copies. */
 static enum dalcs_status order_rows(const struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     size_t order = (size_t)e->lu.n;
     e->scale_of = dalcs_alloc(order, sizeof(*e->scale_of) + 2 * sizeof(*e->row_of));
     if (e->scale_of == NULL) {
@@ -110,21 +110,21 @@ enum { LARGE_MODE = 128 };
 
 /* Where nothing else finds an answer only the null space says which mode is singular. */
 static double least_rcond(const struct dalcs_osnsp *p) {
-    return p->insists ? 0.0 : p->options.rcond_min;
+    return p->asks.insists ? 0.0 : p->options.rcond_min;
 }
 
 static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
                                       struct dalcs_columns *a) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n_all = f->n + f->n_pairs;
-    if (p->n_matched != n_all) { /* the forms of other sigma may be condensed otherwise */
-        int *rows = realloc(p->matched_row, (size_t)n_all * sizeof(*rows));
+    if (p->cache.n_matched != n_all) { /* the forms of other sigma may be condensed otherwise */
+        int *rows = realloc(p->cache.matched_row, (size_t)n_all * sizeof(*rows));
         if (rows == NULL) {
             return DALCS_E_NOMEM;
         }
         memset(rows, -1, (size_t)n_all * sizeof(*rows));
-        p->matched_row = rows;
-        p->n_matched = n_all;
+        p->cache.matched_row = rows;
+        p->cache.n_matched = n_all;
     }
     int *slot = dalcs_alloc((size_t)n_all, sizeof(*slot));
     int *row_of_column = dalcs_alloc((size_t)a->n, sizeof(*row_of_column));
@@ -132,14 +132,14 @@ static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_e
     if (status == DALCS_OK) {
         find_slots(f, e, slot);
         for (int c = 0; c < a->n; c++) {
-            int row = p->matched_row[index_of_slot(f, e, c)];
+            int row = p->cache.matched_row[index_of_slot(f, e, c)];
             row_of_column[c] = row >= 0 ? slot[row] : -1;
         }
-        status =
-            dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, row_of_column, least_rcond(p));
+        status = dalcs_lu_factor(&e->lu, &p->cache.klu, a->n, a->p, a->i, a->x, row_of_column,
+                                 least_rcond(p));
         for (int c = 0; c < a->n; c++) {
             int row = row_of_column[c];
-            p->matched_row[index_of_slot(f, e, c)] = row >= 0 ? index_of_slot(f, e, row) : -1;
+            p->cache.matched_row[index_of_slot(f, e, c)] = row >= 0 ? index_of_slot(f, e, row) : -1;
         }
     }
     free(slot);
@@ -149,7 +149,7 @@ static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_e
 
 enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu,
                                            const struct dalcs_columns *a, double apart) {
-    return p->is_passing && a->n <= DALCS_LU_SMALL
+    return p->asks.is_passing && a->n <= DALCS_LU_SMALL
                ? dalcs_lu_factor_small(lu, a->n, a->p, a->i, a->x, apart)
                : DALCS_SINGULAR;
 }
@@ -160,9 +160,9 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
         return factor_large(p, e, a);
     }
     enum dalcs_status status = dalcs_modes_factor_small(p, &e->lu, a, dalcs_far_apart);
-    return status > DALCS_OK
-               ? dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL, least_rcond(p))
-               : status;
+    return status > DALCS_OK ? dalcs_lu_factor(&e->lu, &p->cache.klu, a->n, a->p, a->i, a->x, NULL,
+                                               least_rcond(p))
+                             : status;
 }
 
 /* Is the least pivot no more than rounding of what was subtracted in it? Columns far apart make the estimate of the
@@ -190,9 +190,9 @@ static enum dalcs_status look_for_rounding(const struct dalcs_columns *a) {
 enum dalcs_status dalcs_modes_factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
     struct dalcs_columns a;
     DALCS_TRY(fill_plain_matrix(p, e, &a));
-    p->klu.rcond = 1.0; /* what small ones without KLU tell */
+    p->cache.klu.rcond = 1.0; /* what small ones without KLU tell */
     enum dalcs_status status = factor(p, e, &a);
-    if (status == DALCS_OK && p->klu.rcond < p->options.rcond_min) {
+    if (status == DALCS_OK && p->cache.klu.rcond < p->options.rcond_min) {
         status = look_for_rounding(&a);
     }
     dalcs_columns_finish(&a);

@@ -8,20 +8,20 @@
 enum { MAX_REFINEMENTS = 3 };
 
 void dalcs_osnsp_unscale(const struct dalcs_osnsp *p, double *y) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n_equations = dalcs_system_n_equations(p->system);
     for (int i = 0; i < f->n; i++) {
-        y[f->column_of[i]] = f->scale[i] * p->scaled[i];
+        y[f->column_of[i]] = f->scale[i] * p->work.scaled[i];
     }
     for (int d = 0; d < f->n_pairs; d++) {
-        y[n_equations + d] = f->scale[f->n + d] * p->scaled[f->n + d];
+        y[n_equations + d] = f->scale[f->n + d] * p->work.scaled[f->n + d];
     }
 }
 
 /* R u solved straight into y's z and lambda: the way of every ordinary step. */
 static void solve_to_answer(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *e,
                             const double *u, double *y) {
-    const struct dalcs_csr R = p->form[0]->R;
+    const struct dalcs_csr R = p->cache.form[0]->R;
     double *x = e->lu.work;
     for (int i = 0; i < e->lu.n; i++) {
         x[i] = dalcs_csr_row_dot(&R, e->row_of[i], u);
@@ -34,37 +34,37 @@ static void solve_to_answer(const struct dalcs_osnsp *p, const struct dalcs_mode
 }
 
 void dalcs_osnsp_scale(struct dalcs_osnsp *p, const double *y) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n_equations = dalcs_system_n_equations(p->system);
     for (int i = 0; i < f->n; i++) {
-        p->scaled[i] = y[f->column_of[i]] / f->scale[i];
+        p->work.scaled[i] = y[f->column_of[i]] / f->scale[i];
     }
     for (int d = 0; d < f->n_pairs; d++) {
-        p->scaled[f->n + d] = y[n_equations + d] / f->scale[f->n + d];
+        p->work.scaled[f->n + d] = y[n_equations + d] / f->scale[f->n + d];
     }
 }
 
 /* One step of iterative refinement: solve for the residual of the condensed rows. */
 static void refine(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n = f->n + f->n_pairs;
-    double *residual = p->residual;
-    memcpy(residual, p->right, (size_t)n * sizeof(double));
+    double *residual = p->work.residual;
+    memcpy(residual, p->work.right, (size_t)n * sizeof(double));
     for (int c = 0; c < n; c++) {
         for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
-            residual[f->K.j[k]] -= f->K.x[k] * p->scaled[c];
+            residual[f->K.j[k]] -= f->K.x[k] * p->work.scaled[c];
         }
     }
-    memcpy(p->rhs, residual, (size_t)f->n * sizeof(double));
+    memcpy(p->work.rhs, residual, (size_t)f->n * sizeof(double));
     for (int k = 0; k < e->n_on; k++) {
-        p->rhs[f->n + k] = residual[f->n + e->on[k]];
+        p->work.rhs[f->n + k] = residual[f->n + e->on[k]];
     }
-    dalcs_lu_solve(&e->lu, p->rhs);
+    dalcs_lu_solve(&e->lu, p->work.rhs);
     for (int i = 0; i < f->n; i++) {
-        p->scaled[i] += p->rhs[i];
+        p->work.scaled[i] += p->work.rhs[i];
     }
     for (int k = 0; k < e->n_on; k++) {
-        p->scaled[f->n + e->on[k]] += p->rhs[f->n + k];
+        p->work.scaled[f->n + e->on[k]] += p->work.rhs[f->n + k];
     }
 }
 
@@ -74,7 +74,7 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
     double tolerance = p->options.certificate_tolerance;
     p->least_norm = e->singular && (!e->answers || e->whole->n_choices > 0);
-    bool by_factors = p->refines && !e->singular;
+    bool by_factors = p->asks.refines && !e->singular;
     bool may_recur = e->singular ? e->answers : !by_factors;
     if (e->map == NULL && may_recur && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
         DALCS_TRY(dalcs_step_map_build(p, e));
@@ -82,7 +82,7 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     if (e->map != NULL && !by_factors) {
         dalcs_step_map_apply(p, e, u, y);
         dalcs_certificate_evaluate(p, u, y, sources_clash);
-        if (p->n_violating > 0 || (p->certificate.worst <= tolerance && !*sources_clash)) {
+        if (p->signs.n_violating > 0 || (p->certificate.worst <= tolerance && !*sources_clash)) {
             return DALCS_OK;
         }
     }
@@ -95,10 +95,10 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     }
     solve_to_answer(p, e, u, y);
     dalcs_certificate_evaluate(p, u, y, sources_clash);
-    int wanted = p->refines && p->n_violating == 0 ? 1 : 0;
+    int wanted = p->asks.refines && p->signs.n_violating == 0 ? 1 : 0;
     if (p->certificate.worst > tolerance || *sources_clash || wanted > 0) {
         dalcs_osnsp_scale(p, y);
-        dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+        dalcs_csr_multiply(&p->cache.form[0]->R, u, p->work.right);
     }
     for (int k = 0;
          k < MAX_REFINEMENTS && (p->certificate.worst > tolerance || *sources_clash || k < wanted);
@@ -117,7 +117,7 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, const double *u, double *y
     for (int round = 0; round <= limit; round++) {
         bool sources_clash;
         DALCS_TRY(dalcs_osnsp_try_mode(p, u, y, &sources_clash));
-        if (p->n_violating == 0) {
+        if (p->signs.n_violating == 0) {
             if (sources_clash) {
                 dalcs_witness_from_clash(p);
                 return DALCS_INFEASIBLE;
@@ -143,14 +143,14 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
     if (p->partition.n_blocks < 2) {
         return DALCS_OK;
     }
-    memcpy(p->tied_mode, p->mode, bytes);
+    memcpy(p->work.tied_mode, p->mode, bytes);
     enum dalcs_status status = pivot(p, u, y, p->system->n_pairs);
-    *is_done = status < DALCS_OK || (status == DALCS_OK && p->n_tied == 0 && !p->least_norm);
+    *is_done = status < DALCS_OK || (status == DALCS_OK && p->signs.n_tied == 0 && !p->least_norm);
     if (*is_done) {
         return status;
     }
-    memcpy(p->regularised_mode, p->mode, bytes);
-    memcpy(p->mode, p->tied_mode, bytes);
+    memcpy(p->work.regularised_mode, p->mode, bytes);
+    memcpy(p->mode, p->work.tied_mode, bytes);
     if (p->blocks == NULL) {
         status = dalcs_in_order_build(p);
         p->partition.n_blocks = status == DALCS_NOT_CONVERGED ? 1 : p->partition.n_blocks;
@@ -162,7 +162,7 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
                (p->partition.n_blocks > 1 &&
                 (status == DALCS_OK || (status == DALCS_INFEASIBLE && dalcs_osnsp_is_monotone(p))));
     if (!*is_done) { /* pivoting goes on where it ended */
-        memcpy(p->mode, p->regularised_mode, bytes);
+        memcpy(p->mode, p->work.regularised_mode, bytes);
     }
     return status;
 }
@@ -170,7 +170,7 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
 static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
     enum dalcs_status status = pivot(p, u, y, limit);
-    if (status == DALCS_OK && p->n_tied > 0 && dalcs_osnsp_is_monotone(p) && !p->least_norm) {
+    if (status == DALCS_OK && p->signs.n_tied > 0 && dalcs_osnsp_is_monotone(p) && !p->least_norm) {
         return dalcs_ties_settle(p, u, y);
     }
     if (status > DALCS_OK && status != DALCS_INFEASIBLE) {
@@ -185,13 +185,13 @@ static bool is_undecided(enum dalcs_status status) {
 
 /* A ray may be no more than C/h beside a stray, and proves nothing where the circuit is not passive. */
 static bool is_proof(const struct dalcs_osnsp *p) {
-    return p->system->monotone && p->form[0]->sigma == 0.0;
+    return p->system->monotone && p->cache.form[0]->sigma == 0.0;
 }
 
 /* With given sources. */
 static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double *u, double *y) {
     p->counters.solved++;
-    if (p->n_forms == 0 || p->form[0]->sigma != sigma) {
+    if (p->cache.n_forms == 0 || p->cache.form[0]->sigma != sigma) {
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
     bool is_done;
@@ -205,9 +205,9 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
         status = otherwise <= DALCS_OK ? otherwise : status;
     }
     if (is_undecided(status) && dalcs_osnsp_is_monotone(p)) { /* a mode may only seem singular */
-        p->insists = true;
+        p->asks.insists = true;
         enum dalcs_status insisted = pivot(p, u, y, p->options.max_pivots + 2 * p->system->n_pairs);
-        p->insists = false;
+        p->asks.insists = false;
         status = insisted <= DALCS_OK ? insisted : status;
     }
     if (status > DALCS_OK && !dalcs_osnsp_is_monotone(p)) {
@@ -219,7 +219,7 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
     if (status == DALCS_INFEASIBLE) {
         dalcs_witness_complete(p);
     }
-    if (status == DALCS_OK && p->least_norm && p->n_tied > 0) {
+    if (status == DALCS_OK && p->least_norm && p->signs.n_tied > 0) {
         status = dalcs_basis_prefer(p, u, y);
     }
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
@@ -228,6 +228,6 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
 
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) {
-    return p->newton == NULL ? solve(p, sigma, u, y)
-                             : dalcs_osnsp_solve_smooth(p, sigma, u, y, solve);
+    return p->smooth.newton == NULL ? solve(p, sigma, u, y)
+                                    : dalcs_osnsp_solve_smooth(p, sigma, u, y, solve);
 }

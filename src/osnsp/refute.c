@@ -87,18 +87,18 @@ static enum dalcs_status find_reach(struct dalcs_osnsp *p, double sigma, const d
                                     double *reach) {
     const struct dalcs_system *s = p->system;
     double drive[2] = {0.0, 0.0};
-    if (p->form[0]->sigma != sigma) {
+    if (p->cache.form[0]->sigma != sigma) {
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
     for (int x = 0; x < s->n_x && sigma > 0.0; x++) {
         drive[s->column_is_current[x]] = fmax(drive[s->column_is_current[x]], fabs(u[x]));
     }
-    for (int k = 0; k < p->n_drives; k++) {
-        const struct dalcs_drive *d = &p->drive[k];
+    for (int k = 0; k < p->lists.n_drives; k++) {
+        const struct dalcs_drive *d = &p->lists.drive[k];
         drive[d->is_current] = fmax(drive[d->is_current], d->coefficient * fabs(u[d->input]));
     }
-    reach[0] = farthest * (drive[0] + drive[1] / p->form[0]->least_conductance);
-    reach[1] = farthest * (drive[1] + drive[0] * p->form[0]->most_conductance);
+    reach[0] = farthest * (drive[0] + drive[1] / p->cache.form[0]->least_conductance);
+    reach[1] = farthest * (drive[1] + drive[0] * p->cache.form[0]->most_conductance);
     return DALCS_OK;
 }
 

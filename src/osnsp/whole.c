@@ -132,7 +132,8 @@ static enum dalcs_status choose(struct dalcs_whole *whole, const struct dalcs_nu
 
 enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dalcs_osnsp *p,
                                      const double *resistance) {
-    *whole = (struct dalcs_whole){.p = p, .sigma = p->form[0]->sigma, .resistance = resistance};
+    *whole =
+        (struct dalcs_whole){.p = p, .sigma = p->cache.form[0]->sigma, .resistance = resistance};
     size_t n_columns = (size_t)dalcs_system_n_columns(p->system);
     struct dalcs_triplets t = {0};
     struct dalcs_null_space space;
@@ -163,7 +164,7 @@ enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dal
 
 enum dalcs_status dalcs_whole_null_space(const struct dalcs_osnsp *p, int *place,
                                          struct dalcs_null_space *space) {
-    struct dalcs_whole whole = {.p = p, .sigma = p->form[0]->sigma, .place = place};
+    struct dalcs_whole whole = {.p = p, .sigma = p->cache.form[0]->sigma, .place = place};
     struct dalcs_triplets t = {0};
     whole.n = place_columns(&whole);
     enum dalcs_status status = fill(&whole, &t);

@@ -35,7 +35,7 @@ static void add_element(struct dalcs_witness *w, const char *name) {
  * capacitors, the other rows of the tree are paired with voltages relative to its root. */
 static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     for (int input = 1; input < s->n_inputs; input++) {
         double work = 0.0;
         double size = 0.0;
@@ -66,7 +66,7 @@ static double but_rounding(double entry, double largest) {
 /* The direction in volts and amperes, of the states as well. */
 static void keep_ray(struct dalcs_osnsp *p, const double *d, double largest) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     double *ray = p->witness.ray;
     int n_equations = dalcs_system_n_equations(s);
     for (int i = 0; i < f->n; i++) {
@@ -88,15 +88,15 @@ static void keep_ray(struct dalcs_osnsp *p, const double *d, double largest) {
 /* Is d, with what it makes of the pairs' w behind it, a ray? *largest: its largest entry. */
 static bool is_ray(struct dalcs_osnsp *p, const double *d, double *largest) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n = f->n + f->n_pairs;
     const double *d_w = d + n;
     *largest = 0.0;
     for (int i = 0; i < n + f->n_pairs; i++) {
         *largest = fmax(*largest, fabs(d[i]));
     }
-    double *residual = p->rhs;
-    double *size = p->step_before;
+    double *residual = p->work.rhs;
+    double *size = p->work.step_before;
     memset(residual, 0, (size_t)n * sizeof(double));
     memset(size, 0, (size_t)n * sizeof(double));
     for (int c = 0; c < n; c++) {
@@ -123,7 +123,7 @@ static bool is_ray(struct dalcs_osnsp *p, const double *d, double *largest) {
 /* Of a ray: a loop in amperes, or a cutset in volts. */
 static enum dalcs_witness_kind kind_of_ray(const struct dalcs_osnsp *p, const double *d) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     const double *d_w = d + f->n + f->n_pairs;
     double current = 0.0;
     double voltage = 0.0;
@@ -140,8 +140,8 @@ static enum dalcs_witness_kind kind_of_ray(const struct dalcs_osnsp *p, const do
 
 bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
-    const double *d = p->step_now;
+    const struct dalcs_step_form *f = p->cache.form[0];
+    const double *d = p->work.step_now;
     const double *d_w = d + f->n + f->n_pairs;
     double largest;
     if (!is_ray(p, d, &largest)) {
