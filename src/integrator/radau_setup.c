@@ -59,7 +59,7 @@ static void list_used_inputs(struct dalcs_radau_part *part, const struct dalcs_n
     for (int k = 1; k < s->n_inputs; k++) {
         if (used[k] &&
             part->component->circuit->stimulus[s->stimulus[k]].kind != DALCS_STIMULUS_DC) {
-            part->used_input[part->n_used_inputs++] = k;
+            part->used.input[part->used.n++] = k;
         }
     }
 }
@@ -94,7 +94,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->work.w1 = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
     part->work.after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->work.before = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
-    part->used_input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
+    part->used.input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
     part->scales.current_drift = dalcs_arena_alloc(
         &part->arena, (size_t)dalcs_dense_map_rows(part->stages.n_levered), sizeof(double));
     part->scales.current_parts =
@@ -105,7 +105,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
                     part->guards.crossed != NULL && part->guards.tied != NULL &&
                     part->work.u != NULL && part->work.y1 != NULL && part->work.y2 != NULL &&
                     part->work.w1 != NULL && part->work.after != NULL &&
-                    part->work.before != NULL && part->used_input != NULL &&
+                    part->work.before != NULL && part->used.input != NULL &&
                     part->scales.current_drift != NULL && part->scales.current_parts != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }

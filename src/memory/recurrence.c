@@ -117,7 +117,7 @@ static void take(struct dalcs_radau *r, struct dalcs_radau_part *part,
     if (r->base->observer != NULL) {
         dalcs_recurrence_complete(part);
     }
-    part->stages.cache_hits++;
+    part->stages.cache.cache_hits++;
     part->segment.open = false;
     dalcs_segment_accept(r, part, theta, dalcs_stage_residual(step->entry));
 }

@@ -28,7 +28,7 @@ static enum dalcs_status list_order(const struct dalcs_stage_plan *plan,
     o->row_of = dalcs_alloc(n, sizeof(int));
     o->scale = dalcs_alloc(n, sizeof(double));
     o->position = dalcs_alloc((size_t)f->n, sizeof(int));
-    o->wave_at = dalcs_alloc((size_t)plan->n_waves, sizeof(int));
+    o->wave_at = dalcs_alloc((size_t)plan->waves.n_waves, sizeof(int));
     o->choice_at = dalcs_alloc((size_t)f->singular.n, sizeof(int));
     int n_rows = plan->n_rows + f->singular.n;
     int *at = dalcs_alloc((size_t)n_rows, sizeof(int)); /* positions of rows of M and of choices */
@@ -48,8 +48,8 @@ static enum dalcs_status list_order(const struct dalcs_stage_plan *plan,
         o->position[lu->to[i]] = i;
         at[o->row_of[i]] = i;
     }
-    for (int k = 0; k < plan->n_waves; k++) {
-        o->wave_at[k] = at[plan->wave_row[k]];
+    for (int k = 0; k < plan->waves.n_waves; k++) {
+        o->wave_at[k] = at[plan->waves.wave_row[k]];
     }
     for (int k = 0; k < f->singular.n; k++) {
         o->choice_at[k] = at[plan->n_rows + k];
@@ -92,9 +92,9 @@ static enum dalcs_status factor_all(struct dalcs_stages *stages, struct dalcs_st
         double im;
         find_eigenvalue(stages, entry->h, q, &re, &im);
         dalcs_stage_matrix_at(m, re, im, q > 0);
-        DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q], q > 0 ? &stages->klu_complex : &stages->klu,
-                                           a->symbolic, &a->numeric[q], q > 0, m->p, m->i,
-                                           m->values, rcond_min));
+        DALCS_TRY(dalcs_lu_factor_analyzed(
+            &f->lu[q], q > 0 ? &stages->cache.klu_complex : &stages->cache.klu, a->symbolic,
+            &a->numeric[q], q > 0, m->p, m->i, m->values, rcond_min));
         DALCS_TRY(list_order(stages->plan, m, f, q));
     }
     return DALCS_OK;
@@ -142,8 +142,9 @@ struct dalcs_row_miss dalcs_stage_factors_miss_of_row(const struct dalcs_stages 
             terms += fabs(a->x[k] * in[a->j[k]]);
         }
     }
-    for (int k = plan->wave_begin[r]; k < plan->wave_begin[r + 1]; k++) {
-        double term = plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + node];
+    for (int k = plan->waves.wave_begin[r]; k < plan->waves.wave_begin[r + 1]; k++) {
+        double term = plan->waves.wave_x[k] *
+                      plan->work.share[plan->waves.wave_of[k] * DALCS_N_SHARES + node];
         missed += term;
         terms += fabs(term);
     }
@@ -183,7 +184,7 @@ static enum dalcs_status find_residual(struct dalcs_stages *stages,
     const struct dalcs_system *s = stages->system;
     struct dalcs_stage_plan *plan = stages->plan;
     const struct dalcs_stage_layout *l = &stages->layout;
-    double *near = plan->near;
+    double *near = plan->work.near;
     double *nowhere = dalcs_alloc((size_t)plan->n_rows, sizeof(double));
     double *in = dalcs_alloc((size_t)stages->n_in, sizeof(double));
     double *out = dalcs_alloc((size_t)(l->n_fixed + entry->n_clashes), sizeof(double));
@@ -192,9 +193,9 @@ static enum dalcs_status find_residual(struct dalcs_stages *stages,
         for (int k = 0; k < stages->n_in; k++) {
             in[k] = k == s->n_x ? 1.0 : cos(1.0 + k * (double)k);
         }
-        plan->near = nowhere;
+        plan->work.near = nowhere;
         status = dalcs_stage_factors_apply(stages, entry, in, out);
-        plan->near = near;
+        plan->work.near = near;
     }
     if (status == DALCS_OK) {
         entry->residual = dalcs_stage_factors_miss(stages, entry, in, out);
@@ -298,7 +299,7 @@ static enum dalcs_status build_own(struct dalcs_stages *stages, struct dalcs_sta
                     (size_t)stages->excitation->n_functions * DALCS_N_SHARES * sizeof(double);
     for (int q = 0; q < f->n_systems; q++) {
         entry->bytes += dalcs_lu_bytes(&f->lu[q]) + n * (2 * sizeof(int) + sizeof(double)) +
-                        (size_t)stages->plan->n_waves * sizeof(int);
+                        (size_t)stages->plan->waves.n_waves * sizeof(int);
     }
     return DALCS_OK;
 }

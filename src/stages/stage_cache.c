@@ -9,32 +9,32 @@
 enum { RECENT = 3 };
 
 static void unlink_entry(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    *(e->newer != NULL ? &e->newer->older : &stages->newest) = e->older;
-    *(e->older != NULL ? &e->older->newer : &stages->oldest) = e->newer;
+    *(e->newer != NULL ? &e->newer->older : &stages->cache.newest) = e->older;
+    *(e->older != NULL ? &e->older->newer : &stages->cache.oldest) = e->newer;
     e->newer = NULL;
     e->older = NULL;
 }
 
 static void link_newest(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    e->older = stages->newest;
+    e->older = stages->cache.newest;
     e->newer = NULL;
-    *(stages->newest != NULL ? &stages->newest->newer : &stages->oldest) = e;
-    stages->newest = e;
+    *(stages->cache.newest != NULL ? &stages->cache.newest->newer : &stages->cache.oldest) = e;
+    stages->cache.newest = e;
 }
 
 static void offer_as_base(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    e->older_base = stages->newest_base;
-    if (stages->newest_base != NULL) {
-        stages->newest_base->newer_base = e;
+    e->older_base = stages->cache.newest_base;
+    if (stages->cache.newest_base != NULL) {
+        stages->cache.newest_base->newer_base = e;
     }
-    stages->newest_base = e;
+    stages->cache.newest_base = e;
 }
 
 static void withdraw_as_base(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
     if (e->newer_base != NULL) {
         e->newer_base->older_base = e->older_base;
-    } else if (stages->newest_base == e) {
-        stages->newest_base = e->older_base;
+    } else if (stages->cache.newest_base == e) {
+        stages->cache.newest_base = e->older_base;
     }
     if (e->older_base != NULL) {
         e->older_base->newer_base = e->newer_base;
@@ -55,20 +55,20 @@ void dalcs_stages_hold(struct dalcs_stage_entry *entry) {
 /* The last one destroys it. */
 void dalcs_stages_release(struct dalcs_stages *stages, struct dalcs_stage_entry *entry) {
     if (--entry->n_holders == 0) {
-        stages->bytes -= entry->bytes;
+        stages->cache.bytes -= entry->bytes;
         entry_destroy(stages, entry);
     }
 }
 
 static void remove_entry(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    HASH_DELETE(hh, stages->entries, e);
+    HASH_DELETE(hh, stages->cache.entries, e);
     unlink_entry(stages, e);
     dalcs_stages_release(stages, e);
 }
 
 static void remove_all(struct dalcs_stages *stages) {
-    while (stages->oldest != NULL) {
-        remove_entry(stages, stages->oldest);
+    while (stages->cache.oldest != NULL) {
+        remove_entry(stages, stages->cache.oldest);
     }
 }
 
@@ -102,7 +102,7 @@ static struct dalcs_stage_entry *entry_alloc(const struct dalcs_stages *stages) 
     return e;
 }
 
-/* What stages->key asks for. */
+/* What stages->cache.key asks for. */
 static enum dalcs_status entry_create(struct dalcs_stages *stages, double h, bool of_its_own,
                                       struct dalcs_stage_entry **entry) {
     struct dalcs_stage_entry *e = entry_alloc(stages);
@@ -112,7 +112,7 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h, boo
     }
     int n_pairs = stages->system->n_pairs;
     e->h = h;
-    memcpy(e->key, stages->key, ((size_t)stages->n_words + 1) * sizeof(*e->key));
+    memcpy(e->key, stages->cache.key, ((size_t)stages->n_words + 1) * sizeof(*e->key));
     e->mode = e->key;
     for (int d = 0; d < n_pairs; d++) {
         if (dalcs_stage_is_on(e, d)) {
@@ -123,7 +123,7 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h, boo
     enum dalcs_status status = e->n <= stages->dense_limit
                                    ? dalcs_stage_map_build(stages, e)
                                    : dalcs_stage_factors_build(stages, e, of_its_own);
-    stages->factorizations += dalcs_stage_is_update(e) ? 0 : 1;
+    stages->cache.factorizations += dalcs_stage_is_update(e) ? 0 : 1;
     for (int c = 0, n = dalcs_system_n_equations(stages->system); c < n; c++) {
         e->natural[n + c] = 1.0 / e->natural[c];
     }
@@ -147,14 +147,15 @@ static bool is_key(const struct dalcs_stages *stages, const struct dalcs_stage_e
 
 static void set_key(struct dalcs_stages *stages, const uint64_t *mode, double h) {
     size_t words = (size_t)stages->n_words;
-    memcpy(stages->key, mode, words * sizeof(*mode));
-    memcpy(stages->key + words, &h, sizeof(h));
+    memcpy(stages->cache.key, mode, words * sizeof(*mode));
+    memcpy(stages->cache.key + words, &h, sizeof(h));
 }
 
 static struct dalcs_stage_entry *find(struct dalcs_stages *stages, const uint64_t *mode, double h) {
     set_key(stages, mode, h);
     struct dalcs_stage_entry *e;
-    HASH_FIND(hh, stages->entries, stages->key, ((size_t)stages->n_words + 1) * sizeof(*mode), e);
+    HASH_FIND(hh, stages->cache.entries, stages->cache.key,
+              ((size_t)stages->n_words + 1) * sizeof(*mode), e);
     return e;
 }
 
@@ -165,7 +166,7 @@ bool dalcs_stages_have(struct dalcs_stages *stages, const uint64_t *mode, double
 enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *mode, double h,
                                    struct dalcs_stage_entry **entry) {
     size_t words = (size_t)stages->n_words;
-    struct dalcs_stage_entry *e = stages->newest;
+    struct dalcs_stage_entry *e = stages->cache.newest;
     for (int k = 0; k < RECENT && e != NULL && !is_key(stages, e, mode, h); k++) {
         e = e->older;
     }
@@ -174,8 +175,8 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
     }
     bool is_spent = e != NULL && dalcs_stage_update_is_spent(stages, e);
     if (e != NULL && !is_spent) {
-        stages->cache_hits++;
-        if (e != stages->newest) {
+        stages->cache.cache_hits++;
+        if (e != stages->cache.newest) {
             unlink_entry(stages, e);
             link_newest(stages, e);
         }
@@ -187,15 +188,15 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
         remove_entry(stages, e);
     }
     DALCS_TRY(entry_create(stages, h, is_spent, &e));
-    HASH_ADD_KEYPTR(hh, stages->entries, e->key, (words + 1) * sizeof(*mode), e);
+    HASH_ADD_KEYPTR(hh, stages->cache.entries, e->key, (words + 1) * sizeof(*mode), e);
     if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
         entry_destroy(stages, e);
         return DALCS_E_NOMEM;
     }
     link_newest(stages, e);
-    stages->bytes += e->bytes;
-    while (stages->bytes > stages->most_bytes && stages->oldest != e) {
-        remove_entry(stages, stages->oldest);
+    stages->cache.bytes += e->bytes;
+    while (stages->cache.bytes > stages->cache.most_bytes && stages->cache.oldest != e) {
+        remove_entry(stages, stages->cache.oldest);
     }
     *entry = e;
     return DALCS_OK;

@@ -61,12 +61,12 @@ static void put_piece(const struct dalcs_stage_plan *plan, const struct dalcs_st
     const int first = piece->first;
     const int count = piece->count;
     const struct dalcs_stage_factors *f = entry->factors;
-    const double *from = plan->from;
+    const double *from = plan->work.from;
     int n_equations = f->n - f->n_pairs;
     if (kind == STATES && node == 0) {
         for (int k = 0; k < count; k++) {
             y[first + k] = from[first + k];
-            plan->missed[first + k] = -piece->y[k];
+            plan->work.missed[first + k] = -piece->y[k];
         }
     } else if (kind != PAIRS) {
         for (int k = 0; k < count; k++) {
@@ -97,7 +97,7 @@ static void put_kind(const struct dalcs_stage_plan *plan, const struct dalcs_sta
     }
 }
 
-/* Columns at all nodes; the start still without its defect. plan->missed = what the states miss
+/* Columns at all nodes; the start still without its defect. plan->work.missed = what the states miss
  * there. */
 static void put_columns(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
                         double *out) {
@@ -119,8 +119,9 @@ static double find_w(const struct dalcs_stage_plan *plan, int pair, double const
     const struct dalcs_system *s = plan->stages->system;
     int row = dalcs_system_n_equations(s) + pair;
     double w = dalcs_csr_row_dot(&s->C, pair, columns) - constant * plan->constant[row];
-    for (int k = plan->wave_begin[row]; k < plan->wave_begin[row + 1]; k++) {
-        w -= plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + share];
+    for (int k = plan->waves.wave_begin[row]; k < plan->waves.wave_begin[row + 1]; k++) {
+        w -= plan->waves.wave_x[k] *
+             plan->work.share[plan->waves.wave_of[k] * DALCS_N_SHARES + share];
     }
     return w;
 }
@@ -135,15 +136,15 @@ static void put_other_sides(const struct dalcs_stage_plan *plan,
     int n_equations = dalcs_system_n_equations(s);
     double *lambda = columns + n_equations;
     for (int d = 0; d < s->n_pairs; d++) {
-        plan->guard[d] = dalcs_stage_is_on(entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE
-                             ? lambda[d]
-                             : find_w(plan, d, constant, share, columns);
+        plan->work.guard[d] = dalcs_stage_is_on(entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE
+                                  ? lambda[d]
+                                  : find_w(plan, d, constant, share, columns);
     }
     for (int i = 0; with_watched && i < stages->n_watched; i++) {
         int d = stages->watched[i];
         columns[dalcs_system_n_columns(s) + i] = dalcs_csr_row_dot(&s->control, d, columns);
     }
-    memcpy(lambda, plan->guard, (size_t)s->n_pairs * sizeof(double));
+    memcpy(lambda, plan->work.guard, (size_t)s->n_pairs * sizeof(double));
 }
 
 /* How far the equations disagree at each stage: what is missed by those that should follow from the
@@ -200,30 +201,30 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     memset(out, 0, (size_t)l->n_fixed * sizeof(double));
     dalcs_stage_find_shares(stages, f, in + n_x + 1);
     dalcs_stage_find_start(plan, f, in);
-    dalcs_stage_find_drive(plan, f, &plan->drive, plan->from, in[n_x]);
+    dalcs_stage_find_drive(plan, f, &plan->drive, plan->work.from, in[n_x]);
     for (int q = 0; q < f->n_systems; q++) {
         dalcs_stage_solve_loaded(plan, f, q,
                                  q == 0 ? DALCS_SHARE_REAL : DALCS_SHARE_PAIR + 2 * (q - 1));
     }
     put_columns(plan, entry, out);
     put_clashes(stages, entry, in, out);
-    dalcs_stage_find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
+    dalcs_stage_find_drive(plan, f, &plan->drive_of_states, plan->work.missed, 0.0);
     dalcs_stage_solve_loaded(plan, f, 0, DALCS_SHARE_DRIFT);
     put_states(plan, f, 1.0, out + l->drift);
     add_real(plan, entry, out);
     if (n_x > 0) {
         /* What was added goes with states that are off by the drift: take that back as well. */
-        put_states(plan, f, -1.0, plan->missed);
-        dalcs_stage_find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
+        put_states(plan, f, -1.0, plan->work.missed);
+        dalcs_stage_find_drive(plan, f, &plan->drive_of_states, plan->work.missed, 0.0);
         dalcs_stage_solve_loaded(plan, f, 0, DALCS_SHARE_NONE);
         add_real(plan, entry, out);
-        put_states(plan, f, -1.0, plan->missed); /* what the filter leaves of it */
+        put_states(plan, f, -1.0, plan->work.missed); /* what the filter leaves of it */
     }
     for (int node = 0; node <= stages->method->n_stages; node++) {
         put_other_sides(plan, entry, in[n_x], node, true, out + node * l->stride);
     }
     if (stages->excitation->is_curved) {
-        memset(plan->rhs, 0, (size_t)(n_columns + f->singular.n) * sizeof(double));
+        memset(plan->work.rhs, 0, (size_t)(n_columns + f->singular.n) * sizeof(double));
         dalcs_stage_solve_loaded(plan, f, 0, DALCS_SHARE_RIPPLE_RATE);
         add_unknowns(f, 0, n_x, out + l->ripple);
         add_real(plan, entry, out + l->ripple);
@@ -236,12 +237,12 @@ void dalcs_stage_factors_currents(const struct dalcs_stages *stages,
                                   const struct dalcs_stage_entry *entry, double *drift) {
     const struct dalcs_stage_plan *plan = stages->plan;
     const struct dalcs_stage_factors *f = entry->factors;
-    dalcs_stage_find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
+    dalcs_stage_find_drive(plan, f, &plan->drive_of_states, plan->work.missed, 0.0);
     dalcs_stage_solve_loaded(plan, f, 0, DALCS_SHARE_NONE);
-    memset(plan->missed, 0, (size_t)plan->n_rows * sizeof(double));
-    add_unknowns(f, stages->system->n_x, f->n - f->n_pairs, plan->missed);
+    memset(plan->work.missed, 0, (size_t)plan->n_rows * sizeof(double));
+    add_unknowns(f, stages->system->n_x, f->n - f->n_pairs, plan->work.missed);
     for (int k = 0; k < stages->n_levered; k++) {
-        drift[k] = plan->missed[stages->levered[k]];
+        drift[k] = plan->work.missed[stages->levered[k]];
     }
-    memset(plan->missed, 0, (size_t)plan->n_rows * sizeof(double));
+    memset(plan->work.missed, 0, (size_t)plan->n_rows * sizeof(double));
 }

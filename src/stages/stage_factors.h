@@ -12,7 +12,7 @@ struct dalcs_stage_order {
     double *scale;  /* [n] of that row */
     int *position;  /* [n] of an unknown */
     int *of_pair;   /* [n_pairs] position of a pair's lambda */
-    int *wave_at;   /* [plan->n_waves] position of the entry's row, -1: not there */
+    int *wave_at;   /* [plan->waves.n_waves] position of the entry's row, -1: not there */
     int *choice_at; /* [singular.n] */
 };
 

@@ -8,7 +8,7 @@
 void dalcs_stage_find_shares(const struct dalcs_stages *stages, const struct dalcs_stage_factors *f,
                              const double *coefficient) {
     const struct dalcs_excitation *e = stages->excitation;
-    double *share = stages->plan->share;
+    double *share = stages->plan->work.share;
     for (int w = 0; w < e->n_waves; w++, share += DALCS_N_SHARES) {
         for (int k = 0; k < DALCS_N_SHARES; k++) {
             share[k] = 0.0;
@@ -24,7 +24,7 @@ void dalcs_stage_find_shares(const struct dalcs_stages *stages, const struct dal
 
 static void find_drive_of_row(const struct dalcs_stage_plan *plan, const struct dalcs_csr *drive,
                               int r, const double *y, double factor) {
-    plan->rhs[r] = factor * plan->constant[r] + dalcs_csr_row_dot(drive, r, y);
+    plan->work.rhs[r] = factor * plan->constant[r] + dalcs_csr_row_dot(drive, r, y);
 }
 
 void dalcs_stage_find_drive(const struct dalcs_stage_plan *plan,
@@ -49,7 +49,7 @@ void dalcs_stage_find_drive(const struct dalcs_stage_plan *plan,
             double knee = dalcs_system_knee(plan->stages->system, pair);
             sum += factor * shore->x[e] * (plan->constant[n_equations + pair] + knee);
         }
-        plan->rhs[plan->n_rows + k] = sum;
+        plan->work.rhs[plan->n_rows + k] = sum;
     }
 }
 
@@ -57,11 +57,12 @@ void dalcs_stage_find_start(const struct dalcs_stage_plan *plan,
                             const struct dalcs_stage_factors *f, const double *x) {
     int n_x = plan->stages->system->n_x;
     int n_equations = f->n - f->n_pairs;
-    memcpy(plan->from, x, (size_t)n_x * sizeof(double));
-    memcpy(plan->from + n_x, plan->near + n_x, (size_t)(n_equations - n_x) * sizeof(double));
-    memset(plan->from + n_equations, 0, (size_t)(plan->n_rows - n_equations) * sizeof(double));
+    memcpy(plan->work.from, x, (size_t)n_x * sizeof(double));
+    memcpy(plan->work.from + n_x, plan->work.near + n_x,
+           (size_t)(n_equations - n_x) * sizeof(double));
+    memset(plan->work.from + n_equations, 0, (size_t)(plan->n_rows - n_equations) * sizeof(double));
     for (int k = 0; k < f->n_pairs; k++) {
-        plan->from[n_equations + f->pair[k]] = plan->near[n_equations + f->pair[k]];
+        plan->work.from[n_equations + f->pair[k]] = plan->work.near[n_equations + f->pair[k]];
     }
 }
 
@@ -74,17 +75,18 @@ static void load_choice(const struct dalcs_stage_plan *plan, const struct dalcs_
     int stride = system > 0 ? 2 : 1;
     for (int e = shore->p[k]; e < shore->p[k + 1]; e++) {
         int row = f->n - f->n_pairs + shore->j[e];
-        for (int i = plan->wave_begin[row]; i < plan->wave_begin[row + 1]; i++) {
-            const double *of_wave = plan->share + plan->wave_of[i] * DALCS_N_SHARES + share;
+        for (int i = plan->waves.wave_begin[row]; i < plan->waves.wave_begin[row + 1]; i++) {
+            const double *of_wave =
+                plan->work.share + plan->waves.wave_of[i] * DALCS_N_SHARES + share;
             for (int part = 0; part < stride; part++) {
                 f->lu[system].work[at * stride + part] +=
-                    o->scale[at] * shore->x[e] * plan->wave_x[i] * of_wave[part];
+                    o->scale[at] * shore->x[e] * plan->waves.wave_x[i] * of_wave[part];
             }
         }
     }
 }
 
-/* lu[system].work = the balanced right-hand side in its order, plan->rhs and a
+/* lu[system].work = the balanced right-hand side in its order, plan->work.rhs and a
  * share of the waves. */
 static void load(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
                  int system, int share) {
@@ -93,19 +95,19 @@ static void load(const struct dalcs_stage_plan *plan, const struct dalcs_stage_f
     int stride = system > 0 ? 2 : 1;
     if (stride == 1) {
         for (int i = 0; i < o->n; i++) {
-            work[i] = o->scale[i] * plan->rhs[o->row_of[i]];
+            work[i] = o->scale[i] * plan->work.rhs[o->row_of[i]];
         }
     } else {
         for (int i = 0; i < o->n; i++) {
-            work[2 * i] = o->scale[i] * plan->rhs[o->row_of[i]];
+            work[2 * i] = o->scale[i] * plan->work.rhs[o->row_of[i]];
             work[2 * i + 1] = 0.0;
         }
     }
-    for (int k = 0; k < plan->n_waves; k++) {
+    for (int k = 0; k < plan->waves.n_waves; k++) {
         int at = o->wave_at[k];
-        const double *of_wave = plan->share + plan->wave_of[k] * DALCS_N_SHARES + share;
+        const double *of_wave = plan->work.share + plan->waves.wave_of[k] * DALCS_N_SHARES + share;
         for (int part = 0; at >= 0 && part < stride; part++) {
-            work[at * stride + part] += o->scale[at] * plan->wave_x[k] * of_wave[part];
+            work[at * stride + part] += o->scale[at] * plan->waves.wave_x[k] * of_wave[part];
         }
     }
     for (int k = 0; k < f->singular.n; k++) {

@@ -63,7 +63,7 @@ void dalcs_stage_update_check(struct dalcs_stages *stages, struct dalcs_stage_en
     double miss = dalcs_stage_factors_miss(stages, entry, in, out);
     entry->residual = miss > entry->residual || miss != miss ? miss : entry->residual;
     if (dalcs_stage_update_is_doubtful(stages, entry)) {
-        stages->update_trust += REFUSED;
+        stages->cache.update_trust += REFUSED;
     }
 }
 
@@ -90,7 +90,7 @@ static struct dalcs_stage_entry *choose_base(const struct dalcs_stages *stages,
                                              const struct dalcs_stage_entry *entry) {
     struct dalcs_stage_entry *chosen = NULL;
     int least = DALCS_STAGE_MOST_CHANGES + 1;
-    struct dalcs_stage_entry *b = stages->newest_base;
+    struct dalcs_stage_entry *b = stages->cache.newest_base;
     for (int k = 0; k < MOST_BASES && b != NULL && least > 0; k++, b = b->older_base) {
         int n = b->h == entry->h ? count_changes(stages, b, entry) : least;
         if (n < least) {
@@ -246,7 +246,8 @@ static void borrow(struct dalcs_stage_factors *f, const struct dalcs_stage_entry
 
 enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
                                            struct dalcs_stage_entry *entry) {
-    struct dalcs_stage_entry *base = stages->update_trust > 0 ? choose_base(stages, entry) : NULL;
+    struct dalcs_stage_entry *base =
+        stages->cache.update_trust > 0 ? choose_base(stages, entry) : NULL;
     if (base == NULL) {
         return DALCS_OK;
     }
@@ -268,8 +269,9 @@ enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
         status = place_pairs(entry, f);
     }
     entry->residual = base->residual;
-    stages->update_trust += good ? SERVED : REFUSED;
-    stages->update_trust = stages->update_trust < MOST_TRUST ? stages->update_trust : MOST_TRUST;
+    stages->cache.update_trust += good ? SERVED : REFUSED;
+    stages->cache.update_trust =
+        stages->cache.update_trust < MOST_TRUST ? stages->cache.update_trust : MOST_TRUST;
     if (status != DALCS_OK || !good) {
         dalcs_stage_factors_destroy(stages, f);
         entry->factors = NULL;

@@ -33,10 +33,10 @@ static void load(const struct dalcs_stage_plan *plan, const struct dalcs_stage_f
         int row = f->n - f->n_pairs + u->change[i]->pair;
         double *t = work + (f->lu[system].n + i) * stride;
         for (int part = 0; part < stride; part++) {
-            double sum = part == 0 ? plan->rhs[row] : 0.0;
-            for (int k = plan->wave_begin[row]; k < plan->wave_begin[row + 1]; k++) {
-                sum +=
-                    plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + share + part];
+            double sum = part == 0 ? plan->work.rhs[row] : 0.0;
+            for (int k = plan->waves.wave_begin[row]; k < plan->waves.wave_begin[row + 1]; k++) {
+                sum += plan->waves.wave_x[k] *
+                       plan->work.share[plan->waves.wave_of[k] * DALCS_N_SHARES + share + part];
             }
             t[part] = u->change[i]->row_scale * sum;
         }

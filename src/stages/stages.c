@@ -49,18 +49,18 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
                                     .n_words = (system->n_pairs + 63) / 64,
                                     .dense_limit = limits->dense_limit,
                                     .rcond_min = limits->rcond_min,
-                                    .most_bytes = limits->most_bytes,
-                                    .update_trust = DALCS_STAGE_FIRST_TRUST};
-    dalcs_lu_common_init(&stages->klu);
-    dalcs_lu_common_init(&stages->klu_complex);
+                                    .cache.most_bytes = limits->most_bytes,
+                                    .cache.update_trust = DALCS_STAGE_FIRST_TRUST};
+    dalcs_lu_common_init(&stages->cache.klu);
+    dalcs_lu_common_init(&stages->cache.klu_complex);
     /* A capacitor across a conducting diode turns what digits cost, times C/h, into a current of it. */
-    dalcs_lu_pivot_carefully(&stages->klu);
-    dalcs_lu_pivot_carefully(&stages->klu_complex);
+    dalcs_lu_pivot_carefully(&stages->cache.klu);
+    dalcs_lu_pivot_carefully(&stages->cache.klu_complex);
     stages->watched = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
-    stages->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*stages->key));
+    stages->cache.key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*stages->cache.key));
     int n_z = dalcs_system_n_equations(system) - system->n_x;
     stages->levered = dalcs_alloc((size_t)n_z, sizeof(int));
-    if (stages->watched == NULL || stages->key == NULL || stages->levered == NULL) {
+    if (stages->watched == NULL || stages->cache.key == NULL || stages->levered == NULL) {
         dalcs_stages_finish(stages);
         return DALCS_E_NOMEM;
     }
@@ -85,7 +85,7 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
     dalcs_stages_forget(stages);
     free(stages->watched);
     free(stages->levered);
-    free(stages->key);
+    free(stages->cache.key);
     *stages = (struct dalcs_stages){0};
 }
 
@@ -134,10 +134,10 @@ void dalcs_stages_stay_near(struct dalcs_stages *stages, const uint64_t *mode, c
         return;
     }
     int n_equations = dalcs_stage_plan_n_equations(plan);
-    memcpy(plan->near, y, (size_t)plan->n_rows * sizeof(double));
+    memcpy(plan->work.near, y, (size_t)plan->n_rows * sizeof(double));
     for (int d = 0; d < stages->system->n_pairs; d++) {
         if (!dalcs_mode_has(mode, d)) { /* that is its w */
-            plan->near[n_equations + d] = 0.0;
+            plan->work.near[n_equations + d] = 0.0;
         }
     }
 }

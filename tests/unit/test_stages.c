@@ -411,15 +411,15 @@ START_TEST(test_store) {
     ck_assert_ptr_ne(first, get(on, 0.5));
     ck_assert_ptr_ne(first, get(off, 0.25));
     ck_assert_ptr_eq(first, get(off, 0.5));
-    ck_assert_int_eq(stages.factorizations, 3);
-    ck_assert_int_eq(stages.cache_hits, 1);
+    ck_assert_int_eq(stages.cache.factorizations, 3);
+    ck_assert_int_eq(stages.cache.cache_hits, 1);
     ck_assert(dalcs_stages_have(&stages, &on, 0.5) && !dalcs_stages_have(&stages, &on, 0.25));
     const double *natural = dalcs_stage_natural_units(first);
     for (int c = 0; c < dalcs_system_n_equations(s); c++) {
         ck_assert(natural[c] > 0.0);
         ck_assert_double_eq(natural[dalcs_system_n_equations(s) + c], 1.0 / natural[c]);
     }
-    size_t bytes = stages.bytes;
+    size_t bytes = stages.cache.bytes;
     finish();
     /* With room for about three, the one that was not asked for goes. */
     start_with(text, 5, bytes);
@@ -427,11 +427,11 @@ START_TEST(test_store) {
         (void)get(off, ldexp(1.0, -k));
         (void)get(on, 0.5);
         ck_assert(dalcs_stages_have(&stages, &on, 0.5));
-        ck_assert(stages.bytes <= bytes);
+        ck_assert(stages.cache.bytes <= bytes);
     }
     ck_assert(!dalcs_stages_have(&stages, &off, 1.0));
     ck_assert(dalcs_stages_have(&stages, &off, ldexp(1.0, -19)));
-    ck_assert_int_eq(stages.factorizations, 21);
+    ck_assert_int_eq(stages.cache.factorizations, 21);
     finish();
     start_with(text, 5, 1); /* one there must be */
     (void)get(on, 0.5);
