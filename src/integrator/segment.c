@@ -22,7 +22,8 @@
 
 #include <math.h>
 
-/* See is_outsized(). */
+/* Signals so many times as large as any before. It may be that a coil's current has nowhere to go in this mode, and a step
+ * that short makes of it what vouches for any error. */
 static const double outsized = 1e6;
 
 enum {
@@ -32,8 +33,6 @@ enum {
     MOST_FRONTS_REFUSED = 16
 };
 
-/* Signals so many times as large as any before: it may be that a coil's current has nowhere to go in this
- * mode, and a step that short makes of it what vouches for any error. */
 static bool is_outsized(const struct dalcs_radau_part *part,
                         const struct dalcs_step_quality *quality) {
     bool is = false;

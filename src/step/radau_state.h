@@ -70,7 +70,7 @@ struct dalcs_part_scales {
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     /* A per V, what rounding of conductances that meet makes of nothing between them and ground. */
     double leak;
-    struct dalcs_column_kinds *kinds; /* see step_error.c */
+    struct dalcs_column_kinds *kinds; /* see step_scales.h */
     double *current_drift;            /* of these, in whole eights: current_error.c */
     double *current_parts;            /* [n_levered] what they are made of, at most; ditto */
 };
