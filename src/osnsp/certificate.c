@@ -73,7 +73,7 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
 
 static double pair_voltage(const struct dalcs_osnsp *p, const double *u, const double *y, int d) {
     const struct dalcs_system *s = p->system;
-    const int *ends = &p->lists.w_ends[2 * d];
+    const int *ends = p->lists.w_ends + 2 * d;
     if (ends[0] >= 0) {
         return y[ends[0]] - y[ends[1]];
     }

@@ -19,7 +19,6 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     const struct dalcs_system *s = b->system;
     size_t n_x = (size_t)b->n_x;
     size_t n_rhs = (size_t)b->n_rhs;
-    size_t n_pairs = (size_t)s->n_pairs;
     size_t all = (size_t)dalcs_system_n_columns(s);
     size_t n = all < (size_t)b->stages->dense_limit ? all : (size_t)b->stages->dense_limit;
     size_t used = 0;
@@ -61,7 +60,7 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->column.filtered = dalcs_carve(storage, &used, 2 * b->solved.room, sizeof(double));
     b->column.defect = dalcs_carve(storage, &used, n_x, sizeof(*b->column.defect));
     b->column.lasting = dalcs_carve(storage, &used, n_x, sizeof(*b->column.lasting));
-    b->column.guard = dalcs_carve(storage, &used, n_pairs * DALCS_LANES, sizeof(double));
+    b->column.guard = dalcs_carve(storage, &used, (size_t)s->n_pairs * DALCS_LANES, sizeof(double));
     b->column.residual = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
     b->column.in = dalcs_carve(storage, &used, (size_t)b->stages->n_in, sizeof(double));
     return used;
