@@ -32,6 +32,7 @@ extern "C" {
     ENTRY(DALCS_SINGULAR, 1, "singular matrix")                                                    \
     ENTRY(DALCS_NOT_CONVERGED, 2, "no certified solution of the one-step problem was found")       \
     ENTRY(DALCS_INFEASIBLE, 3, "the one-step problem has no solution")                             \
+    ENTRY(DALCS_REFUTED, 4, "the audit finds a law broken in the waveform")                        \
     ENTRY(DALCS_E_NOMEM, -1, "out of memory")                                                      \
     ENTRY(DALCS_E_IO, -2, "input/output error")                                                    \
     ENTRY(DALCS_E_NETLIST, -3, "error in the netlist")                                             \
@@ -86,6 +87,11 @@ enum dalcs_status dalcs_session_set_seed(struct dalcs_session *session,
 enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session,
                                             const char *name) DALCS_MUST_CHECK;
 
+/* Says, before a netlist is read, what stands on .tran in place of the netlist's times: all of them ("1u 5m uic"), and
+ * when it ends ("5m"); NULL: what the netlist says. Copied. DALCS_E_OPTION: a netlist was read. */
+enum dalcs_status dalcs_session_set_transient(struct dalcs_session *session, const char *times,
+                                              const char *stop) DALCS_MUST_CHECK;
+
 /* Says, before a netlist is read, that a steady state will be asked for (dalcs_run_options.steady): it need not ask for
  * any analysis itself. DALCS_E_OPTION: a netlist was read. */
 enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) DALCS_MUST_CHECK;
@@ -135,6 +141,9 @@ struct dalcs_request {
     size_t n_prints; /* .print and .plot cards */
     bool ascii;      /* .options filetype=ascii: raw files as text */
     bool periodic;   /* .pss */
+    bool worst_case; /* .wcase */
+    bool euler;      /* .options method=euler */
+    bool compresses; /* .options compress: most rows are left out */
 };
 struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
 
@@ -366,7 +375,7 @@ struct dalcs_run_options {
                               see doc/output.md); this and the bound may change the last bits of
                               results */
     size_t max_events;  /* events and jumps kept when recording, 1e6 */
-    enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_NOT_CONVERGED */
+    enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_REFUTED */
     const char *dump_path;       /* where to write an OSNSP that failed; NULL: nowhere */
 
     bool steady; /* the periodic steady state and nothing else, as if .pss were the only analysis */
@@ -378,6 +387,8 @@ struct dalcs_run_options {
     bool bode; /* .ac around the periodic steady state and nothing else, as if there were a .pss */
     double bode_from, bode_to; /* Hz; 0: those of .ac, else 1e-4 and 1/2 of the orbit's frequency */
     int bode_points;           /* in each decade; 0: those of .ac, else 20 */
+    const double *bode_at; /* [n_bode_at] Hz, ascending, > 0: these and no others; none: as above */
+    size_t n_bode_at;
     const char *loop;    /* the V source in a loop whose gain is computed; NULL: .ac's, else none */
     bool loop_is_loaded; /* it is injected a current besides, as where the loop goes on takes one */
     int sideband;        /* as dalcs_report.response; 0: .ac's, else none */
@@ -391,6 +402,8 @@ struct dalcs_run_options {
     size_t n_envelope_at;
 
     size_t only_step; /* of .step: this one alone, counted from 1; 0: all */
+    size_t
+        workers; /* threads that the runs of .wcase are made in; 0: 1. Callbacks come in the caller's */
 };
 
 enum { DALCS_MOST_SIDEBAND = 1000000 };
@@ -405,18 +418,23 @@ void dalcs_run_options_destroy(struct dalcs_run_options *options);
 /* Their names, "tol" and so on as on the command line; NULL when index is too large. */
 const char *dalcs_run_option_name(size_t index);
 
-/* Text is a number ("1u", "inf"), a word of the field's ("radau", "lines", "full"), or "yes" or "no".
- * DALCS_E_OPTION: there is no such option, or that is no value of it; nothing is changed. */
+/* Text is a number ("1u", "inf"), a word of the field's ("radau", "lines", "full"), or "yes" or "no"; that of
+ * "bode_loop", a name, is borrowed until the run is over. DALCS_E_OPTION: there is no such option, or that is no value of it; nothing is changed. */
 enum dalcs_status dalcs_run_options_set(struct dalcs_run_options *options, const char *name,
                                         const char *text) DALCS_MUST_CHECK;
 
 /* Output times, which are borrowed until the run is over. None at all, n = 0: no rows of .tran. */
 void dalcs_run_options_set_times(struct dalcs_run_options *options, const double *at, size_t n);
 
+/* Frequencies of .ac around a steady state (bode_at), borrowed likewise. */
+void dalcs_run_options_set_frequencies(struct dalcs_run_options *options, const double *at,
+                                       size_t n);
+
 /* Runs .op, .dc, .ac and .tran, whichever the netlist has, for each .step, with options and a sink that
  * are read during the call only. DALCS_E_NETLIST: no netlist was read. DALCS_E_OPTION: a message says
  * which. What a callback returned, where that ended the run. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the
- * messages name the time and the elements; rows already handed to the sink stay true. A second run
+ * messages name the time and the elements; rows already handed to the sink stay true. DALCS_REFUTED: they name the law
+ * that the rows break, and where. A second run
  * replaces the report of the first. With .step the report is that of the last step that was run, but for
  * its work and measurements, which are of all. */
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,

@@ -24,6 +24,7 @@ import subprocess
 import sys
 import textwrap
 
+HELP = "options and examples of a verb"
 ITEM = re.compile(r"^( {2,6})(\S.*?)(?:  +(\S.*))?$")
 OPTION = re.compile(r"^(?:(-\w)(?:, )?)?(--[\w-]+)?(?:(?:[ =]|(?=\[=))(\S.*))?$")
 
@@ -171,13 +172,16 @@ def bash(top, verbs):
                 values.append(f"        {names}) ;;")
         names = " ".join(name for option in page.options() for name in option.names)
         words.append(choice(verb, names))
-    top_words = " ".join([*verbs, *(n for option in top.options() for n in option.names)])
+    top_words = " ".join([*verbs, "help", *(n for option in top.options() for n in option.names)])
     return "\n".join([
         "# bash completion of dalcs, made from its help texts", "_dalcs() {",
         "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]}",
         "    COMPREPLY=()",
         "    if ((COMP_CWORD == 1)); then",
         f"        COMPREPLY=($(compgen -W {quoted(top_words)} -- \"$word\"))",
+        "        return", "    fi",
+        "    if [[ ${COMP_WORDS[1]} == help ]]; then",
+        f"        COMPREPLY=($(compgen -W {quoted(' '.join(verbs))} -- \"$word\"))",
         "        return", "    fi",
         "    case ${COMP_WORDS[1]}:$before in", *values, "        *)",
         "            if [[ $word != -* ]]; then",
@@ -211,8 +215,10 @@ def zsh(top, verbs):
               for name, text in top.items() if name in verbs]
     lines += [f"        {quoted(name + ':' + plain(option.text))}"
               for option in top.options() for name in option.names]
+    lines += [f"        {quoted('help:' + HELP)}"]
     lines += ["    )", "    _describe verb verbs", "    return", "fi",
               "local verb=$words[2]", "shift words", "((CURRENT--))", "case $verb in"]
+    lines += ["    help)", f"        _arguments '1:verb:({' '.join(verbs)})'", "        ;;"]
     for verb, page in verbs.items():
         lines += [f"    {verb})", "        _arguments -s \\"]
         lines += [f"            {spec(option)} \\" for option in page.options()]
@@ -226,6 +232,8 @@ def fish(top, verbs):
         if name in verbs:
             lines.append(f"complete -c dalcs -n __fish_use_subcommand -f -a {name} "
                          f"-d {quoted(text)}")
+    lines += [f"complete -c dalcs -n __fish_use_subcommand -f -a help -d {quoted(HELP)}",
+              f"complete -c dalcs -n '__fish_seen_subcommand_from help' -f -a {quoted(' '.join(verbs))}"]
     for verb, page in verbs.items():
         for option in page.options():
             line = f"complete -c dalcs -n '__fish_seen_subcommand_from {verb}'"
@@ -242,7 +250,7 @@ def fish(top, verbs):
 def main():
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     top = Help(program)
-    verbs = {name: Help(program, name) for name, _ in top.items() if re.fullmatch(r"[a-z]+", name)}
+    verbs = {name: Help(program, name) for name, _ in top.items() if re.fullmatch(r"[a-z][a-z-]*", name)}
     for name, text in [("dalcs.1", man_page(top, verbs)), ("dalcs.bash", bash(top, verbs)),
                        ("_dalcs", zsh(top, verbs)), ("dalcs.fish", fish(top, verbs))]:
         (folder / name).write_text(text, encoding="utf-8")

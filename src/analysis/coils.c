@@ -216,7 +216,7 @@ enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_par
 }
 
 const char *dalcs_coils_hint(void) {
-    return "GLPK did not find how far they may go";
+    return "GLPK did not find their intervals";
 }
 
 #else

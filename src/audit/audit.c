@@ -247,7 +247,7 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
         audit->budget.credit -= part->cost;
     }
     if (!part->has_entered && stretch->from == 0.0) {
-        audit_check_start(audit, part, &audit->now);
+        audit_check_start(audit, part, &audit->now, stretch->stored);
     }
     part->watch->saw_beginning = true;
     part->has_entered = true;
@@ -326,6 +326,10 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
             audit_watch_learn(audit, stretch);
         }
     }
+}
+
+void dalcs_audit_has_no_rest(struct dalcs_audit *audit, int part) {
+    audit->part[part].is_restless = true;
 }
 
 void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {

@@ -123,6 +123,11 @@ enum dalcs_audit_law {
     DALCS_AUDIT_ENERGY,   /* of a part */
     DALCS_AUDIT_PERIOD,   /* likewise: where a leap over periods leads to, against steps */
     DALCS_AUDIT_ROW,      /* of a signal: what was written of it, against the waveform */
+    DALCS_AUDIT_MEASURE,  /* of a .meas: its number, against the waveform */
+    DALCS_AUDIT_FOURIER,  /* of a .four, likewise */
+    DALCS_AUDIT_LOSSES,   /* of a device: what .losses says of it, likewise */
+    DALCS_AUDIT_EVENT,    /* of a device: when it is told to turn on or off */
+    DALCS_AUDIT_JUMP,     /* of a device: what is told of a jump, against both sides of it */
     DALCS_AUDIT_N_LAWS
 };
 
@@ -162,6 +167,9 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
 
 void dalcs_audit_destroy(struct dalcs_audit *audit);
 
+/* Of a part that oscillates for ever, a switch that opens what closes it, there is no operating point: it begins somewhere. */
+void dalcs_audit_has_no_rest(struct dalcs_audit *audit, int part);
+
 /* A stretch is complete, which took so much work, in instructions, about: need nobody look at it more closely? Where
  * somebody must, and at the last one in any case, dalcs_audit_leave() follows. */
 bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
@@ -183,9 +191,9 @@ void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stret
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,
                          double work);
 
-/* A row: value[n_signals] at a time that can be read. */
-void dalcs_audit_row(struct dalcs_audit *audit, double t, enum dalcs_side side,
-                     const double *value);
+/* A row: value[n] of the first signals at a time that can be read. */
+void dalcs_audit_row(struct dalcs_audit *audit, double t, enum dalcs_side side, const double *value,
+                     int n);
 
 /* A finding of another one than the auditor, on its scale. */
 void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,

@@ -100,10 +100,14 @@ struct audit_part {
         bool is_drawn;    /* for a closer look */
     } at;
 
+    double asked_at; /* s, of what audit->asked has of it; < 0: nothing */
+    enum dalcs_side asked_side;
+
     double cost;         /* of one instant, in instructions, about */
     bool has_smooth;     /* a source of a smooth function */
     bool has_formula;    /* one that jumps: in no time it may be anything between */
     bool has_reader;     /* what acts by a current: H, F, a formula */
+    bool is_restless;    /* it had no operating point to begin with */
     bool has_entered;    /* the state at its last event is in `before` */
     bool is_open;        /* `before` is the end of the stretch that was just left */
     bool was_integrated; /* an interval in it was looked at */
@@ -151,6 +155,8 @@ struct dalcs_audit {
     } scale;
 
     struct dalcs_audit_state now, later, shifted; /* work */
+    struct dalcs_audit_state
+        asked; /* of parts, each at the time that it was asked for last (signals.c) */
     struct dalcs_audit_state before; /* where stretches ended: parts share only ground */
     struct audit_sums sums;
 
@@ -256,6 +262,14 @@ double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *p
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time);
 
+/* signals.c: a signal at a state, what it is held to, and what rounding made of it. It can be read. */
+struct audit_signal {
+    double scale, rounding;
+};
+
+double audit_signal_value(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                          int index, struct audit_signal *of);
+
 /* Gauss' rule with five nodes on (0, 1), exact for polynomials up to degree 9 (Abramowitz and Stegun, 25.4.29). */
 enum { AUDIT_GAUSS = 5 };
 
@@ -358,9 +372,10 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after);
 
-/* start.c: does the part begin as the netlist says? */
+/* start.c: does the part begin as the netlist says? `stored`: of the step that begins there; NULL: there is none. */
 void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
-                       const struct dalcs_audit_state *first);
+                       const struct dalcs_audit_state *first,
+                       const struct dalcs_audit_polynomials *stored);
 
 /* crossing.c: what holds from one side of an event to the other. */
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,

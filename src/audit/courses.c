@@ -55,15 +55,87 @@ static void follow_sine(const struct dalcs_stimulus *s, double t, struct audit_c
     c->term[0] += s->u.sine.offset;
 }
 
-double audit_course_begin(struct dalcs_audit *audit, int stimulus, double t) {
-    const struct dalcs_stimulus *s = &audit->circuit->stimulus[stimulus];
-    struct audit_course *c = &audit->course[stimulus];
-    c->from = INFINITY;
+static void follow(const struct dalcs_stimulus *s, double t, struct audit_course *c);
+
+/* term[AUDIT_COURSE_TERMS] += factor times a course, from t on. */
+static void add_from(double t, double factor, const struct audit_course *c, double *term) {
+    if (c->n == 2) { /* a line, which may have begun before */
+        term[0] += factor * (c->term[0] + c->term[1] * (t - c->origin));
+        term[1] += factor * c->term[1];
+        return;
+    }
+    for (int k = 0; k < c->n; k++) {
+        term[k] += factor * c->term[k];
+    }
+}
+
+/* How long a polynomial stays within so much of its value, s, at most so long: its other terms grow at least in
+ * proportion to the time. */
+static double stays_within(const double *term, double most, double length) {
+    double moves = 0.0;
+    for (int k = AUDIT_COURSE_TERMS - 1; k > 0; k--) {
+        moves = (moves + fabs(term[k])) * length;
+    }
+    return moves > most ? length * (most / moves) : length;
+}
+
+/* A line of its function, as long as the argument stays between the knots that it is between. */
+static void follow_formula(const struct dalcs_stimulus *s, double t, struct audit_course *c) {
+    const struct dalcs_stimulus_sum *sum = &s->u.formula.argument;
+    const struct dalcs_piecewise *f = &s->u.formula.function;
+    const double before = c->origin;
+    struct audit_course all = {-INFINITY, INFINITY, t, 1, {sum->constant}};
+    c->origin = t;
+    for (int k = 0; k < sum->n; k++) {
+        struct audit_course of = {.from = INFINITY, .origin = before};
+        follow(sum->part[k].of, t, &of);
+        if (!(of.from <= t && t <= of.to)) {
+            return;
+        }
+        add_from(t, sum->part[k].factor, &of, all.term);
+        all.to = fmin(all.to, of.to);
+        all.n = of.n > all.n ? of.n : all.n;
+    }
+    int line = 0;
+    while (line < f->n && f->knot[line].at <= all.term[0]) {
+        line++;
+    }
+    const double above = line < f->n ? f->knot[line].at - all.term[0] : INFINITY;
+    const double below = line > 0 ? all.term[0] - f->knot[line - 1].at : INFINITY;
+    if (!(above > 0.0 && below > 0.0)) {
+        return;
+    }
+    const double slope = dalcs_piecewise_slope(f, line);
+    all.from = t;
+    if (all.n > 1) {
+        all.to = t + stays_within(all.term, fmin(above, below), all.to - t);
+    }
+    all.term[0] = dalcs_piecewise_on_line(f, line, all.term[0]);
+    for (int k = 1; k < all.n; k++) {
+        all.term[k] *= slope;
+    }
+    all.n = slope != 0.0 ? all.n : 1;
+    *c = all;
+}
+
+/* c->from is INFINITY, c->origin when it was asked before. */
+static void follow(const struct dalcs_stimulus *s, double t, struct audit_course *c) {
     if (s->kind == DALCS_STIMULUS_PULSE) {
         follow_pulse(s, t, c);
     } else if (s->kind == DALCS_STIMULUS_SIN) {
         follow_sine(s, t, c);
+    } else if (s->kind == DALCS_STIMULUS_FORMULA) {
+        follow_formula(s, t, c);
+    } else if (s->kind == DALCS_STIMULUS_DC) {
+        *c = (struct audit_course){-INFINITY, INFINITY, 0.0, 1, {s->dc}};
     }
+}
+
+double audit_course_begin(struct dalcs_audit *audit, int stimulus, double t) {
+    const struct dalcs_stimulus *s = &audit->circuit->stimulus[stimulus];
+    struct audit_course *c = &audit->course[stimulus];
+    c->from = INFINITY;
+    follow(s, t, c);
     return c->from <= t && t <= c->to ? audit_stimulus_at(audit, stimulus, t)
                                       : dalcs_stimulus_value(s, t, DALCS_RIGHT);
 }

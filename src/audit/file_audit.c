@@ -69,7 +69,7 @@ static enum dalcs_status make_room(struct file_audit *a) {
     for (int k = 0; k < 4; k++) {
         complete = complete && make_row(a, &a->row[k]);
     }
-    for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
+    for (int law = 0; law < FILE_LAWS; law++) {
         const int n = law == DALCS_AUDIT_KCL ? a->circuit->n_nodes : a->circuit->n_devices;
         complete = complete && make(a, &a->worst[law], (size_t)n, sizeof **a->worst);
     }

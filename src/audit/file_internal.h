@@ -81,6 +81,9 @@ struct file_set_law {
     bool has_charge;
 };
 
+/* Laws that a file can be asked for: those before what a run makes of its waveform. */
+enum { FILE_LAWS = DALCS_AUDIT_ENERGY + 1 };
+
 struct file_audit {
     const struct dalcs_circuit *circuit;
     const struct dalcs_wave_table *table;
@@ -112,7 +115,7 @@ struct file_audit {
     struct file_number *charge;   /* [n_devices] C, over one interval */
     bool *takes_charge;           /* [n_devices] a capacitor whose current is not known then */
     struct file_set_law *set_law; /* [n_nodes] work of file_storage.c */
-    struct file_worst *worst[DALCS_AUDIT_N_LAWS];
+    struct file_worst *worst[FILE_LAWS];
     struct file_window *of_device, *of_node; /* coils and capacitors; sets of nodes */
     struct dalcs_arena arena;
 };

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const law_name[DALCS_AUDIT_N_LAWS] = {
+static const char *const law_name[FILE_LAWS] = {
     [DALCS_AUDIT_KCL] = "KCL",         [DALCS_AUDIT_BRANCH] = "BRANCH",
     [DALCS_AUDIT_CURRENT] = "CURRENT", [DALCS_AUDIT_POSITION] = "POSITION",
     [DALCS_AUDIT_ENERGY] = "ENERGY",
@@ -45,14 +45,14 @@ static int by_ratio(const void *one, const void *other) {
 static enum dalcs_status list_laws(struct file_audit *a, struct dalcs_arena *arena,
                                    struct dalcs_table_audit *result) {
     size_t n = 0;
-    for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
+    for (int law = 0; law < FILE_LAWS; law++) {
         n += (size_t)n_of(a, law);
     }
     struct dalcs_table_law *list = dalcs_arena_alloc(arena, n, sizeof *list);
     if (list == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
+    for (int law = 0; law < FILE_LAWS; law++) {
         for (int i = 0; i < n_of(a, law); i++) {
             const struct file_worst *w = &a->worst[law][i];
             if (w->n_checked == 0) {

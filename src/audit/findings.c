@@ -4,10 +4,21 @@
 #include <stdio.h>
 
 int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law) {
-    return law == DALCS_AUDIT_KCL      ? audit->circuit->n_nodes
-           : law == DALCS_AUDIT_ROW    ? audit->circuit->n_signals
-           : law >= DALCS_AUDIT_ENERGY ? audit->options.n_parts
-                                       : audit->circuit->n_devices;
+    switch (law) {
+    case DALCS_AUDIT_KCL:
+        return audit->circuit->n_nodes;
+    case DALCS_AUDIT_ENERGY:
+    case DALCS_AUDIT_PERIOD:
+        return audit->options.n_parts;
+    case DALCS_AUDIT_ROW:
+        return audit->circuit->n_signals;
+    case DALCS_AUDIT_MEASURE:
+        return audit->circuit->n_measures;
+    case DALCS_AUDIT_FOURIER:
+        return audit->circuit->n_fouriers;
+    default:
+        return audit->circuit->n_devices;
+    }
 }
 
 static void find_coarse(struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
@@ -94,6 +105,21 @@ void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law 
         break;
     case DALCS_AUDIT_ROW:
         snprintf(text, size, "the rows of %s", c->signal[index].name);
+        break;
+    case DALCS_AUDIT_MEASURE:
+        snprintf(text, size, ".meas %s", c->measure[index].name);
+        break;
+    case DALCS_AUDIT_FOURIER:
+        snprintf(text, size, ".four %s", c->fourier[index].formula.text);
+        break;
+    case DALCS_AUDIT_LOSSES:
+        snprintf(text, size, ".losses of %s", c->device[index].name);
+        break;
+    case DALCS_AUDIT_EVENT:
+        snprintf(text, size, "events of %s", c->device[index].name);
+        break;
+    case DALCS_AUDIT_JUMP:
+        snprintf(text, size, "jumps of %s", c->device[index].name);
         break;
     default:
         snprintf(text, size, "periods leapt over");

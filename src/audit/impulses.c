@@ -34,9 +34,10 @@ static bool mark_jumps(struct dalcs_audit *audit, const struct audit_part *part,
     }
     for (int k = 0; k < part->n_devices; k++) {
         const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
-        const double volts = audit_volts(audit, part, d->node[0], d->node[1]);
+        double scale;
         if (d->kind == DALCS_CAPACITOR &&
-            fabs(audit_voltage(after, d) - audit_voltage(before, d)) > part->tolerance * volts) {
+            fabs(audit_charge_gained(audit, part, after, part->device[k], &scale)) >
+                part->tolerance * scale) {
             for (int e = 0; e < 2; e++) {
                 has_jumped[dalcs_union_find(audit->crossing.cluster,
                                             audit->net.node_of[d->node[e]])] = 1.0;

@@ -348,5 +348,6 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     DALCS_TRY(make_state(audit, &audit->later));
     DALCS_TRY(make_state(audit, &audit->shifted));
     DALCS_TRY(make_state(audit, &audit->before));
+    DALCS_TRY(make_state(audit, &audit->asked));
     return DALCS_OK;
 }

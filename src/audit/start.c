@@ -80,11 +80,24 @@ static bool has_moving_current(const struct dalcs_audit *audit, const struct aud
 }
 
 /* Stages of a step lie behind a transient of L/R that is shorter than it, and their polynomial is off there by R/L less than
- * how the voltage goes on: so far, times the polynomial's Lebesgue constant at its end, 13 for seven stages. */
-static const double beyond_stages = 16.0;
+ * how the voltage goes on: so far, times the polynomial's Lebesgue function at its beginning, from its stages alone. That is
+ * 13 for seven stages. */
+static double reach_of(const struct dalcs_audit_polynomials *p) {
+    double sum = 0.0;
+    for (int j = 0; j < p->n_nodes; j++) {
+        double product = p->node[j] > 0.0 ? 1.0 : 0.0;
+        for (int k = 0; k < p->n_nodes && p->node[j] > 0.0; k++) {
+            product *= k == j || !(p->node[k] > 0.0) ? 1.0 : p->node[k] / (p->node[k] - p->node[j]);
+        }
+        sum += fabs(product);
+    }
+    return sum;
+}
 
 static void check_coils(struct dalcs_audit *audit, const struct audit_part *part,
-                        const struct dalcs_audit_state *first) {
+                        const struct dalcs_audit_state *first,
+                        const struct dalcs_audit_polynomials *stored) {
+    const double reach = reach_of(stored);
     bool is_read = false;
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
@@ -99,8 +112,7 @@ static void check_coils(struct dalcs_audit *audit, const struct audit_part *part
             const double slope =
                 fabs(audit_voltage(&audit->shifted, d) - audit_voltage(first, d)) / part->at.step;
             const double off = fabs(audit_voltage(first, d)) - 2.0 * audit->sums.volts -
-                               audit->options.vntol -
-                               beyond_stages * slope * d->value * part->floor.least;
+                               audit->options.vntol - reach * slope * d->value * part->floor.least;
             audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off * part->at.step,
                        audit_volts(audit, part, d->node[0], d->node[1]) * part->at.step, first->t);
         }
@@ -108,13 +120,15 @@ static void check_coils(struct dalcs_audit *audit, const struct audit_part *part
 }
 
 void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
-                       const struct dalcs_audit_state *first) {
+                       const struct dalcs_audit_state *first,
+                       const struct dalcs_audit_polynomials *stored) {
     if (audit->options.origin == DALCS_AUDIT_FROM_INITIAL) {
         check_initial(audit, part, first);
-    } else if (audit->options.origin == DALCS_AUDIT_FROM_REST && !part->has_reader) {
+    } else if (audit->options.origin == DALCS_AUDIT_FROM_REST && !part->has_reader &&
+               !part->is_restless) {
         check_currents(audit, part, first);
-        if (!has_moving_current(audit, part)) {
-            check_coils(audit, part, first);
+        if (stored != NULL && !has_moving_current(audit, part)) {
+            check_coils(audit, part, first, stored);
         }
     }
 }

@@ -29,10 +29,12 @@ static bool read_pins(struct dalcs_reader *reader, int *node) {
         const bool is_other = has_two && pin >= PIN_QUADRATURE &&
                               node[PIN_QUADRATURE + PIN_OUTPUT - pin] != node[PIN_COMMON];
         const bool is_optional = has_two && (pin == PIN_QUADRATURE || is_other);
-        if (is_wired != (pin == PIN_OUTPUT) && !is_optional) {
-            dalcs_builder_error(builder, &name[1 + pin], is_wired ? "tie it to pin 8" : NULL,
-                                is_wired ? "pin %d of '%s' means nothing for this function"
-                                         : "pin %d of '%s' is not wired",
+        if (is_wired && pin != PIN_OUTPUT && !is_optional) {
+            dalcs_builder_warn(builder, &name[1 + pin], "tie it to pin 8",
+                               "pin %d of '%s' means nothing for this function and is ignored",
+                               pin + 1, name->text);
+        } else if (!is_wired && pin == PIN_OUTPUT && !is_optional) {
+            dalcs_builder_error(builder, &name[1 + pin], NULL, "pin %d of '%s' is not wired",
                                 pin + 1, name->text);
             return false;
         }
@@ -43,6 +45,9 @@ static bool read_pins(struct dalcs_reader *reader, int *node) {
 
 /* And its parameters; false: an error was reported. */
 static bool read_card(struct dalcs_reader *reader, int *node, struct dalcs_parameter *p, int n) {
+    static const char *const without_effect[] = {"tripdt", "tripdv", "ttol", "temp"};
+
+    enum { N_WITHOUT = sizeof without_effect / sizeof without_effect[0] };
     struct dalcs_builder *builder = reader->builder;
     if (!read_pins(reader, node)) {
         return false;
@@ -56,6 +61,12 @@ static bool read_card(struct dalcs_reader *reader, int *node, struct dalcs_param
         int k = 0;
         while (k < n && strcmp(parameter->text, p[k].name) != 0) {
             k++;
+        }
+        if (k == n && dalcs_builder_is_one_of(parameter->text, without_effect, N_WITHOUT)) {
+            if (!dalcs_reader_skip_value(reader)) {
+                return false;
+            }
+            continue;
         }
         if (k == n) {
             dalcs_builder_error(builder, parameter, reader->usage,

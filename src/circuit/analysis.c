@@ -51,8 +51,9 @@ static bool check_times(struct dalcs_builder *builder, const struct dalcs_transi
 static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *transient) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     struct dalcs_builder *builder = reader->builder;
-    /* noop is Xyce's word for it */
-    if (dalcs_reader_take_word(reader, "uic") || dalcs_reader_take_word(reader, "noop")) {
+    /* noop is Xyce's word for it, skipbp PSpice's */
+    if (dalcs_reader_take_word(reader, "uic") || dalcs_reader_take_word(reader, "noop") ||
+        dalcs_reader_take_word(reader, "skipbp")) {
         transient->use_initial_conditions = true;
         if (dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
             transient->starts_steady = dalcs_reader_take_word(reader, "steady");
@@ -71,6 +72,14 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
     if (dalcs_reader_take_word(reader, "nodiscard")) {
         dalcs_builder_note(builder, token, NULL, "'%s' has no meaning here and is ignored",
                            token->text);
+        return true;
+    }
+    if (dalcs_reader_take_word(reader, "trace")) { /* gnucap's: how much it prints */
+        dalcs_builder_note(builder, token, NULL, "'%s' has no meaning here and is ignored",
+                           token->text);
+        const struct dalcs_token *what = dalcs_reader_peek(reader, 0);
+        reader->at +=
+            what != NULL && what->kind == DALCS_TOKEN_WORD && !dalcs_reader_is_number(what);
         return true;
     }
     if (dalcs_reader_take_word(reader, "startup")) {

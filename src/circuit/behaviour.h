@@ -40,8 +40,15 @@ struct dalcs_levels {
 };
 
 /* exp(-decay t) sin(2 pi (frequency t + phase)) from `delay` on, 0 before; or straight lines of the same frequency and
- * phase, without decay and delay: from 0 up to 1 and there down at once, from 0 up to 1 and back. */
-enum dalcs_wave_shape { DALCS_SINE, DALCS_SAWTOOTH, DALCS_TRIANGLE };
+ * phase, without decay and delay: from 0 up to 1 and there down at once, from 0 up to 1 and back. Or a random value
+ * between 0 and 1 for each whole x = frequency t + phase, held until the next or with a straight line to it. */
+enum dalcs_wave_shape {
+    DALCS_SINE,
+    DALCS_SAWTOOTH,
+    DALCS_TRIANGLE,
+    DALCS_HELD_NOISE,
+    DALCS_LINEAR_NOISE
+};
 
 struct dalcs_wave {
     enum dalcs_wave_shape shape;
@@ -123,6 +130,19 @@ const struct dalcs_form *dalcs_form_add(struct dalcs_compiler *c, const struct d
 const struct dalcs_form *dalcs_form_scale(struct dalcs_compiler *c, double factor,
                                           const struct dalcs_form *a);
 
+/* Of values of 0 and 1: 1 - logic; a or b. */
+const struct dalcs_form *dalcs_form_negated(struct dalcs_compiler *c,
+                                            const struct dalcs_form *logic);
+const struct dalcs_form *dalcs_form_either(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                           const struct dalcs_form *b);
+
+/* 1 / a, of what has steps only, none of them to 0; NULL: it is no such value. */
+const struct dalcs_form *dalcs_form_reciprocal(struct dalcs_compiler *c,
+                                               const struct dalcs_form *a);
+
+/* Of its numbers: constants, coefficients, slopes and heights. */
+double dalcs_form_largest(const struct dalcs_form *v);
+
 /* outer(a) */
 const struct dalcs_form *dalcs_form_apply(struct dalcs_compiler *c,
                                           const struct dalcs_piecewise *outer,
@@ -177,6 +197,22 @@ void dalcs_gate_readers_finish(struct dalcs_gate_readers *readers);
 /* ---- carrier.c ------------------------------------------------------------------------------------ */
 
 /* A sawtooth, a triangle or a staircase of time; NULL: something else, or out of memory. */
+/* A multiple of one voltage and a number, where the source of its node has two values; NULL: it has others. */
+const struct dalcs_form *dalcs_commutation_steps(struct dalcs_compiler *c,
+                                                 const struct dalcs_formula *f,
+                                                 const struct dalcs_form *form);
+
+/* delay(x, t) (delay.c). */
+size_t dalcs_delay_pending(const struct dalcs_builder *builder); /* stimuli that they will have */
+bool dalcs_delay_is(const struct dalcs_formula *f);
+const struct dalcs_form *dalcs_delay_form(struct dalcs_compiler *c, const struct dalcs_formula *f);
+
+/* rand(x), random(x) and white(x) of a straight line in time (noise.c). NULL: it is another formula, or an error. */
+const struct dalcs_form *dalcs_noise_form(struct dalcs_compiler *c, const struct dalcs_formula *f);
+
+/* The stimulus of such a wave, up to the end of the run; -1 when out of memory. */
+int dalcs_noise_stimulus(struct dalcs_compiler *c, const struct dalcs_wave *wave);
+
 const struct dalcs_form *dalcs_carrier(struct dalcs_compiler *c, const struct dalcs_formula *f);
 
 /* ---- wave.c: functions of time --------------------------------------------------------------------- */
@@ -267,7 +303,9 @@ const struct dalcs_form *dalcs_memory_form(struct dalcs_compiler *c, const struc
 /* steps (quantity - less); less NULL: nothing. A condition is 1 where it is not 0. */
 struct dalcs_commutation {
     const struct dalcs_formula *steps, *quantity, *less;
-    bool is_condition;
+    bool is_condition; /* of a choice: 0 where it is false, 1 where it is true */
+    bool is_opposite;  /* or the other way round */
+    bool is_over;      /* 1 over the steps */
 };
 
 /* The product, made by parts that are added to the circuit: the array of devices moves. NULL: the first

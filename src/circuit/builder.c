@@ -251,14 +251,13 @@ static int find_alias(struct dalcs_builder *builder, const char *name) {
     return is_ground(known) ? 0 : dalcs_names_find(&builder->nodes, known);
 }
 
+int dalcs_builder_look_up_node(struct dalcs_builder *builder, const char *name) {
+    const int node = is_ground(name) ? 0 : dalcs_names_find(&builder->nodes, name);
+    return node < 0 ? find_alias(builder, name) : node;
+}
+
 int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
-    if (is_ground(token->text)) {
-        return 0;
-    }
-    int node = dalcs_names_find(&builder->nodes, token->text);
-    if (node < 0) {
-        node = find_alias(builder, token->text);
-    }
+    const int node = dalcs_builder_look_up_node(builder, token->text);
     if (node < 0) {
         builder->failed = true;
         if ((builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
@@ -286,11 +285,13 @@ static int find_device_alias(struct dalcs_builder *builder, const char *name) {
     return dalcs_names_find(&builder->devices, dotted + 2);
 }
 
+int dalcs_builder_look_up_device(struct dalcs_builder *builder, const char *name) {
+    const int device = dalcs_names_find(&builder->devices, name);
+    return device < 0 ? find_device_alias(builder, name) : device;
+}
+
 int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {
-    int device = dalcs_names_find(&builder->devices, token->text);
-    if (device < 0) {
-        device = find_device_alias(builder, token->text);
-    }
+    const int device = dalcs_builder_look_up_device(builder, token->text);
     if (device >= 0 && device < builder->n_device_cards) {
         return device;
     }

@@ -42,6 +42,8 @@ struct dalcs_model {
     const struct dalcs_block *block;
     struct dalcs_transistor *transistor;
     const struct dalcs_token *beyond; /* of R, L or C: what would change values; else NULL */
+    bool has_value;                   /* of R, L or C: that of a card without one, */
+    double value;                     /* and PSpice's factor of one that has its own */
 };
 
 enum dalcs_hidden {
@@ -105,6 +107,7 @@ struct dalcs_builder {
     const struct dalcs_logic_card *gate_card; /* the last of all, each points to the one before */
     const struct dalcs_oscillator
         *oscillator;                     /* likewise: code models that wait for their control */
+    const struct dalcs_delay *delay;     /* likewise: delay() in formulas */
     const struct dalcs_storage *storage; /* likewise: coils and capacitors that are no lines */
 
     const struct dalcs_token *pss;  /* so with .pss */
@@ -117,6 +120,7 @@ struct dalcs_builder {
 
     struct dalcs_names initial_pairs; /* "0 4": index of the condition on nodes 0 and 4 */
     bool names_signals;               /* a .save or .print was seen */
+    bool saves_currents;              /* .options savecurrents was */
     struct dalcs_names signals;       /* name -> index of signal */
     struct dalcs_signal *signal;      /* heap */
     size_t n_signals;
@@ -207,6 +211,10 @@ struct dalcs_location dalcs_builder_keep_location(struct dalcs_builder *builder,
 
 /* The index of a node, made when new; -1 when out of memory. */
 int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *token);
+
+/* The same of a name that may be of none, without an error: -1. */
+int dalcs_builder_look_up_node(struct dalcs_builder *builder, const char *name);
+int dalcs_builder_look_up_device(struct dalcs_builder *builder, const char *name);
 
 /* The index of a node that an element names; else an error, and -1. */
 int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token);
@@ -421,6 +429,10 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
 /* LTspice's VARISTOR and MODULATE; false: another function. */
 /* LTspice's OTA. */
 void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* delay() in the formulas of a card: how many, and their sources when all formulas are compiled. */
+size_t dalcs_delay_count(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_delay_resolve(struct dalcs_builder *builder);
+
 bool dalcs_analog_function_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* After the word POLY, on a device that has its own nodes. */
 void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device);
@@ -513,9 +525,9 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
                      enum dalcs_model_kind kind);
 /* The same of a switch whose control is a formula, of a voltage or of a current. */
 int dalcs_model_find_switch(struct dalcs_builder *builder, const struct dalcs_token *name);
-/* Takes the name of a model of R, L or C (letter), if one follows: nothing depends on it. False after
- * an error. */
-bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter);
+/* Takes the name of a model of R, L or C (letter), if one follows: *taken is it, else it stays. False after an error. */
+bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter,
+                              const struct dalcs_model **taken);
 void dalcs_analysis_parse_env(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card);
@@ -565,6 +577,9 @@ void dalcs_initial_check(struct dalcs_builder *builder);
 /* .save, .print, .plot and .probe */
 void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_signals_add_default(struct dalcs_builder *builder);
+
+/* The current of each element. */
+void dalcs_signals_add_currents(struct dalcs_builder *builder);
 /* The place of a signal that a formula names among builder->measured; -1 when out of memory. */
 int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal signal);
 

@@ -54,6 +54,8 @@ static const struct dot_card DOT_CARDS[] = {
     {".print", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
     {".plot", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
     {".probe", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
+    {".probe64", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
+    {".probe/csdf", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
     {".meas", DALCS_CARD_MEASURE, NULL, NULL, NOTHING, NULL},
     {".measure", DALCS_CARD_MEASURE, NULL, NULL, NOTHING, NULL},
     {".four", DALCS_CARD_FOURIER, NULL, NULL, NOTHING, NULL},
@@ -77,11 +79,15 @@ static const struct dot_card DOT_CARDS[] = {
 };
 
 /* Without a meaning for ideal elements; accepted. */
-static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot", ".preprocess"};
+static const char *const IGNORED[] = {".temp",       ".width",  ".prot", ".unprot",
+                                      ".preprocess", ".stmlib", ".list", ".status"};
+
+/* What is computed from an .ac besides its signals. */
+static const char NETWORK_PARAMETERS[] = ".net";
 
 /* Analyses that this simulator will not have. */
-static const char *const NEVER[] = {".noise", ".pz",  ".disto",   ".tf",   ".sp",
-                                    ".hb",    ".net", ".machine", ".stab", ".ferret"};
+static const char *const NEVER[] = {".noise", ".pz",      ".disto", ".tf",    ".sp",
+                                    ".hb",    ".machine", ".stab",  ".ferret"};
 
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {
@@ -156,6 +162,9 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
     if (dalcs_builder_is_one_of(name->text, IGNORED, sizeof IGNORED / sizeof IGNORED[0])) {
         dalcs_builder_note(builder, name, NULL, "%s has no meaning here and is ignored",
                            name->text);
+    } else if (strcmp(name->text, NETWORK_PARAMETERS) == 0) {
+        dalcs_builder_warn(builder, name, "v(out)/i(v1) of an .ac is an impedance",
+                           "network parameters (.net) are not computed: the card is left out");
     } else if (dalcs_builder_is_one_of(name->text, NEVER, sizeof NEVER / sizeof NEVER[0])) {
         dalcs_builder_error(builder, name, "use .tran, .op, .dc or .ac",
                             "%s is not an analysis of ideal-diode circuits", name->text);
@@ -238,6 +247,11 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_stimuli += n_limits;
         }
         table->n_inner += count_parasitics(card) + count_storage(card);
+        const size_t n_delays = dalcs_delay_count(builder, card);
+        table->n_inner += n_delays * DALCS_GATE_DEVICES;
+        table->n_stimuli += 2 * n_delays;
+        table->n_gates += n_delays;
+        table->n_gate_inputs += n_delays;
         table->n_stimuli += dalcs_core_count(card);
         table->n_inner += is_load(card) ? 2 : 0;
         if (dalcs_card_is_logic(card)) {

@@ -290,11 +290,16 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_controlled_resolve(builder);
     dalcs_transistor_resolve(builder);
     dalcs_behavioural_resolve(builder);
+    dalcs_delay_resolve(builder);
     dalcs_logic_resolve(builder);
     dalcs_model_check(builder);
     check_presence(builder);
     if (builder->n_signals == 0) {
         dalcs_signals_add_default(builder);
+    }
+    if (builder->saves_currents) {
+        builder->names_signals = true; /* some of them are there already */
+        dalcs_signals_add_currents(builder);
     }
     dalcs_losses_collect(builder);
     if (builder->out_of_memory) {

@@ -97,9 +97,9 @@ static const struct dalcs_form *source_steps(struct dalcs_compiler *c,
 }
 
 /* The same of a multiple of one voltage and a number. */
-static const struct dalcs_form *scaled_steps(struct dalcs_compiler *c,
-                                             const struct dalcs_formula *f,
-                                             const struct dalcs_form *form) {
+const struct dalcs_form *dalcs_commutation_steps(struct dalcs_compiler *c,
+                                                 const struct dalcs_formula *f,
+                                                 const struct dalcs_form *form) {
     const struct dalcs_affine *a = form != NULL ? &form->affine : NULL;
     if (a == NULL || form->n > 0 || a->n != 1 || a->term[0].kind != DALCS_QUANTITY_VOLTAGE) {
         return NULL;
@@ -112,12 +112,17 @@ static const struct dalcs_form *scaled_steps(struct dalcs_compiler *c,
 
 static const struct dalcs_levels *steps_of(struct dalcs_compiler *c,
                                            const struct dalcs_commutation *what) {
-    const struct dalcs_form *form = dalcs_compile(c, what->steps);
+    const struct dalcs_form *steps = dalcs_compile(c, what->steps);
+    const struct dalcs_form *form =
+        steps != NULL && what->is_over ? dalcs_form_reciprocal(c, steps) : steps;
     if (what->is_condition) {
-        return dalcs_levels_of(c, dalcs_form_to_logic(c, form));
+        const struct dalcs_form *logic = dalcs_form_to_logic(c, form);
+        return dalcs_levels_of(c, logic != NULL && what->is_opposite ? dalcs_form_negated(c, logic)
+                                                                     : logic);
     }
     const struct dalcs_levels *levels = dalcs_levels_of(c, form);
-    return levels != NULL ? levels : dalcs_levels_of(c, scaled_steps(c, what->steps, form));
+    return levels != NULL ? levels
+                          : dalcs_levels_of(c, dalcs_commutation_steps(c, what->steps, form));
 }
 
 static const struct dalcs_form *quantity_of(struct dalcs_compiler *c,

@@ -80,6 +80,17 @@ static const struct dalcs_form *multiply(struct dalcs_compiler *c, const struct 
 
 static const struct dalcs_form *divide(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                        const struct dalcs_form *a, const struct dalcs_form *b) {
+    const struct dalcs_form *over = dalcs_form_is_number(b) ? NULL : dalcs_form_reciprocal(c, b);
+    if (over != NULL) {
+        const struct dalcs_commutation what = {
+            .steps = f->argument[1], .quantity = f->argument[0], .is_over = true};
+        const struct dalcs_form *product;
+        const enum dalcs_product kind = dalcs_form_multiply(c, a, over, &product);
+        product = kind == DALCS_PRODUCT_IS ? product : dalcs_commutate(c, &what);
+        if (product != NULL || c->failed) {
+            return product;
+        }
+    }
     if (!dalcs_form_is_number(b)) {
         return dalcs_smooth_form(c, f, DALCS_SMOOTH_QUOTIENT, 2,
                                  (const struct dalcs_form *[]){a, b});
@@ -107,25 +118,31 @@ static const struct dalcs_form *to_logic(struct dalcs_compiler *c, const struct 
     return logic;
 }
 
-static const struct dalcs_form *negated(struct dalcs_compiler *c, const struct dalcs_form *logic) {
-    if (logic == NULL) {
-        return NULL;
+static const struct dalcs_form *logic_of(struct dalcs_compiler *c, const struct dalcs_formula *f) {
+    return to_logic(c, f, dalcs_compile(c, f));
+}
+
+/* 1 where f is false. Of comparisons it is the opposite ones, by De Morgan: so its 0 is exact, whatever it multiplies. */
+static const struct dalcs_form *opposite(struct dalcs_compiler *c, const struct dalcs_formula *f) {
+    const enum dalcs_operation_code code = f->kind == DALCS_FORMULA_OPERATION ? f->code : DALCS_ADD;
+    const struct dalcs_form *a;
+    const struct dalcs_form *b;
+    switch (code) {
+    case DALCS_NOT:
+        return logic_of(c, f->argument[0]);
+    case DALCS_TO_LOGIC:
+        return opposite(c, f->argument[0]);
+    case DALCS_JUMP_AND:
+    case DALCS_JUMP_OR:
+        a = opposite(c, f->argument[0]);
+        b = a != NULL ? opposite(c, f->argument[1]) : NULL;
+        return b == NULL                ? NULL
+               : code == DALCS_JUMP_AND ? dalcs_form_either(c, a, b)
+                                        : multiply(c, f, a, b);
+    default:
+        a = logic_of(c, f);
+        return a != NULL ? dalcs_form_negated(c, a) : NULL;
     }
-    const struct dalcs_form *one = dalcs_form_number(c, 1);
-    const struct dalcs_form *result = dalcs_form_add(c, one, -1, logic);
-    if (result == NULL) {
-        return NULL;
-    }
-    struct dalcs_form marked = *result;
-    marked.height = 1;
-    struct dalcs_form *kept = dalcs_arena_alloc(c->arena, 1, sizeof *kept);
-    if (kept == NULL) {
-        c->builder->out_of_memory = true;
-        c->failed = true;
-        return NULL;
-    }
-    *kept = marked;
-    return kept;
 }
 
 static const struct dalcs_form *operation(struct dalcs_compiler *c, const struct dalcs_formula *f,
@@ -161,7 +178,7 @@ static const struct dalcs_form *operation(struct dalcs_compiler *c, const struct
         return refuse(c, f, "write a comparison with < or >",
                       "two quantities that vary are equal at single points only");
     case DALCS_NOT:
-        return negated(c, to_logic(c, f->argument[0], a));
+        return opposite(c, f->argument[0]);
     case DALCS_TO_LOGIC:
         return to_logic(c, f->argument[0], a);
     case DALCS_JUMP_AND:
@@ -171,42 +188,41 @@ static const struct dalcs_form *operation(struct dalcs_compiler *c, const struct
         if (y == NULL) {
             return NULL;
         }
-        if (f->code == DALCS_JUMP_AND) {
-            return multiply(c, f, x, y);
-        }
-        /* a or b: not (not a and not b) */
-        x = negated(c, x);
-        y = negated(c, y);
-        return x != NULL && y != NULL ? negated(c, multiply(c, f, x, y)) : NULL;
+        return f->code == DALCS_JUMP_AND ? multiply(c, f, x, y) : dalcs_form_either(c, x, y);
     default:
         return refuse(c, f, NULL, "a remainder of a quantity that varies is not piecewise linear");
     }
 }
 
-/* condition ? a : b = b + condition (a - b) */
+/* condition ? a : b = b + condition (a - b) = a + not condition (b - a). What the difference is added to is exact where the
+ * other is not chosen: it is the smaller, since next to a large one it would be rounding. */
 static const struct dalcs_form *choice(struct dalcs_compiler *c, const struct dalcs_formula *f,
-                                       const struct dalcs_form *condition,
                                        const struct dalcs_form *a, const struct dalcs_form *b) {
-    const struct dalcs_form *logic = to_logic(c, f->argument[0], condition);
-    const struct dalcs_form *difference = logic != NULL ? dalcs_form_add(c, a, -1, b) : NULL;
+    const bool is_opposite = dalcs_form_largest(a) < dalcs_form_largest(b);
+    const struct dalcs_form *base = is_opposite ? a : b;
+    const struct dalcs_form *logic =
+        is_opposite ? opposite(c, f->argument[0]) : logic_of(c, f->argument[0]);
+    const struct dalcs_form *difference =
+        logic != NULL ? dalcs_form_add(c, is_opposite ? b : a, -1, base) : NULL;
     const struct dalcs_form *product;
     if (difference == NULL) {
         return NULL;
     }
     if (dalcs_form_multiply(c, logic, difference, &product) != DALCS_PRODUCT_IS) {
         const struct dalcs_commutation what = {.steps = f->argument[0],
-                                               .quantity = f->argument[1],
-                                               .less = f->argument[2],
-                                               .is_condition = true};
+                                               .quantity = f->argument[is_opposite ? 2 : 1],
+                                               .less = f->argument[is_opposite ? 1 : 2],
+                                               .is_condition = true,
+                                               .is_opposite = is_opposite};
         product = dalcs_commutate(c, &what);
         if (product != NULL || c->failed) {
-            return product != NULL ? dalcs_form_add(c, b, 1, product) : NULL;
+            return product != NULL ? dalcs_form_add(c, base, 1, product) : NULL;
         }
         return refuse(c, f, "an ideal switch S chooses between two voltages",
                       "the two values differ by what is not constant where the condition changes: "
                       "no complementarity pairs make such a jump");
     }
-    return dalcs_form_add(c, b, 1, product);
+    return dalcs_form_add(c, base, 1, product);
 }
 
 /* ---- Functions ------------------------------------------------------------------------------------- */
@@ -364,6 +380,12 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
 
 static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
                                             const struct dalcs_formula *f) {
+    if (f->kind == DALCS_FORMULA_CALL && f->n == 1 && dalcs_function_is_noise(f->function)) {
+        return dalcs_noise_form(c, f);
+    }
+    if (dalcs_delay_is(f) && f->n >= 2) {
+        return dalcs_delay_form(c, f);
+    }
     const struct dalcs_form *carrier = dalcs_carrier(c, f);
     if (carrier != NULL) {
         return carrier;
@@ -377,7 +399,10 @@ static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
         c->builder->out_of_memory = true;
         c->failed = true;
     }
-    for (int k = 0; k < f->n && !c->failed; k++) {
+    const int first = f->kind == DALCS_FORMULA_CHOICE
+                          ? 1
+                          : 0; /* its condition, or the opposite one, comes later */
+    for (int k = first; k < f->n && !c->failed; k++) {
         argument[k] = dalcs_compile(c, f->argument[k]);
     }
     if (c->failed) {
@@ -397,7 +422,7 @@ static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
     case DALCS_FORMULA_OPERATION:
         return operation(c, f, argument[0], argument[1]);
     case DALCS_FORMULA_CHOICE:
-        return choice(c, f, argument[0], argument[1], argument[2]);
+        return choice(c, f, argument[1], argument[2]);
     case DALCS_FORMULA_CALL:
         return call(c, f, argument);
     }

@@ -73,6 +73,28 @@ static bool add_part(struct dalcs_compiler *c, struct dalcs_affine *affine,
     return true;
 }
 
+/* Is it a staircase of one quantity, and a number? */
+static bool is_staircase(const struct dalcs_form *v) {
+    return v->n == 1 && dalcs_affine_is_constant(&v->affine) &&
+           dalcs_piecewise_is_stepped(&v->part[0].f);
+}
+
+/* The number becomes part of the staircase: so its least step is exact, however high the others are. */
+static bool gather(struct dalcs_compiler *c, struct dalcs_form *v, struct dalcs_form_part *part) {
+    struct dalcs_piecewise number;
+    struct dalcs_piecewise sum;
+    if (!is_staircase(v) || v->affine.constant == 0) {
+        return true;
+    }
+    if (!check(c, dalcs_piecewise_line(c->arena, v->affine.constant, 0, &number)) ||
+        !check(c, dalcs_piecewise_add(c->arena, &part->f, &number, &sum))) {
+        return false;
+    }
+    part->f = sum;
+    v->affine.constant = 0;
+    return true;
+}
+
 /* a + factor b, without its levels. */
 static bool add(struct dalcs_compiler *c, const struct dalcs_form *a, double factor,
                 const struct dalcs_form *b, struct dalcs_form *whole) {
@@ -93,7 +115,7 @@ static bool add(struct dalcs_compiler *c, const struct dalcs_form *a, double fac
     }
     sum.part = part;
     *whole = sum;
-    return true;
+    return gather(c, whole, part);
 }
 
 const struct dalcs_form *dalcs_form_add(struct dalcs_compiler *c, const struct dalcs_form *a,
@@ -102,7 +124,8 @@ const struct dalcs_form *dalcs_form_add(struct dalcs_compiler *c, const struct d
     if (!add(c, a, factor, b, &sum)) {
         return NULL;
     }
-    sum.levels = dalcs_form_is_number(&sum) ? NULL : dalcs_levels_add(c, a, factor, b);
+    const bool shows = dalcs_form_is_number(&sum) || is_staircase(&sum);
+    sum.levels = shows ? NULL : dalcs_levels_add(c, a, factor, b);
     return keep(c, sum);
 }
 
@@ -116,6 +139,38 @@ const struct dalcs_form *dalcs_form_scale(struct dalcs_compiler *c, double facto
     scaled.height = factor * a->height;
     scaled.levels = a->levels != NULL ? dalcs_levels_add(c, zero, factor, a) : NULL;
     return keep(c, scaled);
+}
+
+/* It is 0 or 1, or between the two at a jump. */
+static const struct dalcs_form *mark_logic(struct dalcs_compiler *c, const struct dalcs_form *v) {
+    struct dalcs_form logic = v != NULL ? *v : (struct dalcs_form){0};
+    logic.height = 1;
+    return v != NULL ? keep(c, logic) : NULL;
+}
+
+/* 1 - logic, itself 0 or 1. */
+const struct dalcs_form *dalcs_form_negated(struct dalcs_compiler *c,
+                                            const struct dalcs_form *logic) {
+    return mark_logic(c, dalcs_form_add(c, dalcs_form_number(c, 1), -1, logic));
+}
+
+static double larger(double a, double b) {
+    return fmax(a, fabs(b));
+}
+
+double dalcs_form_largest(const struct dalcs_form *v) {
+    double largest = fabs(v->affine.constant);
+    for (int k = 0; k < v->affine.n; k++) {
+        largest = larger(largest, v->affine.term[k].coefficient);
+    }
+    for (int k = 0; k < v->n; k++) {
+        const struct dalcs_piecewise *f = &v->part[k].f;
+        largest = larger(larger(largest, f->before), f->after);
+        for (int i = 0; i < f->n; i++) {
+            largest = larger(larger(largest, f->knot[i].left), f->knot[i].right);
+        }
+    }
+    return largest;
 }
 
 /* ---- Functions of one quantity ------------------------------------------------------------------- */
@@ -146,6 +201,42 @@ static const struct dalcs_form *from_one(struct dalcs_compiler *c,
         return NULL;
     }
     return keep(c, value);
+}
+
+/* 1 over each value of a staircase; NULL: one of them is 0. */
+static const struct dalcs_form *over_staircase(struct dalcs_compiler *c,
+                                               const struct dalcs_form_part *steps) {
+    struct dalcs_form_part over = {.direction = steps->direction};
+    bool has_zero = false;
+    if (!check(c, dalcs_piecewise_scale(c->arena, &steps->f, 1, &over.f))) {
+        return NULL;
+    }
+    for (int k = 0; k < over.f.n; k++) {
+        struct dalcs_knot *knot = &over.f.knot[k];
+        has_zero = has_zero || knot->left == 0 || knot->right == 0;
+        const double between =
+            knot->left != knot->right ? (knot->value - knot->left) / (knot->right - knot->left) : 0;
+        knot->left = 1 / knot->left;
+        knot->right = 1 / knot->right;
+        knot->value = knot->left + between * (knot->right - knot->left);
+    }
+    over.f.zero = 1 / over.f.zero;
+    return has_zero ? NULL : from_one(c, &over);
+}
+
+const struct dalcs_form *dalcs_form_reciprocal(struct dalcs_compiler *c,
+                                               const struct dalcs_form *a) {
+    if (is_staircase(a) && a->affine.constant == 0) {
+        return over_staircase(c, &a->part[0]);
+    }
+    const struct dalcs_levels *levels = dalcs_levels_of(c, a);
+    if (levels == NULL || levels->n != 1 || levels->base == 0 ||
+        levels->base + levels->level[0].height == 0) {
+        return NULL;
+    }
+    const double base = 1 / levels->base;
+    const double other = 1 / (levels->base + levels->level[0].height);
+    return dalcs_form_add(c, dalcs_form_number(c, base), other - base, levels->level[0].logic);
 }
 
 const struct dalcs_form *dalcs_form_apply(struct dalcs_compiler *c,
@@ -222,13 +313,7 @@ const struct dalcs_form *dalcs_form_to_logic(struct dalcs_compiler *c, const str
         return NULL;
     }
     stepped.direction = whole.direction;
-    const struct dalcs_form *value = from_one(c, &stepped);
-    if (value == NULL) {
-        return NULL;
-    }
-    struct dalcs_form logic = *value;
-    logic.height = 1;
-    return keep(c, logic);
+    return mark_logic(c, from_one(c, &stepped));
 }
 
 /* ---- Products -------------------------------------------------------------------------------------- */
@@ -312,6 +397,11 @@ static bool multiply_waves(struct dalcs_compiler *c, const struct dalcs_form *a,
 }
 
 /* Products of 0 or 1 are the smaller of the two, whatever quantities they depend on. */
+const struct dalcs_form *dalcs_form_either(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                           const struct dalcs_form *b) {
+    return mark_logic(c, dalcs_form_max(c, a, b));
+}
+
 static bool multiply_logic(struct dalcs_compiler *c, const struct dalcs_form *a,
                            const struct dalcs_form *b, const struct dalcs_form **product) {
     if (a->height == 0 || b->height == 0) {
@@ -319,11 +409,7 @@ static bool multiply_logic(struct dalcs_compiler *c, const struct dalcs_form *a,
     }
     const struct dalcs_form *smaller = dalcs_form_min(c, dalcs_form_scale(c, 1 / a->height, a),
                                                       dalcs_form_scale(c, 1 / b->height, b));
-    if (smaller != NULL) {
-        struct dalcs_form logic = *smaller;
-        logic.height = 1;
-        *product = dalcs_form_scale(c, a->height * b->height, keep(c, logic));
-    }
+    *product = dalcs_form_scale(c, a->height * b->height, mark_logic(c, smaller));
     return true;
 }
 

@@ -6,6 +6,8 @@
  * sums is one again, because the product of two steps is the smaller of them. */
 #include "behaviour.h"
 
+#include <math.h>
+
 enum { MOST_LEVELS = 32 };
 
 /* Room for all levels; NULL when out of memory. */
@@ -29,21 +31,34 @@ static bool add(struct dalcs_levels *levels, double height, const struct dalcs_f
     return true;
 }
 
-/* The steps of a function that is constant between its jumps. */
+static double value_of(const struct dalcs_piecewise *f, int piece) {
+    return piece < f->n ? f->knot[piece].left : f->knot[f->n - 1].right;
+}
+
+/* The steps of a function that is constant between its jumps, outwards from its least value: that is exact, however high
+ * the others are. */
 static bool add_steps(struct dalcs_compiler *c, struct dalcs_levels *levels,
                       const struct dalcs_form_part *part) {
     const struct dalcs_form *direction = dalcs_form_affine(c, &part->direction);
-    if (!dalcs_piecewise_is_stepped(&part->f)) {
+    const struct dalcs_piecewise *f = &part->f;
+    int base = 0;
+    if (!dalcs_piecewise_is_stepped(f)) {
         return false;
     }
-    levels->base += part->f.knot[0].left;
-    for (int k = 0; k < part->f.n; k++) {
-        const struct dalcs_knot *from = &part->f.knot[k];
-        const double height = from->right - from->left;
-        struct dalcs_knot knot = {from->at, 0, (from->value - from->left) / height, 1};
+    for (int k = 1; k <= f->n; k++) {
+        base = fabs(value_of(f, k)) < fabs(value_of(f, base)) ? k : base;
+    }
+    levels->base += value_of(f, base);
+    for (int k = 0; k < f->n; k++) {
+        const struct dalcs_knot *from = &f->knot[k];
+        const bool goes_left = k < base;
+        const double rise = from->right - from->left;
+        const double part_up = rise != 0 ? (from->value - from->left) / rise : 0;
+        struct dalcs_knot knot = goes_left ? (struct dalcs_knot){from->at, 1, 1 - part_up, 0}
+                                           : (struct dalcs_knot){from->at, 0, part_up, 1};
         const struct dalcs_piecewise step = {.n = 1, .knot = &knot};
-        if (height != 0 &&
-            !add(levels, height, dalcs_form_to_logic(c, dalcs_form_apply(c, &step, direction)))) {
+        if (rise != 0 && !add(levels, goes_left ? -rise : rise,
+                              dalcs_form_to_logic(c, dalcs_form_apply(c, &step, direction)))) {
             return false;
         }
     }

@@ -234,7 +234,7 @@ static void take_parameters(struct card *c) {
 
 /* ---- Pins ------------------------------------------------------------------------------------------------ */
 
-/* Pins that mean nothing for this function, and inputs that it must have. */
+/* Pins that mean nothing for this function, which LTspice ignores, too, and inputs that it must have. */
 static bool check_pins(struct dalcs_builder *builder, const struct card *c) {
     const struct dalcs_token *name = c->card->token;
     const unsigned may = c->function->pins | (c->is_schmitt ? 2U : 0U);
@@ -244,10 +244,10 @@ static bool check_pins(struct dalcs_builder *builder, const struct card *c) {
         const bool means =
             pin < DALCS_GATE_PINS ? (may >> pin & 1U) != 0 : c->function->kind != DALCS_GATE_SAMPLE;
         if (is_wired(c, pin) && !means) {
-            dalcs_builder_error(builder, &name[1 + pin], "tie it to com",
-                                "pin %d of '%s' means nothing for this function", pin + 1,
-                                name->text);
-            return false;
+            dalcs_builder_warn(builder, &name[1 + pin], "tie it to com",
+                               "pin %d of '%s' means nothing for this function and is ignored",
+                               pin + 1, name->text);
+            n -= pin < DALCS_GATE_PINS;
         }
     }
     if (n == 0 || (n > 2 && c->function->kind == DALCS_GATE_XOR)) {
@@ -258,11 +258,18 @@ static bool check_pins(struct dalcs_builder *builder, const struct card *c) {
                             name->text);
         return false;
     }
-    if (!is_wired(c, PIN_OUTPUT) && !is_wired(c, PIN_INVERTED)) {
-        dalcs_builder_error(builder, name, USAGE, "no output of '%s' is wired", name->text);
-        return false;
-    }
     return true;
+}
+
+static bool has_output(struct dalcs_builder *builder, const struct card *c) {
+    const bool has_complement = c->function->kind != DALCS_GATE_SAMPLE;
+    const bool has = is_wired(c, PIN_OUTPUT) || (has_complement && is_wired(c, PIN_INVERTED));
+    if (!has) {
+        dalcs_builder_warn(builder, c->card->token, USAGE,
+                           "no output of '%s' is wired: the element is left out",
+                           c->card->token->text);
+    }
+    return has;
 }
 
 static void take_pins(struct card *c) {
@@ -280,7 +287,7 @@ static void take_pins(struct card *c) {
     }
     for (int k = 0; k < 2; k++) {
         const int pin = k == 0 ? PIN_OUTPUT : PIN_INVERTED;
-        of->node[k] = is_wired(c, pin) ? c->node[pin] : -1;
+        of->node[k] = is_wired(c, pin) && !(is_sample && k == 1) ? c->node[pin] : -1;
     }
     of->common = common;
     of->sampled = (struct dalcs_logic_sampled){c->node[0], c->node[1]};
@@ -314,6 +321,9 @@ void dalcs_logic_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     if (!find_kind(builder, &c) || !read_parameters(&reader, &c) ||
         !check_parameters(builder, c.p) || !check_pins(builder, &c)) {
         builder->hidden |= DALCS_HIDDEN_ELEMENTS;
+        return;
+    }
+    if (!has_output(builder, &c)) {
         return;
     }
     take_parameters(&c);

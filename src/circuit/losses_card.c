@@ -75,7 +75,7 @@ static void check_window(struct dalcs_builder *builder, const struct dalcs_token
     if (builder->tran == NULL && either != NULL) {
         dalcs_builder_error(builder, either, "leave from= and to= out",
                             "there is no .tran for this window: the losses of a steady state are "
-                            "of all of its orbit");
+                            "those of its whole orbit");
     } else if (to != NULL && card->to > stop) {
         dalcs_builder_error(builder, to, USAGE, "the window ends at %g s, the run at %g s",
                             card->to, stop);
@@ -169,7 +169,7 @@ static bool take_request(struct dalcs_builder *builder) {
         const struct dalcs_location where = {.file = builder->netlist->name};
         dalcs_builder_error_at(builder, &where, "write --losses",
                                "--losses: there is no .tran for a window: the losses of a steady "
-                               "state are of all of its orbit");
+                               "state are those of its whole orbit");
     } else if (request->has_window) {
         const struct dalcs_location where = {.file = builder->netlist->name};
         const double stop = builder->circuit->transient.stop;

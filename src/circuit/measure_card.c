@@ -52,12 +52,19 @@ static bool is_one_of(const struct dalcs_token *token, const char *const *list, 
     return token->kind == DALCS_TOKEN_WORD && dalcs_builder_is_one_of(token->text, list, n);
 }
 
-/* "from 1m to 2m", as LTspice also has it. */
+/* "from 1m to 2m", "at t0" and "fall 1", as LTspice also has it. */
 static bool is_bound(const struct dalcs_card *card, int k) {
     static const char *const bounds[] = {"from", "to", "at"};
-    return k + 1 < card->n && is_one_of(&card->token[k], bounds, 3) &&
-           card->token[k + 1].kind != DALCS_TOKEN_EQUAL &&
-           dalcs_reader_is_number(&card->token[k + 1]);
+    static const char *const counts[] = {"rise", "fall", "cross"};
+    const struct dalcs_token *next = k + 1 < card->n ? &card->token[k + 1] : NULL;
+    if (next == NULL || next->kind == DALCS_TOKEN_EQUAL) {
+        return false;
+    }
+    const bool is_last = is_one_of(&card->token[k], bounds, 3) && k + 2 == card->n &&
+                         (next->kind == DALCS_TOKEN_WORD || next->kind == DALCS_TOKEN_EXPRESSION);
+    return is_last || (is_one_of(&card->token[k], bounds, 3) && dalcs_reader_is_number(next)) ||
+           (is_one_of(&card->token[k], counts, 3) &&
+            (dalcs_reader_is_number(next) || is_word(next, "last")));
 }
 
 /* Does a keyword stand at token k, which ends a formula before it? */
@@ -452,6 +459,8 @@ static enum dalcs_measured_analysis read_analysis(struct reading *r) {
     return r->builder->tran != NULL  ? DALCS_MEASURED_TRAN
            : r->builder->op != NULL  ? DALCS_MEASURED_OP
            : r->builder->pss != NULL ? DALCS_MEASURED_PSS
+           : r->builder->ac != NULL  ? DALCS_MEASURED_AC
+           : r->builder->dc != NULL  ? DALCS_MEASURED_DC
                                      : DALCS_MEASURED_TRAN;
 }
 

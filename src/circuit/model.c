@@ -114,7 +114,24 @@ bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_param
     return ok;
 }
 
-/* Of an R, L or C the card has the value; a model's temperature and noise change nothing here. */
+/* A number as it stands in a card. */
+static bool number_of(const struct dalcs_token *token, double *value) {
+    struct dalcs_number number = {.value = token->value};
+    const bool ok = token->kind == DALCS_TOKEN_NUMBER ||
+                    dalcs_number_parse(token->text, &number) == DALCS_NUMBER_OK;
+    *value = number.value;
+    return ok;
+}
+
+/* r=, c= and l=, cap= and ind= of the model's own type. */
+static bool is_value_of(const struct dalcs_model *model, const char *name) {
+    const char type = model->type->text[0];
+    return type == 'r'   ? strcmp(name, "r") == 0
+           : type == 'c' ? strcmp(name, "c") == 0 || strcmp(name, "cap") == 0
+                         : strcmp(name, "l") == 0 || strcmp(name, "ind") == 0;
+}
+
+/* Of an R, L or C the card has the value, or else its model; a model's temperature and noise change nothing here. */
 static void read_passive(struct dalcs_reader *reader, struct dalcs_model *model) {
     static const char *const nothing[] = {
         "tc",    "tc1",          "tc2",         "tce",        "tnom", "temp",   "dtemp",
@@ -123,16 +140,12 @@ static void read_passive(struct dalcs_reader *reader, struct dalcs_model *model)
     (void)dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
     const struct dalcs_token *name;
     while ((name = take_parameter(reader)) != NULL && dalcs_reader_skip_value(reader)) {
-        /* PSpice's factor of the value, R, C or L */
-        const struct dalcs_token *value = dalcs_reader_previous(reader);
-        struct dalcs_number number;
-        const bool is_one = strlen(name->text) == 1 && strchr("rcl", name->text[0]) != NULL &&
-                            (value->kind == DALCS_TOKEN_NUMBER
-                                 ? value->value == 1
-                                 : dalcs_number_parse(value->text, &number) == DALCS_NUMBER_OK &&
-                                       number.value == 1);
-        if (!is_one &&
-            !dalcs_builder_is_one_of(name->text, nothing, sizeof nothing / sizeof nothing[0])) {
+        double value;
+        if (is_value_of(model, name->text) && number_of(dalcs_reader_previous(reader), &value)) {
+            model->value = value;
+            model->has_value = true;
+        } else if (!dalcs_builder_is_one_of(name->text, nothing,
+                                            sizeof nothing / sizeof nothing[0])) {
             model->beyond = model->beyond != NULL ? model->beyond : name;
         }
     }
@@ -261,7 +274,8 @@ static bool is_type_of(const struct dalcs_model *model, char letter) {
     return first == letter || (letter == 'l' && first == 'i');
 }
 
-bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter) {
+bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter,
+                              const struct dalcs_model **taken) {
     const struct dalcs_token *name = dalcs_reader_peek(reader, 0);
     const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
     if (name == NULL || name->kind != DALCS_TOKEN_WORD ||
@@ -280,6 +294,7 @@ bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter) {
             reader->builder, name, "write the value on the card and leave out the model",
             "model '%s' has %s=, which is not supported", name->text, model->beyond->text);
     }
+    *taken = model;
     return model->beyond == NULL;
 }
 

@@ -62,7 +62,7 @@ static bool read_rest(struct dalcs_reader *reader) {
         if (!is_told) {
             is_told = true;
             dalcs_builder_warn(reader->builder, dalcs_reader_peek(reader, 0),
-                               "write .meas for what is to be known of each run",
+                               "write a .meas for each result that a run should give",
                                "what .mc looks at in PSpice is ignored");
         }
         reader->at++;

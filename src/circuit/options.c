@@ -10,31 +10,31 @@
 #include <string.h>
 
 /* Known here. */
-static const char *const OURS[] = {"reltol",   "abstol",           "vntol",    "method",
-                                   "step",     "stages",           "fill",     "curve",
-                                   "compress", "diodecurrent",     "filetype", "dialect",
-                                   "interp",   "initial_interval", "bjt",      "seed"};
+static const char *const OURS[] = {
+    "reltol", "abstol",   "vntol",        "method",   "step",    "stages", "fill",
+    "curve",  "compress", "diodecurrent", "filetype", "dialect", "interp", "initial_interval",
+    "bjt",    "seed",     "savecurrents"};
 
 static const char *const FOREIGN[] = {
-    "itl1",          "itl2",        "itl3",         "itl4",         "itl5",       "itl6",
-    "gmin",          "trtol",       "chgtol",       "pivtol",       "pivrel",     "maxord",
-    "numdgt",        "temp",        "tnom",         "acct",         "noacct",     "list",
-    "nomod",         "nopage",      "node",         "opts",         "noopts",     "noinit",
-    "klu",           "sparse",      "cshunt",       "rshunt",       "gshunt",     "gfarad",
-    "gminsteps",     "srcsteps",    "defl",         "defw",         "defad",      "defas",
-    "defpd",         "defps",       "scale",        "plotwinsize",  "ramptime",   "ramptol",
-    "trytocompact",  "keepopinfo",  "savecurrents", "autostop",     "bypass",     "lvltim",
-    "limpts",        "cptime",      "limtim",       "maxstep",      "mindiv",     "maxevtiter",
-    "noopiter",      "noopalter",   "sollim",       "xmu",          "mu",         "measdgt",
-    "topologycheck", "fastaccess",  "nonlin",       "oldlimit",     "badmos3",    "minbreak",
-    "convstep",      "convabsstep", "dgmin",        "gdsmin",       "delmax",     "absdv",
-    "reldv",         "mxsolve",     "ingold",       "post",         "probe",      "csdf",
-    "brief",         "co",          "width",        "seedinfo",     "sim",        "digits",
-    "accurate",      "runlvl",      "rawfile",      "ibisdc",       "warn",       "stepgmin",
-    "ptrantau",      "ptranmax",    "skipgmin",     "solver",       "altinit",    "gear",
-    "trap",          "newtol",      "nopointtol",   "nomarch",      "thev_induc", "baudrate",
-    "ascii",         "meascplxfmt", "flagloads",    "mindeltagmin", "dptran",     "timeint",
-    "parser",        "output",      "device",       "linsol"};
+    "itl1",          "itl2",        "itl3",       "itl4",         "itl5",       "itl6",
+    "gmin",          "trtol",       "chgtol",     "pivtol",       "pivrel",     "maxord",
+    "numdgt",        "temp",        "tnom",       "acct",         "noacct",     "list",
+    "nomod",         "nopage",      "node",       "opts",         "noopts",     "noinit",
+    "klu",           "sparse",      "cshunt",     "rshunt",       "gshunt",     "gfarad",
+    "gminsteps",     "srcsteps",    "defl",       "defw",         "defad",      "defas",
+    "defpd",         "defps",       "scale",      "plotwinsize",  "ramptime",   "ramptol",
+    "trytocompact",  "keepopinfo",  "advconv",    "autostop",     "bypass",     "lvltim",
+    "limpts",        "cptime",      "limtim",     "maxstep",      "mindiv",     "maxevtiter",
+    "noopiter",      "noopalter",   "sollim",     "xmu",          "mu",         "measdgt",
+    "topologycheck", "fastaccess",  "nonlin",     "oldlimit",     "badmos3",    "minbreak",
+    "convstep",      "convabsstep", "dgmin",      "gdsmin",       "delmax",     "absdv",
+    "reldv",         "mxsolve",     "ingold",     "post",         "probe",      "csdf",
+    "brief",         "co",          "width",      "seedinfo",     "sim",        "digits",
+    "accurate",      "runlvl",      "rawfile",    "ibisdc",       "warn",       "stepgmin",
+    "ptrantau",      "ptranmax",    "skipgmin",   "solver",       "altinit",    "gear",
+    "trap",          "newtol",      "nopointtol", "nomarch",      "thev_induc", "baudrate",
+    "ascii",         "meascplxfmt", "flagloads",  "mindeltagmin", "dptran",     "timeint",
+    "parser",        "output",      "device",     "linsol"};
 
 enum { N_OURS = sizeof OURS / sizeof OURS[0], N_FOREIGN = sizeof FOREIGN / sizeof FOREIGN[0] };
 
@@ -189,6 +189,10 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     if (strcmp(name, "interp") == 0) { /* ngspice's: rows at multiples of tstep alone */
         options->fill = INFINITY;
         options->fill_where = dalcs_builder_keep_location(reader->builder, token);
+        return true;
+    }
+    if (strcmp(name, "savecurrents") == 0) { /* likewise: all currents besides what is recorded */
+        reader->builder->saves_currents = true;
         return true;
     }
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);

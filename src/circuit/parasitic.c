@@ -47,6 +47,12 @@ bool dalcs_parasitic_read(struct dalcs_reader *reader, const struct dalcs_token 
     }
     parasitics->place[k] = name;
     double *value = &parasitics->value[k];
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    if (dalcs_reader_at_end(reader) || (next != NULL && next->kind == DALCS_TOKEN_EQUAL)) {
+        dalcs_builder_warn(builder, name, NULL, "'%s=' has no value: there is none", name->text);
+        *value = 0;
+        return true;
+    }
     if (!dalcs_reader_number(reader, KINDS[k].quantity, "a value", value)) {
         return false;
     }

@@ -50,6 +50,7 @@ static bool is_value_name(const struct family *family, const char *name) {
 /* What a card says besides its nodes. */
 struct values {
     bool has_value;
+    bool is_of_model;  /* unless the card has another */
     double multiplier; /* 0: none */
     struct dalcs_parasitics parasitics;
     struct dalcs_storage_law law;
@@ -160,6 +161,13 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
         values->has_value = true;
         return dalcs_core_read(reader, name, &values->core);
     }
+    if (strcmp(name->text, "ac") == 0 && device->kind == DALCS_RESISTOR) {
+        dalcs_builder_warn(
+            builder, name, "write a second netlist for .ac with this value",
+            "a resistance of .ac alone is ignored: '%s' has the other one there, too",
+            reader->card->token->text);
+        return dalcs_reader_number(reader, DALCS_OHM, "a resistance", &ignored);
+    }
     if (may_have(device->kind, name->text)) {
         return dalcs_parasitic_read(reader, name, &values->parasitics);
     }
@@ -231,12 +239,55 @@ static void expand_storage(struct dalcs_builder *builder, const struct dalcs_car
     const double m = values->multiplier > 0 ? values->multiplier : 1;
     const bool has_core = values->core.first != NULL;
     struct dalcs_core_stop stop;
+    if (!has_core && dalcs_storage_follow(builder, card, device, &values->law, m)) {
+        return;
+    }
     if (has_core && !dalcs_core_make(builder, card, &values->core, m, &values->law, &stop)) {
         return;
     }
     if (dalcs_storage_expand(builder, card, device, &values->law, m) && has_core) {
         dalcs_core_add_stop(builder, card->token, device->node, &stop);
     }
+}
+
+static bool is_parameter_next(const struct dalcs_reader *reader) {
+    const struct dalcs_token *equal = dalcs_reader_peek(reader, 1);
+    return equal != NULL && equal->kind == DALCS_TOKEN_EQUAL;
+}
+
+/* The value of the model where the card has none, as KiCad writes each part with a temperature. */
+static bool takes_model_value(const struct dalcs_reader *reader, const struct dalcs_model *model,
+                              struct values *values, struct dalcs_device *device) {
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
+    if (model == NULL || !model->has_value ||
+        (next != NULL && !is_parameter_next(reader)) /* a value of its own */) {
+        return false;
+    }
+    device->value = model->value;
+    values->is_of_model = true;
+    return true;
+}
+
+/* Beside a value on the card ngspice leaves that of a model out, and PSpice multiplies by it. */
+static bool is_of_model_alone(struct dalcs_reader *reader, const struct dalcs_model *model,
+                              struct values *values) {
+    if (values->is_of_model && !values->has_value) {
+        values->has_value = true;
+        return true;
+    }
+    if (model != NULL && model->has_value && model->value != 1.0) {
+        int k = reader->card->n - 1;
+        while (k > 0 && strcmp(reader->card->token[k].text, model->name->text) != 0) {
+            k--;
+        }
+        dalcs_builder_error(reader->builder, &reader->card->token[k],
+                            "write the value on the card and leave out the model",
+                            "'%s' and its model '%s' both have a value: ngspice takes the first, "
+                            "PSpice their product",
+                            reader->card->token->text, model->name->text);
+        return false;
+    }
+    return true;
 }
 
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
@@ -253,22 +304,22 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     }
     struct values values = {.has_value = false};
     const char letter = family->names[0][0];
-    if (!dalcs_model_take_passive(&reader, letter)) {
+    const struct dalcs_model *model = NULL;
+    if (!dalcs_model_take_passive(&reader, letter, &model)) {
         return;
     }
     (void)dalcs_reader_take_word(&reader, "noiseless");
-    const struct dalcs_token *equal = dalcs_reader_peek(&reader, 1);
-    if ((equal == NULL || equal->kind != DALCS_TOKEN_EQUAL) && !take_law(&reader, &values, true)) {
+    if (!takes_model_value(&reader, model, &values, device) && !is_parameter_next(&reader) &&
+        !take_law(&reader, &values, true)) {
         if (!dalcs_reader_number(&reader, family->quantity, family->value, &device->value)) {
             return;
         }
         values.has_value = true;
     }
     const struct dalcs_token *value = dalcs_reader_previous(&reader);
-    if (!dalcs_model_take_passive(&reader, letter)) {
-        return;
-    }
-    if (!read_rest(&reader, family, device, &values, &value)) {
+    if (!dalcs_model_take_passive(&reader, letter, &model) ||
+        !read_rest(&reader, family, device, &values, &value) ||
+        !is_of_model_alone(&reader, model, &values)) {
         return;
     }
     if (!values.has_value) {

@@ -27,7 +27,7 @@ struct points {
     double time_scale, value_scale;
     bool is_in_block; /* between REPEAT and ENDREPEAT */
     bool is_closed;   /* a parenthesis was closed: a number after it is no point */
-    bool has_forever; /* the last block repeats for ever */
+    bool has_forever; /* the last block repeats forever */
     bool is_relative; /* a note about times with + was made */
     size_t block;     /* the first point of the block being read */
     double from;      /* s, where that begins */
@@ -80,7 +80,7 @@ static bool read_point(struct points *p) {
         return false;
     }
     if (p->has_forever) {
-        dalcs_builder_error(builder, token, USAGE, "a point after what repeats for ever");
+        dalcs_builder_error(builder, token, USAGE, "a point after a part that repeats forever");
         return false;
     }
     double origin = p->from;
@@ -182,7 +182,7 @@ static bool read_repeat(struct points *p, int depth) {
     }
     if (n < 1 || n != floor(n)) {
         dalcs_builder_error(builder, dalcs_reader_previous(reader), NULL,
-                            "a number of times is 1, 2, 3, ...");
+                            "the number of repetitions must be 1, 2, 3, ...");
         return false;
     }
     p->block = p->n;
@@ -198,7 +198,7 @@ static bool read_repeat(struct points *p, int depth) {
     const size_t points = p->n - p->block;
     const double length = points > 0 ? p->t[p->n - 1] - p->from : 0;
     if (length <= 0) {
-        dalcs_builder_error(builder, place, NULL, "what is repeated lasts no time");
+        dalcs_builder_error(builder, place, NULL, "the part that repeats has no duration");
         return false;
     }
     for (double k = 1; k < n; k++) {

@@ -185,7 +185,9 @@ static void resolve_all(struct dalcs_compiler *c, struct dalcs_potentials *poten
 static void take_stimuli(struct dalcs_compiler *c) {
     struct dalcs_circuit *circuit = c->builder->circuit;
     const size_t n = (size_t)circuit->n_stimuli;
-    struct dalcs_stimulus *all = dalcs_arena_alloc(&circuit->arena, n + c->n_stimuli, sizeof *all);
+    const size_t n_more = dalcs_delay_pending(c->builder);
+    struct dalcs_stimulus *all =
+        dalcs_arena_alloc(&circuit->arena, n + c->n_stimuli + n_more, sizeof *all);
     if (all == NULL) {
         c->builder->out_of_memory = true;
         return;

@@ -285,12 +285,42 @@ static void mask_signal(struct dalcs_signal_compilation *c, const struct found *
     c->part[c->n_signals++] = found->part;
 }
 
+/* mag(v(b)/v(a)): of complex signals the magnitude of a product is the product of theirs, which signals stand for
+ * here; that of a sum is not theirs. */
+static void take_magnitude(struct dalcs_signal_compilation *c, int k) {
+    static const char word[] = "mag";
+
+    enum { LENGTH = sizeof word - 1 };
+
+    const char *text = c->text.text;
+    if (strcmp(c->rules->variable, "frequency") != 0 || strncmp(text + k, word, LENGTH) != 0 ||
+        text[k + LENGTH + (int)strspn(text + k + LENGTH, " ")] != '(' ||
+        (k > 0 && dalcs_signal_is_name_byte(text[k - 1]))) {
+        return;
+    }
+    int depth = 0;
+    for (int i = k + LENGTH; i < c->text.length; i++) {
+        depth += (text[i] == '(') - (text[i] == ')');
+        const bool is_sum = (text[i] == '+' || text[i] == '-') && previous_byte(text, i) == ')';
+        if (depth == 0 && text[i] == ')') {
+            break;
+        }
+        if (is_sum) {
+            report(c, i, 1, "v(a,b) is v(a)-v(b)", "the magnitude of a sum of complex signals");
+            return;
+        }
+    }
+    memcpy(c->masked + k, "abs", LENGTH);
+}
+
 static void mask_signals(struct dalcs_signal_compilation *c) {
     struct found found;
     for (int k = 0; k < c->text.length && !c->failed; k++) {
         if (find_with_function(c, k, &found)) {
             mask_signal(c, &found);
             k = found.end - 1;
+        } else {
+            take_magnitude(c, k);
         }
     }
 }

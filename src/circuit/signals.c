@@ -121,7 +121,7 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
 }
 
 /* ngspice's alli and LTspice's i(*): the current of each element. */
-static void add_currents(struct dalcs_builder *builder) {
+void dalcs_signals_add_currents(struct dalcs_builder *builder) {
     for (int k = 0; k < builder->circuit->n_devices; k++) {
         if (!dalcs_builder_is_inner(builder->circuit->device[k].name)) {
             add_current(builder, k);
@@ -148,24 +148,64 @@ int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal sig
     return place;
 }
 
+/* What only reads cannot change a run: a signal that is not there is left out, as ngspice and LTspice do. */
+static void leave_out_unknown(struct dalcs_builder *builder, const struct dalcs_token *token,
+                              const struct dalcs_names *names, const char *what,
+                              const char *message) {
+    if ((builder->hidden & DALCS_HIDDEN_ELEMENTS) != 0) {
+        builder->failed = true;
+        return;
+    }
+    dalcs_builder_warn(builder, token, dalcs_builder_suggest(builder, names, token->text, what),
+                       message, token->text);
+}
+
+static int find_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    const int node = dalcs_builder_look_up_node(builder, token->text);
+    if (node < 0) {
+        leave_out_unknown(builder, token, &builder->nodes, "nodes",
+                          "no element is connected to a node '%s': it is left out");
+    }
+    return node;
+}
+
+static int find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    const int device = dalcs_builder_look_up_device(builder, token->text);
+    if (device >= builder->n_device_cards) {
+        return dalcs_builder_find_device(builder, token); /* a coupling, which it tells of */
+    }
+    if (device < 0) {
+        leave_out_unknown(builder, token, &builder->devices, "elements",
+                          "there is no element '%s': it is left out");
+    }
+    return device;
+}
+
+/* gnucap's v(nodes). */
+static bool is_every_node(const struct dalcs_builder *builder, const char *name) {
+    return strcmp(name, "*") == 0 ||
+           (strcmp(name, "nodes") == 0 && dalcs_names_find(&builder->nodes, name) < 0);
+}
+
 /* After `v (`: a node or two, and the closing parenthesis. */
 static bool read_voltage(struct dalcs_reader *reader) {
     const struct dalcs_token *name[2];
     if (!dalcs_reader_name(reader, "a node", &name[0])) {
         return false;
     }
-    if (strcmp(name[0]->text, "*") == 0 && dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+    if (is_every_node(reader->builder, name[0]->text) &&
+        dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
         add_voltages(reader->builder);
         return true;
     }
-    const int a = dalcs_builder_find_node(reader->builder, name[0]);
+    const int a = find_node(reader->builder, name[0]);
     int b = 0;
     const bool is_pair = !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
     if (is_pair) {
         if (!dalcs_reader_name(reader, "')' or a second node", &name[1])) {
             return false;
         }
-        b = dalcs_builder_find_node(reader->builder, name[1]);
+        b = find_node(reader->builder, name[1]);
         if (!dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
             dalcs_reader_missing(reader, "')'");
             return false;
@@ -187,10 +227,10 @@ static bool read_current(struct dalcs_reader *reader) {
         return false;
     }
     if (strcmp(name->text, "*") == 0) {
-        add_currents(reader->builder);
+        dalcs_signals_add_currents(reader->builder);
         return true;
     }
-    const int device = dalcs_builder_find_device(reader->builder, name);
+    const int device = find_device(reader->builder, name);
     if (device >= 0) {
         add_current(reader->builder, device);
     }
@@ -206,6 +246,13 @@ static bool is_value(const struct dalcs_builder *builder, const char *name) {
 static void leave_out(struct dalcs_builder *builder, const struct dalcs_token *token) {
     dalcs_builder_warn(builder, token, "signals are: v(node) v(a,b) i(element)",
                        "'%s' is a value of the netlist and no signal: it is left out", token->text);
+}
+
+/* How a .plot looks. */
+static bool is_look(const struct dalcs_card *card, const struct dalcs_token *token) {
+    static const char *const looks[] = {"xlog", "ylog", "loglog", "linear", "xlin", "ylin"};
+    return strcmp(card->token->text, ".plot") == 0 &&
+           dalcs_builder_is_one_of(token->text, looks, sizeof looks / sizeof looks[0]);
 }
 
 /* A word without a parenthesis: in ngspice a node's voltage. */
@@ -230,8 +277,17 @@ static bool read_plain_node(struct dalcs_reader *reader) {
     } else if (nearest != NULL) {
         hint = dalcs_builder_hint(builder, "did you mean 'v(%s)'?", nearest);
     }
-    dalcs_builder_error(builder, token, hint, "'%s' is not a signal", token->text);
-    return false;
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    if (next != NULL && next->kind == DALCS_TOKEN_EQUAL) {
+        dalcs_builder_error(builder, token, hint, "'%s' is not a signal", token->text);
+        return false;
+    }
+    reader->at++;
+    if (!is_look(reader->card, token)) {
+        dalcs_builder_warn(builder, token, hint, "'%s' is not a signal: it is left out",
+                           token->text);
+    }
+    return true;
 }
 
 struct part_name {
@@ -265,30 +321,6 @@ static const struct part_name *function_of(const char *word) {
         {"ph", DALCS_PART_PHASE},   {"phase", DALCS_PART_PHASE},   {"re", DALCS_PART_REAL},
         {"real", DALCS_PART_REAL},  {"imag", DALCS_PART_IMAGINARY}};
     return find_part(name, sizeof name / sizeof name[0], word);
-}
-
-/* @r1[i], as ngspice has the current of an element without a branch of its own. */
-static bool read_device_current(struct dalcs_reader *reader) {
-    struct dalcs_builder *builder = reader->builder;
-    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
-    struct dalcs_token name = *token;
-    const size_t length = dalcs_names_current_of(token->text);
-    if (length == 0) {
-        dalcs_builder_error(builder, token, "of an element its current is recorded: @name[i]",
-                            "'%s' is not a signal", token->text);
-        return false;
-    }
-    name.text = dalcs_arena_copy(&builder->scratch, token->text + 1, length);
-    if (name.text == NULL) {
-        builder->out_of_memory = true;
-        return false;
-    }
-    reader->at++;
-    const int device = dalcs_builder_find_device(builder, &name);
-    if (device >= 0) {
-        add_current(builder, device);
-    }
-    return true;
 }
 
 /* {v(a)*2}, par('...'), name=par('...'), and what follows a signal in v(a)-v(b). */
@@ -369,6 +401,64 @@ static void add_computed(struct dalcs_builder *builder, const char *name,
         (struct dalcs_computed){name, (int)builder->n_signals, *formula};
 }
 
+/* w(r1) or p(r1), of an element that has one. */
+static void add_power_column(struct dalcs_builder *builder, char letter, int device) {
+    struct dalcs_signal_formula formula;
+    const char *name = dalcs_arena_printf(&builder->circuit->arena, "%c(%s)", letter,
+                                          builder->circuit->device[device].name);
+    builder->out_of_memory = builder->out_of_memory || name == NULL;
+    if (name != NULL && dalcs_computed_power(builder, device, &formula)) {
+        add_computed(builder, name, &formula);
+    }
+}
+
+static void note_power(struct dalcs_builder *builder, const struct dalcs_token *token,
+                       const char *argument) {
+    if (!builder->noted_power) {
+        dalcs_builder_note(builder, token, "{v(a,b)*i(x)} is that of two terminals",
+                           "a power that one voltage and one current do not make is not "
+                           "recorded: %s%s is left out",
+                           token->text, argument);
+        builder->noted_power = true;
+    }
+}
+
+/* @r1[i], as ngspice has the current of an element without a branch of its own. */
+static bool read_device_current(struct dalcs_reader *reader) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    struct dalcs_token name = *token;
+    const char *bracket = strchr(token->text, '[');
+    const bool is_power = bracket != NULL && strcmp(bracket, "[p]") == 0;
+    const size_t length =
+        is_power ? (size_t)(bracket - token->text) - 1 : dalcs_names_current_of(token->text);
+    if (length == 0) {
+        dalcs_builder_warn(
+            builder, token,
+            "of an element its current and its power are recorded: @name[i], @name[p]",
+            "'%s' is not a signal: it is left out", token->text);
+        reader->at++;
+        return true;
+    }
+    name.text = dalcs_arena_copy(&builder->scratch, token->text + 1, length);
+    if (name.text == NULL) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    reader->at++;
+    const int device = find_device(builder, &name);
+    if (device >= 0 && is_power) {
+        if (dalcs_signal_formula_has_power(builder, device)) {
+            add_power_column(builder, 'p', device);
+        } else {
+            note_power(builder, token, "");
+        }
+    } else if (device >= 0) {
+        add_current(builder, device);
+    }
+    return true;
+}
+
 /* A formula of signals: one that is affine is the voltage of a source that nothing loads, others are computed. */
 static void add_formula(struct dalcs_builder *builder, const struct dalcs_token *token) {
     const char *name = formula_name(builder, token->formula);
@@ -420,6 +510,49 @@ static bool read_formula(struct dalcs_reader *reader) {
     return true;
 }
 
+static void add_power(struct dalcs_builder *builder, char letter, int device) {
+    struct dalcs_signal_formula formula;
+    const char *own = dalcs_arena_printf(&builder->circuit->arena, "%c(%s)", letter,
+                                         builder->circuit->device[device].name);
+    builder->out_of_memory = builder->out_of_memory || own == NULL;
+    if (own != NULL && dalcs_computed_power(builder, device, &formula)) {
+        add_computed(builder, own, &formula);
+    }
+}
+
+/* Of each element that has one: ngspice's allp, PSpice's w(alias(*)). */
+static void add_powers(struct dalcs_builder *builder, char letter) {
+    for (int k = 0; k < builder->circuit->n_devices; k++) {
+        if (!dalcs_builder_is_inner(builder->circuit->device[k].name) &&
+            dalcs_signal_formula_has_power(builder, k)) {
+            add_power(builder, letter, k);
+        }
+    }
+}
+
+/* v(alias(*)), i(alias(*)), w(alias(*)) on PSpice's .probe: all of them; d(...) and noise(...): nothing that there is
+ * here. False: another form. */
+static bool read_all_of(struct dalcs_reader *reader) {
+    static const char *const begin[] = {"(", "alias", "(", "*", ")", ")"};
+    struct dalcs_builder *builder = reader->builder;
+    const char letter = dalcs_reader_peek(reader, 0)->text[0];
+    for (int k = 0; k < 6; k++) {
+        const struct dalcs_token *token = dalcs_reader_peek(reader, k + 1);
+        if (token == NULL || strcmp(token->text, begin[k]) != 0) {
+            return false;
+        }
+    }
+    reader->at += 7;
+    if (letter == 'v') {
+        add_voltages(builder);
+    } else if (letter == 'i') {
+        dalcs_signals_add_currents(builder);
+    } else if (letter == 'w') {
+        add_powers(builder, letter);
+    }
+    return true;
+}
+
 /* w(r1) or p(r1) of an element with two terminals, whose power is that of its own voltage; false: of another. */
 static bool read_power(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
@@ -431,18 +564,23 @@ static bool read_power(struct dalcs_reader *reader) {
         return false;
     }
     const int device = dalcs_names_find(&builder->devices, name->text);
-    struct dalcs_signal_formula formula;
     if (device < 0 || !dalcs_signal_formula_has_power(builder, device)) {
         return false;
     }
-    const char *own = dalcs_arena_printf(&builder->circuit->arena, "%c(%s)", letter->text[0],
-                                         builder->circuit->device[device].name);
-    builder->out_of_memory = builder->out_of_memory || own == NULL;
-    if (own != NULL && dalcs_computed_power(builder, device, &formula)) {
-        add_computed(builder, own, &formula);
-    }
+    add_power_column(builder, letter->text[0], device);
     reader->at += 4;
     return true;
+}
+
+/* A word with what stands in parentheses behind it. */
+static void skip_call(struct dalcs_reader *reader) {
+    int depth = 0;
+    do {
+        reader->at++;
+        depth += dalcs_reader_peek(reader, 0)->kind == DALCS_TOKEN_OPEN ? 1 : 0;
+        depth -= dalcs_reader_peek(reader, 0)->kind == DALCS_TOKEN_CLOSE ? 1 : 0;
+    } while (depth > 0 && dalcs_reader_peek(reader, 1) != NULL);
+    reader->at++;
 }
 
 /* p(r1), which KiCad writes for every part, w(r1) of PSpice, n(d1:cd) of Xyce: what is inside of models or computed
@@ -457,20 +595,15 @@ static void skip_inner(struct dalcs_reader *reader) {
         dalcs_builder_warn(builder, token, NULL,
                            "what is inside of a model is not recorded: "
                            "n(...) is left out");
-    } else if (!builder->noted_power) {
-        dalcs_builder_note(builder, token, "{v(a,b)*i(x)} is that of two terminals",
-                           "a power that one voltage and one current do not make is not "
-                           "recorded: %s(...) is left out",
-                           token->text);
-        builder->noted_power = true;
+    } else {
+        note_power(builder, token, "(...)");
     }
-    int depth = 0;
-    do {
-        reader->at++;
-        depth += dalcs_reader_peek(reader, 0)->kind == DALCS_TOKEN_OPEN ? 1 : 0;
-        depth -= dalcs_reader_peek(reader, 0)->kind == DALCS_TOKEN_CLOSE ? 1 : 0;
-    } while (depth > 0 && dalcs_reader_peek(reader, 1) != NULL);
-    reader->at++;
+    skip_call(reader);
+}
+
+/* .probe, .probe64, .probe/csdf */
+static bool is_probe(const struct dalcs_card *card) {
+    return strncmp(card->token->text, ".probe", strlen(".probe")) == 0;
 }
 
 static bool read_signal(struct dalcs_reader *reader) {
@@ -496,13 +629,20 @@ static bool read_signal(struct dalcs_reader *reader) {
             return true;
         }
         if (dalcs_reader_take_word(reader, "alli")) {
-            if (strcmp(reader->card->token->text, ".probe") == 0) {
+            if (is_probe(reader->card)) {
                 dalcs_signals_add_default(builder);
             }
-            add_currents(builder);
+            dalcs_signals_add_currents(builder);
+            return true;
+        }
+        if (dalcs_reader_take_word(reader, "allp")) {
+            add_powers(builder, 'p');
             return true;
         }
         return token->text[0] == '@' ? read_device_current(reader) : read_plain_node(reader);
+    }
+    if (read_all_of(reader)) {
+        return true;
     }
     const struct part_name *part = part_of(token->text);
     if (part != NULL) {
@@ -536,8 +676,10 @@ static bool read_signal(struct dalcs_reader *reader) {
         }
         return true;
     }
-    dalcs_builder_error(builder, token, USAGE, "'%s(...)' is not a signal", token->text);
-    return false;
+    dalcs_builder_warn(builder, token, USAGE, "'%s(...)' is not a signal: it is left out",
+                       token->text);
+    skip_call(reader);
+    return true;
 }
 
 /* Xyce's `format=csv`, `file=name` and the like on .print: how a file looks is said when dalcs is called. */
@@ -589,7 +731,8 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
                                        [DALCS_MEASURED_OP] = "op",
                                        [DALCS_MEASURED_DC] = "dc",
                                        [DALCS_MEASURED_AC] = "ac"};
-    static const char *const other[] = {"noise", "sens", "hb", "four"};
+    static const char *const other[] = {"noise", "sens",     "hb",        "four",
+                                        "hb_ic", "homotopy", "hb_startup"};
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
     builder->names_signals = true;
@@ -612,7 +755,7 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
     }
     if (dalcs_reader_at_end(&reader)) {
         /* A bare .probe records everything, as in PSpice. */
-        if (strcmp(name, ".probe") == 0) {
+        if (is_probe(card)) {
             dalcs_signals_add_default(builder);
         } else {
             dalcs_reader_missing(&reader, "a signal");

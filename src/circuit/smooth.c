@@ -62,12 +62,17 @@ const char *dalcs_smooth_name(enum dalcs_smooth_kind kind) {
     return name;
 }
 
+/* 0/0 is 0, as in ngspice: where all sources are 0, at most operating points, so is what they make. */
+static bool is_nothing(double x, double y) {
+    return x == 0 && y == 0;
+}
+
 static double of_two(enum dalcs_smooth_kind kind, double x, double y) {
     switch (kind) {
     case DALCS_SMOOTH_PRODUCT:
         return x * y;
     case DALCS_SMOOTH_QUOTIENT:
-        return x / y;
+        return is_nothing(x, y) ? 0 : x / y;
     case DALCS_SMOOTH_POWER:
         return pow(x, y);
     case DALCS_SMOOTH_MAGNITUDE_POWER:
@@ -137,8 +142,8 @@ static void gradient_of_two(enum dalcs_smooth_kind kind, double x, double y, dou
         gradient[1] = x;
         break;
     case DALCS_SMOOTH_QUOTIENT:
-        gradient[0] = 1.0 / y;
-        gradient[1] = -x / y / y;
+        gradient[0] = is_nothing(x, y) ? 0 : 1.0 / y;
+        gradient[1] = is_nothing(x, y) ? 0 : -x / y / y;
         break;
     case DALCS_SMOOTH_POWER:
         gradient[0] = y * pow(x, y - 1.0);

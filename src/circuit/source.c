@@ -16,6 +16,7 @@ static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
     static const double degree = 3.14159265358979323846 / 180.0;
     double value[2] = {1.0, 0.0};
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    const bool is_open = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
     for (int k = 0; k < 2; k++) {
         const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
         if (next == NULL || !dalcs_reader_is_number(next)) {
@@ -26,8 +27,32 @@ static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
             return false;
         }
     }
+    if (is_open && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(reader, "')'");
+        return false;
+    }
     stimulus->ac_real = value[0] * cos(value[1] * degree);
     stimulus->ac_imaginary = value[0] * sin(value[1] * degree);
+    return true;
+}
+
+/* ACPHASE degrees behind AC magnitude, as Qucs-S writes it. */
+static bool read_ac_phase(struct dalcs_reader *reader, const struct dalcs_token *word, bool has_ac,
+                          struct dalcs_stimulus *stimulus) {
+    static const double degree = 3.14159265358979323846 / 180.0;
+    double phase;
+    dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a phase in degrees", &phase)) {
+        return false;
+    }
+    if (!has_ac) {
+        dalcs_builder_error(reader->builder, word, "AC 1 ACPHASE 90, or AC 1 90",
+                            "ACPHASE stands behind AC and its magnitude");
+        return false;
+    }
+    const double magnitude = hypot(stimulus->ac_real, stimulus->ac_imaginary);
+    stimulus->ac_real = magnitude * cos(phase * degree);
+    stimulus->ac_imaginary = magnitude * sin(phase * degree);
     return true;
 }
 
@@ -105,16 +130,19 @@ struct source {
     struct dalcs_current_limits limits;
     bool has_function, has_ac;
     bool is_load; /* an I that never delivers (LTspice) */
-    int n_open;   /* brackets around a function, as ngspice has them: (PULSE 0 1) (AC 1) */
+    int n_open;   /* brackets around a function, as ngspice has them: (PULSE 0 1) (AC 1) (5) */
 };
 
-/* The opening bracket before a function's name, DC or AC, or the closing one. */
+/* The opening bracket before a function's name, DC, AC or a value alone, or the closing one. */
 static bool takes_bracket(struct dalcs_reader *reader, struct source *source) {
     const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
     const bool is_named =
         next != NULL && next->kind == DALCS_TOKEN_WORD &&
         (is_function(next) || strcmp(next->text, "dc") == 0 || strcmp(next->text, "ac") == 0);
-    if (is_named && dalcs_reader_take(reader, DALCS_TOKEN_OPEN)) {
+    const struct dalcs_token *close = dalcs_reader_peek(reader, 2);
+    const bool is_value = next != NULL && dalcs_reader_is_number(next) && close != NULL &&
+                          close->kind == DALCS_TOKEN_CLOSE;
+    if ((is_named || is_value) && dalcs_reader_take(reader, DALCS_TOKEN_OPEN)) {
         source->n_open++;
         return true;
     }
@@ -154,6 +182,9 @@ static bool read_item(struct dalcs_reader *reader, struct source *source) {
     if (dalcs_reader_take_word(reader, "ac")) {
         source->has_ac = true;
         return read_ac(reader, quantity, source->stimulus);
+    }
+    if (dalcs_reader_take_word(reader, "acphase")) {
+        return read_ac_phase(reader, token, source->has_ac, source->stimulus);
     }
     if (quantity == DALCS_CURRENT && dalcs_reader_take_word(reader, "load")) {
         source->is_load = true;

@@ -211,6 +211,47 @@ bool dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card
     return true;
 }
 
+bool dalcs_storage_follow(struct dalcs_builder *builder, const struct dalcs_card *card,
+                          struct dalcs_device *device, const struct dalcs_storage_law *law,
+                          double m) {
+    const bool is_coil = device->kind == DALCS_INDUCTOR;
+    if (law->formula == NULL || law->is_slope ||
+        !dalcs_storage_formula_follows(builder, card, law->formula->formula)) {
+        return false;
+    }
+    if (device->has_initial && device->initial != 0) {
+        dalcs_builder_error(builder, card->token, "start it by a source or a switch",
+                            "'%s' changes with other quantities, and then it begins at 0",
+                            card->token->text);
+        return true;
+    }
+    struct dalcs_formula_writer w;
+    if (!dalcs_formula_writer_start(&w, builder, card->token)) {
+        return true;
+    }
+    const struct dalcs_formula *x =
+        is_coil ? dalcs_formula_signal(&w, DALCS_FORMULA_CURRENT, card->token, NULL)
+                : dalcs_formula_signal(&w, DALCS_FORMULA_VOLTAGE,
+                                       node_token(builder, card->token, device->node[0]),
+                                       node_token(builder, card->token, device->node[1]));
+    const struct dalcs_formula *one =
+        is_coil ? dalcs_formula_operation(&w, DALCS_DIVIDE, x, dalcs_formula_number(&w, m)) : x;
+    const struct dalcs_formula *stored =
+        dalcs_storage_formula_copy(&w, card, law->formula->formula, one, true);
+    if (stored == NULL) {
+        return true;
+    }
+    const struct dalcs_formula *all =
+        is_coil ? stored
+                : dalcs_formula_operation(&w, DALCS_MULTIPLY, dalcs_formula_number(&w, m), stored);
+    device->kind = is_coil ? DALCS_VCVS : DALCS_VCCS;
+    device->has_initial = false;
+    device->value = 0;
+    dalcs_behavioural_add_formula(builder, device,
+                                  dalcs_formula_token(&w, dalcs_formula_call(&w, "ddt", 1, &all)));
+    return true;
+}
+
 /* ---- Initial states ------------------------------------------------------------------------------------ */
 
 bool dalcs_storage_is(const struct dalcs_builder *builder, int device) {

@@ -20,6 +20,12 @@ bool dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card
                           struct dalcs_device *device, const struct dalcs_storage_law *law,
                           double m);
 
+/* Of a law that other quantities or the time change: the element becomes a source of the derivative of its charge or
+ * flux, which those are part of. False: it is another law. */
+bool dalcs_storage_follow(struct dalcs_builder *builder, const struct dalcs_card *card,
+                          struct dalcs_device *device, const struct dalcs_storage_law *law,
+                          double m);
+
 /* Is a device such a coil or capacitor? */
 bool dalcs_storage_is(const struct dalcs_builder *builder, int device);
 
@@ -34,12 +40,17 @@ struct dalcs_formula_writer;
 double dalcs_storage_formula_at(const struct dalcs_builder *builder, const struct dalcs_formula *f,
                                 double x);
 
+/* Does it read the time, or another signal than the card's own current or voltage? */
+bool dalcs_storage_formula_follows(struct dalcs_builder *builder, const struct dalcs_card *card,
+                                   const struct dalcs_formula *f);
+
 /* A copy with another argument in the place of x, and of what a card's signals say of it; card NULL: there are none.
- * NULL when an error was reported or out of memory. */
+ * Other signals are errors unless it keeps them. NULL when an error was reported or out of memory. */
 const struct dalcs_formula *dalcs_storage_formula_copy(struct dalcs_formula_writer *w,
                                                        const struct dalcs_card *card,
                                                        const struct dalcs_formula *f,
-                                                       const struct dalcs_formula *argument);
+                                                       const struct dalcs_formula *argument,
+                                                       bool keeps_others);
 
 /* ---- storage_law.c ------------------------------------------------------------------------------- */
 

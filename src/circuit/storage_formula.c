@@ -96,6 +96,7 @@ struct copying {
 
     /* What stands for the argument besides x; card NULL: nothing */
     const struct dalcs_card *card;
+    bool keeps_others; /* other signals, and the time, stay what they are */
     bool failed;
 };
 
@@ -119,17 +120,27 @@ static int direction_of(const struct copying *c, const struct dalcs_formula *f) 
                                                                                   : 0;
 }
 
+static bool is_time(const struct dalcs_formula *f) {
+    return f->kind == DALCS_FORMULA_CALL && strcmp(f->function, dalcs_formula_time_beside) == 0;
+}
+
+/* Of a slope alone: a flux or a charge may follow anything (dalcs_storage_follow). */
 static void refuse_signal(struct copying *c, const struct dalcs_formula *f) {
     const bool is_coil = c->card->letter == 'l';
     const char *name = c->card->token->text;
     const char *hint =
-        is_coil
-            ? dalcs_builder_hint(c->w->builder, "x and i(%s) are the current of the coil", name)
-            : dalcs_builder_hint(c->w->builder, "x and v(%s,%s) are the voltage of the capacitor",
-                                 c->card->token[1].text, c->card->token[2].text);
+        is_coil ? dalcs_builder_hint(c->w->builder,
+                                     "write its flux, which may: Flux=x*...; x and i(%s) are its "
+                                     "current",
+                                     name)
+                : dalcs_builder_hint(c->w->builder,
+                                     "write its charge, which may: Q=x*...; x and v(%s,%s) are its "
+                                     "voltage",
+                                     c->card->token[1].text, c->card->token[2].text);
     dalcs_builder_error_at(c->w->builder, &f->where, hint,
-                           is_coil ? "the flux of a coil depends on its own current alone"
-                                   : "the charge of a capacitor depends on its own voltage alone");
+                           is_coil
+                               ? "an inductance follows no other quantity than its own current"
+                               : "a capacitance follows no other quantity than its own voltage");
     c->failed = true;
 }
 
@@ -138,14 +149,16 @@ static const struct dalcs_formula *copy(struct copying *c, const struct dalcs_fo
         return c->failed ? NULL : c->copy[f->number_of];
     }
     const struct dalcs_formula *made = NULL;
+    const bool is_signal = f->kind == DALCS_FORMULA_VOLTAGE || f->kind == DALCS_FORMULA_CURRENT;
+    const int direction = is_signal && c->card != NULL ? direction_of(c, f) : 0;
     if (f->kind == DALCS_FORMULA_TIME) {
         made = c->argument;
-    } else if (f->kind == DALCS_FORMULA_VOLTAGE || f->kind == DALCS_FORMULA_CURRENT) {
-        const int direction = c->card != NULL ? direction_of(c, f) : 0;
-        if (direction == 0) {
-            refuse_signal(c, f);
-            return NULL;
-        }
+    } else if (is_time(f) && c->keeps_others) {
+        made = dalcs_formula_signal(c->w, DALCS_FORMULA_TIME, NULL, NULL);
+    } else if (is_time(f) || (is_signal && direction == 0 && !c->keeps_others)) {
+        refuse_signal(c, f);
+        return NULL;
+    } else if (direction != 0) {
         made = direction > 0 ? c->argument
                              : dalcs_formula_operation(c->w, DALCS_SUBTRACT,
                                                        dalcs_formula_number(c->w, 0), c->argument);
@@ -164,11 +177,34 @@ static const struct dalcs_formula *copy(struct copying *c, const struct dalcs_fo
     return made;
 }
 
+/* Does a part read another signal than the argument, or the time? seen: by number_of. */
+static bool reads_others(const struct copying *c, const struct dalcs_formula *f, bool *seen) {
+    if (seen[f->number_of]) {
+        return false;
+    }
+    seen[f->number_of] = true;
+    const bool is_signal = f->kind == DALCS_FORMULA_VOLTAGE || f->kind == DALCS_FORMULA_CURRENT;
+    bool reads = is_time(f) || (is_signal && direction_of(c, f) == 0);
+    for (int k = 0; k < f->n && !reads; k++) {
+        reads = reads_others(c, f->argument[k], seen);
+    }
+    return reads;
+}
+
+bool dalcs_storage_formula_follows(struct dalcs_builder *builder, const struct dalcs_card *card,
+                                   const struct dalcs_formula *f) {
+    const struct copying c = {.card = card};
+    bool *seen = dalcs_arena_alloc(&builder->scratch, (size_t)f->number_of + 1, sizeof *seen);
+    builder->out_of_memory = builder->out_of_memory || seen == NULL;
+    return seen != NULL && reads_others(&c, f, seen);
+}
+
 const struct dalcs_formula *dalcs_storage_formula_copy(struct dalcs_formula_writer *w,
                                                        const struct dalcs_card *card,
                                                        const struct dalcs_formula *f,
-                                                       const struct dalcs_formula *argument) {
-    struct copying c = {.w = w, .argument = argument, .card = card};
+                                                       const struct dalcs_formula *argument,
+                                                       bool keeps_others) {
+    struct copying c = {.w = w, .argument = argument, .card = card, .keeps_others = keeps_others};
     c.copy = dalcs_arena_alloc(&w->builder->scratch, (size_t)f->number_of + 1,
                                sizeof(const struct dalcs_formula *));
     if (c.copy == NULL || argument == NULL) {

@@ -24,7 +24,7 @@ double dalcs_storage_function_at(const struct dalcs_builder *builder,
 const struct dalcs_formula *dalcs_storage_function_write(struct dalcs_formula_writer *w,
                                                          const struct dalcs_storage_function *f,
                                                          const struct dalcs_formula *argument) {
-    return dalcs_storage_formula_copy(w, NULL, f->formula, argument);
+    return dalcs_storage_formula_copy(w, NULL, f->formula, argument, false);
 }
 
 /* x as the variable of a formula. */
@@ -60,7 +60,7 @@ static bool find_lines(struct dalcs_builder *builder, const struct dalcs_token *
         return false;
     }
     const struct dalcs_formula *own = dalcs_storage_formula_copy(
-        &w, NULL, formula, dalcs_formula_signal(&w, DALCS_FORMULA_CURRENT, element, NULL));
+        &w, NULL, formula, dalcs_formula_signal(&w, DALCS_FORMULA_CURRENT, element, NULL), false);
     struct dalcs_compiler c = {
         .builder = builder, .arena = &builder->scratch, .element = element, .is_silent = true};
     c.n_forms = own != NULL ? (size_t)own->number_of + 1 : 0;
@@ -145,13 +145,13 @@ static bool check_lines(struct dalcs_builder *builder, const struct dalcs_token 
         const double slope = dalcs_piecewise_slope(f, k);
         const double at = f->knot[k < f->n ? k : f->n - 1].at;
         if (k < f->n && f->knot[k].left != f->knot[k].right) {
-            dalcs_builder_error(builder, place, "a steep line is what can be",
+            dalcs_builder_error(builder, place, "write a steep line in place of the jump",
                                 "the %s jumps at a %s of %g %s", word->what, word->of, at,
                                 word->unit);
             return false;
         }
         if (slope < 0) {
-            dalcs_builder_error(builder, place, "it has to rise, or to stay where it is",
+            dalcs_builder_error(builder, place, "it must rise or stay constant",
                                 "the %s falls %s a %s of %g %s", word->what,
                                 k < f->n ? "below" : "above", word->of, at, word->unit);
             return false;
@@ -220,8 +220,8 @@ static bool check_smooth(struct dalcs_builder *builder, const struct dalcs_token
         if (fall != 0) {
             dalcs_builder_warn(
                 builder, place, "limit(x, low, high) in the place of x lets it stay where it is",
-                "the %s falls %s a %s of about %.2g %s: nothing has an answer there", word->what,
-                fall > 0 ? "above" : "below", word->of, fall, word->unit);
+                "the %s falls %s a %s of about %.2g %s: the circuit has no solution there",
+                word->what, fall > 0 ? "above" : "below", word->of, fall, word->unit);
         }
     }
     return true;
@@ -238,7 +238,8 @@ static const struct dalcs_formula *read(struct dalcs_formula_writer *w,
     if (m != 1 && is_coil) {
         x = times(w, 1 / m, x);
     }
-    const struct dalcs_formula *f = dalcs_storage_formula_copy(w, card, law->formula->formula, x);
+    const struct dalcs_formula *f =
+        dalcs_storage_formula_copy(w, card, law->formula->formula, x, false);
     const double factor = !is_coil ? m : law->is_slope ? 1 / m : 1;
     return f != NULL && factor != 1 ? times(w, factor, f) : f;
 }

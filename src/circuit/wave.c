@@ -7,8 +7,12 @@
 /* A time that no run reaches: where a straight line that never ends is said to. */
 static const double never = 0x1p40;
 
+static bool is_noise(const struct dalcs_wave *wave) {
+    return wave->shape == DALCS_HELD_NOISE || wave->shape == DALCS_LINEAR_NOISE;
+}
+
 static int add_wave(struct dalcs_compiler *c, struct dalcs_wave wave) {
-    wave.phase -= floor(wave.phase);
+    wave.phase -= is_noise(&wave) ? 0 : floor(wave.phase);
     for (size_t k = 0; k < c->n_waves; k++) {
         const struct dalcs_wave *known = &c->wave[k];
         if (known->shape == wave.shape && known->decay == wave.decay &&
@@ -45,7 +49,7 @@ const struct dalcs_form *dalcs_wave_value(struct dalcs_compiler *c, const struct
         sign *= sin_of_cycles(w.phase);
         w.phase = 0.25;
     }
-    if (w.frequency == 0 && w.decay == 0 && w.delay == 0) {
+    if (w.frequency == 0 && w.decay == 0 && w.delay == 0 && !is_noise(&w)) {
         return dalcs_form_number(c, sign);
     }
     const int index = add_wave(c, w);
@@ -94,6 +98,9 @@ int dalcs_compiler_add_stimulus(struct dalcs_compiler *c, const struct dalcs_sti
 
 int dalcs_wave_stimulus(struct dalcs_compiler *c, int wave) {
     const struct dalcs_wave *w = &c->wave[wave];
+    if (is_noise(w)) {
+        return dalcs_noise_stimulus(c, w);
+    }
     struct dalcs_stimulus s = {.kind = DALCS_STIMULUS_SIN};
     if (w->shape != DALCS_SINE) {
         const double period = 1 / w->frequency;

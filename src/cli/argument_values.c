@@ -13,6 +13,32 @@
 #include <string.h>
 #include <strings.h>
 
+/* What makes a file of this name, for which -o is not. */
+static const char *who_writes(const char *path) {
+    static const char *const other[][2] = {
+        {".parquet", "; in Python dalcs.run(...).to_pandas().to_parquet(...) writes it"},
+        {".feather", "; in Python dalcs.run(...).to_pandas().to_feather(...) writes it"},
+        {".xlsx", "; in Python dalcs.run(...).to_pandas().to_excel(...) writes it"},
+        {".h5", "; in Python dalcs.run(...).to_pandas().to_hdf(...) writes it"},
+        {".hdf5", "; in Python dalcs.run(...).to_pandas().to_hdf(...) writes it"},
+        {".nc", "; in Python dalcs.run(...).to_xarray().to_netcdf(...) writes it"},
+        {".npy", "; in Python dalcs.run(...).values is an array of NumPy"},
+        {".npz", "; in Python dalcs.run(...).values is an array of NumPy"},
+        {".mat", "; in Python dalcs.run(...).values goes into scipy.io.savemat"},
+        {".json", "; --report FILE.json says what the run did"},
+        {".svg", "; --plot FILE.svg draws"},
+        {".png", "; --plot FILE.png draws"},
+        {".pdf", "; --plot FILE.pdf draws"},
+        {".html", "; 'dalcs plot' makes a page of a .raw file"}};
+    const char *dot = strrchr(path, '.');
+    for (size_t k = 0; dot != NULL && k < sizeof other / sizeof other[0]; k++) {
+        if (strcasecmp(dot, other[k][0]) == 0) {
+            return other[k][1];
+        }
+    }
+    return "";
+}
+
 enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *path) {
     if (strcmp(path, "none") == 0) {
@@ -20,7 +46,8 @@ enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
         return DALCS_OK;
     }
     if (!dalcs_table_find_format(path)) {
-        dalcs_cli_error(cli, "unknown format of '%s': name it .csv or .raw", path);
+        dalcs_cli_error(cli, "unknown format of '%s': name it .csv or .raw%s", path,
+                        who_writes(path));
         return DALCS_E_OPTION;
     }
     arguments->output[arguments->n_outputs++] = path;
@@ -129,54 +156,6 @@ enum dalcs_status dalcs_argument_audit(struct dalcs_arguments *arguments,
     return DALCS_E_OPTION;
 }
 
-enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
-                                        const struct dalcs_cli *cli, const char *text) {
-    if (!arguments->steady && !arguments->bode) {
-        dalcs_cli_error(cli, "--period is one of 'dalcs steady' and 'dalcs bode'");
-        return DALCS_E_OPTION;
-    }
-    return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
-}
-
-/* The options of `dalcs envelope` alone. */
-static enum dalcs_status check_envelope(const struct dalcs_arguments *arguments,
-                                        const struct dalcs_cli *cli, const char *name) {
-    if (!arguments->envelope) {
-        dalcs_cli_error(cli, "%s is one of 'dalcs envelope'", name);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_argument_stop(struct dalcs_arguments *arguments,
-                                      const struct dalcs_cli *cli, const char *text) {
-    DALCS_TRY(check_envelope(arguments, cli, "--stop"));
-    return dalcs_verb_take_positive(cli, "--stop", text, &arguments->stop);
-}
-
-enum dalcs_status dalcs_argument_show(struct dalcs_arguments *arguments,
-                                      const struct dalcs_cli *cli, const char *text) {
-    char time[64];
-    DALCS_TRY(check_envelope(arguments, cli, "--show"));
-    free(arguments->show);
-    arguments->n_show = 0;
-    arguments->show = dalcs_alloc(strlen(text) + 1, sizeof *arguments->show);
-    if (arguments->show == NULL) {
-        dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
-        return DALCS_E_NOMEM;
-    }
-    for (size_t start = 0, length; start <= strlen(text); start += length + 1) {
-        double *value = &arguments->show[arguments->n_show++];
-        length = strcspn(text + start, ",");
-        snprintf(time, sizeof time, "%.*s", (int)length, text + start);
-        if (dalcs_parse_number(time, value) != DALCS_OK || !(*value >= 0.0)) {
-            dalcs_cli_error(cli, "--show: '%s' is no time; write 0,10m,1", time);
-            return DALCS_E_OPTION;
-        }
-    }
-    return DALCS_OK;
-}
-
 static bool is_page(const char *path) {
     const char *dot = strrchr(path, '.');
     return dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
@@ -188,7 +167,7 @@ enum { SAMPLES = 64, SETTLE = 256, MOST_SAMPLES = 1000000 };
 static enum dalcs_status take_samples(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli) {
     if (!arguments->steady) {
-        dalcs_cli_error(cli, "--bifurcation, --samples and --settle are of 'dalcs steady'");
+        dalcs_cli_error(cli, "--bifurcation, --samples and --settle are options of 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     arguments->samples = arguments->samples > 0 ? arguments->samples : SAMPLES;
@@ -222,7 +201,7 @@ enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *argume
                                                   const struct dalcs_cli *cli, const char *path) {
     arguments->multipliers_plot = path;
     if (!arguments->steady) {
-        dalcs_cli_error(cli, "--multipliers-plot is one of 'dalcs steady'");
+        dalcs_cli_error(cli, "--multipliers-plot is an option of 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     if (!dalcs_figure_can_write(path) && !is_page(path)) {
@@ -238,7 +217,7 @@ enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
                                              const struct dalcs_cli *cli) {
     arguments->sensitivity = true;
     if (!arguments->steady) {
-        dalcs_cli_error(cli, "--sensitivity is one of 'dalcs steady'");
+        dalcs_cli_error(cli, "--sensitivity is an option of 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
@@ -248,12 +227,13 @@ enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
     if (arguments->bode || arguments->envelope) {
-        dalcs_cli_error(cli, "--losses is one of 'dalcs run' and 'dalcs steady'");
+        dalcs_cli_error(cli, "--losses is an option of 'dalcs run' and 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     if (arguments->steady && text != NULL) {
         dalcs_cli_error(
-            cli, "--losses: those of a steady state are of all of its orbit: leave the window out");
+            cli,
+            "--losses: those of a steady state are over its whole orbit: leave the window out");
         return DALCS_E_OPTION;
     }
     arguments->losses = true;
@@ -277,7 +257,7 @@ enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
         DALCS_TRY(parse_number(cli, "--losses", colon + 1, &arguments->losses_to));
     }
     if (!(arguments->losses_from >= 0.0 && arguments->losses_from < arguments->losses_to)) {
-        dalcs_cli_error(cli, "--losses: '%s' does not begin at 0 or later and before it ends",
+        dalcs_cli_error(cli, "--losses: '%s' is no window: write FROM:TO with 0 <= FROM < TO",
                         text);
         return DALCS_E_OPTION;
     }
@@ -287,7 +267,7 @@ enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_losses_plot(struct dalcs_arguments *arguments,
                                              const struct dalcs_cli *cli, const char *path) {
     if (arguments->bode || arguments->envelope) {
-        dalcs_cli_error(cli, "--losses-plot is one of 'dalcs run' and 'dalcs steady'");
+        dalcs_cli_error(cli, "--losses-plot is an option of 'dalcs run' and 'dalcs steady'");
         return DALCS_E_OPTION;
     }
     arguments->losses_plot = path;

@@ -26,6 +26,12 @@ enum dalcs_status dalcs_argument_fill(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_curve(struct dalcs_arguments *arguments,
                                        const struct dalcs_cli *cli,
                                        const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_at(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                    const char *text) DALCS_MUST_CHECK;
+/* --tran, or --tstop. */
+enum dalcs_status dalcs_argument_transient(struct dalcs_arguments *arguments,
+                                           const struct dalcs_cli *cli, bool is_whole,
+                                           const char *text) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_argument_compress(struct dalcs_arguments *arguments,
                                           const struct dalcs_cli *cli,
                                           const char *text) DALCS_MUST_CHECK;

@@ -19,6 +19,8 @@ enum {
     CURVE,
     COMPRESS,
     AT,
+    TRAN,
+    TSTOP,
     REPORT,
     PLOT,
     DUMP,
@@ -63,6 +65,8 @@ static const struct option option[] = {
     {"curve", required_argument, NULL, CURVE},
     {"compress", required_argument, NULL, COMPRESS},
     {"at", required_argument, NULL, AT},
+    {"tran", required_argument, NULL, TRAN},
+    {"tstop", required_argument, NULL, TSTOP},
     {"report", required_argument, NULL, REPORT},
     {"plot", required_argument, NULL, PLOT},
     {"dump", required_argument, NULL, DUMP},
@@ -129,7 +133,7 @@ static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const stru
         while (option[k].val != code) {
             k++;
         }
-        dalcs_cli_error(cli, "--%s is one of 'dalcs bode'", option[k].name);
+        dalcs_cli_error(cli, "--%s is an option of 'dalcs bode'", option[k].name);
         return DALCS_E_OPTION;
     }
     switch (code) {
@@ -178,8 +182,10 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case COMPRESS:
         return dalcs_argument_compress(arguments, cli, optarg);
     case AT:
-        arguments->at = optarg;
-        return DALCS_OK;
+        return dalcs_argument_at(arguments, cli, optarg);
+    case TRAN:
+    case TSTOP:
+        return dalcs_argument_transient(arguments, cli, code == TRAN, optarg);
     case REPORT:
         arguments->report = optarg;
         return DALCS_OK;
@@ -317,12 +323,14 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                    (code = getopt_long(argc, argv, ":o:qh", option, NULL)) != -1;) {
         status = take(arguments, cli, code, argv);
     }
-    if (status == DALCS_OK && !arguments->help && arguments->at && arguments->compress > 0.0) {
+    if (status == DALCS_OK && !arguments->help && dalcs_arguments_have_times(arguments) &&
+        arguments->compress > 0.0) {
         dalcs_cli_error(cli,
                         "--compress leaves rows out, --at prints each of its times: choose one");
         status = DALCS_E_OPTION;
     }
-    if (status == DALCS_OK && !arguments->help && arguments->at && arguments->fill > 0.0) {
+    if (status == DALCS_OK && !arguments->help && dalcs_arguments_have_times(arguments) &&
+        arguments->fill > 0.0) {
         dalcs_cli_error(cli, "--fill adds rows, --at prints only its own times: choose one");
         status = DALCS_E_OPTION;
     }
@@ -346,6 +354,7 @@ void dalcs_arguments_finish(struct dalcs_arguments *arguments) {
     free(arguments->output);
     free(arguments->set);
     free(arguments->show);
+    free(arguments->times);
     free(arguments->default_output);
     free(arguments->default_dump);
     *arguments = (struct dalcs_arguments){0};

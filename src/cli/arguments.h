@@ -17,9 +17,14 @@ struct dalcs_arguments {
     int stages;
     double step; /* s */
     double compress;
-    double fill;       /* INFINITY: none */
-    const char *curve; /* NULL: the netlist's */
-    const char *at, *report, *plot, *measures;
+    double fill;           /* INFINITY: none */
+    const char *curve;     /* NULL: the netlist's */
+    const char *at;        /* a file of times, or NULL */
+    double *times;         /* [n_times] s, in any order; owned array */
+    size_t n_times;        /* that --at lists */
+    const char *transient; /* what .tran says; NULL: the netlist's */
+    const char *tstop;     /* when it ends; NULL: likewise */
+    const char *report, *plot, *measures;
     bool no_waveforms; /* -o none */
     size_t shard,
         n_shards; /* of the steps of .step: this part of so many, from 1 on; 0 of 0: all */
@@ -62,6 +67,11 @@ struct dalcs_arguments {
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc,
                                         char **argv) DALCS_MUST_CHECK;
+
+/* Are there times of rows, in a file or listed? */
+static inline bool dalcs_arguments_have_times(const struct dalcs_arguments *arguments) {
+    return arguments->at != NULL || arguments->n_times > 0;
+}
 
 void dalcs_arguments_finish(struct dalcs_arguments *arguments);
 

@@ -109,7 +109,7 @@ void dalcs_audit_note_gaps(const struct dalcs_waveforms *w, struct dalcs_diag *d
         dalcs_diag_add(
             diag, DALCS_NOTE, NULL, NULL,
             "%zu value%s %s no number, the first one that of '%s' at %s: laws that read it "
-            "are not asked there",
+            "are not checked there",
             n_gaps, n_gaps == 1 ? "" : "s", n_gaps == 1 ? "is" : "are", w->name[place % n],
             dalcs_quantity_write(time, w->value[place / n * n], "s", 6));
     }

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const struct {
+static const struct verb {
     const char *name, *purpose;
     enum dalcs_exit (*function)(const struct dalcs_cli *cli, int argc, char **argv);
 } verb[] = {
@@ -63,13 +63,13 @@ static void write_help(FILE *stream) {
         fprintf(stream, "  %-10s  %s\n", verb[i].name, verb[i].purpose);
     }
     fputs("\n"
-          "  -h, --help     this text; after a verb its options and examples\n"
+          "  -h, --help     this text; 'dalcs help VERB' has the options and examples of a verb\n"
           "      --version  the version\n"
           "  -b             as ngspice is called: dalcs -b --help\n"
           "\n"
           "examples:\n"
           "  dalcs run bridge.cir\n"
-          "  dalcs run --help\n"
+          "  dalcs help run\n"
           "  dalcs -b -r out.raw -o log bridge.cir\n"
           "\n"
           "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n",
@@ -124,6 +124,21 @@ static enum dalcs_exit refuse_verb(const struct dalcs_cli *cli, const char *word
     return DALCS_EXIT_USAGE;
 }
 
+static const struct verb *find_verb(const char *word) {
+    for (int i = 0; i < N_VERBS; i++) {
+        if (strcmp(word, verb[i].name) == 0) {
+            return &verb[i];
+        }
+    }
+    return NULL;
+}
+
+/* argv[0] is the verb. */
+static enum dalcs_exit start_verb(const struct dalcs_cli *cli, int argc, char **argv) {
+    const struct verb *found = find_verb(argv[0]);
+    return found != NULL ? found->function(cli, argc, argv) : refuse_verb(cli, argv[0]);
+}
+
 /* Is that the name by which the program was called? */
 static bool is_called(const char *name, const char *path) {
     const char *slash = strrchr(path, '/');
@@ -138,8 +153,13 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
         write_help(cli->err);
         return DALCS_EXIT_USAGE;
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
-        strcmp(argv[1], "help") == 0) {
+    const bool is_help = strcmp(argv[1], "help") == 0;
+    if (is_help && argc > 2) {
+        char help[] = "--help";
+        char *asked[] = {argv[2], help, NULL};
+        return start_verb(cli, 2, asked);
+    }
+    if (is_help || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         write_help(cli->out);
         return DALCS_EXIT_OK;
     }
@@ -147,16 +167,12 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
         fprintf(cli->out, "dalcs %s\n", dalcs_version());
         return DALCS_EXIT_OK;
     }
-    for (int i = 0; i < N_VERBS; i++) {
-        if (strcmp(argv[1], verb[i].name) == 0) {
-            return verb[i].function(cli, argc - 1, argv + 1);
-        }
-    }
-    if (dalcs_cli_is_batch(argc, argv)) {
+    if (find_verb(argv[1]) == NULL && dalcs_cli_is_batch(argc, argv)) {
         return dalcs_cli_batch(cli, argc, argv);
     }
-    if (strcmp(argv[1], "-") == 0 || (argv[1][0] != '-' && access(argv[1], F_OK) == 0)) {
+    if (find_verb(argv[1]) == NULL &&
+        (strcmp(argv[1], "-") == 0 || (argv[1][0] != '-' && access(argv[1], F_OK) == 0))) {
         return dalcs_cli_run(cli, argc, argv);
     }
-    return refuse_verb(cli, argv[1]);
+    return start_verb(cli, argc - 1, argv + 1);
 }

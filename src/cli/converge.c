@@ -88,7 +88,8 @@ static enum dalcs_status take_range(struct arguments *a, const struct dalcs_cli 
     }
     double last = a->step[1];
     if (last >= a->step[0]) {
-        dalcs_cli_error(cli, "--steps: %s..%s does not fall", from, dots + 2);
+        dalcs_cli_error(cli, "--steps: %s..%s must fall from the largest step to the smallest",
+                        from, dots + 2);
         return DALCS_E_OPTION;
     }
     a->n_steps = 1;
@@ -125,13 +126,13 @@ static enum dalcs_status take_list(struct arguments *a, const struct dalcs_cli *
     for (size_t i = 1; i < n; i++) {
         double ratio = a->step[0] / a->step[i];
         if (a->step[i] == a->step[i - 1]) {
-            dalcs_cli_error(cli, "--steps: %g s is there twice", a->step[i]);
+            dalcs_cli_error(cli, "--steps: %g s is given twice", a->step[i]);
             return DALCS_E_OPTION;
         }
         if (fabs(ratio - round(ratio)) > WHOLE * ratio) {
-            dalcs_cli_error(cli,
-                            "--steps: %g s is no whole part of %g s: their ends would not meet",
-                            a->step[i], a->step[0]);
+            dalcs_cli_error(
+                cli, "--steps: %g s does not divide %g s: the steps would not end at common times",
+                a->step[i], a->step[0]);
             return DALCS_E_OPTION;
         }
     }

@@ -35,8 +35,10 @@ static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
 enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
                                      const struct dalcs_arguments *arguments, bool ascii,
                                      enum dalcs_analysis main, double start, double stop) {
-    *outputs =
-        (struct dalcs_outputs){.report_path = arguments->report, .has_summary = !arguments->quiet};
+    *outputs = (struct dalcs_outputs){.report_path = arguments->report,
+                                      .has_summary = !arguments->quiet,
+                                      .is_audited = arguments->audit != DALCS_AUDIT_OFF,
+                                      .audit.is_full = arguments->audit == DALCS_AUDIT_FULL};
     enum dalcs_status status = init_tables(outputs, arguments, ascii, main);
     if (status != DALCS_OK) {
         dalcs_outputs_finish(outputs);
@@ -75,6 +77,10 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
             return status;
         }
     }
+    outputs->n_plots++;
+    if (outputs->is_audited) {
+        DALCS_TRY(dalcs_table_audit_begin(&outputs->audit, plot));
+    }
     return dalcs_measure_begin(&outputs->measure[plot->analysis], plot);
 }
 
@@ -84,8 +90,16 @@ enum dalcs_status dalcs_outputs_rows(struct dalcs_outputs *outputs, size_t n, co
     const size_t n_values = (measure->plot->is_complex ? 2 : 1) * measure->plot->n_signals;
     const bool is_drawn = outputs->drawn && outputs->drawn == measure->plot;
     outputs->n_rows += n;
+    const bool is_due = outputs->is_audited && dalcs_table_audit_is_due(&outputs->audit, n);
+    const bool is_audited = is_due && outputs->has_summary;
+    if (is_audited) {
+        dalcs_table_audit_before(&outputs->audit, measure);
+    }
     for (size_t k = 0; k < n && outputs->has_summary; k++) {
         dalcs_measure_row(measure, time[k], value + k * n_values);
+    }
+    if (is_due) {
+        dalcs_table_audit_after(&outputs->audit, is_audited ? measure : NULL, n, time, value);
     }
     for (size_t k = 0; k < n && is_drawn; k++) {
         dalcs_figure_row(outputs->figure, time[k], value + k * n_values);
@@ -109,6 +123,14 @@ enum dalcs_status dalcs_outputs_end(struct dalcs_outputs *outputs) {
         }
     }
     return DALCS_OK;
+}
+
+enum dalcs_status dalcs_outputs_audit(const struct dalcs_outputs *outputs,
+                                      const struct dalcs_cli *cli) {
+    return outputs->is_audited && outputs->has_summary
+               ? dalcs_table_audit_summary(&outputs->audit, &outputs->measure[outputs->analysis],
+                                           cli)
+               : DALCS_OK;
 }
 
 /* One line about one file; returns `status` or what was wrong before the run stopped. */
@@ -187,7 +209,11 @@ enum dalcs_status dalcs_outputs_close(struct dalcs_outputs *outputs, const struc
                     "holds all\n",
                     outputs->table[i].path, outputs->table[i].n_left_out);
         }
+        const struct dalcs_table_format *format = outputs->table[i].format;
         enum dalcs_status status = close_table(&outputs->table[i], cli, out, complete);
+        if (status == DALCS_OK && complete && outputs->is_audited && outputs->n_plots == 1) {
+            status = dalcs_table_audit_file(&outputs->audit, format, outputs->table[i].path, cli);
+        }
         worst = status != DALCS_OK ? status : worst;
     }
     if (outputs->figure) {
@@ -215,5 +241,6 @@ void dalcs_outputs_finish(struct dalcs_outputs *outputs) {
         dalcs_measure_finish(&outputs->measure[i]);
     }
     dalcs_step_lines_finish(&outputs->steps);
+    dalcs_table_audit_finish(&outputs->audit);
     *outputs = (struct dalcs_outputs){0};
 }

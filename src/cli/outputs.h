@@ -7,6 +7,7 @@
 #include "measure.h"
 #include "step_lines.h"
 #include "table.h"
+#include "table_audit.h"
 
 struct dalcs_outputs {
     struct dalcs_table *table; /* [n_tables] */
@@ -18,7 +19,10 @@ struct dalcs_outputs {
     bool has_summary; /* that shows what rows are measured for */
     struct dalcs_measure measure[DALCS_N_ANALYSES];
     struct dalcs_step_lines steps; /* of .step */
-    enum dalcs_analysis analysis;  /* of the plot being received */
+    bool is_audited;
+    size_t n_plots;
+    struct dalcs_table_audit_sums audit; /* of the last plot */
+    enum dalcs_analysis analysis;        /* of the plot being received */
     size_t n_rows;
 };
 
@@ -35,6 +39,10 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs, const struc
 enum dalcs_status dalcs_outputs_rows(struct dalcs_outputs *outputs, size_t n, const double *time,
                                      const double *value);
 enum dalcs_status dalcs_outputs_end(struct dalcs_outputs *outputs);
+
+/* Of the last plot: what the summary will say, against what its rows were. */
+enum dalcs_status dalcs_outputs_audit(const struct dalcs_outputs *outputs,
+                                      const struct dalcs_cli *cli) DALCS_MUST_CHECK;
 
 /* Ends every file: under its name when `complete`, else under one that says it is partial. The
  * report keeps its name in both cases; `report` may be NULL. Names what was written on `out` (NULL:

@@ -48,6 +48,8 @@ static const char help[] =
     "      --events        mark events and jumps with lines\n"
     "      --no-bars       leave out when diodes and switches conduct\n"
     "      --theme NAME    light (default), dark, or print: greys and patterns\n"
+    "      --width N       in pixels, of a PDF in hundredths of an inch (default: 1200): the text\n"
+    "                      keeps its size, so 600 to 800 is for a column of a page\n"
     "      --plot N        which plot of a .raw file with several (default: the last with rows)\n"
     "      --run N         which run of a sweep, where the axis starts again (default: 1)\n"
     "  -q, --quiet         print nothing but warnings and errors\n"
@@ -117,6 +119,9 @@ static enum dalcs_status remake(struct drawing *drawing) {
     DALCS_TRY(dalcs_selection_make(&of_made, &drawing->made, NULL, 0, NAN, NAN, &drawing->diag));
     dalcs_selection_finish(&drawing->selection);
     drawing->selection = of_made;
+    if (arguments->histogram) {
+        drawing->selection.panel[0].quantity = "number of runs";
+    }
     return DALCS_OK;
 }
 
@@ -200,6 +205,7 @@ static enum dalcs_status compose(struct drawing *drawing, struct dalcs_figure *f
     dalcs_figure_init(figure, arguments->output, selection->start, selection->stop);
     figure->axis = selection->axis;
     figure->theme = arguments->theme;
+    figure->width = arguments->width > 0 ? (int)arguments->width : DALCS_FIGURE_WIDTH;
     figure->conduction = &drawing->conduction;
     figure->bars = !arguments->no_bars;
     figure->marks = arguments->marks;

@@ -23,7 +23,8 @@ enum {
     NO_BARS,
     THEME,
     PLOT,
-    RUN
+    RUN,
+    WIDTH
 };
 
 static const struct option option[] = {{"signals", required_argument, NULL, 's'},
@@ -37,6 +38,7 @@ static const struct option option[] = {{"signals", required_argument, NULL, 's'}
                                        {"theme", required_argument, NULL, THEME},
                                        {"plot", required_argument, NULL, PLOT},
                                        {"run", required_argument, NULL, RUN},
+                                       {"width", required_argument, NULL, WIDTH},
                                        {"quiet", no_argument, NULL, 'q'},
                                        {"histogram", no_argument, NULL, HISTOGRAM},
                                        {"tornado", optional_argument, NULL, TORNADO},
@@ -60,6 +62,17 @@ static enum dalcs_status parse_output(struct dalcs_plot_arguments *arguments,
     arguments->is_page = dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
     if (!arguments->is_page && !dalcs_figure_can_write(path)) {
         dalcs_cli_error(cli, "unknown format of '%s': name it .svg, .png, .pdf or .html", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status take_width(struct dalcs_plot_arguments *arguments,
+                                    const struct dalcs_cli *cli, const char *text) {
+    DALCS_TRY(dalcs_verb_take_count(cli, "--width", text, &arguments->width));
+    if (arguments->width < DALCS_FIGURE_LEAST_WIDTH || arguments->width > DALCS_FIGURE_MOST_WIDTH) {
+        dalcs_cli_error(cli, "--width: '%s' is not from %d to %d pixels", text,
+                        DALCS_FIGURE_LEAST_WIDTH, DALCS_FIGURE_MOST_WIDTH);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
@@ -108,6 +121,8 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
         return dalcs_verb_take_count(cli, "--plot", optarg, &arguments->plot);
     case RUN:
         return dalcs_verb_take_count(cli, "--run", optarg, &arguments->run);
+    case WIDTH:
+        return take_width(arguments, cli, optarg);
     case 'q':
         arguments->quiet = true;
         return DALCS_OK;
@@ -149,6 +164,21 @@ static enum dalcs_status check_charts(const struct dalcs_cli *cli,
     return DALCS_OK;
 }
 
+/* Pages have the width of their window, and other charts that of what they hold. */
+static enum dalcs_status check_width(const struct dalcs_cli *cli,
+                                     const struct dalcs_plot_arguments *arguments) {
+    if (arguments->width == 0) {
+        return DALCS_OK;
+    }
+    if (arguments->output == NULL || arguments->is_page || arguments->tornado != NULL ||
+        arguments->family != NULL) {
+        dalcs_cli_error(cli, "--width is for pictures of waveforms, spectra and histograms: give "
+                             "-o a name that ends in .svg, .png or .pdf");
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *arguments,
                                              const struct dalcs_cli *cli, int argc, char **argv) {
     *arguments = (struct dalcs_plot_arguments){.from = NAN, .to = NAN, .theme = &dalcs_theme_light};
@@ -176,6 +206,9 @@ enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *argume
     }
     if (status == DALCS_OK && !arguments->help) {
         status = check_charts(cli, arguments);
+    }
+    if (status == DALCS_OK && !arguments->help) {
+        status = check_width(cli, arguments);
     }
     if (status == DALCS_OK && arguments->is_page && arguments->theme == &dalcs_theme_print) {
         dalcs_cli_error(cli, "--theme print is for pictures: a page is light or dark");

@@ -15,6 +15,7 @@ struct dalcs_plot_arguments {
     double spectrum; /* Hz, up to there; 0: waveforms are drawn as they are */
     const struct dalcs_theme *theme;
     size_t plot, run; /* from 1; 0: not given */
+    size_t width;     /* of a picture; 0: not given */
     bool histogram;
     const char *tornado; /* the values, "" where the table says them; NULL: none */
     const char *family;  /* what colours the runs, "" for the first; NULL: none */

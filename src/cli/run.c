@@ -16,6 +16,7 @@
 #include "print_table.h"
 #include "progress.h"
 #include "quantity.h"
+#include "row_volume.h"
 #include "run_help.h"
 #include "script.h"
 #include "sensitivity_lines.h"
@@ -43,6 +44,8 @@ struct run {
     struct dalcs_progress progress;
     double time;     /* s, how far the run has come */
     bool has_script; /* a .control block says what is run */
+    double n_rows;   /* of .tran in each step at least; 0: not known */
+    bool quiet;
     bool is_collected;
     struct dalcs_bifurcation_chart bifurcation;
 };
@@ -54,7 +57,10 @@ static const char help[] =
     "ideal unless the netlist says otherwise. FILE may also be a system given by its matrices: "
     "'dalcs\n"
     "equations --help', or -, the standard input.\n"
-    "\n" DALCS_RUN_OPTIONS "      --losses[=FROM:TO]\n"
+    "\n" DALCS_RUN_OPTIONS "      --tran 'STEP STOP'\n"
+    "                      in place of what stands on .tran: '1u 5m uic'\n"
+    "      --tstop T       end at T; the rest of .tran stays\n"
+    "      --losses[=FROM:TO]\n"
     "                      print what each element takes on average from one time to another, "
     "the\n"
     "                      efficiency, power factors and THD (default: the window of .losses, "
@@ -84,6 +90,9 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
     run->progress.counts = plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
+    if (plot->analysis == DALCS_TRANSIENT && plot->step == 0 && run->n_rows > 0.0) {
+        DALCS_TRY(dalcs_row_volume_tell(run->cli, &run->outputs, plot, run->n_rows, run->quiet));
+    }
     enum dalcs_status status = dalcs_measures_file_plot(&run->measures, run->session, plot);
     if (status == DALCS_OK) {
         status = dalcs_print_table_begin(&run->printed, run->session, plot);
@@ -134,11 +143,16 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
     const struct {
         const char *name;
         bool given;
-    } option[] = {{"--tol", arguments->tolerance > 0.0}, {"--stages", arguments->stages > 0},
-                  {"--step", arguments->step > 0.0},     {"--compress", arguments->compress > 0.0},
-                  {"--fill", arguments->fill > 0.0},     {"--curve", arguments->curve != NULL},
-                  {"--at", arguments->at != NULL},       {"--plot", arguments->plot != NULL},
-                  {"--energy", arguments->energy},       {"--losses", arguments->losses}};
+    } option[] = {{"--tol", arguments->tolerance > 0.0},
+                  {"--stages", arguments->stages > 0},
+                  {"--step", arguments->step > 0.0},
+                  {"--compress", arguments->compress > 0.0},
+                  {"--fill", arguments->fill > 0.0},
+                  {"--curve", arguments->curve != NULL},
+                  {"--at", dalcs_arguments_have_times(arguments)},
+                  {"--plot", arguments->plot != NULL},
+                  {"--energy", arguments->energy},
+                  {"--losses", arguments->losses}};
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
@@ -298,8 +312,8 @@ static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
 /* Does nobody look at a row? Measurements do not: they have the solution itself. A script may write them. */
 static bool needs_no_rows(const struct run *run, const struct dalcs_arguments *arguments) {
     return arguments->no_waveforms && arguments->quiet && run->outputs.n_tables == 0 &&
-           run->outputs.report_path == NULL && arguments->plot == NULL && arguments->at == NULL &&
-           run->printed.out == NULL && !run->has_script;
+           run->outputs.report_path == NULL && arguments->plot == NULL &&
+           !dalcs_arguments_have_times(arguments) && run->printed.out == NULL && !run->has_script;
 }
 
 static void leave_rows_out(struct dalcs_run_options *options) {
@@ -328,6 +342,7 @@ static struct dalcs_run_options options_of(const struct run *run,
     }
     options.audit = arguments->audit;
     options.only_step = arguments->only;
+    options.workers = dalcs_settings_threads(arguments);
     options.steady = arguments->steady;
     options.samples = (int)arguments->samples;
     options.settle = (int)arguments->settle;
@@ -380,6 +395,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     } else if (status != DALCS_OK && status != DALCS_E_IO && *n_written == n_before) {
         dalcs_cli_error(run->cli, "%s", dalcs_status_text(status));
     }
+    if (status == DALCS_OK) {
+        status = dalcs_outputs_audit(&run->outputs, run->cli);
+    }
     const struct dalcs_report *report = dalcs_session_report(session);
     write_summary(run, arguments, report, status);
     enum dalcs_status files = dalcs_outputs_close(
@@ -416,6 +434,7 @@ static enum dalcs_status run_variants(const struct dalcs_cli *cli,
     leave_rows_out(&options);
     options.record = false;
     options.dump_path = NULL;
+    options.workers = 1; /* of each of the threads */
     return dalcs_variants_run(cli, arguments, session, &options);
 }
 
@@ -436,12 +455,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     if (status == DALCS_OK && arguments->sensitivity) {
         status = dalcs_session_ask_sensitivities(session);
     }
-    if (status == DALCS_OK && arguments->n_set > 0) {
-        status = dalcs_session_keep_netlist(session);
-    }
-    if (status == DALCS_OK && !isnan(arguments->seed)) {
-        status = dalcs_session_set_seed(session, arguments->seed);
-    }
+    status = status != DALCS_OK ? status : dalcs_settings_prepare(session, arguments);
     status = status != DALCS_OK ? status
                                 : dalcs_verb_read(session, arguments->netlist, arguments->dialect);
     status = status != DALCS_OK ? status : dalcs_settings_apply(session, arguments);
@@ -460,6 +474,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
         return status;
     }
+    DALCS_TRY(dalcs_settings_check_script(cli, session, arguments));
     bool is_table;
     DALCS_TRY(dalcs_variants_ask(cli, arguments, session, run.has_script, &is_table));
     if (is_table) {
@@ -467,17 +482,14 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     }
     warn_unused(cli, arguments, &request, main);
     struct dalcs_times times = {0};
-    if (arguments->at) {
-        status = dalcs_times_read(&times, cli, arguments->at,
-                                  request.transient ? request.stop : INFINITY);
-        if (status != DALCS_OK) {
-            return status;
-        }
-    }
+    DALCS_TRY(
+        dalcs_times_read(&times, cli, arguments, request.transient ? request.stop : INFINITY));
     if (arguments->batch && arguments->n_outputs == 0 &&
         (request.n_prints > 0 || !request.transient)) {
         run.printed.out = cli->out;
     }
+    run.n_rows = run.has_script ? 0.0 : dalcs_row_volume_count(arguments, &request, times.n);
+    run.quiet = arguments->quiet;
     bool at = times.n > 0;
     status = dalcs_outputs_init(&run.outputs, arguments, request.ascii, main,
                                 at ? times.time[0] : request.start,

@@ -30,7 +30,10 @@
     "      --compress X    leave out rows that straight lines between others give, up to X "       \
     "times\n"                                                                                      \
     "                      a signal's largest value\n"                                             \
-    "      --at FILE       print at exactly the times in FILE, one a line\n"                       \
+    "      --at T[,T...]   print at exactly these times, 0,1m; may be repeated; or FILE: at "      \
+    "those "                                                                                       \
+    "in\n"                                                                                         \
+    "                      it, one a line\n"                                                       \
     "      --set NAME=X    another value: of a parameter, an element or \"dmod(vfwd)\"; may be "   \
     "repeated\n"                                                                                   \
     "      --seed N        of random values (default: .options seed, else 1)\n"                    \
@@ -39,7 +42,8 @@
     "                      .step, or one; with -o none no waveforms are written\n"                 \
     "      --shard K/N     with -o none: the steps of the K-th of N parts, K from 1 on\n"          \
     "      --resume        with -o none: go on with the table of a run that was ended\n"           \
-    "      --jobs N        with -o none: steps that run at a time (default: all processors)\n"     \
+    "      --jobs N        with -o none: steps that run at a time, and of .wcase (default: all\n"  \
+    "                      processors)\n"                                                          \
     "      --report FILE   write what the run did as JSON\n"                                       \
     "      --plot FILE     draw the waveforms with gnuplot, .svg, .png or .pdf\n"                  \
     "      --dump FILE     where to leave a one-step problem that could not be solved (default:\n" \

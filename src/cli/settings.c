@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <unistd.h>
 
 double dalcs_settings_value(const char *text, size_t *name_length) {
     const char *equal = strchr(text, '=');
@@ -22,6 +24,41 @@ enum dalcs_status dalcs_settings_check(const struct dalcs_cli *cli, const char *
     if (!isfinite(dalcs_settings_value(text, &length)) || length == 0) {
         dalcs_cli_error(cli, "--set: '%s' is not NAME=NUMBER; write rload=10 or c1=2.2u", text);
         return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+size_t dalcs_settings_threads(const struct dalcs_arguments *arguments) {
+    const long here = sysconf(_SC_NPROCESSORS_ONLN);
+    return arguments->jobs > 0 ? arguments->jobs : here > 0 ? (size_t)here : 1;
+}
+
+enum dalcs_status dalcs_settings_prepare(struct dalcs_session *session,
+                                         const struct dalcs_arguments *arguments) {
+    if (arguments->n_set > 0) {
+        DALCS_TRY(dalcs_session_keep_netlist(session));
+    }
+    if (!isnan(arguments->seed)) {
+        DALCS_TRY(dalcs_session_set_seed(session, arguments->seed));
+    }
+    return dalcs_session_set_transient(session, arguments->transient, arguments->tstop);
+}
+
+enum dalcs_status dalcs_settings_check_script(const struct dalcs_cli *cli,
+                                              const struct dalcs_session *session,
+                                              const struct dalcs_arguments *arguments) {
+    const size_t n_lines = dalcs_session_n_script_lines(session);
+    if (arguments->transient == NULL && arguments->tstop == NULL) {
+        return DALCS_OK;
+    }
+    for (size_t k = 0; k < n_lines; k++) {
+        const char *line = dalcs_session_script_line(session, k);
+        line += strspn(line, " \t");
+        if (strncasecmp(line, "tran", 4) == 0 && strchr(" \t", line[4]) != NULL) {
+            dalcs_cli_error(cli, "%s is of the netlist's .tran: the .control block has '%s'",
+                            arguments->transient != NULL ? "--tran" : "--tstop", line);
+            return DALCS_E_OPTION;
+        }
     }
     return DALCS_OK;
 }

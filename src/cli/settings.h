@@ -11,6 +11,18 @@ enum dalcs_status dalcs_settings_check(const struct dalcs_cli *cli,
 /* What a checked one says; the name's length is how much of `text` it is. */
 double dalcs_settings_value(const char *text, size_t *name_length);
 
+/* How many threads to use: as --jobs says, else as many as there are processors. */
+size_t dalcs_settings_threads(const struct dalcs_arguments *arguments);
+
+/* What a session has to know of the command line before it reads the netlist. */
+enum dalcs_status dalcs_settings_prepare(struct dalcs_session *session,
+                                         const struct dalcs_arguments *arguments) DALCS_MUST_CHECK;
+
+/* A .control block with a `tran` of its own does not take --tran and --tstop: DALCS_E_OPTION, with a message. */
+enum dalcs_status
+dalcs_settings_check_script(const struct dalcs_cli *cli, const struct dalcs_session *session,
+                            const struct dalcs_arguments *arguments) DALCS_MUST_CHECK;
+
 /* All of them for a netlist that was read and is kept; the session's messages say what is wrong. */
 enum dalcs_status dalcs_settings_apply(struct dalcs_session *session,
                                        const struct dalcs_arguments *arguments) DALCS_MUST_CHECK;

@@ -1,7 +1,8 @@
-/* times.c - reads output times, one a line. */
+/* times.c - output times: of a file, one a line, and of the command line. */
 #include "times.h"
 
 #include "memory.h"
+#include "quantity.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -46,20 +47,20 @@ static enum dalcs_status add_line(struct dalcs_times *times, size_t *capacity,
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs_cli *cli,
-                                   const char *path, double stop) {
-    *times = (struct dalcs_times){0};
+/* One time a line up to `stop`. */
+static enum dalcs_status read_file(struct dalcs_times *times, size_t *capacity,
+                                   const struct dalcs_cli *cli, const char *path, double stop) {
     FILE *file = fopen(path, "r");
     if (!file) {
         dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(errno));
         return DALCS_E_IO;
     }
     enum dalcs_status status = DALCS_OK;
-    size_t capacity = 0, size = 0;
+    size_t size = 0;
     char *text = NULL;
     errno = 0;
     for (long line = 1; status == DALCS_OK && getline(&text, &size, file) >= 0; line++) {
-        status = add_line(times, &capacity, cli, path, stop, line, text);
+        status = add_line(times, capacity, cli, path, stop, line, text);
     }
     if (status == DALCS_OK && !feof(file)) { /* an error, or no memory for a line */
         dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(errno != 0 ? errno : EIO));
@@ -70,6 +71,56 @@ enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs
     }
     free(text);
     fclose(file);
+    return status;
+}
+
+static int compare(const void *left, const void *right) {
+    const double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+/* Those of the command line, which may come in any order, to those of the file. */
+static enum dalcs_status add_list(struct dalcs_times *times, size_t *capacity,
+                                  const struct dalcs_cli *cli,
+                                  const struct dalcs_arguments *arguments, double stop) {
+    if (dalcs_grow(&times->time, capacity, times->n + arguments->n_times, sizeof *times->time) !=
+        DALCS_OK) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < arguments->n_times; k++) {
+        const double time = arguments->times[k];
+        if (time > stop * (1.0 + ROUNDING)) {
+            char text[2][DALCS_QUANTITY_SIZE];
+            dalcs_cli_error(cli, "--at: %s comes after the end of the run, %s",
+                            dalcs_quantity_write(text[0], time, "s", 9),
+                            dalcs_quantity_write(text[1], stop, "s", 9));
+            return DALCS_E_OPTION;
+        }
+        times->time[times->n++] = time > stop ? stop : time;
+    }
+    qsort(times->time, times->n, sizeof *times->time, compare);
+    size_t n = 1;
+    for (size_t k = 1; k < times->n; k++) {
+        if (times->time[k] > times->time[n - 1]) {
+            times->time[n++] = times->time[k];
+        }
+    }
+    times->n = n;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs_cli *cli,
+                                   const struct dalcs_arguments *arguments, double stop) {
+    *times = (struct dalcs_times){0};
+    enum dalcs_status status = DALCS_OK;
+    size_t capacity = 0;
+    if (arguments->at != NULL) {
+        status = read_file(times, &capacity, cli, arguments->at, stop);
+    }
+    if (status == DALCS_OK && arguments->n_times > 0) {
+        status = add_list(times, &capacity, cli, arguments, stop);
+    }
     if (status != DALCS_OK) {
         dalcs_times_finish(times);
     }

@@ -39,7 +39,9 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
         arguments->plot == NULL && !arguments->losses && arguments->losses_plot == NULL &&
         !arguments->energy && !arguments->steady && !arguments->bode && !arguments->batch;
     const bool can_read = strcmp(arguments->netlist, "-") != 0;
-    const bool is_asked = arguments->n_shards > 0 || arguments->resume || arguments->jobs > 0;
+    const bool has_corners = dalcs_session_request(session).worst_case;
+    const bool is_asked =
+        arguments->n_shards > 0 || arguments->resume || (arguments->jobs > 0 && !has_corners);
     *wanted = has_steps && is_table && can_read && !has_script && arguments->only == 0;
     if (*wanted || !is_asked) {
         return DALCS_OK;

@@ -12,7 +12,6 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* Steps that may be done before the one that is waited for, for each thread; steps of one session, whose names and
  * messages grow with each. */
@@ -210,12 +209,7 @@ static enum dalcs_status open_session(struct worker *w) {
     w->session = NULL;
     w->n_run = 0;
     DALCS_TRY(dalcs_session_create(&w->session));
-    if (arguments->n_set > 0) {
-        DALCS_TRY(dalcs_session_keep_netlist(w->session));
-    }
-    if (!isnan(arguments->seed)) {
-        DALCS_TRY(dalcs_session_set_seed(w->session, arguments->seed));
-    }
+    DALCS_TRY(dalcs_settings_prepare(w->session, arguments));
     DALCS_TRY(dalcs_verb_read(w->session, arguments->netlist, arguments->dialect));
     return dalcs_settings_apply(w->session, arguments);
 }
@@ -311,11 +305,7 @@ static void *work(void *user) {
 }
 
 static size_t count_threads(const struct dalcs_variants_pool *pool) {
-    size_t n = pool->arguments->jobs;
-    if (n == 0) {
-        const long here = sysconf(_SC_NPROCESSORS_ONLN);
-        n = here > 0 ? (size_t)here : 1;
-    }
+    const size_t n = dalcs_settings_threads(pool->arguments);
     const size_t steps = pool->end - pool->first;
     return n < steps ? n : steps;
 }

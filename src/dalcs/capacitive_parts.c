@@ -43,9 +43,9 @@ static void note_parts(const struct dalcs_circuit *c, int *whole, struct border 
     for (int k = 1; k < c->n_nodes; k++) {
         if (whole[k] == k && border[k].capacitor > 0 && !border[k].is_fed) {
             dalcs_diag_add(diag, DALCS_NOTE, &c->device[border[k].capacitor - 1].where, NULL,
-                           "only capacitors tie node '%s' and what hangs on it to the rest: the "
-                           "operating point does not determine its voltage, and takes the one of "
-                           "least norm",
+                           "only capacitors connect node '%s' and the part around it to the rest: "
+                           "the operating point does not determine its voltage, and the one of "
+                           "least norm is taken",
                            c->node_name[k]);
         }
     }

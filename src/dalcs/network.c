@@ -68,7 +68,7 @@ static void note_references(const struct dalcs_layout *l, struct dalcs_diag *dia
         if (l->topology.is_reference[n]) {
             dalcs_diag_add(
                 diag, DALCS_NOTE, NULL, hint,
-                "nothing ties node '%s' and what hangs on it to ground: its voltage is 0 by "
+                "nothing connects node '%s' and the part around it to ground: its voltage is 0 by "
                 "convention, the others of that part are relative to it",
                 c->node_name[n]);
         }

@@ -93,6 +93,18 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
  * that it is made of, what the residual of an answer may be (the certificate's 900). */
 static const double rounded = 2.0 * DBL_EPSILON, solved = 2e-13;
 
+double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x) {
+    double gradient[2];
+    double rounding = 0.0;
+    dalcs_smooth_finite_gradient(of, x, gradient);
+    for (int j = 0; j < of->n; j++) {
+        const bool is_read = of->column[j] >= 0;
+        const double slope = fabs(gradient[j]) + fabs(dalcs_smooth_line(of, j));
+        rounding += is_read ? rounded * slope * fabs(x[j]) : 0.0;
+    }
+    return rounding;
+}
+
 static double over(double off, double size) {
     return off == 0.0 ? 0.0 : isfinite(size) ? off / size : INFINITY;
 }

@@ -48,9 +48,11 @@ void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double 
 bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
                             double *phi);
 
-/* Such factors. Lines that are flatter than the functions by the first one cost three of the 16 digits. A tangent at an
- * argument that is still on its way is good enough if it is within the second one. */
-static const double dalcs_smooth_much_steeper = 1e3, dalcs_smooth_steeper = 2.0;
+/* Such factors. Lines that are off by the first one cost three bits: at the nodes of a step the rounding of what they leave
+ * counts 13 times (the Lebesgue constant of seven stages), and 13 eps is 1/3500 of the least inner tolerance, 1e-11. The
+ * other nine bits are for voltages that are larger than what their difference drives. A tangent at an argument that is
+ * still on its way is good enough if it is within the second one. */
+static const double dalcs_smooth_much_steeper = 8.0, dalcs_smooth_steeper = 2.0;
 
 /* Lines as good as any before anything is known: of all functions, or of those that start on one, which say what flux
  * and charge are: for a given flux the current is in nothing but these. */
@@ -70,6 +72,9 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
 
 /* f - g x of one source. */
 double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x);
+
+/* What rounding of its arguments makes of it. */
+double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x);
 
 /* The arguments x[n_smooth][2] in columns y[n_columns]. */
 void dalcs_smooth_arguments(const struct dalcs_system *system, const double *y, double (*x)[2]);

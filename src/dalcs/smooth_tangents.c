@@ -35,7 +35,9 @@ static void find_lines(const struct dalcs_smooth_input *of, const double *gradie
     line[1] = is_one ? 0.0 : gradient[1];
 }
 
-/* Those at x, as far as they are finite and not 0, else the present ones. Returns by how much the steepest is steeper. */
+/* Those at x, as far as they are finite and not 0, else the present ones. Returns by how much the steepest is steeper; of
+ * a product also by how much it is flatter: i R, of a resistance that falls, is next to the line of the R before a small
+ * difference of large numbers. A diode that blocks is flat as well, but there nothing else is as small. */
 static double find_tangent(const struct dalcs_smooth_input *of, const double *x, double *line) {
     double gradient[2];
     double steeper = 0.0;
@@ -44,7 +46,9 @@ static double find_tangent(const struct dalcs_smooth_input *of, const double *x,
     for (int j = 0; j < 2; j++) {
         const double present = dalcs_smooth_line(of, j);
         const bool is_one = of->entry[j] != NULL && isfinite(line[j]) && line[j] != 0.0;
+        const bool counts_flatter = is_one && of->kind == DALCS_SMOOTH_PRODUCT;
         steeper = is_one ? fmax(steeper, fabs(line[j] / present)) : steeper;
+        steeper = counts_flatter ? fmax(steeper, fabs(present / line[j])) : steeper;
         line[j] = is_one ? line[j] : present;
     }
     return steeper;

@@ -54,10 +54,22 @@ int dalcs_blocks_first_wrong(const struct dalcs_radau_part *part, const double *
     return first < INT_MAX && are_right_before(part, first, unit) ? first : 0;
 }
 
+/* No block from that one on in which a switch has moved is what it was, whatever moved it: what reads a circuit may control
+ * a switch in it. */
+static int before_moved(const struct dalcs_radau_part *part, int block, const uint64_t *mode) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        bool moved = !p->lists.is_diode[d] && dalcs_mode_has(mode, d) != dalcs_osnsp_is_on(p, d);
+        block = moved && block_of(part, d) < block ? block_of(part, d) : block;
+    }
+    return block;
+}
+
 void dalcs_blocks_put_back(struct dalcs_radau_part *part, int block, const uint64_t *mode) {
     struct dalcs_osnsp *p = &part->component->osnsp;
-    for (int d = 0; block > 0 && d < p->system->n_pairs; d++) {
-        if (p->lists.is_diode[d] && block_of(part, d) < block) {
+    const int first = block > 0 ? before_moved(part, block, mode) : 0;
+    for (int d = 0; first > 0 && d < p->system->n_pairs; d++) {
+        if (p->lists.is_diode[d] && block_of(part, d) < first) {
             dalcs_osnsp_command(p, d, dalcs_mode_has(mode, d));
         }
     }

@@ -30,7 +30,23 @@ static double projecting_length(const struct dalcs_radau_part *part, double trie
                  : dalcs_radau_ladder(part, (part->length.level & ~7) + projection[k]);
 }
 
-bool dalcs_projection_sees(const struct dalcs_radau_part *part, bool fixed) {
+/* Does the map of the step that was tried last tell that the mode moves no state at once, by more than needs no
+ * projection? */
+static bool is_in_place(struct dalcs_radau_part *part) {
+    const struct dalcs_stage_entry *entry =
+        part->smooth == NULL
+            ? dalcs_stages_find(&part->stages, part->component->osnsp.mode, part->segment.h)
+            : NULL;
+    double most = dalcs_worth_projecting * part->inner_tolerance;
+    bool is = entry != NULL;
+    for (int x = 0; x < part->component->system->n_x && is; x++) {
+        double shift = dalcs_stage_shift(&part->stages, entry, x, part->segment.in);
+        is = fabs(shift) <= most * dalcs_step_scale(part, x, part->scales.unit);
+    }
+    return is;
+}
+
+bool dalcs_projection_sees(struct dalcs_radau_part *part, bool fixed) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const double *first = part->segment.out + l->stride;
     const double *drift = part->segment.out + l->drift;
@@ -41,7 +57,7 @@ bool dalcs_projection_sees(const struct dalcs_radau_part *part, bool fixed) {
         double regular = fabs(first[x] - part->x[x]) * part_of_span;
         sees = drift[x] != 0.0 && !(hidden * fabs(drift[x]) < regular);
     }
-    return sees;
+    return sees && !is_in_place(part);
 }
 
 /* Does this state belong to block `of`? -1: to any. */

@@ -13,8 +13,8 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
                                        double limit, bool fixed, bool *moved) DALCS_MUST_CHECK;
 
 /* May it find anything to move? Not where all states move in a projecting step by much more than their drift
- * in the step that was tried. It saves the map. */
-bool dalcs_projection_sees(const struct dalcs_radau_part *part, bool fixed);
+ * in the step that was tried, nor where that step's map tells that they are where the mode allows. It saves a map. */
+bool dalcs_projection_sees(struct dalcs_radau_part *part, bool fixed);
 
 /* For one that is off by so little that it moves farther in the shortest of steps, and dalcs_projection_try
  * cannot tell: rounding of voltages across milliohms, on factors, may be more current than is allowed. It goes

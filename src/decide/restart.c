@@ -50,7 +50,13 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
     return dalcs_micro_steps(r, part, h);
 }
 
-/* Does the exact jump move a state by more than the error that the state of an event has? */
+/* Is the exact jump of this state known? What sources that read act on jumps by more than problems without time tell. */
+static bool is_told(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int x) {
+    const struct dalcs_euler *e = r->base;
+    return e->jump.is_known || (e->jump.is_first && !e->jumps.is_driven[part->index][x]);
+}
+
+/* Does the exact jump, where it is known, move a state by more than the error that the state of an event has? */
 static bool is_noticeable(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     const double *after = r->base->jump.after;
@@ -59,7 +65,7 @@ static bool is_noticeable(const struct dalcs_radau *r, const struct dalcs_radau_
     for (int x = 0; x < s->n_x && !noticeable; x++) {
         double scale = fmax(part->scales.unit[s->column_is_current[x]],
                             fmax(fabs(part->x[x]), fabs(after[x])));
-        noticeable = fabs(after[x] - part->x[x]) > smallest * scale;
+        noticeable = is_told(r, part, x) && fabs(after[x] - part->x[x]) > smallest * scale;
     }
     return noticeable;
 }
@@ -145,42 +151,60 @@ static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part
 
 /* The same from ever shorter ones, until they tell the jump or have no certificate: the last length that has is *h. */
 static enum dalcs_status find_limit(struct dalcs_radau *r, struct dalcs_radau_part *part, double *h,
-                                    bool *is_seen) {
-    bool is_near;
+                                    bool *is_seen, bool *is_near) {
     const double longest = *h;
-    enum dalcs_status status = see_jump(r, part, *h, is_seen, &is_near);
-    while (status == DALCS_OK && !is_near && dalcs_micro_shorter * *h >= dalcs_length_shortest(r)) {
+    enum dalcs_status status = see_jump(r, part, *h, is_seen, is_near);
+    while (status == DALCS_OK && !*is_near &&
+           dalcs_micro_shorter * *h >= dalcs_length_shortest(r)) {
         *h *= dalcs_micro_shorter;
-        status = see_jump(r, part, *h, is_seen, &is_near);
+        status = see_jump(r, part, *h, is_seen, is_near);
     }
     if (status > DALCS_OK && *h < longest) {
         *h /= dalcs_micro_shorter;
-        status = see_jump(r, part, *h, is_seen, &is_near);
+        status = see_jump(r, part, *h, is_seen, is_near);
     }
     return status;
 }
 
 /* Puts states that nothing which reads acts on where they jump to, as far as that is known. */
 static void move_first(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    const struct dalcs_euler *e = r->base;
-    const bool *is_driven = e->jumps.is_driven[part->index];
-    for (int x = 0; e->jump.is_first && x < part->component->system->n_x; x++) {
-        part->x[x] = is_driven[x] ? part->x[x] : e->jump.after[x];
+    for (int x = 0; r->base->jump.is_first && x < part->component->system->n_x; x++) {
+        part->x[x] = is_told(r, part, x) ? r->base->jump.after[x] : part->x[x];
     }
+}
+
+/* The limit where sources that read act on states. What jumps without them drives impulses, which they may read: what
+ * they act on jumps by the area where it adds it up. Where it keeps the peak there is no limit; and where what moves is
+ * an event's error, its impulse is none. Then the others are where they jump to before, and what is read is finite. */
+static enum dalcs_status find_read_limit(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                         double *h, bool *is_seen) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    const size_t bytes = (size_t)p->n_words * sizeof(uint64_t);
+    bool is_near = false;
+    if (r->base->jump.is_first && is_noticeable(r, part)) {
+        const double longest = *h;
+        memcpy(part->work.mode_before, p->mode, bytes);
+        enum dalcs_status status = find_limit(r, part, h, is_seen, &is_near);
+        if (status < DALCS_OK || (status == DALCS_OK && is_near)) {
+            return status;
+        }
+        *h = longest;
+        memcpy(p->mode, part->work.mode_before, bytes);
+    }
+    move_first(r, part);
+    return find_limit(r, part, h, is_seen, &is_near);
 }
 
 /* A jump that no problem without time tells is the limit of vanishing micro-steps (Heemels, Schumacher and Weiland 1999,
  * thm 4.1), with the sources as they are just behind it: where they fall at once, the state would follow them for a
- * while only. Where sources that read act on states the others are where they jump to before: currents of these that
- * are read are finite then. */
+ * while only. */
 static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                         double h) {
     const size_t bytes = (size_t)part->component->system->n_x * sizeof(double);
     bool is_seen;
     double last = h;
     memcpy(part->work.before, part->x, bytes);
-    move_first(r, part);
-    enum dalcs_status status = find_limit(r, part, &last, &is_seen);
+    enum dalcs_status status = find_read_limit(r, part, &last, &is_seen);
     memcpy(part->x, part->work.before, bytes);
     if (status == DALCS_OK && !is_seen && !r->base->jump.is_first) { /* it was a fast transient */
         return dalcs_micro_steps(r, part, last);

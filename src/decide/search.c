@@ -133,20 +133,11 @@ static bool is_nearly_right(const struct dalcs_radau *r, const struct dalcs_rada
            dalcs_radau_ladder(part, part->length.level) >= 8.0 * r->resolution;
 }
 
-/* No shorter step mends the error, and it is rounding's: is it let pass from now on? */
-static bool lets_pass(const struct dalcs_radau_part *part, struct dalcs_search *search,
-                      const struct dalcs_step_quality *quality) {
-    bool is_rounding = search->stuck >= STUCK && quality->of_unit < dalcs_doubt_noise(part);
-    if (is_rounding && isfinite(quality->ratio) && search->tolerated == 1.0) {
-        search->tolerated = 4.0 * quality->ratio;
-        return true;
-    }
-    /* What allowed errors of states are levered up to, and shorter steps see as well, is that of a coil that is cut
-     * off. Maps know where that is. */
-    bool is_levered =
-        part->segment.rounding > 1.0 && search->stuck >= LEVERED_STUCK && quality->own <= 1.0;
-    search->spared = search->spared || is_levered;
-    return is_levered;
+/* Are states where they should be, and only voltages off that errors of theirs are levered up to, of a coil that is cut off?
+ * Maps know where that is. Then nothing is wrong with mode and state. */
+static bool is_levered(const struct dalcs_radau_part *part,
+                       const struct dalcs_step_quality *quality) {
+    return part->segment.rounding > 1.0 && quality->own <= 1.0;
 }
 
 /* An error that does not shrink with the step is what the state is off by: a smaller step would not mend it, and
@@ -169,9 +160,11 @@ static bool is_hopeless(const struct dalcs_radau *r, const struct dalcs_radau_pa
            (is_shortest(r, part) && !is_nearly_right(r, part, quality));
 }
 
-enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       struct dalcs_search *search,
-                                       const struct dalcs_step_quality *quality, bool *done) {
+/* What may be wrong but for the length of the step: a guess, or the state. *answered: there is another try. */
+static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                    struct dalcs_search *search,
+                                    const struct dalcs_step_quality *quality, bool *answered) {
+    *answered = true;
     if (search->guessed) {
         return dalcs_search_refuse(part, search);
     }
@@ -186,10 +179,36 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
     }
     bool asked = search->restarts > 0 || !part->guards.fresh;
     bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
-    if (quality->own < most_projected && may_project && dalcs_projection_sees(part, false)) {
-        bool moved;
-        DALCS_TRY(dalcs_search_project(r, part, search, &moved));
-        if (moved) {
+    *answered = false;
+    return quality->own < most_projected && may_project && dalcs_projection_sees(part, false)
+               ? dalcs_search_project(r, part, search, answered)
+               : DALCS_OK;
+}
+
+/* No shorter step mends the error, and it is rounding's: is it let pass from now on? */
+static bool lets_pass(const struct dalcs_radau_part *part, struct dalcs_search *search,
+                      const struct dalcs_step_quality *quality) {
+    bool is_rounding = search->stuck >= STUCK && quality->of_unit < dalcs_doubt_noise(part);
+    if (is_rounding && isfinite(quality->ratio) && search->tolerated == 1.0) {
+        search->tolerated = 4.0 * quality->ratio;
+        return true;
+    }
+    if (search->stuck < LEVERED_STUCK || !is_levered(part, quality)) {
+        return false;
+    }
+    search->spared = true; /* shorter steps see it as well */
+    search->stuck = 0;     /* another error is compared from now on */
+    search->ratio_before = INFINITY;
+    return true;
+}
+
+enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       struct dalcs_search *search,
+                                       const struct dalcs_step_quality *quality, bool *done) {
+    if (!is_levered(part, quality)) {
+        bool answered;
+        DALCS_TRY(doubt_mode(r, part, search, quality, &answered));
+        if (answered) {
             return DALCS_OK;
         }
     }

@@ -152,15 +152,29 @@ static enum dalcs_status turn_switches(struct dalcs_radau *r, struct dalcs_radau
     return DALCS_OK;
 }
 
-/* All that has crossed. */
-static bool are_switches_that_remember(const struct dalcs_radau_part *part) {
+static bool is_switch_that_remembers(const struct dalcs_radau_part *part, int guard) {
     const struct dalcs_system *s = part->component->system;
-    bool all = part->guards.n_crossed > 0;
-    for (int k = 0; k < part->guards.n_crossed && all; k++) {
-        int guard = part->guards.crossed[k];
-        all = guard >= s->n_pairs && dalcs_pair_remembers(&s->pair[dalcs_guard_pair(part, guard)]);
+    return guard >= s->n_pairs && dalcs_pair_remembers(&s->pair[dalcs_guard_pair(part, guard)]);
+}
+
+/* Is all that has crossed such switches? What the one-step problem has said of diodes it has said with the switches where
+ * they stand, so once it was asked these come first, and what else has crossed is left out. */
+static bool leave_switches_that_remember(struct dalcs_radau_part *part, bool asked) {
+    struct dalcs_part_guards *g = &part->guards;
+    int n = 0;
+    for (int k = 0; k < g->n_crossed; k++) {
+        n += is_switch_that_remembers(part, g->crossed[k]) ? 1 : 0;
     }
-    return all;
+    if (n == 0 || (n < g->n_crossed && !asked)) {
+        return false;
+    }
+    n = 0;
+    for (int k = 0; k < g->n_crossed; k++) {
+        g->crossed[n] = g->crossed[k];
+        n += is_switch_that_remembers(part, g->crossed[k]) ? 1 : 0;
+    }
+    g->n_crossed = n;
+    return true;
 }
 
 enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -176,7 +190,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
     if (search->opened) {
         return tie_crossed(part, search);
     }
-    if (are_switches_that_remember(part)) {
+    if (leave_switches_that_remember(part, search->restarts > 0)) {
         return turn_switches(r, part, search);
     }
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;

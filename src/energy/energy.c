@@ -3,6 +3,7 @@
 
 #include "energy_entries.h"
 #include "extremes.h"
+#include "micro_steps.h"
 #include "step_error.h"
 
 #include <math.h>
@@ -136,6 +137,9 @@ static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_r
             dalcs_euler_stored_energy(part->system, radau->x) - part->stored_at_start;
         largest[0] = dalcs_larger(radau->scales.unit[0], part->largest[0]);
         largest[1] = dalcs_larger(radau->scales.unit[1], part->largest[1]);
+        /* an answer next to 0 is known no better than what thresholds and sources drive lets it be */
+        dalcs_excitation_inputs(&radau->excitation, stop, 0.0, radau->work.u + part->system->n_x);
+        dalcs_micro_raise_to_drives(radau, largest);
     }
     return dalcs_energy_enter_decided(energy, part, radau->component, &radau->excitation.bystanders,
                                       stop);

@@ -158,7 +158,9 @@ enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma,
     obey_sources(c, u + c->system->n_x);
     DALCS_TRY(dalcs_positions_solve(&c->positions, sigma, u, y));
     c->commanded = c->commanded || c->positions.moved;
-    c->delayed_commands += c->positions.settled ? 0 : 1;
+    if (!c->positions.settled && c->delayed_commands++ == 0) {
+        c->restless = dalcs_positions_restless(&c->positions, y);
+    }
     return DALCS_OK;
 }
 

@@ -37,6 +37,7 @@ struct dalcs_component {
     bool commanded;           /* the last solve changed a switch */
     bool was_open;            /* the last step's answer may be one of several */
     long delayed_commands;    /* switches whose control did not settle within a step */
+    const char *restless;     /* the first of them at an operating point or in a step of Euler */
     long slid_steps;          /* in which one slides (sliding.h) */
     struct dalcs_arena arena; /* what has the same size during the run */
 };

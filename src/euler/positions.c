@@ -241,19 +241,41 @@ static enum dalcs_status search(struct dalcs_positions *p, bool first_fails, boo
     return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
 }
 
-enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
-                                        double *y) {
+static enum dalcs_status look_for(struct dalcs_positions *p, double sigma, const double *u,
+                                  double *y, bool *has_first) {
     p->moved = p->alternates = false;
     p->settled = true;
+    *has_first = false;
     if (p->n == 0) {
         return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
     }
     keep(p, p->first);
     enum dalcs_status first = dalcs_osnsp_solve(p->osnsp, sigma, u, y);
+    *has_first = first == DALCS_OK;
     enum dalcs_status status = first == DALCS_OK ? move_all(p, sigma, u, y) : first;
     bool has_all = p->alternates && differ_in_one(p, p->osnsp->mode, p->other);
     if (status < DALCS_OK || (status == DALCS_OK && p->settled) || has_all) {
         return status;
     }
     return search(p, first != DALCS_OK, status != DALCS_OK, sigma, u, y);
+}
+
+enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
+                                        double *y) {
+    bool has_first;
+    enum dalcs_status status = look_for(p, sigma, u, y, &has_first);
+    if (status != DALCS_OK || p->settled || sigma > 0.0 || !has_first) {
+        return status;
+    }
+    go_back(p, p->first); /* no operating point: what oscillates begins where it stood */
+    return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
+}
+
+const char *dalcs_positions_restless(const struct dalcs_positions *p, const double *y) {
+    for (int i = 0; i < p->n; i++) {
+        if (wants_to_move(p, i, y)) {
+            return p->osnsp->system->pair[p->pair[i]].element;
+        }
+    }
+    return NULL;
 }

@@ -39,9 +39,12 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
 void dalcs_positions_finish(struct dalcs_positions *p);
 
 /* As dalcs_osnsp_solve(), with positions in p->osnsp->mode that agree with the answer, from those that are there. Where
- * none that were tried do (!p->settled) it is the answer in some of them. Not DALCS_OK: all that want to move come to
+ * none that were tried do (!p->settled) it is the answer in some of them, at an operating point where they stood. Not DALCS_OK: all that want to move come to
  * positions without an answer; p->osnsp->mode and its witness are such ones. */
 enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
                                         double *y) DALCS_MUST_CHECK;
+
+/* The first switch that does not agree with the answer y; NULL: all do. */
+const char *dalcs_positions_restless(const struct dalcs_positions *p, const double *y);
 
 #endif

@@ -83,14 +83,17 @@ static void look(const struct dalcs_control *control, int pair, double t, struct
 
 bool dalcs_control_is_straight(const struct dalcs_control *control, int pair, double t) {
     const struct dalcs_csr *a = &control->system->direct_control;
-    bool straight = true;
-    for (int k = a->p[pair]; k < a->p[pair + 1] && straight; k++) {
-        const struct dalcs_stimulus *s = dalcs_control_stimulus(control, a->j[k]);
-        straight = s == NULL || dalcs_stimulus_n_terms(s) == 0;
-    }
     struct course c = {.of.swing = 0.0};
-    if (!straight) {
-        look(control, pair, t, &c);
+    for (int k = a->p[pair]; k < a->p[pair + 1]; k++) {
+        const struct dalcs_stimulus *s = dalcs_control_stimulus(control, a->j[k]);
+        if (s == NULL || dalcs_stimulus_n_terms(s) == 0) {
+            continue;
+        }
+        struct dalcs_stimulus_piece piece = {.term = control->term};
+        dalcs_stimulus_piece_at(s, t, &piece);
+        for (int i = 0; i < piece.n_terms; i++) {
+            add_term(&piece.term[i], a->x[k], &c);
+        }
     }
     return c.of.swing == 0.0;
 }

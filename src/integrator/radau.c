@@ -41,6 +41,19 @@ static bool enter_edges(const struct dalcs_radau *r, struct dalcs_radau_part *pa
     return any;
 }
 
+bool dalcs_radau_commands_at_start(struct dalcs_radau *r) {
+    bool moves = false;
+    for (int k = 0; k < r->n_parts; k++) {
+        struct dalcs_radau_part *part = &r->part[k];
+        if (part->kind != DALCS_PART_ALGEBRAIC) {
+            remember_switches(part);
+            dalcs_commands_start(&part->commands);
+            moves = dalcs_commands_obey(&part->commands, r->resolution) || moves;
+        }
+    }
+    return moves;
+}
+
 enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initial) {
     for (int k = 0; k < r->n_parts; k++) {
         struct dalcs_radau_part *part = &r->part[k];

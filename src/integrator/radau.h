@@ -19,6 +19,10 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
 
 void dalcs_radau_finish(struct dalcs_radau *r);
 
+/* Does a switch that sources control move at t = 0? One whose gate leaves its threshold there stands as in the
+ * operating point at 0 and moves just after it. Before the start. */
+bool dalcs_radau_commands_at_start(struct dalcs_radau *r);
+
 /* Starts at t = 0 from the components' states: initial[k][n_x] = x(0-), or NULL for the operating
  * point that base has solved. */
 enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initial) DALCS_MUST_CHECK;

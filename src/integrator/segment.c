@@ -117,8 +117,7 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
 }
 
 /* May the state be off by what interpolation left of it? */
-static bool is_worth_projecting(const struct dalcs_radau_part *part,
-                                const struct dalcs_search *search,
+static bool is_worth_projecting(struct dalcs_radau_part *part, const struct dalcs_search *search,
                                 const struct dalcs_step_quality *q) {
     return part->guards.fresh && !search->projected && !search->states_free &&
            q->drift > (search->fixed ? 0.0 : dalcs_worth_projecting) &&
@@ -223,7 +222,7 @@ static int cheapest_level(struct dalcs_radau_part *part) {
     int level = has_maps ? dalcs_transition_longest_level(part) : part->length.level;
     for (int k = 0; k <= MOST_PREFERRED; k++) {
         double h = dalcs_radau_ladder(part, level + k);
-        if (dalcs_stages_have(&part->stages, part->component->osnsp.mode, h)) {
+        if (dalcs_stages_find(&part->stages, part->component->osnsp.mode, h) != NULL) {
             return level + k;
         }
     }

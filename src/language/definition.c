@@ -188,6 +188,19 @@ static bool is_plain_pair(const struct dalcs_card *card, int k) {
     return is_name && ends && (next == DALCS_TOKEN_WORD || next == DALCS_TOKEN_EXPRESSION);
 }
 
+/* `name expression`, which has parentheses and is all of the card. */
+static bool is_plain_expression(const struct dalcs_card *card, int at) {
+    bool has_parenthesis = false;
+    for (int k = at + 1; k < card->n; k++) {
+        if (card->token[k].kind == DALCS_TOKEN_EQUAL || card->token[k].kind == DALCS_TOKEN_BAD) {
+            return false;
+        }
+        has_parenthesis =
+            has_parenthesis || (k > at + 1 && card->token[k].kind == DALCS_TOKEN_OPEN);
+    }
+    return has_parenthesis && is_plain_pair(card, at);
+}
+
 /* Does a .param set the name? Then .csparam name={name}, ngspice's idiom, gives its value to the script alone. */
 static bool is_set_elsewhere(const struct collector *c, const char *name) {
     const struct dalcs_netlist *netlist = c->language->netlist;
@@ -240,6 +253,10 @@ static enum dalcs_status read_assignments(struct collector *c, const struct dalc
             DALCS_TRY(add_function(c, card, at, head, head + 1, end));
             at = end;
             continue;
+        }
+        if (!is_formal && is_plain_expression(card, at)) {
+            return assign_parameter(c, card, &card->token[at], &card->token[at + 1],
+                                    card->n - at - 1);
         }
         if (!is_formal && is_plain_pair(card, at)) {
             DALCS_TRY(assign_parameter(c, card, &card->token[at], &card->token[at + 1], 1));
@@ -457,8 +474,9 @@ static enum dalcs_status read_card(struct collector *c, const struct dalcs_card 
     } cards[] = {
         {".param", PARAM},   {".params", PARAM},  {".csparam", PARAM}, {".global_param", PARAM},
         {".func", FUNC},     {".subckt", SUBCKT}, {".ends", ENDS},     {".eom", ENDS},
-        {".macro", SUBCKT},  {".global", GLOBAL}, {".model", MODEL},   {".if", IF},
-        {".elseif", ELSEIF}, {".else", ELSE},     {".endif", ENDIF},
+        {".function", FUNC}, {".params:", PARAM}, {".macro", SUBCKT},  {".global", GLOBAL},
+        {".model", MODEL},   {".if", IF},         {".elseif", ELSEIF}, {".else", ELSE},
+        {".endif", ENDIF},
     };
 
     if (card->letter == 'x') {

@@ -158,7 +158,8 @@ static const char *suggest_function(const struct run *r, const char *name) {
         }
     }
     const char *nearest = dalcs_function_nearest(name);
-    return nearest != NULL ? dalcs_language_text(r->language, "did you mean '%s'?", nearest) : NULL;
+    return nearest != NULL ? dalcs_language_text(r->language, "did you mean '%s'?", nearest)
+                           : dalcs_function_refusal(name);
 }
 
 /* A random value. */

@@ -106,8 +106,9 @@ static bool is_parameter(struct dalcs_scope *scope, const struct dalcs_card *car
     const struct dalcs_token *token = &card->token[k];
     const bool after_equal = card->token[k - 1].kind == DALCS_TOKEN_EQUAL;
     const bool is_name = (token->text[0] >= 'a' && token->text[0] <= 'z') || token->text[0] == '_';
-    const bool may =
-        card->letter == '.' ? after_equal && strcmp(card->token->text, ".model") == 0 : true;
+    const bool is_assigned = after_equal && (strcmp(card->token->text, ".model") == 0 ||
+                                             strcmp(card->token->text, ".ic") == 0);
+    const bool may = card->letter == '.' ? is_assigned : true;
     if (token->kind != DALCS_TOKEN_WORD || !is_name || !may) {
         return false;
     }

@@ -92,6 +92,7 @@ struct dalcs_expression_context {
     const struct dalcs_names *arguments; /* name -> index, of a function's body; else NULL */
     bool has_signals;                    /* v(a), v(a,b) and i(x) are signals */
     bool is_condition;                   /* of .if: = compares too, as in ngspice */
+    bool is_transfer;                    /* of s: ^ is a power in every dialect */
     struct dalcs_dialect dialect;
     bool *noted_caret; /* this and the next: a note about it was made */
     bool *noted_log;
@@ -118,6 +119,12 @@ const struct dalcs_function *dalcs_function_find(const char *name, enum dalcs_di
 const char *dalcs_function_refusal(const char *name);
 
 /* ddt(x), idt(x, first, reset) and sdt: of a source's formula alone, which becomes a capacitor with it. */
+/* LTspice's delay(x, t) and absdelay(x, t). */
+bool dalcs_function_is_delay(const char *name);
+
+/* LTspice's rand(x), random(x) and white(x): a random value for each whole x. */
+bool dalcs_function_is_noise(const char *name);
+
 bool dalcs_function_remembers(const char *name, int *least, int *most);
 
 /* The name of a built-in function like this one, or NULL. */

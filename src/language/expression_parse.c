@@ -249,8 +249,15 @@ static bool read_operator(struct parser *p, const char *t) {
     return false;
 }
 
+/* 'vref'*(v(a)/2): quotes inside of a formula are parentheses. One that follows a value closes. */
+static void read_quote(struct parser *p, enum symbol before) {
+    p->symbol = before == NUMBER || before == NAME || before == CLOSE ? CLOSE : OPEN;
+    p->length = 1;
+}
+
 static void next(struct parser *p) {
     const char *text = p->text->text;
+    const enum symbol before = p->symbol;
     p->last_end = p->begin + p->length;
     p->begin += p->length;
     while (text[p->begin] == ' ' || text[p->begin] == '\t') {
@@ -268,6 +275,8 @@ static void next(struct parser *p) {
         while (continues_name(t[p->length])) {
             p->length++;
         }
+    } else if (*t == '\'') {
+        read_quote(p, before);
     } else if (!read_operator(p, t)) {
         p->symbol = WRONG;
         p->length = 1;
@@ -357,6 +366,9 @@ static void note_log(struct parser *p, int begin, int length, const char *name) 
 
 /* ^, which is a power everywhere but in LTspice, where most people who write it mean one too. */
 static void note_caret(struct parser *p, int begin) {
+    if (p->context->is_transfer) {
+        return;
+    }
     if (p->context->dialect.name == DALCS_DIALECT_LTSPICE) {
         report(p, DALCS_ERROR, begin, 1, "write ** or pow(x, y) for a power",
                "^ is exclusive or in LTspice, not a power");

@@ -202,6 +202,8 @@ static void apply(struct work *w, const struct frame *f, const struct dalcs_oper
     }
 }
 
+const char dalcs_formula_time_beside[] = "time";
+
 /* ---- Names and signals ----------------------------------------------------------------------- */
 
 static void push_name(struct work *w, const struct frame *f, const struct dalcs_operation *o) {
@@ -209,8 +211,13 @@ static void push_name(struct work *w, const struct frame *f, const struct dalcs_
         w->variable != NULL
             ? strcmp(o->u.name, w->variable) == 0
             : strcmp(o->u.name, "time") == 0 && dalcs_scope_find_value(w->scope, "time") == NULL;
+    const bool is_time_beside = w->variable != NULL && strcmp(w->variable, "x") == 0 &&
+                                strcmp(o->u.name, dalcs_formula_time_beside) == 0 &&
+                                dalcs_scope_find_value(w->scope, o->u.name) == NULL;
     if (is_variable) {
         push(w, make(w, f, o, DALCS_FORMULA_TIME));
+    } else if (is_time_beside) {
+        push_over(w, f, o, DALCS_FORMULA_CALL, 0);
     } else {
         fold(w, f, o, 0);
     }
@@ -253,13 +260,11 @@ static void check_call(struct work *w, const struct frame *f, const struct dalcs
     int least;
     int most;
     if (dalcs_scope_find_function(w->scope, o->u.name) != NULL ||
+        dalcs_function_is_noise(o->u.name) || dalcs_function_is_delay(o->u.name) ||
         dalcs_function_remembers(o->u.name, &least, &most)) {
         return;
     }
-    const char *hint =
-        strcmp(o->u.name, "delay") == 0
-            ? "a line of coils and capacitors delays, or BUF with td= of a signal of two levels"
-            : dalcs_function_refusal(o->u.name);
+    const char *hint = dalcs_function_refusal(o->u.name);
     fail(w, f, o, hint, "'%s(...)' is not a function of the values at one time", o->u.name);
 }
 
@@ -315,6 +320,12 @@ static void call(struct work *w, const struct frame *f, const struct dalcs_opera
     }
     if (dalcs_function_remembers(o->u.name, &least, &most)) {
         call_memory(w, f, o, least, most);
+        return;
+    }
+    const bool is_noise = dalcs_function_is_noise(o->u.name) && o->count == 1;
+    const bool is_delay = dalcs_function_is_delay(o->u.name) && (o->count == 2 || o->count == 3);
+    if ((is_noise || is_delay) && w->variable == NULL) {
+        push_over(w, f, o, DALCS_FORMULA_CALL, o->count);
         return;
     }
     const struct dalcs_function *function =
@@ -437,6 +448,8 @@ static const struct dalcs_formula *make_formula(struct dalcs_language *language,
                                                      .diag = language->diag,
                                                      .instance = scope->origin,
                                                      .has_signals = true,
+                                                     .is_transfer = variable != NULL &&
+                                                                    strcmp(variable, "s") == 0,
                                                      .dialect = language->netlist->dialect,
                                                      .noted_caret = &language->noted_caret,
                                                      .noted_log = &language->noted_log};

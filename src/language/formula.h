@@ -33,6 +33,9 @@ struct dalcs_formula {
     int begin, end;
 };
 
+/* In a formula of x, where x is a TIME, the time is a CALL of this name without arguments. */
+extern const char dalcs_formula_time_beside[];
+
 /* Does a formula hold the value of an element or a model, as Xyce writes it, x1:r1:r and dmod:is? */
 bool dalcs_formula_reads_value(const char *text);
 

@@ -254,12 +254,23 @@ const char *dalcs_function_refusal(const char *name) {
             return "flat(x) draws a value between -x and x, once a run";
         }
     }
+    if (strcmp(name, "idtmod") == 0) {
+        return "V=idt(x, 0, v(ramp) > 1) of node ramp itself begins again where it reaches 1";
+    }
     for (size_t k = 0; k < sizeof signal / sizeof signal[0]; k++) {
         if (strcmp(name, signal[k]) == 0) {
             return "an expression here is a number that is known before the run";
         }
     }
     return NULL;
+}
+
+bool dalcs_function_is_delay(const char *name) {
+    return strcmp(name, "delay") == 0 || strcmp(name, "absdelay") == 0;
+}
+
+bool dalcs_function_is_noise(const char *name) {
+    return strcmp(name, "rand") == 0 || strcmp(name, "random") == 0 || strcmp(name, "white") == 0;
 }
 
 bool dalcs_function_remembers(const char *name, int *least, int *most) {

@@ -2,7 +2,10 @@
  *
  * Where a branch is chosen only where a quantity x is above a positive number c, x counts there as max(x, c/2), where it
  * divides or is the argument of a root, a logarithm or a power: the same function where it is chosen, and one with a
- * value elsewhere. Below a negative c it is min(x, c/2). Any number between 0 and c would do. */
+ * value elsewhere. Below a negative c it is min(x, c/2). Any number between 0 and c would do.
+ *
+ * What is divided by a choice of numbers is a product with the choice of what is 1 over them: a product with steps has an
+ * exact value, a quotient of what jumps would be found by Newton's method. */
 #include "language.h"
 
 #include "formula.h"
@@ -168,6 +171,47 @@ static const struct dalcs_formula *argument_of(struct guarding *g, const struct 
     return made;
 }
 
+/* Are all that it chooses between numbers other than 0? */
+static bool is_choice_of_numbers(const struct dalcs_formula *f) {
+    return f->kind == DALCS_FORMULA_NUMBER
+               ? f->number != 0
+               : f->kind == DALCS_FORMULA_CHOICE && is_choice_of_numbers(f->argument[1]) &&
+                     is_choice_of_numbers(f->argument[2]);
+}
+
+/* 1 over such a choice; NULL: out of memory. */
+static const struct dalcs_formula *reciprocal(struct guarding *g, const struct dalcs_formula *f) {
+    if (f->kind == DALCS_FORMULA_NUMBER) {
+        struct dalcs_formula *number = make_like(g, f, 0, NULL);
+        if (number != NULL) {
+            number->number = 1 / f->number;
+        }
+        return number;
+    }
+    const struct dalcs_formula *argument[3] = {f->argument[0], reciprocal(g, f->argument[1]),
+                                               reciprocal(g, f->argument[2])};
+    return g->failed ? NULL : make_like(g, f, 3, argument);
+}
+
+/* A part as f is, of these arguments; f itself where they are its own. */
+static const struct dalcs_formula *with_arguments(struct guarding *g, const struct dalcs_formula *f,
+                                                  const struct dalcs_formula **argument,
+                                                  bool is_new) {
+    const bool divides = f->kind == DALCS_FORMULA_OPERATION && f->code == DALCS_DIVIDE &&
+                         argument[0]->kind != DALCS_FORMULA_NUMBER &&
+                         argument[1]->kind == DALCS_FORMULA_CHOICE &&
+                         is_choice_of_numbers(argument[1]);
+    if (divides) {
+        argument[1] = reciprocal(g, argument[1]);
+    }
+    struct dalcs_formula *made =
+        (is_new || divides) && !g->failed ? make_like(g, f, f->n, argument) : NULL;
+    if (made != NULL && divides) {
+        made->code = DALCS_MULTIPLY;
+    }
+    return made != NULL ? made : f;
+}
+
 static const struct dalcs_formula *rebuild(struct guarding *g, const struct dalcs_formula *f,
                                            const struct guard *guards,
                                            const struct dalcs_formula **memo) {
@@ -183,9 +227,8 @@ static const struct dalcs_formula *rebuild(struct guarding *g, const struct dalc
         argument[k] = argument_of(g, f, k, guards, memo);
         is_new = is_new || argument[k] != f->argument[k];
     }
-    const struct dalcs_formula *made = is_new && !g->failed ? make_like(g, f, f->n, argument) : f;
+    *known = g->failed ? f : with_arguments(g, f, argument, is_new);
     free(argument);
-    *known = made != NULL ? made : f;
     return *known;
 }
 

@@ -217,9 +217,11 @@ static bool is_one_of(const struct dalcs_token *token, const char *const *list, 
 /* Formulas of measurements, whose reader compiles them, and on cards that name signals. */
 static void formula_roles(const struct dalcs_card *card, unsigned char *role) {
     static const char *const measures[] = {".meas", ".measure"};
-    static const char *const signals[] = {".save", ".print", ".plot", ".probe"};
+    static const char *const signals[] = {".save", ".print", ".plot", ".probe", ".probe64"};
     const bool is_measure = is_one_of(card->token, measures, 2);
-    for (int k = 1; k < card->n && (is_measure || is_one_of(card->token, signals, 4)); k++) {
+    for (int k = 1; k < card->n && (is_measure || is_one_of(card->token, signals,
+                                                            sizeof signals / sizeof signals[0]));
+         k++) {
         if (card->token[k].kind == DALCS_TOKEN_EXPRESSION) {
             role[k] = is_measure ? DALCS_ROLE_RAW : DALCS_ROLE_SIGNAL;
         }

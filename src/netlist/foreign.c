@@ -90,15 +90,15 @@ const char *dalcs_foreign_sign(const char *word, size_t length) {
     static const struct {
         const char *sign, *hint;
     } SIGNS[] = {
-        {"\xE2\x80\x93", "a dash is no minus: write -"},
-        {"\xE2\x80\x94", "a dash is no minus: write -"},
-        {"\xE2\x88\x92", "this minus is that of printed text: write -"},
-        {"\xE2\x80\x98", "this quotation mark is that of printed text: leave it out, or write '"},
-        {"\xE2\x80\x99", "this quotation mark is that of printed text: leave it out, or write '"},
-        {"\xE2\x80\x9C", "this quotation mark is that of printed text: leave it out, or write \""},
-        {"\xE2\x80\x9D", "this quotation mark is that of printed text: leave it out, or write \""},
-        {"\xC3\x97", "this sign is that of printed text: write *"},
-        {"\xC2\xB7", "this sign is that of printed text: write *"},
+        {"\xE2\x80\x93", "this dash is not a minus sign: write -"},
+        {"\xE2\x80\x94", "this dash is not a minus sign: write -"},
+        {"\xE2\x88\x92", "this is a typographic minus sign: write -"},
+        {"\xE2\x80\x98", "this is a typographic quotation mark: leave it out, or write '"},
+        {"\xE2\x80\x99", "this is a typographic quotation mark: leave it out, or write '"},
+        {"\xE2\x80\x9C", "this is a typographic quotation mark: leave it out, or write \""},
+        {"\xE2\x80\x9D", "this is a typographic quotation mark: leave it out, or write \""},
+        {"\xC3\x97", "this is a typographic sign: write *"},
+        {"\xC2\xB7", "this is a typographic sign: write *"},
     };
 
     for (size_t at = 0; at < length; at++) {

@@ -402,8 +402,9 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
 /* A card that is not of a flat netlist of numbers. */
 static bool is_language(const struct dalcs_token *name) {
     static const char *const words[] = {
-        ".param", ".params", ".csparam", ".global_param", ".func", ".subckt", ".ends", ".global",
-        ".if",    ".elseif", ".else",    ".endif",        ".step", ".wcase",  ".wc"};
+        ".param",  ".params", ".csparam", ".global_param", ".func",   ".function",
+        ".subckt", ".ends",   ".global",  ".if",           ".elseif", ".else",
+        ".endif",  ".step",   ".wcase",   ".wc",           ".params:"};
     for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
         if (strcmp(name->text, words[k]) == 0) {
             return true;
@@ -470,6 +471,15 @@ static enum dalcs_status close_model(struct dalcs_lexer *lexer) {
     return DALCS_OK;
 }
 
+/* The first letter; LTspice's F a b value={formula} and H a b value={formula} are G and E. */
+static char letter_of(const struct dalcs_token *token, int n) {
+    const char letter = token->text[0];
+    const bool has_formula =
+        n > 4 && (letter == 'f' || letter == 'h') && strcmp(token[3].text, "value") == 0 &&
+        (token[4].kind == DALCS_TOKEN_EQUAL || token[4].kind == DALCS_TOKEN_EXPRESSION);
+    return has_formula && letter == 'f' ? 'g' : has_formula ? 'e' : letter;
+}
+
 enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
     struct dalcs_netlist *netlist = lexer->netlist;
     if (lexer->n_tokens == 0) {
@@ -484,7 +494,8 @@ enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
         return DALCS_E_NOMEM;
     }
     memcpy(token, lexer->token, lexer->n_tokens * sizeof *token);
-    const struct dalcs_card card = {token, (int)lexer->n_tokens, token->text[0], 0};
+    const struct dalcs_card card = {token, (int)lexer->n_tokens,
+                                    letter_of(token, (int)lexer->n_tokens), 0};
     lexer->n_tokens = 0;
     if (card.letter == '.' && dalcs_include_is_card(token->text)) {
         return dalcs_include_card(lexer, &card);

@@ -226,6 +226,7 @@ static enum dalcs_status read_first(struct dalcs_netlist *netlist, const char *n
     }
     DALCS_TRY(dalcs_source_read(netlist, source, text, length, NULL, diag));
     dalcs_dialect_settle(netlist, diag);
+    DALCS_TRY(dalcs_other_transient(netlist, diag));
     return dalcs_second_analyses(netlist, diag);
 }
 

@@ -76,7 +76,7 @@ struct dalcs_losses_request {
     double from, to; /* s; INFINITY: the end of the run */
 };
 
-/* Zero-initialise, set the first seven if wanted, read, then finish. */
+/* Zero-initialise, set what stands before `name` if wanted, read, then finish. */
 struct dalcs_netlist {
     bool no_includes;             /* refuse .include and .lib: no other file is read */
     size_t most_cards;            /* that subcircuit calls may expand to; 0: DALCS_MOST_CARDS */
@@ -88,6 +88,8 @@ struct dalcs_netlist {
     bool asks_sensitivities; /* or how it depends on values */
     bool has_seed;           /* the next is told, whatever .options seed= says */
     uint64_t seed;           /* of random values */
+    const char *transient,
+        *transient_stop; /* what .tran has in place of the netlist's, or NULL; borrowed */
 
     const char *name; /* the file's path, or what read_text was told */
     const char *title;
@@ -130,6 +132,10 @@ enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const c
 enum dalcs_status dalcs_netlist_add_card(struct dalcs_netlist *netlist,
                                          const struct dalcs_source_line *line, const char *text,
                                          struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+/* Once all is read: .tran as `transient` and `transient_stop` say. */
+enum dalcs_status dalcs_other_transient(struct dalcs_netlist *netlist,
+                                        struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 /* Once all is read: a second .tran, .op, .dc or .ac is no card of the circuit, but is kept for `run`. */
 enum dalcs_status dalcs_second_analyses(struct dalcs_netlist *netlist,

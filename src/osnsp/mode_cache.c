@@ -200,6 +200,7 @@ void dalcs_modes_finish(struct dalcs_osnsp *p) {
         free(p->cache.form[k]);
     }
     p->cache.n_forms = 0;
+    dalcs_lu_patterns_finish(&p->cache.patterns, &p->cache.klu);
     free(p->cache.matched_row);
     p->cache.matched_row = NULL;
     p->cache.n_matched = 0;

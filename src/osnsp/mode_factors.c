@@ -160,8 +160,8 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
         return factor_large(p, e, a);
     }
     enum dalcs_status status = dalcs_modes_factor_small(p, &e->lu, a, dalcs_far_apart);
-    return status > DALCS_OK ? dalcs_lu_factor(&e->lu, &p->cache.klu, a->n, a->p, a->i, a->x, NULL,
-                                               least_rcond(p))
+    return status > DALCS_OK ? dalcs_lu_factor_again(&e->lu, &p->cache.patterns, &p->cache.klu,
+                                                     a->n, a->p, a->i, a->x, least_rcond(p))
                              : status;
 }
 

@@ -13,7 +13,7 @@
 #ifndef DALCS_OSNSP_H
 #define DALCS_OSNSP_H
 
-#include "lu.h"
+#include "lu_patterns.h"
 #include "partition.h"
 #include "step_form.h"
 
@@ -68,7 +68,8 @@ struct dalcs_smooth_newton;
 /* Condensed forms by sigma, and factors by (mode, sigma). */
 struct dalcs_mode_cache {
     klu_common klu;
-    struct dalcs_step_form **form; /* most recently used first */
+    struct dalcs_lu_patterns patterns; /* of modes */
+    struct dalcs_step_form **form;     /* most recently used first */
     int n_forms;
     uint32_t *form_id; /* [n_forms] */
     uint32_t next_form_id;

@@ -13,8 +13,11 @@
  * e-fold that it is off: 700 of them are all that a double has. */
 enum { MOST_STEPS = 1000 };
 
-/* Lines that are much steeper make a mode regular that holds a node by next to nothing: 1e24 spans all digits. */
+/* Lines that are much steeper make a mode regular that holds a node by next to nothing: eight times a thousand span all
+ * digits. */
 enum { MOST_STEEPER = 8 };
+
+static const double a_thousand = 1e3;
 
 enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     if (p->system->n_smooth == 0) {
@@ -93,7 +96,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
         put_sources(p, p->smooth.given);
         enum dalcs_status status = solve(p, sigma, p->smooth.given, y);
         if (status > DALCS_OK && p->smooth.n_tangents > 0 && n_steeper++ < MOST_STEEPER) {
-            dalcs_smooth_scale_tangents(s, dalcs_smooth_much_steeper, n->x, n->phi);
+            dalcs_smooth_scale_tangents(s, a_thousand, n->x, n->phi);
             forget(p);
             dalcs_smooth_newton_begin(n, n->x);
             continue;

@@ -24,7 +24,7 @@ static void write_law(FILE *stream, const struct dalcs_table_law *law, int width
     char defect[DALCS_QUANTITY_SIZE], allowed[DALCS_QUANTITY_SIZE], span[SPAN_SIZE];
     fprintf(stream, "  %-9s %-*s %11s %11s  %-26s ", law->law, width, law->where,
             dalcs_quantity_write(defect, law->defect, law->unit, DIGITS),
-            dalcs_quantity_write(allowed, law->allowed, law->unit, 2), write_span(span, law));
+            dalcs_quantity_write(allowed, law->allowed, law->unit, 3), write_span(span, law));
     if (law->n_broken > 0) {
         char since[DALCS_QUANTITY_SIZE];
         fprintf(stream, "broken since %s, %zu of %zu times\n",

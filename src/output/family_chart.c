@@ -53,6 +53,20 @@ static void write_label(FILE *script, const char *axis, const char *name, const 
     fprintf(script, " textcolor rgb '%s'\n", theme->text);
 }
 
+/* 1 where the numbers are short without: gnuplot writes 5 decimals at most. */
+static double values_scale_of(double largest) {
+    return largest >= 0.01 && largest < 1e6 ? 1 : dalcs_quantity_scale(largest);
+}
+
+/* Of the colours: the table gives no unit for what differs between the runs. */
+static void write_values_label(FILE *script, const struct dalcs_family *f, double scale) {
+    char factor[16] = "";
+    if (scale != 1) {
+        snprintf(factor, sizeof factor, "1e%ld", lround(log10(scale)));
+    }
+    write_label(script, "cb", f->by, factor, 1, f->theme);
+}
+
 /* Decibels, degrees and plain numbers have no prefix. */
 static double prefix_scale(const char *unit, double largest) {
     const bool is_plain = unit[0] == '\0' || strpbrk(unit, "^ ") != NULL ||
@@ -73,15 +87,17 @@ static void write_script(FILE *script, const void *chart, const char *path) {
         most = fmax(most, f->value[k]);
     }
     const double scale = prefix_scale(f->unit, largest);
+    const double values_scale = values_scale_of(fmax(fabs(least), fabs(most)));
     const double end = fmax(fabs(f->curve[0].start), fabs(f->curve[0].stop));
     const double time_scale = f->axis.logarithmic ? 1 : prefix_scale(f->axis.unit, end);
     dalcs_chart_begin_script(script, path, f->theme, WIDTH, HEIGHT, f->title);
     write_label(script, "x", f->axis.quantity, f->axis.unit, time_scale, f->theme);
     write_label(script, "y", f->signal, f->unit, scale, f->theme);
-    write_label(script, "cb", f->by, "", 1, f->theme);
+    write_values_label(script, f, values_scale);
     write_palette(script, f->theme);
-    fprintf(script, "set cbrange [%.12g:%.12g]\nset xrange [%.12g:%.12g]\n%s%s", least,
-            most > least ? most : least + fmax(fabs(least), 1), f->curve[0].start / time_scale,
+    const double spread = most > least ? most - least : fmax(fabs(least), 1);
+    fprintf(script, "set cbrange [%.12g:%.12g]\nset xrange [%.12g:%.12g]\n%s%s",
+            least / values_scale, (least + spread) / values_scale, f->curve[0].start / time_scale,
             f->curve[0].stop / time_scale, f->axis.logarithmic ? "set logscale x\n" : "",
             least > 0 && most > wide * least ? "set logscale cb\n" : "");
     for (size_t k = 0; k < f->n; k++) {
@@ -92,7 +108,7 @@ static void write_script(FILE *script, const void *chart, const char *path) {
     fputs("plot ", script);
     for (size_t k = 0; k < f->n; k++) {
         fprintf(script, "%s$run%zu using 1:2:(%.12g) with lines lw 1.4 lc palette notitle",
-                k > 0 ? ", " : "", k, f->value[k]);
+                k > 0 ? ", " : "", k, f->value[k] / values_scale);
     }
     fputc('\n', script);
 }

@@ -29,6 +29,7 @@ void dalcs_figure_init(struct dalcs_figure *figure, const char *path, double sta
     *figure = (struct dalcs_figure){.path = path,
                                     .axis = {"time", "s", false},
                                     .theme = &dalcs_theme_light,
+                                    .width = DALCS_FIGURE_WIDTH,
                                     .view[0] = {.start = start, .stop = stop}};
 }
 

@@ -12,6 +12,9 @@
 
 enum { DALCS_FIGURE_MAX_CURVES = 8 /* in a panel */, DALCS_FIGURE_MAX_PANELS = 8 };
 
+/* In pixels, or hundredths of an inch. A narrower picture has the same text in smaller panels. */
+enum { DALCS_FIGURE_WIDTH = 1200, DALCS_FIGURE_LEAST_WIDTH = 400, DALCS_FIGURE_MOST_WIDTH = 4000 };
+
 struct dalcs_figure_panel {
     const char *quantity, *unit; /* "voltage", "V"; borrowed, unit "" for numbers */
     size_t n_left_out;
@@ -49,6 +52,7 @@ struct dalcs_figure {
     const char *const *name; /* of the signals, borrowed; NULL until there is something to draw */
     struct dalcs_figure_axis axis;
     const struct dalcs_theme *theme;
+    int width;
     const struct dalcs_conduction *conduction; /* borrowed; NULL: no bars, no marks */
     bool bars, marks; /* of conduction: bars below the panels, lines through them at events */
     int n_lines;

@@ -165,7 +165,7 @@ static void write_marks(FILE *stream, const struct dalcs_figure *figure,
                 mark[i].jump ? 1 : 2, figure->theme->mark);
         /* A label stands where there is room for it. */
         double at = place->left + width * (mark[i].time - view->start) / (view->stop - view->start);
-        double half = 0.5 * LABEL_CHARACTER * (double)strlen(mark[i].label) / DALCS_GNUPLOT_WIDTH;
+        double half = 0.5 * LABEL_CHARACTER * (double)strlen(mark[i].label) / page->width;
         at = fmin(fmax(at, place->left - 0.02 + half), place->right + 0.05 - half);
         if (at - half < free_from) {
             continue;

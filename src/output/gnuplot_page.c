@@ -19,13 +19,27 @@ enum {
     BARS_GAP = 30,
     MARGIN = 78,
     LABEL = 16, /* of the margin, to the middle of the text */
-    CHARACTER = 10
+    CHARACTER = 10,
+    NUMBER_CHARACTER = 9,
+    LEGEND = 66,
+    LEGEND_ROW = 28,
+    LEAST_PANEL = 130
 };
 
-enum { MAX_BARS = 16, TICS = 5 };
+static const double LEGEND_CHARACTER = 9.84, VIEWS_GAP = 30.0;
 
-static int panel_height(int n_panels) {
-    return n_panels == 1 ? 598 : n_panels == 2 ? 281 : 220;
+enum { MAX_BARS = 16, TICS = 5, MOST_NUMBERS = 8 /* that gnuplot writes by itself */ };
+
+/* In proportion to the width, with room for the numbers of the axis and for the legend. */
+static int panel_height(const struct dalcs_figure *figure, int n_panels) {
+    const int height = n_panels == 1 ? 598 : n_panels == 2 ? 281 : 220;
+    int least = LEAST_PANEL;
+    for (int p = 0; p < figure->n_panels; p++) {
+        const int legend = LEGEND_ROW * figure->panel[p].n;
+        least = legend > least ? legend : least;
+    }
+    const int wanted = height * figure->width / DALCS_FIGURE_WIDTH;
+    return wanted > least ? wanted : least;
 }
 
 static bool has_extension(const char *path, const char *extension) {
@@ -107,12 +121,12 @@ static int left_margin(const struct dalcs_figure *figure, size_t n_bars) {
 }
 
 static void lay_out_columns(struct dalcs_gnuplot_page *page, const struct dalcs_figure *figure) {
-    double left = (double)left_margin(figure, page->n_bars) / DALCS_GNUPLOT_WIDTH;
-    double right = 0.945 - 0.0082 * longest_name(figure);
+    double left = (double)left_margin(figure, page->n_bars) / page->width;
+    double right = 1.0 - (LEGEND + LEGEND_CHARACTER * longest_name(figure)) / page->width;
     double middle = 0.5 * (left + right);
-    double gap = left + 0.025;
+    double gap = left + VIEWS_GAP / page->width;
     bool two = figure->n_views > 1;
-    double label = (double)(LABEL - axis_margin(figure)) / DALCS_GNUPLOT_WIDTH;
+    double label = (double)(LABEL - axis_margin(figure)) / page->width;
     page->place[0] = (struct dalcs_gnuplot_place){.left = left,
                                                   .right = two ? middle - 0.5 * gap : right,
                                                   .label = left + label,
@@ -124,7 +138,8 @@ static void lay_out_columns(struct dalcs_gnuplot_page *page, const struct dalcs_
 }
 
 struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figure) {
-    struct dalcs_gnuplot_page page = {.font = has_extension(figure->path, ".svg") ? 14 : 11};
+    struct dalcs_gnuplot_page page = {.width = figure->width,
+                                      .font = has_extension(figure->path, ".svg") ? 14 : 11};
     for (int p = 0; p < figure->n_panels; p++) {
         if (figure->panel[p].n > 0) {
             page.panel[page.n_panels++] = p;
@@ -134,7 +149,8 @@ struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figur
         size_t n = figure->conduction->n;
         page.n_bars = n < MAX_BARS ? n : MAX_BARS;
     }
-    const int each = panel_height(page.n_panels), top = TOP + (figure->marks ? MARKS : 0);
+    const int each = panel_height(figure, page.n_panels);
+    const int top = TOP + (figure->marks ? MARKS : 0);
     const int bars = page.n_bars > 0 ? BARS_GAP + BAR * (int)page.n_bars : 0;
     page.height = top + page.n_panels * each + (page.n_panels - 1) * GAP + bars + BOTTOM;
     const double height = page.height;
@@ -181,6 +197,26 @@ void dalcs_gnuplot_write_margins(FILE *stream, const struct dalcs_gnuplot_page *
     fprintf(stream, "set bmargin at screen %.4f\nset tmargin at screen %.4f\n", bottom, top);
 }
 
+/* gnuplot does not ask whether the numbers of a narrow axis touch. */
+static void write_distance(FILE *stream, const struct dalcs_gnuplot_page *page, int v, double start,
+                           double stop) {
+    const double room = (page->place[v].right - page->place[v].left) * page->width;
+    const double range = stop - start;
+    const int length =
+        count_whole_digits(fmax(fabs(start), fabs(stop))) + count_decimals(range) + 2;
+    const double least = range * NUMBER_CHARACTER * length / room;
+    const double power = pow(10.0, floor(log10(least)));
+    const double step = least <= power         ? power
+                        : least <= 2.0 * power ? 2.0 * power
+                        : least <= 5.0 * power ? 5.0 * power
+                                               : 10.0 * power;
+    if (range > 0.0 && step > range / MOST_NUMBERS) {
+        fprintf(stream, "set xtics %.12g\n", step);
+    } else {
+        fputs("set xtics autofreq\n", stream);
+    }
+}
+
 void dalcs_gnuplot_write_axis(FILE *stream, const struct dalcs_figure *figure,
                               const struct dalcs_gnuplot_page *page, int v) {
     const char *prefix = dalcs_quantity_prefix(page->time_scale);
@@ -197,8 +233,9 @@ void dalcs_gnuplot_write_axis(FILE *stream, const struct dalcs_figure *figure,
     if (figure->axis.logarithmic) {
         fputs("set format x '%.0s%c'\n", stream);
     } else {
-        fprintf(stream, "set format x '%%.%dg'\n",
-                dalcs_gnuplot_count_digits(figure->view[v].start / page->time_scale,
-                                           figure->view[v].stop / page->time_scale));
+        const double start = figure->view[v].start / page->time_scale;
+        const double stop = figure->view[v].stop / page->time_scale;
+        fprintf(stream, "set format x '%%.%dg'\n", dalcs_gnuplot_count_digits(start, stop));
+        write_distance(stream, page, v, start, stop);
     }
 }

@@ -14,8 +14,8 @@ struct dalcs_gnuplot_place {
 
 /* Heights are parts of the page's, from below. */
 struct dalcs_gnuplot_page {
-    int height; /* in pixels; the width is DALCS_GNUPLOT_WIDTH */
-    int font;   /* size, in the terminal's units */
+    int width, height; /* in pixels */
+    int font;          /* size, in the terminal's units */
     int n_panels;
     int panel[DALCS_FIGURE_MAX_PANELS]; /* those that hold something */
     double top[DALCS_FIGURE_MAX_PANELS], bottom[DALCS_FIGURE_MAX_PANELS];
@@ -26,7 +26,7 @@ struct dalcs_gnuplot_page {
     struct dalcs_gnuplot_place place[2]; /* of each view */
 };
 
-enum { DALCS_GNUPLOT_WIDTH = 1200, DALCS_GNUPLOT_MAX_NAME = 24 };
+enum { DALCS_GNUPLOT_MAX_NAME = 24 };
 
 struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figure);
 

@@ -15,7 +15,7 @@
 #define COINCIDENT 1e-3 /* of a panel's range: less cannot be seen */
 #define OVERLAP    0.02 /* of a panel's width */
 
-enum { MAX_TITLE = 100, PIXELS_PER_INCH = 100 };
+enum { MAX_TITLE = 100, PIXELS_PER_INCH = 100, TITLE_CHARACTER = 10, LEFT_OUT = 220 };
 
 static const char *unit_prefix(double scale) {
     const char *prefix = dalcs_quantity_prefix(scale);
@@ -50,16 +50,21 @@ static void write_terminal(FILE *stream, const struct dalcs_figure *figure,
     const char *dot = strrchr(figure->path, '.');
     const char *background = figure->theme->background;
     if (strcasecmp(dot, ".svg") == 0) {
-        fprintf(stream, "set terminal svg size %d,%d", DALCS_GNUPLOT_WIDTH, page->height);
+        fprintf(stream, "set terminal svg size %d,%d", page->width, page->height);
     } else if (strcasecmp(dot, ".pdf") == 0) {
         fprintf(stream, "set terminal pdfcairo size %gin,%gin",
-                (double)DALCS_GNUPLOT_WIDTH / PIXELS_PER_INCH,
-                (double)page->height / PIXELS_PER_INCH);
+                (double)page->width / PIXELS_PER_INCH, (double)page->height / PIXELS_PER_INCH);
     } else {
-        fprintf(stream, "set terminal pngcairo size %d,%d", DALCS_GNUPLOT_WIDTH, page->height);
+        fprintf(stream, "set terminal pngcairo size %d,%d", page->width, page->height);
     }
     fprintf(stream, " font 'DejaVu Sans,%d' noenhanced rounded background '%s'\n", page->font,
             background);
+}
+
+/* Of the title, in characters: what is on its right keeps its place. */
+static int title_length(const struct dalcs_gnuplot_page *page, bool has_left_out) {
+    const double room = (1.0 - page->place[0].left) * page->width - (has_left_out ? LEFT_OUT : 0);
+    return (int)fmin(MAX_TITLE, room / TITLE_CHARACTER);
 }
 
 static void write_header(FILE *stream, const struct dalcs_figure *figure,
@@ -87,7 +92,8 @@ static void write_title(FILE *stream, const struct dalcs_figure *figure,
         n_left_out += figure->panel[p].n_left_out;
     }
     fputs("set label 1 ", stream);
-    dalcs_gnuplot_write_quoted(stream, figure->title + strspn(figure->title, "* "), MAX_TITLE);
+    dalcs_gnuplot_write_quoted(stream, figure->title + strspn(figure->title, "* "),
+                               title_length(page, n_left_out > 0));
     fprintf(stream, " at screen %.4f, screen %.4f left font ',%d' textcolor rgb '%s'\n",
             page->place[0].left, page->title_at, page->font + 4, figure->theme->text);
     if (n_left_out > 0) {

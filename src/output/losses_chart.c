@@ -13,6 +13,9 @@
 
 enum { MOST_BARS = 24, MOST_NAME = 40, ROW = 26, AROUND = 130, WIDTH = 900 };
 
+/* A smaller part of the power that is moved is what rounding leaves. */
+static const double ROUNDING = 1e-13;
+
 struct bar {
     const char *element;
     double part[3]; /* W: conduction, jumps, switching */
@@ -126,8 +129,10 @@ enum dalcs_status dalcs_losses_chart_draw(const struct dalcs_losses *losses, con
     }
     const struct bars bars = {title, bar, list_bars(losses, bar)};
     enum dalcs_status status = DALCS_E_IO;
-    if (bars.n == 0) {
-        snprintf(message, DALCS_GNUPLOT_MESSAGE, "no element but loads takes anything");
+    const double least = ROUNDING * losses->turnover / (losses->to - losses->from);
+    if (bars.n == 0 || !(height(&bar[0]) > least)) {
+        snprintf(message, DALCS_GNUPLOT_MESSAGE,
+                 "there is nothing to draw: all elements but sources and loads take 0 W");
     } else {
         status = dalcs_chart_draw(write_script, &bars, path, "Losses", message);
     }

@@ -106,7 +106,7 @@ enum dalcs_status dalcs_report_reader_read(const char *path, struct dalcs_conduc
     }
     if (status == DALCS_OK && json_object_get(report, "events_dropped")) {
         dalcs_diag_add(diag, DALCS_WARNING, NULL, NULL,
-                       "'%s' does not have all events: after its last one bars show nothing new",
+                       "'%s' does not have all events: the bars are not right after its last one",
                        path);
     }
     json_decref(report);

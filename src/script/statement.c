@@ -101,10 +101,12 @@ static const struct {
 } REASON[] = {
     {"shell", "a netlist starts no other programs here: run what follows outside"},
     {"load", "results are read by: dalcs plot FILE, or Python"},
-    {"stop", "a run has no stops here: a second tran, or a switch or PWL source for what changes"},
-    {"step", "a run has no stops here: a second tran, or a switch or PWL source for what changes"},
-    {"resume",
-     "a run has no stops here: a second tran, or a switch or PWL source for what changes"},
+    {"stop", "a run cannot be stopped and continued here: a second tran, or a switch or PWL source "
+             "for what changes"},
+    {"step", "a run cannot be stopped and continued here: a second tran, or a switch or PWL source "
+             "for what changes"},
+    {"resume", "a run cannot be stopped and continued here: a second tran, or a switch or PWL "
+               "source for what changes"},
     {"source", "a netlist is one file: .include the other one, or run dalcs on it"},
     {"noise", "it is no analysis of circuits with ideal diodes"},
     {"pz", "it is no analysis of circuits with ideal diodes"},
@@ -303,7 +305,7 @@ enum dalcs_status dalcs_statements_check(struct dalcs_statements *all,
             warn_of_skipped(session, all, k);
         } else if (opens(s->kind)) {
             if (n_open == DEEPEST) {
-                say(session, s, DALCS_LEVEL_ERROR, NULL, "blocks lie in each other too deep");
+                say(session, s, DALCS_LEVEL_ERROR, NULL, "blocks are nested too deep");
                 return DALCS_E_NETLIST;
             }
             open[n_open++] = k;

@@ -1,7 +1,7 @@
-/* writing.c - print, wrdata and write. */
+/* writing.c - print and wrdata. */
 #include "writing.h"
 
-#include "table.h"
+#include "atomic_file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -228,84 +228,4 @@ enum dalcs_status dalcs_writing_data(const char *path, const struct dalcs_writin
         return DALCS_E_IO;
     }
     return DALCS_OK;
-}
-
-/* ---- write ---------------------------------------------------------------------------------------- */
-
-struct row {
-    const struct dalcs_vector *const *vector;
-    size_t n;
-    double *value;
-};
-
-static void fill(const struct row *row, size_t k, bool is_complex) {
-    for (size_t i = 0; i < row->n; i++) {
-        const double complex x = row->vector[i]->value[k];
-        row->value[is_complex ? 2 * i : i] = creal(x);
-        if (is_complex) {
-            row->value[2 * i + 1] = cimag(x);
-        }
-    }
-}
-
-static enum dalcs_status write_table(struct dalcs_table *table, const struct dalcs_plot *plot,
-                                     const struct dalcs_vector *scale, const struct row *row,
-                                     size_t length) {
-    enum dalcs_status status = dalcs_table_begin(table, plot);
-    for (size_t k = 0; k < length && status == DALCS_OK; k++) {
-        fill(row, k, plot->is_complex);
-        const double at = scale != NULL ? creal(scale->value[k]) : 0.0;
-        status = dalcs_table_rows(table, 1, &at, row->value);
-    }
-    status = status == DALCS_OK ? dalcs_table_end(table) : status;
-    return status == DALCS_OK ? dalcs_table_commit(table) : status;
-}
-
-enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_writing *how,
-                                    const struct dalcs_plot_vectors *plot,
-                                    const struct dalcs_vector *scale,
-                                    const struct dalcs_vector *const *vector, size_t n,
-                                    int *error) {
-    const bool is_point = plot->analysis == DALCS_OPERATING_POINT;
-    const size_t length = is_point ? 1 : scale->n;
-    const struct dalcs_vector **kept = dalcs_alloc(n, sizeof *kept);
-    const char **name = dalcs_alloc(n, sizeof *name);
-    enum dalcs_unit *unit = dalcs_alloc(n, sizeof *unit);
-    double *value = dalcs_alloc(2 * n, sizeof *value);
-    struct dalcs_table table = {.path = path,
-                                .format = how->ascii ? &dalcs_raw_ascii_format : &dalcs_raw_format,
-                                .main = plot->analysis};
-    table.state = dalcs_alloc(1, table.format->state_size);
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (kept != NULL && name != NULL && unit != NULL && value != NULL && table.state != NULL) {
-        struct dalcs_plot about = {.analysis = plot->analysis,
-                                   .title = plot->title,
-                                   .scale = scale != NULL ? scale->name : "",
-                                   .scale_unit = scale != NULL ? scale->unit : DALCS_UNIT_NONE,
-                                   .name = name,
-                                   .unit = unit,
-                                   /* as ngspice, and readers go by the name of the plot */
-                                   .is_complex = plot->analysis == DALCS_AC,
-                                   .n_steps = 1};
-        for (size_t i = 0; i < n; i++) {
-            if (vector[i]->n == length && (is_point || strcmp(vector[i]->name, scale->name) != 0) &&
-                (vector[i]->scale == NULL || is_point || vector[i]->scale == scale)) {
-                kept[about.n_signals] = vector[i];
-                name[about.n_signals] = vector[i]->name;
-                unit[about.n_signals++] = vector[i]->unit;
-                about.is_complex = about.is_complex || vector[i]->is_complex;
-            }
-        }
-        const struct row row = {kept, about.n_signals, value};
-        status = write_table(&table, &about, is_point ? NULL : scale, &row, length);
-    }
-    *error = table.file.error;
-    if (table.state != NULL) {
-        dalcs_table_finish(&table);
-    }
-    free(kept);
-    free(name);
-    free(unit);
-    free(value);
-    return status;
 }

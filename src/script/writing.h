@@ -13,7 +13,7 @@ struct dalcs_writing {
     bool as_columns;   /* of print: numbers too in a table */
     bool single_scale; /* of wrdata: the scale once, not for each vector */
     bool with_names;   /* of wrdata: a line of names first */
-    bool appends;      /* of wrdata */
+    bool appends;      /* of wrdata and write: behind what the file has */
     bool ascii;        /* raw files as text */
 };
 
@@ -28,7 +28,7 @@ enum dalcs_status dalcs_writing_data(const char *path, const struct dalcs_writin
                                      const struct dalcs_vector *const *vector, size_t n,
                                      int *error) DALCS_MUST_CHECK;
 
-/* A raw file of the vectors that are as long as the scale. DALCS_E_IO: *error is an errno. */
+/* A raw file, or a plot more in it, of the vectors beside the scale. DALCS_E_IO: *error is an errno. */
 enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_writing *how,
                                     const struct dalcs_plot_vectors *plot,
                                     const struct dalcs_vector *scale,

@@ -34,8 +34,8 @@ static double state_work(const struct dalcs_audit_run *a, int part) {
     return value_work * dalcs_system_n_columns(c->system) + source_work * c->n_varying;
 }
 
-/* Of gates and sources that jump at 0 the operating point is not what the run begins with. */
-static enum dalcs_audit_origin origin_of(const struct dalcs_run *run) {
+/* Of gates, and of sources and switches that jump at 0, the operating point is not what the run begins with. */
+static enum dalcs_audit_origin origin_of(const struct dalcs_run *run, struct dalcs_radau *radau) {
     const struct dalcs_circuit *c = &run->s->circuit;
     if (run->orbit != NULL || run->s->network.held != NULL || c->n_initial_conditions > 0) {
         return DALCS_AUDIT_FROM_ANYWHERE;
@@ -43,8 +43,9 @@ static enum dalcs_audit_origin origin_of(const struct dalcs_run *run) {
     if (c->transient.use_initial_conditions) {
         return DALCS_AUDIT_FROM_INITIAL;
     }
-    return c->n_gates > 0 || dalcs_sources_jump(c, 0.0) ? DALCS_AUDIT_FROM_ANYWHERE
-                                                        : DALCS_AUDIT_FROM_REST;
+    return c->n_gates > 0 || dalcs_transient_begins_with_a_jump(c, radau)
+               ? DALCS_AUDIT_FROM_ANYWHERE
+               : DALCS_AUDIT_FROM_REST;
 }
 
 static enum dalcs_status create(struct dalcs_audit_run *a) {
@@ -64,7 +65,7 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
                                                 .resolution = a->radau->resolution,
                                                 .vntol = run->vntol,
                                                 .is_start = run->s->network.held == NULL,
-                                                .origin = origin_of(run),
+                                                .origin = origin_of(run, a->radau),
                                                 .abstol = run->abstol,
                                                 .device_part =
                                                     run->s->network.readout->device_system,
@@ -110,8 +111,7 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         return DALCS_OK;
     }
     a->row_work = row_work * run->s->network.n_outputs;
-    a->rows.value = dalcs_arena_alloc(&a->arena, (size_t)run->s->network.n_outputs, sizeof(double));
-    enum dalcs_status status = a->rows.value != NULL ? dalcs_audit_members_make(a) : DALCS_E_NOMEM;
+    enum dalcs_status status = dalcs_audit_members_make(a);
     status = status == DALCS_OK ? list_stepped(a) : status;
     if (status == DALCS_OK && radau->cycling != NULL) {
         const int n_x = radau->cycling->component->system->n_x;
@@ -129,6 +129,11 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         dalcs_audit_run_finish(a);
     }
     return status;
+}
+
+double dalcs_audit_run_chance(struct dalcs_audit_run *a) {
+    a->seed = a->seed * 6364136223846793005u + 1442695040888963407u; /* Knuth, TAOCP 2, 3.3.4 */
+    return (double)(a->seed >> 11) * 0x1p-53;
 }
 
 void dalcs_audit_run_finish(struct dalcs_audit_run *a) {
@@ -149,6 +154,9 @@ static void enter(struct dalcs_audit_run *a, int k) {
 
 void dalcs_audit_run_begin(struct dalcs_audit_run *a) {
     for (int i = 0; a->audit != NULL && i < a->n_stepped; i++) {
+        if (a->euler->component[a->stepped[i]].restless != NULL) {
+            dalcs_audit_has_no_rest(a->audit, a->stepped[i]);
+        }
         enter(a, a->stepped[i]);
     }
 }
@@ -226,42 +234,37 @@ static double checking_work(const struct dalcs_audit_run *a) {
     return work;
 }
 
-/* Some of n rows are compared with the waveform. Not those on the right of an event, which are joined to what they were on
- * its left within the tolerance (rows.h). */
-static void check_rows(struct dalcs_audit_run *a, const struct dalcs_rows *rows,
-                       enum dalcs_side side, int n) {
+/* Some of n rows that were handed on are compared with the waveform. */
+static void check_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
+                       const double *time, enum dalcs_side side, int n) {
     const bool is_full = a->run->options->audit == DALCS_AUDIT_FULL;
-    if (side == DALCS_RIGHT) {
-        return;
-    }
-    a->rows.credit += share * a->row_work * n;
-    if (!is_full && a->rows.has_checked && a->rows.credit < a->rows.threshold) {
+    struct audit_rows *rows = &a->rows[side];
+    rows->credit += share * a->row_work * n;
+    if (!is_full && rows->has_checked && rows->credit < rows->threshold) {
         return;
     }
     const double work = checking_work(a);
-    a->rows.credit -= work;
-    a->rows.threshold = 2.0 * work * dalcs_audit_chance(a->audit);
-    a->rows.has_checked = true;
-    const int first = is_full ? 0 : (int)(dalcs_audit_chance(a->audit) * n);
+    rows->credit -= work;
+    rows->threshold = 2.0 * work * dalcs_audit_run_chance(a);
+    rows->has_checked = true;
+    const int first = is_full ? 0 : (int)(dalcs_audit_run_chance(a) * n);
     for (int i = first; i < n && (is_full || i == first); i++) {
-        for (int k = 0; k < rows->n_outputs; k++) {
-            a->rows.value[k] = rows->value[k].at[i];
-        }
-        dalcs_audit_row(a->audit, rows->time.at[i], side, a->rows.value);
+        dalcs_audit_row(a->audit, time[i], side, recorder->row + (size_t)i * recorder->n_shown,
+                        recorder->n_shown);
     }
 }
 
-void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_rows *rows, double t,
-                          enum dalcs_side side, int n) {
+void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
+                          const double *time, enum dalcs_side side, int n) {
     if (a->audit == NULL) {
         return;
     }
-    check_rows(a, rows, side, n);
+    check_rows(a, recorder, time, side, n);
     dalcs_audit_earn(a->audit, a->row_work * (double)n);
     a->has_rows = true;
     for (int k = 0; a->n_stepped < a->radau->n_parts && k < a->radau->n_parts; k++) {
         if (a->radau->part[k].kind == DALCS_PART_ALGEBRAIC) {
-            dalcs_audit_instant(a->audit, k, t, side, dalcs_audit_segment_work);
+            dalcs_audit_instant(a->audit, k, time[n - 1], side, dalcs_audit_segment_work);
         }
     }
 }

@@ -21,10 +21,16 @@ struct dalcs_audit_run {
     double row_work;            /* of a row, in instructions */
 
     struct audit_rows {
-        double *value;            /* [n_outputs] of one of them */
         double credit, threshold; /* instructions that comparisons may cost */
         bool has_checked;         /* at least one */
-    } rows;
+    } rows[2];                    /* from each side */
+
+    struct audit_told {
+        size_t n_events, n_jumps; /* of the report, up to the last instant */
+        double time;              /* s, of that */
+        double credit, threshold; /* instructions */
+        int n_looked;
+    } told;
 
     int *pair_of_lambda; /* [n_lambdas] in its system */
     double *tried;       /* states that a leap would lead to, and work */
@@ -38,6 +44,7 @@ struct dalcs_audit_run {
     bool has_tried;      /* at least once */
     bool was_tried;      /* the next leap needs no trial */
     struct dalcs_audit_gates gates;
+    uint64_t seed; /* of what is drawn besides by the auditor itself */
     struct dalcs_arena arena;
 };
 
@@ -46,6 +53,9 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
                                         struct dalcs_radau *radau) DALCS_MUST_CHECK;
 
 void dalcs_audit_run_finish(struct dalcs_audit_run *a);
+
+/* 0 <= chance < 1, the same in each run; what the auditor draws does not depend on it. */
+double dalcs_audit_run_chance(struct dalcs_audit_run *a);
 
 /* All parts of radau have begun their first segments. */
 void dalcs_audit_run_begin(struct dalcs_audit_run *a);
@@ -61,6 +71,19 @@ static inline void dalcs_audit_run_enter(struct dalcs_audit_run *a) {
     }
 }
 
+/* Segments have been passed at t: what the report tells of it by now, if that is anything. */
+void dalcs_audit_run_told_now(struct dalcs_audit_run *a, double t);
+
+static inline void dalcs_audit_run_told(struct dalcs_audit_run *a, double t) {
+    const struct dalcs_recorder *r = &a->run->s->recorder;
+    if (a->audit != NULL && (r->n_events > a->told.n_events || r->n_jumps > a->told.n_jumps)) {
+        dalcs_audit_run_told_now(a, t);
+    }
+}
+
+/* What the report has by now is not asked. */
+void dalcs_audit_run_tell(struct dalcs_audit_run *a, double t);
+
 /* May the cycling part leap now? Not while periods are stepped that a leap was tried over. */
 enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until,
                                        bool *may) DALCS_MUST_CHECK;
@@ -73,11 +96,11 @@ double dalcs_audit_run_until(struct dalcs_audit_run *a, double until);
 void dalcs_audit_run_start_leap(struct dalcs_audit_run *a);
 void dalcs_audit_run_end_leap(struct dalcs_audit_run *a);
 
-/* Rows were made, the last of them at t. */
-void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_rows *rows, double t,
-                          enum dalcs_side side, int n);
+/* The recorder has handed rows on, at time[n]. */
+void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
+                          const double *time, enum dalcs_side side, int n);
 
-/* Into the report. A message where a defect is more than is allowed, and DALCS_NOT_CONVERGED where that ends the
+/* Into the report. A message where a defect is more than is allowed, and DALCS_REFUTED where that ends the
  * run. */
 enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) DALCS_MUST_CHECK;
 

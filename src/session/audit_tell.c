@@ -51,17 +51,41 @@ static enum dalcs_status report_laws(const struct dalcs_audit_run *a) {
     return list_laws(a, list, &report->audit.n_laws);
 }
 
+/* Where the netlist asks for the number that is wrong; NULL: it is a law of the waveform. */
+static const struct dalcs_location *place_of(const struct dalcs_audit_run *a,
+                                             const struct dalcs_audit_summary *found) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    switch (found->law) {
+    case DALCS_AUDIT_MEASURE:
+        return &c->measure[found->index].where;
+    case DALCS_AUDIT_FOURIER:
+        return &c->fourier[found->index].where;
+    case DALCS_AUDIT_LOSSES:
+        return &c->losses->where;
+    default:
+        return NULL;
+    }
+}
+
 static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
                                      const struct dalcs_audit_summary *found, const char *name) {
     char time[DALCS_QUANTITY_SIZE];
-    dalcs_diag_add(
-        &a->run->s->diag, DALCS_ERROR, NULL,
-        "the report lists the laws that are broken; please report this netlist",
-        "the waveform seems wrong: the audit finds %s broken by %.2g of its scale at t = "
-        "%s, and %.2g is allowed",
-        name, found->defect, dalcs_quantity_write(time, found->time, "s", 9),
-        dalcs_audit_most_allowed(a));
-    return DALCS_NOT_CONVERGED;
+    const struct dalcs_location *where = place_of(a, found);
+    dalcs_quantity_write(time, found->time, "s", 9);
+    if (where != NULL) {
+        dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, where,
+                       "the waveform itself is not in doubt; please report this netlist",
+                       "a result seems wrong: the audit finds %s off by %.2g of its scale at t = "
+                       "%s, and %.2g is allowed",
+                       name, found->defect, time, dalcs_audit_most_allowed(a));
+    } else {
+        dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, NULL,
+                       "the report lists the laws that are broken; please report this netlist",
+                       "the waveform seems wrong: the audit finds %s broken by %.2g of its scale "
+                       "at t = %s, and %.2g is allowed",
+                       name, found->defect, time, dalcs_audit_most_allowed(a));
+    }
+    return DALCS_REFUTED;
 }
 
 /* Where the run fell back to implicit Euler, nobody controls the error: it is told. */

@@ -237,6 +237,7 @@ enum dalcs_status dalcs_losses_run_report(struct dalcs_losses_run *losses, struc
     for (int k = 0; k < c->n_devices; k++) {
         if (c->losses->device[k].voltage >= 0) {
             DALCS_TRY(add_element(&a, k));
+            dalcs_audit_losses_told(&losses->audit, sum, k, &a.element[l->n_elements - 1]);
         }
     }
     l->jumps = sum->loops;

@@ -139,5 +139,7 @@ enum dalcs_status dalcs_losses_run_jump(struct dalcs_losses_run *losses,
 void dalcs_losses_run_stretch(struct dalcs_losses_run *losses,
                               const struct dalcs_stretch *stretch) {
     take_sides(losses);
+    dalcs_audit_losses_begin(&losses->audit, &losses->sum, stretch);
     dalcs_losses_sum_stretch(&losses->sum, stretch, losses->on);
+    dalcs_audit_losses_end(&losses->audit, &losses->sum, stretch);
 }

@@ -2,6 +2,7 @@
 #ifndef DALCS_SESSION_LOSSES_H
 #define DALCS_SESSION_LOSSES_H
 
+#include "audit_losses.h"
 #include "losses_sum.h"
 #include "session_internal.h"
 
@@ -20,6 +21,7 @@ struct dalcs_losses_run {
     int *state_device; /* [n_states] */
     bool *on;          /* [n_devices] */
     bool is_euler;
+    struct dalcs_audit_losses audit;
 };
 
 static inline bool dalcs_run_wants_losses(const struct dalcs_run *r) {

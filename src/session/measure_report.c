@@ -67,7 +67,7 @@ static bool check_instant(struct result *r, const struct dalcs_instant *i) {
         return false;
     }
     if (i->has_no_value) {
-        fail(r, "'%s' has no value everywhere", c->text);
+        fail(r, "'%s' is undefined at some of its times", c->text);
         return false;
     }
     moment(r, a, fmax(from, i->delay));
@@ -152,7 +152,7 @@ static void tell(struct result *r, const double *results) {
     const struct dalcs_measure_card *card = item->card;
     const struct dalcs_instant *i = item->instant;
     if (item->has_no_value) {
-        fail(r, "'%s' has no value everywhere", card->formula.text);
+        fail(r, "'%s' is undefined at some of its times", card->formula.text);
         return;
     }
     switch (card->kind) {
@@ -235,7 +235,7 @@ static void warn_of_frequency(struct dalcs_run *r, const struct dalcs_measuring 
     if (m->analysis == DALCS_MEASURED_PSS && !r->s->report.steady.self_oscillating &&
         fabs(h->frequency / asked - 1.0) > same_frequency) {
         dalcs_diag_add(&r->s->diag, DALCS_WARNING, &h->card->where, NULL,
-                       "the orbit has nothing at %s: these are multiples of %s",
+                       "the orbit has no component at %s: these are multiples of %s",
                        dalcs_quantity_write(text[0], asked, "Hz", 9),
                        dalcs_quantity_write(text[1], h->frequency, "Hz", 9));
     }
@@ -261,7 +261,7 @@ static enum dalcs_status tell_harmonics(struct dalcs_measures *measures, struct 
         if (h->from < m->start - 1e-9 * m->stop || h->has_no_value) {
             dalcs_diag_add(&r->s->diag, DALCS_WARNING, &h->card->where, NULL,
                            h->has_no_value
-                               ? "'%s' has no value everywhere: no Fourier analysis"
+                               ? "'%s' is undefined at some of its times: no Fourier analysis"
                                : "'%s': the run is shorter than the periods that are to "
                                  "be analysed",
                            h->card->formula.text);
@@ -289,6 +289,7 @@ static enum dalcs_status tell_harmonics(struct dalcs_measures *measures, struct 
                                    .n_harmonics = n_lines,
                                    .magnitude = magnitude,
                                    .phase = phase};
+        dalcs_audit_fourier_told(&measures->audit, m, (int)k, &fourier[r->s->report.n_fourier - 1]);
     }
     return fourier == NULL ? DALCS_E_NOMEM : DALCS_OK;
 }
@@ -339,6 +340,7 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
             fail(&result, "a time that earlier measurements give has no value");
         } else {
             tell(&result, r->result);
+            dalcs_audit_measures_told(&measures->audit, m, k, measurement);
         }
         if (result.out_of_memory) {
             return DALCS_E_NOMEM;

@@ -76,7 +76,8 @@ static void read_signals(const struct dalcs_measures *measures, const struct dal
 }
 
 enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct dalcs_run *r,
-                                       const struct dalcs_euler *e, struct dalcs_radau *radau) {
+                                       const struct dalcs_euler *e, struct dalcs_radau *radau,
+                                       struct dalcs_audit_run *audit) {
     const struct dalcs_circuit *c = &r->s->circuit;
     measures->next_edge = INFINITY;
     measures->begin = INFINITY;
@@ -92,6 +93,7 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
     measures->begin = dalcs_measuring_begin(&measures->measuring);
     measures->losses = r->losses;
     if (r->losses != NULL) {
+        r->losses->audit.run = radau != NULL && audit->audit != NULL ? audit : NULL;
         measures->begin = fmin(measures->begin, dalcs_losses_run_begin(r->losses));
     }
     DALCS_TRY(allocate(measures, c, &r->s->network));
@@ -115,7 +117,7 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
     DALCS_TRY(dalcs_rows_setup(&measures->rows, radau, c->measured, c->n_measured));
     find_sources(measures, c, e);
     measures->next_edge = edge_after(measures, 0.0);
-    return DALCS_OK;
+    return dalcs_audit_measures_start(&measures->audit, audit, &measures->measuring);
 }
 
 void dalcs_measures_finish(struct dalcs_measures *measures) {
@@ -123,6 +125,7 @@ void dalcs_measures_finish(struct dalcs_measures *measures) {
         dalcs_measuring_finish(&measures->measuring);
     }
     dalcs_rows_finish(&measures->rows);
+    dalcs_audit_measures_finish(&measures->audit);
     free(measures->reads);
     free(measures->stimulus);
     free(measures->term);

@@ -2,6 +2,7 @@
 #ifndef DALCS_MEASURES_H
 #define DALCS_MEASURES_H
 
+#include "audit_measures.h"
 #include "measuring.h"
 #include "rows.h"
 #include "session_internal.h"
@@ -21,12 +22,13 @@ struct dalcs_measures {
     double next_edge;                       /* s, of the stimuli; INFINITY without .meas */
     struct dalcs_losses_run *losses;        /* NULL: not asked for */
     double *before, *now; /* [n_measured] of euler, at the ends of a step; or of a row */
+    struct dalcs_audit_measures audit;
 };
 
 /* After the start of a transient: radau is NULL with implicit Euler. */
 enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct dalcs_run *r,
-                                       const struct dalcs_euler *e,
-                                       struct dalcs_radau *radau) DALCS_MUST_CHECK;
+                                       const struct dalcs_euler *e, struct dalcs_radau *radau,
+                                       struct dalcs_audit_run *audit) DALCS_MUST_CHECK;
 void dalcs_measures_finish(struct dalcs_measures *measures);
 
 /* Up to t, before the segments that end there are passed; `near`: s, times that are the same. */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum kind { METHOD, CURVE, AUDIT, REAL, WHOLE, COUNT, YES_OR_NO };
+enum kind { METHOD, CURVE, AUDIT, INJECTION, NAME, REAL, WHOLE, COUNT, YES_OR_NO };
 
 static const struct {
     const char *name;
@@ -26,9 +26,17 @@ static const struct {
     {"audit", AUDIT, AT(audit)},
     {"steady", YES_OR_NO, AT(steady)},
     {"period", REAL, AT(period)},
+    {"bode", YES_OR_NO, AT(bode)},
+    {"bode_from", REAL, AT(bode_from)},
+    {"bode_to", REAL, AT(bode_to)},
+    {"bode_points", WHOLE, AT(bode_points)},
+    {"bode_loop", NAME, AT(loop)},
+    {"bode_injection", INJECTION, AT(loop_is_loaded)},
+    {"bode_sideband", WHOLE, AT(sideband)},
     {"envelope", YES_OR_NO, AT(envelope)},
     {"envelope_stop", REAL, AT(envelope_stop)},
     {"only", COUNT, AT(only_step)},
+    {"workers", COUNT, AT(workers)},
 #undef AT
 };
 
@@ -106,6 +114,7 @@ enum dalcs_status dalcs_run_options_set(struct dalcs_run_options *options, const
     static const char *const curves[] = {"cubics", "lines", NULL};
     static const char *const audits[] = {"sample", "full", "off", NULL}; /* by their enum */
     static const char *const answers[] = {"no", "yes", NULL};
+    static const char *const injections[] = {"voltage", "both", NULL};
     int option = 0;
     while (option < N_OPTIONS && strcmp(OPTION[option].name, name) != 0) {
         option++;
@@ -118,10 +127,17 @@ enum dalcs_status dalcs_run_options_set(struct dalcs_run_options *options, const
     if (kind == METHOD || kind == CURVE) {
         return kind == METHOD ? set_method(field, text) : set_word(field, curves, text);
     }
+    if (kind == NAME) {
+        *(const char **)field = text;
+        return DALCS_OK;
+    }
     if (kind == REAL || kind == WHOLE || kind == COUNT) {
         return set_number(kind, field, text);
     }
-    const int k = find_word(kind == AUDIT ? audits : answers, text);
+    const int k = find_word(kind == AUDIT       ? audits
+                            : kind == INJECTION ? injections
+                                                : answers,
+                            text);
     if (k < 0) {
         return DALCS_E_OPTION;
     }
@@ -137,4 +153,10 @@ void dalcs_run_options_set_times(struct dalcs_run_options *options, const double
     static const double NO_TIME = 0.0;
     options->at = at != NULL || n > 0 ? at : &NO_TIME;
     options->n_at = n;
+}
+
+void dalcs_run_options_set_frequencies(struct dalcs_run_options *options, const double *at,
+                                       size_t n) {
+    options->bode_at = at;
+    options->n_bode_at = n;
 }

@@ -136,7 +136,7 @@ enum dalcs_status dalcs_nonunique_found(void *run, const struct dalcs_finding *f
 void dalcs_nonunique_count_rest(struct dalcs_run *r) {
     static const char *const like[] = {
         [DALCS_OPEN_CURRENTS] = "",
-        [DALCS_OPEN_VOLTAGES] = ", voltages of what blocking elements leave alone",
+        [DALCS_OPEN_VOLTAGES] = ", voltages between elements that block",
         [DALCS_SHUNTED_SWITCHES] = ", currents that a switch shares with a diode across it"};
     for (int kind = 0; kind < DALCS_FINDING_KINDS; kind++) {
         if (r->n_untold[kind] > 0) {

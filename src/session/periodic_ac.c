@@ -11,12 +11,6 @@
  * which is as good as this. */
 static const double tolerance_of_log = 1e-10;
 
-/* Frequencies where nobody asks for any, over that of the orbit: half of it, without the point itself, is as far as
- * a controller sees. */
-static const double usual_from = 1e-4, usual_to = 0.5;
-
-enum { USUAL_POINTS = 20 };
-
 /* ---- One frequency ------------------------------------------------------------------------------- */
 
 static double probe(const struct dalcs_periodic_ac *a, const struct dalcs_probe *probe, int which) {
@@ -30,9 +24,9 @@ static double probe(const struct dalcs_periodic_ac *a, const struct dalcs_probe 
 static enum dalcs_status refuse_frequency(const struct dalcs_periodic_ac *a, double frequency) {
     struct dalcs_run *r = a->run;
     dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
-                   "a quantity that no period changes, as the charge of a floating node, answers "
-                   "without bound there: give it a way out, or begin at another frequency",
-                   "at %.9g Hz there is no single answer", frequency);
+                   "a quantity that no period changes, such as the charge of a floating node, has "
+                   "an unbounded response there: add a path for it, or begin at another frequency",
+                   "at %.9g Hz the response is not unique", frequency);
     return DALCS_SINGULAR;
 }
 
@@ -176,10 +170,10 @@ static enum dalcs_status refuse_rough(const struct dalcs_periodic_ac *a) {
     struct dalcs_run *r = a->run;
     dalcs_diag_add(
         &r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
-        "elements that are nearly nothing or nearly ideal, such as a coupling next to 1, "
-        "may be left out; or inject a small sine in .tran",
-        "the response is not found: polynomials do not carry small signals through the "
-        "period, however short its pieces are");
+        "leave out elements of nearly no effect, or make nearly ideal ones ideal, such as a "
+        "coupling next to 1; or inject a small sine in .tran",
+        "the response was not found: small signals are not accurate enough over a period, "
+        "however short its segments are");
     return DALCS_NOT_CONVERGED;
 }
 
@@ -242,37 +236,6 @@ static enum dalcs_status setup(struct dalcs_periodic_ac *a) {
                              : DALCS_OK;
 }
 
-/* The netlist's frequencies, or others that are asked for. */
-static enum dalcs_status choose_sweep(struct dalcs_periodic_ac *a) {
-    const struct dalcs_run_options *o = a->run->options;
-    struct dalcs_sweep *f = &a->own_sweep;
-    a->sweep = &a->run->s->circuit.ac;
-    if (a->sweep->n > 0 && o->bode_from == 0.0 && o->bode_to == 0.0 && o->bode_points == 0) {
-        return DALCS_OK;
-    }
-    const bool has = a->sweep->n > 0;
-    *f = (struct dalcs_sweep){.name = "frequency", .label = "frequency", .device = -1};
-    f->where = a->sweep->where;
-    f->spacing = DALCS_DECADES;
-    f->start = o->bode_from > 0.0 ? o->bode_from
-               : has              ? a->sweep->start
-                                  : usual_from / a->st->period;
-    f->stop = o->bode_to > 0.0 ? o->bode_to : has ? a->sweep->stop : usual_to / a->st->period;
-    f->step = o->bode_points > 0                          ? o->bode_points
-              : has && a->sweep->spacing == DALCS_DECADES ? a->sweep->step
-                                                          : USUAL_POINTS;
-    f->n = f->start > 0.0 && f->stop >= f->start
-               ? dalcs_sweep_count(f->spacing, f->start, f->stop, f->step)
-               : 0;
-    a->sweep = f;
-    if (f->n <= 0) {
-        dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, NULL, NULL,
-                       "from %.9g Hz to %.9g Hz there are no frequencies", f->start, f->stop);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
-}
-
 static void report(struct dalcs_periodic_ac *a) {
     struct dalcs_session *s = a->run->s;
     s->report.response.present = true;
@@ -306,7 +269,7 @@ static enum dalcs_status look_around(struct dalcs_periodic_ac *a) {
     options.tolerance = fmin(options.tolerance, tolerance_of_log);
     a->sideband =
         r->options->sideband != 0 ? r->options->sideband : r->s->circuit.orbit_ac.sideband;
-    DALCS_TRY(choose_sweep(a));
+    DALCS_TRY(dalcs_periodic_frequencies_choose(a));
     DALCS_TRY(dalcs_periodic_loop_find(a));
     DALCS_TRY(dalcs_radau_setup(&a->radau, &a->euler, &options, &r->osnsp));
     const struct dalcs_orbit_sources sources = {a, source_of};

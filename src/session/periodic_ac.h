@@ -44,6 +44,11 @@ struct dalcs_periodic_ac {
     struct dalcs_arena arena;
 };
 
+/* ---- periodic_frequencies.c -------------------------------------------------------------------- */
+
+/* The sweep, with a message where what is asked for is none. */
+enum dalcs_status dalcs_periodic_frequencies_choose(struct dalcs_periodic_ac *ac) DALCS_MUST_CHECK;
+
 /* ---- periodic_loop.c --------------------------------------------------------------------------- */
 
 /* Which sources have a small signal: those of the netlist, or that in the loop alone. */

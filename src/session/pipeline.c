@@ -79,10 +79,14 @@ static void warn_of_switches(struct dalcs_run *r, const struct dalcs_component *
     if (c->delayed_commands == 0) {
         return;
     }
-    if ((steps == 0 && c->delayed_commands == 1) || c->is_static) {
-        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
-                       "a switch and the voltage that controls it do not agree, open or closed; "
-                       "the values are those of its last command");
+    bool once = (steps == 0 && c->delayed_commands == 1) || c->is_static;
+    if (once && c->restless != NULL) {
+        dalcs_diag_add(
+            &r->s->diag, DALCS_WARNING, NULL,
+            c->is_static ? NULL : "with uic, and IC= where it matters, a run starts without one",
+            "at the operating point '%s' and what controls it do not agree: closed it "
+            "opens, open it closes; it is left as it stood",
+            c->restless);
     } else {
         dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
                        "a hysteresis, Vh=, keeps it from switching without end",

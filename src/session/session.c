@@ -81,6 +81,11 @@ static bool is_built_again(const struct dalcs_circuit *circuit, const struct dal
 static enum dalcs_status read_system(struct dalcs_session *s, const char *name, const char *text,
                                      size_t length) {
     struct dalcs_description d;
+    if (s->transient != NULL || s->transient_stop != NULL) {
+        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "change the .tran in the file",
+                       "--tran and --tstop are of netlists, not of system files");
+        return DALCS_E_OPTION;
+    }
     DALCS_TRY(dalcs_description_read_text(&d, name, text, length, &s->diag));
     s->circuit = d.circuit;
     s->network = d.network;
@@ -178,6 +183,20 @@ enum dalcs_status dalcs_session_ask_sensitivities(struct dalcs_session *session)
     return dalcs_session_ask_steady(session);
 }
 
+enum dalcs_status dalcs_session_set_transient(struct dalcs_session *session, const char *times,
+                                              const char *stop) {
+    if (session->name != NULL) {
+        return DALCS_E_OPTION; /* it is read */
+    }
+    session->transient =
+        times != NULL ? dalcs_arena_copy(&session->arena, times, strlen(times)) : NULL;
+    session->transient_stop =
+        stop != NULL ? dalcs_arena_copy(&session->arena, stop, strlen(stop)) : NULL;
+    const bool complete = (times == NULL || session->transient != NULL) &&
+                          (stop == NULL || session->transient_stop != NULL);
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
 enum dalcs_status dalcs_session_keep_netlist(struct dalcs_session *session) {
     if (session->name != NULL) {
         return DALCS_E_OPTION; /* it is read */
@@ -186,18 +205,25 @@ enum dalcs_status dalcs_session_keep_netlist(struct dalcs_session *session) {
     return DALCS_OK;
 }
 
+/* A netlist to be read, with what was asked for beside it. */
+static struct dalcs_netlist asked_of(const struct dalcs_session *session) {
+    return (struct dalcs_netlist){.dialect = session->dialect,
+                                  .losses = session->losses,
+                                  .asks_steady = session->asks_steady,
+                                  .asks_response = session->asks_response,
+                                  .asks_sensitivities = session->asks_sensitivities,
+                                  .has_seed = session->has_seed,
+                                  .seed = session->seed,
+                                  .transient = session->transient,
+                                  .transient_stop = session->transient_stop};
+}
+
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const char *path) {
     char *text;
     size_t length;
     DALCS_TRY(take_name(session, path));
     DALCS_TRY(dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, &session->diag));
-    struct dalcs_netlist netlist = {.dialect = session->dialect,
-                                    .losses = session->losses,
-                                    .asks_steady = session->asks_steady,
-                                    .asks_response = session->asks_response,
-                                    .asks_sensitivities = session->asks_sensitivities,
-                                    .has_seed = session->has_seed,
-                                    .seed = session->seed};
+    struct dalcs_netlist netlist = asked_of(session);
     const bool is_system = dalcs_description_is_text(text, length);
     const enum dalcs_status status =
         is_system ? read_system(session, path, text, length)
@@ -212,13 +238,7 @@ enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const c
     if (dalcs_description_is_text(text, length)) {
         return read_system(session, name, text, length);
     }
-    struct dalcs_netlist netlist = {.dialect = session->dialect,
-                                    .losses = session->losses,
-                                    .asks_steady = session->asks_steady,
-                                    .asks_response = session->asks_response,
-                                    .asks_sensitivities = session->asks_sensitivities,
-                                    .has_seed = session->has_seed,
-                                    .seed = session->seed};
+    struct dalcs_netlist netlist = asked_of(session);
     return build(session, &netlist,
                  dalcs_netlist_read_text(&netlist, name, text, length, &session->diag));
 }
@@ -248,6 +268,7 @@ const char *dalcs_session_message(const struct dalcs_session *session, size_t in
 
 struct dalcs_request dalcs_session_request(const struct dalcs_session *session) {
     const struct dalcs_transient *t = &session->circuit.transient;
+    const struct dalcs_circuit_options *o = &session->circuit.options;
     return (struct dalcs_request){.operating_point = session->circuit.operating_point,
                                   .transient = t->present,
                                   .dc_sweep = session->circuit.n_dc > 0,
@@ -259,7 +280,10 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session) 
                                   .max_step = t->max_step,
                                   .n_prints = (size_t)session->circuit.n_prints,
                                   .ascii = session->circuit.options.ascii,
-                                  .periodic = session->circuit.periodic.present};
+                                  .periodic = session->circuit.periodic.present,
+                                  .worst_case = session->circuit.worst_case.present,
+                                  .euler = o->method != NULL && strcmp(o->method, "euler") == 0,
+                                  .compresses = o->compress > 0.0};
 }
 
 bool dalcs_session_print(const struct dalcs_session *session, size_t card, int analysis,

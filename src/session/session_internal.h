@@ -71,7 +71,8 @@ struct dalcs_session {
     size_t n_resets; /* of a circuit with random values: each draws them anew */
     bool has_seed;
     uint64_t seed;
-    struct dalcs_recorder recorder; /* owns the report's events and jumps */
+    const char *transient, *transient_stop; /* in place of the netlist's .tran, or NULL */
+    struct dalcs_recorder recorder;         /* owns the report's events and jumps */
     struct dalcs_report report;
     bool has_report;
     enum dalcs_status ended; /* how the last run did */

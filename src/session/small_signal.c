@@ -289,7 +289,7 @@ static enum dalcs_status solve_frequency(struct small_signal *a, double frequenc
             dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
                            "an undamped resonance at this frequency, or a loop of conducting ideal "
                            "diodes or closed switches; a resistance in it makes it one",
-                           "at %.9g Hz there is no single answer", frequency);
+                           "at %.9g Hz the response is not unique", frequency);
         }
         DALCS_TRY(status);
     }
@@ -412,7 +412,7 @@ static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler 
         const enum dalcs_status status = part_setup(&a->part[k], &e->component[k]);
         if (status == DALCS_SINGULAR) {
             dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, &a->run->s->circuit.ac.where, NULL,
-                           "the circuit around its operating point has no single answer at any "
+                           "the circuit around its operating point has no unique response at any "
                            "frequency");
         }
         DALCS_TRY(status);

@@ -3,14 +3,15 @@
  * Newton's method is local: as events come and go with the states, pieces of the map follow each other. A
  * burst starts where a run has come to, so that the worst case is a run, of twice as many periods as it
  * takes; and a step that does not help is followed by a plain period, which takes the state back to where
- * the circuit can be. Where a controller is saturated, a quantity grows by as much each period and nothing
+ * the circuit can be. Where a burst ends nowhere, leaps of so many periods follow (steady_continuation.c), and a burst
+ * from where they end. Where a controller is saturated, a quantity grows by as much each period and nothing
  * else happens: the search leaps along it, as far as the same events follow each other. */
 #include "steady.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { MOST_STEPS = 10, MOST_WITHOUT_HALVING = 4, MOST_LEAPS = 24 };
+enum { MOST_STEPS = 10, MOST_WITHOUT_HALVING = 4, MOST_UNHELPFUL = 6, MOST_LEAPS = 24 };
 
 /* Periods of runs between bursts, in all. */
 static const long most_periods = 4096;
@@ -87,6 +88,7 @@ struct burst {
     double first, best; /* residuals */
     long plain;         /* periods that are run besides where the next step does not help */
     int waited;         /* steps since `best` has halved */
+    int unhelpful;      /* steps */
     int far;
     bool done;
 };
@@ -116,6 +118,7 @@ static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
     b->done = is_done(st, before);
     if (!b->done && !(st->residual <= 0.5 * before)) {
+        b->unhelpful++;
         DALCS_TRY(go_on(st, b));
         b->done = is_done(st, INFINITY);
     }
@@ -133,7 +136,8 @@ enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) {
     struct burst b = {.first = st->residual, .best = st->residual, .done = is_done(st, 0.0)};
     bool is_stuck = false; /* where the run has come to: steps may lead to where no run does */
     st->n.bursts++;
-    for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING;
+    for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING &&
+                    b.unhelpful < MOST_UNHELPFUL;
          k++) {
         enum dalcs_status status = dalcs_steady_next_step(st);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
@@ -289,6 +293,22 @@ static enum dalcs_status leave(struct dalcs_steady *st, struct search *s, bool *
     return DALCS_OK;
 }
 
+/* A burst from s->run; where it ends nowhere, leaps, and one from where they have led. */
+static enum dalcs_status try_from_run(struct dalcs_steady *st, const struct search *s,
+                                      bool *found) {
+    bool is_near;
+    st->is_stuck = false;
+    DALCS_TRY(dalcs_steady_burst(st, found));
+    if (*found || st->is_stuck) {
+        return DALCS_OK;
+    }
+    dalcs_steady_copy_point(st, &st->at, &s->run);
+    DALCS_TRY(dalcs_steady_continue(st, &is_near));
+    DALCS_TRY(is_near ? dalcs_steady_burst(st, found) : DALCS_OK);
+    st->is_stuck = false; /* the run is not */
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool *endless) {
     struct search s = {.wait = 1, .may_leap = true};
     if (!make_points(st, &s)) {
@@ -303,8 +323,7 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool
         dalcs_steady_take(st);
         s.total += s.wait;
         dalcs_steady_copy_point(st, &s.run, &st->at);
-        st->is_stuck = false;
-        DALCS_TRY(dalcs_steady_burst(st, found));
+        DALCS_TRY(try_from_run(st, &s, found));
         s.wait = s.total;
         if (!*found && st->is_stuck) {
             DALCS_TRY(leave(st, &s, endless));

@@ -201,6 +201,11 @@ void dalcs_steady_copy_point(const struct dalcs_steady *st, struct dalcs_orbit_p
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
                                       bool *endless) DALCS_MUST_CHECK;
 
+/* ---- steady_continuation.c --------------------------------------------------------------------- */
+
+/* Leaps from st->at on to where Newton's method may begin again, st->at; *is_near: they have led to such a point. */
+enum dalcs_status dalcs_steady_continue(struct dalcs_steady *st, bool *is_near) DALCS_MUST_CHECK;
+
 /* ---- steady_anchor.c --------------------------------------------------------------------------- */
 
 /* What st has found is kept, if its step is an anchor; the last pass is with M. leaves: for a .tran from there. */

@@ -65,10 +65,11 @@ enum dalcs_status dalcs_steady_tell_failure(struct dalcs_steady *st, bool endles
         for (int x = 0; x < st->layout.n_x; x++) {
             st->step[x] = st->drift[x];
         }
-        dalcs_diag_add(
-            &s->diag, DALCS_ERROR, NULL,
-            "a source fills what nothing empties: give it a way out, or limit what commands it",
-            "there is no periodic steady state: each period %s, whatever they are", moves_text(st));
+        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
+                       "a source charges a state that nothing discharges: give it a way out, or "
+                       "limit what commands it",
+                       "there is no periodic steady state: from any start, each period %s",
+                       moves_text(st));
         return DALCS_NOT_CONVERGED;
     }
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
@@ -106,7 +107,10 @@ enum dalcs_status dalcs_steady_find_oscillation(struct dalcs_steady *st, double 
     if (rests) {
         dalcs_diag_add(
             &s->diag, DALCS_ERROR, NULL,
-            ".op has that state; if the circuit is to oscillate, start it with IC= and uic",
+            st->run->options->bode
+                ? "a run with .ac dec 20 1 1meg has the response around that state; if the circuit "
+                  "is to oscillate, start it with IC= and uic"
+                : ".op has that state; if the circuit is to oscillate, start it with IC= and uic",
             "there is no oscillation: no source repeats, and the circuit comes to rest, "
             "at %s",
             states_text(st));
@@ -115,7 +119,7 @@ enum dalcs_status dalcs_steady_find_oscillation(struct dalcs_steady *st, double 
     if (!found && st->is_free_of_events) {
         dalcs_diag_add(
             &s->diag, DALCS_ERROR, NULL,
-            "what is linear rings at any amplitude, or moves on and on; look at it with "
+            "a linear circuit oscillates at any amplitude, or drifts; look at it with "
             ".tran",
             "there is no oscillation of its own: no source repeats, and nothing switches "
             "again and again");

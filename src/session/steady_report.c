@@ -162,10 +162,10 @@ static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floque
                                   m[0].state, size);
     }
     if (st->is_free && st->n_free > 0) {
-        return "not the only one: nothing decides how large it is, or what else stays as it is";
+        return "not unique: nothing determines its amplitude, or another conserved quantity";
     }
     if (st->n_conserved > 0) {
-        return "not the only one: a conserved quantity keeps its initial value";
+        return "not unique: a conserved quantity keeps its initial value";
     }
     return size < 1.0 - near_one ? "stable" : "at the border of stability";
 }
@@ -209,8 +209,7 @@ static enum dalcs_status tell_conserved(struct dalcs_steady *st) {
             return DALCS_E_NOMEM;
         }
         dalcs_diag_add(&s->diag, DALCS_WARNING, NULL, "IC= or .ic with uic choose another one",
-                       "the steady state is not the only one: %s keeps its initial value",
-                       conserved[k]);
+                       "the steady state is not unique: %s keeps its initial value", conserved[k]);
     }
     s->report.steady.conserved = conserved;
     s->report.steady.n_conserved = (size_t)st->n_conserved;
@@ -280,8 +279,8 @@ enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one
     report->steady.doubled.multiplier = m;
     report->steady.verdict = dalcs_arena_printf(
         &st->run->s->arena,
-        "unstable: what %s is off by changes its sign and grows by %.4g each period; an orbit of "
-        "two periods, %s, was found, %s, its largest factor %.6g: .pss periods=2 has it",
+        "unstable: a deviation of %s changes its sign and grows by %.4g each period; an orbit of "
+        "two periods, %s, was found: %s, with a largest factor of %.6g; .pss periods=2 gives it",
         of_one->state, hypot(of_one->re, of_one->im),
         dalcs_quantity_write(text, 2.0 * one, "s", 12),
         size < 1.0 - near_one ? "stable" : "unstable too", size);

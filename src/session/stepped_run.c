@@ -30,11 +30,16 @@ static const char *step_text(struct dalcs_session *s, const struct dalcs_plot *s
     return values;
 }
 
-/* Names the step that failed. */
-static void blame_step(struct dalcs_session *s, const struct dalcs_plot *step, size_t k) {
+/* Names the step that failed, and says how to come to those behind it. */
+static void blame_step(struct dalcs_session *s, const struct dalcs_plot *step, size_t k,
+                       bool has_more) {
     const char *values = step_text(s, step);
-    dalcs_diag_add(&s->diag, DALCS_NOTE, NULL, NULL, "this was step %zu of %zu: %s", k + 1,
-                   dalcs_steps_count(s), values != NULL ? values : "");
+    dalcs_diag_add(&s->diag, DALCS_NOTE, NULL,
+                   has_more ? "those behind it are not run; -o none --measures FILE.csv makes a "
+                              "table of all, and so does dalcs.variants in Python"
+                            : NULL,
+                   "this was step %zu of %zu: %s", k + 1, dalcs_steps_count(s),
+                   values != NULL ? values : "");
 }
 
 /* What was measured in all steps. */
@@ -162,7 +167,7 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
                 status = status == DALCS_OK ? kept : status;
             }
             if (status > DALCS_OK || status == DALCS_E_NETLIST) {
-                blame_step(session, &step, k);
+                blame_step(session, &step, k, k + 1 < end);
             }
         }
     }

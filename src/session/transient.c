@@ -172,7 +172,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
     DALCS_TRY(dalcs_run_begin_plot(r, r->orbit != NULL && !r->leaves_orbit ? DALCS_PERIODIC
                                                                            : DALCS_TRANSIENT));
     DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
-    DALCS_TRY(dalcs_measures_start(&p->measures, r, e, radau));
+    DALCS_TRY(dalcs_measures_start(&p->measures, r, e, radau, &p->audit));
     enum dalcs_status status =
         radau != NULL ? dalcs_transient_walk(r, radau, &p->measures, &p->audit, &p->logic)
                       : step_to_the_end(r, p);
@@ -185,7 +185,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
         DALCS_TRY(dalcs_steady_read(e, &p->logic, s->circuit.transient.stop, r->orbit_end));
     }
     if (dalcs_audit_run_fails(&p->audit)) {
-        return DALCS_NOT_CONVERGED; /* the rows stay what they are: partial */
+        return DALCS_REFUTED; /* the rows stay what they are: partial */
     }
     return r->sink->end(r->sink->user);
 }

@@ -13,6 +13,11 @@ struct dalcs_schedule;
 /* Whether a source jumps at t. */
 bool dalcs_sources_jump(const struct dalcs_circuit *circuit, double t);
 
+/* Whether there is more than one row at t = 0: a source jumps there, or a switch that sources control moves. Before the
+ * start; without radau (NULL) steps see the second alone at their ends. */
+bool dalcs_transient_begins_with_a_jump(const struct dalcs_circuit *circuit,
+                                        struct dalcs_radau *radau);
+
 /* Gates at t; a loop of them that does not settle is refused. */
 enum dalcs_status dalcs_transient_decide(struct dalcs_run *r, struct dalcs_logic_run *logic,
                                          double t) DALCS_MUST_CHECK;

@@ -22,6 +22,12 @@ bool dalcs_sources_jump(const struct dalcs_circuit *circuit, double t) {
     return jumps;
 }
 
+bool dalcs_transient_begins_with_a_jump(const struct dalcs_circuit *circuit,
+                                        struct dalcs_radau *radau) {
+    return dalcs_sources_jump(circuit, 0.0) ||
+           (radau != NULL && dalcs_radau_commands_at_start(radau));
+}
+
 /* A hysteresis goes on from the operating point. */
 static void take_over_switches(struct dalcs_euler *e, const struct dalcs_euler *held) {
     for (int k = 0; k < e->n_components; k++) {
@@ -118,7 +124,7 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
         return start_from_clamps(r, e, radau, logic);
     }
     DALCS_TRY(dalcs_gates_operating_point(e, logic, true));
-    if (has_rows && dalcs_sources_jump(c, 0.0)) {
+    if (has_rows && dalcs_transient_begins_with_a_jump(c, radau)) {
         DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
         if (r->losses != NULL) {
             dalcs_losses_run_before_start(r->losses);

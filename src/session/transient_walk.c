@@ -77,7 +77,7 @@ static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_
         dalcs_rows_join(&c->rows, c->recorder->row); /* the row on the left was the last one */
     }
     DALCS_TRY(dalcs_recorder_row(c->recorder, &c->rows, c->t, is_due));
-    dalcs_audit_run_rows(c->audit, &c->rows, c->t, side, 1);
+    dalcs_audit_run_rows(c->audit, c->recorder, &c->t, side, 1);
     c->next_row = dalcs_recorder_due(c->recorder);
     return DALCS_OK;
 }
@@ -93,7 +93,7 @@ static enum dalcs_status rows(struct transient *c, double until, bool ends) {
         DALCS_TRY(dalcs_rows_fill(&c->rows, time, n, DALCS_LEFT, &n));
         c->t = time[n - 1];
         DALCS_TRY(dalcs_recorder_rows(c->recorder, &c->rows, time, n, n_due));
-        dalcs_audit_run_rows(c->audit, &c->rows, c->t, DALCS_LEFT, n);
+        dalcs_audit_run_rows(c->audit, c->recorder, time, DALCS_LEFT, n);
         c->next_row = dalcs_recorder_due(c->recorder);
         DALCS_TRY(tell_progress(c, n));
     }
@@ -126,6 +126,7 @@ static enum dalcs_status leap(struct transient *c) {
     c->t = c->radau->cycling->segment.t;
     dalcs_measures_skip(c->measures, c->t);
     DALCS_TRY(dalcs_recorder_leap(c->recorder, leap));
+    dalcs_audit_run_tell(c->audit, c->t);
     return tell_progress(c, leap->n_steps);
 }
 
@@ -207,7 +208,9 @@ static enum dalcs_status pass(struct transient *c, double t) {
     DALCS_TRY(pass_gates(c, t));
     dalcs_audit_run_enter(c->audit);
     radau->base->t = t;
-    return dalcs_recorder_events(c->recorder, radau->base);
+    DALCS_TRY(dalcs_recorder_events(c->recorder, radau->base));
+    dalcs_audit_run_told(c->audit, t);
+    return DALCS_OK;
 }
 
 /* To the next time at which there is something to do, with the rows up to there. */
@@ -253,11 +256,12 @@ static enum dalcs_status advance(struct transient *c) {
 
 static void note_end_of_filling(struct dalcs_run *r, const struct dalcs_filling *filling) {
     if (isfinite(filling->ended)) {
-        dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL,
-                       "--fill with a larger bound, or none, or a later tstart",
-                       "%zu rows, and %zu for each that there is anyway, were added up to t = %.9g "
-                       "s: from there on there are no more",
-                       FILLING_LIMIT.most, FILLING_LIMIT.for_each, filling->ended);
+        dalcs_diag_add(
+            &r->s->diag, DALCS_NOTE, NULL,
+            "--fill with a larger bound or none, or a later tstart, leaves more for the rest",
+            "%zu added rows, and %zu for each row of .tran, are the limit: it is reached at "
+            "t = %.9g s, and no rows are added after that",
+            FILLING_LIMIT.most, FILLING_LIMIT.for_each, filling->ended);
         dalcs_transient_warn_of_coarse_rows(r, &r->s->recorder.schedule, filling->ended);
     }
 }
@@ -282,6 +286,7 @@ enum dalcs_status dalcs_transient_walk(struct dalcs_run *r, struct dalcs_radau *
         dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->fill, r->lines, &FILLING_LIMIT);
     status = status == DALCS_OK ? dalcs_gate_samples_setup(&c.samples, logic) : status;
     dalcs_audit_run_begin(audit);
+    dalcs_audit_run_told(audit, 0.0);
     status = status == DALCS_OK ? dalcs_audit_run_gates(audit, 0.0) : status;
     while (c.t < radau->options.stop && status == DALCS_OK) {
         status = advance(&c);

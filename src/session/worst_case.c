@@ -5,157 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- One run ----------------------------------------------------------------------------------- */
-
-static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
-    struct dalcs_worst_case *w = user;
-    (void)plot;
-    return atomic_load(&w->session->is_cancelled) ? DALCS_E_CANCELLED : DALCS_OK;
-}
-
-static enum dalcs_status row(void *user, double time, const double *value) {
-    (void)user;
-    (void)time;
-    (void)value;
-    return DALCS_OK;
-}
-
-static enum dalcs_status end(void *user) {
-    (void)user;
-    return DALCS_OK;
-}
-
-/* All runs together are one to whoever looks on. */
-static enum dalcs_status progress(void *user, double time, double stop) {
-    const struct dalcs_worst_case *w = user;
-    const double done = ((double)w->n_runs + (stop > 0 ? time / stop : 0)) / (double)w->n_expected;
-    return atomic_load(&w->session->is_cancelled)
-               ? DALCS_E_CANCELLED
-               : w->sink->progress(w->sink->user, fmin(done, 1) * stop, stop);
-}
-
-/* A session of its own for the run, which borrows the netlist: what is wrong with it is no error of the others. */
-static enum dalcs_status build(const struct dalcs_worst_case *w,
-                               const struct dalcs_override *corner, struct dalcs_session *other) {
-    const struct dalcs_session *of = w->session;
-    other->name = of->name;
-    other->asks_steady = of->asks_steady;
-    other->netlist = of->netlist;
-    other->override = of->override;
-    other->n_altered = of->n_altered;
-    other->n_resets = of->n_resets;
-    DALCS_TRY(dalcs_session_build(other, corner, 1, &other->circuit, &other->network));
-    other->has_circuit = other->has_network = true;
-    other->circuit.worst_case.present = false;
-    other->circuit.periodic.present = of->circuit.periodic.present;
-    return DALCS_OK;
-}
-
-/* The sentence of the first error, else the status in words. */
-static const char *reason_of(struct dalcs_arena *arena, const struct dalcs_diag *diag,
-                             enum dalcs_status status) {
-    static const char label[] = "error: ";
-    const char *reason = dalcs_status_text(status);
-    for (size_t k = 0; k < diag->n; k++) {
-        if (diag->item[k].severity == DALCS_ERROR) {
-            const char *at = strstr(diag->item[k].text, label);
-            reason = at != NULL ? at + sizeof label - 1 : diag->item[k].text;
-            break;
-        }
-    }
-    return dalcs_arena_copy(arena, reason, strcspn(reason, "\n"));
-}
-
-/* Values that tolerances are of, in this circuit, into what `at` points to in each parameter. */
-static void read_values(struct dalcs_worst_case *w, const struct dalcs_circuit *circuit, int place,
-                        size_t only) {
-    for (size_t p = 0; p < w->n; p++) {
-        struct dalcs_worst_case_parameter *parameter = &w->parameter[p];
-        double *value = place < 0   ? &parameter->low
-                        : place > 0 ? &parameter->high
-                                    : &parameter->nominal;
-        for (int k = 0; k < circuit->n_drawn && (only == w->n || p == only); k++) {
-            *value = strcmp(circuit->drawn[k].name, parameter->name) == 0 ? circuit->drawn[k].value
-                                                                          : *value;
-        }
-    }
-}
-
-/* What was measured, by name: a run that failed may have less. */
-static void take_results(const struct dalcs_worst_case *w, const struct dalcs_report *report,
-                         double *value) {
-    for (size_t k = 0; k < w->n_results; k++) {
-        value[k] = (double)NAN;
-        for (size_t i = 0; i < report->n_measurements; i++) {
-            const struct dalcs_measurement *m = &report->measurement[i];
-            if (strcmp(m->name, w->result[k].name) == 0) {
-                value[k] = m->found ? m->value : (double)NAN;
-            }
-        }
-    }
-}
-
-static enum dalcs_status make_room(struct dalcs_worst_case *w, signed char **place,
-                                   double **value) {
-    struct dalcs_arena *arena = &w->session->arena;
-    *place = dalcs_arena_alloc(arena, w->n + 1, sizeof **place);
-    *value = dalcs_arena_alloc(arena, w->n_results + 1, sizeof **value);
-    return *place == NULL || *value == NULL
-               ? DALCS_E_NOMEM
-               : dalcs_grow(&w->run, &w->capacity, w->n_runs + 1, sizeof *w->run);
-}
-
-/* The circuit with the tolerances there, and its run. */
-static enum dalcs_status run_other(struct dalcs_worst_case *w, const signed char *place,
-                                   struct dalcs_session *other) {
-    const struct dalcs_sink sink = {
-        .user = w, .begin = begin, .row = row, .end = end, .progress = progress};
-    double *list = dalcs_alloc(w->n, sizeof *list);
-    uint64_t *key = dalcs_alloc(w->n, sizeof *key);
-    enum dalcs_status status = list == NULL || key == NULL ? DALCS_E_NOMEM : DALCS_OK;
-    for (size_t p = 0; p < w->n && status == DALCS_OK; p++) {
-        list[p] = place[p];
-        key[p] = w->place[p].key;
-    }
-    if (status == DALCS_OK) {
-        const struct dalcs_override corner = {
-            .kind = DALCS_OVERRIDE_CORNER, .name = "", .list = list, .key = key, .n_list = w->n};
-        status = build(w, &corner, other);
-    }
-    free(list);
-    free(key);
-    if (status == DALCS_OK) {
-        status = dalcs_operating_currents(other, w->options, &sink);
-    }
-    return status != DALCS_OK ? status : dalcs_run_asked(other, w->options, &sink);
-}
-
-/* One that fails is told of and lost, no other. */
-static enum dalcs_status run_corner(struct dalcs_worst_case *w, const signed char *at) {
-    struct dalcs_session other = {0};
-    signed char *place;
-    double *value;
-    DALCS_TRY(make_room(w, &place, &value));
-    memcpy(place, at, w->n);
-    enum dalcs_status status = run_other(w, place, &other);
-    take_results(w, &other.report, value);
-    struct dalcs_worst_case_run *run = &w->run[w->n_runs];
-    *run = (struct dalcs_worst_case_run){.place = place, .value = value};
-    if (status != DALCS_OK && status != DALCS_E_CANCELLED && status != DALCS_E_NOMEM) {
-        run->error = reason_of(&w->session->arena, &other.diag, status);
-        status = run->error != NULL ? DALCS_OK : DALCS_E_NOMEM;
-        w->n_failed++;
-    }
-    if (other.has_circuit && w->n_runs > 0 && w->n_runs <= 2 * w->n) {
-        read_values(w, &other.circuit, w->n_runs % 2 == 1 ? -1 : 1, (w->n_runs - 1) / 2);
-    }
-    w->n_runs++;
-    dalcs_session_finish_other(&other);
-    return status;
-}
-
-/* ---- All of them ------------------------------------------------------------------------------- */
-
 static enum dalcs_status list_all(struct dalcs_worst_case *w) {
     struct dalcs_arena *arena = &w->session->arena;
     const struct dalcs_report *report = &w->session->report;
@@ -169,7 +18,7 @@ static enum dalcs_status list_all(struct dalcs_worst_case *w) {
         w->parameter[p] =
             (struct dalcs_worst_case_parameter){.name = w->place[p].name, .low = -1, .high = 1};
     }
-    read_values(w, &w->session->circuit, 0, w->n);
+    dalcs_worst_case_read(w, &w->session->circuit, 0, w->n);
     for (size_t k = 0; k < w->n_results; k++) {
         w->result[k].name = report->measurement[k].name;
     }
@@ -177,37 +26,54 @@ static enum dalcs_status list_all(struct dalcs_worst_case *w) {
 }
 
 /* The run that the session has done already. */
-static enum dalcs_status take_nominal(struct dalcs_worst_case *w) {
-    signed char *place;
-    double *value;
-    DALCS_TRY(make_room(w, &place, &value));
-    memset(place, 0, w->n + 1);
-    take_results(w, &w->session->report, value);
-    w->run[w->n_runs++] = (struct dalcs_worst_case_run){.place = place, .value = value};
+static enum dalcs_status take_nominal(struct dalcs_worst_case *w, const signed char *at) {
+    DALCS_TRY(dalcs_worst_case_add(w, at));
+    dalcs_worst_case_take(w, &w->session->report, 0);
+    w->n_done = 1;
     return DALCS_OK;
 }
 
-static enum dalcs_status run_all(struct dalcs_worst_case *w, signed char *at, bool has_corners) {
+static enum dalcs_status add_alone(struct dalcs_worst_case *w, signed char *at) {
     for (size_t p = 0; p < w->n; p++) {
         for (int end = -1; end <= 1; end += 2) {
             memset(at, 0, w->n);
             at[p] = (signed char)end;
-            DALCS_TRY(run_corner(w, at));
+            DALCS_TRY(dalcs_worst_case_add(w, at));
         }
     }
+    return DALCS_OK;
+}
+
+static enum dalcs_status add_told(struct dalcs_worst_case *w, signed char *at) {
     for (size_t k = 0; k < w->n_results; k++) {
         dalcs_worst_case_choose(w, k, false, at);
-        DALCS_TRY(run_corner(w, at));
+        DALCS_TRY(dalcs_worst_case_add(w, at));
         dalcs_worst_case_choose(w, k, true, at);
-        DALCS_TRY(run_corner(w, at));
+        DALCS_TRY(dalcs_worst_case_add(w, at));
     }
-    for (size_t corner = 0; has_corners && corner < (size_t)1 << w->n; corner++) {
+    return DALCS_OK;
+}
+
+static enum dalcs_status add_corners(struct dalcs_worst_case *w, signed char *at) {
+    for (size_t corner = 0; corner < (size_t)1 << w->n; corner++) {
         for (size_t p = 0; p < w->n; p++) {
             at[p] = (signed char)((corner >> p & 1) != 0 ? 1 : -1);
         }
-        DALCS_TRY(run_corner(w, at));
+        DALCS_TRY(dalcs_worst_case_add(w, at));
     }
     return DALCS_OK;
+}
+
+/* The nominal one, with which `at` begins, is done. What is told follows from the runs before. */
+static enum dalcs_status run_all(struct dalcs_worst_case *w, signed char *at, bool has_corners) {
+    DALCS_TRY(take_nominal(w, at));
+    DALCS_TRY(add_alone(w, at));
+    DALCS_TRY(dalcs_worst_case_run_added(w));
+    DALCS_TRY(add_told(w, at));
+    if (has_corners) {
+        DALCS_TRY(add_corners(w, at));
+    }
+    return dalcs_worst_case_run_added(w);
 }
 
 static enum dalcs_status fill_alone(struct dalcs_worst_case *w) {
@@ -258,7 +124,8 @@ enum dalcs_status dalcs_worst_case_run(struct dalcs_session *session,
                                  .options = &of_runs,
                                  .sink = sink,
                                  .place = card->place,
-                                 .n = (size_t)card->n};
+                                 .n = (size_t)card->n,
+                                 .lock = PTHREAD_MUTEX_INITIALIZER};
     const bool has_corners = !card->no_corners && card->n <= DALCS_MOST_OF_CORNERS;
     of_runs.record = of_runs.energy = false;
     of_runs.dump_path = NULL;
@@ -269,9 +136,6 @@ enum dalcs_status dalcs_worst_case_run(struct dalcs_session *session,
     enum dalcs_status status = at != NULL ? list_all(&w) : DALCS_E_NOMEM;
     w.n_expected = 2 * (w.n + w.n_results) + (has_corners ? (size_t)1 << w.n : 0) + 1;
     if (status == DALCS_OK) {
-        status = take_nominal(&w);
-    }
-    if (status == DALCS_OK) {
         status = run_all(&w, at, has_corners);
     }
     if (status == DALCS_OK) {
@@ -279,5 +143,6 @@ enum dalcs_status dalcs_worst_case_run(struct dalcs_session *session,
     }
     free(at);
     free(w.run);
+    free(w.value);
     return status;
 }

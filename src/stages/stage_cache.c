@@ -151,16 +151,13 @@ static void set_key(struct dalcs_stages *stages, const uint64_t *mode, double h)
     memcpy(stages->cache.key + words, &h, sizeof(h));
 }
 
-static struct dalcs_stage_entry *find(struct dalcs_stages *stages, const uint64_t *mode, double h) {
+struct dalcs_stage_entry *dalcs_stages_find(struct dalcs_stages *stages, const uint64_t *mode,
+                                            double h) {
     set_key(stages, mode, h);
     struct dalcs_stage_entry *e;
     HASH_FIND(hh, stages->cache.entries, stages->cache.key,
               ((size_t)stages->n_words + 1) * sizeof(*mode), e);
     return e;
-}
-
-bool dalcs_stages_have(struct dalcs_stages *stages, const uint64_t *mode, double h) {
-    return find(stages, mode, h) != NULL;
 }
 
 enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *mode, double h,
@@ -171,7 +168,7 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
         e = e->older;
     }
     if (e == NULL || !is_key(stages, e, mode, h)) {
-        e = find(stages, mode, h);
+        e = dalcs_stages_find(stages, mode, h);
     }
     bool is_spent = e != NULL && dalcs_stage_update_is_spent(stages, e);
     if (e != NULL && !is_spent) {

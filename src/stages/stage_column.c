@@ -26,12 +26,17 @@ DALCS_TWICE(void, find_guards,
             (b, rhs_column, share)) {
     const struct dalcs_system *s = b->system;
     const double *constant = b->stages->excitation->constant;
-    memset(b->column.guard, 0, (size_t)(s->n_pairs * DALCS_LANES) * sizeof(double));
     for (int d = 0; d < s->n_pairs; d++) {
-        if (dalcs_stage_is_on(b->entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE) {
+        if (dalcs_stage_is_on(b->entry, d)) {
             continue;
         }
         double *w = b->column.guard + d * DALCS_LANES;
+        for (int i = 0; i < DALCS_LANES; i++) {
+            w[i] = 0.0;
+        }
+        if (s->pair[d].kind != DALCS_PAIR_DIODE) {
+            continue;
+        }
         for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
             int c = b->place[s->C.j[k]];
             if (c >= 0) {
@@ -107,7 +112,9 @@ static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_colu
         int from = b->kept.follows_p[f];
         int to = b->kept.follows_p[f + 1];
         struct dalcs_extended_row row;
-        b->kept.follows_x[to - 1] = dalcs_extended_of(dalcs_stage_workshop_drive(b, f, rhs_column));
+        long double own = dalcs_stage_workshop_drive(b, f, rhs_column);
+        b->kept.follows_x[to - 1] = dalcs_extended_of(own);
+        to -= own == 0.0L ? 1 : 0; /* most are driven by no source */
         dalcs_extended_combine(m->s + 1, to - from, b->kept.follows_x + from, b->column.stage,
                                b->kept.follows_j + from, &row);
         put_stages(b, b->kept.follower[f], &row, 0.0);
@@ -227,25 +234,18 @@ void dalcs_stage_column_fill(struct dalcs_stage_workshop *b, int column, int rhs
     to->currents += b->entry->current_rows;
 }
 
-/* residual += value * column of n entries, with room for whole quads behind both. Returns the largest
- * term, at least `largest`. */
-DALCS_TWICE(double, add_terms,
-            (int n, const double *column, double value, double *residual, double largest),
-            (n, column, value, residual, largest)) {
-    dalcs_quad most = {largest};
-    for (int r = 0; r < n; r += DALCS_QUAD) {
-        dalcs_quad term;
-        dalcs_quad sum;
-        dalcs_quad_load(&term, column + r);
-        dalcs_quad_load(&sum, residual + r);
-        term *= value;
-        dalcs_quad_keep(&term, n - r);
-        sum += term;
-        dalcs_quad_store(residual + r, &sum);
-        dalcs_quad_unsign(&term);
-        dalcs_quad_raise(&most, &term);
+/* b->column.residual += value * what column c has in the equations without derivatives. Returns the largest term, at
+ * least `largest`. */
+static double add_terms(const struct dalcs_stage_workshop *b, int c, double value, double largest) {
+    for (int k = b->eq.nonzero_p[c]; k < b->eq.nonzero_p[c + 1]; k++) {
+        int r = b->eq.nonzero_i[k] - b->n_x;
+        if (r >= 0) {
+            double term = b->eq.base[k] * value;
+            b->column.residual[r] += term;
+            largest = dalcs_larger(fabs(term), largest);
+        }
     }
-    return dalcs_quad_largest(&most);
+    return largest;
 }
 
 void dalcs_stage_column_check(struct dalcs_stage_workshop *b, int column, int rhs_column,
@@ -271,8 +271,7 @@ void dalcs_stage_column_check(struct dalcs_stage_workshop *b, int column, int rh
         double increment =
             b->column.lanes[c * DALCS_LANES + last] - (is_state && c == column ? 1.0 : 0.0);
         if (increment != 0.0) {
-            largest = add_terms(n_z, b->eq.base + c * b->n + b->n_x,
-                                increment / b->eq.column_scale[c], b->column.residual, largest);
+            largest = add_terms(b, c, increment / b->eq.column_scale[c], largest);
         }
     }
     double worst = 0.0;

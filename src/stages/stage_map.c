@@ -3,6 +3,7 @@
 #include "dense_map.h"
 #include "extremes.h"
 #include "stage_column.h"
+#include "stage_shift.h"
 
 #include <math.h>
 #include <string.h>
@@ -55,14 +56,18 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     entry->n_clashes = b->open.nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
     entry->current_rows = dalcs_dense_map_rows(stages->n_levered);
-    int all_rows = entry->rows + entry->current_rows;
+    int all_rows = entry->rows + entry->current_rows + (entry->frees_states ? 0 : b->n_x);
     entry->map = dalcs_dense_map_alloc(all_rows, n_columns(b));
     if (entry->map == NULL) {
         return DALCS_E_NOMEM;
     }
     entry->current_map = entry->map + entry->rows * n_columns(b);
+    entry->shift_map = entry->current_map + entry->current_rows * n_columns(b);
     entry->bytes += (size_t)all_rows * (size_t)n_columns(b) * sizeof(double);
     fill_map(b, function);
+    if (!entry->frees_states) {
+        dalcs_stage_shift_fill(b, function);
+    }
     return DALCS_OK;
 }
 

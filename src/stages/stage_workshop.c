@@ -3,6 +3,7 @@
 
 #include "extended.h"
 #include "stage_choice.h"
+#include "stage_shift.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -25,18 +26,20 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->solved.room = (size_t)dalcs_quads_of((int)n);
     b->wave_column = dalcs_carve(storage, &used, (size_t)s->n_inputs, sizeof(int));
     b->place = dalcs_carve(storage, &used, all, sizeof(int));
-    b->eq.row_scale = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
+    b->eq.row_scale = dalcs_carve(storage, &used, n, sizeof(double));
     b->eq.column_scale = dalcs_carve(storage, &used, n, sizeof(double));
     b->mode = dalcs_carve(storage, &used, (size_t)b->stages->n_words, sizeof(*b->mode));
     b->eq.plain_base = dalcs_carve(storage, &used, n * n, sizeof(double));
     b->eq.plain_P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
     b->eq.plain_rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
-    b->eq.base = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
+    b->eq.nonzero_p = dalcs_carve(storage, &used, n + 1, sizeof(int));
+    b->eq.nonzero_i = dalcs_carve(storage, &used, n * n, sizeof(int));
+    b->eq.base = dalcs_carve(storage, &used, n * n, sizeof(double));
     b->eq.P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
     b->eq.rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
     b->kept.whole_row_scale = dalcs_carve(storage, &used, n, sizeof(double));
     b->kept.whole_column_scale = dalcs_carve(storage, &used, n, sizeof(double));
-    b->eq.S = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
+    b->eq.size = dalcs_carve(storage, &used, n * n, sizeof(double));
     b->solved.of_real = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
     b->solved.of_pairs = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(*b->solved.of_pairs));
     b->solved.filled = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(bool));
@@ -60,18 +63,18 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->column.filtered = dalcs_carve(storage, &used, 2 * b->solved.room, sizeof(double));
     b->column.defect = dalcs_carve(storage, &used, n_x, sizeof(*b->column.defect));
     b->column.lasting = dalcs_carve(storage, &used, n_x, sizeof(*b->column.lasting));
+    b->solved.moment =
+        dalcs_carve(storage, &used, dalcs_stage_shift_room((int)n, b->n_rhs), sizeof(double));
+    b->solved.shift = dalcs_carve(storage, &used, n_rhs * n_x, sizeof(double));
     b->column.guard = dalcs_carve(storage, &used, (size_t)s->n_pairs * DALCS_LANES, sizeof(double));
-    b->column.residual = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
+    b->column.residual = dalcs_carve(storage, &used, n, sizeof(double));
     b->column.in = dalcs_carve(storage, &used, (size_t)b->stages->n_in, sizeof(double));
     return used;
 }
 
-/* What is read before it is written has to be numbers: a quad behind matrices. */
+/* What is read before it is written has to be numbers: of whole quads. */
 static void clear(struct dalcs_stage_workshop *b) {
-    memset(b->eq.base, 0, (size_t)((char *)b->eq.P - (char *)b->eq.base));
-    memset(b->eq.S, 0, (size_t)((char *)b->solved.of_real - (char *)b->eq.S));
     memset(b->solved.real, 0, (size_t)((char *)b->column.stage - (char *)b->solved.real));
-    memset(b->column.residual, 0, (size_t)((char *)b->column.in - (char *)b->column.residual));
 }
 
 static bool is_driven(const struct dalcs_csr *a, const double *constant) {
@@ -330,6 +333,9 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
         DALCS_TRY(solve_real(b, &is_lossy));
         DALCS_TRY(solve_pairs(b, is_lossy));
         take_real(b);
+        if (!entry->frees_states) {
+            dalcs_stage_shift_find(b);
+        }
     }
     b->is_known = b->kept.n_followers > 0;
     return DALCS_OK;

@@ -17,10 +17,11 @@
 struct dalcs_workshop_equations {
     double *row_scale, *column_scale;         /* [n] */
     double *plain_base, *plain_P, *plain_rhs; /* base, P and rhs before they were balanced */
-    double *base;                             /* [n][n] balanced S without P, by columns */
+    int *nonzero_p, *nonzero_i;               /* by columns, where base or P have something */
+    double *base;                             /* balanced S without P, of the nonzeros */
     double *P;                                /* [n_x][n_x] balanced */
-    double *rhs; /* [n_rhs][n] balanced: unit states, constants, unit waves */
-    double *S;   /* [n][n] the real one, balanced */
+    double *rhs;  /* [n_rhs][n] balanced: unit states, constants, unit waves */
+    double *size; /* of the nonzeros of the real S, before they were balanced */
 };
 
 /* Unknowns that are solved for once (workshop_followers.c), and those that each eigenvalue asks for. */
@@ -43,7 +44,9 @@ struct dalcs_workshop_solved {
     bool *filled;                         /* and where they have anything */
     struct dalcs_extended *part;          /* [n_rhs][n_kept][parts] the solutions, balanced */
     size_t room;                          /* for n unknowns, in whole quads */
-    double *real; /* [n_rhs][2][room] those of the real eigenvalue, of all unknowns */
+    double *real;   /* [n_rhs][2][room] those of the real eigenvalue, of all unknowns */
+    double *moment; /* [2][n_kept][n_kept + n_rhs, in whole quads] real systems of short steps */
+    double *shift;  /* [n_rhs][n_x] how far the mode moves states at once */
 };
 
 /* Work of one column of a map (stage_column.c). */

@@ -90,8 +90,9 @@ void dalcs_stages_forget(struct dalcs_stages *stages);
 enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *mode, double h,
                                    struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
 
-/* Is it there already? */
-bool dalcs_stages_have(struct dalcs_stages *stages, const uint64_t *mode, double h);
+/* It, if it is there already; else NULL. */
+struct dalcs_stage_entry *dalcs_stages_find(struct dalcs_stages *stages, const uint64_t *mode,
+                                            double h);
 
 /* in[n_in] to out[n_fixed + n_clashes]. */
 enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
@@ -112,6 +113,10 @@ void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
 double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
                                      const struct dalcs_stage_entry *entry, int k, const double *in,
                                      const double *scale);
+
+/* How far the mode moves state x at once, by an entry with a map; NAN: not known. */
+double dalcs_stage_shift(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                         int x, const double *in);
 
 /* For who watches the drift of currents: 0 until it was set. */
 int *dalcs_stage_note(struct dalcs_stage_entry *entry);

@@ -27,6 +27,7 @@ struct dalcs_stage_entry {
     double *map; /* [rows][n_in] by columns; NULL: factors */
     int current_rows;
     double *current_map; /* [current_rows][n_in] the drift of currents, behind map */
+    double *shift_map;   /* [n_x][n_in] how far the mode moves states at once, behind that */
     int note;
     struct dalcs_stage_factors *factors;
     /* Entries with factors of their own, whose changes others may be. */

@@ -1,9 +1,10 @@
 /* workshop_equations.c - the equations of the stages in one mode, and their scales. */
 #include "stage_workshop.h"
 
+#include "extremes.h"
 #include "stage_matrix.h"
-#include "wide_vectors.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { BALANCING_ROUNDS = 3 };
@@ -51,6 +52,20 @@ static void add_inputs(const struct dalcs_stage_workshop *b, const struct dalcs_
     }
 }
 
+static void list_nonzeros(struct dalcs_stage_workshop *b) {
+    int n = 0;
+    b->eq.nonzero_p[0] = 0;
+    for (int j = 0; j < b->n; j++) {
+        const double *column = b->eq.plain_base + j * b->n;
+        const double *of_rates = j < b->n_x ? b->eq.plain_P + j * b->n_x : NULL;
+        for (int i = 0; i < b->n; i++) {
+            b->eq.nonzero_i[n] = i;
+            n += column[i] != 0.0 || (of_rates != NULL && i < b->n_x && of_rates[i] != 0.0) ? 1 : 0;
+        }
+        b->eq.nonzero_p[j + 1] = n;
+    }
+}
+
 void dalcs_workshop_fill(struct dalcs_stage_workshop *b) {
     const struct dalcs_system *s = b->system;
     int n_equations = dalcs_system_n_equations(s);
@@ -71,71 +86,63 @@ void dalcs_workshop_fill(struct dalcs_stage_workshop *b) {
             b->eq.plain_P[s->P.j[k] * b->n_x + i] = s->P.x[k];
         }
     }
+    list_nonzeros(b);
 }
 
-/* Both with room for whole quads in S and in row_scale. */
-DALCS_TWICE(void, balance_rows,
-            (int n, const double *S, const double *column_scale, double *row_scale),
-            (n, S, column_scale, row_scale)) {
-    for (int i = 0; i < n; i += DALCS_QUAD) {
-        dalcs_quad largest = {0.0};
-        for (int j = 0; j < n; j++) {
-            dalcs_quad a;
-            dalcs_quad_load(&a, S + j * n + i);
-            dalcs_quad_unsign(&a);
-            a *= column_scale[j];
-            dalcs_quad_raise(&largest, &a);
+static void balance_rows(const struct dalcs_stage_workshop *b) {
+    memset(b->eq.row_scale, 0, (size_t)b->n * sizeof(double));
+    for (int j = 0; j < b->n; j++) {
+        for (int k = b->eq.nonzero_p[j]; k < b->eq.nonzero_p[j + 1]; k++) {
+            double *largest = &b->eq.row_scale[b->eq.nonzero_i[k]];
+            *largest = dalcs_larger(b->eq.size[k] * b->eq.column_scale[j], *largest);
         }
-        dalcs_quad_store(row_scale + i, &largest);
     }
-    for (int i = 0; i < dalcs_quads_of(n); i++) {
-        row_scale[i] = i < n ? dalcs_stage_matrix_scale(row_scale[i]) : 0.0;
+    for (int i = 0; i < b->n; i++) {
+        b->eq.row_scale[i] = dalcs_stage_matrix_scale(b->eq.row_scale[i]);
     }
 }
 
-DALCS_TWICE(void, balance_columns,
-            (int n, const double *S, const double *row_scale, double *column_scale),
-            (n, S, row_scale, column_scale)) {
-    for (int j = 0; j < n; j++) {
-        dalcs_quad largest = {0.0};
-        for (int i = 0; i < n; i += DALCS_QUAD) {
-            dalcs_quad a;
-            dalcs_quad scale;
-            dalcs_quad_load(&a, S + j * n + i);
-            dalcs_quad_load(&scale, row_scale + i);
-            dalcs_quad_unsign(&a);
-            a *= scale;
-            dalcs_quad_raise(&largest, &a);
+static void balance_columns(const struct dalcs_stage_workshop *b) {
+    for (int j = 0; j < b->n; j++) {
+        double largest = 0.0;
+        for (int k = b->eq.nonzero_p[j]; k < b->eq.nonzero_p[j + 1]; k++) {
+            largest = dalcs_larger(b->eq.size[k] * b->eq.row_scale[b->eq.nonzero_i[k]], largest);
         }
-        column_scale[j] = dalcs_stage_matrix_scale(dalcs_quad_largest(&largest));
+        b->eq.column_scale[j] = dalcs_stage_matrix_scale(largest);
+    }
+}
+
+/* Those of S at the real eigenvalue. */
+static void find_sizes(const struct dalcs_stage_workshop *b) {
+    double sigma = b->stages->method->lambda / b->entry->h;
+    for (int j = 0; j < b->n; j++) {
+        for (int k = b->eq.nonzero_p[j]; k < b->eq.nonzero_p[j + 1]; k++) {
+            int i = b->eq.nonzero_i[k];
+            double rate = i < b->n_x && j < b->n_x ? b->eq.plain_P[j * b->n_x + i] : 0.0;
+            b->eq.size[k] = fabs(b->eq.plain_base[j * b->n + i] + sigma * rate);
+        }
     }
 }
 
 void dalcs_workshop_balance(struct dalcs_stage_workshop *b) {
     int n = b->n;
-    double sigma = b->stages->method->lambda / b->entry->h;
     for (int i = 0; i < n; i++) {
-        b->eq.row_scale[i] = 1.0;
         b->eq.column_scale[i] = 1.0;
     }
-    memcpy(b->eq.S, b->eq.plain_base, (size_t)n * (size_t)n * sizeof(double));
-    for (int j = 0; j < b->n_x; j++) {
-        for (int i = 0; i < b->n_x; i++) {
-            b->eq.S[j * n + i] += sigma * b->eq.plain_P[j * b->n_x + i];
-        }
-    }
+    find_sizes(b);
     for (int round = 0; round < BALANCING_ROUNDS; round++) {
-        balance_rows(n, b->eq.S, b->eq.column_scale, b->eq.row_scale);
-        balance_columns(n, b->eq.S, b->eq.row_scale, b->eq.column_scale);
+        balance_rows(b);
+        balance_columns(b);
     }
     for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            double scale = b->eq.row_scale[i] * b->eq.column_scale[j];
-            b->eq.base[j * n + i] = b->eq.plain_base[j * n + i] * scale;
-            b->eq.S[j * n + i] *= scale;
-            if (j < b->n_x && i < b->n_x) {
-                b->eq.P[j * b->n_x + i] = b->eq.plain_P[j * b->n_x + i] * scale;
-            }
+        for (int k = b->eq.nonzero_p[j]; k < b->eq.nonzero_p[j + 1]; k++) {
+            int i = b->eq.nonzero_i[k];
+            b->eq.base[k] =
+                b->eq.plain_base[j * n + i] * (b->eq.row_scale[i] * b->eq.column_scale[j]);
+        }
+        for (int i = 0; i < b->n_x && j < b->n_x; i++) {
+            b->eq.P[j * b->n_x + i] =
+                b->eq.plain_P[j * b->n_x + i] * (b->eq.row_scale[i] * b->eq.column_scale[j]);
         }
     }
     memcpy(b->entry->natural, b->eq.column_scale,

@@ -27,14 +27,19 @@ static void fill_whole(struct dalcs_stage_workshop *b) {
     for (int i = 0; i < n; i++) {
         long double *row = b->kept.whole + i * (n + b->n_rhs);
         for (int j = 0; j < n; j++) {
-            row[j] = b->eq.base[j * n + i];
-        }
-        for (int j = 0; j < n && b->open.nullity > 0; j++) {
-            row[j] += border(b, i, b->open.choice, n, j);
+            row[j] = 0.0L;
         }
         for (int j = 0; j < b->n_rhs; j++) {
             row[n + j] = b->eq.rhs[j * n + i];
             row[n + j] += b->open.nullity > 0 ? border(b, i, b->open.chosen, b->n_rhs, j) : 0.0;
+        }
+    }
+    for (int j = 0; j < n; j++) {
+        for (int k = b->eq.nonzero_p[j]; k < b->eq.nonzero_p[j + 1]; k++) {
+            b->kept.whole[b->eq.nonzero_i[k] * (n + b->n_rhs) + j] = b->eq.base[k];
+        }
+        for (int i = 0; i < n && b->open.nullity > 0; i++) {
+            b->kept.whole[i * (n + b->n_rhs) + j] += border(b, i, b->open.choice, n, j);
         }
     }
 }

@@ -137,7 +137,9 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
         for (int j = 0; j < of->n; j++) {
             x[j] += of->column[j] >= 0 ? ripple[of->column[j]] : 0.0;
         }
-        const double missed = dalcs_smooth_rest(of, x) - phi;
+        const double off = dalcs_smooth_rest(of, x) - phi;
+        const double rest = fabs(off) - dalcs_smooth_rounding(of, x);
+        const double missed = isfinite(off) ? copysign(dalcs_larger(rest, 0.0), off) : off;
         double *known = value_at(part, k, m->s + 1);
         is_finite = is_finite && isfinite(missed);
         *changes = *changes || fabs(missed - *known) > dalcs_rounded * fabs(phi);

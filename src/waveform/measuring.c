@@ -189,7 +189,19 @@ static void climb_bow(const struct climb *c, const struct dalcs_span *span, cons
     }
 }
 
+/* Of one with a jump in it nothing is known but its values. */
+static void climb_values(const struct climb *c, const struct dalcs_span *span) {
+    for (int i = 0; i < N; i++) {
+        consider(c, span->value[i],
+                 span->from + 0.5 * (1.0 + c->rule->node[i]) * (span->to - span->from));
+    }
+}
+
 static void climb(const struct climb *c, const struct dalcs_span *span, int depth) {
+    if (span->is_rough) {
+        climb_values(c, span);
+        return;
+    }
     double top = c->sign * span->coefficient[0] + dalcs_stretch_spread(span->coefficient);
     if (top <= c->sign * *c->best) {
         return;
@@ -339,6 +351,9 @@ void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to) 
     for (int k = 0; k < s->n_signals; k++) {
         dalcs_stretch_expand(&m->rule, s->value[k], s->coefficient[k]);
     }
+    if (m->watch != NULL) {
+        m->watch->begin(m->watch->user, m, -1);
+    }
     for (int k = 0; k < m->n; k++) {
         if (!m->item[k].card->is_late) {
             measure(m, &m->item[k]);
@@ -346,6 +361,9 @@ void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to) 
     }
     for (int k = 0; k < m->n_harmonics; k++) {
         dalcs_harmonics_add(&m->harmonics[k], s);
+    }
+    if (m->watch != NULL) {
+        m->watch->end(m->watch->user, m, -1);
     }
     if (m->kept != NULL) {
         dalcs_kept_stretches_add(m->kept, s);
@@ -464,6 +482,17 @@ static bool take_time(const struct dalcs_signal_formula *formula, const double *
     return !isnan(*time);
 }
 
+/* One that is late, with somebody who looks on. */
+static void measure_watched(struct dalcs_measuring *m, int k) {
+    if (m->watch != NULL) {
+        m->watch->begin(m->watch->user, m, k);
+    }
+    measure(m, &m->item[k]);
+    if (m->watch != NULL) {
+        m->watch->end(m->watch->user, m, k);
+    }
+}
+
 bool dalcs_measuring_late(struct dalcs_measuring *m, int k, const double *result) {
     struct dalcs_measured *item = &m->item[k];
     const struct dalcs_measure_card *card = item->card;
@@ -481,7 +510,7 @@ bool dalcs_measuring_late(struct dalcs_measuring *m, int k, const double *result
         if (s->from == s->to) {
             measure_at_point(m, item);
         } else {
-            measure(m, item);
+            measure_watched(m, k);
         }
     }
     if (item->waits) {

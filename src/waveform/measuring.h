@@ -23,6 +23,15 @@ struct dalcs_measured {
     double value;
 };
 
+struct dalcs_measuring;
+
+/* Who looks on, around each stretch: at all measurements that are not late, k < 0, or at one that is. */
+struct dalcs_measuring_watch {
+    void *user;
+    void (*begin)(void *user, const struct dalcs_measuring *m, int k);
+    void (*end)(void *user, const struct dalcs_measuring *m, int k);
+};
+
 struct dalcs_measuring {
     const struct dalcs_circuit *circuit;
     enum dalcs_measured_analysis analysis;
@@ -38,6 +47,7 @@ struct dalcs_measuring {
     struct dalcs_kept_stretches *kept; /* all of the run; NULL: no measurement is late */
     bool has_row;
     double row_at;
+    const struct dalcs_measuring_watch *watch; /* borrowed; NULL: nobody */
 };
 
 /* Does the circuit ask for anything in such an analysis? */

@@ -21,6 +21,13 @@ static const double resolved = 4e-14;
  * few more. */
 static const double helps = 0.25;
 
+/* Of the largest value, that a formula may be off its polynomial at an end. */
+static const double unseen = 1e-11;
+
+/* A polynomial that cannot be resolved goes beyond its values by about its last coefficients: by more than the usual
+ * tolerance where they are above this, over the formula's largest value. */
+static const double rough = 1e-6;
+
 enum { MOST_HALVINGS = 50, MOST_IN_VAIN = 6, TAIL = 3 };
 
 /* sum[ROOM], its k of expand[i][k] value[i]: node by node, so that coefficients are neighbours, and unrolled, so that the
@@ -202,20 +209,30 @@ static double tail_of(const struct dalcs_span *span) {
     return tail;
 }
 
+/* What happens between the last node and an end no node sees: there the polynomial has to meet the formula. */
+static bool meets_ends(const struct visit *v, double a, double b, const struct dalcs_span *span,
+                       double noise) {
+    const double apart = fmax(
+        fabs(dalcs_stretch_at(span->coefficient, -1.0) - evaluate(v->stretch, v->formula, -1, a)),
+        fabs(dalcs_stretch_at(span->coefficient, 1.0) - evaluate(v->stretch, v->formula, -1, b)));
+    return !(apart > unseen * *v->scale + N * noise); /* all coefficients count there */
+}
+
 static void halve(struct visit *v, double a, double b, const struct dalcs_span *span, int depth,
                   int in_vain);
 
 /* A span goes to the visitor when it is resolved, else its halves do. */
-static void settle(struct visit *v, double a, double b, const struct dalcs_span *span, int depth,
+static void settle(struct visit *v, double a, double b, struct dalcs_span *span, int depth,
                    int in_vain) {
     double tail = tail_of(span);
     double t = fmax(fabs(span->from), fabs(span->to));
     double noise = resolved * *v->scale + DBL_EPSILON * dalcs_stretch_spread(span->coefficient) *
                                               t / (span->to - span->from);
-    bool is_done = v->formula->is_affine || tail <= noise || depth == MOST_HALVINGS ||
-                   in_vain == MOST_IN_VAIN || v->has_no_value ||
+    bool is_done = v->formula->is_affine || (tail <= noise && meets_ends(v, a, b, span, noise)) ||
+                   depth == MOST_HALVINGS || in_vain == MOST_IN_VAIN || v->has_no_value ||
                    !(span->to - span->from > 8.0 * DBL_EPSILON * t);
     if (is_done) {
+        span->is_rough = !v->formula->is_affine && tail > rough * *v->scale;
         v->ended = v->has_no_value || !v->visit(v->user, span);
     } else {
         halve(v, a, b, span, depth, in_vain);
@@ -254,6 +271,7 @@ bool dalcs_stretch_visit(const struct dalcs_stretch *stretch,
 
 void dalcs_span_cut(const struct dalcs_stretch_rule *rule, const struct dalcs_span *span, double a,
                     double b, struct dalcs_span *part) {
+    part->is_rough = span->is_rough;
     part->from = a == -1.0 ? span->from : span->from + 0.5 * (1.0 + a) * (span->to - span->from);
     part->to = b == 1.0 ? span->to : span->from + 0.5 * (1.0 + b) * (span->to - span->from);
     for (int i = 0; i < N; i++) {

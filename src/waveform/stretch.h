@@ -46,6 +46,7 @@ struct dalcs_stretch {
 struct dalcs_span {
     double from, to;
     double value[DALCS_STRETCH_NODES], coefficient[DALCS_STRETCH_NODES];
+    bool is_rough; /* a jump is in it, or noise: its polynomial goes beyond its values */
 };
 
 /* Hands spans that together make up [from, to] of the stretch to visit, in their order; false from visit

@@ -118,7 +118,7 @@ def check_words(checker, program, folder):
         checker.check(done.returncode == code and words in done.stderr, f"{options}: {done.returncode} {done.stderr}")
     done = subprocess.run([program, "run", "c.cir", "--samples", "5"], cwd=folder, capture_output=True, text=True,
                           check=False)
-    checker.check(done.returncode == 2 and "are of 'dalcs steady'" in done.stderr, f"run: {done.stderr}")
+    checker.check(done.returncode == 2 and "are options of 'dalcs steady'" in done.stderr, f"run: {done.stderr}")
 
 
 def main():

@@ -131,7 +131,7 @@ def check_orbit(checker, program, folder):
     page = (folder / "m.html").read_text() if done.returncode == 0 else ""
     checker.check(page.startswith("<!DOCTYPE html>") and "multipliers of a period" in page and "http" not in
                   page.replace("http://www.w3.org/", ""), f"a page of multipliers: {done.stderr}")
-    for arguments, words in ((["run", "orbit.cir", "--multipliers-plot", "m.svg"], "one of 'dalcs steady'"),
+    for arguments, words in ((["run", "orbit.cir", "--multipliers-plot", "m.svg"], "an option of 'dalcs steady'"),
                              (["steady", "orbit.cir", "--multipliers-plot", "m.txt"], "unknown format of 'm.txt'"),
                              (["steady", "orbit.cir", "--plot", "m.txt"], "name it .svg, .png, .pdf or .html")):
         done = run(program, folder, *arguments)

@@ -95,7 +95,7 @@ def refused(case):
                  options=["--from", "10k", "--to", "1k"])
     case.refuses(BUCK % " AC 1" + ".ac dec 5 10 1k sideband=0.5\n.pss\n", 3, "a sideband is a whole number")
     case.refuses(BUCK % " AC 1", 2, "--sideband", verb="bode", options=["--sideband", "0.5"])
-    case.refuses(BUCK % " AC 1" + ".tran 1u 1m uic\n", 2, "--loop is one of 'dalcs bode'", options=["--loop", "vin"])
+    case.refuses(BUCK % " AC 1" + ".tran 1u 1m uic\n", 2, "--loop is an option of 'dalcs bode'", options=["--loop", "vin"])
     case.refuses(BUCK % " AC 1" + "V9 x 0 SIN(0 1 31415.9265)\nR9 x 0 1\n", 2, "no common period", verb="bode")
     case.refuses("No clock\nV1 a 0 1 AC 1\nR1 a b 1\nC1 b 0 1u\n", 1, "comes to rest", verb="bode")
     case.refuses("Filled\nV1 i 0 PULSE(0 10 0 0 0 4u 10u) AC 1\nR1 i a 10\nC1 a m 1u\nC2 m 0 2u\nI1 0 m 1m\n"

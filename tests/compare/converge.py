@@ -92,12 +92,12 @@ class Converge(unittest.TestCase):
     def test_mistakes(self):
         cases = [
             ((), "no steps given: --steps 10u..100n"),
-            (("--steps", "1u..10u"), "--steps: 1u..10u does not fall"),
+            (("--steps", "1u..10u"), "--steps: 1u..10u must fall from the largest step to the smallest"),
             (("--steps", "1u..x"), "--steps: 'x' is not a number greater than 0"),
             (("--steps", "1u,,2u"), "--steps: write 1m..1u or up to 40 steps separated by commas"),
             (("--steps", "10u,3u"),
-             "--steps: 3e-06 s is no whole part of 1e-05 s: their ends would not meet"),
-            (("--steps", "10u,10u"), "--steps: 1e-05 s is there twice"),
+             "--steps: 3e-06 s does not divide 1e-05 s: the steps would not end at common times"),
+            (("--steps", "10u,10u"), "--steps: 1e-05 s is given twice"),
             (("--steps", "8m"), "--steps: 0.008 s is more than half of the run, 0.01 s"),
             (("--steps", "1u,1p"), "--steps: 1e-12 s would take 1e+10 steps; the most is 2e+07"),
             (("--steps", "1m..1f"),

@@ -439,7 +439,7 @@ def messages(checker, program):
             ("define f(a) f(a)\nprint f(1)", "in f()"), ("compose x", "a name and values are missing"),
             ("compose x start=1 stop=0 step=1", "no values lie between"), ("cross x 5 v(out)\nop", "there is no vector"),
             ("goto nowhere", "there is no label 'nowhere'"), ("label a\ngoto a", "goto was done 1000000 times"),
-            ("resume", "a run has no stops here"), ("source other.cir", "a netlist is one file"),
+            ("resume", "a run cannot be stopped and continued here"), ("source other.cir", "a netlist is one file"),
             ("alter @v2[pulse] = [ 0 1 ]\nop", "there is no V or I 'v2'"), ("alter @v1[pulse] = [ ]\nop", "the values of pulse are"),
             ("alter @r1[pulse] = [ 0 1 ]\nop", "there is no V or I 'r1'"),
             ("op\nshell ls", "starts no other programs"), ("set l = ( a b )\necho $l[3]", "has no word number 3"),

@@ -149,9 +149,9 @@ def measurements(c):
             ("find ph(v(b)) at=1k", math.degrees(math.atan2(at.imag, at.real))),
             ("find mag(v(a,b)) at=1k", abs(1 - at)), ("find mag(i(r1))*1k at=1k", abs(1 - at))):
         c.measures("of complex signals", filter_ + f".ac dec 10 1 1k\n.meas ac p {line}\n", "p", [wanted])
-    for line in ("max mag(v(a)-v(b))", "max mog(v(b))"):
+    for line, words in (("max mag(v(a)-v(b))", "sum of complex signals"), ("max mog(v(b))", "no function")):
         status, _, err, _ = run(c.program, f"x\n{filter_}.ac dec 10 1 1k\n.meas ac p {line}\n.end\n")
-        c.check(status == 3 and "no function" in err, f"'{line}' ends with {status}: {err}")
+        c.check(status == 3 and words in err, f"'{line}' ends with {status}: {err}")
 
 
 def frequencies(c):

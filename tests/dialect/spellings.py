@@ -134,7 +134,33 @@ ELEMENTS = [
         "R1 a b rn R=1k\n.model rn RES(T_REL_GLOBAL=0)",
         "X1 a b s\n.subckt s p q\nR1 p q rn 1k\n.model rn RES (TCE=0 T_ABS=-273.15)\n.ends",
     ], [("R1 a b rn 1k\n.model rn RES(RSH=10)", "not supported"),
-        ("R1 a b rn 1k\n.model rn RES(R=2)", "not supported")]),
+        ("R1 a b rn 1k\n.model rn RES(R=2)", "both have a value"),
+        ("R1 a b rn R=1k\n.model rn RES(R=2k)", "both have a value"),
+        ("R1 a b rn\n.model rn RES(TC1=0)", "a resistance is missing")]),
+    Kind("a model that has the resistance", DIVIDER, "R1 a b 1k", "v(b)", 5.0, [
+        "R1 a b __R1\n.model __R1 r( r=1k tnom=20 tc1=100u )",
+        "R1 a b rn\n.model rn RES(R=1k)",
+        "R1 a b rn\n.model rn RES R=1000",
+        "R1 a b rn m=2\n.model rn r(r=2k)",
+        "R1 a b rn tc1=0 tc2=0\n.model rn R(R={2*500})",
+        "R1 a b rn noisy=0\n.param v=1k\n.model rn r(r={v})",
+        "R1 a b rn R=1k\n.model rn RES(R=1)",
+        "R1 a b 1k rn\n.model rn RES(R=1 TC1=0)",
+        "R1 a b rn M=0.5\n.model rn r r=500",
+        "X1 a b s\n.subckt s p q\nR1 p q rn\n.model rn r(r=1k)\n.ends",
+    ]),
+    Kind("a model that has the capacitance", RISING, "C1 b 0 1m", "v(b)", 1 - math.exp(-1), [
+        "C1 b 0 __C1\n.model __C1 c( c=1m tnom=27 )",
+        "C1 b 0 cm\n.model cm C(CAP=1m)",
+        "C1 b 0 cm IC=0\n.model cm CAP c=1m",
+        "C1 b 0 cm m=2\n.model cm c(c=0.5m tc1=0)",
+    ], [("C1 b 0 cm\n.model cm C(CAP=-1m)", "cannot be negative")]),
+    Kind("a model that has the inductance", "V1 a 0 1\n@\nR1 b 0 1\n.tran 1m uic\n", "L1 a b 1m", "v(b)",
+         1 - math.exp(-1), [
+             "L1 a b __L1\n.model __L1 l( l=1m tnom=27 )",
+             "L1 a b lm\n.model lm IND(IND=1m)",
+             "L1 a b lm IC=0\n.model lm l l=1m",
+         ]),
     # A cell takes 1 V = 0.1 V per ampere times 10 A: idealised diodes have n= and m= besides.
     Kind("cells in series", "I1 0 a 1\n@\n.op\n", "D1 a 0 c\n.model c D(Ron=0.5 Vfwd=2)", "v(a)", 2.5,
          [
@@ -306,6 +332,13 @@ SOURCES = [
         "V1 a 0 (pulse {1} {-1} 0 0 0 20n 40n)",
         "X1 a s\n.subckt s p\nV1 p 0 0 (PULSE 1 -1 0 0 0 20n 40n) (AC 1)\n.ends",
     ], [("V1 a 0 (PULSE 1 -1 0 0 0 20n 40n", "is missing")]),
+    Kind("a value in brackets", "@\nR1 a 0 50\n.op\n", "V1 a 0 5", "v(a)", 5.0, [
+        "V1 a 0 ( 5 )",
+        "V1 a 0 (5)",
+        "V1 a 0 ( 5 ) AC 1",
+        "V1 a 0 ( {2+3} )",
+        "I1 0 a ( 100m )",
+    ], [("V1 a 0 ( 5", "did not expect"), ("V1 a 0 (5) (6)", "a second DC value")]),
     Kind("DISTOF", SOURCE, "V1 a 0 PULSE(1 -1 0 0 0 20n 40n)", "v(a)", -1.0, [
         "V1 a 0 DC 0 AC 1 PULSE(1 -1 0 0 0 20n 40n) DISTOF1 0 DISTOF2 0",
         "V1 a 0 DISTOF1 PULSE(1 -1 0 0 0 20n 40n)",

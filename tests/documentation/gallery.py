@@ -78,7 +78,7 @@ class Schematics(unittest.TestCase):
 
 class Page(unittest.TestCase):
     def test_list(self):
-        done = run(SOURCE / "tools/gallery", "--check")
+        done = run(SOURCE / "tools/gallery", "--build", BUILD, "--check")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_cards_and_site(self):

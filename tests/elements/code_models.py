@@ -263,7 +263,7 @@ def transfers(checker, program):
 
 
 def refused(checker, program):
-    cases = (("a1 a o m", ".model m d_tristate", "d_tristate is not supported: an output that lets go has no bit"),
+    cases = (("a1 a o m", ".model m d_tristate", "d_tristate is not supported: an output in high impedance has no logic value"),
              ("a1 a o m", ".model m s_xfer(num_coeff=[1 0 0] den_coeff=[1 1])", "improper: of degree 2 over 1"),
              ("a1 a o m", ".model m s_xfer(num_coeff=[1])", "den_coeff has from 1 to 11 numbers"),
              ("a1 a o m", ".model m s_xfer(num_coeff=[1] den_coeff=[1 1] int_ic=[2])", "begin at rest"),

@@ -14,6 +14,7 @@ right values are and where they come from. Options are handed to `dalcs run`. Ke
   status      exit status, 0 when not given
   max_steps   no more steps than that
   max_events  no more events than that
+  max_euler   no more steps of implicit Euler than that
 "rtol" and "atol" stand beside them, 0 and 1e-12 when not given; "time_atol" is that of times.
 """
 
@@ -25,7 +26,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
 from dalcs_program import Checker, run  # noqa: E402
 
-KEYS = {"measured", "final", "events", "moves", "says", "silent_of", "status", "max_steps", "max_events",
+KEYS = {"measured", "final", "events", "moves", "says", "silent_of", "status", "max_steps", "max_events", "max_euler",
         "rtol", "atol", "time_atol"}
 
 
@@ -82,6 +83,10 @@ class FieldCase(Checker):
     def max_events(self, most):
         n = len(self.outcome.report["events"])
         self.check(n <= most, f"{n} events, no more than {most} allowed")
+
+    def max_euler(self, most):
+        steps = self.outcome.report["work"]["euler_steps"]
+        self.check(steps <= most, f"{steps} steps of implicit Euler, no more than {most} allowed")
 
     def judge(self):
         wanted = self.entry.get("status", 0)

@@ -131,8 +131,19 @@ def others(checker):
                     "second": ("WHEN v(d)=200 RISE=9", 0.47 * (8 * math.log(6) + math.log(3)))})
 
 
+def at_rest(checker):
+    """An integrator and a comparator, from where neither has a reason to leave: all is 0 but for rounding."""
+    for volts in (1e-2, 10.0, 1e3):
+        outcome = run(program(), "\n".join([
+            "a triangle that does not begin", f"b1 sq 0 v=limit(1e5*v(p),{-volts!r},{volts!r})", "r1 sq p 20k", "r2 tri p 10k",
+            "r3 sq x 10k", "c1 x tri 10n ic=0", f"b3 tri 0 v=limit(-1e6*v(x),{-1.2 * volts!r},{1.2 * volts!r})",
+            ".tran 1u 4m uic", ".end", ""]), method=None, options=["--audit", "full", "--energy"])
+        checker.check(outcome.status == 0, f"at rest between {volts} V: {outcome.stderr[:300]}")
+
+
 def main():
     checker = Checker("relaxation_oscillators")
+    at_rest(checker)
     flashes(checker)
     others(checker)
     return checker.finish()

@@ -107,6 +107,7 @@ static void run(struct dalcs_session *s, bool is_short, bool print) {
     case DALCS_SINGULAR:
     case DALCS_NOT_CONVERGED:
     case DALCS_INFEASIBLE:
+    case DALCS_REFUTED:
     case DALCS_E_NETLIST:
     case DALCS_E_LIMIT:
     case DALCS_E_OPTION:
@@ -133,6 +134,7 @@ static bool is_expected(const char *text) {
                                            "division by 0",
                                            "is not finite",
                                            "is not a number",
+                                           "larger than any number",
                                            "a power of"};
     for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
         if (strstr(text, expected[k]) != NULL) {

@@ -1,30 +1,11 @@
 /* random_netlist.c - bytes to a valid netlist. Where the bytes end all choices are the first ones. */
-#include "random_netlist.h"
+#include "random_draft.h"
 
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_NODES = 6, MOST_ELEMENTS = 12 };
-
-struct draft {
-    const uint8_t *data;
-    size_t size, at;
-    char *text;
-    size_t length;
-    int n_nodes;              /* ground counted */
-    int n_elements;           /* so far */
-    char kind[MOST_ELEMENTS]; /* of each */
-    int n_sources, n_coils;   /* V sources and inductors so far: v1, v2, ... and l1, l2, ... */
-    int n_diodes, n_switches; /* models are written for */
-    int n_of[128];            /* of each letter */
-    bool parameter;           /* {p} is used */
-};
-
-static void put(struct draft *d, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void put(struct draft *d, const char *format, ...) {
+void put(struct draft *d, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     const size_t room = RANDOM_NETLIST_SIZE - d->length;
@@ -35,31 +16,25 @@ static void put(struct draft *d, const char *format, ...) {
     }
 }
 
-/* 0 .. n-1. */
-static int pick(struct draft *d, int n) {
+int pick(struct draft *d, int n) {
     return d->at < d->size ? d->data[d->at++] % n : 0;
 }
 
-static const char *word(struct draft *d, const char *const *list, int n) {
+const char *word(struct draft *d, const char *const *list, int n) {
     return list[pick(d, n)];
 }
 
-#define WORD(d, ...)                                                                               \
-    word(d, (const char *const[]){__VA_ARGS__},                                                    \
-         (int)(sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *)))
-
 static const char *const node_name[MOST_NODES] = {"0", "a", "b", "c", "d", "e"};
 
-static const char *node(struct draft *d) {
+const char *node(struct draft *d) {
     return node_name[pick(d, d->n_nodes)];
 }
 
-/* Any node but ground. */
-static const char *live(struct draft *d) {
+const char *live(struct draft *d) {
     return node_name[1 + pick(d, d->n_nodes - 1)];
 }
 
-static const char *volts(struct draft *d) {
+const char *volts(struct draft *d) {
     return WORD(d, "1", "0", "-1", "5", "12", "1m", "400", "-3.3", "1e-9", "1e5", "0.5", "2");
 }
 
@@ -145,7 +120,7 @@ static void stimulus(struct draft *d) {
 }
 
 /* A voltage, or the current of a source; the time is of others. */
-static void signal(struct draft *d) {
+void signal_of(struct draft *d) {
     switch (pick(d, 4)) {
     case 0:
     case 1:
@@ -159,8 +134,6 @@ static void signal(struct draft *d) {
         break;
     }
 }
-
-static void formula(struct draft *d, int depth);
 
 /* A product or a smooth function of formulas. */
 static void smooth(struct draft *d, int depth) {
@@ -181,16 +154,16 @@ static void smooth(struct draft *d, int depth) {
 }
 
 /* Of signals, of a depth: piecewise linear but for smooth(). */
-static void formula(struct draft *d, int depth) {
+void formula(struct draft *d, int depth) {
     const int kind = depth == 0 ? pick(d, 3) : pick(d, 13);
     static const char *const open[] = {"abs(", "min(1,", "max(-2,", "uramp(", "u2("};
     switch (kind) {
     case 0:
-        signal(d);
+        signal_of(d);
         break;
     case 1:
         put(d, "%s*", gain(d));
-        signal(d);
+        signal_of(d);
         break;
     case 2:
         put(d, "(%s)", volts(d));
@@ -349,6 +322,12 @@ static void storage(struct draft *d, int n, const char *a, const char *b) {
 /* One element between two nodes. */
 static void element(struct draft *d, const char *a, const char *b) {
     static const char kinds[] = "rclvdiegfhbswrcdsdmatn";
+    if (d->has_blocks && d->n_elements > 0 && pick(d, 3) == 1) {
+        const bool is_newer = strcmp(a, b) > 0;
+        block(d, 200 * d->n_elements++, is_newer ? a : b, is_newer ? b : a);
+        put(d, "\n");
+        return;
+    }
     char kind = d->n_elements == 0 ? 'v' : kinds[pick(d, (int)sizeof kinds - 1)];
     const int n = ++d->n_of[(int)kind];
     d->n_elements++;
@@ -454,23 +433,23 @@ static void measurement(struct draft *d, int n) {
         break;
     case 1:
         put(d, "%s ", WORD(d, "AVG", "MAX", "RMS"));
-        signal(d);
+        signal_of(d);
         put(d, "%s", WORD(d, "*", "/", "-", "+"));
-        signal(d);
+        signal_of(d);
         break;
     case 2:
         put(d, "WHEN ");
-        signal(d);
+        signal_of(d);
         put(d, "=%s %s", volts(d), WORD(d, "", "RISE=1", "FALL=2", "CROSS=3", "CROSS=LAST"));
         break;
     case 3:
         put(d, "%s ", WORD(d, "FIND", "DERIV"));
-        signal(d);
+        signal_of(d);
         put(d, "%s", WORD(d, " AT=20u", " AT=0.1m", " WHEN v(a)=1", " WHEN v(a)=0.5 FALL=1"));
         break;
     case 4:
         put(d, "TRIG ");
-        signal(d);
+        signal_of(d);
         put(d, " VAL=%s RISE=1 TARG v(a) VAL=%s FALL=%s", volts(d), volts(d), WORD(d, "1", "2"));
         break;
     default:
@@ -481,6 +460,10 @@ static void measurement(struct draft *d, int n) {
 }
 
 static void analyses(struct draft *d) {
+    if (d->has_blocks && pick(d, 3) == 1) {
+        other_analyses(d);
+        return;
+    }
     if (pick(d, 6) == 1) {
         put(d, ".op\n");
     }
@@ -524,7 +507,7 @@ static void analyses(struct draft *d) {
 }
 
 void random_netlist(const uint8_t *data, size_t size, char text[RANDOM_NETLIST_SIZE]) {
-    struct draft d = {.data = data, .size = size, .text = text};
+    struct draft d = {.data = data, .size = size, .text = text, .has_blocks = size % 2 == 0};
     put(&d, "a netlist of %zu bytes\n", size);
     d.n_nodes = 2 + pick(&d, MOST_NODES - 1);
     const int n = d.n_nodes - 1 + pick(&d, MOST_ELEMENTS - MOST_NODES + 2);

@@ -36,11 +36,11 @@ CASES = {
     "nodes that only control": ([V, *many(7, "eK oK 0 cK 0 2\nrK oK 0 1"), OP], ("only controls", 3, 4)),
     "floating parts": (["v1 n 0 1", "rn n 0 1", *many(9, "laK n mK 1m\nkK laK lbK 0.9\nlbK pK qK 1m\nrK pK qK 1\nrmK mK 0 1"), OP],
                        ("to ground: its voltage is 0 by convention", 3, 6)),
-    "capacitors alone": ([V, *many(30, "caK n mK 1u\ncbK mK 0 1u"), OP], ("only capacitors tie", 3, 27)),
+    "capacitors alone": ([V, *many(30, "caK n mK 1u\ncbK mK 0 1u"), OP], ("only capacitors connect", 3, 27)),
     "two values of one kind": ([V, *many(5, "daK n mK dK\nrK mK 0 1\n.model dK d(is=1e-1K)"), OP],
                                ("the exponential diode is its tangent", 5, 0)),
     "in two files of messages": ([V, *many(5, "rK n mK 1k"), *many(6, "caK n qK 1u\ncbK qK 0 1u"), OP],
-                                 ("has one connection only", 3, 2), ("only capacitors tie", 3, 3)),
+                                 ("has one connection only", 3, 2), ("only capacitors connect", 3, 3)),
 }
 
 
@@ -52,7 +52,7 @@ def judge(checker, name, cards, kinds):
         counted = {sentence: int(n) for _, n, sentence in REST.findall(outcome.stderr)}
         plain = REST.sub("", outcome.stderr)
         for part, printed, left in kinds:
-            is_note = f"note: {part}" in plain or part in ("the exponential diode is its tangent", "only capacitors tie",
+            is_note = f"note: {part}" in plain or part in ("the exponential diode is its tangent", "only capacitors connect",
                                                            "to ground: its voltage is 0 by convention")
             expected = (0, 0) if quiet and is_note else (printed, left)
             found = (plain.count(part), sum(n for sentence, n in counted.items() if part in sentence))

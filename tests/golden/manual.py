@@ -25,8 +25,8 @@ def output_of(*command):
 
 
 def verbs():
-    found = re.findall(r"^  ([a-z]+) {2,}\S", output_of(DALCS, "--help"), re.MULTILINE)
-    assert "run" in found
+    found = re.findall(r"^  ([a-z][a-z-]*) {2,}\S", output_of(DALCS, "--help"), re.MULTILINE)
+    assert {"run", "as-ngspice"} <= set(found)
     return found
 
 
@@ -48,7 +48,34 @@ class Help(unittest.TestCase):
             text = output_of(DALCS, verb, "--help")
             self.assertTrue(text.startswith(f"usage: dalcs {verb} "), text)
             self.assertRegex(text, rf"\n\nexamples:\n  dalcs {verb} ")
-            self.assertRegex(text, r"\n\nexit status: 0 ok, ")
+            self.assertRegex(text, r"\n\nexit status: (0 ok, |that of the command)")
+            self.assertEqual(output_of(DALCS, "help", verb), text)
+        self.assertEqual(output_of(DALCS, "help"), output_of(DALCS, "--help"))
+
+    def test_help_of_no_verb(self):
+        done = subprocess.run([DALCS, "help", "stedy"], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("unknown verb 'stedy'; did you mean 'steady'?", done.stderr)
+
+    def test_options_are_those_of_the_program(self):
+        """Each option that a verb's help names is taken, and each that the source takes is in some help."""
+        named = set()
+        for verb in verbs():
+            if verb == "as-ngspice":
+                continue  # what follows are words of the command
+            for name, _ in options(verb):
+                named.add(name)
+                done = subprocess.run([DALCS, verb, name], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                                      check=False)
+                self.assertNotIn("unknown option", done.stderr, f"{verb} {name}")
+        taken = set()
+        for source in (pathlib.Path(__file__).resolve().parents[2] / "src" / "cli").glob("*.c"):
+            if source.name == "batch.c":
+                continue  # all of ngspice's options are taken there
+            taken |= {f"--{name}" for name in
+                      re.findall(r'\{"([\w-]+)",\s*(?:no|required|optional)_argument', source.read_text())}
+        self.assertGreater(len(taken), 40)
+        self.assertEqual(sorted(taken - named), [])
 
     def test_no_line_is_too_long(self):
         for verb in verbs():
@@ -89,6 +116,7 @@ class Completion(unittest.TestCase):
     def test_bash(self):
         self.assertLessEqual(set(verbs()), set(self.bash("dalcs", "")))
         self.assertEqual(self.bash("dalcs", "ru"), ["run"])
+        self.assertEqual(self.bash("dalcs", "help", "conv"), ["converge"])
         for verb in verbs():
             names = {name for name, _ in options(verb)}
             self.assertLessEqual(names, set(self.bash("dalcs", verb, "-")))
@@ -110,6 +138,7 @@ class Completion(unittest.TestCase):
         for verb in verbs():
             self.assertLessEqual({name for name, _ in options(verb)}, complete(f"dalcs {verb} --"))
         self.assertEqual(complete("dalcs run --method e"), {"euler"})
+        self.assertEqual(complete("dalcs help conv"), {"converge"})
 
     @needs("zsh")
     def test_zsh(self):

@@ -37,7 +37,7 @@ R1 a 0 5
 """
 BOTH = RECTIFIER.replace(".tran", ".op\n.tran")
 POINT = RECTIFIER.replace("SIN(0 10 50)", "5").replace(".tran 100u 40m", ".op")
-LONG = RECTIFIER.replace(".tran 100u 40m", ".tran 1u 1000 uic")
+LONG = RECTIFIER.replace(".tran 100u 40m", ".tran 20u 1000 uic")  # more rows would not fit on small disks
 MISTAKE = RECTIFIER.replace("1k", "abc")
 # A diode that must conduct from a source into a stiffer one.
 IMPOSSIBLE = """a loop of two sources and a diode
@@ -285,8 +285,8 @@ class Results(Case):
     def test_end_of_filling(self):
         """A file has an end, and what it lacks is said."""
         done = self.dalcs("run", self.write(SINE), "--fill", "1e-14", "--curve", "lines", "-o", "out.raw")
-        self.assertRegex(done.stderr, r"note: 100000 rows, and 4 for each that there is anyway, were added up to t = "
-                                      r"\S+ s: from there on there are no more\n  hint: --fill")
+        self.assertRegex(done.stderr, r"note: 100000 added rows, and 4 for each row of .tran, are the limit: it is reached at t = "
+                                      r"\S+ s, and no rows are added after that\n  hint: --fill")
         points = re.search(rb"No. Points: (\d+)", self.path("out.raw").read_bytes()[:1000])
         self.assertTrue(100000 < int(points[1]) < 100020, points[1])
 
@@ -550,8 +550,13 @@ class Summary(Case):
                    ".model m SW(Vt=0.5)\n{}\n.end\n")
         self.write(flutter.format(".op"))
         done = self.dalcs("run", "a.cir", "-q")
-        self.assertEqual(done.stderr, "dalcs: warning: a switch and the voltage that controls it "
-                         "do not agree, open or closed; the values are those of its last command\n")
+        self.assertEqual(done.stderr, "dalcs: warning: at the operating point 's1' and what controls it do not "
+                         "agree: closed it opens, open it closes; it is left as it stood\n")
+        self.write("an oscillator without an operating point\nV1 in 0 12\nS1 in a 0 o m\nD1 0 a\nL1 a o 100u\n"
+                   "C1 o 0 100u\nR1 o 0 5\n.model m SW(Vt=-5 Vh=0.05)\n.tran 1u 1m\n.end\n")
+        done = self.dalcs("run", "a.cir", "-q")
+        self.assertRegex(done.stderr, r"^dalcs: warning: at the operating point 's1' and what controls it .*\n"
+                         r"  hint: with uic, and IC= where it matters, a run starts without one\n$")
         self.write(flutter.format("C1 a c 1n\nV2 c 0 SIN(0 1 1k)\nR2 c 0 1\n.tran 100u 200u"))
         done = self.dalcs("run", "a.cir", "-q", "--method", "euler")
         self.assertRegex(done.stderr, r"^dalcs: warning: in \d+ one-step problems a switch and the "
@@ -800,7 +805,7 @@ class Terminal(Case):
     """A run whose messages go to a terminal says how far it is, and nothing of it elsewhere."""
 
     def test_progress(self):
-        self.write(LONG.replace("SIN(0 10 50)", "SIN(0 10 50k)"))
+        self.write(LONG.replace("SIN(0 10 50)", "SIN(0 10 5k)"))
         master, slave = pty.openpty()
         with subprocess.Popen([DALCS, "run", "a.cir", "-o", "out.csv", "--fill", "none"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=slave, text=True) as process:
@@ -816,7 +821,8 @@ class Terminal(Case):
                 os.close(master)
             printed = process.communicate()[0]
         self.assertEqual(process.returncode, -signal.SIGINT)
-        self.assertRegex(shown, rb"^\r +\d+ %  \S+ .?s of 1 ks  \S+ .?s/s  \d+ events  "
+        self.assertRegex(shown, rb"^dalcs: note: .out.csv. will have at least 50000001 rows [^\n]*\n"
+                         rb"\r +\d+ %  \S+ .?s of 1 ks  \S+ .?s/s  \d+ events  "
                          rb"(\d+ h )?(\d+ min )?(\d+ s )?left\x1b\[K")
         # erased before the next message
         self.assertRegex(shown, rb"\r\x1b\[Kdalcs: interrupted at t = ")

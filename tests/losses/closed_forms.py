@@ -6,6 +6,7 @@ usage: closed_forms.py PROGRAM
 
 import math
 import pathlib
+import re
 import shutil
 import sys
 import tempfile
@@ -435,6 +436,10 @@ def chart(program, checker):
         text = picture.read_text() if picture.exists() else ""
         checker.check("<svg" in text and ">s1<" in text and ">d1<" in text and ">i1<" not in text,
                       f"chart: {r.run.stderr} {text[:200]}")
+        ideal = pathlib.Path(folder) / "ideal.svg"
+        run = dalcs_program.run(program, re.sub(r"\.switchloss.*\n|ron=\S*\b|vfwd=\S*\b", "", netlist),
+                                options=("--losses-plot", str(ideal)))
+        checker.check(run.status == 4 and "take 0 W" in run.stderr and not ideal.exists(), f"chart: {run.stderr}")
     run = dalcs_program.run(program, netlist, options=("--losses-plot", "losses.txt"))
     checker.check(run.status == 2 and ".svg, .png or .pdf" in run.stderr, f"chart: {run.stderr}")
 

@@ -309,7 +309,7 @@ R3 free 0 1
         "few": "'v(in)' rises through 2 only 2 times between 0 s and 2 ms, not 5",
         "outside": "AT=5 ms does not lie between 0 s and 2 ms",
         "empty": "there is nothing to measure: the run goes from 0 s to 2 ms",
-        "ratio": "'v(in)/v(in,in)' has no value everywhere",
+        "ratio": "'v(in)/v(in,in)' is undefined at some of its times",
         "follows": "it needs 'never', which could not be measured",
         "order": "TARG at 65.4949 us does not come after TRIG at 1.06549 ms",
     }
@@ -571,11 +571,25 @@ C1 b 0 1p
     r.close("power", 0.5e-9, tolerance=1e-4)
 
 
+def thresholds(program, checker):
+    """Extremes of formulas with jumps and kinks: a polynomial through a jump, or past a kink that no node sees, goes beyond
+    every value."""
+    levels = [-8.3 + 0.77 * k for k in range(24)]
+    cards = "".join(f".meas tran step{k} max '(v(a)>{x:.4f}?1:0)'\n.meas tran swing{k} pp '(v(b)>{0.3 * x:.5f}?2:1)'\n"
+                    f".meas tran least{k} min max(v(b),{0.3 * x:.5f})\n" for k, x in enumerate(levels))
+    r = Results(program, checker, "thresholds\nV1 a 0 SIN(1 10 1k)\nR1 a b 1k\nC1 b 0 100n\n.tran 10u 5m\n" + cards
+                + ".end\n")
+    for k, x in enumerate(levels):
+        r.close(f"step{k}", 1.0)
+        r.close(f"swing{k}", 1.0)
+        r.close(f"least{k}", round(0.3 * x, 5), scale=1.0)
+
+
 def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
     for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels,
-                 powers, windows, rounding):
+                 powers, windows, rounding, thresholds):
         test(program, checker)
     return checker.finish()
 

@@ -204,10 +204,33 @@ class Plot(unittest.TestCase):
                                               '99,nan,"from t = 0 on no solution exists, ""d1"""\n')
         self.plot("runs.csv", "-s", "ripple", "--histogram", "-o", "histogram.svg", "-q")
         texts = self.texts("histogram.svg")
-        self.assertIn("runs", texts)
+        self.assertIn("number of runs", texts)
         self.assertTrue(any(text.startswith("ripple") for text in texts), texts)
         self.assertIn("not of waveforms", self.refused("buck.raw", "-s", "v(out)", "--histogram", "-o", "x.svg"))
         self.assertIn("not both", self.refused("runs.csv", "--histogram", "--spectrum", "1k"))
+
+    def test_width(self):
+        """A narrow picture has smaller panels, the same texts of the same size, and all of them inside."""
+        sizes = {}
+        for width in (400, 640, 1200, 4000):
+            self.plot("buck.raw", "-s", "v(sw),v(out)", "-s", "i(l1)", "--width", str(width), "-o", "w.svg", "-q")
+            drawn = (self.folder / "w.svg").read_text()
+            found, height = re.search(r'<svg\s+width="(\d+)" height="(\d+)"', drawn).groups()
+            self.assertEqual(int(found), width)
+            sizes[width] = int(height), set(re.findall(r'font-size="([\d.]+)"', drawn))
+            for x in re.findall(r'transform="translate\(([\d.]+),', drawn):
+                self.assertLessEqual(float(x), width)
+            self.assertIn("v(sw)", self.texts("w.svg"))
+        self.assertEqual(len({fonts for fonts in map(frozenset, (fonts for _, fonts in sizes.values()))}), 1)
+        self.assertLess(sizes[640][0], 0.7 * sizes[1200][0])
+        self.plot("buck.raw", "--width", "600", "-o", "w.pdf", "-q")
+        self.assertIn(b"/MediaBox [ 0 0 432 ", (self.folder / "w.pdf").read_bytes())  # 6 inches
+        for arguments, message in [(["--width", "399", "-o", "x.svg"], "'399' is not from 400 to 4000"),
+                                   (["--width", "4001", "-o", "x.svg"], "'4001' is not from 400 to 4000"),
+                                   (["--width", "wide", "-o", "x.svg"], "'wide' is not a number"),
+                                   (["--width", "640"], "give -o a name that ends in .svg"),
+                                   (["--width", "640", "-o", "x.html"], "--width is for pictures")]:
+            self.assertIn(message, self.refused("buck.raw", *arguments), arguments)
 
     def test_tornado(self):
         """Of .wcase each value at its ends; of other tables a plane, which fits these rows exactly."""
@@ -265,7 +288,7 @@ class Plot(unittest.TestCase):
                 self.assertIn(text, texts)
             self.plot(name, "-s", "i(d1)", "--family=c", "--from", "20m", "-o", "family.svg", "-q")
             texts = self.texts("family.svg")
-            for text in "c", "i(d1) (mA)", "20", "60":
+            for text in "c (1e-6)", "i(d1) (mA)", "10", "20", "60":
                 self.assertIn(text, texts)
             drawn = (self.folder / "family.svg").read_text()
             self.assertGreaterEqual(drawn.count("gnuplot_plot_"), 4)

@@ -22,6 +22,7 @@ STRUCTS = {"dalcs_plot": library.Plot, "dalcs_row_table": library.RowTable,
            "dalcs_measurement": library.Measurement, "dalcs_sink": library.Sink}
 CONSTANTS = {"DALCS_OK": library.OK, "DALCS_SINGULAR": library.SINGULAR,
              "DALCS_NOT_CONVERGED": library.NOT_CONVERGED, "DALCS_INFEASIBLE": library.INFEASIBLE,
+             "DALCS_REFUTED": library.REFUTED,
              "DALCS_E_NOMEM": library.E_NOMEM, "DALCS_E_NETLIST": library.E_NETLIST,
              "DALCS_E_OPTION": library.E_OPTION, "DALCS_E_CANCELLED": library.E_CANCELLED,
              "DALCS_OPERATING_POINT": library.ANALYSES.index("op"),

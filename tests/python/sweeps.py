@@ -9,6 +9,7 @@ import pathlib
 import pickle
 import signal
 import sys
+import threading
 import unittest
 
 import numpy as np
@@ -173,6 +174,43 @@ class Failures(unittest.TestCase):
                             progress=press)
             self.assertEqual(len(pressed), 1)
         self.assertIs(signal.getsignal(signal.SIGINT), signal.default_int_handler)
+
+    def test_ctrl_c_loses_no_run(self):
+        """That is over: the exception has the table, in which the others were not run."""
+        for workers in 1, 2:
+            def press(done, count):
+                self.assertEqual(count, 60)
+                if done >= 20:
+                    os.kill(os.getpid(), signal.SIGINT)
+
+            with self.assertRaises(KeyboardInterrupt) as caught:
+                dalcs.sweep(NETLIST, {"rload": LOADS}, workers=workers, done=press)
+            table = caught.exception.sweep
+            well = [k for k in range(60) if k not in table.errors]
+            self.assertGreaterEqual(len(well), 20)
+            np.testing.assert_allclose(table["vlow"][well], [output(LOADS[k], closes(LOADS[k])) for k in well],
+                                       atol=1e-7)
+            if workers == 1:  # two may be done before the other thread is told
+                self.assertEqual(well, list(range(len(well))))
+                self.assertEqual(set(table["error"][len(well):]), {"not run: the sweep was ended before"})
+
+    def test_how_many_are_done(self):
+        for workers in 1, 2:
+            told = []
+            dalcs.sweep(NETLIST, {"rload": LOADS[:12]}, workers=workers,
+                        done=lambda done, count: told.append((done, count, threading.current_thread())))
+            self.assertEqual(told[-1][:2], (12, 12))
+            self.assertEqual([row[0] for row in told], sorted({row[0] for row in told}))
+            self.assertEqual({row[2] for row in told}, {threading.main_thread()})
+        counted = []
+        dalcs.variants(NETLIST + ".mc 5\n", done=lambda done, count: counted.append(done))
+        self.assertEqual(counted[-1], 5)
+
+    def test_an_exception_of_done(self):
+        for workers in 1, 2:
+            with self.assertRaises(ZeroDivisionError) as caught:
+                dalcs.sweep(NETLIST, {"rload": LOADS}, workers=workers, done=lambda done, count: 1 / 0)
+            self.assertEqual(len(caught.exception.sweep), 60)
 
 
 if __name__ == "__main__":

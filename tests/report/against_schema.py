@@ -47,7 +47,7 @@ MADE = {
               0, None),
 }
 LONG = ("a run that takes long\nV1 a 0 SIN(0 10 50)\nD1 a b\nC1 b 0 1u\nR1 b 0 1k\n"
-        ".tran 1u 1e6 uic\n.end\n")
+        ".tran 0.1 1e6 uic\n.end\n")  # more rows would not fit on small disks
 WRONG = "an element that cannot be\nR1 a 0 abc\n.op\n.end\n"
 
 

@@ -11,10 +11,12 @@ import itertools
 import json
 import math
 import pathlib
+import signal
 import statistics
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
@@ -302,6 +304,35 @@ class Tolerances(unittest.TestCase):
             self.assertIn("cannot be negative" if row["x"] < 0 else "", row["error"])
         said = self.run_it(text, status=1).stderr
         self.assertIn("3 of 11 runs of .wcase failed, the first where\n  x = -1\n", said)
+
+    def test_threads_change_no_byte(self):
+        """A rectifier with 6 tolerances, whose table and report do not tell in how many threads they were made."""
+        text = ("t\nV1 in 0 SIN(0 10 50) \nD1 in out DM\n.model DM D(vfwd=0.7 DEV=10% Ron=10m DEV=20%)\n"
+                "C1 out 0 47u DEV=20%\nR1 out 0 1k DEV=5%\nR2 out m 10 LOT=5%\nC2 m 0 {x*1u} DEV=10%\n"
+                ".param x={aunif(1,0.5)}\n.tran 10u 60m uic\n.meas tran vlow min v(out) from=40m\n"
+                ".meas tran never when v(out)=99\n.wcase\n")
+        tables, reports = [], []
+        for jobs in "1", "2", "5":
+            self.run_it(text, "--jobs", jobs, "--report", "r.json")
+            tables.append((self.folder / "m.csv").read_bytes())
+            reports.append(json.loads((self.folder / "r.json").read_text())["worst_case"])
+        self.assertEqual(len(tables[0].splitlines()), 1 + 1 + 14 + 4 + 128)
+        self.assertEqual((tables[1], reports[1]), (tables[0], reports[0]))
+        self.assertEqual((tables[2], reports[2]), (tables[0], reports[0]))
+
+    def test_interrupted(self):
+        """Ctrl-C ends the runs of all threads, of which there are 4122."""
+        parts = "".join(f"D{k} in n{k}\nR{k} n{k} 0 1k DEV=5%\nC{k} n{k} 0 20u\n" for k in range(12))
+        (self.folder / "a.cir").write_text(f"t\nV1 in 0 SIN(0 10 50)\n{parts}.tran 1u 5\n"
+                                           ".meas tran x max v(n1)\n.wcase\n.end\n")
+        for jobs in "1", "3":
+            with subprocess.Popen([PROGRAM, "run", "a.cir", "-q", "-o", "none", "--measures", "m.csv", "--jobs", jobs],
+                                  cwd=self.folder, stderr=subprocess.PIPE, text=True) as run:
+                time.sleep(0.5)  # all of them take seconds
+                run.send_signal(signal.SIGINT)
+                _, said = run.communicate(timeout=60)
+            self.assertEqual(run.returncode, -signal.SIGINT, said)
+            self.assertIn("interrupted", said)
 
     def test_table(self):
         said = self.run_it(DIVIDER + ".wcase\n").stdout

@@ -83,6 +83,19 @@ class Variants(unittest.TestCase):
         self.assertIn("7 of 15 variants failed", said)
         self.assertEqual(sorted(os.listdir(self.folder)), ["a.cir", "m.csv"])
 
+    def test_a_run_with_waveforms_says_how_to_go_on(self):
+        """It ends at the first step that fails, and the last one has nothing behind it."""
+        done = subprocess.run([PROGRAM, "run", "a.cir"], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
+        self.assertEqual(done.returncode, 3)  # a capacitance below 0
+        self.assertIn("this was step 3 of 15: c = -1e-06, load = 100", done.stderr)
+        self.assertIn("those behind it are not run; -o none --measures FILE.csv makes a table of all", done.stderr)
+        self.write(CIRCUIT.replace("100 0 1k 2k 10k", "100 0").replace("10u 20u -1u", "10u"))
+        done = subprocess.run([PROGRAM, "run", "a.cir"], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
+        self.assertIn("this was step 2 of 2", done.stderr)
+        self.assertNotIn("those behind it", done.stderr)
+
     def test_each_row_is_what_a_run_alone_gives(self):
         self.run_it("m.csv", status=1)
         for row in self.rows("m.csv"):

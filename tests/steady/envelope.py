@@ -209,15 +209,15 @@ def verb(case):
             (("--stop", "1m", "--show", "2m"), f"* v\n{BOOST}", 2, "there is no period at 0.002 s: the run ends at 0.001 s"),
             (("--show", "1m,x"), tran, 2, "--show: 'x' is no time"),
             (("--stop", "-1"), tran, 2, "--stop: '-1' is not a number greater than 0"),
-            (("--losses",), tran, 2, "--losses is one of"),
+            (("--losses",), tran, 2, "--losses is an option of"),
             (("-o", "none", "--measures", "m.csv"), tran, 2, "--measures is a table of .meas"),
             (("--stop", "1m"), "* v\nV1 a 0 1\nR1 a b 1\nC1 b 0 1u\n", 3, "no source repeats"),
-            (("--period", "1m"), tran, 2, "--period is one of")):
+            (("--period", "1m"), tran, 2, "--period is an option of")):
         done, _, _ = envelope(netlist, *options)
         check(done.returncode == status and words in done.stderr, f"{options}: {done.returncode}, {done.stderr}")
     done = subprocess.run([case.program, "run", "v.cir", "--stop", "1m"], cwd=case.folder, capture_output=True, text=True,
                           check=False)
-    check(done.returncode == 2 and "--stop is one of 'dalcs envelope'" in done.stderr, done.stderr)
+    check(done.returncode == 2 and "--stop is an option of 'dalcs envelope'" in done.stderr, done.stderr)
     (case.folder / "v.cir").write_text(f"* v\n{BOOST}.env 0.01 uic\n")
     done = subprocess.run([case.program, "run", "v.cir", "-q", "-o", "none"], cwd=case.folder, capture_output=True,
                           text=True, check=False)

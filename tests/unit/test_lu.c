@@ -1,5 +1,5 @@
 /* test_lu.c - solving with the factors, and refusing what is singular. */
-#include "lu.h"
+#include "lu_patterns.h"
 
 #include "build_network.h"
 
@@ -270,5 +270,77 @@ START_TEST(test_nothing) {
 
 END_TEST
 
+enum { N_PATTERNS = 12, OF_ORDER = 20 };
+
+/* A matrix whose pattern goes with `which`, and whose values with `values`, too. */
+static struct columns pattern(int which, int values) {
+    double dense[OF_ORDER * OF_ORDER] = {0.0};
+    for (int r = 0; r < OF_ORDER; r++) {
+        dense[r * OF_ORDER + r] = 3.0 + r + values;
+        for (int k = 1; k <= 3; k++) {
+            int c = (r * (which + 2) + k * k) % OF_ORDER;
+            dense[r * OF_ORDER + c] += 1.0 / (k + values);
+        }
+    }
+    return compress(OF_ORDER, dense);
+}
+
+/* By an analysis that was kept, of more patterns than are kept, the solution is to the bit what it is without. */
+START_TEST(test_patterns) {
+    struct dalcs_lu_patterns patterns = {0};
+    dalcs_lu_common_init(&klu);
+    for (int k = 0; k < 200; k++) {
+        int which = k % 3 == 0 ? k / 3 % N_PATTERNS : k % 5;
+        double x[OF_ORDER];
+        double wanted[OF_ORDER];
+        struct dalcs_lu lu;
+        dalcs_lu_keep_diagonal(&klu, k % 7 == 0);
+        for (int again = 0; again < 2; again++) {
+            struct columns a = pattern(which, k);
+            double *b = again == 1 ? x : wanted;
+            for (int i = 0; i < OF_ORDER; i++) {
+                b[i] = i - 7.0;
+            }
+            enum dalcs_status status =
+                again == 1
+                    ? dalcs_lu_factor_again(&lu, &patterns, &klu, OF_ORDER, a.p, a.i, a.x, 1e-14)
+                    : dalcs_lu_factor(&lu, &klu, OF_ORDER, a.p, a.i, a.x, NULL, 1e-14);
+            ck_assert_int_eq(status, DALCS_OK);
+            dalcs_lu_solve(&lu, b);
+            dalcs_lu_finish(&lu);
+        }
+        ck_assert(memcmp(x, wanted, sizeof(x)) == 0);
+        ck_assert_int_le(patterns.n, DALCS_LU_PATTERNS);
+    }
+    ck_assert_int_eq(patterns.n, DALCS_LU_PATTERNS);
+    dalcs_lu_patterns_finish(&patterns, &klu);
+    ck_assert_int_eq(patterns.n, 0);
+}
+
+END_TEST
+
+START_TEST(test_singular_patterns) {
+    const double empty_column[4] = {1, 0, 1, 0};
+    const double same_rows[4] = {1, 2, 2, 4};
+    struct dalcs_lu_patterns patterns = {0};
+    struct dalcs_lu lu;
+    dalcs_lu_common_init(&klu);
+    struct columns a = compress(2, empty_column);
+    ck_assert_int_eq(dalcs_lu_factor_again(&lu, &patterns, &klu, 2, a.p, a.i, a.x, 0.0),
+                     DALCS_SINGULAR);
+    ck_assert_int_eq(patterns.n, 0); /* whatever the values */
+    a = compress(2, same_rows);
+    for (int k = 0; k < 2; k++) {
+        ck_assert_int_eq(dalcs_lu_factor_again(&lu, &patterns, &klu, 2, a.p, a.i, a.x, 1e-14),
+                         DALCS_SINGULAR);
+        ck_assert_int_eq(patterns.n, 1);
+    }
+    ck_assert_int_eq(dalcs_lu_factor_again(&lu, &patterns, &klu, 0, a.p, a.i, a.x, 0.0), DALCS_OK);
+    dalcs_lu_finish(&lu);
+    dalcs_lu_patterns_finish(&patterns, &klu);
+}
+
+END_TEST
+
 RUN_TESTS("lu", test_random, test_small, test_blocks, test_zero_diagonal, test_matched_rows,
-          test_singular, test_small_singular, test_nothing)
+          test_singular, test_small_singular, test_nothing, test_patterns, test_singular_patterns)

@@ -551,8 +551,8 @@ START_TEST(test_base_is_evicted) {
     b.updated.cache.most_bytes = 1; /* the next one is alone, with what it cannot do without */
     for (uint64_t mode = 2; mode <= 3; mode++) {
         check_mode(&b, &mode, h, &random, &tally);
-        ck_assert(!dalcs_stages_have(&b.updated, &open, h));
-        ck_assert(!dalcs_stages_have(&b.updated, &first, h));
+        ck_assert(!dalcs_stages_find(&b.updated, &open, h));
+        ck_assert(!dalcs_stages_find(&b.updated, &first, h));
         ck_assert_uint_eq(b.updated.cache.bytes, base->bytes + b.updated.cache.newest->bytes);
     }
     check_mode(&b, &open, h, &random, &tally); /* nothing changes */

@@ -402,6 +402,65 @@ START_TEST(test_watched) {
 
 END_TEST
 
+/* How far a mode moves states at once, of a capacitor of 1 and one of 3 that a closed diode joins: to where their
+ * charge is the same. */
+START_TEST(test_shift) {
+    start("shift\nD1 a b\nC1 a 0 1\nC2 b 0 3\nV1 c 0 SIN(0 2 0.1)\nD2 c d\nC3 d 0 1\nR1 d b "
+          "1\n.tran 1 1\n",
+          5);
+    const uint64_t both = 1u << find_pair(s, "d1") | 1u << find_pair(s, "d2");
+    const int a = find_column(s, DALCS_LABEL_STATE, "c1");
+    const int b = find_column(s, DALCS_LABEL_STATE, "c2");
+    const int d = find_column(s, DALCS_LABEL_STATE, "c3");
+    double in[40] = {0.0};
+    struct dalcs_stage_entry *entry = get(both, 0.5);
+    ck_assert(!dalcs_stage_frees_states(entry));
+    in[a] = 1.0;
+    in[s->n_x] = 1.0;
+    dalcs_excitation_enter(&x, 1.0);
+    dalcs_excitation_coefficients(&x, 1.0, 0.5, in + s->n_x + 1);
+    ck_assert_double_eq_tol(dalcs_stage_shift(&stages, entry, a, in), -0.75, 1e-14);
+    ck_assert_double_eq_tol(dalcs_stage_shift(&stages, entry, b, in), 0.25, 1e-14);
+    double source = 2.0 * sin(acos(-1.0) * 0.2);
+    ck_assert_double_eq_tol(dalcs_stage_shift(&stages, entry, d, in), source, 1e-14);
+    in[a] = in[b] = 0.25; /* where they are allowed to be */
+    in[d] = source;
+    for (int k = 0; k < s->n_x; k++) {
+        ck_assert_double_eq_tol(dalcs_stage_shift(&stages, entry, k, in), 0.0, 1e-15);
+    }
+    finish();
+}
+
+END_TEST
+
+/* What a diode of so much resistance does to two capacitors of 2 in a step of 1 and at once, of 1 V between them. */
+static double shift_by(double resistance) {
+    char text[200];
+    (void)snprintf(text, sizeof(text),
+                   "shift\nD1 a b dm\nC1 a 0 2\nC2 b 0 2\n.model dm D(Ron=%.17g)\n.tran 1 1\n",
+                   resistance);
+    start(text, 5);
+    double in[40] = {0.0};
+    in[find_column(s, DALCS_LABEL_STATE, "c1")] = 1.0;
+    in[s->n_x] = 1.0;
+    struct dalcs_stage_entry *entry = get(1, 1.0);
+    ck_assert(!dalcs_stage_frees_states(entry));
+    double shift =
+        dalcs_stage_shift(&stages, entry, find_column(s, DALCS_LABEL_STATE, "c2"), in) / 0.5;
+    finish();
+    return shift;
+}
+
+/* Faster than 2^-30 of a step is at once, with a time constant of 2^-38; slower, of 2^-25, is not. */
+START_TEST(test_shift_in_a_moment) {
+    ck_assert_double_gt(shift_by(ldexp(1.0, -38)), 0.9);
+    ck_assert_double_le(shift_by(ldexp(1.0, -38)), 1.0);
+    ck_assert_double_gt(shift_by(ldexp(1.0, -25)), 0.0);
+    ck_assert_double_lt(shift_by(ldexp(1.0, -25)), 1e-4);
+}
+
+END_TEST
+
 START_TEST(test_store) {
     static const char text[] = "store\nV1 a 0 1\nR1 a b 1\nD1 b c\nC1 c 0 1\nR2 b 0 5\n.tran 1 1\n";
     const uint64_t off = 0;
@@ -413,7 +472,7 @@ START_TEST(test_store) {
     ck_assert_ptr_eq(first, get(off, 0.5));
     ck_assert_int_eq(stages.cache.factorizations, 3);
     ck_assert_int_eq(stages.cache.cache_hits, 1);
-    ck_assert(dalcs_stages_have(&stages, &on, 0.5) && !dalcs_stages_have(&stages, &on, 0.25));
+    ck_assert(dalcs_stages_find(&stages, &on, 0.5) && !dalcs_stages_find(&stages, &on, 0.25));
     const double *natural = dalcs_stage_natural_units(first);
     for (int c = 0; c < dalcs_system_n_equations(s); c++) {
         ck_assert(natural[c] > 0.0);
@@ -426,22 +485,23 @@ START_TEST(test_store) {
     for (int k = 0; k < 20; k++) {
         (void)get(off, ldexp(1.0, -k));
         (void)get(on, 0.5);
-        ck_assert(dalcs_stages_have(&stages, &on, 0.5));
+        ck_assert(dalcs_stages_find(&stages, &on, 0.5));
         ck_assert(stages.cache.bytes <= bytes);
     }
-    ck_assert(!dalcs_stages_have(&stages, &off, 1.0));
-    ck_assert(dalcs_stages_have(&stages, &off, ldexp(1.0, -19)));
+    ck_assert(!dalcs_stages_find(&stages, &off, 1.0));
+    ck_assert(dalcs_stages_find(&stages, &off, ldexp(1.0, -19)));
     ck_assert_int_eq(stages.cache.factorizations, 21);
     finish();
     start_with(text, 5, 1); /* one there must be */
     (void)get(on, 0.5);
-    ck_assert(dalcs_stages_have(&stages, &on, 0.5));
+    ck_assert(dalcs_stages_find(&stages, &on, 0.5));
     (void)get(off, 0.5);
-    ck_assert(!dalcs_stages_have(&stages, &on, 0.5));
+    ck_assert(!dalcs_stages_find(&stages, &on, 0.5));
     finish();
 }
 
 END_TEST
 
 RUN_TESTS("stages", test_against_direct_solution, test_rc, test_index_two, test_parallel_diodes,
-          test_floating, test_clash, test_next_to_open, test_watched, test_store)
+          test_floating, test_clash, test_next_to_open, test_watched, test_shift,
+          test_shift_in_a_moment, test_store)

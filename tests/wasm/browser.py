@@ -89,6 +89,7 @@ class Page(unittest.TestCase):
         """Moves a slider to a place from 0 to 1000, and gives the picture."""
         self.script("const r = document.querySelectorAll('#sliders input')[arguments[0]]; r.value = arguments[1];"
                     "r.dispatchEvent(new Event('input'));", slider, place)
+        self.wait("play.frame === 0")
         self.millis.append(self.script("return play.millis;"))
         return self.picture()
 
@@ -205,7 +206,40 @@ class Page(unittest.TestCase):
                             ("17-subharmonics", "Its factors: -1.66667.")):
             if name in LESSONS:
                 self.open(name)
+                self.wait("document.body.dataset.theory === 'yes'")
                 self.assertIn(words, self.script("return document.getElementById('happenings').textContent;"))
+
+    def test_an_answer_costs_one_run(self):
+        """Many movements between two pictures of the screen are one run, with the last value and without .pss."""
+        name = "17-subharmonics" if "17-subharmonics" in LESSONS else LESSONS[0]
+        self.open(name)
+        self.wait("document.body.dataset.theory === 'yes'")
+        before = self.script("return play.runs;")
+        runs, card = self.script(
+            "const r = document.querySelector('#sliders input');"
+            "for (const place of [100, 300, 500, 700]) { r.value = place; r.dispatchEvent(new Event('input')); }"
+            "return [play.runs, document.getElementById('netlist').value];")
+        self.assertEqual(runs, before)
+        self.wait("play.frame === 0")
+        self.assertEqual(self.script("return play.runs;"), before + 1)
+        self.assertFalse(self.script("return !!play.result.report.steady;"))
+        self.wait("document.body.dataset.theory === 'yes'")
+        self.assertEqual(self.script("return play.runs;"), before + (2 if ".pss" in card else 1))
+        self.assertEqual(self.script("return document.getElementById('netlist').value;"), card)
+
+    def test_pictures_are_small_whatever_the_rows(self):
+        """Four points for each column of pixels: a hundred times the rows are no more to draw."""
+        self.open(LESSONS[0])
+        good = self.script("return document.getElementById('netlist').value;")
+        stop = re.search(r"^\.tran \S+ (\S+)", good, re.MULTILINE | re.IGNORECASE)[1]
+        number, suffix = re.fullmatch(r"([\d.]+)(\D*)", stop).groups()
+        self.type(re.sub(r"(?im)^\.tran \S+", f".tran {float(number) / 1e5:g}{suffix}", good))
+        self.assertGreater(self.script("return play.result.time.length;"), 90_000)
+        points = self.script("return [...document.querySelectorAll('.curve')].map((c) => "
+                             "c.getAttribute('d').split(/[ML]/).length - 1);")
+        self.assertTrue(points)
+        self.assertLess(max(points), 4 * 640)
+        self.assertLess(self.script("return document.querySelectorAll('#results *').length;"), 1000)
 
     def test_mistakes_and_back(self):
         self.open(LESSONS[0])
@@ -225,6 +259,7 @@ class Page(unittest.TestCase):
             self.skipTest("not asked for")
         self.open("08-implicit-euler")
         self.script("const s = document.getElementById('steps'); s.value = 1000; s.dispatchEvent(new Event('input'));")
+        self.wait("play.frame === 0")
         dashed = self.script("return document.querySelectorAll('.curve[stroke-dasharray]').length;")
         self.assertEqual(dashed, 3)
         last = self.script("const r = simulate(document.getElementById('netlist').value, 'euler', 5e-6);"

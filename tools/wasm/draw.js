@@ -146,7 +146,7 @@ function plane(name, w, lambda) {
     const dots = new Map(); // one for each pixel
     for (let k = 0; k < w.length; k++) dots.set(`${Math.round(x(w[k]))} ${Math.round(y(lambda[k]))}`, true);
     let out = `<path d="M${x(wHigh)} ${y(0)}H${x(0)}V${y(lHigh)}" class="rule"/>`;
-    for (const dot of dots.keys()) out += `<path d="M${dot}h0" class="dot"/>`;
+    out += `<path d="${[...dots.keys()].map((dot) => `M${dot}h0`).join('')}" class="dot"/>`;
     out += textAt(x(wHigh), y(0) + 16, 'end', `w (${wPrefix}V)`) + textAt(x(0) + 8, 20, 'start', `λ (${lPrefix}A)`);
     out += textAt(x(wHigh), y(0) - 6, 'end', shown(w, wHigh, wFactor));
     out += textAt(x(0) + 8, y(lHigh) + 14, 'start', shown(lambda, lHigh, lFactor));

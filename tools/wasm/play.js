@@ -4,7 +4,7 @@
 const SUFFIXES = [[1e6, 'Meg'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'u'], [1e-9, 'n'], [1e-12, 'p']];
 const byId = (id) => document.getElementById(id);
 const lesson = JSON.parse(byId('lesson').textContent);
-const play = {engine: null, result: null, later: 0};
+const play = {engine: null, result: null, runs: 0, frame: 0, later: 0};
 
 // ---- The netlist -------------------------------------------------------------------------------
 
@@ -20,6 +20,11 @@ function withCard(netlist, card) {
     const name = words.slice(0, words[0].toLowerCase() === '.model' ? 2 : 1).map(escaped).join('\\s+');
     const place = new RegExp(`^${name}(?![\\w.]).*$`, 'im');
     return place.test(netlist) ? netlist.replace(place, () => card) : netlist.replace(/^\.end\b|$(?![\s\S])/im, (end) => `${card}\n${end}`);
+}
+
+/** Beside .tran the search for a steady state of .pss can wait: it may need thousands of periods. */
+function withoutSearch(netlist) {
+    return /^\.tran\b/im.test(netlist) ? netlist.replace(/^\.pss\b.*$/gim, '*') : netlist;
 }
 
 /** All voltages and currents are wanted, whatever is saved. */
@@ -41,6 +46,7 @@ const call = (name, kind, ...values) =>
 /** {status, messages, time, signals, report} of a netlist. */
 function simulate(netlist, method = '', step = 0) {
     let status = call('engine_read', 'number', withAllSignals(netlist));
+    play.runs++;
     if (status === 0) status = call('engine_run', 'number', method, step);
     const nRows = status === 0 ? call('engine_n_rows', 'number') : 0;
     const nSignals = nRows ? call('engine_n_signals', 'number') : 0;
@@ -133,6 +139,15 @@ function happenings({jumps = [], steady}) {
 
 // ---- What is shown -------------------------------------------------------------------------------
 
+function showHappenings(report) {
+    byId('happenings').innerHTML = happenings(report).map((line) => `<p>${escapeText(line)}</p>`).join('');
+}
+
+function showMessages(text) {
+    byId('messages').textContent = text.trim();
+    byId('messages').classList.toggle('notes', !/(^|: )(error|warning): /m.test(text));
+}
+
 function showWaveforms(result, euler) {
     const time = result.time, from = lesson.from === null ? time[0] : lesson.from;
     const to = Math.min(lesson.to === null ? Infinity : lesson.to, time[time.length - 1]);
@@ -155,14 +170,20 @@ function showWaveforms(result, euler) {
         return w && lambda ? plane(name, w, lambda) : '';
     }).join('');
     byId('planes').parentElement.hidden = byId('planes').innerHTML === '';
-    byId('happenings').innerHTML = happenings(result.report).map((line) => `<p>${escapeText(line)}</p>`).join('');
+    showHappenings(result.report);
     byId('modes').innerHTML = '<tr><th>conducts, or is on</th><th>times</th><th>of the time</th></tr>' +
         modesOf(bodies, time[0], time[time.length - 1]).slice(0, 16).map(({mode, visits, share}) =>
             `<tr><td>${escapeText(mode)}</td><td>${visits}</td><td>${(100 * share).toFixed(1)} %</td></tr>`).join('');
 }
 
-/** What theory says is slower than a run: it waits until the sliders rest. */
-function showTheory() {
+/** The steady state, and what theory says, are slower than a run: they wait until the sliders rest. */
+function showRest(netlist) {
+    if (withoutSearch(netlist) !== netlist) {
+        const whole = simulate(netlist);
+        showMessages(whole.messages);
+        if (whole.status === 0) showHappenings(whole.report);
+    }
+    call('engine_read', 'number', netlist); // without the signals that the picture needs
     byId('equations').textContent = call('engine_equations', 'string');
     const check = JSON.parse(call('engine_check', 'string'));
     byId('check').innerHTML = (check.parts || []).map((part) => `<p>${escapeText(part.summary)}</p><table>` +
@@ -174,8 +195,8 @@ function showTheory() {
 
 function update() {
     const start = performance.now(), netlist = byId('netlist').value, steps = +byId('steps').value;
-    const result = play.result = simulate(netlist);
-    byId('messages').textContent = result.messages.trim();
+    const result = play.result = simulate(withoutSearch(netlist));
+    let messages = result.messages;
     byId('results').classList.toggle('stale', result.status !== 0);
     document.body.dataset.theory = 'no';
     clearTimeout(play.later);
@@ -184,19 +205,24 @@ function update() {
         let euler = null;
         if (byId('euler').checked) {
             euler = simulate(netlist.replace(/^\.pss\b.*$/gim, '*'), 'euler', step); // fixed steps find no steady state
-            byId('messages').textContent += euler.status ? `\nimplicit Euler: ${euler.messages}` : '';
+            messages += euler.status ? `\nimplicit Euler: ${euler.messages}` : '';
         }
         byId('stepsize').textContent = `${steps} steps, h = ${quantity(step, 's', 3)}`;
         showWaveforms(result, euler && euler.status === 0 ? euler : null);
-        play.later = setTimeout(() => {
-            call('engine_read', 'number', netlist); // without the signals that the picture needs
-            showTheory();
-        }, 200);
+        play.later = setTimeout(showRest, 200, netlist);
     }
-    byId('messages').classList.toggle('notes', !/(^|: )(error|warning): /m.test(byId('messages').textContent));
+    showMessages(messages);
     play.millis = performance.now() - start;
     byId('millis').textContent = `answered in ${play.millis.toFixed(0)} ms`;
     document.body.dataset.ready = 'yes';
+}
+
+/** One answer for all that was moved since the last picture: a slider may send more than the screen shows. */
+function request() {
+    play.frame = play.frame || requestAnimationFrame(() => {
+        play.frame = 0;
+        update();
+    });
 }
 
 // ---- What is moved -------------------------------------------------------------------------------
@@ -213,7 +239,7 @@ function addSlider({label, unit, card, from, to, log, value}) {
         const now = Math.abs(valueAt(+range.value)) < 1e-12 * Math.abs(to) ? 0 : valueAt(+range.value);
         show(now);
         byId('netlist').value = withCard(byId('netlist').value, card.replace('{}', written(now)));
-        update();
+        request();
     });
     row.append(label, range, shown);
     byId('sliders').append(row);
@@ -222,13 +248,14 @@ function addSlider({label, unit, card, from, to, log, value}) {
 function begin(engine) {
     play.engine = engine;
     byId('netlist').value = lesson.netlist;
+    byId('netlist').rows = Math.min(24, lesson.netlist.split('\n').length);
     lesson.sliders.forEach(addSlider);
     byId('netlist').addEventListener('input', () => {
         clearTimeout(play.typing);
         play.typing = setTimeout(update, 250);
     });
     byId('euler').addEventListener('change', update);
-    byId('steps').addEventListener('input', () => { byId('euler').checked = true; update(); });
+    byId('steps').addEventListener('input', () => { byId('euler').checked = true; request(); });
     byId('again').addEventListener('click', () => {
         byId('sliders').innerHTML = '';
         lesson.sliders.forEach(addSlider);

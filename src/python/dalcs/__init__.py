@@ -30,14 +30,17 @@ from typing import Any, Callable, Dict, List, Mapping, Optional
 from . import _library
 from ._circuit import Circuit
 from ._equations import System
-from ._errors import Cancelled, Error, NetlistError, NoSolution, OptionError
+from ._errors import Cancelled, Error, NetlistError, NoSolution, OptionError, WrongWaveform
+from ._response import Response
 from ._result import Result, Table
+from ._sensitivities import Sensitivities
 from ._session import Netlist, Number
 from ._sweep import Grid, Sweep
 
 __version__: str = _library.lib.dalcs_version().decode()
-__all__ = ["Cancelled", "Circuit", "Error", "NetlistError", "NoSolution", "OptionError", "Result",
-           "Sweep", "System", "Table", "check", "equations", "run", "steady", "sweep", "variants"]
+__all__ = ["Cancelled", "Circuit", "Error", "NetlistError", "NoSolution", "OptionError", "Response",
+           "Result", "Sensitivities", "Sweep", "System", "Table", "WrongWaveform", "bode", "check",
+           "envelope", "equations", "run", "steady", "sweep", "variants"]
 
 
 def run(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
@@ -52,11 +55,24 @@ def steady(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
     return Circuit(netlist, dialect).steady(values, **more)
 
 
+def bode(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
+         dialect: Optional[str] = None, **more: Any) -> Response:
+    """Circuit(netlist, dialect).bode(values, **more)"""
+    return Circuit(netlist, dialect).bode(values, **more)
+
+
+def envelope(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
+             dialect: Optional[str] = None, **more: Any) -> Result:
+    """Circuit(netlist, dialect).envelope(values, **more)"""
+    return Circuit(netlist, dialect).envelope(values, **more)
+
+
 def sweep(netlist: Netlist, grid: Optional[Grid] = None, *, workers: Optional[int] = None,
-          each: Optional[Callable[[Result], Any]] = None, dialect: Optional[str] = None,
+          each: Optional[Callable[[Result], Any]] = None,
+          done: Optional[Callable[[int, int], Any]] = None, dialect: Optional[str] = None,
           **options: Any) -> Sweep:
-    """Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, **options)"""
-    return Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, **options)
+    """Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, done=done, **options)"""
+    return Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, done=done, **options)
 
 
 def variants(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
@@ -79,7 +95,7 @@ def equations(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *
 
 def _describe() -> None:
     """help(dalcs.run) says what run() takes: as the method of Circuit does."""
-    for function in (run, steady, sweep, variants, check, equations):
+    for function in (run, steady, bode, envelope, sweep, variants, check, equations):
         method = getattr(Circuit, function.__name__)
         function.__doc__ = f"{function.__doc__}\n\n{inspect.cleandoc(method.__doc__ or '')}"
 

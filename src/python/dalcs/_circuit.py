@@ -10,9 +10,22 @@ import ctypes
 
 from . import _library as c
 from ._equations import System, systems_of
+from ._response import Response
 from ._result import Result
 from ._session import Netlist, Number, Options, Session, Window
 from ._sweep import Grid, Sweep, sweep_of, variants_of
+
+
+def _asks_of(options: Mapping[str, Any], sensitivities: bool) -> List[Callable[[Any], int]]:
+    """What a session has to know before it reads a netlist that does not ask for it itself."""
+    asks: List[Callable[[Any], int]] = []
+    if options.get("steady") or options.get("envelope"):
+        asks.append(c.lib.dalcs_session_ask_steady)
+    if options.get("bode"):
+        asks.append(c.lib.dalcs_session_ask_response)
+    if sensitivities:
+        asks.append(c.lib.dalcs_session_ask_sensitivities)
+    return asks
 
 
 class Circuit:
@@ -22,16 +35,17 @@ class Circuit:
         self.netlist = netlist
         self.dialect = dialect
 
-    def _read(self, losses: Window = False, steady: bool = False,
+    def _read(self, losses: Window = False, asks: Sequence[Callable[[Any], int]] = (),
               values: Optional[Mapping[str, Number]] = None,
               seed: Optional[int] = None) -> Session:
-        session = Session(self.netlist, self.dialect, losses, steady, seed)
+        session = Session(self.netlist, self.dialect, losses, asks, seed)
         session.set_values(values or {})
         return session
 
     def run(self, values: Optional[Mapping[str, Number]] = None, *,
             at: Optional[Sequence[float]] = None, losses: Window = False, rows: bool = True,
-            seed: Optional[int] = None,
+            seed: Optional[int] = None, sensitivities: bool = False,
+            frequencies: Optional[Sequence[float]] = None,
             progress: Optional[Callable[[float, float], Any]] = None, **more: Any) -> Result:
         """Runs its .op, .dc, .ac, .pss and .tran.
 
@@ -41,9 +55,11 @@ class Circuit:
         losses    True: also where the power went; (from, to): in this window, s
         rows      False: events and measurements only
         seed      of random values, in place of the netlist's
+        sensitivities, frequencies   of steady() and bode()
         progress  called as progress(time, stop) now and then; what it raises ends the run
         more      options as on the command line: tol, method, stages, step (s), fill, curve, compress,
-                  audit, energy, record, only (of .step and .mc this run alone, from 1 on);
+                  audit, energy, record, only (of .step and .mc this run alone, from 1 on), workers
+                  (threads of .wcase);
                   any other name is one of `values`
 
         Raises NetlistError, OptionError, NoSolution. Ctrl-C ends the run.
@@ -55,22 +71,49 @@ class Circuit:
             options = {name: value for name, value in options.items()
                        if name not in ("fill", "curve", "compress")}
         own = {name: value for name, value in more.items() if name not in c.OPTIONS}
-        alone = bool(options.get("steady") or options.get("envelope"))
-        session = self._read(losses, alone, {**(values or {}), **own}, seed)
-        chosen = Options(options, at)
-        return Result(session, session.run(chosen, progress, rows), bool(options.get("only")))
+        session = self._read(losses, _asks_of(options, sensitivities), {**(values or {}), **own}, seed)
+        chosen = Options(options, at, frequencies)
+        kind = Response if options.get("bode") else Result
+        return kind(session, session.run(chosen, progress, rows), bool(options.get("only")))
 
     def steady(self, values: Optional[Mapping[str, Number]] = None, *,
                period: Optional[float] = None, **more: Any) -> Result:
         """The periodic steady state: rows of one period, `.steady` says whether it is stable.
 
         period    s; None: that of .pss, else it follows from the sources
+        more      those of run(); sensitivities=True: .sensitivities tells how measurements follow
+                  from the values of elements
         """
         if period is not None:
             more["period"] = float(period)
         return self.run(values, steady=True, **more)
 
-    def envelope(self, values: Optional[Mapping[str, float]] = None, *,
+    def bode(self, values: Optional[Mapping[str, Number]] = None, *,
+             frequencies: Optional[Sequence[float]] = None, start: Optional[float] = None,
+             stop: Optional[float] = None, points: Optional[int] = None, loop: Optional[str] = None,
+             injection: Optional[str] = None, sideband: Optional[int] = None,
+             period: Optional[float] = None, **more: Any) -> Response:
+        """The small-signal response around the periodic steady state, of a loop with its margins.
+
+        frequencies  [n] Hz, ascending; None: those of .ac, or
+        start, stop  Hz; None: those of .ac, else 1e-4 and 1/2 of the orbit's frequency
+        points       in each decade; None: those of .ac, else 20
+        loop         the V source in a loop whose gain is computed: all else has no small signal
+        injection    "voltage", or "both" where what the loop goes on to takes a current
+        sideband     rows are of the components so many of the orbit's frequencies higher
+        period       s, of the orbit; None: that of .pss, else it follows from the sources
+        more         options and values, as of run()
+        """
+        asked: Dict[str, Any] = {"bode_from": start, "bode_to": stop, "bode_points": points, "bode_loop": loop,
+                                 "bode_injection": injection, "bode_sideband": sideband, "period": period}
+        if frequencies is not None and (start, stop, points) != (None, None, None):
+            raise TypeError("frequencies are all there are: start, stop and points cannot stand beside them")
+        given = {name: value for name, value in asked.items() if value is not None}
+        found = self.run(values, bode=True, frequencies=frequencies, **given, **more)
+        assert isinstance(found, Response)
+        return found
+
+    def envelope(self, values: Optional[Mapping[str, Number]] = None, *,
                  stop: Optional[float] = None, **more: Any) -> Result:
         """A slow start, most of whose periods are left out: rows at the beginnings of those that are run.
 
@@ -81,7 +124,8 @@ class Circuit:
         return self.run(values, envelope=True, **more)
 
     def sweep(self, grid: Optional[Grid] = None, *, workers: Optional[int] = None,
-              each: Optional[Callable[[Result], Any]] = None, **options: Any) -> Sweep:
+              each: Optional[Callable[[Result], Any]] = None,
+              done: Optional[Callable[[int, int], Any]] = None, **options: Any) -> Sweep:
         """Runs of all combinations of values, in several threads.
 
         grid     {"rload": [5, 10], "c1": [10e-6, 20e-6]}: all combinations, the last name fastest;
@@ -89,15 +133,17 @@ class Circuit:
         workers  threads; None: as many as there are cores. Results do not depend on it
         each     each(result) gives the values to keep: a dict, or one value, which is called "value".
                  None: the measurements, and no rows are made, which is fastest
+        done     called as done(how many runs are over, how many there are), in the thread of the caller
         options  those of run()
 
         A run that fails loses none of the others: its row has its message in the column "error".
+        Ctrl-C ends all runs; the exception has the table so far in its attribute `sweep`.
         """
-        return sweep_of(self.run, grid, workers, each, options)
+        return sweep_of(self.run, grid, workers, each, done, options)
 
     def variants(self, values: Optional[Mapping[str, Number]] = None, *, seed: Optional[int] = None,
                  workers: Optional[int] = None, each: Optional[Callable[[Result], Any]] = None,
-                 **options: Any) -> Sweep:
+                 done: Optional[Callable[[int, int], Any]] = None, **options: Any) -> Sweep:
         """The runs of the netlist's .step and .mc, in several threads.
 
         The table has what is stepped, what random functions gave, and the measurements. Other arguments
@@ -105,8 +151,8 @@ class Circuit:
         """
         points = self._read(values=values, seed=seed).steps()
         if not points:
-            raise ValueError("the netlist has neither .step nor .mc")
-        return variants_of(self.run, points, workers, each, {**options, "values": values, "seed": seed})
+            raise ValueError("the netlist has neither .step nor .mc; a .wcase is a part of one run()")
+        return variants_of(self.run, points, workers, each, done, {**options, "values": values, "seed": seed})
 
     def check(self, values: Optional[Mapping[str, Number]] = None, *,
               step: float = 0.0) -> Dict[str, Any]:

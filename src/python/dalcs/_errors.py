@@ -67,12 +67,17 @@ class NoSolution(Error):
     """No solution exists, or none was found that holds; the message names the elements."""
 
 
+class WrongWaveform(Error):
+    """The audit finds a law of the circuit broken in the waveform; the message names it and the time."""
+
+
 class Cancelled(Error):
     """The run was ended from outside."""
 
 
 _KINDS = {c.E_NETLIST: NetlistError, c.E_OPTION: OptionError, c.E_CANCELLED: Cancelled,
-          c.INFEASIBLE: NoSolution, c.NOT_CONVERGED: NoSolution, c.SINGULAR: NoSolution}
+          c.INFEASIBLE: NoSolution, c.NOT_CONVERGED: NoSolution, c.SINGULAR: NoSolution,
+          c.REFUTED: WrongWaveform}
 
 
 def error_of(status: int, messages: Sequence[str], report: Optional[str] = None) -> Error:

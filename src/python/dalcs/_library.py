@@ -11,7 +11,7 @@ from ctypes import CFUNCTYPE, POINTER, c_bool, c_char_p, c_double, c_int, c_size
 
 from . import _where
 
-OK, SINGULAR, NOT_CONVERGED, INFEASIBLE = 0, 1, 2, 3
+OK, SINGULAR, NOT_CONVERGED, INFEASIBLE, REFUTED = 0, 1, 2, 3, 4
 E_NOMEM, E_NETLIST, E_OPTION, E_CANCELLED = -1, -3, -4, -6
 
 ANALYSES = ("op", "tran", "dc", "ac", "pss")
@@ -91,6 +91,8 @@ CALLS = {
     "dalcs_session_step_parameter": (c_char_p, (c_void_p, c_size_t, c_size_t, POINTER(c_double))),
     "dalcs_session_drawn": (c_char_p, (c_void_p, c_size_t, POINTER(c_double))),
     "dalcs_session_ask_steady": (c_int, (c_void_p,)),
+    "dalcs_session_ask_response": (c_int, (c_void_p,)),
+    "dalcs_session_ask_sensitivities": (c_int, (c_void_p,)),
     "dalcs_session_ask_losses": (c_int, (c_void_p, c_double, c_double)),
     "dalcs_session_keep_netlist": (c_int, (c_void_p,)),
     "dalcs_session_read_file": (c_int, (c_void_p, c_char_p)),
@@ -107,6 +109,7 @@ CALLS = {
     "dalcs_run_options_destroy": (None, (c_void_p,)),
     "dalcs_run_options_set": (c_int, (c_void_p, c_char_p, c_char_p)),
     "dalcs_run_options_set_times": (None, (c_void_p, c_void_p, c_size_t)),
+    "dalcs_run_options_set_frequencies": (None, (c_void_p, c_void_p, c_size_t)),
     "dalcs_session_run": (c_int, (c_void_p, c_void_p, c_void_p)),
     "dalcs_session_measurement": (POINTER(Measurement), (c_void_p, c_size_t)),
     "dalcs_session_run_tables": (c_int, (c_void_p, c_void_p, Progress, c_void_p,

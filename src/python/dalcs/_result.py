@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _library as c
+from ._sensitivities import Sensitivities
 from ._session import Session, Tables
 
 
@@ -132,6 +133,33 @@ class Table:
         axes.legend()
         return axes
 
+    def decibels(self, name: str) -> NDArray[Any]:
+        """20 log10 of the magnitude of a signal, [n] dB; 0 is -inf."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(20.0 * np.log10(np.abs(self[name])))
+
+    def phase(self, name: str) -> NDArray[Any]:
+        """The phase of a complex signal, [n] degrees, from -180 to 180 at first, and from there on without leaps."""
+        return np.asarray(np.degrees(np.unwrap(np.angle(self[name]))))
+
+    def plot_bode(self, *names: str, axes: Any = None) -> Any:
+        """Draws complex signals, all without names, in dB and degrees over a logarithmic frequency.
+
+        axes    two of matplotlib, for magnitudes and phases; None: new ones. Returns them
+        """
+        import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
+        above, below = plt.subplots(2, sharex=True)[1] if axes is None else axes
+        if not np.iscomplexobj(self.values):
+            raise ValueError(f"the rows of {self.analysis or 'no analysis'} are real: plot() draws them")
+        for name in names or self.names:
+            above.semilogx(self.t, self.decibels(name), label=name)
+            below.semilogx(self.t, self.phase(name), label=name)
+        above.set_ylabel("dB")
+        below.set_ylabel("deg")
+        below.set_xlabel(_scale_label(self.scale))
+        above.legend()
+        return np.array([above, below], dtype=object)
+
     def __repr__(self) -> str:
         return f"<{self.analysis or 'no'} rows: {len(self)} of {', '.join(self.names)}>"
 
@@ -229,3 +257,9 @@ class Result(Table):
     def steady(self) -> Optional[Dict[str, Any]]:
         """Of a steady state: period (s), multipliers, averages and rms values of the signals."""
         return self.report.get("steady")
+
+    @functools.cached_property
+    def sensitivities(self) -> Optional[Sensitivities]:
+        """Of a steady state: how its measurements follow from values, run(..., sensitivities=True) or .sens."""
+        found = self.report.get("sensitivity")
+        return None if found is None else Sensitivities(found)

@@ -18,7 +18,8 @@ from ._errors import OptionError, error_of
 Netlist = Union[str, "os.PathLike[str]"]
 Window = Union[bool, Tuple[float, float]]
 Number = Union[float, str]  # a str as in netlists: "4.7k"
-OWN_OPTIONS = frozenset(("at", "losses", "rows", "seed", "progress", "values"))  # of Circuit.run
+OWN_OPTIONS = frozenset(("at", "frequencies", "losses", "progress", "rows", "seed", "sensitivities",
+                         "values"))  # of Circuit.run
 
 
 def number_of(value: Number) -> float:
@@ -62,7 +63,7 @@ class Session:
     """A netlist, read; raises what is wrong with it."""
 
     def __init__(self, netlist: Netlist, dialect: Optional[str] = None, losses: Window = False,
-                 steady: bool = False, seed: Optional[int] = None) -> None:
+                 asks: Sequence[Callable[[Any], int]] = (), seed: Optional[int] = None) -> None:
         self.handle = ctypes.c_void_p()
         self._check(c.lib.dalcs_session_create(ctypes.byref(self.handle)))
         self._check(c.lib.dalcs_session_keep_netlist(self.handle))
@@ -70,8 +71,8 @@ class Session:
             self._check(c.lib.dalcs_session_set_dialect(self.handle, dialect.encode()))
         if seed is not None:
             self._check(c.lib.dalcs_session_set_seed(self.handle, float(seed)))
-        if steady:
-            self._check(c.lib.dalcs_session_ask_steady(self.handle))
+        for ask in asks:  # what need not be in the netlist
+            self._check(ask(self.handle))
         if losses is not False:
             begin, end = (math.nan, math.nan) if losses is True else losses
             self._check(c.lib.dalcs_session_ask_losses(self.handle, begin, end))
@@ -222,22 +223,31 @@ def _interruptibly(session: Session, call: Callable[[], int]) -> int:
 
 
 class Options:
-    """Options of a run by their names; `at` are times in s, ascending."""
+    """Options of a run by their names; `at` are times in s, `frequencies` those of bode, both ascending."""
 
-    def __init__(self, given: Mapping[str, Any], at: Optional[Sequence[float]] = None) -> None:
+    def __init__(self, given: Mapping[str, Any], at: Optional[Sequence[float]] = None,
+                 frequencies: Optional[Sequence[float]] = None) -> None:
         self.handle = ctypes.c_void_p()
+        self._texts: list[bytes] = []  # the options look at the name of a loop until the run is over
         if c.lib.dalcs_run_options_create(ctypes.byref(self.handle)) != c.OK:
             raise MemoryError
         for name, value in given.items():
             text = ("yes" if value else "no") if isinstance(value, bool) else str(value)
             if isinstance(value, (float, np.floating)):
                 text = repr(float(value))
-            if c.lib.dalcs_run_options_set(self.handle, name.encode(), text.encode()) != c.OK:
+            self._texts.append(text.encode())
+            if c.lib.dalcs_run_options_set(self.handle, name.encode(), self._texts[-1]) != c.OK:
                 raise OptionError(c.E_OPTION, [f"error: {text!r} is no value of the option {name}"])
         if at is not None:
             self.times = np.ascontiguousarray(at, dtype=float)
             address = self.times.ctypes.data if self.times.size else None
             c.lib.dalcs_run_options_set_times(self.handle, address, self.times.size)
+        if frequencies is not None:
+            self.frequencies = np.ascontiguousarray(frequencies, dtype=float)
+            if self.frequencies.ndim != 1 or self.frequencies.size == 0:
+                raise ValueError("frequencies are a list of at least one, in Hz")
+            c.lib.dalcs_run_options_set_frequencies(self.handle, self.frequencies.ctypes.data,
+                                                    self.frequencies.size)
 
     def __del__(self) -> None:
         c.lib.dalcs_run_options_destroy(self.handle)

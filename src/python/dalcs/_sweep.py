@@ -149,16 +149,29 @@ def _column_of(values: List[Any]) -> NDArray[Any]:
     return column
 
 
+class NotRun(Error):
+    """A run that was not begun or not ended: Ctrl-C came before."""
+
+    def __init__(self) -> None:
+        super().__init__(c.E_CANCELLED, ["error: not run: the sweep was ended before"])
+
+    def __reduce__(self):  # type: ignore[no-untyped-def]
+        return type(self), ()
+
+
 class _Workers:
     """Threads that take the next run until there is none, or until they are stopped."""
 
-    def __init__(self, task: Callable[[int], Any], count: int, stopped: threading.Event) -> None:
-        self.task, self.stopped = task, stopped
-        self.kept: List[Any] = [None] * count
+    def __init__(self, task: Callable[[int], Any], count: int, stopped: threading.Event,
+                 done: Optional[Callable[[int, int], Any]]) -> None:
+        self.task, self.stopped, self.done = task, stopped, done
+        self.kept: List[Any] = [NotRun() for _ in range(count)]
         self.failure: Optional[BaseException] = None
         self.next = itertools.count()
+        self.moved = threading.Condition()
+        self.n_done = 0
 
-    def work(self) -> None:
+    def work(self, tell: Callable[[int], None]) -> None:
         while not self.stopped.is_set():
             index = next(self.next)
             if index >= len(self.kept):
@@ -166,34 +179,52 @@ class _Workers:
             try:
                 self.kept[index] = self.task(index)
             except Exception as error:  # pylint: disable=broad-except
-                self.kept[index] = error
+                if not (self.stopped.is_set() and isinstance(error, Cancelled)):
+                    self.kept[index] = error
             except BaseException as error:  # pylint: disable=broad-except
                 self.failure = self.failure or error
                 self.stopped.set()
+                return
+            with self.moved:
+                self.n_done += 1
+                count = self.n_done
+                self.moved.notify_all()
+            tell(count)
 
-    def run(self, workers: int) -> List[Any]:
-        """With one worker in this thread, which Ctrl-C interrupts by itself."""
-        if workers > 1:
-            threads = [threading.Thread(target=self.work, daemon=True) for _ in range(workers)]
+    def _in_threads(self, workers: int) -> None:
+        threads = [threading.Thread(target=self.work, args=(lambda count: None,), daemon=True)
+                   for _ in range(workers)]
+        for thread in threads:
+            thread.start()
+        try:
+            told = 0
+            while self.done is not None and told < len(self.kept) and not self.stopped.is_set():
+                with self.moved:
+                    while self.n_done == told and not self.stopped.is_set():
+                        self.moved.wait(0.1)
+                    told = self.n_done
+                self.done(told, len(self.kept))
             for thread in threads:
-                thread.start()
-            try:
-                for thread in threads:
-                    thread.join()
-            finally:
-                self.stopped.set()
-                for thread in threads:
-                    thread.join()
+                thread.join()
+        finally:
+            self.stopped.set()
+            for thread in threads:
+                thread.join()
+
+    def run(self, workers: int) -> None:
+        """With one worker in this thread, which Ctrl-C interrupts by itself."""
+        done = self.done
+        if workers > 1:
+            self._in_threads(workers)
         else:
-            self.work()
+            self.work(lambda count: None if done is None else done(count, len(self.kept)))
         if self.failure is not None:
             raise self.failure
-        return self.kept
 
 
 def _table_of(run: Callable[..., Result], points: List[Dict[str, float]], workers: Optional[int],
-              each: Optional[Callable[[Result], Any]], options: Mapping[str, Any],
-              keep: Callable[[int, Result], None]) -> Sweep:
+              each: Optional[Callable[[Result], Any]], done: Optional[Callable[[int, int], Any]],
+              options: Mapping[str, Any], keep: Callable[[int, Result], None]) -> Sweep:
     """run(k, ...) is point k, of which `keep` may write more into the points."""
     asked = dict(options)
     if each is None:
@@ -215,21 +246,29 @@ def _table_of(run: Callable[..., Result], points: List[Dict[str, float]], worker
 
     if workers is None:
         workers = len(os.sched_getaffinity(0))
-    return Sweep(points, _Workers(task, len(points), stopped).run(min(workers, len(points))))
+    crew = _Workers(task, len(points), stopped, done)
+    try:
+        crew.run(min(workers, len(points)))
+    except BaseException as end:
+        setattr(end, "sweep", Sweep(points, crew.kept))  # what is there is not lost
+        raise
+    return Sweep(points, crew.kept)
 
 
 def sweep_of(run: Callable[..., Result], grid: Optional[Grid], workers: Optional[int],
-             each: Optional[Callable[[Result], Any]], options: Mapping[str, Any]) -> Sweep:
+             each: Optional[Callable[[Result], Any]], done: Optional[Callable[[int, int], Any]],
+             options: Mapping[str, Any]) -> Sweep:
     """What Circuit.sweep does, by this function that runs one point."""
     asked = dict(options)
     points = _points_of(_grid_of(grid, asked))
     fixed = dict(asked.pop("values", None) or {})
     return _table_of(lambda index, **more: run({**fixed, **points[index]}, **more), points, workers, each,
-                     asked, lambda index, result: None)
+                     done, asked, lambda index, result: None)
 
 
 def variants_of(run: Callable[..., Result], points: List[Dict[str, float]], workers: Optional[int],
-                each: Optional[Callable[[Result], Any]], options: Mapping[str, Any]) -> Sweep:
+                each: Optional[Callable[[Result], Any]], done: Optional[Callable[[int, int], Any]],
+                options: Mapping[str, Any]) -> Sweep:
     """What Circuit.variants does: point k is step k of the netlist, and gets what was drawn."""
-    return _table_of(lambda index, **more: run(only=index + 1, **more), points, workers, each, options,
+    return _table_of(lambda index, **more: run(only=index + 1, **more), points, workers, each, done, options,
                      lambda index, result: points[index].update(result.drawn))

@@ -1,0 +1,116 @@
+/* told.c - events and jumps as they are told, against both sides of their instant. */
+#include "audit_internal.h"
+
+#include "audit_told.h"
+
+void dalcs_audit_look_before(struct dalcs_audit *audit, int part, bool is_same) {
+    if (!is_same) {
+        audit->reader.read_before(audit->reader.user, part, &audit->later);
+    }
+}
+
+void dalcs_audit_look_behind(struct dalcs_audit *audit, int part, double t) {
+    audit->shifted.t = t;
+    audit->shifted.side = DALCS_RIGHT;
+    audit->reader.read(audit->reader.user, part, &audit->shifted);
+    audit->reader.raise(audit->reader.user, part, audit->scale.v, audit->scale.i,
+                        audit->scale.lambda);
+}
+
+/* ---- Events --------------------------------------------------------------------------------------- */
+
+/* How much a diode conducts (> 0) or blocks (< 0) beyond doubt, over its scales: its current, less its leakage; its
+ * voltage, less its line's. Breakdown is another branch, with other events. */
+static double side_of_diode(struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                            int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+    const int node = audit->net.node_of[d->node[0]];
+    const int other = audit->net.node_of[d->node[1]];
+    const int own = audit->net.owner[node] >= 0 ? audit->net.owner[node] : audit->net.owner[other];
+    if (own < 0 || isfinite(m->vrev) || s->is_mean[device]) {
+        return 0.0;
+    }
+    const struct audit_part *part = &audit->part[own];
+    double scale[2];
+    audit_diode_scale(audit, part, device, scale);
+    const double v = audit_voltage(s, d);
+    const double i = s->i[device] - (isfinite(m->roff) ? v / m->roff : 0.0);
+    const double current = audit_ratio(i, audit_amperes(audit, part, device));
+    const double below = audit_ratio(m->vfwd - v, scale[0]);
+    return current > fmax(below, 0.0) ? current : -fmax(below, 0.0);
+}
+
+void dalcs_audit_check_event(struct dalcs_audit *audit, int device, bool is_on, double t) {
+    const struct dalcs_audit_state *now = &audit->shifted;
+    double off = 0.0;
+    if (audit->circuit->device[device].kind == DALCS_DIODE) {
+        const double side = side_of_diode(audit, now, device);
+        off = is_on ? -side : side;
+    } else if (!now->is_mean[device]) {
+        off = now->is_closed[device] != is_on ? 1.0 : 0.0;
+    }
+    dalcs_audit_add_to(audit, DALCS_AUDIT_EVENT, device, off, t);
+}
+
+/* ---- Jumps ---------------------------------------------------------------------------------------- */
+
+static double stored_in(const struct dalcs_audit_state *s, const struct dalcs_device *d,
+                        int device) {
+    return d->kind == DALCS_CAPACITOR ? audit_voltage(s, d) : s->i[device];
+}
+
+/* J: half of what all capacitors and coils have changed by, squared, and of coupled coils their product; NAN: there are
+ * curved ones. */
+static double energy_of_change(const struct dalcs_audit *audit, const struct audit_part *part) {
+    const struct dalcs_audit_state *then = &audit->later, *now = &audit->shifted;
+    double sum = 0.0;
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        if (d->is_storage) {
+            return NAN;
+        }
+        if (d->kind == DALCS_CAPACITOR || d->kind == DALCS_INDUCTOR) {
+            const double change = stored_in(now, d, device) - stored_in(then, d, device);
+            sum += 0.5 * d->value * change * change;
+        }
+    }
+    for (int k = 0; k < part->n_couplings; k++) {
+        const struct dalcs_coupling *m = &audit->circuit->coupling[part->coupling[k]];
+        const int a = m->inductor[0], b = m->inductor[1];
+        const double mutual =
+            m->k * sqrt(audit->circuit->device[a].value * audit->circuit->device[b].value);
+        sum += mutual * (now->i[a] - then->i[a]) * (now->i[b] - then->i[b]);
+    }
+    return sum;
+}
+
+void dalcs_audit_check_told_jump(struct dalcs_audit *audit, int index,
+                                 const struct dalcs_audit_jump *jump, double t) {
+    const struct dalcs_device *d = &audit->circuit->device[jump->device];
+    const struct audit_part *part = &audit->part[index];
+    const double scale = d->kind == DALCS_CAPACITOR
+                             ? audit_volts(audit, part, d->node[0], d->node[1])
+                             : audit_amperes(audit, part, jump->device);
+    double off = 0.0;
+    if (d->kind != DALCS_CAPACITOR && d->kind != DALCS_INDUCTOR) {
+        return;
+    }
+    if (jump->knows_before) {
+        off = fabs(jump->before - stored_in(&audit->later, d, jump->device));
+    }
+    if (jump->knows_after) {
+        off = fmax(off, fabs(jump->after - stored_in(&audit->shifted, d, jump->device)));
+    }
+    double worst = audit_ratio(off, scale);
+    const double energy = jump->is_alone ? energy_of_change(audit, part) : NAN;
+    if (isfinite(energy)) {
+        const double change = fabs(jump->after - jump->before);
+        const double own = 0.5 * d->value * change * change;
+        /* what the tolerance leaves open of each state is in its energy twice */
+        const double size = fmax(energy, fmax(own, jump->energy_lost)) + d->value * change * scale;
+        worst = fmax(worst, audit_ratio(fabs(jump->energy_lost - energy), size));
+    }
+    dalcs_audit_add_to(audit, DALCS_AUDIT_JUMP, jump->device, worst, t);
+}

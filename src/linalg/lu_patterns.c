@@ -1,0 +1,84 @@
+/* lu_patterns.c - see lu_patterns.h. */
+#include "lu_patterns.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void forget(struct dalcs_lu_pattern *known, klu_common *common) {
+    klu_free_symbolic(&known->symbolic, common);
+    free(known->p);
+}
+
+void dalcs_lu_patterns_finish(struct dalcs_lu_patterns *patterns, klu_common *common) {
+    for (int k = 0; k < patterns->n; k++) {
+        forget(&patterns->known[k], common);
+    }
+    free(patterns->known);
+    *patterns = (struct dalcs_lu_patterns){0};
+}
+
+static bool is_it(const struct dalcs_lu_pattern *known, bool keeps_diagonal, int n, const int *p,
+                  const int *i) {
+    return known->n == n && known->keeps_diagonal == keeps_diagonal &&
+           memcmp(known->p, p, ((size_t)n + 1) * sizeof(*p)) == 0 &&
+           memcmp(known->p + n + 1, i, (size_t)p[n] * sizeof(*i)) == 0;
+}
+
+/* Number `from` becomes the first. */
+static void put_first(struct dalcs_lu_patterns *patterns, int from) {
+    struct dalcs_lu_pattern known = patterns->known[from];
+    memmove(patterns->known + 1, patterns->known, (size_t)from * sizeof(known));
+    patterns->known[0] = known;
+}
+
+static enum dalcs_status analyse(struct dalcs_lu_patterns *patterns, klu_common *common,
+                                 bool keeps_diagonal, int n, int *p, int *i) {
+    const size_t n_starts = (size_t)n + 1;
+    const size_t n_entries = (size_t)p[n];
+    struct dalcs_lu_pattern made = {.n = n, .keeps_diagonal = keeps_diagonal};
+    if (patterns->known == NULL) {
+        patterns->known = dalcs_alloc(DALCS_LU_PATTERNS, sizeof(*patterns->known));
+    }
+    if (patterns->known == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_lu_analyze(&made.symbolic, common, n, p, i));
+    made.p = malloc((n_starts + n_entries) * sizeof(*made.p));
+    if (made.p == NULL) {
+        forget(&made, common);
+        return DALCS_E_NOMEM;
+    }
+    memcpy(made.p, p, n_starts * sizeof(*p));
+    memcpy(made.p + n_starts, i, n_entries * sizeof(*i));
+    if (patterns->n == DALCS_LU_PATTERNS) {
+        forget(&patterns->known[--patterns->n], common);
+    }
+    patterns->known[patterns->n] = made;
+    put_first(patterns, patterns->n++);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_lu_factor_again(struct dalcs_lu *lu, struct dalcs_lu_patterns *patterns,
+                                        klu_common *common, int n, int *p, int *i, double *x,
+                                        double rcond_min) {
+    const bool keeps_diagonal = common->btf == 0;
+    *lu = (struct dalcs_lu){.n = n};
+    if (n == 0) {
+        return DALCS_OK;
+    }
+    int k = 0;
+    while (k < patterns->n && !is_it(&patterns->known[k], keeps_diagonal, n, p, i)) {
+        k++;
+    }
+    if (k < patterns->n) {
+        put_first(patterns, k);
+    } else {
+        enum dalcs_status status = analyse(patterns, common, keeps_diagonal, n, p, i);
+        if (status != DALCS_OK) {
+            dalcs_lu_finish(lu);
+            return status;
+        }
+    }
+    return dalcs_lu_factor_analyzed(lu, common, patterns->known[0].symbolic, NULL, false, p, i, x,
+                                    rcond_min);
+}

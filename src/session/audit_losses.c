@@ -1,0 +1,180 @@
+/* audit_losses.c - sums of losses, checked at times of the auditor's own: of one device in a stretch, its integrals of
+ * voltage, current, their squares and their product. The first stretches of the window take one device after the other. */
+#include "audit_losses.h"
+
+#include "audit_reader.h"
+#include "results.h"
+
+#include <float.h>
+
+/* Instructions, about: of a device in a stretch; of a check. */
+static const double device_work = 1500.0, check_work = 150000.0;
+
+/* What checks may cost of that. */
+static const double share = 0.03;
+
+/* Sums and quotients of a few numbers that were each rounded. */
+static const double rounding = 16.0 * DBL_EPSILON;
+
+/* What is asked of a device. */
+struct asked {
+    const struct dalcs_audit_losses *a;
+    const struct dalcs_stretch *stretch;
+    int signal[2]; /* measured: voltage, current */
+    bool reads[2];
+    int which; /* 0 voltage, 1 current, 2 power */
+};
+
+static double signal_of(const struct asked *q, int which, double t, double *doubt) {
+    const struct dalcs_stretch *s = q->stretch;
+    const struct dalcs_circuit *c = &q->a->run->run->s->circuit;
+    if (q->reads[which]) {
+        return dalcs_audit_signal(q->a->run->audit, c->measured[q->signal[which]], t,
+                                  t > s->from ? DALCS_LEFT : DALCS_RIGHT, doubt);
+    }
+    const double *coefficient = s->coefficient[q->signal[which]];
+    *doubt = 16.0 * DALCS_STRETCH_NODES * DBL_EPSILON *
+             (fabs(coefficient[0]) + dalcs_stretch_spread(coefficient));
+    return dalcs_stretch_at(coefficient, 2.0 * ((t - s->from) / (s->to - s->from)) - 1.0);
+}
+
+static double value_of(void *user, double t, double *doubt) {
+    const struct asked *q = user;
+    double off[2];
+    if (q->which < 2) {
+        const double value = signal_of(q, q->which, t, &off[0]);
+        if (doubt != NULL) {
+            *doubt = off[0];
+        }
+        return value;
+    }
+    const double v = signal_of(q, 0, t, &off[0]);
+    const double i = signal_of(q, 1, t, &off[1]);
+    if (doubt != NULL) {
+        *doubt = fabs(v) * off[1] + fabs(i) * off[0];
+    }
+    return v * i;
+}
+
+static bool can_read(const struct dalcs_audit_losses *a, const struct dalcs_stretch *s,
+                     int signal) {
+    const struct dalcs_audit_run *run = a->run;
+    const int part = dalcs_audit_part_of(run->audit, run->run->s->circuit.measured[signal]);
+    return part >= 0 && run->radau->part[part].kind == DALCS_PART_STEPPED &&
+           (s->to - s->from) * dalcs_audit_most_allowed(run) > 4.0 * DBL_EPSILON * s->to;
+}
+
+static int next_device(const struct dalcs_losses_sum *sum, int from) {
+    const struct dalcs_circuit *c = sum->circuit;
+    int k = from;
+    while (k < c->n_devices && c->losses->device[k].voltage < 0) {
+        k++;
+    }
+    return k;
+}
+
+void dalcs_audit_losses_begin(struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
+                              const struct dalcs_stretch *stretch) {
+    a->device = -1;
+    if (a->run == NULL || !(fmax(stretch->from, sum->from) < fmin(stretch->to, sum->to))) {
+        return;
+    }
+    const int n = sum->circuit->n_devices;
+    const bool is_full = a->run->run->options->audit == DALCS_AUDIT_FULL;
+    a->n_looked = next_device(sum, a->n_looked);
+    a->credit += share * device_work * n;
+    if (a->n_looked < n) {
+        a->device = a->n_looked++;
+    } else if (is_full || a->credit >= a->threshold) {
+        const int k = next_device(sum, (int)(dalcs_audit_run_chance(a->run) * n));
+        a->device = k < n ? k : -1;
+        a->threshold = 2.0 * check_work * dalcs_audit_run_chance(a->run);
+    }
+    if (a->device >= 0) {
+        a->before = sum->device[a->device];
+        a->credit -= check_work;
+        dalcs_audit_forget_asked(a->run->audit);
+    }
+}
+
+/* What a signal is held to: its largest value so far, where the auditor knows that, else in the stretch. */
+static double scale_of(const struct dalcs_audit_losses *a, const struct dalcs_stretch *s,
+                       int signal) {
+    const double *coefficient = s->coefficient[signal];
+    const double largest = fabs(coefficient[0]) + dalcs_stretch_spread(coefficient);
+    const int index = a->run->run->s->circuit.measured[signal];
+    return fmax(largest, dalcs_audit_signal_scale(a->run->audit, index));
+}
+
+void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
+                            const struct dalcs_stretch *stretch) {
+    if (a->device < 0) {
+        return;
+    }
+    const struct dalcs_loss_device *of = &sum->circuit->losses->device[a->device];
+    const struct dalcs_loss *now = &sum->device[a->device], *then = &a->before;
+    const double from = fmax(stretch->from, sum->from);
+    const double to = fmin(stretch->to, sum->to);
+    const double volt = scale_of(a, stretch, of->voltage);
+    const double ampere = scale_of(a, stretch, of->current);
+
+    const struct {
+        int which, power;
+        double now, then, scale;
+    } claim[] = {{0, 1, now->v, then->v, volt},
+                 {0, 2, now->v_square, then->v_square, volt},
+                 {1, 1, now->i, then->i, ampere},
+                 {1, 2, now->i_square, then->i_square, ampere},
+                 {2, 1, now->energy, then->energy, volt * ampere}};
+
+    for (size_t k = 0; k < sizeof claim / sizeof claim[0]; k++) {
+        struct asked q = {a,
+                          stretch,
+                          {of->voltage, of->current},
+                          {can_read(a, stretch, of->voltage), can_read(a, stretch, of->current)},
+                          claim[k].which};
+        const struct dalcs_audit_function f = {&q, value_of};
+        struct dalcs_audit_sum own =
+            dalcs_audit_integral(a->run->audit, &f, claim[k].power, from, to);
+        own.doubt += 4.0 * DBL_EPSILON * (fabs(claim[k].now) + fabs(claim[k].then));
+        dalcs_audit_claim_part(a->run->audit, DALCS_AUDIT_LOSSES, a->device, claim[k].power,
+                               claim[k].scale, to - from, claim[k].now - claim[k].then, to, &own);
+    }
+}
+
+/* ---- What is told ---------------------------------------------------------------------------------- */
+
+/* So much is told, and is so much, of a number of this size. */
+static double part_off(double told, double is, double size) {
+    const double off = fabs(told - is) - rounding * (fabs(told) + fabs(is) + size);
+    return off > 0.0 ? off / fmax(fmax(fabs(is), size), 0x1p-1022) : 0.0;
+}
+
+/* J in a capacitor of its own. */
+static double stored(const struct dalcs_device *d, const double *own) {
+    return 0.5 * d->value * own[0] * own[0];
+}
+
+void dalcs_audit_losses_told(const struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
+                             int k, const struct dalcs_element_losses *told) {
+    if (a->run == NULL) {
+        return;
+    }
+    const struct dalcs_circuit *c = sum->circuit;
+    const struct dalcs_device *d = &c->device[k];
+    const struct dalcs_loss *l = &sum->device[k];
+    const double length = fmin(c->losses->to, a->run->radau->options.stop) - c->losses->from;
+    double worst = part_off(told->v_average * length, l->v, 0.0);
+    worst = fmax(worst, part_off(told->v_rms * told->v_rms * length, l->v_square, 0.0));
+    worst = fmax(worst, part_off(told->i_average * length, l->i, 0.0));
+    worst = fmax(worst, part_off(told->i_rms * told->i_rms * length, l->i_square, 0.0));
+    if (d->kind == DALCS_CAPACITOR) {
+        const double change = stored(d, l->end) - stored(d, l->begin);
+        const double size = stored(d, l->end) + stored(d, l->begin);
+        worst = fmax(worst, part_off(told->power * length, change, size));
+    } else if (d->kind != DALCS_INDUCTOR && !d->is_storage && !d->is_transformer) {
+        worst = fmax(worst, part_off(told->power * length, l->energy + l->jump,
+                                     sqrt(l->v_square) * sqrt(l->i_square)));
+    }
+    dalcs_audit_add_to(a->run->audit, DALCS_AUDIT_LOSSES, k, worst, sum->to);
+}

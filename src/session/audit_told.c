@@ -1,0 +1,158 @@
+/* audit_told.c - what is told of .meas, .four and .losses at the end, against what it says of what was added up.
+ *
+ * Each kind of result is a statement about sums, extremes and instants that audit_measures.c has followed: a mean times its
+ * window is the integral, a series has its sums as coefficients. Windows are those of the cards, worked out once more. */
+#include "audit_measures.h"
+
+#include "audit_reader.h"
+#include "results.h"
+
+#include <float.h>
+
+/* Sums and quotients of a few numbers that were each rounded. */
+static const double rounding = 16.0 * DBL_EPSILON;
+
+struct told {
+    struct dalcs_audit_measures *a;
+    const struct dalcs_measuring *m;
+    const struct dalcs_measured *item;
+    const struct dalcs_measurement *measurement;
+    int k;
+    double scale; /* of the formula */
+};
+
+/* So far off in the unit of the formula. */
+static void off(const struct told *q, double by) {
+    const struct dalcs_audit_number number = {DALCS_AUDIT_MEASURE, q->k, q->scale};
+    const double allowed = rounding * fmax(q->scale, fabs(q->measurement->value));
+    dalcs_audit_off(q->a->run->audit, &number, fabs(by) - allowed, q->m->stop);
+}
+
+/* A time that is told is another one: over the run, as a part of the scale. */
+static void off_in_time(const struct told *q, double told, double is) {
+    const double near = 4.0 * q->a->run->radau->resolution + rounding * fabs(is);
+    const double by = fabs(told - is) > near ? fabs(told - is) / (q->m->stop - q->m->start) : 0.0;
+    const struct dalcs_audit_number number = {DALCS_AUDIT_MEASURE, q->k, fmax(q->scale, 1.0)};
+    dalcs_audit_off(q->a->run->audit, &number, by * number.scale, q->m->stop);
+}
+
+static double detail(const struct told *q, const char *name) {
+    const struct dalcs_measurement *m = q->measurement;
+    double value = NAN;
+    for (int i = 0; i < m->n_details; i++) {
+        value = strcmp(m->detail[i].name, name) == 0 ? m->detail[i].value : value;
+    }
+    return value;
+}
+
+/* The window as the card has it; what has results of others in it they have given. */
+static void window_of(const struct told *q, double *from, double *to) {
+    const struct dalcs_measure_card *card = q->item->card;
+    const struct dalcs_instant *i = q->item->instant;
+    *from = fmax(q->m->start, card->from_formula.n > 0 ? q->item->from : card->from);
+    *to = fmin(q->m->stop, card->to_formula.n > 0 ? q->item->to : card->to);
+    if (i[0].card->kind != DALCS_INSTANT_NONE) {
+        *from = fmax(*from, i[0].time);
+        *to = fmin(*to, i[1].time);
+    }
+}
+
+static void check_sum(const struct told *q) {
+    const struct dalcs_measured *item = q->item;
+    const double value = q->measurement->value;
+    double from, to;
+    window_of(q, &from, &to);
+    off_in_time(q, detail(q, "from"), from);
+    off_in_time(q, detail(q, "to"), to);
+    switch (item->card->kind) {
+    case DALCS_MEASURE_AVERAGE:
+        off(q, value - item->integral / (to - from));
+        break;
+    case DALCS_MEASURE_RMS:
+        off(q, value < 0.0 ? value : value - sqrt(item->square / (to - from)));
+        break;
+    case DALCS_MEASURE_INTEGRAL:
+        off(q, (value - item->integral) / (to - from));
+        break;
+    default:
+        off(q, value - (item->most - item->least));
+        break;
+    }
+}
+
+static void check_extreme(const struct told *q) {
+    const struct dalcs_measured *item = q->item;
+    const enum dalcs_measure_kind kind = item->card->kind;
+    const bool is_most = kind == DALCS_MEASURE_MAX || kind == DALCS_MEASURE_MAX_AT;
+    const bool is_time = kind == DALCS_MEASURE_MIN_AT || kind == DALCS_MEASURE_MAX_AT;
+    const double value = q->measurement->value;
+    off(q, (is_time ? detail(q, "with") : value) - (is_most ? item->most : item->least));
+    off_in_time(q, is_time ? value : detail(q, "at"), is_most ? item->most_at : item->least_at);
+}
+
+static void check(const struct told *q) {
+    const struct dalcs_instant *i = q->item->instant;
+    const double value = q->measurement->value;
+    switch (q->item->card->kind) {
+    case DALCS_MEASURE_PARAM:
+        return;
+    case DALCS_MEASURE_WHEN:
+        off_in_time(q, value, i[0].time);
+        return;
+    case DALCS_MEASURE_DELAY:
+        off_in_time(q, value + i[0].time, i[1].time);
+        off_in_time(q, detail(q, "trig"), i[0].time);
+        off_in_time(q, detail(q, "targ"), i[1].time);
+        return;
+    case DALCS_MEASURE_FIND:
+    case DALCS_MEASURE_DERIVATIVE:
+        off(q, value - q->item->value);
+        return;
+    case DALCS_MEASURE_MIN:
+    case DALCS_MEASURE_MAX:
+    case DALCS_MEASURE_MIN_AT:
+    case DALCS_MEASURE_MAX_AT:
+        check_extreme(q);
+        return;
+    default:
+        check_sum(q);
+        return;
+    }
+}
+
+void dalcs_audit_measures_told(struct dalcs_audit_measures *a, const struct dalcs_measuring *m,
+                               int k, const struct dalcs_measurement *told) {
+    const struct dalcs_measured *item = &m->item[k];
+    if (a->run != NULL && told->found && m->analysis != DALCS_MEASURED_OP) {
+        const double scale = fmax(
+            item->scale, item->card->kind == DALCS_MEASURE_DERIVATIVE ? fabs(item->value) : 0.0);
+        check(&(struct told){a, m, item, told, k, scale});
+    }
+}
+
+/* A series of cosines and sines, put together again from what is told. */
+void dalcs_audit_fourier_told(struct dalcs_audit_measures *a, const struct dalcs_measuring *m,
+                              int k, const struct dalcs_fourier *told) {
+    static const double radians = 0.017453292519943295769;
+    if (a->run == NULL) {
+        return;
+    }
+    const struct dalcs_harmonics *h = &m->harmonics[k];
+    const struct dalcs_audit_number number = {DALCS_AUDIT_FOURIER, k, h->scale};
+    double above = 0.0;
+    double worst = fabs(told->magnitude[0] - h->cosine[0]);
+    for (size_t i = 1; i < told->n_harmonics; i++) {
+        const double c = told->magnitude[i] * sin(radians * told->phase[i]);
+        const double s = told->magnitude[i] * cos(radians * told->phase[i]);
+        worst = fmax(worst, hypot(c - 2.0 * h->cosine[i], s - 2.0 * h->sine[i]));
+        above = i >= 2 ? hypot(above, told->magnitude[i]) : above;
+    }
+    const double distortion = isfinite(told->thd) ? told->thd * told->magnitude[1] - above : 0.0;
+    const double window =
+        fabs((told->to - told->from) * told->frequency - h->card->n_periods) / h->card->n_periods;
+    const double by = m->analysis == DALCS_MEASURED_TRAN ? window * h->scale : 0.0;
+    dalcs_audit_off(a->run->audit, &number,
+                    fmax(fmax(worst, fabs(distortion)), by) -
+                        rounding * (double)told->n_harmonics * h->scale,
+                    told->to);
+}
