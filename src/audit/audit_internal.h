@@ -103,14 +103,15 @@ struct audit_part {
     double asked_at; /* s, of what audit->asked has of it; < 0: nothing */
     enum dalcs_side asked_side;
 
-    double cost;         /* of one instant, in instructions, about */
-    bool has_smooth;     /* a source of a smooth function */
-    bool has_formula;    /* one that jumps: in no time it may be anything between */
-    bool has_reader;     /* what acts by a current: H, F, a formula */
-    bool is_restless;    /* it had no operating point to begin with */
-    bool has_entered;    /* the state at its last event is in `before` */
-    bool is_open;        /* `before` is the end of the stretch that was just left */
-    bool was_integrated; /* an interval in it was looked at */
+    double cost;             /* of one instant, in instructions, about */
+    bool has_smooth;         /* a source of a smooth function */
+    bool has_formula;        /* one that jumps: in no time it may be anything between */
+    bool has_reader;         /* what acts by a current: H, F, a formula */
+    bool has_voltage_reader; /* E and G */
+    bool is_restless;        /* it had no operating point to begin with */
+    bool has_entered;        /* the state at its last event is in `before` */
+    bool is_open;            /* `before` is the end of the stretch that was just left */
+    bool was_integrated;     /* an interval in it was looked at */
     struct audit_watch *watch;
 };
 
@@ -221,6 +222,9 @@ static inline double audit_ratio(double value, double scale) {
 
 /* Sums of a dozen terms that were each rounded once or twice. */
 #define AUDIT_ROUNDING (16.0 * 0x1p-52)
+
+/* An event is within 1e-11 of the stop time, and so is the start of a run: so many resolutions, which are 2^-50 of it. */
+#define AUDIT_PROMISED 0x1p13
 
 static inline double audit_voltage(const struct dalcs_audit_state *s,
                                    const struct dalcs_device *d) {

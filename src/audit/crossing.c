@@ -147,12 +147,9 @@ static void gather_charge(struct dalcs_audit *audit, const struct dalcs_device *
     audit->sums.scale[cluster] += scale;
 }
 
-/* A run begins within 1e-11 of its stop time: resolutions, which are 2^-50 of it. */
-static const double promised = 0x1p13;
-
 /* What the largest conductance moves in that time. */
 static double charge_at_start(const struct dalcs_audit *audit, const struct audit_part *part) {
-    return part->floor.most * part->floor.largest_volt * promised * audit->options.resolution;
+    return part->floor.most * part->floor.largest_volt * AUDIT_PROMISED * audit->options.resolution;
 }
 
 static void check_charge(struct dalcs_audit *audit, const struct audit_part *part,

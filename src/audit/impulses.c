@@ -1,8 +1,9 @@
 /* impulses.c - nodes whose potential may be an impulse.
  *
  * Where capacitors jump, the current through what joins them is an impulse. H, F and formulas that read it put one out:
- * an impulse of voltage across what hangs there, or of current into it. It goes along resistances, and moves charge
- * through them and flux in coils, as far as nodes that capacitors and sources tie to ground. */
+ * an impulse of voltage across what hangs there, or of current into it. Where the current of a coil jumps, the voltage
+ * across it is one, and E, G and formulas read that. It goes along resistances, and moves charge through them and flux in
+ * coils, as far as nodes that capacitors and sources tie to ground. */
 #include "audit_internal.h"
 
 #include "union_find.h"
@@ -127,20 +128,43 @@ void audit_forget_impulses(struct dalcs_audit *audit, const struct audit_part *p
     }
 }
 
-void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *part,
-                         const struct dalcs_audit_state *before,
-                         const struct dalcs_audit_state *after) {
-    if (!part->has_reader || !mark_jumps(audit, part, before, after)) {
-        return;
+static bool is_jumping_coil(const struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_audit_state *after, int device) {
+    return audit->circuit->device[device].kind == DALCS_INDUCTOR &&
+           fabs(after->i[device] - audit->crossing.stored[device]) >
+               part->tolerance * audit_amperes(audit, part, device);
+}
+
+static bool has_jumping_coil(const struct dalcs_audit *audit, const struct audit_part *part,
+                             const struct dalcs_audit_state *after) {
+    bool has = false;
+    for (int k = 0; k < part->n_devices && !has; k++) {
+        has = is_jumping_coil(audit, part, after, part->device[k]);
     }
+    return has;
+}
+
+/* Marks in acts[] what puts out an impulse of a current that it reads. */
+static bool mark_actors(const struct dalcs_audit *audit, const struct audit_part *part,
+                        double *acts) {
     bool any = false;
-    double *acts = audit->sums.flux; /* of devices: free until fluxes are added up */
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         acts[device] = acts_by_current(audit, part, &audit->circuit->device[device]) ? 1.0 : 0.0;
         any = any || acts[device] != 0.0;
     }
-    if (!any) {
+    return any;
+}
+
+void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after) {
+    double *acts = audit->sums.flux; /* of devices: free until fluxes are added up */
+    const bool by_coils =
+        (part->has_reader || part->has_voltage_reader) && has_jumping_coil(audit, part, after);
+    const bool by_currents = part->has_reader && mark_jumps(audit, part, before, after) &&
+                             mark_actors(audit, part, acts);
+    if (!by_coils && !by_currents) {
         return;
     }
     audit_find_clusters(audit, part, before, after, is_tie);
@@ -150,8 +174,10 @@ void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *par
         audit->crossing.is_firm[node] = dalcs_union_find(audit->crossing.cluster, node) == 0;
     }
     for (int k = 0; k < part->n_devices; k++) {
-        if (acts[part->device[k]] != 0.0) {
-            (void)spread(audit, &audit->circuit->device[part->device[k]]);
+        const int device = part->device[k];
+        if ((by_currents && acts[device] != 0.0) ||
+            (by_coils && is_jumping_coil(audit, part, after, device))) {
+            (void)spread(audit, &audit->circuit->device[device]);
         }
     }
     spread_all(audit, part);

@@ -91,6 +91,7 @@ static void list_members(struct dalcs_audit *audit) {
             audit->net.has_charge[audit->net.node_of[d->node[e]]] |= is_charged;
         }
         part->has_reader |= d->behaviour != NULL || d->kind == DALCS_CCVS || d->kind == DALCS_CCCS;
+        part->has_voltage_reader |= d->kind == DALCS_VCVS || d->kind == DALCS_VCCS;
         part->has_smooth |= d->behaviour != NULL && d->behaviour->smooth != NULL;
         part->has_formula |= jumps(d->behaviour);
         if (d->kind == DALCS_RESISTOR) {

@@ -86,6 +86,24 @@ static double energy_of_change(const struct dalcs_audit *audit, const struct aud
     return sum;
 }
 
+/* How far sources move just before t, or behind it, in the time that an event is promised within: what follows one on a
+ * steep flank is off by as much. */
+static double moved_near(const struct dalcs_audit *audit, double t, bool is_before) {
+    const struct dalcs_circuit *c = audit->circuit;
+    const enum dalcs_side side = is_before ? DALCS_LEFT : DALCS_RIGHT;
+    const double away = AUDIT_PROMISED * audit->options.resolution;
+    double most = 0.0;
+    for (int k = 0; k < c->n_stimuli; k++) {
+        const struct dalcs_stimulus *s = &c->stimulus[k];
+        const double there = dalcs_stimulus_value(s, is_before ? t - away : t + away,
+                                                  is_before ? DALCS_RIGHT : DALCS_LEFT);
+        most = s->kind == DALCS_STIMULUS_DC
+                   ? most
+                   : fmax(most, fabs(there - dalcs_stimulus_value(s, t, side)));
+    }
+    return most;
+}
+
 void dalcs_audit_check_told_jump(struct dalcs_audit *audit, int index,
                                  const struct dalcs_audit_jump *jump, double t) {
     const struct dalcs_device *d = &audit->circuit->device[jump->device];
@@ -97,12 +115,18 @@ void dalcs_audit_check_told_jump(struct dalcs_audit *audit, int index,
     if (d->kind != DALCS_CAPACITOR && d->kind != DALCS_INDUCTOR) {
         return;
     }
+    /* a coil hardly moves in that time */
+    const bool is_volt = d->kind == DALCS_CAPACITOR;
+    const double slack_before = is_volt ? moved_near(audit, t, true) : 0.0;
+    const double slack_after = is_volt ? moved_near(audit, t, false) : 0.0;
     if (jump->knows_before) {
-        off = fabs(jump->before - stored_in(&audit->later, d, jump->device));
+        off = fabs(jump->before - stored_in(&audit->later, d, jump->device)) - slack_before;
     }
     if (jump->knows_after) {
-        off = fmax(off, fabs(jump->after - stored_in(&audit->shifted, d, jump->device)));
+        off = fmax(off,
+                   fabs(jump->after - stored_in(&audit->shifted, d, jump->device)) - slack_after);
     }
+    off = fmax(off, 0.0);
     double worst = audit_ratio(off, scale);
     const double energy = jump->is_alone ? energy_of_change(audit, part) : NAN;
     if (isfinite(energy)) {
@@ -110,7 +134,8 @@ void dalcs_audit_check_told_jump(struct dalcs_audit *audit, int index,
         const double own = 0.5 * d->value * change * change;
         /* what the tolerance leaves open of each state is in its energy twice */
         const double size = fmax(energy, fmax(own, jump->energy_lost)) + d->value * change * scale;
-        worst = fmax(worst, audit_ratio(fabs(jump->energy_lost - energy), size));
+        const double slack = d->value * change * (slack_before + slack_after);
+        worst = fmax(worst, audit_ratio(fmax(fabs(jump->energy_lost - energy) - slack, 0.0), size));
     }
     dalcs_audit_add_to(audit, DALCS_AUDIT_JUMP, jump->device, worst, t);
 }

@@ -214,7 +214,7 @@ enum dalcs_status dalcs_table_audit_file(const struct dalcs_table_audit_sums *a,
                                          const struct dalcs_cli *cli) {
     struct stat is;
     const bool is_known = format == &dalcs_csv_format || format == &dalcs_raw_format;
-    if (a->plot == NULL || a->n_rows == 0 || !is_known || a->plot->n_steps > 1 ||
+    if (a->plot == NULL || a->n_rows == 0 || !is_known || a->plot->n_parameters > 0 ||
         dalcs_is_standard_output(path) || stat(path, &is) != 0 || !S_ISREG(is.st_mode)) {
         return DALCS_OK;
     }

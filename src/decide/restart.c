@@ -110,32 +110,33 @@ static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_par
     e->t = part->segment.t;
     find_noise(part, e->jump.after, e->noise);
     DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->segment.t, part->x,
-                                      columns_before(part), part->work.y1));
+                                      columns_before(part), part->work.y2));
     memcpy(part->x, e->jump.after, (size_t)part->component->system->n_x * sizeof(double));
     part->segment.jumped = true;
     return DALCS_OK;
 }
 
-/* part->work.after becomes the limit of what micro-steps of length h and h/2 see, `whole` of the former; *is_near: what is
- * left of it is of second order: the square of what they differ by over the jump, no more than the tolerance of its scale. A
- * small change that is no jump differs by half of itself. */
-static void extrapolate_lengths(const struct dalcs_radau_part *part, const double *whole,
-                                bool *is_near) {
+/* part->work.after becomes the limit of what micro-steps of length h and h/2 see, `whole` of the former. Returns what may be
+ * left of it, over what is allowed: it is of second order, the square of what they differ by over the jump, and 1 is the
+ * tolerance of its scale. A small change that is no jump differs by half of itself. */
+static double extrapolate_lengths(const struct dalcs_radau_part *part, const double *whole) {
     double *after = part->work.after;
-    *is_near = true;
+    double left = 0.0;
     for (int x = 0; x < part->component->system->n_x; x++) {
         double most = part->inner_tolerance * fmax(dalcs_step_scale(part, x, part->scales.unit),
                                                    fmax(fabs(part->x[x]), fabs(after[x])));
         double differ = after[x] - whole[x];
         after[x] += differ;
-        *is_near = *is_near && differ * differ <= most * fmax(fabs(after[x] - part->x[x]), most);
+        double allowed = most * fmax(fabs(after[x] - part->x[x]), most);
+        left = differ != 0.0 ? fmax(left, differ * differ / allowed) : left;
     }
+    return left;
 }
 
 /* Of micro-steps of length h and h/2, with the sources as they are just behind the instant; where what acts has jumped
  * before, with sources that go on: what reads may read the current that they move through a capacitor. */
 static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                                  bool *is_seen, bool *is_near) {
+                                  bool *is_seen, double *left) {
     double *whole = r->base->after;
     double goes_on = r->base->jump.is_first ? 1.0 : 0.0;
     bool noticeable;
@@ -145,24 +146,32 @@ static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part
     h *= 0.5;
     DALCS_TRY(dalcs_micro_pair(r, part, h, goes_on * h));
     *is_seen = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
-    extrapolate_lengths(part, whole, is_near);
+    *left = extrapolate_lengths(part, whole);
     return DALCS_OK;
 }
 
-/* The same from ever shorter ones, until they tell the jump or have no certificate: the last length that has is *h. */
+/* The same from ever shorter ones, until they tell the jump; or else of the length *h that tells it best: what they see is
+ * off by what moves meanwhile, and the shorter they are by what rounding of currents makes of coils, L eps i / h. */
 static enum dalcs_status find_limit(struct dalcs_radau *r, struct dalcs_radau_part *part, double *h,
                                     bool *is_seen, bool *is_near) {
-    const double longest = *h;
-    enum dalcs_status status = see_jump(r, part, *h, is_seen, is_near);
-    while (status == DALCS_OK && !*is_near &&
-           dalcs_micro_shorter * *h >= dalcs_length_shortest(r)) {
-        *h *= dalcs_micro_shorter;
-        status = see_jump(r, part, *h, is_seen, is_near);
+    double left = INFINITY;
+    double least = INFINITY;
+    double length = *h;
+    enum dalcs_status status = see_jump(r, part, length, is_seen, &left);
+    const enum dalcs_status first = status;
+    while (status == DALCS_OK && left > 1.0 &&
+           dalcs_micro_shorter * length >= dalcs_length_shortest(r)) {
+        *h = left < least ? length : *h;
+        least = fmin(left, least);
+        length *= dalcs_micro_shorter;
+        status = see_jump(r, part, length, is_seen, &left);
     }
-    if (status > DALCS_OK && *h < longest) {
-        *h /= dalcs_micro_shorter;
-        status = see_jump(r, part, *h, is_seen, is_near);
+    if (status == DALCS_OK && left < least) {
+        *h = length;
+    } else if (status >= DALCS_OK && first == DALCS_OK && *h != length) {
+        status = see_jump(r, part, *h, is_seen, &left);
     }
+    *is_near = status == DALCS_OK && left <= 1.0;
     return status;
 }
 

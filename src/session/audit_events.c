@@ -118,7 +118,8 @@ static void check_jump(const struct dalcs_audit_run *a, size_t number, double t)
         const struct dalcs_jump_state *x = &jump->state[i];
         const int device = device_of(&a->run->s->circuit, x->element);
         const int part = part_of(a, device);
-        if (part < 0 || (t > 0.0 && !a->part[part].was_left)) {
+        const bool is_coarse = part >= 0 && a->radau->part[part].segment.by_euler;
+        if (part < 0 || is_coarse || (t > 0.0 && !a->part[part].was_left)) {
             continue;
         }
         read_both(a, part, t);

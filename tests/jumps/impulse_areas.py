@@ -5,7 +5,7 @@ usage: impulse_areas.py PROGRAM
 
 A current i(v1) of charge q, read by H, F or B, is an impulse of voltage or of current. What adds it up jumps by q over
 its own capacitance or inductance, what is two states behind it does not jump, and a diode lets one sign through. All
-have closed forms. Where nothing jumps but by an event's error there is no impulse to read: tests/field/readers.py."""
+have closed forms. So has the dual, a voltage across a coil whose current jumps. Where nothing jumps but by an event's error there is no impulse to read: tests/field/readers.py."""
 
 import itertools
 import pathlib
@@ -40,12 +40,28 @@ READS = {
     "two states behind": ("h1 d 0 v1 -1\nr3 d e 1k\nc4 e 0 1u\nr5 e f 1k\nc3 f 0 1u", "c3", 0.0, 0.0),
     "E between both": ("h1 d 0 v1 -1\nr3 d e 1k\nc4 e 0 1u\ne5 m 0 e 0 2\nr5 m f 1k\nc3 f 0 1u", "c3", 0.0, 0.0),
 }
+# the dual: an impulse of the voltage v(a), of flux q, where the current of a coil jumps
+COILS = {
+    "a coil at 3 A": ("i1 0 a pulse(0 3 1m 0 0 2m 10m)\nl1 a 0 1m", 3e-3, -3e-3),
+    "a coil at 1 mA": ("i1 0 a pulse(0 1m 1m 0 0 2m 10m)\nl1 a 0 10u", 1e-8, -1e-8),
+    "two coils": ("i1 0 a pulse(0 2 1m 0 0 2m 10m)\nl1 a b 1m\nl2 b 0 3m", 8e-3, -8e-3),
+    "a coil that a diode takes": ("i1 0 a pulse(0 3 1m 0 0 8m 20m)\nd1 a b d\nl1 b 0 1m", 3e-3, 0.0),
+}
+VOLTAGES = {
+    "E into RC": ("e1 d 0 a 0 1\nr3 d f 1k\nc3 f 0 1u", "c3", 1e3, 1e3),
+    "G into a capacitor": ("g1 0 f a 0 1m\nc3 f 0 1u\nr3 f 0 10k", "c3", 1e3, 1e3),
+    "B into RC": ("b1 d 0 v=-2*v(a)\nr3 d f 1k\nc3 f 0 1u", "c3", -2e3, -2e3),
+    "E, a diode and RC": ("e1 d 0 a 0 1\nd9 d e d\nr3 e f 1k\nc3 f 0 1u\nr4 f 0 10k", "c3", 1e3, 0.0),
+    "E into RL": ("e1 d 0 a 0 1\nr3 d f 1k\nl3 f 0 1m", "l3", 1e3, 1e3),
+    "E, two states behind": ("e1 d 0 a 0 1\nr3 d e 1k\nc4 e 0 1u\nr5 e f 1k\nc3 f 0 1u", "c3", 0.0, 0.0),
+}
 METHODS = ["auto", "lobatto", "euler"]
 
 
 def main():
     checker = Checker("impulse_areas")
-    for (acts, (cards, *charges)), (reads, (more, state, up, down)) in some_of(itertools.product(ACTS.items(), READS.items())):
+    cases = [*itertools.product(ACTS.items(), READS.items()), *itertools.product(COILS.items(), VOLTAGES.items())]
+    for (acts, (cards, *charges)), (reads, (more, state, up, down)) in some_of(cases):
         at_start = acts.endswith("start")
         tran = f".tran 0.1m 5m {'uic' if at_start else ''}"
         text = "\n".join([acts, cards, more, ".model d d", ".model s sw(ron=0 vt=0.5)", tran, ".end", ""])
