@@ -175,7 +175,8 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
     }
     memcpy(e->after, e->jump.after, (size_t)s->n_x * sizeof(double));
     find_noise(e, k, before);
-    for (int i = s->n_x; i < n_equations; i++) { /* without impulses, which are over h and over h / 2 */
+    for (int i = s->n_x; i < n_equations;
+         i++) { /* without impulses, which are over h and over h / 2 */
         c->scratch[i] = 2.0 * y[i] - c->scratch[i];
     }
     return dalcs_euler_report_jump(e, k, e->t, before, e->t > 0.0 ? before : NULL, c->scratch);
