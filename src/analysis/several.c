@@ -44,7 +44,7 @@ static bool lies_on_functions(const struct dalcs_component *c, const double *y) 
             x[j] = j < of->n && of->column[j] >= 0 ? y[of->column[j]] : of->number[j];
         }
         const double value = dalcs_smooth_value(of->kind, x);
-        const double off = dalcs_smooth_rest(of, x) - c->osnsp.newton->phi[k];
+        const double off = dalcs_smooth_rest(of, x) - c->osnsp.smooth.newton->phi[k];
         lies = fabs(off) <= same_value * (fabs(value) + fabs(value - off));
     }
     return lies;

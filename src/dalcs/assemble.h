@@ -38,10 +38,18 @@ struct dalcs_layout {
                                component's after the other's; NULL when none are held */
 };
 
-/* Assembles component `index` from its devices (ascending) into *system (zeroed on failure) and
- * x(0-) into *initial (freed by the caller). Names are borrowed from the circuit. */
-enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_devices,
-                                           const int *device, int n_nodes, const int *node,
+/* A component's devices and nodes, ascending. */
+struct dalcs_members {
+    int n_devices;
+    const int *device;
+    int n_nodes;
+    const int *node;
+};
+
+/* Assembles a component into *system (zeroed on failure) and x(0-) into *initial (freed by the caller). Names are
+ * borrowed from the circuit. */
+enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout,
+                                           const struct dalcs_members *members,
                                            struct dalcs_system *system,
                                            double **initial) DALCS_MUST_CHECK;
 

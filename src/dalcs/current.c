@@ -36,12 +36,27 @@ static enum dalcs_status coil_current(const struct dalcs_layout *l, int device,
     return DALCS_OK;
 }
 
+/* Of a diode or a switch, and of what leaks beside it. */
+static void pair_current(const struct dalcs_layout *l, const struct dalcs_system *s, int device,
+                         struct dalcs_current *i) {
+    const struct dalcs_circuit *c = l->circuit;
+    const struct dalcs_device *d = &c->device[device];
+    const bool is_diode = d->kind == DALCS_DIODE;
+    const int first_pair = s->n_x + s->n_z + l->pair[device];
+    const double roff = is_diode ? c->diode_model[d->model].roff : c->switch_model[d->model].roff;
+    put(i, first_pair, 1.0);
+    if (is_diode && isfinite(c->diode_model[d->model].vrev)) {
+        put(i, first_pair + 1, -1.0);
+    }
+    if (isfinite(roff)) {
+        put_voltage(l, i, d->node[0], d->node[1], 1.0 / roff);
+    }
+}
+
 enum dalcs_status dalcs_layout_current(const struct dalcs_layout *l, const struct dalcs_system *s,
                                        int device, struct dalcs_arena *arena,
                                        struct dalcs_current *i) {
-    const struct dalcs_circuit *c = l->circuit;
-    const struct dalcs_device *d = &c->device[device];
-    int first_pair = s->n_x + s->n_z + l->pair[device];
+    const struct dalcs_device *d = &l->circuit->device[device];
     *i = (struct dalcs_current){0};
     if (d->kind == DALCS_INDUCTOR) {
         return coil_current(l, device, arena, i);
@@ -72,25 +87,10 @@ enum dalcs_status dalcs_layout_current(const struct dalcs_layout *l, const struc
         i->term[0] = (struct dalcs_probe_term){l->input[device], 1.0};
         i->n_inputs = 1;
         break;
-    case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &c->diode_model[d->model];
-        put(i, first_pair, 1.0);
-        if (isfinite(m->vrev)) {
-            put(i, first_pair + 1, -1.0);
-        }
-        if (isfinite(m->roff)) {
-            put_voltage(l, i, d->node[0], d->node[1], 1.0 / m->roff);
-        }
+    case DALCS_DIODE:
+    case DALCS_SWITCH:
+        pair_current(l, s, device, i);
         break;
-    }
-    case DALCS_SWITCH: {
-        const struct dalcs_switch_model *m = &c->switch_model[d->model];
-        put(i, first_pair, 1.0);
-        if (isfinite(m->roff)) {
-            put_voltage(l, i, d->node[0], d->node[1], 1.0 / m->roff);
-        }
-        break;
-    }
     default: /* C, V, E, H: the current is an unknown */
         put(i, l->current_column[device], 1.0);
         break;

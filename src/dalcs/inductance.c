@@ -10,58 +10,31 @@
  * own numbers. */
 static const double perfect_coupling = 1e-13;
 
-enum dalcs_status dalcs_inductance_split(struct dalcs_inductance *group, int n, const double *L,
-                                         bool *valid) {
-    *group = (struct dalcs_inductance){.n = n};
-    *valid = true;
-    size_t order = (size_t)n;
-    enum dalcs_status status = DALCS_E_NOMEM;
-    double *U = dalcs_alloc(order * order, sizeof(*U));
-    lapack_int *pivot = dalcs_alloc(order, sizeof(*pivot));
-    group->coil = dalcs_alloc(order, sizeof(*group->coil));
-    if (U == NULL || pivot == NULL || group->coil == NULL) {
-        goto done;
-    }
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            U[i * n + j] = i == j ? 1.0 : L[i * n + j] / sqrt(L[i * n + i] * L[j * n + j]);
-        }
-    }
-    lapack_int rank = 0;
-    lapack_int info =
-        LAPACKE_dpstrf(LAPACK_ROW_MAJOR, 'U', n, U, n, pivot, &rank, perfect_coupling);
-    if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR) {
-        goto done;
-    }
-    if (info < 0) { /* no numbers: inductances whose product leaves the range of doubles */
-        *valid = false;
-        status = DALCS_OK;
-        goto done;
-    }
-    group->rank = rank;
-    for (int i = 0; i < n; i++) {
-        group->coil[i] = pivot[i] - 1;
-    }
-    /* What dpstrf left out must vanish; a negative remainder is a coupling no coils can have. */
-    for (int a = rank; a < n; a++) {
-        for (int b = rank; b < n; b++) {
-            int i = group->coil[a];
-            int j = group->coil[b];
-            double rest = i == j ? 1.0 : L[i * n + j] / sqrt(L[i * n + i] * L[j * n + j]);
-            for (int k = 0; k < rank; k++) {
+static double coupling(const double *L, int n, int i, int j) {
+    return i == j ? 1.0 : L[i * n + j] / sqrt(L[i * n + i] * L[j * n + j]);
+}
+
+/* What dpstrf left out must vanish; a negative remainder is a coupling no coils can have. */
+static bool vanishes(const struct dalcs_inductance *group, const double *L, const double *U) {
+    const int n = group->n;
+    bool vanishes = true;
+    for (int a = group->rank; a < n; a++) {
+        for (int b = group->rank; b < n; b++) {
+            double rest = coupling(L, n, group->coil[a], group->coil[b]);
+            for (int k = 0; k < group->rank; k++) {
                 rest -= U[k * n + a] * U[k * n + b];
             }
-            if (fabs(rest) > 1e-10) {
-                *valid = false;
-            }
+            vanishes = vanishes && !(fabs(rest) > 1e-10);
         }
     }
-    group->ratio = dalcs_alloc(order * order, sizeof(*group->ratio));
-    if (group->ratio == NULL) {
-        goto done;
-    }
-    /* N = U_II^-1 U_IJ for unit coils, by back substitution, then scaled by sqrt(L_J / L_I). */
-    int n_dependent = n - rank;
+    return vanishes;
+}
+
+/* N = U_II^-1 U_IJ for unit coils, by back substitution, then scaled by sqrt(L_J / L_I). */
+static void find_ratio(struct dalcs_inductance *group, const double *L, const double *U) {
+    const int n = group->n;
+    const int rank = group->rank;
+    const int n_dependent = n - rank;
     for (int b = 0; b < n_dependent; b++) {
         for (int i = rank - 1; i >= 0; i--) {
             double sum = U[i * n + rank + b];
@@ -78,8 +51,50 @@ enum dalcs_status dalcs_inductance_split(struct dalcs_inductance *group, int n, 
             group->ratio[i * n_dependent + b] *= sqrt(L[cj * n + cj] / L[ci * n + ci]);
         }
     }
-    status = DALCS_OK;
-done:
+}
+
+/* U[n][n] and pivot[n] are work. */
+static enum dalcs_status split(struct dalcs_inductance *group, const double *L, double *U,
+                               lapack_int *pivot, bool *valid) {
+    const int n = group->n;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            U[i * n + j] = coupling(L, n, i, j);
+        }
+    }
+    lapack_int rank = 0;
+    lapack_int info =
+        LAPACKE_dpstrf(LAPACK_ROW_MAJOR, 'U', n, U, n, pivot, &rank, perfect_coupling);
+    if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR) {
+        return DALCS_E_NOMEM;
+    }
+    if (info < 0) { /* no numbers: inductances whose product leaves the range of doubles */
+        *valid = false;
+        return DALCS_OK;
+    }
+    group->rank = rank;
+    for (int i = 0; i < n; i++) {
+        group->coil[i] = pivot[i] - 1;
+    }
+    *valid = vanishes(group, L, U);
+    group->ratio = dalcs_alloc((size_t)n * (size_t)n, sizeof(*group->ratio));
+    if (group->ratio == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    find_ratio(group, L, U);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_inductance_split(struct dalcs_inductance *group, int n, const double *L,
+                                         bool *valid) {
+    *group = (struct dalcs_inductance){.n = n};
+    *valid = true;
+    size_t order = (size_t)n;
+    double *U = dalcs_alloc(order * order, sizeof(*U));
+    lapack_int *pivot = dalcs_alloc(order, sizeof(*pivot));
+    group->coil = dalcs_alloc(order, sizeof(*group->coil));
+    const bool has_room = U != NULL && pivot != NULL && group->coil != NULL;
+    enum dalcs_status status = has_room ? split(group, L, U, pivot, valid) : DALCS_E_NOMEM;
     free(U);
     free(pivot);
     if (status != DALCS_OK) {

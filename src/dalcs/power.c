@@ -85,14 +85,49 @@ static void put_current_source(const struct dalcs_layout *l, struct terms *t, in
     }
 }
 
+/* What V or I that something controls delivers. */
+static void put_controlled_source(const struct dalcs_layout *l, struct terms *t, int device) {
+    const struct dalcs_device *d = &l->circuit->device[device];
+    const bool is_voltage = d->kind == DALCS_VCVS || d->kind == DALCS_CCVS;
+    struct dalcs_power_term *term =
+        put(t, DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT, is_voltage ? -1.0 : -d->value);
+    set_voltage(l, term->first, d->node[0], d->node[1]);
+    if (is_voltage) {
+        term->second[0] = l->current_column[device];
+    } else if (d->kind == DALCS_VCCS) {
+        set_voltage(l, term->second, d->node[2], d->node[3]);
+    } else {
+        term->second[0] = l->current_column[d->control];
+    }
+}
+
+static void put_diode(const struct dalcs_layout *l, struct terms *t, const struct dalcs_system *s,
+                      int device) {
+    const struct dalcs_device *d = &l->circuit->device[device];
+    const struct dalcs_diode_model *m = &l->circuit->diode_model[d->model];
+    put_pair(t, s, l->pair[device], DALCS_POWER_DIODES, m->vfwd, m->ron);
+    if (isfinite(m->vrev)) {
+        put_pair(t, s, l->pair[device] + 1, DALCS_POWER_DIODES, m->vrev, m->rrev);
+    }
+    put_resistance(l, t, d, m->roff);
+}
+
+static void put_switch(const struct dalcs_layout *l, struct terms *t, const struct dalcs_system *s,
+                       int device) {
+    const struct dalcs_device *d = &l->circuit->device[device];
+    const struct dalcs_switch_model *m = &l->circuit->switch_model[d->model];
+    put_pair(t, s, l->pair[device], DALCS_POWER_RESISTORS, 0.0,
+             dalcs_stamp_series_part(m->ron, m->roff));
+    put_resistance(l, t, d, m->roff);
+}
+
 static void put_device(const struct dalcs_layout *l, const struct dalcs_system *s, int device,
                        struct terms *t) {
-    const struct dalcs_circuit *c = l->circuit;
-    const struct dalcs_device *d = &c->device[device];
-    struct dalcs_power_term *term;
+    const struct dalcs_device *d = &l->circuit->device[device];
     if (d->behaviour != NULL) {
-        term = put(t, d->is_storage ? DALCS_POWER_STORED : DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT,
-                   d->is_storage ? 1.0 : -1.0);
+        struct dalcs_power_term *term =
+            put(t, d->is_storage ? DALCS_POWER_STORED : DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT,
+                d->is_storage ? 1.0 : -1.0);
         set_voltage(l, term->first, d->node[0], d->node[1]);
         term->second[0] = l->current_column[device];
         return;
@@ -117,36 +152,16 @@ static void put_device(const struct dalcs_layout *l, const struct dalcs_system *
         return;
     case DALCS_VCVS:
     case DALCS_CCVS:
-        term = put(t, DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT, -1.0);
-        set_voltage(l, term->first, d->node[0], d->node[1]);
-        term->second[0] = l->current_column[device];
-        return;
     case DALCS_VCCS:
-        term = put(t, DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT, -d->value);
-        set_voltage(l, term->first, d->node[0], d->node[1]);
-        set_voltage(l, term->second, d->node[2], d->node[3]);
-        return;
     case DALCS_CCCS:
-        term = put(t, DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT, -d->value);
-        set_voltage(l, term->first, d->node[0], d->node[1]);
-        term->second[0] = l->current_column[d->control];
+        put_controlled_source(l, t, device);
         return;
-    case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &c->diode_model[d->model];
-        put_pair(t, s, l->pair[device], DALCS_POWER_DIODES, m->vfwd, m->ron);
-        if (isfinite(m->vrev)) {
-            put_pair(t, s, l->pair[device] + 1, DALCS_POWER_DIODES, m->vrev, m->rrev);
-        }
-        put_resistance(l, t, d, m->roff);
+    case DALCS_DIODE:
+        put_diode(l, t, s, device);
         return;
-    }
-    case DALCS_SWITCH: {
-        const struct dalcs_switch_model *m = &c->switch_model[d->model];
-        put_pair(t, s, l->pair[device], DALCS_POWER_RESISTORS, 0.0,
-                 dalcs_stamp_series_part(m->ron, m->roff));
-        put_resistance(l, t, d, m->roff);
+    case DALCS_SWITCH:
+        put_switch(l, t, s, device);
         return;
-    }
     }
 }
 

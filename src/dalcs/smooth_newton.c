@@ -1,7 +1,8 @@
-/* smooth_newton.c - tangents of smooth sources, and steps of Newton's method on them. */
+/* smooth_newton.c - steps of Newton's method on smooth sources. */
 #include "smooth_newton.h"
 
 #include "extremes.h"
+#include "smooth_tangents.h"
 
 #include <float.h>
 #include <lapacke.h>
@@ -33,135 +34,6 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
 
 static const struct dalcs_smooth_input *input_of(const struct dalcs_smooth_newton *newton, int q) {
     return &newton->system->smooth[q % newton->system->n_smooth];
-}
-
-static double line_of(const struct dalcs_smooth_input *of, int j) {
-    return of->entry[j] != NULL ? -*of->entry[j] : 0.0;
-}
-
-double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x) {
-    return dalcs_smooth_value(of->kind, x) - line_of(of, 0) * x[0] - line_of(of, 1) * x[1];
-}
-
-/* A root at 0 is vertical, and where sources alone decide its argument nobody asks for its slope: 0 times the square
- * root of the largest number is 0. */
-static void finite_gradient(const struct dalcs_smooth_input *of, const double *x,
-                            double *gradient) {
-    static const double steepest = 0x1p+511;
-    dalcs_smooth_gradient(of->kind, x, gradient);
-    for (int j = 0; j < 2; j++) {
-        gradient[j] = isinf(gradient[j]) ? copysign(steepest, gradient[j]) : gradient[j];
-    }
-}
-
-static void gradient_of_rest(const struct dalcs_smooth_input *of, const double *x,
-                             double *gradient) {
-    finite_gradient(of, x, gradient);
-    gradient[0] -= line_of(of, 0);
-    gradient[1] -= line_of(of, 1);
-}
-
-/* The lines of the tangent at x; an argument that both read has one line. */
-static void find_lines(const struct dalcs_smooth_input *of, const double *gradient, double *line) {
-    const bool is_one = of->n > 1 && of->column[0] >= 0 && of->column[0] == of->column[1];
-    line[0] = gradient[0] + (is_one ? gradient[1] : 0.0);
-    line[1] = is_one ? 0.0 : gradient[1];
-}
-
-/* Those at x, as far as they are finite and not 0, else the present ones. Returns by how much the steepest is steeper; of
- * a product also by how much it is flatter: i R, of a resistance that falls, is next to the line of the R before a small
- * difference of large numbers. A diode that blocks is flat as well, but there nothing else is as small. */
-static double find_tangent(const struct dalcs_smooth_input *of, const double *x, double *line) {
-    double gradient[2];
-    double steeper = 0.0;
-    dalcs_smooth_gradient(of->kind, x, gradient);
-    find_lines(of, gradient, line);
-    for (int j = 0; j < 2; j++) {
-        const double present = line_of(of, j);
-        const bool is_one = of->entry[j] != NULL && isfinite(line[j]) && line[j] != 0.0;
-        const bool counts_flatter = is_one && of->kind == DALCS_SMOOTH_PRODUCT;
-        steeper = is_one ? fmax(steeper, fabs(line[j] / present)) : steeper;
-        steeper = counts_flatter ? fmax(steeper, fabs(present / line[j])) : steeper;
-        line[j] = is_one ? line[j] : present;
-    }
-    return steeper;
-}
-
-static void put_lines(const struct dalcs_smooth_input *of, const double *line) {
-    for (int j = 0; j < 2; j++) {
-        if (of->entry[j] != NULL) {
-            *of->entry[j] = -line[j];
-        }
-    }
-}
-
-/* Where it has a value at x. */
-static void take_rest(const struct dalcs_smooth_input *of, const double *x, double *phi) {
-    const double rest = dalcs_smooth_rest(of, x);
-    *phi = isfinite(rest) ? rest : *phi;
-}
-
-bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
-                            double *phi) {
-    double line[2];
-    bool is_due = false;
-    for (int k = 0; k < system->n_smooth && !is_due; k++) {
-        is_due = find_tangent(&system->smooth[k], x[k], line) > factor;
-    }
-    for (int k = 0; k < system->n_smooth && is_due; k++) {
-        const struct dalcs_smooth_input *of = &system->smooth[k];
-        (void)find_tangent(of, x[k], line);
-        put_lines(of, line);
-        take_rest(of, x[k], &phi[k]);
-    }
-    return is_due;
-}
-
-static void put_nominal_line(const struct dalcs_smooth_input *of) {
-    const bool is_number[2] = {of->column[0] < 0, of->n < 2 || of->column[1] < 0};
-    double gradient[2];
-    double line[2];
-    dalcs_smooth_nominal_gradient(of->kind, of->number, is_number, gradient);
-    find_lines(of, gradient, line);
-    put_lines(of, line);
-}
-
-void dalcs_smooth_nominal_tangents(const struct dalcs_system *system) {
-    for (int k = 0; k < system->n_smooth; k++) {
-        put_nominal_line(&system->smooth[k]);
-    }
-}
-
-bool dalcs_smooth_starts_on_lines(const struct dalcs_system *system) {
-    bool starts = false;
-    for (int k = 0; k < system->n_smooth && !starts; k++) {
-        starts = system->smooth[k].starts_on_line;
-    }
-    return starts;
-}
-
-void dalcs_smooth_starting_tangents(const struct dalcs_system *system) {
-    for (int k = 0; k < system->n_smooth; k++) {
-        if (system->smooth[k].starts_on_line) {
-            put_nominal_line(&system->smooth[k]);
-        }
-    }
-}
-
-void dalcs_smooth_scale_tangents(const struct dalcs_system *system, double factor,
-                                 const double (*x)[2], double *phi) {
-    for (int k = 0; k < system->n_smooth; k++) {
-        const struct dalcs_smooth_input *of = &system->smooth[k];
-        const double line[2] = {factor * line_of(of, 0), factor * line_of(of, 1)};
-        put_lines(of, line);
-        take_rest(of, x[k], &phi[k]);
-    }
-}
-
-void dalcs_smooth_drop_tangents(const struct dalcs_system *system) {
-    for (int k = 0; k < system->n_smooth; k++) {
-        put_lines(&system->smooth[k], (const double[]){0.0, 0.0});
-    }
 }
 
 void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double (*x)[2]) {
@@ -224,10 +96,10 @@ static const double rounded = 2.0 * DBL_EPSILON, solved = 2e-13;
 double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x) {
     double gradient[2];
     double rounding = 0.0;
-    finite_gradient(of, x, gradient);
+    dalcs_smooth_finite_gradient(of, x, gradient);
     for (int j = 0; j < of->n; j++) {
         const bool is_read = of->column[j] >= 0;
-        const double slope = fabs(gradient[j]) + fabs(line_of(of, j));
+        const double slope = fabs(gradient[j]) + fabs(dalcs_smooth_line(of, j));
         rounding += is_read ? rounded * slope * fabs(x[j]) : 0.0;
     }
     return rounding;
@@ -246,12 +118,12 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
         const struct dalcs_smooth_input *of = input_of(newton, q);
         double gradient[2];
         double f = dalcs_smooth_value(of->kind, newton->x[q]);
-        finite_gradient(of, newton->x[q], gradient);
+        dalcs_smooth_finite_gradient(of, newton->x[q], gradient);
         double least = tolerance * fabs(f);
         double most = least;
         for (int j = 0; j < of->n; j++) {
             bool is_read = of->column[j] >= 0;
-            double slope = fabs(gradient[j]) + fabs(line_of(of, j));
+            double slope = fabs(gradient[j]) + fabs(dalcs_smooth_line(of, j));
             least += is_read ? rounded * slope * fabs(newton->x[q][j]) : 0.0;
             most += is_read ? solved * slope * newton->terms[q][j] : 0.0;
         }
@@ -297,7 +169,7 @@ bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *rep
         newton->halved++;
         for (int q = 0; q < newton->n; q++) {
             if (is_first) {
-                take_rest(input_of(newton, q), newton->x[q], &newton->phi[q]);
+                dalcs_smooth_take_rest(input_of(newton, q), newton->x[q], &newton->phi[q]);
             } else {
                 newton->phi[q] = 0.5 * (newton->phi[q] + newton->before[q]);
             }
@@ -330,7 +202,7 @@ static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
         a[j] = dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
         newton->limits = newton->limits || a[j] != newton->x[q][j];
     }
-    gradient_of_rest(of, a, gradient);
+    dalcs_smooth_gradient_of_rest(of, a, gradient);
     newton->step[q] = dalcs_smooth_rest(of, a) - newton->phi[q];
     for (int j = 0; j < of->n; j++) {
         newton->step[q] += of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
@@ -365,7 +237,7 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
 bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton) {
     for (int q = 0; q < newton->n; q++) {
         double gradient[2];
-        gradient_of_rest(input_of(newton, q), newton->x[q], gradient);
+        dalcs_smooth_gradient_of_rest(input_of(newton, q), newton->x[q], gradient);
         put_row(newton, q, gradient);
     }
     return factor(newton);
@@ -376,7 +248,7 @@ void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const do
     for (int q = 0; q < newton->n; q++) {
         const struct dalcs_smooth_input *of = input_of(newton, q);
         double gradient[2];
-        gradient_of_rest(of, newton->x[q], gradient);
+        dalcs_smooth_gradient_of_rest(of, newton->x[q], gradient);
         change[q] = 0.0;
         for (int j = 0; j < of->n; j++) {
             change[q] += of->column[j] >= 0 ? gradient[j] * dx[q][j] : 0.0;

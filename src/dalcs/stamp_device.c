@@ -59,12 +59,10 @@ static enum dalcs_status stamp_coil(struct stamps *b, int device) {
     return dalcs_stamp_branch_current(b, d, x, 1.0);
 }
 
-/* All coils of a group, when its first one is met. */
-static enum dalcs_status stamp_group(struct stamps *b, const struct coil_group *g) {
+static enum dalcs_status stamp_independent_coils(struct stamps *b, const struct coil_group *g) {
     struct dalcs_layout *l = b->layout;
     const struct dalcs_circuit *c = l->circuit;
     int rank = g->split.rank;
-    int n_dependent = g->n - rank;
     for (int i = 0; i < rank; i++) {
         int device = g->device[g->split.coil[i]];
         int x = dalcs_stamp_new_state(b, c->device[device].name, true);
@@ -84,6 +82,15 @@ static enum dalcs_status stamp_group(struct stamps *b, const struct coil_group *
             DALCS_TRY(dalcs_stamp_add(&b->storage, row, column, L));
         }
     }
+    return DALCS_OK;
+}
+
+/* Perfect coupling makes their voltages multiples of those of the independent ones. */
+static enum dalcs_status stamp_dependent_coils(struct stamps *b, const struct coil_group *g) {
+    struct dalcs_layout *l = b->layout;
+    const struct dalcs_circuit *c = l->circuit;
+    int rank = g->split.rank;
+    int n_dependent = g->n - rank;
     for (int k = 0; k < n_dependent; k++) {
         int device = g->device[g->split.coil[rank + k]];
         const struct dalcs_device *d = &c->device[device];
@@ -99,14 +106,22 @@ static enum dalcs_status stamp_group(struct stamps *b, const struct coil_group *
             b->initial[l->state_column[independent]] += ratio * d->initial;
         }
     }
+    return DALCS_OK;
+}
+
+/* All coils of a group, when its first one is met. */
+static enum dalcs_status stamp_group(struct stamps *b, const struct coil_group *g) {
+    struct dalcs_layout *l = b->layout;
+    DALCS_TRY(stamp_independent_coils(b, g));
+    DALCS_TRY(stamp_dependent_coils(b, g));
     int *column = dalcs_alloc((size_t)g->n + 1, sizeof(*column));
     double *coefficient = dalcs_alloc((size_t)g->n + 1, sizeof(*coefficient));
     enum dalcs_status status = column == NULL || coefficient == NULL ? DALCS_E_NOMEM : DALCS_OK;
     for (int i = 0; i < g->n && status == DALCS_OK; i++) {
         int n_terms = dalcs_layout_coil_current(l, g->device[i], column, coefficient);
         for (int k = 0; k < n_terms && status == DALCS_OK; k++) {
-            status =
-                dalcs_stamp_branch_current(b, &c->device[g->device[i]], column[k], coefficient[k]);
+            status = dalcs_stamp_branch_current(b, &l->circuit->device[g->device[i]], column[k],
+                                                coefficient[k]);
         }
     }
     free(column);
@@ -182,6 +197,20 @@ static enum dalcs_status stamp_resistance(struct stamps *b, int device) {
                            -d->value);
 }
 
+static enum dalcs_status stamp_resistor(struct stamps *b, int device) {
+    const struct dalcs_device *d = &b->layout->circuit->device[device];
+    if (d->value == 0.0) {
+        return stamp_voltage_branch(b, device);
+    }
+    if (d->value < 0.0) {
+        b->s->monotone = false;
+        DALCS_TRY(dalcs_stamp_reads_voltage(b, device, d->node[0], d->node[1]));
+    }
+    return dalcs_layout_is_branch(b->layout, device)
+               ? stamp_resistance(b, device)
+               : dalcs_stamp_conductance(b, d, 1.0 / d->value);
+}
+
 /* Pairs: w = v(cathode) - v(anode) + Vfwd + Ron lambda >= 0. */
 static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, double threshold,
                                     double ron, struct dalcs_pair pair) {
@@ -250,15 +279,7 @@ enum dalcs_status dalcs_stamp_device(struct stamps *b, int device, int *next_for
     }
     switch (d->kind) {
     case DALCS_RESISTOR:
-        if (d->value == 0.0) {
-            return stamp_voltage_branch(b, device);
-        }
-        if (d->value < 0.0) {
-            b->s->monotone = false;
-            DALCS_TRY(dalcs_stamp_reads_voltage(b, device, d->node[0], d->node[1]));
-        }
-        return dalcs_layout_is_branch(l, device) ? stamp_resistance(b, device)
-                                                 : dalcs_stamp_conductance(b, d, 1.0 / d->value);
+        return stamp_resistor(b, device);
     case DALCS_INDUCTOR:
         if (l->group_of[device] < 0) {
             return stamp_coil(b, device);

@@ -28,7 +28,7 @@ static bool are_right_before(const struct dalcs_radau_part *part, int block, con
     const struct dalcs_osnsp *p = &part->component->osnsp;
     bool right = true;
     for (int d = 0; d < p->system->n_pairs && right; d++) {
-        if (!p->is_diode[d] || block_of(part, d) >= block) {
+        if (!p->lists.is_diode[d] || block_of(part, d) >= block) {
             continue;
         }
         double work[DALCS_MAX_NODES];
@@ -59,7 +59,7 @@ int dalcs_blocks_first_wrong(const struct dalcs_radau_part *part, const double *
 static int before_moved(const struct dalcs_radau_part *part, int block, const uint64_t *mode) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     for (int d = 0; d < p->system->n_pairs; d++) {
-        bool moved = !p->is_diode[d] && dalcs_mode_has(mode, d) != dalcs_osnsp_is_on(p, d);
+        bool moved = !p->lists.is_diode[d] && dalcs_mode_has(mode, d) != dalcs_osnsp_is_on(p, d);
         block = moved && block_of(part, d) < block ? block_of(part, d) : block;
     }
     return block;
@@ -69,7 +69,7 @@ void dalcs_blocks_put_back(struct dalcs_radau_part *part, int block, const uint6
     struct dalcs_osnsp *p = &part->component->osnsp;
     const int first = block > 0 ? before_moved(part, block, mode) : 0;
     for (int d = 0; first > 0 && d < p->system->n_pairs; d++) {
-        if (p->is_diode[d] && block_of(part, d) < first) {
+        if (p->lists.is_diode[d] && block_of(part, d) < first) {
             dalcs_osnsp_command(p, d, dalcs_mode_has(mode, d));
         }
     }

@@ -89,8 +89,8 @@ void dalcs_micro_largest(const struct dalcs_radau_part *part, double *largest) {
 /* V, A: and of what sources and thresholds drive, in the inputs of the last micro-step. */
 void dalcs_micro_raise_to_drives(const struct dalcs_radau_part *part, double *largest) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    for (int k = 0; k < p->n_drives; k++) {
-        const struct dalcs_drive *d = &p->drive[k];
+    for (int k = 0; k < p->lists.n_drives; k++) {
+        const struct dalcs_drive *d = &p->lists.drive[k];
         double *of = &largest[d->is_current];
         *of = fmax(*of, d->coefficient * fabs(part->work.u[d->input]));
     }

@@ -20,26 +20,35 @@ static void prepare_positions(struct dalcs_radau_part *part) {
     }
 }
 
-/* `times` of one step of length h from state[n_x] to part->segment.t + tau into y, in the energies *taken. */
-static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                                   double tau, double times, const double *state, double *y,
-                                   double *taken, bool *slides) {
+/* A step of length h from state[n_x] to part->segment.t + tau into y, which counts so many times. */
+struct counted_step {
+    double h, tau, times;
+    const double *state;
+    double *y;
+};
+
+/* In the energies *taken. */
+static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                   const struct counted_step *step, double *taken, bool *slides) {
     struct dalcs_component *c = part->component;
     const struct dalcs_observer *observer = r->base->observer;
     *slides = false;
-    enum dalcs_status status = dalcs_radau_implicit_step(r, part, h, tau, state, y);
+    enum dalcs_status status =
+        dalcs_radau_implicit_step(r, part, step->h, step->tau, step->state, step->y);
     if (status != DALCS_OK || !c->positions.alternates) {
         return status < DALCS_OK ? status : DALCS_OK; /* without an answer it does not slide */
     }
-    memcpy(c->scratch, y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
-    double weight = dalcs_sliding_mean(&c->positions, y);
+    memcpy(c->scratch, step->y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+    double weight = dalcs_sliding_mean(&c->positions, step->y);
     *slides = weight > 0.0;
     if (*slides && observer != NULL) {
         const struct dalcs_observed_sides sides = {.y = {c->scratch, c->positions.other_y},
-                                                   .weight = {1.0 - weight, weight}};
+                                                   .weight = {1.0 - weight, weight},
+                                                   .time = step->times * step->h};
         observer->scale(observer->user, part->index, &c->osnsp.certificate);
-        *taken += times * observer->sliding_step(observer->user, part->index, state, y, &sides,
-                                                 part->work.u + c->system->n_x, times * h);
+        *taken +=
+            step->times * observer->sliding_step(observer->user, part->index, step->state, step->y,
+                                                 &sides, part->work.u + c->system->n_x);
     }
     return DALCS_OK;
 }
@@ -55,13 +64,18 @@ static enum dalcs_status three_steps(struct dalcs_radau *r, struct dalcs_radau_p
                                      double *taken, bool *slides) {
     struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
-    DALCS_TRY(mean_step(r, part, h, h, -1.0, part->x, c->probe_y, taken, slides));
+    DALCS_TRY(
+        mean_step(r, part, &(struct counted_step){h, h, -1.0, part->x, c->probe_y}, taken, slides));
     memcpy(part->work.w1, c->osnsp.w, (size_t)s->n_pairs * sizeof(double));
     if (*slides) {
-        DALCS_TRY(mean_step(r, part, 0.5 * h, 0.5 * h, 2.0, part->x, part->work.y2, taken, slides));
+        DALCS_TRY(mean_step(r, part,
+                            &(struct counted_step){0.5 * h, 0.5 * h, 2.0, part->x, part->work.y2},
+                            taken, slides));
     }
     if (*slides) {
-        DALCS_TRY(mean_step(r, part, 0.5 * h, h, 2.0, part->work.y2, part->work.y1, taken, slides));
+        DALCS_TRY(mean_step(r, part,
+                            &(struct counted_step){0.5 * h, h, 2.0, part->work.y2, part->work.y1},
+                            taken, slides));
     }
     if (*slides) {
         extrapolate(part->work.y1, c->probe_y, dalcs_system_n_columns(s));

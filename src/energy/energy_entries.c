@@ -79,15 +79,14 @@ void dalcs_energy_step(void *user, int k, const double *x, const double *y, cons
 }
 
 static double sliding_step(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs,
-                           double times_h) {
+                           const struct dalcs_observed_sides *sides, const double *inputs) {
     struct dalcs_energy *energy = user;
     struct dalcs_energy_part *part = &energy->part[k];
     double taken =
         dalcs_euler_stored_energy(part->system, y) - dalcs_euler_stored_energy(part->system, x);
     for (int side = 0; side < 2; side++) {
         const double *at = sides->y[side];
-        enter_powers(energy, part, at, inputs, sides->weight[side] * times_h);
+        enter_powers(energy, part, at, inputs, sides->weight[side] * sides->time);
         taken += sides->weight[side] * (dalcs_euler_jump_energy(part->system, x, at) +
                                         dalcs_euler_jump_energy(part->system, y, at));
     }

@@ -2,8 +2,6 @@
 #include "component.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
                                         const struct dalcs_circuit *circuit,

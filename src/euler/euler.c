@@ -99,7 +99,7 @@ enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) {
                                                    .at_operating_point = e->at_operating_point,
                                                    .mode = p->mode,
                                                    .w = p->w,
-                                                   .tied = p->tied,
+                                                   .tied = p->signs.tied,
                                                    .scale = {scale[0], scale[1]}},
                       &vanishes);
 }

@@ -47,8 +47,8 @@ enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const doub
     memcpy(e->jump.after, e->after, (size_t)s->n_x * sizeof(double));
     memcpy(e->jump.charge, e->charge, (size_t)s->n_pairs * sizeof(double));
     memcpy(e->jump.flux, e->flux, (size_t)s->n_pairs * sizeof(double));
-    DALCS_TRY(dalcs_jumps_solve(&e->jumps, e->circuit, e->network, &p->options, k, p->mode, u,
-                                u + s->n_x, &e->jump));
+    DALCS_TRY(dalcs_jumps_build(&e->jumps, e->circuit, e->network, &p->options));
+    DALCS_TRY(dalcs_jumps_solve(&e->jumps, k, p->mode, u, u + s->n_x, &e->jump));
     if (!e->jump.is_known) {
         e->jump.source_work = cost_of(s, u, &e->jump);
     }

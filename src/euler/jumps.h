@@ -12,6 +12,7 @@
 
 struct dalcs_jumps {
     bool is_built;
+    const struct dalcs_network *of;                         /* the circuit's */
     struct dalcs_impulse_network impulse[DALCS_N_IMPULSES]; /* of a circuit */
     const struct dalcs_network *network[DALCS_N_IMPULSES];  /* theirs, or those of a system file */
     int n_parts;
@@ -36,19 +37,17 @@ struct dalcs_jump_answer {
     bool moves; /* some state jumps by more than rounding */
 };
 
-/* Builds what is_covered tells of; dalcs_jumps_solve does so when needed. */
+/* All that does not change from jump to jump, the first time. Tells of is_covered, too. */
 enum dalcs_status dalcs_jumps_build(struct dalcs_jumps *jumps, const struct dalcs_circuit *circuit,
                                     const struct dalcs_network *network,
                                     const struct dalcs_osnsp_options *options) DALCS_MUST_CHECK;
 
-/* The jump of system k of `network` from x[n_x] with inputs[n_inputs] just after it; mode[(n_pairs +
- * 63) / 64] commands the switches and is a first guess for the diodes. Where sources that read act on states the rest
- * of the component, which is passive, jumps as if they were not there: answer->is_first, and what the answer has of driven
- * states and of other pairs stays as it was. */
-enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *jumps, const struct dalcs_circuit *circuit,
-                                    const struct dalcs_network *network,
-                                    const struct dalcs_osnsp_options *options, int k,
-                                    const uint64_t *mode, const double *x, const double *inputs,
+/* The jump of system k of the network, once it is built, from x[n_x] with inputs[n_inputs] just after it;
+ * mode[(n_pairs + 63) / 64] commands the switches and is a first guess for the diodes. Where sources that read act on
+ * states the rest of the component, which is passive, jumps as if they were not there: answer->is_first, and what the
+ * answer has of driven states and of other pairs stays as it was. */
+enum dalcs_status dalcs_jumps_solve(const struct dalcs_jumps *jumps, int k, const uint64_t *mode,
+                                    const double *x, const double *inputs,
                                     struct dalcs_jump_answer *answer) DALCS_MUST_CHECK;
 
 /* Is the jump from x[n_x] to `limit`, as vanishing steps see it, the one to `after`? The limit is known

@@ -43,7 +43,7 @@ static enum dalcs_status refuse_derivative(struct dalcs_euler *e, int k, const d
 static void find_noise(struct dalcs_euler *e, int k, const double *before) {
     const struct dalcs_component *c = &e->component[k];
     const struct dalcs_system *s = c->system;
-    const struct dalcs_step_form *f = c->osnsp.form[0];
+    const struct dalcs_step_form *f = c->osnsp.cache.form[0];
     double unit[2];
     for (int of = 0; of < 2; of++) {
         unit[of] = fmax(c->scale[of], fmax(largest_state(s, before, of == 1),
@@ -86,8 +86,9 @@ static void extrapolate_impulses(struct dalcs_euler *e, int k, double h) {
     for (int d = 0; d < c->system->n_pairs; d++) {
         double charge = h * lambda[d] - e->charge[d];
         double flux = h * c->osnsp.w[d] - e->flux[d];
-        differ = differ || (c->osnsp.is_diode[d] && (charge < -jump_part * fabs(e->charge[d]) ||
-                                                     flux < -jump_part * fabs(e->flux[d])));
+        differ =
+            differ || (c->osnsp.lists.is_diode[d] && (charge < -jump_part * fabs(e->charge[d]) ||
+                                                      flux < -jump_part * fabs(e->flux[d])));
     }
     for (int d = 0; d < c->system->n_pairs; d++) {
         double *impulse[2] = {&e->charge[d], &e->flux[d]};
@@ -112,6 +113,28 @@ static bool runs_away(const struct dalcs_component *c, const double *u, const do
     return away;
 }
 
+/* The first that has an answer. */
+static enum dalcs_status solve_micro_step(struct dalcs_euler *e, int k, const double *u, double *y,
+                                          double *length) {
+    enum dalcs_status status = DALCS_NOT_CONVERGED;
+    *length = 0.0;
+    for (size_t i = 0; i < sizeof(micro_part) / sizeof(*micro_part) && status > DALCS_OK; i++) {
+        *length = fmin(micro_part[i] * e->grid.h, 0.5 * (e->grid.next_edge - e->t));
+        status = dalcs_euler_solve(e, k, 1.0 / *length, u, y);
+    }
+    return status;
+}
+
+/* By more than these V and A. */
+static bool has_moved(const struct dalcs_system *s, const double *from, const double *to,
+                      const double *limit) {
+    bool moved = false;
+    for (int x = 0; x < s->n_x && !moved; x++) {
+        moved = fabs(to[x] - from[x]) > limit[s->column_is_current[x]];
+    }
+    return moved;
+}
+
 /* Solves micro-steps from u (whose x is x-) into y, and so learns the state just after a
  * discontinuity, left in e->after: x- where it is continuous. Where it jumps, the jump is reported
  * and y holds impulsive currents. *length is that of the micro-step of y. */
@@ -120,25 +143,15 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
     struct dalcs_component *c = &e->component[k];
     const struct dalcs_system *s = c->system;
     int n_equations = dalcs_system_n_equations(s);
-    enum dalcs_status status = DALCS_NOT_CONVERGED;
-    double h = 0.0;
-    for (size_t i = 0; i < sizeof(micro_part) / sizeof(*micro_part) && status > DALCS_OK; i++) {
-        h = fmin(micro_part[i] * e->grid.h, 0.5 * (e->grid.next_edge - e->t));
-        status = dalcs_euler_solve(e, k, 1.0 / h, u, y);
-    }
-    DALCS_TRY(status);
-    *length = h;
+    DALCS_TRY(solve_micro_step(e, k, u, y, length));
+    const double h = *length;
     memcpy(e->after, u, (size_t)s->n_x * sizeof(double));
     double limit[2];
-    bool moved = false;
     for (int unit = 0; unit < 2; unit++) {
         limit[unit] =
             dalcs_smallest_jump * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
     }
-    for (int x = 0; x < s->n_x; x++) {
-        moved = moved || fabs(y[x] - u[x]) > limit[s->column_is_current[x]];
-    }
-    if (!moved) {
+    if (!has_moved(s, u, y, limit)) {
         return DALCS_OK;
     }
     for (int d = 0; d < s->n_pairs; d++) {
@@ -157,16 +170,13 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
     }
     extrapolate_impulses(e, k, h);
     DALCS_TRY(dalcs_euler_find_jump(e, k, u));
-    bool jumps = !e->jump.is_known;
-    for (int x = 0; x < s->n_x && !jumps; x++) {
-        jumps = fabs(e->jump.after[x] - u[x]) > limit[s->column_is_current[x]];
-    }
-    if (!jumps) {
+    if (e->jump.is_known && !has_moved(s, u, e->jump.after, limit)) {
         return DALCS_OK; /* a transient faster than a micro-step, which is not a jump */
     }
     memcpy(e->after, e->jump.after, (size_t)s->n_x * sizeof(double));
     find_noise(e, k, before);
-    for (int i = s->n_x; i < n_equations; i++) { /* without impulses, which are over h and over h / 2 */
+    for (int i = s->n_x; i < n_equations;
+         i++) { /* without impulses, which are over h and over h / 2 */
         c->scratch[i] = 2.0 * y[i] - c->scratch[i];
     }
     return dalcs_euler_report_jump(e, k, e->t, before, e->t > 0.0 ? before : NULL, c->scratch);

@@ -12,6 +12,7 @@ struct dalcs_radau_part;
 struct dalcs_observed_sides {
     const double *y[2];
     double weight[2];
+    double time; /* s; of both, less than 0 where a step counts against others */
 };
 
 /* All of them are set; k is the number of a component, states are [n_x], y is [n_columns]. */
@@ -37,11 +38,10 @@ struct dalcs_observer {
     /* A part's present segment has been passed through from the state start to part->x. */
     void (*segment)(void *user, const struct dalcs_radau_part *part, const double *start);
 
-    /* times_h / h times a step of length h from x to y, their mean: its powers are means of those on either side, no
+    /* sides->time / h times a step of length h from x to y, their mean: its powers are means of those on either side, no
      * products of means. Returns J: what one of them stores, and loses by implicit Euler. */
     double (*sliding_step)(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs,
-                           double times_h);
+                           const struct dalcs_observed_sides *sides, const double *inputs);
 
     /* A segment from x to y that is a sum of such steps, which take so much (J). */
     void (*slide)(void *user, int k, const double *x, const double *y, double taken);

@@ -2,7 +2,6 @@
 #include "sliding.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Does the i-th switch stand differently on both sides? */
 static bool turns(const struct dalcs_positions *p, int i) {

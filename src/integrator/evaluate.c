@@ -58,8 +58,8 @@ static void evaluate_stepped(struct dalcs_radau_part *part, double t, enum dalcs
     for (int i = 0; i < b->n; i++) {
         c->y[b->column[i]] = dalcs_radau_bystander(part, i, t, side);
     }
-    for (int i = 0; i < part->n_used_inputs; i++) {
-        int k = part->used_input[i];
+    for (int i = 0; i < part->used.n; i++) {
+        int k = part->used.input[i];
         c->u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
     }
 }

@@ -4,13 +4,18 @@
 #include "logic_memory.h"
 #include "rounding.h"
 
-#include <float.h>
 #include <math.h>
+
+/* From t on to a level, in this time for a whole swing. */
+struct ramp {
+    double t, level, duration, swing;
+};
 
 /* A pin goes to a level from t on. What was to come, of a ramp not yet over, does not. */
 static enum dalcs_status write(struct dalcs_stimulus *s, double **time, double **value,
-                               size_t *capacity, double t, double level, double duration,
-                               double swing) {
+                               size_t *capacity, const struct ramp *to) {
+    const double t = to->t;
+    const double level = to->level;
     int n = s->u.pwl.n;
     const double now = dalcs_stimulus_value(s, t, DALCS_RIGHT);
     DALCS_TRY(dalcs_grow(time, &capacity[0], (size_t)n + 2, sizeof(**time)));
@@ -20,14 +25,14 @@ static enum dalcs_status write(struct dalcs_stimulus *s, double **time, double *
         n--;
     }
     const bool is_twice = n > 1 && (*time)[n - 1] >= t - near && (*time)[n - 2] >= t - near;
-    if (is_twice && duration == 0.0) {
+    if (is_twice && to->duration == 0.0) {
         (*value)[n - 1] = level; /* nothing in between has lasted */
     } else {
         if ((*time)[n - 1] < t - near || (*value)[n - 1] != now) {
             (*time)[n] = t;
             (*value)[n++] = now;
         }
-        (*time)[n] = duration > 0.0 ? t + duration * fabs(level - now) / swing : t;
+        (*time)[n] = to->duration > 0.0 ? t + to->duration * fabs(level - now) / to->swing : t;
         (*value)[n++] = level;
     }
     s->u.pwl.n = n;
@@ -67,13 +72,13 @@ static enum dalcs_status show_sample(struct dalcs_logic_run *l, int k, double t)
             l->observer->took(l->observer->user, k);
         }
         l->changed[g->output[0]] = true;
-        DALCS_TRY(write(&l->circuit->stimulus[g->output[0]], &o->time, &o->value, o->capacity, t,
-                        l->taken[k], 0.0, 1.0));
+        DALCS_TRY(write(&l->circuit->stimulus[g->output[0]], &o->time, &o->value, o->capacity,
+                        &(struct ramp){t, l->taken[k], 0.0, 1.0}));
     }
     if (g->output[1] >= 0 && o->shown != state->seen) {
         l->changed[g->output[1]] = true;
         DALCS_TRY(write(&l->circuit->stimulus[g->output[1]], &o->time_bar, &o->value_bar,
-                        &o->capacity[2], t, state->seen, 0.0, 1.0));
+                        &o->capacity[2], &(struct ramp){t, state->seen, 0.0, 1.0}));
     }
     state->takes = false;
     o->shown = state->seen;
@@ -90,10 +95,10 @@ enum dalcs_status dalcs_logic_output_show(struct dalcs_logic_run *l, int k, doub
         if (g->output[pin] >= 0) {
             const double level = level_of(g, pin, l->network.state[k].seen);
             l->changed[g->output[pin]] = true;
-            DALCS_TRY(write(&l->circuit->stimulus[g->output[pin]],
-                            pin == 0 ? &o->time : &o->time_bar,
-                            pin == 0 ? &o->value : &o->value_bar, &o->capacity[2 * pin], t, level,
-                            level == g->high ? g->rise : g->fall, g->high - g->low));
+            DALCS_TRY(write(
+                &l->circuit->stimulus[g->output[pin]], pin == 0 ? &o->time : &o->time_bar,
+                pin == 0 ? &o->value : &o->value_bar, &o->capacity[2 * pin],
+                &(struct ramp){t, level, level == g->high ? g->rise : g->fall, g->high - g->low}));
         }
     }
     o->shown = l->network.state[k].seen;
@@ -131,6 +136,6 @@ enum dalcs_status dalcs_logic_output_restore(struct dalcs_logic_run *l,
     bool changed = false;
     DALCS_TRY(start(s, time, at, &o->capacity[2 * pin->which], is_level ? level : value, &changed));
     return is_level ? DALCS_OK
-                    : write(s, time, at, &o->capacity[2 * pin->which], 0.0, level, lasts,
-                            g->high - g->low);
+                    : write(s, time, at, &o->capacity[2 * pin->which],
+                            &(struct ramp){0.0, level, lasts, g->high - g->low});
 }

@@ -1,6 +1,7 @@
 /* orbit_log.c - segments of a run joined to spans of one mode, and their ends. */
 #include "orbit_log.h"
 
+#include "orbit_commands.h"
 #include "quads.h"
 #include "recurrence.h"
 #include "segments_observer.h"
@@ -10,79 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* So far before a time, over it, a control is what it was, and a piece of a source is asked for that ends there. */
-static const double before = 1e-12;
-
-/* Two commands at one time move alike if they do to this part, and a control that differs by more than that of its terms
- * on the two sides of a time jumps there. */
-static const double alike = 1e-9;
-
-/* ---- Commands ------------------------------------------------------------------------------------ */
-
-/* dt of the command of a pair that moves at t > 0, of the small signals of its sources; by[n_pins] of the outputs of gates, or
- * NULL. */
-static void find_command(const struct dalcs_orbit_log *log, const struct dalcs_radau_part *part,
-                         int pair, double t, double *dt, double *by) {
-    const struct dalcs_logic_memory *gates = log->gates != NULL ? log->gates->memory : NULL;
-    const struct dalcs_control *control = &part->commands.control;
-    const struct dalcs_csr *a = &part->component->system->direct_control;
-    double left = dalcs_control_value(control, pair, t * (1.0 - before), DALCS_LEFT);
-    double right = dalcs_control_value(control, pair, t, DALCS_RIGHT);
-    double size = 0.0;
-    double slope = 0.0;
-    double moved[2] = {0.0, 0.0};
-    for (int k = a->p[pair]; k < a->p[pair + 1]; k++) {
-        const struct dalcs_stimulus *s = dalcs_control_stimulus(control, a->j[k]);
-        if (s != NULL) {
-            size += fabs(a->x[k] * dalcs_stimulus_value(s, t, DALCS_RIGHT));
-            slope += a->x[k] * dalcs_slope_before(s, t, control->term);
-            const double complex small =
-                log->sources.of(log->sources.user, part->component->system->stimulus[a->j[k]]);
-            moved[0] += a->x[k] * creal(small);
-            moved[1] += a->x[k] * cimag(small);
-        }
-    }
-    const double steep = slope * t * before; /* a ramp of no time goes as far from there to here */
-    bool is_edge = fabs(left + steep - right) > alike * size || slope == 0.0;
-    dt[0] = is_edge ? 0.0 : -moved[0] / slope;
-    dt[1] = is_edge ? 0.0 : -moved[1] / slope;
-    for (int k = a->p[pair]; k < a->p[pair + 1] && by != NULL; k++) {
-        const int pin = dalcs_logic_pin_of(gates, part->component->system->stimulus[a->j[k]]);
-        if (pin >= 0 && !is_edge) {
-            by[pin] -= a->x[k] / slope;
-        }
-    }
-}
-
-static void take_command(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span, int pair,
-                         double t, bool *any) {
-    double dt[2];
-    double *by = !*any && span->gates != NULL ? span->gates->by : NULL;
-    find_command(p->log, p->rates.part, pair, t, dt, by);
-    if (!*any) {
-        span->moved[0] = dt[0];
-        span->moved[1] = dt[1];
-        *any = true;
-        return;
-    }
-    double off = hypot(dt[0] - span->moved[0], dt[1] - span->moved[1]);
-    if (off > alike * hypot(dt[0], dt[1])) {
-        p->log->is_exact = false;
-    }
-}
-
-/* Those that are due where the segment ends. */
-static void find_commands(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span) {
-    const struct dalcs_commands *c = &p->rates.part->commands;
-    bool any = false;
-    for (int k = 0; k < c->n; k++) {
-        const struct dalcs_command *m = &c->command[k];
-        if (m->moves && m->next <= span->to + p->log->radau->resolution) {
-            take_command(p, span, m->pair, span->to, &any);
-        }
-    }
-}
 
 /* ---- Spans --------------------------------------------------------------------------------------- */
 
@@ -224,7 +152,7 @@ static enum dalcs_status take_segment(struct dalcs_orbit_part *p) {
         span->row = span->rate != 0.0 ? row : -1;
         p->log->is_exact = p->log->is_exact && span->row >= 0; /* it only touches its threshold */
     } else {
-        find_commands(p, span);
+        dalcs_orbit_find_commands(p, span);
     }
     bool moves =
         span->row >= 0 || span->moved[0] != 0.0 || span->moved[1] != 0.0 || span->gates != NULL;
@@ -244,8 +172,7 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
 }
 
 static double sliding_step(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs,
-                           double times_h) {
+                           const struct dalcs_observed_sides *sides, const double *inputs) {
     struct dalcs_orbit_log *log = user;
     log->is_exact = false;
     (void)k;
@@ -253,7 +180,6 @@ static double sliding_step(void *user, int k, const double *x, const double *y,
     (void)y;
     (void)sides;
     (void)inputs;
-    (void)times_h;
     return 0.0;
 }
 
@@ -273,7 +199,7 @@ static enum dalcs_status find_last_commands(struct dalcs_orbit_part *p) {
     for (int k = 0; k < c->n; k++) {
         int pair = c->command[k].pair;
         if (dalcs_mode_has(p->span[0].mode, pair) != dalcs_mode_has(last->mode, pair)) {
-            take_command(p, last, pair, last->to, &any);
+            dalcs_orbit_take_command(p, last, pair, last->to, &any);
         }
     }
     return last->moved[0] != 0.0 || last->moved[1] != 0.0 ? meet_end(p, last) : DALCS_OK;

@@ -62,9 +62,6 @@ double dalcs_orbit_guard_rate(const struct dalcs_radau_part *part, int row) {
     return dalcs_orbit_row_rate(part, row, part->segment.end);
 }
 
-/* So far before a time, over it, a piece of a source is asked for that ends there. */
-static const double before = 1e-12;
-
 static double slope_at(const struct dalcs_stimulus *s, double t, struct dalcs_stimulus_term *term) {
     struct dalcs_stimulus_piece piece = {.term = term};
     dalcs_stimulus_course_at(s, t, &piece);
@@ -77,7 +74,7 @@ static double slope_at(const struct dalcs_stimulus *s, double t, struct dalcs_st
 
 double dalcs_slope_before(const struct dalcs_stimulus *s, double t,
                           struct dalcs_stimulus_term *term) {
-    return slope_at(s, t * (1.0 - before), term);
+    return slope_at(s, t * (1.0 - dalcs_orbit_before), term);
 }
 
 double dalcs_slope_behind(const struct dalcs_stimulus *s, double t,

@@ -37,6 +37,9 @@ int dalcs_orbit_bystander(const struct dalcs_radau_part *part, int column);
 double dalcs_orbit_probe_rate(const struct dalcs_radau_part *part, const struct dalcs_probe *probe,
                               bool at_begin, struct dalcs_stimulus_term *term);
 
+/* So far before a time, over it, a control is what it was, and a piece of a source is asked for that ends there. */
+static const double dalcs_orbit_before = 1e-12;
+
 /* V/s: the slope of a source just before t, and from t on; term: work, as many as it has. */
 double dalcs_slope_before(const struct dalcs_stimulus *s, double t,
                           struct dalcs_stimulus_term *term);

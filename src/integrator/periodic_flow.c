@@ -283,8 +283,8 @@ static enum dalcs_status stages_setup(struct dalcs_periodic_flow *flow) {
     const struct dalcs_collocation *method =
         dalcs_collocation_of(DALCS_RADAU_IIA, DALCS_MAX_STAGES);
     DALCS_TRY(drive_setup(flow, method->s + 1));
-    DALCS_TRY(dalcs_stages_setup(&flow->stages, flow->system, &flow->excitation, method,
-                                 of->dense_limit, of->rcond_min, of->most_bytes));
+    const struct dalcs_stage_limits limits = {of->dense_limit, of->rcond_min, of->cache.most_bytes};
+    DALCS_TRY(dalcs_stages_setup(&flow->stages, flow->system, &flow->excitation, method, &limits));
     flow->stages.block_of = of->block_of;
     return legendre_setup(flow);
 }

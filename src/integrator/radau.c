@@ -175,6 +175,26 @@ static enum dalcs_status repeat_or_begin(struct dalcs_radau *r, struct dalcs_rad
     return dalcs_periodic_note(part);
 }
 
+/* What begins where the segment ends: pieces of sources, and commands. goes_on: nothing else changes. Returns whether a
+ * switch is commanded. */
+static bool enter_changes(struct dalcs_radau *r, struct dalcs_radau_part *part, bool goes_on) {
+    bool jumps;
+    if (enter_edges(r, part, &jumps)) {
+        part->guards.fresh = true;
+        part->guards.bends = goes_on && !jumps;
+        part->guards.leaps = jumps;
+    }
+    const bool commanded = part->commands.next <= part->segment.t + r->resolution &&
+                           dalcs_commands_obey(&part->commands, part->segment.t + r->resolution);
+    if (commanded) {
+        obey_commands(part);
+        part->guards.fresh = true;
+        part->guards.flipped = true;
+        part->guards.bends = false;
+    }
+    return commanded;
+}
+
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->segment.jumped = false;
@@ -206,20 +226,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     if (part->guards.n_crossed > 0 || part->segment.by_euler) {
         count_crowd(r, part);
     }
-    bool jumps;
-    if (enter_edges(r, part, &jumps)) {
-        part->guards.fresh = true;
-        part->guards.bends = goes_on && !jumps;
-        part->guards.leaps = jumps;
-    }
-    bool commanded = part->commands.next <= part->segment.t + r->resolution &&
-                     dalcs_commands_obey(&part->commands, part->segment.t + r->resolution);
-    if (commanded) {
-        obey_commands(part);
-        part->guards.fresh = true;
-        part->guards.flipped = true;
-        part->guards.bends = false;
-    }
+    const bool commanded = enter_changes(r, part, goes_on);
     if (part->segment.t >= r->options.stop) {
         return DALCS_OK;
     }

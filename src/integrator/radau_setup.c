@@ -59,7 +59,7 @@ static void list_used_inputs(struct dalcs_radau_part *part, const struct dalcs_n
     for (int k = 1; k < s->n_inputs; k++) {
         if (used[k] &&
             part->component->circuit->stimulus[s->stimulus[k]].kind != DALCS_STIMULUS_DC) {
-            part->used_input[part->n_used_inputs++] = k;
+            part->used.input[part->used.n++] = k;
         }
     }
 }
@@ -94,7 +94,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->work.w1 = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
     part->work.after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->work.before = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
-    part->used_input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
+    part->used.input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
     part->scales.current_drift = dalcs_arena_alloc(
         &part->arena, (size_t)dalcs_dense_map_rows(part->stages.n_levered), sizeof(double));
     part->scales.current_parts =
@@ -105,7 +105,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
                     part->guards.crossed != NULL && part->guards.tied != NULL &&
                     part->work.u != NULL && part->work.y1 != NULL && part->work.y2 != NULL &&
                     part->work.w1 != NULL && part->work.after != NULL &&
-                    part->work.before != NULL && part->used_input != NULL &&
+                    part->work.before != NULL && part->used.input != NULL &&
                     part->scales.current_drift != NULL && part->scales.current_parts != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
@@ -135,7 +135,7 @@ static bool may_recur(const struct dalcs_radau *r, const struct dalcs_radau_part
 static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                     const struct dalcs_osnsp_options *osnsp) {
     struct dalcs_component *c = part->component;
-    c->osnsp.is_passing = true;
+    c->osnsp.asks.is_passing = true;
     bool steps = has_memory_or_sides(c->system);
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
     struct dalcs_conductances g = dalcs_conductances_find(c->system, r->options.stop);
@@ -148,9 +148,9 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     const struct dalcs_collocation *method = dalcs_collocation_of(r->options.family, choice.stages);
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system, method));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
-    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, method,
-                                 choice.map_limit, osnsp->rcond_min,
-                                 osnsp->cache_bytes / (size_t)r->n_parts));
+    const struct dalcs_stage_limits limits = {choice.map_limit, osnsp->rcond_min,
+                                              osnsp->cache_bytes / (size_t)r->n_parts};
+    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, method, &limits));
     part->stages.block_of = c->osnsp.partition.block_of;
     part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : unseen_part * part->inner_tolerance;
     DALCS_TRY(dalcs_arena_reserve(&part->arena, room_for_part(c->system)));

@@ -7,13 +7,14 @@
  * of it, by shorter steps whether the error was the step's. Where all fail, as where events accumulate
  * in finite time, implicit Euler goes on by itself for a while, certified and a little at a time. */
 #include "segment.h"
+
+#include "accept.h"
 #include "extremes.h"
 #include "front.h"
 #include "guards.h"
 #include "present.h"
 #include "projection.h"
 #include "recurrence.h"
-#include "search.h"
 #include "sliding.h"
 #include "step_length.h"
 #include "tied.h"
@@ -21,11 +22,8 @@
 
 #include <math.h>
 
-/* A remembered first step gets longer the next time if its error, over the signal, is below this: for
- * a row more at each event waveforms would be worse than they need. */
-static const double fine = 3e-11;
-
-/* See is_outsized(). */
+/* Signals so many times as large as any before. It may be that a coil's current has nowhere to go in this mode, and a step
+ * that short makes of it what vouches for any error. */
 static const double outsized = 1e6;
 
 enum {
@@ -35,75 +33,6 @@ enum {
     MOST_FRONTS_REFUSED = 16
 };
 
-/* All of a step of the ladder: a longer one may be as good. */
-static bool is_whole(const struct dalcs_radau_part *part, double theta) {
-    return theta == 1.0 && part->segment.h == dalcs_radau_ladder(part, part->length.level);
-}
-
-/* What began after pairs changed sides. */
-static enum dalcs_status learn(struct dalcs_radau_part *part, const struct dalcs_search *search,
-                               double theta, double error) {
-    double ratio = error * fmax(1.0, part->inner_tolerance / fine);
-    bool longer = !search->fixed && is_whole(part, theta) && part->guards.n_crossed == 0 &&
-                  dalcs_length_rungs_promised(part, ratio) > 1.0 &&
-                  dalcs_radau_ladder(part, part->length.level - 1) <=
-                      dalcs_smaller(part->length.longest, part->length.longest_needed);
-    int spare = longer ? 1 : 0; /* rungs that the first step may have more the next time */
-    if (!search->guessed) {
-        double promised =
-            dalcs_smaller(dalcs_length_rungs_promised(part, error), DALCS_LENGTH_MOST_RUNGS);
-        int by_analogy = search->first_level - part->length.level_before;
-        dalcs_transition_began(part, search->first_level, (int)promised);
-        spare = (int)dalcs_larger(spare, dalcs_smaller(promised, by_analogy));
-        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare, by_analogy - spare));
-    } else if (!search->front) {
-        dalcs_transition_pass(part, spare);
-    } else if (spare > 0) {
-        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare, 0));
-    }
-    if (!search->fixed) {
-        dalcs_recurrence_note(part);
-    }
-    return DALCS_OK;
-}
-
-static enum dalcs_status accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                const struct dalcs_search *search, double theta,
-                                const struct dalcs_step_quality *quality, double residual) {
-    double t_end = part->segment.t + theta * part->segment.h;
-    part->segment.why = part->guards.n_crossed > 0 ? DALCS_END_AT_EVENT : DALCS_END_OF_STEP;
-    if (part->guards.n_crossed == 0 && t_end >= search->limit - r->resolution) {
-        t_end = search->limit;
-        part->segment.why = DALCS_END_AT_EDGE;
-    }
-    if (search->fixed && part->segment.why == DALCS_END_OF_STEP) {
-        double whole =
-            rint(t_end / part->segment.h) * part->segment.h; /* counted, not accumulated */
-        t_end = fabs(t_end - whole) <= 4.0 * r->resolution ? whole : t_end;
-    }
-    part->segment.t_end = dalcs_smaller(t_end, search->limit);
-    dalcs_step_remember(part, theta, quality->unit);
-    if (theta == 1.0) {
-        dalcs_guards_arm(part, true, quality->unit);
-    }
-    double wrong_sign = dalcs_guards_wrong_sign(r, part, theta, quality->unit);
-    if (wrong_sign > r->wrong_sign) {
-        r->wrong_sign = wrong_sign;
-        r->wrong_time = part->segment.t;
-    }
-    if (part->guards.fresh && part->guards.flipped && !search->turned) {
-        DALCS_TRY(learn(part, search, theta, quality->ratio));
-    }
-    dalcs_segment_accept(r, part, theta, residual);
-    part->length.held_level = part->length.level;
-    if (!search->fixed && is_whole(part, theta)) {
-        dalcs_length_lengthen(part, quality->ratio);
-    }
-    return DALCS_OK;
-}
-
-/* Signals so many times as large as any before: it may be that a coil's current has nowhere to go in this
- * mode, and a step that short makes of it what vouches for any error. */
 static bool is_outsized(const struct dalcs_radau_part *part,
                         const struct dalcs_step_quality *quality) {
     bool is = false;
@@ -137,37 +66,42 @@ static double end_of(const struct dalcs_radau_part *part, const struct dalcs_sea
     return dalcs_smaller(1.0, (search->limit - part->segment.t) / part->segment.h);
 }
 
-/* One step in the present mode, with its errors. *holds: they are no more than allowed; if not, the next try is
- * another one, or implicit Euler has taken its place (*done). */
+/* A residual that no length mends. */
+static enum dalcs_status recover_residual(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                          struct dalcs_search *search, bool is_first, bool *done) {
+    if (is_first) {
+        return dalcs_search_ask(r, part, search, false);
+    }
+    if (search->opened) {
+        return dalcs_search_tie_again(part, search);
+    }
+    *done = true;
+    return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
+}
+
+/* One step in the present mode, with its errors. trial->holds: they are no more than allowed; if not, the next try is
+ * another one, or implicit Euler has taken its place. */
 static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                          struct dalcs_search *search,
-                                          struct dalcs_stage_entry **entry,
-                                          struct dalcs_step_quality *q, bool *holds, bool *done) {
-    *holds = false;
+                                          struct dalcs_search *search, struct dalcs_trial *trial) {
+    struct dalcs_step_quality *q = &trial->quality;
     part->segment.h = search->fixed ? r->options.fixed_step : step_to_try(r, part, search->limit);
-    enum dalcs_status status = dalcs_segment_solve(part, entry);
+    enum dalcs_status status = dalcs_segment_solve(part, &trial->entry);
     if (status < DALCS_OK) {
         return status;
     }
-    search->states_free = status == DALCS_OK && dalcs_stage_frees_states(*entry);
+    struct dalcs_stage_entry *entry = trial->entry;
+    search->states_free = status == DALCS_OK && dalcs_stage_frees_states(entry);
     bool is_first = part->guards.fresh && search->restarts == 0;
-    if (status == DALCS_OK && !(dalcs_stage_residual(*entry) <= dalcs_largest_residual)) {
-        if (is_first) {
-            return dalcs_search_ask(r, part, search, false);
-        }
-        if (search->opened) {
-            return dalcs_search_tie_again(part, search);
-        }
-        *done = true; /* no length mends it */
-        return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
+    if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= dalcs_largest_residual)) {
+        return recover_residual(r, part, search, is_first, &trial->done);
     }
     bool means_something =
-        status == DALCS_OK && !(search->front && dalcs_stage_n_clashes(*entry) > 0);
+        status == DALCS_OK && !(search->front && dalcs_stage_n_clashes(entry) > 0);
     if (means_something) {
         double end = end_of(part, search);
-        dalcs_step_judge(r, part, *entry, end, q);
+        dalcs_step_judge(r, part, entry, end, q);
         q->ratio = search->spared ? q->own : q->ratio;
-        means_something = q->ratio == q->ratio && !dalcs_step_clashes(part, *entry, end, q->unit);
+        means_something = q->ratio == q->ratio && !dalcs_step_clashes(part, entry, end, q->unit);
         if (is_first && !search->fixed && !part->guards.bends && is_outsized(part, q)) {
             q->ratio = q->own = INFINITY;
         }
@@ -176,9 +110,9 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
     if (!means_something || (controlled && !(q->ratio <= search->tolerated))) {
         q->ratio = means_something ? q->ratio : INFINITY;
         q->own = means_something ? q->own : INFINITY;
-        return dalcs_search_recover(r, part, search, q, done);
+        return dalcs_search_recover(r, part, search, q, &trial->done);
     }
-    *holds = true;
+    trial->holds = true;
     return DALCS_OK;
 }
 
@@ -190,82 +124,79 @@ static bool is_worth_projecting(struct dalcs_radau_part *part, const struct dalc
            dalcs_projection_sees(part, search->fixed);
 }
 
-/* The signs of an accurate step. *holds: the mode is right up to *next, in steps, where something crosses or the
+/* The signs of an accurate step. trial->holds: the mode is right up to trial->next, where something crosses or the
  * step ends. */
 static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                               struct dalcs_search *search,
-                                              struct dalcs_step_quality *q, double *next,
-                                              bool *holds, bool *done) {
-    *holds = false;
+                                              struct dalcs_trial *trial) {
+    const struct dalcs_step_quality *q = &trial->quality;
+    trial->holds = false;
     double end = end_of(part, search);
     if (part->guards.fresh) {
         dalcs_guards_arm(part, false, q->unit);
     }
     bool at_once;
     double theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
-    *next = dalcs_smaller(theta, end);
+    const double next = trial->next = dalcs_smaller(theta, end);
     if (part->guards.slips && search->guessed && !search->front) {
         return dalcs_search_refuse(part, search);
     }
     if (at_once && part->guards.fresh) {
-        return dalcs_search_change_mode(r, part, search, q->unit, done);
+        return dalcs_search_change_mode(r, part, search, q->unit, &trial->done);
     }
-    if (search->opened && dalcs_tied_open_idle(part, part->work.mode_tied, *next, q->unit)) {
+    if (search->opened && dalcs_tied_open_idle(part, part->work.mode_tied, next, q->unit)) {
         return dalcs_search_go_on_trying(part, search);
     }
     if (part->guards.fresh && part->guards.flipped && dalcs_guards_open_resting(part, q->unit)) {
         return DALCS_OK;
     }
     if (part->guards.fresh && search->restarts == 0 &&
-        dalcs_guards_stay_negative(part, *next, q->unit)) {
+        dalcs_guards_stay_negative(part, next, q->unit)) {
         return search->guessed ? dalcs_search_refuse(part, search)
                                : dalcs_search_ask(r, part, search, true);
     }
     if (part->guards.fresh && !search->guessed && !search->untied &&
         dalcs_tied_stay(part, dalcs_stage_n_clashes(part->segment.entry) == 0, q->unit)) {
-        return dalcs_search_untie(r, part, search, *next, q);
+        return dalcs_search_untie(r, part, search, next, q);
     }
     bool may_dip = part->guards.fresh && part->guards.may_dip;
     if (dalcs_search_may_refine(search) && (may_dip || dalcs_guards_swing(part))) {
         return dalcs_search_refine(r, part, search);
     }
-    *holds = true;
+    trial->holds = true;
     return DALCS_OK;
 }
 
 /* One try. *done: there is a segment. */
 static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                   struct dalcs_search *search, bool *done) {
-    struct dalcs_stage_entry *entry = NULL;
-    struct dalcs_step_quality quality = {.ratio = NAN, .own = INFINITY};
+    struct dalcs_trial trial = {.quality = {.ratio = NAN, .own = INFINITY}};
     if (part->guards.slides) {
         *done = true;
         return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
-    bool holds;
-    DALCS_TRY(solve_accurately(r, part, search, &entry, &quality, &holds, done));
-    if (!holds) {
-        return DALCS_OK;
-    }
-    if (is_worth_projecting(part, search, &quality)) {
+    DALCS_TRY(solve_accurately(r, part, search, &trial));
+    if (trial.holds && is_worth_projecting(part, search, &trial.quality)) {
         bool moved;
         DALCS_TRY(dalcs_search_project(r, part, search, &moved));
         if (moved) {
             return DALCS_OK;
         }
-        DALCS_TRY(
-            dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->segment.h, &entry));
+        DALCS_TRY(dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->segment.h,
+                                   &trial.entry));
     }
-    part->segment.entry = entry;
-    part->segment.ratio = dalcs_smaller(1.0, quality.ratio);
-    double next;
-    DALCS_TRY(look_at_signs(r, part, search, &quality, &next, &holds, done));
-    if (holds) {
+    if (trial.holds) {
+        part->segment.entry = trial.entry;
+        part->segment.ratio = dalcs_smaller(1.0, trial.quality.ratio);
+        DALCS_TRY(look_at_signs(r, part, search, &trial));
+    }
+    if (trial.holds) {
         part->segment.open =
-            part->guards.fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
-        DALCS_TRY(accept(r, part, search, next, &quality, dalcs_stage_residual(entry)));
-        *done = true;
+            part->guards.fresh && (search->untied || dalcs_stage_n_clashes(trial.entry) > 0);
+        DALCS_TRY(dalcs_trial_accept(r, part, search, &trial));
+        trial.done = true;
     }
+    *done = trial.done;
     return DALCS_OK;
 }
 

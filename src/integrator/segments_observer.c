@@ -36,15 +36,13 @@ static void move(void *user, int k, const double *x, const double *after) {
 }
 
 static double sliding_step(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs,
-                           double times_h) {
+                           const struct dalcs_observed_sides *sides, const double *inputs) {
     (void)user;
     (void)k;
     (void)x;
     (void)y;
     (void)sides;
     (void)inputs;
-    (void)times_h;
     return 0.0;
 }
 

@@ -205,15 +205,13 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
 /* ---- What slides is not exact ----------------------------------------------------------------------- */
 
 static double sliding_step(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs,
-                           double times_h) {
+                           const struct dalcs_observed_sides *sides, const double *inputs) {
     struct dalcs_variation *variation = user;
     variation->part[k].is_exact = false;
     (void)x;
     (void)y;
     (void)sides;
     (void)inputs;
-    (void)times_h;
     return 0.0;
 }
 

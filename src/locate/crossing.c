@@ -1,6 +1,7 @@
 /* crossing.c - subdivision in Bernstein's basis, then Newton's method in a bracket. */
 #include "crossing.h"
 
+#include "extremes.h"
 #include "quads.h"
 #include "rounding.h"
 #include "wide_vectors.h"
@@ -204,19 +205,31 @@ DALCS_TWICE(void, find_coefficients,
     memcpy(coefficient, sum, sizeof(sum));
 }
 
+/* Of the coefficients that values at the nodes have. */
+static double rounding_of(const struct dalcs_collocation *c, const double *value, int stride) {
+    double largest = 0.0;
+    for (int k = 0; k <= c->s; k++) {
+        largest = dalcs_larger(largest, fabs(value[k * stride]));
+    }
+    return dalcs_rounded * (1.0 + c->bernstein_spread) * largest;
+}
+
+/* The largest coefficient above 0, which the polynomial does not exceed. */
+static double peak_of(int n, const double *b) {
+    double peak = 0.0;
+    for (int i = 0; i < n; i++) {
+        peak = b[i] > peak ? b[i] : peak;
+    }
+    return peak;
+}
+
 struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,
                                           int stride, double end, double depth, double guess) {
     int n = c->s + 1;
     struct dalcs_crossing found = {.falls = false};
     double b[DALCS_MAX_NODES];
     find_coefficients(c, value, stride, b);
-    double largest = 0.0;
-    for (int k = 0; k < n; k++) {
-        double v = fabs(value[k * stride]);
-        largest = v > largest ? v : largest;
-    }
-    double rounding = dalcs_rounded * (1.0 + c->bernstein_spread) * largest;
-    depth = depth > rounding ? depth : rounding;
+    depth = dalcs_larger(depth, rounding_of(c, value, stride));
     double least = b[0];
     for (int i = 1; i < n; i++) {
         least = b[i] < least ? b[i] : least;
@@ -231,12 +244,7 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     if (b[n - 1] < -depth && b[0] > 0.0 && sign_changes(n, b) == 1) {
         double theta = only_root(c, b, guess / end) * end;
         if (theta > early) {
-            found.falls = true;
-            found.theta = theta;
-            for (int i = 0; i < n; i++) {
-                found.peak = b[i] > found.peak ? b[i] : found.peak;
-            }
-            return found;
+            return (struct dalcs_crossing){.falls = true, .theta = theta, .peak = peak_of(n, b)};
         }
     }
     double shifted[DALCS_MAX_NODES] = {0.0};
@@ -253,9 +261,7 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
         double before[DALCS_MAX_NODES];
         subdivide(n, b, below, before, rest);
         root = find_root(c, before, 0.0, below, false, MAX_DEPTH);
-        for (int i = 0; i < n; i++) {
-            found.peak = fmax(found.peak, before[i]);
-        }
+        found.peak = peak_of(n, before);
     }
     found.at_once = root < 0.0;
     found.theta = found.at_once ? 0.0 : root * end;

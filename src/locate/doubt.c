@@ -3,7 +3,6 @@
 
 #include "guard_scale.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 

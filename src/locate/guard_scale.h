@@ -28,7 +28,7 @@ static inline int dalcs_guard_pair(const struct dalcs_radau_part *part, int guar
 /* A switch has no sign to keep. */
 static inline bool dalcs_guard_is_one(const struct dalcs_radau_part *part, int guard) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    return guard >= p->system->n_pairs || p->is_diode[guard];
+    return guard >= p->system->n_pairs || p->lists.is_diode[guard];
 }
 
 /* Is a pair on another side than in the mode that held last? */

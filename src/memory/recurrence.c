@@ -12,7 +12,6 @@
 #include "step_length.h"
 #include "transition.h"
 
-#include <float.h>
 #include <math.h>
 
 /* A map for a span costs as much as looking for some thirty segments, and with it a period costs next to
@@ -118,7 +117,7 @@ static void take(struct dalcs_radau *r, struct dalcs_radau_part *part,
     if (r->base->observer != NULL) {
         dalcs_recurrence_complete(part);
     }
-    part->stages.cache_hits++;
+    part->stages.cache.cache_hits++;
     part->segment.open = false;
     dalcs_segment_accept(r, part, theta, dalcs_stage_residual(step->entry));
 }

@@ -218,7 +218,7 @@ enum dalcs_status dalcs_transition_learn(struct dalcs_radau_part *part, int leve
     const struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
     while (is_taken(part) &&
-           bytes_of(part, 2 * (size_t)part->memory.n_transitions) <= part->stages.bytes) {
+           bytes_of(part, 2 * (size_t)part->memory.n_transitions) <= part->stages.cache.bytes) {
         DALCS_TRY(grow(part));
     }
     uint64_t *modes = modes_in(part, (size_t)part->memory.present_transition);

@@ -28,7 +28,7 @@ struct basis {
  * no more than rounding of its terms. */
 static double part_in(const struct dalcs_osnsp *p, const int *place, const double *vector, int d) {
     const struct dalcs_csr *C = &p->system->C;
-    double root = sqrt(p->form[0]->pair_conductance);
+    double root = sqrt(p->cache.form[0]->pair_conductance);
     int at = place[dalcs_system_n_equations(p->system) + d];
     double sum = 0.0;
     double size = 0.0;
@@ -59,7 +59,7 @@ static enum dalcs_status find_exchanges(const struct dalcs_osnsp *p, const struc
         double most = 0.0;
         bool is_alone = true;
         for (int d = 0; d < p->system->n_pairs; d++) {
-            b->part[d] = p->tied[d] ? part_in(p, b->place, b->vector, d) : 0.0;
+            b->part[d] = p->signs.tied[d] ? part_in(p, b->place, b->vector, d) : 0.0;
             is_alone = is_alone && !(b->part[d] > 0.0 && b->is_taken[d]);
             if (b->part[d] > most) {
                 most = b->part[d];
@@ -85,7 +85,7 @@ static enum dalcs_status exchange(struct dalcs_osnsp *p, const struct basis *b, 
         before = n_open;
         for (int k = 0; k < n; k++) {
             dalcs_osnsp_flip(p, b->exchange[k]);
-            p->tied[b->exchange[k]] = false;
+            p->signs.tied[b->exchange[k]] = false;
             p->counters.pivots++;
         }
         DALCS_TRY(find_exchanges(p, b, &n, &n_open));
@@ -108,7 +108,7 @@ static enum dalcs_status move_to_basis(struct dalcs_osnsp *p, const double *u, d
     bool has_all = b.place != NULL && b.vector != NULL && b.part != NULL && b.exchange != NULL &&
                    b.is_taken != NULL;
     enum dalcs_status status = has_all ? DALCS_OK : DALCS_E_NOMEM;
-    memcpy(p->tied_answer, y, n * sizeof(*y));
+    memcpy(p->work.tied_answer, y, n * sizeof(*y));
     *has_moved = false;
     if (status == DALCS_OK) {
         status = exchange(p, &b, has_moved);
@@ -131,15 +131,15 @@ enum dalcs_status dalcs_basis_prefer(struct dalcs_osnsp *p, const double *u, dou
     if (e->tie == tie) { /* looked for before, in vain */
         return DALCS_OK;
     }
-    memcpy(p->tied_mode, p->mode, bytes);
+    memcpy(p->work.tied_mode, p->mode, bytes);
     bool has_moved;
     enum dalcs_status status = move_to_basis(p, u, y, &has_moved);
     if (status < DALCS_OK || has_moved) {
         return status;
     }
     bool sources_clash;
-    memcpy(p->mode, p->tied_mode, bytes);
-    memcpy(y, p->tied_answer, (size_t)dalcs_system_n_columns(p->system) * sizeof(*y));
+    memcpy(p->mode, p->work.tied_mode, bytes);
+    memcpy(y, p->work.tied_answer, (size_t)dalcs_system_n_columns(p->system) * sizeof(*y));
     dalcs_certificate_evaluate_either(p, u, y, &sources_clash);
     p->least_norm = true;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));

@@ -136,8 +136,9 @@ static int input_of(struct extraction *e, int row, int column) {
 
 /* Row `row` of the whole, row `from` of (A, E) or (C, F): what is in the block to `columns`, the rest to `inputs`. */
 static enum dalcs_status split_row(struct extraction *e, int row, const struct dalcs_csr *A,
-                                   const struct dalcs_csr *E, int to,
-                                   struct dalcs_triplets *columns, struct dalcs_triplets *inputs) {
+                                   const struct dalcs_csr *E, int to, struct dalcs_triplets *t) {
+    struct dalcs_triplets *columns = &t[0];
+    struct dalcs_triplets *inputs = &t[1];
     int n_equations = dalcs_system_n_equations(e->from);
     int from = row < n_equations ? row : row - n_equations;
     for (int k = A->p[from]; k < A->p[from + 1]; k++) {
@@ -157,10 +158,10 @@ static enum dalcs_status split(struct extraction *e, struct dalcs_triplets t[5])
     struct dalcs_system *to = &e->to->system;
     int n_equations = dalcs_system_n_equations(to);
     for (int r = 0; r < n_equations; r++) {
-        DALCS_TRY(split_row(e, e->to->row[r], &s->A, &s->E, r, &t[0], &t[1]));
+        DALCS_TRY(split_row(e, e->to->row[r], &s->A, &s->E, r, &t[0]));
     }
     for (int d = 0; d < to->n_pairs; d++) {
-        DALCS_TRY(split_row(e, e->to->column[n_equations + d], &s->C, &s->F, d, &t[2], &t[3]));
+        DALCS_TRY(split_row(e, e->to->column[n_equations + d], &s->C, &s->F, d, &t[2]));
     }
     for (int r = 0; r < to->n_x; r++) {
         int from = e->to->row[r];

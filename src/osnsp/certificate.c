@@ -20,7 +20,7 @@ static void note(struct dalcs_certificate *c, double residual, double scale, int
 }
 
 static void recover_states(const struct dalcs_osnsp *p, const double *u, double *y) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n_x = p->system->n_x;
     for (int x = 0; x < n_x; x++) {
         const int *ends = &f->x_ends[2 * x];
@@ -28,7 +28,7 @@ static void recover_states(const struct dalcs_osnsp *p, const double *u, double 
             y[x] = y[ends[0]] - y[ends[1]];
             continue;
         }
-        if (p->keeps_states && f->Xu.p[x] < f->Xu.p[x + 1]) {
+        if (p->asks.keeps_states && f->Xu.p[x] < f->Xu.p[x + 1]) {
             continue;
         }
         double sum = 0.0;
@@ -41,16 +41,16 @@ static void recover_states(const struct dalcs_osnsp *p, const double *u, double 
         y[x] = sum;
     }
     for (int x = 0; x < n_x; x++) {
-        p->difference[x] = f->sigma * (y[x] - u[x]);
+        p->work.difference[x] = f->sigma * (y[x] - u[x]);
     }
 }
 
 static void check_equations(struct dalcs_osnsp *p, const double *u, const double *y,
                             struct dalcs_scales scale) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     const struct dalcs_csr check = f->check;
-    double *v = p->difference; /* (sigma (x+ - x_k), y, s) */
+    double *v = p->work.difference; /* (sigma (x+ - x_k), y, s) */
     memcpy(v + s->n_x, y, (size_t)dalcs_system_n_columns(s) * sizeof(*v));
     memcpy(v + s->n_x + dalcs_system_n_columns(s), u + s->n_x, (size_t)s->n_inputs * sizeof(*v));
     double worst = 0.0;
@@ -73,7 +73,7 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
 
 static double pair_voltage(const struct dalcs_osnsp *p, const double *u, const double *y, int d) {
     const struct dalcs_system *s = p->system;
-    const int *ends = &p->w_ends[2 * d];
+    const int *ends = p->lists.w_ends + 2 * d;
     if (ends[0] >= 0) {
         return y[ends[0]] - y[ends[1]];
     }
@@ -90,7 +90,7 @@ static double pair_voltage(const struct dalcs_osnsp *p, const double *u, const d
 /* A wrong sign beyond rounding is for pivoting to mend; within it, it is part of the residual. */
 static void judge_sign(struct dalcs_osnsp *p, int d, double excess, double size) {
     if (excess > p->options.certificate_tolerance * size) {
-        p->violating[p->n_violating++] = d;
+        p->signs.violating[p->signs.n_violating++] = d;
     } else {
         note(&p->certificate, excess, size, dalcs_system_n_equations(p->system) + d);
     }
@@ -109,16 +109,16 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
     const double *lambda = y + dalcs_system_n_equations(s);
     double tolerance = p->options.certificate_tolerance;
     int n_equations = dalcs_system_n_equations(s);
-    p->n_tied = 0;
+    p->signs.n_tied = 0;
     for (int d = 0; d < s->n_pairs; d++) {
         double w = pair_voltage(p, u, y, d);
-        bool is_diode = p->is_diode[d];
+        bool is_diode = p->lists.is_diode[d];
         if (dalcs_osnsp_is_on(p, d)) {
             /* w = 0 by the mode: what is left of it is a residual. */
             note(&p->certificate, fabs(w), w == 0.0 ? 1.0 : voltage_size(p, u, y, d, scale),
                  n_equations + d);
             p->w[d] = 0.0;
-            p->tied[d] = is_diode && lambda[d] <= tolerance * scale.ampere;
+            p->signs.tied[d] = is_diode && lambda[d] <= tolerance * scale.ampere;
             if (is_diode && lambda[d] < 0.0) {
                 judge_sign(p, d, -lambda[d],
                            dalcs_scales_own(p, dalcs_scales_current_terms(p, u, y, d),
@@ -126,12 +126,12 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
             }
         } else {
             p->w[d] = w;
-            p->tied[d] = is_diode && w <= tolerance * scale.volt;
+            p->signs.tied[d] = is_diode && w <= tolerance * scale.volt;
             if (is_diode && w < 0.0) {
                 judge_sign(p, d, -w, voltage_size(p, u, y, d, scale));
             }
         }
-        p->n_tied += p->tied[d] ? 1 : 0;
+        p->signs.n_tied += p->signs.tied[d] ? 1 : 0;
     }
 }
 
@@ -144,19 +144,20 @@ static const double clash_roundings = 32.0 * DBL_EPSILON;
 static void check_references(struct dalcs_osnsp *p, const double *y, struct dalcs_scales scale,
                              struct dalcs_scales drive, bool *sources_clash) {
     const struct dalcs_system *s = p->system;
-    if (p->n_references == 0) {
+    if (p->lists.n_references == 0) {
         return;
     }
     double size = scale.ampere;
     for (int r = 0; r < dalcs_system_n_equations(s); r++) {
-        size = s->row_is_current[r] ? fmax(size, dalcs_scales_norm(p->form[0], scale, r)) : size;
+        size =
+            s->row_is_current[r] ? fmax(size, dalcs_scales_norm(p->cache.form[0], scale, r)) : size;
     }
     double limit = fmin(p->options.certificate_tolerance * size,
                         fmax(clash_part * drive.ampere, clash_roundings * size));
-    for (int k = 0; k < p->n_references; k++) {
-        double residual = fabs(y[p->reference[k]]);
+    for (int k = 0; k < p->lists.n_references; k++) {
+        double residual = fabs(y[p->lists.reference[k]]);
         *sources_clash = *sources_clash || residual > limit;
-        note(&p->certificate, residual, size, p->reference_row[k]);
+        note(&p->certificate, residual, size, p->lists.reference_row[k]);
     }
 }
 
@@ -167,7 +168,7 @@ bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, 
     for (int d = 0; d < p->system->n_pairs && hold; d++) {
         bool is_on = dalcs_osnsp_is_on(p, d);
         double value = is_on ? lambda[d] : p->w[d];
-        hold = !p->is_diode[d] || !(value < 0.0) ||
+        hold = !p->lists.is_diode[d] || !(value < 0.0) ||
                -value <= tolerance * (is_on ? dalcs_scales_current_terms(p, u, y, d)
                                             : dalcs_scales_pair_terms(p, u, y, d));
     }
@@ -181,7 +182,7 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
                                 bool *sources_clash) {
     p->certificate.worst = 0.0;
     p->certificate.where = -1;
-    p->n_violating = 0;
+    p->signs.n_violating = 0;
     *sources_clash = false;
     recover_states(p, u, y);
     struct dalcs_scales drive = dalcs_scales_driving(p, u);
@@ -198,9 +199,9 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
 
 void dalcs_certificate_evaluate_with_states(struct dalcs_osnsp *p, const double *u, double *y,
                                             bool *sources_clash) {
-    p->keeps_states = true;
+    p->asks.keeps_states = true;
     dalcs_certificate_evaluate(p, u, y, sources_clash);
-    p->keeps_states = false;
+    p->asks.keeps_states = false;
 }
 
 void dalcs_certificate_evaluate_either(struct dalcs_osnsp *p, const double *u, double *y,
@@ -216,13 +217,14 @@ void dalcs_osnsp_find_ties(struct dalcs_osnsp *p, const double *u, const double 
     const double *lambda = y + dalcs_system_n_equations(p->system);
     double tolerance = p->options.certificate_tolerance;
     struct dalcs_scales s = dalcs_scales_physical(p, dalcs_scales_driving(p, u), y);
-    double typical_resistance = sqrt(p->form[0]->ampere_in_volts / p->form[0]->volt_in_amperes);
+    double typical_resistance =
+        sqrt(p->cache.form[0]->ampere_in_volts / p->cache.form[0]->volt_in_amperes);
     double volts = fmax(s.volt, typical_resistance * s.ampere);
     for (int d = 0; d < p->system->n_pairs; d++) {
         bool small = dalcs_osnsp_is_on(p, d)
                          ? lambda[d] <= tolerance * dalcs_scales_current_norm(p, d, s)
                          : p->w[d] <= tolerance * volts;
-        p->tied[d] = p->is_diode[d] && small;
+        p->signs.tied[d] = p->lists.is_diode[d] && small;
     }
     scale[0] = s.volt;
     scale[1] = s.ampere;

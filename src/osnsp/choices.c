@@ -121,7 +121,7 @@ static void weigh_by_pairs(const struct choices *c, int k) {
 
 /* That with another one: in the unknowns that condensing keeps, if it has any. */
 static void weigh_by_unknowns(const struct choices *c, int k) {
-    const struct dalcs_step_form *f = c->whole->p->form[0];
+    const struct dalcs_step_form *f = c->whole->p->cache.form[0];
     double *vector = vector_of(c, k);
     bool has_any = false;
     memset(voltages_of(c, k), 0, c->n_pairs * sizeof(double));
@@ -160,7 +160,7 @@ enum dalcs_status dalcs_choices_make(struct dalcs_whole *whole) {
                         .s = s,
                         .n_columns = (size_t)dalcs_system_n_columns(s),
                         .n_pairs = (size_t)s->n_pairs,
-                        .conductance = whole->p->form[0]->pair_conductance};
+                        .conductance = whole->p->cache.form[0]->pair_conductance};
     c.size = dalcs_arena_alloc(&whole->arena, (size_t)whole->n_choices, sizeof(double));
     if (c.size == NULL) {
         return DALCS_E_NOMEM;

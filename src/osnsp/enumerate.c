@@ -14,7 +14,7 @@ enum { ENUMERATION_LIMIT = 12 };
 static bool list_diodes(const struct dalcs_osnsp *p, int *diode, int *n) {
     *n = 0;
     for (int d = 0; d < p->system->n_pairs; d++) {
-        if (p->is_diode[d]) {
+        if (p->lists.is_diode[d]) {
             if (*n == ENUMERATION_LIMIT) {
                 return false;
             }
@@ -101,11 +101,11 @@ static enum dalcs_status list_answers(struct dalcs_osnsp *p, const double *u, in
 enum dalcs_status dalcs_osnsp_list_answers(struct dalcs_osnsp *p, double sigma, const double *u,
                                            int most, double *answer, int *n) {
     size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
-    if (p->n_forms == 0 || p->form[0]->sigma != sigma) {
+    if (p->cache.n_forms == 0 || p->cache.form[0]->sigma != sigma) {
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
-    memcpy(p->tied_mode, p->mode, bytes);
+    memcpy(p->work.tied_mode, p->mode, bytes);
     enum dalcs_status status = list_answers(p, u, most, answer, n);
-    memcpy(p->mode, p->tied_mode, bytes);
+    memcpy(p->mode, p->work.tied_mode, bytes);
     return status;
 }

@@ -3,7 +3,6 @@
 #include "whole.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Changes of the mode that are of all pairs with a wrong sign at once, before they are of one. */
 enum { ROUNDS_AT_ONCE = 10 };
@@ -58,7 +57,7 @@ enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, d
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &entry));
     enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, sources_clash);
     bool is_settled = status == DALCS_OK && (dalcs_certificate_holds(p, *sources_clash) ||
-                                             (p->n_violating > 0 && !entry->singular));
+                                             (p->signs.n_violating > 0 && !entry->singular));
     if (status < DALCS_OK || is_settled || entry->answers) {
         return status;
     }
@@ -72,7 +71,7 @@ enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, doub
         if (dalcs_certificate_holds(p, sources_clash)) {
             return DALCS_OK;
         }
-        if (p->n_violating == 0) {
+        if (p->signs.n_violating == 0) {
             break;
         }
         dalcs_osnsp_flip_violating(p, round < ROUNDS_AT_ONCE);

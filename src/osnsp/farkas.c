@@ -3,7 +3,6 @@
 
 #include "rounding.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 

@@ -89,8 +89,8 @@ static void go_in(const struct dalcs_osnsp *p, struct dalcs_block *b, const doub
     for (int d = 0; d < s->n_pairs; d++) {
         dalcs_osnsp_command(&b->osnsp, d, dalcs_osnsp_is_on(p, whole_pair(p, b, d)));
     }
-    b->osnsp.refines = p->refines;
-    b->osnsp.is_passing = p->is_passing;
+    b->osnsp.asks.refines = p->asks.refines;
+    b->osnsp.asks.is_passing = p->asks.is_passing;
 }
 
 static void come_back(struct dalcs_osnsp *p, const struct dalcs_block *b, double *y) {
@@ -102,7 +102,7 @@ static void come_back(struct dalcs_osnsp *p, const struct dalcs_block *b, double
     }
     p->least_norm = p->least_norm || b->osnsp.least_norm;
     bool is_unique = b->system.n_pairs == 0 || dalcs_osnsp_is_unique(&b->osnsp);
-    p->form[0]->answers = is_unique ? p->form[0]->answers : DALCS_UNKNOWN;
+    p->cache.form[0]->answers = is_unique ? p->cache.form[0]->answers : DALCS_UNKNOWN;
 }
 
 /* What the block's counters grew by. */
@@ -128,7 +128,7 @@ static void take_witness(struct dalcs_osnsp *p, const struct dalcs_block *b) {
 static enum dalcs_status solve_all(struct dalcs_osnsp *p, double sigma, const double *u,
                                    double *y) {
     p->least_norm = false;
-    p->form[0]->answers = dalcs_osnsp_is_monotone(p) ? DALCS_UNIQUE : DALCS_UNKNOWN;
+    p->cache.form[0]->answers = dalcs_osnsp_is_monotone(p) ? DALCS_UNIQUE : DALCS_UNKNOWN;
     for (int k = 0; k < p->blocks->n; k++) {
         struct dalcs_block *b = &p->blocks->block[k];
         struct dalcs_osnsp_counters before = b->osnsp.counters;

@@ -24,6 +24,15 @@ static const double decided = 1e-8;
 /* Part of the way to the boundary that a step goes. */
 static const double boundary_part = 0.995;
 
+/* Of each pair. */
+struct of_pairs {
+    double *on, *off;      /* [n_pairs] weights */
+    double *s1, *s2;       /* [n_pairs] */
+    double *d1, *d2;       /* [n_pairs] their steps */
+    double *rest1, *rest2; /* [n_pairs] what their definitions are off by */
+    double *a, *b;         /* [n_pairs] row of a pair: a w + b lambda */
+};
+
 struct interior {
     struct dalcs_osnsp *p;
     enum dalcs_weights weights;
@@ -33,31 +42,27 @@ struct interior {
     int *start, *row;
     double *value;
     struct dalcs_lu lu;
-    double *on, *off;      /* [n_pairs] weights */
-    double *s1, *s2;       /* [n_pairs] */
-    double *d1, *d2;       /* [n_pairs] their steps */
-    double *rest1, *rest2; /* [n_pairs] what their definitions are off by */
-    double *a, *b;         /* [n_pairs] row of a pair: a w + b lambda */
-    double *y, *dy;        /* [n + n_pairs] balanced */
-    double *rest;          /* [n] of the equations */
+    struct of_pairs of;
+    double *y, *dy; /* [n + n_pairs] balanced */
+    double *rest;   /* [n] of the equations */
 };
 
 static void finish(struct interior *m) {
     dalcs_lu_finish(&m->lu);
-    dalcs_lu_drop(&m->kept, false, &m->p->klu);
+    dalcs_lu_drop(&m->kept, false, &m->p->cache.klu);
     if (m->symbolic != NULL) {
-        klu_free_symbolic(&m->symbolic, &m->p->klu);
+        klu_free_symbolic(&m->symbolic, &m->p->cache.klu);
     }
     free(m->start);
     free(m->row);
     free(m->value);
-    free(m->on);
+    free(m->of.on);
     free(m->y);
 }
 
 /* The pattern of K and its diagonal. */
 static void fill_pattern(struct interior *m) {
-    const struct dalcs_csr *K = &m->p->form[0]->K;
+    const struct dalcs_csr *K = &m->p->cache.form[0]->K;
     int out = 0;
     for (int c = 0; c < m->n + m->n_pairs; c++) {
         bool seen = false;
@@ -74,7 +79,7 @@ static void fill_pattern(struct interior *m) {
 
 static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
                                enum dalcs_weights weights) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     *m = (struct interior){.p = p, .weights = weights, .n = f->n, .n_pairs = f->n_pairs};
     size_t n_pairs = (size_t)f->n_pairs;
     size_t order = (size_t)(f->n + f->n_pairs);
@@ -82,26 +87,28 @@ static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
     m->start = dalcs_alloc(order + 1, sizeof(*m->start));
     m->row = dalcs_alloc(capacity, sizeof(*m->row));
     m->value = dalcs_alloc(capacity, sizeof(*m->value));
-    m->on = dalcs_alloc(10 * n_pairs, sizeof(double));
+    m->of.on = dalcs_alloc(10 * n_pairs, sizeof(double));
     m->y = dalcs_alloc(2 * order + (size_t)f->n, sizeof(double));
-    if (m->start == NULL || m->row == NULL || m->value == NULL || m->on == NULL || m->y == NULL) {
+    if (m->start == NULL || m->row == NULL || m->value == NULL || m->of.on == NULL ||
+        m->y == NULL) {
         finish(m);
         return DALCS_E_NOMEM;
     }
-    double **part[] = {&m->off, &m->s1, &m->s2, &m->d1, &m->d2, &m->rest1, &m->rest2, &m->a, &m->b};
+    double **part[] = {&m->of.off,   &m->of.s1,    &m->of.s2, &m->of.d1, &m->of.d2,
+                       &m->of.rest1, &m->of.rest2, &m->of.a,  &m->of.b};
     for (size_t k = 0; k < sizeof(part) / sizeof(*part); k++) {
-        *part[k] = m->on + (k + 1) * n_pairs;
+        *part[k] = m->of.on + (k + 1) * n_pairs;
     }
     m->dy = m->y + order;
     m->rest = m->dy + order;
     for (int d = 0; d < f->n_pairs; d++) {
-        dalcs_proximal_weights(p, d, weights, &m->on[d], &m->off[d]);
+        dalcs_proximal_weights(p, d, weights, &m->of.on[d], &m->of.off[d]);
     }
     fill_pattern(m);
-    dalcs_lu_keep_diagonal(&p->klu, true);
+    dalcs_lu_keep_diagonal(&p->cache.klu, true);
     enum dalcs_status status =
-        dalcs_lu_analyze(&m->symbolic, &p->klu, (int)order, m->start, m->row);
-    dalcs_lu_keep_diagonal(&p->klu, false);
+        dalcs_lu_analyze(&m->symbolic, &p->cache.klu, (int)order, m->start, m->row);
+    dalcs_lu_keep_diagonal(&p->cache.klu, false);
     if (status != DALCS_OK) {
         finish(m);
     }
@@ -109,20 +116,20 @@ static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
 }
 
 static bool is_diode(const struct interior *m, int d) {
-    return m->p->is_diode[d];
+    return m->p->lists.is_diode[d];
 }
 
 /* Factors the equations with the rows a w + b lambda of the pairs. */
 static enum dalcs_status factor(struct interior *m) {
-    const struct dalcs_csr *K = &m->p->form[0]->K;
+    const struct dalcs_csr *K = &m->p->cache.form[0]->K;
     double unknown_weight = dalcs_proximal_unknown_weight(m->p);
     for (int c = 0; c < m->n + m->n_pairs; c++) {
-        double diagonal = c < m->n ? unknown_weight : m->b[c - m->n];
+        double diagonal = c < m->n ? unknown_weight : m->of.b[c - m->n];
         int out = m->start[c];
         bool seen = false;
         for (int k = K->p[c]; k < K->p[c + 1]; k++) {
             int r = K->j[k];
-            double x = K->x[k] * (r < m->n ? 1.0 : m->a[r - m->n]);
+            double x = K->x[k] * (r < m->n ? 1.0 : m->of.a[r - m->n]);
             seen = seen || r == c;
             m->value[out++] = r == c ? x + diagonal : x;
         }
@@ -132,12 +139,12 @@ static enum dalcs_status factor(struct interior *m) {
     }
     dalcs_lu_finish(&m->lu);
     m->p->counters.factorizations++;
-    return dalcs_lu_factor_analyzed(&m->lu, &m->p->klu, m->symbolic, &m->kept, false, m->start,
-                                    m->row, m->value, 0.0);
+    return dalcs_lu_factor_analyzed(&m->lu, &m->p->cache.klu, m->symbolic, &m->kept, false,
+                                    m->start, m->row, m->value, 0.0);
 }
 
 static double voltage_of(const struct interior *m, int d, const double *y) {
-    const struct dalcs_csr *W = &m->p->form[0]->W;
+    const struct dalcs_csr *W = &m->p->cache.form[0]->W;
     double w = 0.0;
     for (int k = W->p[d]; k < W->p[d + 1]; k++) {
         w += W->x[k] * y[W->j[k]];
@@ -148,13 +155,13 @@ static double voltage_of(const struct interior *m, int d, const double *y) {
 /* What the equations and the definitions of s1 and s2 are off by; the largest over its terms. */
 static double find_rests(struct interior *m) {
     const struct dalcs_osnsp *p = m->p;
-    const struct dalcs_csr *K = &p->form[0]->K;
+    const struct dalcs_csr *K = &p->cache.form[0]->K;
     double unknown_weight = dalcs_proximal_unknown_weight(p);
     double size = 0.0;
     double worst = 0.0;
     for (int i = 0; i < m->n; i++) {
-        m->rest[i] = p->right[i] + unknown_weight * (p->centre[i] - m->y[i]);
-        size = fmax(size, fabs(p->right[i]));
+        m->rest[i] = p->work.right[i] + unknown_weight * (p->work.centre[i] - m->y[i]);
+        size = fmax(size, fabs(p->work.right[i]));
     }
     for (int c = 0; c < m->n + m->n_pairs; c++) {
         for (int k = K->p[c]; k < K->p[c + 1]; k++) {
@@ -168,13 +175,13 @@ static double find_rests(struct interior *m) {
         worst = fmax(worst, fabs(m->rest[i]));
     }
     for (int d = 0; d < m->n_pairs; d++) {
-        double w = voltage_of(m, d, m->y) - p->right[m->n + d];
+        double w = voltage_of(m, d, m->y) - p->work.right[m->n + d];
         double lambda = m->y[m->n + d];
-        m->rest1[d] = w + m->on[d] * (lambda - p->centre[m->n + d]) - m->s1[d];
-        m->rest2[d] = lambda + m->off[d] * (w - p->centre_w[d]) - m->s2[d];
+        m->of.rest1[d] = w + m->of.on[d] * (lambda - p->work.centre[m->n + d]) - m->of.s1[d];
+        m->of.rest2[d] = lambda + m->of.off[d] * (w - p->work.centre_w[d]) - m->of.s2[d];
         if (is_diode(m, d)) {
-            worst = fmax(worst, fmax(fabs(m->rest1[d]), fabs(m->rest2[d])));
-            size = fmax(size, fmax(m->s1[d], m->s2[d]));
+            worst = fmax(worst, fmax(fabs(m->of.rest1[d]), fabs(m->of.rest2[d])));
+            size = fmax(size, fmax(m->of.s1[d], m->of.s2[d]));
         }
     }
     return size > 0.0 ? worst / size : 0.0;
@@ -187,33 +194,33 @@ static void find_step(struct interior *m, double mu, bool corrects) {
     for (int d = 0; d < m->n_pairs; d++) {
         double *right = &m->dy[m->n + d];
         if (!is_diode(m, d)) {
-            *right = dalcs_osnsp_is_on(m->p, d) ? -m->rest1[d] : -m->rest2[d];
+            *right = dalcs_osnsp_is_on(m->p, d) ? -m->of.rest1[d] : -m->of.rest2[d];
             continue;
         }
-        double s1 = m->s1[d];
-        double s2 = m->s2[d];
-        double product = mu - s1 * s2 - (corrects ? m->d1[d] * m->d2[d] : 0.0);
-        *right = (product - s2 * m->rest1[d] - s1 * m->rest2[d]) / (s1 + s2);
+        double s1 = m->of.s1[d];
+        double s2 = m->of.s2[d];
+        double product = mu - s1 * s2 - (corrects ? m->of.d1[d] * m->of.d2[d] : 0.0);
+        *right = (product - s2 * m->of.rest1[d] - s1 * m->of.rest2[d]) / (s1 + s2);
     }
     dalcs_lu_solve(&m->lu, m->dy);
     for (int d = 0; d < m->n_pairs; d++) {
         double dw = voltage_of(m, d, m->dy);
         double dlambda = m->dy[m->n + d];
-        m->d1[d] = dw + m->on[d] * dlambda + m->rest1[d];
-        m->d2[d] = dlambda + m->off[d] * dw + m->rest2[d];
+        m->of.d1[d] = dw + m->of.on[d] * dlambda + m->of.rest1[d];
+        m->of.d2[d] = dlambda + m->of.off[d] * dw + m->of.rest2[d];
     }
 }
 
 static void set_rows(struct interior *m) {
     for (int d = 0; d < m->n_pairs; d++) {
         if (is_diode(m, d)) {
-            double sum = m->s1[d] + m->s2[d];
-            m->a[d] = (m->s2[d] + m->s1[d] * m->off[d]) / sum;
-            m->b[d] = (m->s1[d] + m->s2[d] * m->on[d]) / sum;
+            double sum = m->of.s1[d] + m->of.s2[d];
+            m->of.a[d] = (m->of.s2[d] + m->of.s1[d] * m->of.off[d]) / sum;
+            m->of.b[d] = (m->of.s1[d] + m->of.s2[d] * m->of.on[d]) / sum;
         } else {
             bool is_on = dalcs_osnsp_is_on(m->p, d);
-            m->a[d] = is_on ? 1.0 : m->off[d];
-            m->b[d] = is_on ? m->on[d] : 1.0;
+            m->of.a[d] = is_on ? 1.0 : m->of.off[d];
+            m->of.b[d] = is_on ? m->of.on[d] : 1.0;
         }
     }
 }
@@ -223,8 +230,8 @@ static double longest_step(const struct interior *m) {
     double longest = INFINITY;
     for (int d = 0; d < m->n_pairs; d++) {
         if (is_diode(m, d)) {
-            longest = m->d1[d] < 0.0 ? fmin(longest, -m->s1[d] / m->d1[d]) : longest;
-            longest = m->d2[d] < 0.0 ? fmin(longest, -m->s2[d] / m->d2[d]) : longest;
+            longest = m->of.d1[d] < 0.0 ? fmin(longest, -m->of.s1[d] / m->of.d1[d]) : longest;
+            longest = m->of.d2[d] < 0.0 ? fmin(longest, -m->of.s2[d] / m->of.d2[d]) : longest;
         }
     }
     return fmin(1.0, boundary_part * longest);
@@ -236,7 +243,7 @@ static double mean_product(const struct interior *m, double part) {
     int n = 0;
     for (int d = 0; d < m->n_pairs; d++) {
         if (is_diode(m, d)) {
-            sum += (m->s1[d] + part * m->d1[d]) * (m->s2[d] + part * m->d2[d]);
+            sum += (m->of.s1[d] + part * m->of.d1[d]) * (m->of.s2[d] + part * m->of.d2[d]);
             n++;
         }
     }
@@ -246,15 +253,15 @@ static double mean_product(const struct interior *m, double part) {
 /* Every diode a resistor first; from there s1 and s2 are shifted well inside (Mehrotra). */
 static enum dalcs_status find_start(struct interior *m) {
     for (int d = 0; d < m->n_pairs; d++) {
-        m->s1[d] = 1.0;
-        m->s2[d] = 1.0;
+        m->of.s1[d] = 1.0;
+        m->of.s2[d] = 1.0;
     }
     (void)find_rests(m);
     for (int d = 0; d < m->n_pairs; d++) {
-        m->rest1[d] += is_diode(m, d) ? 1.0 : 0.0;
-        m->rest2[d] += is_diode(m, d) ? 1.0 : 0.0;
-        m->s1[d] = is_diode(m, d) ? 0.5 : 0.0;
-        m->s2[d] = is_diode(m, d) ? 0.5 : 0.0;
+        m->of.rest1[d] += is_diode(m, d) ? 1.0 : 0.0;
+        m->of.rest2[d] += is_diode(m, d) ? 1.0 : 0.0;
+        m->of.s1[d] = is_diode(m, d) ? 0.5 : 0.0;
+        m->of.s2[d] = is_diode(m, d) ? 0.5 : 0.0;
     }
     set_rows(m);
     DALCS_TRY(factor(m));
@@ -264,21 +271,21 @@ static enum dalcs_status find_start(struct interior *m) {
         m->y[i] += m->dy[i];
     }
     for (int d = 0; d < m->n_pairs; d++) {
-        least1 = fmin(least1, m->d1[d]);
-        least2 = fmin(least2, m->d2[d]);
+        least1 = fmin(least1, m->of.d1[d]);
+        least2 = fmin(least2, m->of.d2[d]);
     }
     for (int d = 0; d < m->n_pairs; d++) {
-        m->s1[d] = m->d1[d] - 1.5 * least1;
-        m->s2[d] = m->d2[d] - 1.5 * least2;
-        sum1 += m->s1[d];
-        sum2 += m->s2[d];
-        product += m->s1[d] * m->s2[d];
+        m->of.s1[d] = m->of.d1[d] - 1.5 * least1;
+        m->of.s2[d] = m->of.d2[d] - 1.5 * least2;
+        sum1 += m->of.s1[d];
+        sum2 += m->of.s2[d];
+        product += m->of.s1[d] * m->of.s2[d];
     }
     double shift1 = sum2 > 0.0 ? 0.5 * product / sum2 : 0.0;
     double shift2 = sum1 > 0.0 ? 0.5 * product / sum1 : 0.0;
     for (int d = 0; d < m->n_pairs; d++) {
-        m->s1[d] += shift1 > 0.0 ? shift1 : 1.0;
-        m->s2[d] += shift2 > 0.0 ? shift2 : 1.0;
+        m->of.s1[d] += shift1 > 0.0 ? shift1 : 1.0;
+        m->of.s2[d] += shift2 > 0.0 ? shift2 : 1.0;
     }
     return DALCS_OK;
 }
@@ -286,15 +293,16 @@ static enum dalcs_status find_start(struct interior *m) {
 static bool all_decided(const struct interior *m) {
     bool all = true;
     for (int d = 0; d < m->n_pairs && all; d++) {
-        all = !is_diode(m, d) || fmin(m->s1[d], m->s2[d]) < decided * fmax(m->s1[d], m->s2[d]);
+        all = !is_diode(m, d) ||
+              fmin(m->of.s1[d], m->of.s2[d]) < decided * fmax(m->of.s1[d], m->of.s2[d]);
     }
     return all;
 }
 
 static enum dalcs_status follow_path(struct interior *m) {
     DALCS_TRY(find_start(m));
-    memset(m->d1, 0, (size_t)m->n_pairs * sizeof(double));
-    memset(m->d2, 0, (size_t)m->n_pairs * sizeof(double));
+    memset(m->of.d1, 0, (size_t)m->n_pairs * sizeof(double));
+    memset(m->of.d2, 0, (size_t)m->n_pairs * sizeof(double));
     double mu = mean_product(m, 0.0);
     int stuck = 0;
     for (int step = 0; step < MOST_STEPS && mu > 0.0 && stuck < STUCK; step++) {
@@ -311,10 +319,10 @@ static enum dalcs_status follow_path(struct interior *m) {
             m->y[i] += part * m->dy[i];
         }
         for (int d = 0; d < m->n_pairs; d++) {
-            m->s1[d] += part * m->d1[d];
-            m->s2[d] += part * m->d2[d];
-            m->d1[d] = 0.0;
-            m->d2[d] = 0.0;
+            m->of.s1[d] += part * m->of.d1[d];
+            m->of.s2[d] += part * m->of.d2[d];
+            m->of.d1[d] = 0.0;
+            m->of.d2[d] = 0.0;
         }
         double before = mu;
         mu = mean_product(m, 0.0);
@@ -329,7 +337,7 @@ enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, enum dalcs_weights 
     enum dalcs_status status = follow_path(&m);
     for (int d = 0; d < m.n_pairs && status == DALCS_OK; d++) {
         if (is_diode(&m, d)) {
-            dalcs_osnsp_command(p, d, m.s2[d] > m.s1[d]);
+            dalcs_osnsp_command(p, d, m.of.s2[d] > m.of.s1[d]);
         }
     }
     finish(&m);

@@ -1,8 +1,4 @@
-/* mode_cache.c - factors by (mode, sigma), bounded in bytes, least recently used out first.
- *
- * Each mode has its own compressed matrix and its own analysis: diodes that block have no unknown,
- * and a pattern shared by all modes would cost several times the fill. */
-#include "null_space.h"
+/* mode_cache.c - factors by (mode, sigma), bounded in bytes, least recently used out first. */
 #include "osnsp_internal.h"
 
 #include <stdlib.h>
@@ -12,17 +8,17 @@
 enum { MAX_FORMS = 32 };
 
 static void unlink_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    *(e->newer != NULL ? &e->newer->older : &p->newest) = e->older;
-    *(e->older != NULL ? &e->older->newer : &p->oldest) = e->newer;
+    *(e->newer != NULL ? &e->newer->older : &p->cache.newest) = e->older;
+    *(e->older != NULL ? &e->older->newer : &p->cache.oldest) = e->newer;
     e->newer = NULL;
     e->older = NULL;
 }
 
 static void link_newest(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    e->older = p->newest;
+    e->older = p->cache.newest;
     e->newer = NULL;
-    *(p->newest != NULL ? &p->newest->newer : &p->oldest) = e;
-    p->newest = e;
+    *(p->cache.newest != NULL ? &p->cache.newest->newer : &p->cache.oldest) = e;
+    p->cache.newest = e;
 }
 
 static void entry_destroy(struct dalcs_mode_entry *e) {
@@ -37,9 +33,9 @@ static void entry_destroy(struct dalcs_mode_entry *e) {
 }
 
 static void remove_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    HASH_DELETE(hh, p->entries, e);
+    HASH_DELETE(hh, p->cache.entries, e);
     unlink_entry(p, e);
-    p->entry_bytes -= e->bytes;
+    p->cache.entry_bytes -= e->bytes;
     entry_destroy(e);
 }
 
@@ -47,40 +43,40 @@ static void remove_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
 enum { MIN_ENTRIES = 4 };
 
 static void make_room(struct dalcs_osnsp *p, const struct dalcs_mode_entry *keep) {
-    while (p->entry_bytes > p->options.cache_bytes && HASH_COUNT(p->entries) > MIN_ENTRIES &&
-           p->oldest != keep) {
-        remove_entry(p, p->oldest);
+    while (p->cache.entry_bytes > p->options.cache_bytes &&
+           HASH_COUNT(p->cache.entries) > MIN_ENTRIES && p->cache.oldest != keep) {
+        remove_entry(p, p->cache.oldest);
     }
 }
 
 void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, size_t bytes) {
     entry->bytes += bytes;
-    p->entry_bytes += bytes;
+    p->cache.entry_bytes += bytes;
     make_room(p, entry);
 }
 
 static void remove_form(struct dalcs_osnsp *p, int k) {
-    for (struct dalcs_mode_entry *e = p->newest; e != NULL;) {
+    for (struct dalcs_mode_entry *e = p->cache.newest; e != NULL;) {
         struct dalcs_mode_entry *next = e->older;
-        if ((uint32_t)(e->key[p->n_words] >> 8) == p->form_id[k]) {
+        if ((uint32_t)(e->key[p->n_words] >> 8) == p->cache.form_id[k]) {
             remove_entry(p, e);
         }
         e = next;
     }
-    dalcs_step_form_finish(p->form[k]);
-    free(p->form[k]);
+    dalcs_step_form_finish(p->cache.form[k]);
+    free(p->cache.form[k]);
 }
 
 enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) {
     int k = 0;
-    while (k < p->n_forms && p->form[k]->sigma != sigma) {
+    while (k < p->cache.n_forms && p->cache.form[k]->sigma != sigma) {
         k++;
     }
     struct dalcs_step_form *form;
     uint32_t id;
-    if (k < p->n_forms) {
-        form = p->form[k];
-        id = p->form_id[k];
+    if (k < p->cache.n_forms) {
+        form = p->cache.form[k];
+        id = p->cache.form_id[k];
     } else {
         form = dalcs_alloc(1, sizeof(*form));
         if (form == NULL) {
@@ -91,213 +87,20 @@ enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) {
             free(form);
             return status;
         }
-        id = p->next_form_id++;
-        if (p->n_forms == MAX_FORMS) {
-            remove_form(p, --p->n_forms);
+        id = p->cache.next_form_id++;
+        if (p->cache.n_forms == MAX_FORMS) {
+            remove_form(p, --p->cache.n_forms);
         }
-        k = p->n_forms++;
+        k = p->cache.n_forms++;
     }
-    memmove(p->form + 1, p->form, (size_t)k * sizeof(*p->form));
-    memmove(p->form_id + 1, p->form_id, (size_t)k * sizeof(*p->form_id));
-    p->form[0] = form;
-    p->form_id[0] = id;
+    memmove(p->cache.form + 1, p->cache.form, (size_t)k * sizeof(*p->cache.form));
+    memmove(p->cache.form_id + 1, p->cache.form_id, (size_t)k * sizeof(*p->cache.form_id));
+    p->cache.form[0] = form;
+    p->cache.form_id[0] = id;
     return DALCS_OK;
 }
 
-/* Where the equations and pairs of the form are in the mode's matrix; -1: nowhere. */
-static void find_slots(const struct dalcs_step_form *f, const struct dalcs_mode_entry *e,
-                       int *slot) {
-    for (int i = 0; i < f->n; i++) {
-        slot[i] = i;
-    }
-    for (int d = 0; d < f->n_pairs; d++) {
-        slot[f->n + d] = -1;
-    }
-    for (int k = 0; k < e->n_on; k++) {
-        slot[f->n + e->on[k]] = f->n + k;
-    }
-}
-
-/* The other way round. */
-static int index_of_slot(const struct dalcs_step_form *f, const struct dalcs_mode_entry *e,
-                         int slot) {
-    return slot < f->n ? slot : f->n + e->on[slot - f->n];
-}
-
-enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n, size_t n_entries) {
-    size_t n_starts = (size_t)n + 1;
-    *a = (struct dalcs_columns){.n = n};
-    a->x = malloc(n_entries * (sizeof(*a->x) + sizeof(*a->i)) + n_starts * sizeof(*a->p));
-    if (a->x == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    a->p = (void *)(a->x + n_entries);
-    a->i = a->p + n_starts;
-    a->p[0] = 0;
-    return DALCS_OK;
-}
-
-/* The plain matrix of the entry's mode in p->form[0]: equations and the w rows of closed pairs. */
-static enum dalcs_status fill_plain_matrix(const struct dalcs_osnsp *p,
-                                           const struct dalcs_mode_entry *e,
-                                           struct dalcs_columns *a) {
-    const struct dalcs_step_form *f = p->form[0];
-    *a = (struct dalcs_columns){.n = f->n + e->n_on};
-    int *slot = dalcs_alloc((size_t)(f->n + f->n_pairs), sizeof(*slot));
-    if (slot == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    find_slots(f, e, slot);
-    size_t n_entries = 0;
-    for (int c = 0; c < f->n + f->n_pairs; c++) {
-        n_entries += slot[c] >= 0 ? (size_t)(f->K.p[c + 1] - f->K.p[c]) : 0;
-    }
-    enum dalcs_status status = dalcs_columns_alloc(a, a->n, n_entries);
-    if (status != DALCS_OK) {
-        free(slot);
-        return status;
-    }
-    int out = 0;
-    for (int c = 0; c < f->n + f->n_pairs; c++) {
-        if (slot[c] < 0) {
-            continue;
-        }
-        for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
-            if (slot[f->K.j[k]] >= 0) {
-                a->i[out] = slot[f->K.j[k]];
-                a->x[out++] = f->K.x[k];
-            }
-        }
-        a->p[slot[c] + 1] = out;
-    }
-    free(slot);
-    return DALCS_OK;
-}
-
-void dalcs_columns_finish(struct dalcs_columns *a) {
-    free(a->x);
-    *a = (struct dalcs_columns){0};
-}
-
-/* Where the rows and unknowns of the factors are in R and in y, so that a step needs no copies. */
-static enum dalcs_status order_rows(const struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    const struct dalcs_step_form *f = p->form[0];
-    size_t order = (size_t)e->lu.n;
-    e->scale_of = dalcs_alloc(order, sizeof(*e->scale_of) + 2 * sizeof(*e->row_of));
-    if (e->scale_of == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    e->row_of = (void *)(e->scale_of + order);
-    e->column_of = e->row_of + order;
-    int n_equations = dalcs_system_n_equations(p->system);
-    for (int i = 0; i < e->lu.n; i++) {
-        int unknown = e->lu.to[i];
-        int reduced = index_of_slot(f, e, unknown);
-        e->row_of[i] = index_of_slot(f, e, e->lu.from[i]);
-        e->column_of[i] = unknown < f->n ? f->column_of[unknown] : n_equations + reduced - f->n;
-        e->scale_of[i] = f->scale[reduced];
-    }
-    return DALCS_OK;
-}
-
-/* A new mode differs from an earlier one in a few diodes, and so do the rows that can stand on the
- * diagonal. Small modes do without: there the search costs next to nothing. */
-enum { LARGE_MODE = 128 };
-
-/* Where nothing else finds an answer only the null space says which mode is singular. */
-static double least_rcond(const struct dalcs_osnsp *p) {
-    return p->insists ? 0.0 : p->options.rcond_min;
-}
-
-static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
-                                      struct dalcs_columns *a) {
-    const struct dalcs_step_form *f = p->form[0];
-    int n_all = f->n + f->n_pairs;
-    if (p->n_matched != n_all) { /* the forms of other sigma may be condensed otherwise */
-        int *rows = realloc(p->matched_row, (size_t)n_all * sizeof(*rows));
-        if (rows == NULL) {
-            return DALCS_E_NOMEM;
-        }
-        memset(rows, -1, (size_t)n_all * sizeof(*rows));
-        p->matched_row = rows;
-        p->n_matched = n_all;
-    }
-    int *slot = dalcs_alloc((size_t)n_all, sizeof(*slot));
-    int *row_of_column = dalcs_alloc((size_t)a->n, sizeof(*row_of_column));
-    enum dalcs_status status = slot != NULL && row_of_column != NULL ? DALCS_OK : DALCS_E_NOMEM;
-    if (status == DALCS_OK) {
-        find_slots(f, e, slot);
-        for (int c = 0; c < a->n; c++) {
-            int row = p->matched_row[index_of_slot(f, e, c)];
-            row_of_column[c] = row >= 0 ? slot[row] : -1;
-        }
-        status =
-            dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, row_of_column, least_rcond(p));
-        for (int c = 0; c < a->n; c++) {
-            int row = row_of_column[c];
-            p->matched_row[index_of_slot(f, e, c)] = row >= 0 ? index_of_slot(f, e, row) : -1;
-        }
-    }
-    free(slot);
-    free(row_of_column);
-    return status;
-}
-
-enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
-                                           const int *start, const int *row, const double *value,
-                                           double apart) {
-    return p->is_passing && n <= DALCS_LU_SMALL
-               ? dalcs_lu_factor_small(lu, n, start, row, value, apart)
-               : DALCS_SINGULAR;
-}
-
-static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
-                                struct dalcs_columns *a) {
-    if (a->n >= LARGE_MODE) {
-        return factor_large(p, e, a);
-    }
-    enum dalcs_status status =
-        dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, dalcs_far_apart);
-    return status > DALCS_OK ? dalcs_lu_factor_again(&e->lu, &p->patterns, &p->klu, a->n, a->p,
-                                                     a->i, a->x, least_rcond(p))
-                             : status;
-}
-
-/* Is the least pivot no more than rounding of what was subtracted in it? Columns far apart make the estimate of the
- * condition small as well, and the pivot of an island of 1 ohm that only 100 Mohm tie to nothing is 1e-8 of its column. */
-static enum dalcs_status look_for_rounding(const struct dalcs_columns *a) {
-    struct dalcs_triplets t = {0};
-    struct dalcs_null_space space;
-    enum dalcs_status status = DALCS_OK;
-    for (int c = 0; c < a->n; c++) {
-        for (int k = a->p[c]; k < a->p[c + 1] && status == DALCS_OK; k++) {
-            status = dalcs_triplets_add(&t, a->i[k], c, a->x[k]);
-        }
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_null_space_find(&space, a->n, a->n, &t);
-    }
-    dalcs_triplets_finish(&t);
-    if (status == DALCS_OK) {
-        status = space.n_free > 0 ? DALCS_SINGULAR : DALCS_OK;
-        dalcs_null_space_finish(&space);
-    }
-    return status;
-}
-
-static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    struct dalcs_columns a;
-    DALCS_TRY(fill_plain_matrix(p, e, &a));
-    p->klu.rcond = 1.0; /* what small ones without KLU tell */
-    enum dalcs_status status = factor(p, e, &a);
-    if (status == DALCS_OK && p->klu.rcond < p->options.rcond_min) {
-        status = look_for_rounding(&a);
-    }
-    dalcs_columns_finish(&a);
-    return status == DALCS_OK ? order_rows(p, e) : status;
-}
-
-/* Of p->key and p->mode, without factors; its key and list are behind it. */
+/* Of p->work.key and p->mode, without factors; its key and list are behind it. */
 static struct dalcs_mode_entry *entry_alloc(const struct dalcs_osnsp *p) {
     int n_pairs = p->system->n_pairs;
     int n_on = 0;
@@ -313,7 +116,7 @@ static struct dalcs_mode_entry *entry_alloc(const struct dalcs_osnsp *p) {
     }
     e->bytes = bytes;
     e->key = (void *)(e + 1);
-    memcpy(e->key, p->key, key_bytes);
+    memcpy(e->key, p->work.key, key_bytes);
     e->on = (void *)(e->key + p->n_words + 1);
     for (int d = 0; d < n_pairs; d++) {
         if (dalcs_osnsp_is_on(p, d)) {
@@ -331,8 +134,8 @@ static enum dalcs_status entry_create(struct dalcs_osnsp *p, int kind,
         return DALCS_E_NOMEM;
     }
     p->counters.factorizations++;
-    enum dalcs_status status =
-        kind == DALCS_PLAIN ? factor_plain(p, e) : dalcs_proximal_factor(p, e, kind - 1);
+    enum dalcs_status status = kind == DALCS_PLAIN ? dalcs_modes_factor_plain(p, e)
+                                                   : dalcs_proximal_factor(p, e, kind - 1);
     if (status == DALCS_SINGULAR) {
         e->singular = true;
         status = DALCS_OK;
@@ -357,30 +160,31 @@ static bool is_key(const uint64_t *key, const uint64_t *mode, size_t words, uint
 enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
                                   struct dalcs_mode_entry **entry) {
     size_t words = (size_t)p->n_words;
-    uint64_t last_word = (uint64_t)p->form_id[0] << 8 | (uint64_t)p->insists << 7 | (uint64_t)kind;
-    if (p->newest != NULL && is_key(p->newest->key, p->mode, words, last_word)) {
-        *entry = p->newest; /* as in most steps */
+    uint64_t last_word =
+        (uint64_t)p->cache.form_id[0] << 8 | (uint64_t)p->asks.insists << 7 | (uint64_t)kind;
+    if (p->cache.newest != NULL && is_key(p->cache.newest->key, p->mode, words, last_word)) {
+        *entry = p->cache.newest; /* as in most steps */
         p->counters.cache_hits++;
         return DALCS_OK;
     }
-    memcpy(p->key, p->mode, words * sizeof(*p->key));
-    p->key[words] = last_word;
-    size_t key_bytes = (words + 1) * sizeof(*p->key);
+    memcpy(p->work.key, p->mode, words * sizeof(*p->work.key));
+    p->work.key[words] = last_word;
+    size_t key_bytes = (words + 1) * sizeof(*p->work.key);
     struct dalcs_mode_entry *e;
-    HASH_FIND(hh, p->entries, p->key, key_bytes, e);
+    HASH_FIND(hh, p->cache.entries, p->work.key, key_bytes, e);
     if (e != NULL) {
         p->counters.cache_hits++;
         unlink_entry(p, e);
         link_newest(p, e);
     } else {
         DALCS_TRY(entry_create(p, kind, &e));
-        HASH_ADD_KEYPTR(hh, p->entries, e->key, key_bytes, e);
+        HASH_ADD_KEYPTR(hh, p->cache.entries, e->key, key_bytes, e);
         if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
             entry_destroy(e);
             return DALCS_E_NOMEM;
         }
         link_newest(p, e);
-        p->entry_bytes += e->bytes;
+        p->cache.entry_bytes += e->bytes;
         make_room(p, e);
     }
     *entry = e;
@@ -388,16 +192,16 @@ enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
 }
 
 void dalcs_modes_finish(struct dalcs_osnsp *p) {
-    while (p->oldest != NULL) {
-        remove_entry(p, p->oldest);
+    while (p->cache.oldest != NULL) {
+        remove_entry(p, p->cache.oldest);
     }
-    for (int k = 0; k < p->n_forms; k++) {
-        dalcs_step_form_finish(p->form[k]);
-        free(p->form[k]);
+    for (int k = 0; k < p->cache.n_forms; k++) {
+        dalcs_step_form_finish(p->cache.form[k]);
+        free(p->cache.form[k]);
     }
-    p->n_forms = 0;
-    dalcs_lu_patterns_finish(&p->patterns, &p->klu);
-    free(p->matched_row);
-    p->matched_row = NULL;
-    p->n_matched = 0;
+    p->cache.n_forms = 0;
+    dalcs_lu_patterns_finish(&p->cache.patterns, &p->cache.klu);
+    free(p->cache.matched_row);
+    p->cache.matched_row = NULL;
+    p->cache.n_matched = 0;
 }

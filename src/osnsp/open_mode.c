@@ -28,14 +28,14 @@ struct open_mode {
 static void look_at_parts(const struct open_mode *m, const double *y, bool is_answer,
                           double *part) {
     const struct dalcs_system *s = m->p->system;
-    double root = sqrt(m->p->form[0]->pair_conductance);
+    double root = sqrt(m->p->cache.form[0]->pair_conductance);
     for (int d = 0; d < s->n_pairs; d++) {
         double lambda = y[m->n_columns - m->n_pairs + (size_t)d];
         double w = is_answer ? m->p->w[d] : dalcs_csr_row_dot(&s->C, d, y);
         part[d] = dalcs_osnsp_is_on(m->p, d) ? lambda / root : w * root;
     }
-    for (int k = 0; k < m->p->n_references; k++) {
-        part[s->n_pairs + k] = y[m->p->reference[k]] / root;
+    for (int k = 0; k < m->p->lists.n_references; k++) {
+        part[s->n_pairs + k] = y[m->p->lists.reference[k]] / root;
     }
 }
 
@@ -55,7 +55,7 @@ static void add(double *a, double factor, const double *b, size_t n) {
 
 /* The largest element of a direction, in the same units: what its parts are known by. */
 static double size_of(const struct open_mode *m, const double *direction) {
-    double root = sqrt(m->p->form[0]->pair_conductance);
+    double root = sqrt(m->p->cache.form[0]->pair_conductance);
     double largest = 0.0;
     for (size_t c = 0; c < m->n_columns; c++) {
         double size = fabs(direction[c]);
@@ -90,7 +90,7 @@ static void find_directions(struct open_mode *m) {
 /* How wrong a part is: a negative sign, or any current of a reference. */
 static double wrong_by(const struct open_mode *m, size_t part) {
     double sign = m->sign[part];
-    return part >= m->n_pairs ? fabs(sign) : m->p->is_diode[part] ? -sign : 0.0;
+    return part >= m->n_pairs ? fabs(sign) : m->p->lists.is_diode[part] ? -sign : 0.0;
 }
 
 /* Least |t| with V t >= -b: of |E q - f| with E = (V'; -b') and f = (0, ..., 0, 1), q >= 0, free for what must be 0, the
@@ -105,7 +105,7 @@ static enum dalcs_status move(struct open_mode *m, double *y) {
         unit = fmax(unit, wrong_by(m, i));
     }
     for (size_t i = 0; i < m->n_parts && unit > 0.0; i++) {
-        if (i < m->n_pairs && !m->p->is_diode[i]) {
+        if (i < m->n_pairs && !m->p->lists.is_diode[i]) {
             continue;
         }
         double *column = least.a + (size_t)n * (size_t)least.m;
@@ -131,7 +131,7 @@ static enum dalcs_status allocate(struct open_mode *m) {
     size_t n_choices = (size_t)m->whole->n_choices;
     m->n_columns = (size_t)dalcs_system_n_columns(m->p->system);
     m->n_pairs = (size_t)m->p->system->n_pairs;
-    m->n_parts = m->n_pairs + (size_t)m->p->n_references;
+    m->n_parts = m->n_pairs + (size_t)m->p->lists.n_references;
     m->direction = dalcs_arena_alloc(&m->arena, n_choices * m->n_columns, sizeof(double));
     m->part = dalcs_arena_alloc(&m->arena, n_choices * m->n_parts, sizeof(double));
     m->sign = dalcs_arena_alloc(&m->arena, m->n_parts, sizeof(double));

@@ -65,36 +65,11 @@ struct dalcs_mode_entry;
 struct dalcs_ordered_blocks;
 struct dalcs_smooth_newton;
 
-struct dalcs_osnsp {
-    const struct dalcs_system *system;
-    struct dalcs_osnsp_options options;
-    struct dalcs_partition partition;
-    struct dalcs_ordered_blocks
-        *blocks; /* of this partition; NULL: not asked for yet, or there is one block */
-    struct dalcs_smooth_newton *newton; /* NULL: the system has no smooth sources (smooth.c) */
-    double *given;                      /* [n_x + n_inputs] inputs with their values */
-    int n_tangents;                     /* times that their lines in the equations were changed */
+/* Condensed forms by sigma, and factors by (mode, sigma). */
+struct dalcs_mode_cache {
     klu_common klu;
     struct dalcs_lu_patterns patterns; /* of modes */
-    int n_words;
-    uint64_t *mode; /* [n_words] bit d: w_d = 0 */
-    double *w;      /* [n_pairs] of the last answer */
-    struct dalcs_certificate certificate;
-    struct dalcs_osnsp_counters counters;
-    struct dalcs_witness witness;
-    struct dalcs_witness
-        weighed;     /* of a system that is not passive: by verified weights, 0 names without any */
-    bool least_norm; /* the last answer is the least-norm one of several */
-    bool insists; /* while modes of small pivots are tried, too: nothing else has found an answer */
-    bool refines; /* set by the caller: each answer of a regular mode is refined once, for small
-                        currents next to large ones, which the certificate lets be off */
-    bool
-        is_passing; /* set by the caller: forms and modes serve a problem or two, so that small ones are factored
-                        in the least time; steps of implicit Euler go on with the digits of KLU's order */
-    bool
-        keeps_states; /* states that more than voltages of nodes gives are as in the answer, not recovered */
-
-    struct dalcs_step_form **form; /* most recently used first */
+    struct dalcs_step_form **form;     /* most recently used first */
     int n_forms;
     uint32_t *form_id; /* [n_forms] */
     uint32_t next_form_id;
@@ -105,12 +80,14 @@ struct dalcs_osnsp {
         matched_row; /* [n_matched] of the columns (equations, pairs) in the large modes so far, or -1;
                          NULL without any */
     int n_matched;
+};
 
+/* What is listed of the system once. */
+struct dalcs_osnsp_lists {
     int *pair_rows_p, *pair_rows; /* rows of A that hold lambda_d */
     int n_references;             /* columns that must vanish, and their rows */
     int *reference, *reference_row;
-    double *difference; /* [n_x + n_columns + n_inputs] (sigma (x+ - x_k), y, s) being checked */
-    int n_runs;         /* columns of one unit side by side */
+    int n_runs; /* columns of one unit side by side */
 
     struct dalcs_unit_run {
         int begin, end;
@@ -127,24 +104,77 @@ struct dalcs_osnsp {
 
     bool *is_diode; /* [n_pairs] */
     int *w_ends;    /* [n_pairs][2] columns whose difference is w; -1 where w is more than that */
+};
+
+/* Of the answer that was evaluated last. */
+struct dalcs_osnsp_signs {
     int *violating; /* [n_pairs] */
     int n_violating;
-    bool *tied; /* [n_pairs] diodes with lambda = 0 = w, up to rounding, in the last evaluation */
+    bool *tied; /* [n_pairs] diodes with lambda = 0 = w, up to rounding */
     int n_tied;
-    uint64_t *tied_mode;            /* [n_words] */
-    double *tied_answer;            /* [n_columns] */
-    double *mapped;                 /* [n + n_pairs, padded to 8] what a map gave */
-    double *right;                  /* [n + n_pairs] scaled R u */
-    double *scaled;                 /* [n + n_pairs] scaled y */
-    double *rhs;                    /* [n + n_pairs] in mode order */
-    double *residual;               /* [n + n_pairs] of the condensed rows, scaled */
-    double *centre;                 /* [n + n_pairs] proximal centre, scaled */
-    double *centre_w;               /* [n_pairs] */
+};
+
+/* How answers are looked for; all but the first are set by the caller. */
+struct dalcs_osnsp_asks {
+    bool insists; /* modes of small pivots are tried, too: nothing else has found an answer */
+    bool
+        refines; /* each answer of a regular mode is refined once, for small currents next to large ones, which the
+                     certificate lets be off */
+    bool
+        is_passing; /* forms and modes serve a problem or two, so that small ones are factored in the least time; steps
+                        of implicit Euler go on with the digits of KLU's order */
+    bool
+        keeps_states; /* states that more than voltages of nodes gives are as in the answer, not recovered */
+};
+
+/* smooth.c */
+struct dalcs_osnsp_smooth {
+    struct dalcs_smooth_newton *newton; /* NULL: the system has no smooth sources */
+    double *given;                      /* [n_x + n_inputs] inputs with their values */
+    int n_tangents;                     /* times that their lines in the equations were changed */
+};
+
+/* What has no meaning between two problems. */
+struct dalcs_osnsp_work {
+    double *difference;  /* [n_x + n_columns + n_inputs] (sigma (x+ - x_k), y, s) being checked */
+    uint64_t *tied_mode; /* [n_words] */
+    double *tied_answer; /* [n_columns] */
+    double *mapped;      /* [n + n_pairs, padded to 8] what a map gave */
+    double *right;       /* [n + n_pairs] scaled R u */
+    double *scaled;      /* [n + n_pairs] scaled y */
+    double *rhs;         /* [n + n_pairs] in mode order */
+    double *residual;    /* [n + n_pairs] of the condensed rows, scaled */
+    double *centre;      /* [n + n_pairs] proximal centre, scaled */
+    double *centre_w;    /* [n_pairs] */
     double *step_before, *step_now; /* [n + 2 n_pairs] displacements of the proximal iteration */
     uint64_t *key;                  /* [n_words + 1] */
     uint64_t *regularised_mode;     /* [n_words] where the proximal method stands */
     uint64_t *met_mode;             /* [n_words] one that single pivots passed */
-    struct dalcs_arena arena;       /* what has the same size during the run */
+};
+
+struct dalcs_osnsp {
+    const struct dalcs_system *system;
+    struct dalcs_osnsp_options options;
+    struct dalcs_partition partition;
+    struct dalcs_ordered_blocks
+        *blocks; /* of this partition; NULL: not asked for yet, or there is one block */
+    struct dalcs_osnsp_smooth smooth;
+    int n_words;
+    uint64_t *mode; /* [n_words] bit d: w_d = 0 */
+    double *w;      /* [n_pairs] of the last answer */
+    struct dalcs_certificate certificate;
+    struct dalcs_osnsp_counters counters;
+    struct dalcs_witness witness;
+    struct dalcs_witness
+        weighed;     /* of a system that is not passive: by verified weights, 0 names without any */
+    bool least_norm; /* the last answer is the least-norm one of several */
+
+    struct dalcs_osnsp_asks asks;
+    struct dalcs_osnsp_signs signs;
+    struct dalcs_mode_cache cache;
+    struct dalcs_osnsp_lists lists;
+    struct dalcs_osnsp_work work;
+    struct dalcs_arena arena; /* what has the same size during the run */
 };
 
 /* Allocates everything; the system must outlive it. On failure *p is zeroed. */
@@ -163,7 +193,7 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
  * more than this factor from what it is: then all that was factored is forgotten. */
 bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, double factor);
 
-/* After an answer y to u that may be one of several: p->tied becomes all diodes whose current and
+/* After an answer y to u that may be one of several: p->signs.tied becomes all diodes whose current and
  * voltage no more than rounding tells from 0, and scale the size of what rounding is measured by (V, A).
  * The certificate is stricter: it asks by how much a pivot's sign may be wrong. */
 void dalcs_osnsp_find_ties(struct dalcs_osnsp *p, const double *u, const double *y,
@@ -185,12 +215,12 @@ bool dalcs_osnsp_acts_on_what_it_reads(const struct dalcs_osnsp *p, const char *
 
 /* Is it known of the circuit that no answer of it is one of several, whatever is tied? */
 static inline bool dalcs_osnsp_is_unique(const struct dalcs_osnsp *p) {
-    return p->n_forms > 0 && p->form[0]->answers == DALCS_UNIQUE;
+    return p->cache.n_forms > 0 && p->cache.form[0]->answers == DALCS_UNIQUE;
 }
 
 /* May the last answer be one of several? Costs nothing where it is not. */
 static inline bool dalcs_osnsp_is_open(const struct dalcs_osnsp *p) {
-    return p->least_norm || (p->n_tied > 0 && !dalcs_osnsp_is_unique(p));
+    return p->least_norm || (p->signs.n_tied > 0 && !dalcs_osnsp_is_unique(p));
 }
 
 static inline bool dalcs_osnsp_is_on(const struct dalcs_osnsp *p, int pair) {

@@ -39,19 +39,24 @@ struct dalcs_mode_entry {
 
 /* ---- mode_cache.c -------------------------------------------------------------------------- */
 
-/* The form of sigma, condensed now if it is new; it becomes p->form[0]. */
+/* The form of sigma, condensed now if it is new; it becomes p->cache.form[0]. */
 enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) DALCS_MUST_CHECK;
 
-/* The entry of (p->mode, p->form[0], kind), factored now if it is new; entry->singular is no
+/* The entry of (p->mode, p->cache.form[0], kind), factored now if it is new; entry->singular is no
  * failure. Older entries make room, never this one. */
 enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
                                   struct dalcs_mode_entry **entry) DALCS_MUST_CHECK;
 
-/* Factors of a small matrix by columns of which little will be asked. DALCS_SINGULAR: it is not small, or more has to be
- * known of it than plain elimination tells. */
-enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
-                                           const int *start, const int *row, const double *value,
-                                           double apart);
+/* Counts the bytes of a map that was just added to the entry. */
+void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, size_t bytes);
+
+void dalcs_modes_finish(struct dalcs_osnsp *p);
+
+/* ---- mode_factors.c ------------------------------------------------------------------------ */
+
+/* Of p->mode in p->cache.form[0], into the entry. */
+enum dalcs_status dalcs_modes_factor_plain(struct dalcs_osnsp *p,
+                                           struct dalcs_mode_entry *entry) DALCS_MUST_CHECK;
 
 /* Pivots of a mode that is not clearly regular. */
 static const double dalcs_far_apart = 1e-6;
@@ -69,10 +74,11 @@ enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n,
 
 void dalcs_columns_finish(struct dalcs_columns *a);
 
-/* Counts the bytes of a map that was just added to the entry. */
-void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, size_t bytes);
-
-void dalcs_modes_finish(struct dalcs_osnsp *p);
+/* Factors of a small matrix by columns of which little will be asked. DALCS_SINGULAR: it is not small, or more has to be
+ * known of it than plain elimination tells. */
+enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu,
+                                           const struct dalcs_columns *a,
+                                           double apart) DALCS_MUST_CHECK;
 
 /* ---- smooth.c ------------------------------------------------------------------------------ */
 
@@ -103,7 +109,7 @@ void dalcs_certificate_evaluate_either(struct dalcs_osnsp *p, const double *u, d
 
 /* Was the answer evaluated last one? */
 static inline bool dalcs_certificate_holds(const struct dalcs_osnsp *p, bool sources_clash) {
-    return p->n_violating == 0 && !sources_clash &&
+    return p->signs.n_violating == 0 && !sources_clash &&
            p->certificate.worst <= p->options.certificate_tolerance;
 }
 
@@ -116,8 +122,8 @@ bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, 
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,
                                        double *y) DALCS_MUST_CHECK;
 
-/* p->right = R u, and the centre is that of diodes without current and without voltage, which are as far from their
- * knees as these from 0. */
+/* p->work.right = R u, and the centre is that of diodes without current and without voltage, which are as far from
+ * their knees as these from 0. */
 void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u);
 
 /* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */
@@ -138,10 +144,10 @@ double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p);
 /* 1/G of a pair with these weights, ohm: what eps is times of where it is closed. */
 double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights);
 
-/* w of a pair in balanced units, from p->scaled and p->right. */
+/* w of a pair in balanced units, from p->work.scaled and p->work.right. */
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
 
-/* The least push of a centre, in balanced units, that a sign tells beside the largest unknown of p->scaled. */
+/* The least push of a centre, in balanced units, that a sign tells beside the largest unknown of p->work.scaled. */
 double dalcs_proximal_least_push(const struct dalcs_osnsp *p);
 
 /* ---- interior.c ---------------------------------------------------------------------------- */
@@ -227,7 +233,7 @@ void dalcs_step_map_apply(const struct dalcs_osnsp *p, const struct dalcs_mode_e
 
 /* ---- witness.c ----------------------------------------------------------------------------- */
 
-/* Is the displacement p->step_now of the proximal iteration a ray? Then p->witness names it. */
+/* Is the displacement p->work.step_now of the proximal iteration a ray? Then p->witness names it. */
 bool dalcs_witness_from_ray(struct dalcs_osnsp *p);
 
 /* The current sources that feed a floating island. */
@@ -263,8 +269,8 @@ static inline void dalcs_osnsp_flip(struct dalcs_osnsp *p, int pair) {
 
 /* What has a wrong sign changes sides: all of it, or the largest index alone (Murty; the list ascends). */
 static inline void dalcs_osnsp_flip_violating(struct dalcs_osnsp *p, bool all) {
-    for (int k = all ? 0 : p->n_violating - 1; k < p->n_violating; k++) {
-        dalcs_osnsp_flip(p, p->violating[k]);
+    for (int k = all ? 0 : p->signs.n_violating - 1; k < p->signs.n_violating; k++) {
+        dalcs_osnsp_flip(p, p->signs.violating[k]);
     }
 }
 
@@ -273,9 +279,9 @@ static inline void dalcs_osnsp_flip_violating(struct dalcs_osnsp *p, bool all) {
  * which meets a round of any length. */
 static inline bool dalcs_osnsp_goes_round(struct dalcs_osnsp *p, int n_single) {
     size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
-    bool is_met = n_single > 1 && memcmp(p->mode, p->met_mode, bytes) == 0;
+    bool is_met = n_single > 1 && memcmp(p->mode, p->work.met_mode, bytes) == 0;
     if ((n_single & (n_single - 1)) == 0) {
-        memcpy(p->met_mode, p->mode, bytes);
+        memcpy(p->work.met_mode, p->mode, bytes);
     }
     return is_met;
 }
@@ -296,18 +302,19 @@ static inline struct dalcs_pivoting dalcs_pivoting_begin(const struct dalcs_osns
 /* Counts one change of the mode. true: it is to be a single one. */
 static inline bool dalcs_pivoting_stalls(struct dalcs_osnsp *p, struct dalcs_pivoting *pivoting) {
     p->counters.pivots++;
-    if (p->n_violating < pivoting->fewest) {
-        *pivoting = (struct dalcs_pivoting){.fewest = p->n_violating, .patience = DALCS_PATIENCE};
+    if (p->signs.n_violating < pivoting->fewest) {
+        *pivoting =
+            (struct dalcs_pivoting){.fewest = p->signs.n_violating, .patience = DALCS_PATIENCE};
     } else {
         pivoting->patience--;
     }
     return pivoting->patience <= 0;
 }
 
-/* p->scaled to y's z and lambda. */
+/* p->work.scaled to y's z and lambda. */
 void dalcs_osnsp_unscale(const struct dalcs_osnsp *p, double *y);
 
-/* p->scaled from y: the inverse, exact because scales are powers of 2. */
+/* p->work.scaled from y: the inverse, exact because scales are powers of 2. */
 void dalcs_osnsp_scale(struct dalcs_osnsp *p, const double *y);
 
 #endif

@@ -36,7 +36,7 @@ enum { REGULAR_ATTEMPTS = 8 };
 /* Equal diodes where the answer has to be the least-norm one in amperes and volts; with very different conductances
  * around them, weights that suit each one's surroundings solve more. */
 static double ratio_of(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     double g = f->scale[f->n + pair] * f->row_scale[f->n + pair]; /* A over V, balanced */
     return weights == DALCS_EQUAL_WEIGHTS
                ? fmin(fmax(g / f->pair_conductance, 1.0 / weight_spread), weight_spread)
@@ -63,22 +63,22 @@ double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p) {
 
 double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair,
                                  enum dalcs_weights weights) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     return ratio_of(p, pair, weights) / (f->scale[f->n + pair] * f->row_scale[f->n + pair]);
 }
 
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
-    const struct dalcs_step_form *f = p->form[0];
-    double w = -p->right[f->n + pair];
+    const struct dalcs_step_form *f = p->cache.form[0];
+    double w = -p->work.right[f->n + pair];
     for (int k = f->W.p[pair]; k < f->W.p[pair + 1]; k++) {
-        w += f->W.x[k] * p->scaled[f->W.j[k]];
+        w += f->W.x[k] * p->work.scaled[f->W.j[k]];
     }
     return w;
 }
 
 enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
                                         enum dalcs_weights weights) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n = f->n + f->n_pairs;
     struct dalcs_columns a;
     DALCS_TRY(dalcs_columns_alloc(&a, n, (size_t)f->K.p[n] + (size_t)n));
@@ -107,37 +107,39 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
         a.p[c + 1] = out;
     }
     /* The weights make it nonsingular; only an exact zero pivot is refused. */
-    enum dalcs_status status = dalcs_modes_factor_small(p, &entry->lu, n, a.p, a.i, a.x, 0.0);
+    enum dalcs_status status = dalcs_modes_factor_small(p, &entry->lu, &a, 0.0);
     if (status > DALCS_OK) {
-        dalcs_lu_keep_diagonal(&p->klu, true);
-        status = dalcs_lu_factor_again(&entry->lu, &p->patterns, &p->klu, n, a.p, a.i, a.x, 0.0);
-        dalcs_lu_keep_diagonal(&p->klu, false);
+        dalcs_lu_keep_diagonal(&p->cache.klu, true);
+        status = dalcs_lu_factor_again(&entry->lu, &p->cache.patterns, &p->cache.klu, n, a.p, a.i,
+                                       a.x, 0.0);
+        dalcs_lu_keep_diagonal(&p->cache.klu, false);
     }
     dalcs_columns_finish(&a);
     return status;
 }
 
-/* Solves one regularised problem around (centre, centre_w) in the mode of entry, into p->scaled. */
+/* Solves one regularised problem around (centre, centre_w) in the mode of entry, into p->work.scaled. */
 static void step_in_mode(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
                          enum dalcs_weights weights) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     for (int i = 0; i < f->n; i++) {
-        p->scaled[i] = p->right[i] + node_weight * p->options.proximal_weight * p->centre[i];
+        p->work.scaled[i] =
+            p->work.right[i] + node_weight * p->options.proximal_weight * p->work.centre[i];
     }
     for (int d = 0; d < f->n_pairs; d++) {
-        double right = p->right[f->n + d];
-        p->scaled[f->n + d] = dalcs_osnsp_is_on(p, d)
-                                  ? right + on_weight(p, d, weights) * p->centre[f->n + d]
-                                  : off_weight(p, d, weights) * (right + p->centre_w[d]);
+        double right = p->work.right[f->n + d];
+        p->work.scaled[f->n + d] = dalcs_osnsp_is_on(p, d)
+                                       ? right + on_weight(p, d, weights) * p->work.centre[f->n + d]
+                                       : off_weight(p, d, weights) * (right + p->work.centre_w[d]);
     }
-    dalcs_lu_solve(&entry->lu, p->scaled);
+    dalcs_lu_solve(&entry->lu, p->work.scaled);
 }
 
 static double largest_unknown(const struct dalcs_osnsp *p) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     double largest = 0.0;
     for (int i = 0; i < f->n + f->n_pairs; i++) {
-        largest = fmax(largest, fabs(p->scaled[i]));
+        largest = fmax(largest, fabs(p->work.scaled[i]));
     }
     return largest;
 }
@@ -149,20 +151,20 @@ double dalcs_proximal_least_push(const struct dalcs_osnsp *p) {
 /* The pairs whose regularised sign is wrong: closed with lambda + eps G (w - w') < 0, open with
  * w + eps/G (lambda - lambda') < 0. */
 static void find_violations(struct dalcs_osnsp *p, enum dalcs_weights weights) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     double largest = largest_unknown(p);
-    p->n_violating = 0;
+    p->signs.n_violating = 0;
     for (int d = 0; d < f->n_pairs; d++) {
         if (p->system->pair[d].kind != DALCS_PAIR_DIODE) {
             continue;
         }
         double w = dalcs_proximal_scaled_w(p, d);
-        double lambda = p->scaled[f->n + d];
+        double lambda = p->work.scaled[f->n + d];
         double sign = dalcs_osnsp_is_on(p, d)
-                          ? lambda + off_weight(p, d, weights) * (w - p->centre_w[d])
-                          : w + on_weight(p, d, weights) * (lambda - p->centre[f->n + d]);
+                          ? lambda + off_weight(p, d, weights) * (w - p->work.centre_w[d])
+                          : w + on_weight(p, d, weights) * (lambda - p->work.centre[f->n + d]);
         if (sign < -sign_tolerance * largest) {
-            p->violating[p->n_violating++] = d;
+            p->signs.violating[p->signs.n_violating++] = d;
         }
     }
 }
@@ -182,7 +184,7 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, enum dalcs_weights weights
         }
         step_in_mode(p, e, weights);
         find_violations(p, weights);
-        if (p->n_violating == 0) {
+        if (p->signs.n_violating == 0) {
             return DALCS_OK;
         }
         *mode_changed = true;
@@ -220,22 +222,22 @@ enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u,
 /* Moves the centre to the answer; returns the size of the displacement, how much it differs from the
  * one before, and the size of the centre. */
 static double move_centre(struct dalcs_osnsp *p, double *change, double *way) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n = f->n + f->n_pairs;
     double size = 0.0;
-    double *swap = p->step_before;
-    p->step_before = p->step_now;
-    p->step_now = swap;
+    double *swap = p->work.step_before;
+    p->work.step_before = p->work.step_now;
+    p->work.step_now = swap;
     *change = 0.0;
     *way = 0.0;
     for (int i = 0; i < n + f->n_pairs; i++) {
-        double *centre = i < n ? &p->centre[i] : &p->centre_w[i - n];
-        double now = i < n ? p->scaled[i] : dalcs_proximal_scaled_w(p, i - n);
-        p->step_now[i] = now - *centre;
+        double *centre = i < n ? &p->work.centre[i] : &p->work.centre_w[i - n];
+        double now = i < n ? p->work.scaled[i] : dalcs_proximal_scaled_w(p, i - n);
+        p->work.step_now[i] = now - *centre;
         *centre = now;
-        size = fmax(size, fabs(p->step_now[i]));
+        size = fmax(size, fabs(p->work.step_now[i]));
         *way = fmax(*way, fabs(now));
-        *change = fmax(*change, fabs(p->step_now[i] - p->step_before[i]));
+        *change = fmax(*change, fabs(p->work.step_now[i] - p->work.step_before[i]));
     }
     return size;
 }
@@ -245,10 +247,10 @@ static double move_centre(struct dalcs_osnsp *p, double *change, double *way) {
  * one. */
 static enum dalcs_status try_exactly(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
     size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
-    memcpy(p->regularised_mode, p->mode, bytes);
+    memcpy(p->work.regularised_mode, p->mode, bytes);
     enum dalcs_status status = dalcs_exact_pivot(p, u, y, limit);
     if (status != DALCS_OK) {
-        memcpy(p->mode, p->regularised_mode, bytes);
+        memcpy(p->mode, p->work.regularised_mode, bytes);
     }
     if (status == DALCS_NOT_CONVERGED && limit == 0) {
         status = dalcs_open_mode_solve(p, u, y);
@@ -256,7 +258,7 @@ static enum dalcs_status try_exactly(struct dalcs_osnsp *p, const double *u, dou
     return status;
 }
 
-/* Evaluates p->scaled as the answer y; true: it is certified. *sources_clash: the reference of a floating island would
+/* Evaluates p->work.scaled as the answer y; true: it is certified. *sources_clash: a reference of a floating island would
  * have to carry current. */
 static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool *sources_clash) {
     double *lambda = y + dalcs_system_n_equations(p->system);
@@ -269,16 +271,16 @@ static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool
 }
 
 static void restart(struct dalcs_osnsp *p) {
-    const struct dalcs_step_form *f = p->form[0];
-    memset(p->centre, 0, (size_t)(f->n + f->n_pairs) * sizeof(double));
+    const struct dalcs_step_form *f = p->cache.form[0];
+    memset(p->work.centre, 0, (size_t)(f->n + f->n_pairs) * sizeof(double));
     for (int d = 0; d < f->n_pairs; d++) {
-        p->centre_w[d] = f->row_scale[f->n + d] * dalcs_system_knee(p->system, d);
+        p->work.centre_w[d] = f->row_scale[f->n + d] * dalcs_system_knee(p->system, d);
     }
-    memset(p->step_now, 0, (size_t)(f->n + 2 * f->n_pairs) * sizeof(double));
+    memset(p->work.step_now, 0, (size_t)(f->n + 2 * f->n_pairs) * sizeof(double));
 }
 
 void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u) {
-    dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+    dalcs_csr_multiply(&p->cache.form[0]->R, u, p->work.right);
     restart(p);
 }
 
@@ -299,7 +301,7 @@ enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, d
                 return status;
             }
             is_open = status == DALCS_SINGULAR;
-            dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+            dalcs_csr_multiply(&p->cache.form[0]->R, u, p->work.right);
             struct dalcs_mode_entry *e;
             DALCS_TRY(dalcs_modes_get(p, 1 + weights, &e));
             step_in_mode(p, e, weights);

@@ -25,14 +25,14 @@ static double largest_of(const double *y, int begin, int end) {
 
 struct dalcs_scales dalcs_scales_driving(const struct dalcs_osnsp *p, const double *u) {
     double largest[2] = {0.0, 0.0};
-    int n_x = p->form[0]->sigma > 0.0 ? p->system->n_x : 0;
-    for (int k = 0; k < p->n_runs && p->run[k].begin < n_x; k++) {
-        const struct dalcs_unit_run *run = &p->run[k];
+    int n_x = p->cache.form[0]->sigma > 0.0 ? p->system->n_x : 0;
+    for (int k = 0; k < p->lists.n_runs && p->lists.run[k].begin < n_x; k++) {
+        const struct dalcs_unit_run *run = &p->lists.run[k];
         double a = largest_of(u, run->begin, run->end < n_x ? run->end : n_x);
         largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
     }
-    for (int k = 0; k < p->n_drives; k++) {
-        const struct dalcs_drive *d = &p->drive[k];
+    for (int k = 0; k < p->lists.n_drives; k++) {
+        const struct dalcs_drive *d = &p->lists.drive[k];
         double a = d->coefficient * fabs(u[d->input]);
         largest[d->is_current] = a > largest[d->is_current] ? a : largest[d->is_current];
     }
@@ -47,10 +47,10 @@ static const double runaway = 1e9;
  * not vouch for its own residual. */
 struct dalcs_scales dalcs_scales_physical(const struct dalcs_osnsp *p, struct dalcs_scales drive,
                                           const double *y) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     double largest[2] = {drive.volt, drive.ampere};
-    for (int k = 0; k < p->n_runs; k++) {
-        const struct dalcs_unit_run *run = &p->run[k];
+    for (int k = 0; k < p->lists.n_runs; k++) {
+        const struct dalcs_unit_run *run = &p->lists.run[k];
         double a = largest_of(y, run->begin, run->end);
         largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
     }
@@ -68,13 +68,13 @@ struct dalcs_scales dalcs_scales_physical(const struct dalcs_osnsp *p, struct da
 
 /* V or A: a state that is recovered is known as well as what it is recovered from. */
 static double state_size(const struct dalcs_osnsp *p, const double *u, const double *y, int x) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     const int *ends = &f->x_ends[2 * x];
     double sum = fabs(u[x]);
     if (ends[0] >= 0) {
         return sum + fabs(y[ends[0]]) + fabs(y[ends[1]]);
     }
-    if (p->keeps_states && f->Xu.p[x] < f->Xu.p[x + 1]) {
+    if (p->asks.keeps_states && f->Xu.p[x] < f->Xu.p[x + 1]) {
         return sum + fabs(y[x]);
     }
     for (int k = f->X.p[x]; k < f->X.p[x + 1]; k++) {
@@ -88,7 +88,7 @@ static double state_size(const struct dalcs_osnsp *p, const double *u, const dou
 
 double dalcs_scales_row_terms(const struct dalcs_osnsp *p, const double *u, const double *y,
                               int i) {
-    const struct dalcs_csr *a = &p->form[0]->check;
+    const struct dalcs_csr *a = &p->cache.form[0]->check;
     int n_x = p->system->n_x;
     int n_columns = dalcs_system_n_columns(p->system);
     double of_states = 0.0;
@@ -103,7 +103,7 @@ double dalcs_scales_row_terms(const struct dalcs_osnsp *p, const double *u, cons
     for (; k < a->p[i + 1]; k++) {
         sum += fabs(a->x[k] * u[a->j[k] - n_columns]);
     }
-    return p->form[0]->sigma * of_states + sum;
+    return p->cache.form[0]->sigma * of_states + sum;
 }
 
 /* Roundings of the whole, over n: those of Arioli, Demmel and Duff. */
@@ -117,9 +117,9 @@ double dalcs_scales_own(const struct dalcs_osnsp *p, double terms, double norm) 
 
 double dalcs_scales_current_norm(const struct dalcs_osnsp *p, int pair, struct dalcs_scales scale) {
     double size = scale.ampere;
-    for (int k = p->pair_rows_p[pair]; k < p->pair_rows_p[pair + 1]; k++) {
-        int r = p->pair_rows[k];
-        size = fmax(size, dalcs_scales_norm(p->form[0], scale, r));
+    for (int k = p->lists.pair_rows_p[pair]; k < p->lists.pair_rows_p[pair + 1]; k++) {
+        int r = p->lists.pair_rows[k];
+        size = fmax(size, dalcs_scales_norm(p->cache.form[0], scale, r));
     }
     return size;
 }
@@ -141,8 +141,8 @@ double dalcs_scales_current_terms(const struct dalcs_osnsp *p, const double *u, 
                                   int d) {
     const struct dalcs_system *s = p->system;
     double largest = 0.0;
-    for (int k = p->pair_rows_p[d]; k < p->pair_rows_p[d + 1]; k++) {
-        int r = p->pair_rows[k];
+    for (int k = p->lists.pair_rows_p[d]; k < p->lists.pair_rows_p[d + 1]; k++) {
+        int r = p->lists.pair_rows[k];
         double size = 0.0;
         for (int i = s->A.p[r]; i < s->A.p[r + 1]; i++) {
             size += fabs(s->A.x[i] * y[s->A.j[i]]);

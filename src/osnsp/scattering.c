@@ -11,8 +11,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Changes of the mode from one that is right but for rounding. */
 enum { MOST_CHANGES = 60 };
@@ -42,7 +40,7 @@ static void finish(struct scattering *s) {
 
 static enum dalcs_status setup(struct scattering *s, struct dalcs_osnsp *p,
                                enum dalcs_weights weights) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     *s = (struct scattering){.p = p, .n = f->n_pairs};
     size_t n = (size_t)s->n;
     s->resistance = dalcs_arena_alloc(&s->arena, n, sizeof(double));
@@ -73,22 +71,22 @@ static void find_waves(struct scattering *s, const double *u) {
 
 static void fill(struct scattering *s, const double *u, double eps) {
     const struct dalcs_osnsp *p = s->p;
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     size_t n = (size_t)s->n;
     double less = (1.0 - eps) / (1.0 + eps);
     const double *a = s->y + dalcs_system_n_equations(p->system);
     find_waves(s, u);
     for (int d = 0; d < s->n; d++) {
-        double a_centre = p->centre[f->n + d] * f->scale[f->n + d] * s->root[d];
-        double b_centre = p->centre_w[d] / (f->row_scale[f->n + d] * s->root[d]);
+        double a_centre = p->work.centre[f->n + d] * f->scale[f->n + d] * s->root[d];
+        double b_centre = p->work.centre_w[d] / (f->row_scale[f->n + d] * s->root[d]);
         s->lemke.h[d] += (1.0 - eps) * 2.0 * a[d] + eps * (a_centre - b_centre);
-        s->lemke.law[d] = p->is_diode[d]            ? DALCS_LEMKE_EITHER
+        s->lemke.law[d] = p->lists.is_diode[d]      ? DALCS_LEMKE_EITHER
                           : dalcs_osnsp_is_on(p, d) ? DALCS_LEMKE_A_FREE
                                                     : DALCS_LEMKE_B_FREE;
     }
     for (int k = 0; k < s->n; k++) {
-        double sent = eps * (p->centre[f->n + k] * f->scale[f->n + k] * s->root[k] +
-                             p->centre_w[k] / (f->row_scale[f->n + k] * s->root[k]));
+        double sent = eps * (p->work.centre[f->n + k] * f->scale[f->n + k] * s->root[k] +
+                             p->work.centre_w[k] / (f->row_scale[f->n + k] * s->root[k]));
         s->line[k] = s->root[k];
         find_waves(s, s->nothing);
         s->line[k] = 0.0;
@@ -112,7 +110,7 @@ enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u,
         status = dalcs_lemke_solve(&s.lemke, p->options.max_pivots + 2 * s.n);
     }
     for (int d = 0; d < s.n && status >= DALCS_OK && status != DALCS_SINGULAR; d++) {
-        if (p->is_diode[d]) {
+        if (p->lists.is_diode[d]) {
             dalcs_osnsp_command(p, d, s.lemke.is_a[d]);
         }
     }

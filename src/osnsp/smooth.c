@@ -23,14 +23,14 @@ enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     if (p->system->n_smooth == 0) {
         return DALCS_OK;
     }
-    p->newton = dalcs_arena_alloc(&p->arena, 1, sizeof(*p->newton));
-    p->given = dalcs_arena_alloc(&p->arena, (size_t)(p->system->n_x + p->system->n_inputs),
-                                 sizeof(*p->given));
-    if (p->newton == NULL || p->given == NULL) {
+    p->smooth.newton = dalcs_arena_alloc(&p->arena, 1, sizeof(*p->smooth.newton));
+    p->smooth.given = dalcs_arena_alloc(&p->arena, (size_t)(p->system->n_x + p->system->n_inputs),
+                                        sizeof(*p->smooth.given));
+    if (p->smooth.newton == NULL || p->smooth.given == NULL) {
         return DALCS_E_NOMEM;
     }
     dalcs_smooth_starting_tangents(p->system);
-    return dalcs_smooth_newton_setup(p->newton, p->system, 1, &p->arena);
+    return dalcs_smooth_newton_setup(p->smooth.newton, p->system, 1, &p->arena);
 }
 
 void dalcs_osnsp_smooth_finish(const struct dalcs_osnsp *p) {
@@ -41,11 +41,11 @@ void dalcs_osnsp_smooth_finish(const struct dalcs_osnsp *p) {
 static void forget(struct dalcs_osnsp *p) {
     dalcs_modes_finish(p);
     dalcs_in_order_finish(p);
-    p->n_tangents++;
+    p->smooth.n_tangents++;
 }
 
 bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, double factor) {
-    if (!dalcs_smooth_retangent(p->system, p->newton->x, factor, p->newton->phi)) {
+    if (!dalcs_smooth_retangent(p->system, p->smooth.newton->x, factor, p->smooth.newton->phi)) {
         return false;
     }
     forget(p);
@@ -55,14 +55,14 @@ bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, double factor) {
 static void put_sources(const struct dalcs_osnsp *p, double *u) {
     const struct dalcs_system *s = p->system;
     for (int k = 0; k < s->n_smooth; k++) {
-        u[s->n_x + s->smooth[k].input] = p->newton->phi[k];
+        u[s->n_x + s->smooth[k].input] = p->smooth.newton->phi[k];
     }
 }
 
 /* What a change of each source does to the arguments in the present mode: a difference, exact as all is affine there. */
 static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, double *y) {
     const struct dalcs_system *s = p->system;
-    struct dalcs_smooth_newton *n = p->newton;
+    struct dalcs_smooth_newton *n = p->smooth.newton;
     for (int k = 0; k < s->n_smooth; k++) {
         const double change = 1.0 + fabs(n->phi[k]);
         bool clash;
@@ -87,15 +87,15 @@ static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, double *y)
 static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
                                  given_solve *solve) {
     const struct dalcs_system *s = p->system;
-    struct dalcs_smooth_newton *n = p->newton;
+    struct dalcs_smooth_newton *n = p->smooth.newton;
     int n_steeper = 0;
     bool is_last =
         false; /* what holds no flux but its current is rounded like a flux: one step more */
     dalcs_smooth_newton_begin(n, n->x);
     for (int step = 0; step < MOST_STEPS; step++) {
-        put_sources(p, p->given);
-        enum dalcs_status status = solve(p, sigma, p->given, y);
-        if (status > DALCS_OK && p->n_tangents > 0 && n_steeper++ < MOST_STEEPER) {
+        put_sources(p, p->smooth.given);
+        enum dalcs_status status = solve(p, sigma, p->smooth.given, y);
+        if (status > DALCS_OK && p->smooth.n_tangents > 0 && n_steeper++ < MOST_STEEPER) {
             dalcs_smooth_scale_tangents(s, a_thousand, n->x, n->phi);
             forget(p);
             dalcs_smooth_newton_begin(n, n->x);
@@ -123,7 +123,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
         if (stalls && dalcs_osnsp_retangent(p, dalcs_smooth_steeper)) {
             continue;
         }
-        DALCS_TRY(find_slope(p, p->given, y));
+        DALCS_TRY(find_slope(p, p->smooth.given, y));
         if (!dalcs_smooth_newton_step(n)) {
             return DALCS_NOT_CONVERGED;
         }
@@ -134,19 +134,19 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
 enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, const double *u,
                                            double *y, given_solve *solve) {
     const struct dalcs_system *s = p->system;
-    memcpy(p->given, u, (size_t)(s->n_x + s->n_inputs) * sizeof(*p->given));
+    memcpy(p->smooth.given, u, (size_t)(s->n_x + s->n_inputs) * sizeof(*p->smooth.given));
     enum dalcs_status status = iterate(p, sigma, y, solve);
-    if (status > DALCS_OK && p->n_tangents == 0) {
+    if (status > DALCS_OK && p->smooth.n_tangents == 0) {
         /* without lines, as where nothing else holds a node: with some, from nothing */
         dalcs_smooth_nominal_tangents(s);
         forget(p);
-        memset(p->newton->phi, 0, (size_t)p->newton->n * sizeof(double));
-        memset(p->newton->x, 0, (size_t)p->newton->n * sizeof(*p->newton->x));
+        memset(p->smooth.newton->phi, 0, (size_t)p->smooth.newton->n * sizeof(double));
+        memset(p->smooth.newton->x, 0, (size_t)p->smooth.newton->n * sizeof(*p->smooth.newton->x));
         status = iterate(p, sigma, y, solve);
     }
     if (status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_smooth_much_steeper)) {
-        put_sources(p, p->given);
-        return solve(p, sigma, p->given, y);
+        put_sources(p, p->smooth.given);
+        return solve(p, sigma, p->smooth.given, y);
     }
     return status;
 }

@@ -16,32 +16,32 @@
 enum { MAX_MAP_COLUMNS = 48 };
 
 static int padded_rows(const struct dalcs_osnsp *p) {
-    return dalcs_dense_map_rows(p->form[0]->n + p->form[0]->n_pairs);
+    return dalcs_dense_map_rows(p->cache.form[0]->n + p->cache.form[0]->n_pairs);
 }
 
 bool dalcs_step_map_pays(const struct dalcs_osnsp *p) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     return f->n + f->n_pairs <= p->options.dense_limit && f->n_u <= MAX_MAP_COLUMNS;
 }
 
 /* y = the answer to the unit input u_j, without its states. */
 static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, double *unit, int j,
                        double *y) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     unit[j] = 1.0;
     if (e->whole != NULL) {
         dalcs_whole_solve(e->whole, unit, NULL, y);
     } else {
-        dalcs_csr_multiply(&f->R, unit, p->right);
-        memcpy(p->rhs, p->right, (size_t)f->n * sizeof(double));
+        dalcs_csr_multiply(&f->R, unit, p->work.right);
+        memcpy(p->work.rhs, p->work.right, (size_t)f->n * sizeof(double));
         for (int k = 0; k < e->n_on; k++) {
-            p->rhs[f->n + k] = p->right[f->n + e->on[k]];
+            p->work.rhs[f->n + k] = p->work.right[f->n + e->on[k]];
         }
-        dalcs_lu_solve(&e->lu, p->rhs);
-        memset(p->scaled + f->n, 0, (size_t)f->n_pairs * sizeof(double));
-        memcpy(p->scaled, p->rhs, (size_t)f->n * sizeof(double));
+        dalcs_lu_solve(&e->lu, p->work.rhs);
+        memset(p->work.scaled + f->n, 0, (size_t)f->n_pairs * sizeof(double));
+        memcpy(p->work.scaled, p->work.rhs, (size_t)f->n * sizeof(double));
         for (int k = 0; k < e->n_on; k++) {
-            p->scaled[f->n + e->on[k]] = p->rhs[f->n + k];
+            p->work.scaled[f->n + e->on[k]] = p->work.rhs[f->n + k];
         }
         dalcs_osnsp_unscale(p, y);
     }
@@ -49,7 +49,7 @@ static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, 
 }
 
 enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     size_t rows = (size_t)padded_rows(p);
     size_t n_columns = (size_t)dalcs_system_n_columns(p->system);
     double *unit = dalcs_alloc((size_t)f->n_u + n_columns, sizeof(double));
@@ -78,11 +78,11 @@ enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_
 
 void dalcs_step_map_apply(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
                           const double *u, double *y) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n_equations = dalcs_system_n_equations(p->system);
-    dalcs_dense_map_apply(padded_rows(p), f->n_u, entry->map, u, p->mapped);
+    dalcs_dense_map_apply(padded_rows(p), f->n_u, entry->map, u, p->work.mapped);
     for (int i = 0; i < f->n; i++) {
-        y[f->column_of[i]] = p->mapped[i];
+        y[f->column_of[i]] = p->work.mapped[i];
     }
-    memcpy(y + n_equations, p->mapped + f->n, (size_t)f->n_pairs * sizeof(double));
+    memcpy(y + n_equations, p->work.mapped + f->n, (size_t)f->n_pairs * sizeof(double));
 }

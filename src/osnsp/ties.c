@@ -37,14 +37,14 @@ static enum dalcs_status count_answers(struct dalcs_osnsp *p) {
     bool floats;
     bool circulates = true;
     size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
-    memcpy(p->tied_mode, p->mode, bytes);
+    memcpy(p->work.tied_mode, p->mode, bytes);
     enum dalcs_status status = is_singular(p, 0, &floats);
     if (status == DALCS_OK && !floats) {
         status = is_singular(p, 0xff, &circulates);
     }
-    memcpy(p->mode, p->tied_mode, bytes);
+    memcpy(p->mode, p->work.tied_mode, bytes);
     if (status == DALCS_OK) {
-        p->form[0]->answers = floats || circulates ? DALCS_MANY : DALCS_UNIQUE;
+        p->cache.form[0]->answers = floats || circulates ? DALCS_MANY : DALCS_UNIQUE;
     }
     return status;
 }
@@ -53,8 +53,9 @@ static enum dalcs_status count_answers(struct dalcs_osnsp *p) {
  * their conditions, that of another step tells it. */
 static bool is_unique_in_other_steps(const struct dalcs_osnsp *p) {
     bool is_unique = false;
-    for (int k = 1; k < p->n_forms && p->is_passing && p->form[0]->sigma > 0.0; k++) {
-        const struct dalcs_step_form *f = p->form[k];
+    for (int k = 1; k < p->cache.n_forms && p->asks.is_passing && p->cache.form[0]->sigma > 0.0;
+         k++) {
+        const struct dalcs_step_form *f = p->cache.form[k];
         is_unique = is_unique || (f->sigma > 0.0 && f->answers == DALCS_UNIQUE);
     }
     return is_unique;
@@ -64,7 +65,7 @@ static bool is_unique_in_other_steps(const struct dalcs_osnsp *p) {
 uint64_t dalcs_ties_name(const struct dalcs_osnsp *p) {
     uint64_t name = 14695981039346656037u;
     for (int d = 0; d < p->system->n_pairs; d++) {
-        if (p->tied[d]) {
+        if (p->signs.tied[d]) {
             name = (name ^ (uint64_t)d) * 1099511628211u;
         }
     }
@@ -73,32 +74,32 @@ uint64_t dalcs_ties_name(const struct dalcs_osnsp *p) {
 
 static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u, const double *y,
                                          bool *has_choice) {
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     double push = 0.0;
     double push_w = 0.0;
     dalcs_osnsp_scale(p, y);
-    dalcs_csr_multiply(&f->R, u, p->right);
-    memcpy(p->centre, p->scaled, (size_t)(f->n + f->n_pairs) * sizeof(double));
+    dalcs_csr_multiply(&f->R, u, p->work.right);
+    memcpy(p->work.centre, p->work.scaled, (size_t)(f->n + f->n_pairs) * sizeof(double));
     for (int d = 0; d < f->n_pairs; d++) {
-        p->centre_w[d] = f->row_scale[f->n + d] * p->w[d];
-        push = fmax(push, push_part * fabs(p->scaled[f->n + d]));
-        double v = p->centre_w[d] - f->row_scale[f->n + d] * dalcs_system_knee(p->system, d);
-        push_w = fmax(push_w, push_part * fmax(fabs(p->centre_w[d]), fabs(v)));
+        p->work.centre_w[d] = f->row_scale[f->n + d] * p->w[d];
+        push = fmax(push, push_part * fabs(p->work.scaled[f->n + d]));
+        double v = p->work.centre_w[d] - f->row_scale[f->n + d] * dalcs_system_knee(p->system, d);
+        push_w = fmax(push_w, push_part * fmax(fabs(p->work.centre_w[d]), fabs(v)));
     }
-    if (p->is_passing && push > 0.0) {
+    if (p->asks.is_passing && push > 0.0) {
         push = fmax(push, dalcs_proximal_least_push(p));
     }
     for (int d = 0; d < f->n_pairs; d++) {
-        p->centre[f->n + d] += p->tied[d] ? push : 0.0;
-        p->centre_w[d] += p->tied[d] ? push_w : 0.0;
+        p->work.centre[f->n + d] += p->signs.tied[d] ? push : 0.0;
+        p->work.centre_w[d] += p->signs.tied[d] ? push_w : 0.0;
     }
     bool mode_changed;
     enum dalcs_status status = dalcs_proximal_pivot(p, u, DALCS_BALANCED_WEIGHTS, &mode_changed);
     *has_choice = false;
     for (int d = 0; status == DALCS_OK && d < f->n_pairs && !*has_choice; d++) {
-        bool moves = (push > 0.0 && p->scaled[f->n + d] > moved_part * push) ||
+        bool moves = (push > 0.0 && p->work.scaled[f->n + d] > moved_part * push) ||
                      (push_w > 0.0 && dalcs_proximal_scaled_w(p, d) > moved_part * push_w);
-        *has_choice = p->tied[d] && moves;
+        *has_choice = p->signs.tied[d] && moves;
     }
     return status;
 }
@@ -108,19 +109,19 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
 static bool was_stopped(const struct dalcs_osnsp *p) {
     bool stopped = false;
     for (int d = 0; d < p->system->n_pairs && !stopped; d++) {
-        uint64_t changed = p->mode[d / 64] ^ p->tied_mode[d / 64];
-        stopped = !p->tied[d] && (changed >> (d % 64) & 1) != 0;
+        uint64_t changed = p->mode[d / 64] ^ p->work.tied_mode[d / 64];
+        stopped = !p->signs.tied[d] && (changed >> (d % 64) & 1) != 0;
     }
     return stopped;
 }
 
 enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, double *y) {
-    if (p->form[0]->answers == DALCS_UNKNOWN && is_unique_in_other_steps(p)) {
-        p->form[0]->answers = DALCS_UNIQUE;
-    } else if (p->form[0]->answers == DALCS_UNKNOWN) {
+    if (p->cache.form[0]->answers == DALCS_UNKNOWN && is_unique_in_other_steps(p)) {
+        p->cache.form[0]->answers = DALCS_UNIQUE;
+    } else if (p->cache.form[0]->answers == DALCS_UNKNOWN) {
         DALCS_TRY(count_answers(p));
     }
-    if (p->form[0]->answers == DALCS_UNIQUE) {
+    if (p->cache.form[0]->answers == DALCS_UNIQUE) {
         return DALCS_OK;
     }
     size_t mode_bytes = (size_t)p->n_words * sizeof(*p->mode);
@@ -131,15 +132,15 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
     if (e->tie == tie && !e->tie_has_choice) {
         return DALCS_OK;
     }
-    memcpy(p->tied_mode, p->mode, mode_bytes);
-    memcpy(p->tied_answer, y, answer_bytes);
+    memcpy(p->work.tied_mode, p->mode, mode_bytes);
+    memcpy(p->work.tied_answer, y, answer_bytes);
     bool has_choice = true;
     enum dalcs_status status = DALCS_OK;
     if (e->tie != tie) {
         status = look_for_choice(p, u, y, &has_choice);
         bool stopped = !has_choice && was_stopped(p);
         has_choice = has_choice || stopped;
-        memcpy(p->mode, p->tied_mode, mode_bytes);
+        memcpy(p->mode, p->work.tied_mode, mode_bytes);
         DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
         e->tie = stopped ? 0 : tie; /* to be asked again */
         e->tie_has_choice = has_choice;
@@ -152,8 +153,8 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
         return status;
     }
     /* No choice, or none that could be certified: the answer that was. */
-    memcpy(p->mode, p->tied_mode, mode_bytes);
-    memcpy(y, p->tied_answer, answer_bytes);
+    memcpy(p->mode, p->work.tied_mode, mode_bytes);
+    memcpy(y, p->work.tied_answer, answer_bytes);
     bool sources_clash;
     dalcs_certificate_evaluate(p, u, y, &sources_clash);
     return DALCS_OK;

@@ -4,8 +4,6 @@
 #include "null_space.h"
 #include "osnsp_internal.h"
 
-#include <float.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,8 +90,8 @@ static enum dalcs_status put_columns(const struct dalcs_whole *whole,
 static enum dalcs_status factor(struct dalcs_whole *whole, const struct dalcs_triplets *t) {
     struct dalcs_csr columns = {0};
     DALCS_TRY(put_columns(whole, t, &columns));
-    enum dalcs_status status = dalcs_modes_factor_small(whole->p, &whole->lu, whole->n, columns.p,
-                                                        columns.j, columns.x, dalcs_far_apart);
+    const struct dalcs_columns a = {whole->n, columns.p, columns.j, columns.x};
+    enum dalcs_status status = dalcs_modes_factor_small(whole->p, &whole->lu, &a, dalcs_far_apart);
     if (status > DALCS_OK) {
         klu_common common;
         dalcs_lu_common_init(&common);
@@ -134,7 +132,8 @@ static enum dalcs_status choose(struct dalcs_whole *whole, const struct dalcs_nu
 
 enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dalcs_osnsp *p,
                                      const double *resistance) {
-    *whole = (struct dalcs_whole){.p = p, .sigma = p->form[0]->sigma, .resistance = resistance};
+    *whole =
+        (struct dalcs_whole){.p = p, .sigma = p->cache.form[0]->sigma, .resistance = resistance};
     size_t n_columns = (size_t)dalcs_system_n_columns(p->system);
     struct dalcs_triplets t = {0};
     struct dalcs_null_space space;
@@ -165,7 +164,7 @@ enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dal
 
 enum dalcs_status dalcs_whole_null_space(const struct dalcs_osnsp *p, int *place,
                                          struct dalcs_null_space *space) {
-    struct dalcs_whole whole = {.p = p, .sigma = p->form[0]->sigma, .place = place};
+    struct dalcs_whole whole = {.p = p, .sigma = p->cache.form[0]->sigma, .place = place};
     struct dalcs_triplets t = {0};
     whole.n = place_columns(&whole);
     enum dalcs_status status = fill(&whole, &t);

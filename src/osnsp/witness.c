@@ -35,7 +35,7 @@ static void add_element(struct dalcs_witness *w, const char *name) {
  * capacitors, the other rows of the tree are paired with voltages relative to its root. */
 static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     for (int input = 1; input < s->n_inputs; input++) {
         double work = 0.0;
         double size = 0.0;
@@ -66,7 +66,7 @@ static double but_rounding(double entry, double largest) {
 /* The direction in volts and amperes, of the states as well. */
 static void keep_ray(struct dalcs_osnsp *p, const double *d, double largest) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     double *ray = p->witness.ray;
     int n_equations = dalcs_system_n_equations(s);
     for (int i = 0; i < f->n; i++) {
@@ -85,18 +85,18 @@ static void keep_ray(struct dalcs_osnsp *p, const double *d, double largest) {
     p->witness.has_ray = true;
 }
 
-bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
+/* Is d, with what it makes of the pairs' w behind it, a ray? *largest: its largest entry. */
+static bool is_ray(struct dalcs_osnsp *p, const double *d, double *largest) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_step_form *f = p->cache.form[0];
     int n = f->n + f->n_pairs;
-    const double *d = p->step_now;
     const double *d_w = d + n;
-    double largest = 0.0;
+    *largest = 0.0;
     for (int i = 0; i < n + f->n_pairs; i++) {
-        largest = fmax(largest, fabs(d[i]));
+        *largest = fmax(*largest, fabs(d[i]));
     }
-    double *residual = p->rhs;
-    double *size = p->step_before;
+    double *residual = p->work.rhs;
+    double *size = p->work.step_before;
     memset(residual, 0, (size_t)n * sizeof(double));
     memset(size, 0, (size_t)n * sizeof(double));
     for (int c = 0; c < n; c++) {
@@ -107,18 +107,24 @@ bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
     }
     for (int i = 0; i < n; i++) {
         bool must_vanish = i < f->n || dalcs_osnsp_is_on(p, i - f->n);
-        if (must_vanish && fabs(residual[i]) > ray_residual * fmax(size[i], largest)) {
+        if (must_vanish && fabs(residual[i]) > ray_residual * fmax(size[i], *largest)) {
             return false;
         }
     }
     for (int k = 0; k < f->n_pairs; k++) {
         bool is_diode = s->pair[k].kind == DALCS_PAIR_DIODE;
-        if (is_diode && (d[f->n + k] < -zero_part * largest || d_w[k] < -zero_part * largest)) {
+        if (is_diode && (d[f->n + k] < -zero_part * *largest || d_w[k] < -zero_part * *largest)) {
             return false;
         }
     }
-    p->witness.n_elements = 0;
-    keep_ray(p, d, largest);
+    return true;
+}
+
+/* Of a ray: a loop in amperes, or a cutset in volts. */
+static enum dalcs_witness_kind kind_of_ray(const struct dalcs_osnsp *p, const double *d) {
+    const struct dalcs_system *s = p->system;
+    const struct dalcs_step_form *f = p->cache.form[0];
+    const double *d_w = d + f->n + f->n_pairs;
     double current = 0.0;
     double voltage = 0.0;
     for (int i = 0; i < f->n; i++) {
@@ -129,7 +135,21 @@ bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
         current = fmax(current, fabs(d[f->n + k]));
         voltage = fmax(voltage, fabs(d_w[k]));
     }
-    p->witness.kind = current >= voltage ? DALCS_WITNESS_LOOP : DALCS_WITNESS_CUTSET;
+    return current >= voltage ? DALCS_WITNESS_LOOP : DALCS_WITNESS_CUTSET;
+}
+
+bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
+    const struct dalcs_system *s = p->system;
+    const struct dalcs_step_form *f = p->cache.form[0];
+    const double *d = p->work.step_now;
+    const double *d_w = d + f->n + f->n_pairs;
+    double largest;
+    if (!is_ray(p, d, &largest)) {
+        return false;
+    }
+    p->witness.n_elements = 0;
+    keep_ray(p, d, largest);
+    p->witness.kind = kind_of_ray(p, d);
     add_sources(p, d, largest);
     for (int i = 0; i < f->n; i++) {
         int c = f->column_of[i];

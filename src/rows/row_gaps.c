@@ -1,5 +1,5 @@
 /* row_gaps.c - derivatives of what outputs read, part by part, and the gaps that they allow. */
-#include "row_gaps.h"
+#include "row_gaps_internal.h"
 
 #include "extremes.h"
 #include "radau_state.h"
@@ -7,10 +7,6 @@
 
 #include <math.h>
 #include <string.h>
-
-/* Where in a step derivatives are looked at: its start, its end and between. Second derivatives of nine stages
- * have degree 7, fourth ones 5. */
-enum { N_PLACES = 8 };
 
 /* Of the bound, what a curve may take: the largest derivative may lie between the places. */
 static const double share = 0.5;
@@ -20,123 +16,6 @@ static const double least_size = 1e-6;
 
 /* Polynomials of fewer stages have no fourth derivative: they bend where they meet. */
 enum { ENOUGH_STAGES = 5 };
-
-/* Derivatives of the k-th function of Newton's basis. */
-struct dalcs_row_basis {
-    double second[DALCS_MAX_NODES][N_PLACES], fourth[DALCS_MAX_NODES][N_PLACES];
-};
-
-/* ---- Setup ------------------------------------------------------------------------------------- */
-
-static void make_basis(struct dalcs_row_basis *basis, const struct dalcs_collocation *c) {
-    enum { FOURTH = 4 };
-
-    for (int place = 0; place < N_PLACES; place++) {
-        double theta = (double)place / (N_PLACES - 1);
-        double derivative[FOURTH + 1] = {1.0};
-        for (int k = 0; k <= c->s; k++) {
-            basis->second[k][place] = derivative[2];
-            basis->fourth[k][place] = derivative[FOURTH];
-            for (int order = FOURTH; order >= 0; order--) {
-                double below = order > 0 ? order * derivative[order - 1] : 0.0;
-                derivative[order] = (theta - c->newton_node[k]) * derivative[order] + below;
-            }
-        }
-    }
-}
-
-static bool is_current(const struct dalcs_row_gaps *gaps, int output) {
-    return gaps->rows->radau->base->network->output[output].is_current;
-}
-
-/* Of the parts before, one with the same stages lends its own. */
-static bool give_basis(struct dalcs_row_gaps *gaps, int k) {
-    const struct dalcs_radau_part *part = gaps->rows->radau->part;
-    struct dalcs_row_gaps_part *to = &gaps->part[k];
-    for (int other = 0; other < k && to->basis == NULL; other++) {
-        bool is_same = part[other].stages.method == part[k].stages.method;
-        to->basis = is_same ? gaps->part[other].basis : NULL;
-    }
-    if (to->basis == NULL) {
-        struct dalcs_row_basis *made = dalcs_arena_alloc(&gaps->arena, 1, sizeof(*made));
-        if (made == NULL) {
-            return false;
-        }
-        make_basis(made, part[k].stages.method);
-        to->basis = made;
-    }
-    return true;
-}
-
-/* Where all of a unit is rounding of the other one nothing bends. */
-static void find_crosses(struct dalcs_row_gaps *gaps, const struct dalcs_radau_part *part) {
-    const struct dalcs_rows_part *p = &gaps->rows->part[part->index];
-    for (int i = 0; i < p->n_signals; i++) {
-        int output = p->signal[i].output;
-        if (output < gaps->n_outputs) {
-            double *cross = &gaps->cross[output];
-            *cross = dalcs_larger(*cross, part->scales.cross[is_current(gaps, output) ? 1 : 0]);
-        }
-    }
-}
-
-static bool set_up_parts(struct dalcs_row_gaps *gaps) {
-    const struct dalcs_rows *rows = gaps->rows;
-    bool complete = true;
-    for (int k = 0; complete && k < rows->radau->n_parts; k++) {
-        struct dalcs_row_gaps_part *part = &gaps->part[k];
-        if (rows->part[k].n_read == 0) { /* none is read, or it does not step */
-            continue;
-        }
-        find_crosses(gaps, &rows->radau->part[k]);
-        part->since = NAN;
-        part->bend =
-            dalcs_arena_alloc(&gaps->arena, (size_t)rows->part[k].n_read, sizeof(*part->bend));
-        complete = part->bend != NULL && give_basis(gaps, k);
-    }
-    return complete;
-}
-
-static bool set_up_stimuli(struct dalcs_row_gaps *gaps, const struct dalcs_circuit *circuit) {
-    size_t n = (size_t)circuit->n_stimuli;
-    gaps->curved = dalcs_arena_alloc(&gaps->arena, n, sizeof(*gaps->curved));
-    gaps->stimulus = dalcs_arena_alloc(&gaps->arena, n, sizeof(*gaps->stimulus));
-    gaps->term = dalcs_arena_alloc(&gaps->arena, DALCS_STIMULUS_MOST_TERMS, sizeof(*gaps->term));
-    if (gaps->curved == NULL || gaps->stimulus == NULL || gaps->term == NULL) {
-        return false;
-    }
-    for (int i = 0; i < circuit->n_stimuli; i++) {
-        if (dalcs_stimulus_n_terms(&circuit->stimulus[i]) > 0) {
-            gaps->curved[gaps->n_curved++].stimulus = i;
-        }
-    }
-    return true;
-}
-
-enum dalcs_status dalcs_row_gaps_setup(struct dalcs_row_gaps *gaps, struct dalcs_rows *rows,
-                                       int n_outputs, double bound) {
-    *gaps = (struct dalcs_row_gaps){.rows = rows, .n_outputs = n_outputs, .bound = bound};
-    struct dalcs_arena *arena = &gaps->arena;
-    size_t n_read = (size_t)rows->n_outputs;
-    gaps->largest = dalcs_arena_alloc(arena, (size_t)n_outputs, sizeof(double));
-    gaps->cross = dalcs_arena_alloc(arena, (size_t)n_outputs, sizeof(double));
-    gaps->of_steps = dalcs_arena_alloc(arena, n_read, sizeof(*gaps->of_steps));
-    gaps->of_sources = dalcs_arena_alloc(arena, n_read, sizeof(*gaps->of_sources));
-    gaps->part = dalcs_arena_alloc(arena, (size_t)rows->radau->n_parts, sizeof(*gaps->part));
-    bool complete = gaps->largest != NULL && gaps->cross != NULL && gaps->of_steps != NULL &&
-                    gaps->of_sources != NULL && gaps->part != NULL && set_up_parts(gaps) &&
-                    set_up_stimuli(gaps, rows->radau->base->circuit);
-    if (!complete) {
-        dalcs_row_gaps_finish(gaps);
-        return DALCS_E_NOMEM;
-    }
-    return DALCS_OK;
-}
-
-void dalcs_row_gaps_finish(struct dalcs_row_gaps *gaps) {
-    dalcs_arena_finish(&gaps->arena);
-    *gaps = (struct dalcs_row_gaps){0};
-}
 
 /* ---- Derivatives ------------------------------------------------------------------------------- */
 
@@ -158,17 +37,17 @@ size_of(const struct dalcs_collocation *c, const double *coefficient, double par
 
 /* sum of coefficient times derivative, its largest magnitude over the places. */
 static inline __attribute__((always_inline)) double
-largest_of(int s, const double *coefficient, const double (*derivative)[N_PLACES]) {
-    dalcs_quad sum[N_PLACES / DALCS_QUAD] = {{0.0}};
+largest_of(int s, const double *coefficient, const double (*derivative)[DALCS_N_PLACES]) {
+    dalcs_quad sum[DALCS_N_PLACES / DALCS_QUAD] = {{0.0}};
     for (int k = 2; k <= s; k++) {
-        for (int q = 0; q < N_PLACES / DALCS_QUAD; q++) {
+        for (int q = 0; q < DALCS_N_PLACES / DALCS_QUAD; q++) {
             dalcs_quad factor;
             dalcs_quad_load(&factor, derivative[k] + q * DALCS_QUAD);
             sum[q] += factor * coefficient[k];
         }
     }
     dalcs_quad largest = {0.0};
-    for (int q = 0; q < N_PLACES / DALCS_QUAD; q++) {
+    for (int q = 0; q < DALCS_N_PLACES / DALCS_QUAD; q++) {
         dalcs_quad_unsign(&sum[q]);
         dalcs_quad_raise(&largest, &sum[q]);
     }
@@ -311,14 +190,14 @@ static void raise_largest(struct dalcs_row_gaps *gaps, double *of_unit) {
     for (int i = 0; i < gaps->n_outputs; i++) {
         double size = fabs(gaps->of_steps[i].size - gaps->of_sources[i].size);
         gaps->largest[i] = dalcs_larger(gaps->largest[i], size);
-        double *unit = &of_unit[is_current(gaps, i) ? 1 : 0];
+        double *unit = &of_unit[dalcs_row_is_current(gaps, i) ? 1 : 0];
         *unit = dalcs_larger(*unit, gaps->largest[i]);
     }
 }
 
 /* What it is measured by. */
 static double scale_of(const struct dalcs_row_gaps *gaps, int output, const double *of_unit) {
-    int unit = is_current(gaps, output) ? 1 : 0;
+    int unit = dalcs_row_is_current(gaps, output) ? 1 : 0;
     double least =
         dalcs_larger(least_size * of_unit[unit], gaps->cross[output] * of_unit[1 - unit]);
     return dalcs_larger(gaps->largest[output], least);

@@ -1,17 +1,12 @@
 /* rows.c - what outputs read, listed once; then their values, by fours. */
 #include "rows.h"
 #include "dense_map.h"
-#include "extremes.h"
 #include "radau.h"
 #include "recurrence.h"
-#include "step_error.h"
 #include "wide_vectors.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- What is read ------------------------------------------------------------------------------ */
 
 /* ---- Polynomials ------------------------------------------------------------------------------- */
 
@@ -315,40 +310,4 @@ enum dalcs_status dalcs_rows_fill(struct dalcs_rows *rows, const double *time, i
     }
     *n_done = n;
     return DALCS_OK;
-}
-
-/* Of the tolerance: what does not jump is this close to where it was. */
-static const double join_part = 0.125;
-
-/* The largest that an output has been, as far as is known without a look at all rows. */
-static double size_of(const struct dalcs_rows *rows, const struct dalcs_radau_part *part,
-                      const struct dalcs_row_signal *signal) {
-    double size = rows->largest[signal->output];
-    if (!signal->is_column) {
-        return size;
-    }
-    const struct dalcs_probe_term *term = signal->probe->term;
-    double of_column = dalcs_step_scale(part, term->index, part->scales.unit);
-    return dalcs_larger(size, fabs(term->coefficient) * of_column);
-}
-
-static void join(struct dalcs_rows *rows, const struct dalcs_radau_part *part,
-                 const struct dalcs_row_signal *signal, double before) {
-    double *now = &rows->value[signal->output].at[0];
-    double *largest = &rows->largest[signal->output];
-    *largest = dalcs_larger(*largest, dalcs_larger(fabs(before), fabs(*now)));
-    double known = join_part * rows->radau->options.tolerance * size_of(rows, part, signal);
-    if (*now != 0.0 && fabs(*now - before) <= known) {
-        *now = before;
-    }
-}
-
-void dalcs_rows_join(struct dalcs_rows *rows, const double *before) {
-    for (int k = 0; k < rows->n_asked; k++) {
-        const struct dalcs_radau_part *part = &rows->radau->part[rows->asked[k]];
-        const struct dalcs_rows_part *p = &rows->part[rows->asked[k]];
-        for (int i = 0; i < p->n_signals && part->kind == DALCS_PART_STEPPED; i++) {
-            join(rows, part, &p->signal[i], before[p->signal[i].output]);
-        }
-    }
 }

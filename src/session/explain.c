@@ -215,7 +215,7 @@ static const char *name_argument(struct dalcs_session *s, const struct dalcs_sys
 /* Newton's method has found no values of smooth functions that agree with what they read. */
 static void explain_smooth(struct dalcs_session *s, const struct dalcs_component *c,
                            const char *when) {
-    const struct dalcs_smooth_newton *newton = c->osnsp.newton;
+    const struct dalcs_smooth_newton *newton = c->osnsp.smooth.newton;
     const struct dalcs_smooth_input *of = &c->system->smooth[newton->worst];
     if (newton->is_refused && c->osnsp.witness.n_elements > 0) {
         const struct dalcs_witness *w = &c->osnsp.witness;
@@ -264,7 +264,7 @@ enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_
                            : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
                                                 e->failed_time, e->steps + 1, e->failed_h);
     when = when == NULL ? "" : when;
-    const bool is_smooth = e->component[e->failed_system].osnsp.newton != NULL;
+    const bool is_smooth = e->component[e->failed_system].osnsp.smooth.newton != NULL;
     const char *hint = is_smooth ? NULL : dump_problem(r, e, when);
     if (status == DALCS_INFEASIBLE) {
         return explain_infeasible(r, e, is_from, when, hint);

@@ -74,7 +74,7 @@ static int list_entries(const struct dalcs_component *c, struct entry *entry) {
     for (int k = 0; k < s->n_smooth; k++) { /* by their tangents at the operating point */
         const struct dalcs_smooth_input *of = &s->smooth[k];
         double gradient[2];
-        dalcs_smooth_gradient(of->kind, c->osnsp.newton->x[k], gradient);
+        dalcs_smooth_gradient(of->kind, c->osnsp.smooth.newton->x[k], gradient);
         for (int j = 0; j < of->n; j++) {
             if (of->column[j] >= 0) {
                 const double line = of->entry[j] != NULL ? -*of->entry[j] : 0.0; /* that A has */
@@ -351,8 +351,8 @@ static enum dalcs_status report_sides(struct dalcs_run *r, struct dalcs_euler *e
             const bool on = dalcs_osnsp_is_on(&c->osnsp, d);
             if (!pair->is_breakdown || on) {
                 const bool is_diode = pair->kind == DALCS_PAIR_DIODE;
-                side[n_sides++] =
-                    (struct dalcs_side_taken){pair->element, on, is_diode && c->osnsp.tied[d]};
+                side[n_sides++] = (struct dalcs_side_taken){pair->element, on,
+                                                            is_diode && c->osnsp.signs.tied[d]};
             }
         }
     }

@@ -94,8 +94,8 @@ void dalcs_transient_add_radau_work(struct dalcs_run *r, const struct dalcs_rada
     report->work.periodic_steps += radau->periodic_steps;
     report->work.leapt_steps += radau->leapt_steps;
     for (int k = 0; k < radau->n_parts; k++) {
-        report->work.factorizations += radau->part[k].stages.factorizations;
-        report->work.cache_hits += radau->part[k].stages.cache_hits;
+        report->work.factorizations += radau->part[k].stages.cache.factorizations;
+        report->work.cache_hits += radau->part[k].stages.cache.cache_hits;
     }
     note_held_back(r, radau);
     report->certificate.wrong_sign = radau->wrong_sign;

@@ -28,7 +28,7 @@ static enum dalcs_status list_order(const struct dalcs_stage_plan *plan,
     o->row_of = dalcs_alloc(n, sizeof(int));
     o->scale = dalcs_alloc(n, sizeof(double));
     o->position = dalcs_alloc((size_t)f->n, sizeof(int));
-    o->wave_at = dalcs_alloc((size_t)plan->n_waves, sizeof(int));
+    o->wave_at = dalcs_alloc((size_t)plan->waves.n_waves, sizeof(int));
     o->choice_at = dalcs_alloc((size_t)f->singular.n, sizeof(int));
     int n_rows = plan->n_rows + f->singular.n;
     int *at = dalcs_alloc((size_t)n_rows, sizeof(int)); /* positions of rows of M and of choices */
@@ -48,8 +48,8 @@ static enum dalcs_status list_order(const struct dalcs_stage_plan *plan,
         o->position[lu->to[i]] = i;
         at[o->row_of[i]] = i;
     }
-    for (int k = 0; k < plan->n_waves; k++) {
-        o->wave_at[k] = at[plan->wave_row[k]];
+    for (int k = 0; k < plan->waves.n_waves; k++) {
+        o->wave_at[k] = at[plan->waves.wave_row[k]];
     }
     for (int k = 0; k < f->singular.n; k++) {
         o->choice_at[k] = at[plan->n_rows + k];
@@ -86,16 +86,15 @@ static enum dalcs_status factor_all(struct dalcs_stages *stages, struct dalcs_st
                                     struct dalcs_stage_factors *f, struct dalcs_stage_matrix *m,
                                     double rcond_min) {
     struct dalcs_stage_analysis *a;
-    DALCS_TRY(dalcs_stage_plan_analyze(stages, entry->mode, f->singular.n > 0, m->n, m->row,
-                                       m->column, m->p, m->i, &a));
+    DALCS_TRY(dalcs_stage_plan_analyze(stages, entry->mode, f->singular.n > 0, m, &a));
     for (int q = 0; q < f->n_systems; q++) {
         double re;
         double im;
         find_eigenvalue(stages, entry->h, q, &re, &im);
         dalcs_stage_matrix_at(m, re, im, q > 0);
-        DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q], q > 0 ? &stages->klu_complex : &stages->klu,
-                                           a->symbolic, &a->numeric[q], q > 0, m->p, m->i,
-                                           m->values, rcond_min));
+        DALCS_TRY(dalcs_lu_factor_analyzed(
+            &f->lu[q], q > 0 ? &stages->cache.klu_complex : &stages->cache.klu, a->symbolic,
+            &a->numeric[q], q > 0, m->p, m->i, m->values, rcond_min));
         DALCS_TRY(list_order(stages->plan, m, f, q));
     }
     return DALCS_OK;
@@ -121,9 +120,9 @@ static void drop_systems(struct dalcs_stage_factors *f) {
     }
 }
 
-double dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
-                                       const struct dalcs_stage_entry *entry, int r, int node,
-                                       const double *in, const double *y, double *terms) {
+struct dalcs_row_miss dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
+                                                      const struct dalcs_stage_entry *entry, int r,
+                                                      int node, const double *in, const double *y) {
     const struct dalcs_stage_plan *plan = stages->plan;
     const struct dalcs_system *s = stages->system;
     int n_equations = dalcs_system_n_equations(s);
@@ -131,24 +130,25 @@ double dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
     const struct dalcs_csr *a = is_pair ? &s->C : &s->A;
     int from = is_pair ? r - n_equations : r;
     double missed = in[s->n_x] * plan->constant[r];
-    *terms = fabs(missed);
+    double terms = fabs(missed);
     for (int k = a->p[from]; k < a->p[from + 1]; k++) {
         if (a->j[k] >= n_equations && !dalcs_stage_is_on(entry, a->j[k] - n_equations)) {
             continue; /* y has its w there */
         }
         double term = (is_pair ? -a->x[k] : a->x[k]) * y[a->j[k]];
         missed += term;
-        *terms += fabs(term);
+        terms += fabs(term);
         if (a->j[k] < s->n_x) { /* solved for as an increment over this */
-            *terms += fabs(a->x[k] * in[a->j[k]]);
+            terms += fabs(a->x[k] * in[a->j[k]]);
         }
     }
-    for (int k = plan->wave_begin[r]; k < plan->wave_begin[r + 1]; k++) {
-        double term = plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + node];
+    for (int k = plan->waves.wave_begin[r]; k < plan->waves.wave_begin[r + 1]; k++) {
+        double term = plan->waves.wave_x[k] *
+                      plan->work.share[plan->waves.wave_of[k] * DALCS_N_SHARES + node];
         missed += term;
-        *terms += fabs(term);
+        terms += fabs(term);
     }
-    return missed;
+    return (struct dalcs_row_miss){missed, terms};
 }
 
 double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
@@ -170,11 +170,10 @@ double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
             (r >= n_equations && !dalcs_stage_is_on(entry, r - n_equations))) {
             continue;
         }
-        double terms;
-        double missed =
-            dalcs_stage_factors_miss_of_row(stages, entry, r, stages->method->s, in, y, &terms);
-        worst = missed != missed ? INFINITY : fmax(worst, scale * fabs(missed));
-        size = fmax(size, scale * terms);
+        struct dalcs_row_miss miss =
+            dalcs_stage_factors_miss_of_row(stages, entry, r, stages->method->s, in, y);
+        worst = miss.missed != miss.missed ? INFINITY : fmax(worst, scale * fabs(miss.missed));
+        size = fmax(size, scale * miss.terms);
     }
     return size > 0.0 ? worst / size : 0.0;
 }
@@ -185,7 +184,7 @@ static enum dalcs_status find_residual(struct dalcs_stages *stages,
     const struct dalcs_system *s = stages->system;
     struct dalcs_stage_plan *plan = stages->plan;
     const struct dalcs_stage_layout *l = &stages->layout;
-    double *near = plan->near;
+    double *near = plan->work.near;
     double *nowhere = dalcs_alloc((size_t)plan->n_rows, sizeof(double));
     double *in = dalcs_alloc((size_t)stages->n_in, sizeof(double));
     double *out = dalcs_alloc((size_t)(l->n_fixed + entry->n_clashes), sizeof(double));
@@ -194,9 +193,9 @@ static enum dalcs_status find_residual(struct dalcs_stages *stages,
         for (int k = 0; k < stages->n_in; k++) {
             in[k] = k == s->n_x ? 1.0 : cos(1.0 + k * (double)k);
         }
-        plan->near = nowhere;
+        plan->work.near = nowhere;
         status = dalcs_stage_factors_apply(stages, entry, in, out);
-        plan->near = near;
+        plan->work.near = near;
     }
     if (status == DALCS_OK) {
         entry->residual = dalcs_stage_factors_miss(stages, entry, in, out);
@@ -300,7 +299,7 @@ static enum dalcs_status build_own(struct dalcs_stages *stages, struct dalcs_sta
                     (size_t)stages->excitation->n_functions * DALCS_N_SHARES * sizeof(double);
     for (int q = 0; q < f->n_systems; q++) {
         entry->bytes += dalcs_lu_bytes(&f->lu[q]) + n * (2 * sizeof(int) + sizeof(double)) +
-                        (size_t)stages->plan->n_waves * sizeof(int);
+                        (size_t)stages->plan->waves.n_waves * sizeof(int);
     }
     return DALCS_OK;
 }

@@ -86,18 +86,18 @@ static void load_change(const struct dalcs_stage_plan *plan, const struct dalcs_
         c->lambda_at[system] = o->position[unknown_of(f, n_equations + c->pair)];
         return;
     }
-    memset(plan->rhs, 0, (size_t)plan->n_rows * sizeof(double));
+    memset(plan->work.rhs, 0, (size_t)plan->n_rows * sizeof(double));
     int column = n_equations + c->pair;
     for (int k = plan->base.p[column]; k < plan->base.p[column + 1]; k++) {
-        plan->rhs[plan->base.j[k]] = plan->base.x[k];
+        plan->work.rhs[plan->base.j[k]] = plan->base.x[k];
     }
     double largest = 0.0;
     for (int i = 0; i < o->n; i++) {
-        largest = dalcs_larger(largest, fabs(o->scale[i] * plan->rhs[o->row_of[i]]));
+        largest = dalcs_larger(largest, fabs(o->scale[i] * plan->work.rhs[o->row_of[i]]));
     }
     c->column_scale = dalcs_stage_matrix_scale(largest);
     for (int i = 0; i < o->n; i++) {
-        work[i * stride] = c->column_scale * o->scale[i] * plan->rhs[o->row_of[i]];
+        work[i * stride] = c->column_scale * o->scale[i] * plan->work.rhs[o->row_of[i]];
     }
 }
 
@@ -201,7 +201,7 @@ void dalcs_stage_changes_destroy(const struct dalcs_stages *stages,
 
 static void count_bytes(struct dalcs_stages *stages, struct dalcs_stage_entry *e, size_t bytes) {
     e->bytes += bytes;
-    stages->bytes += bytes;
+    stages->cache.bytes += bytes;
 }
 
 enum dalcs_status dalcs_stage_change_get(struct dalcs_stages *stages,

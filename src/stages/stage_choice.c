@@ -7,7 +7,7 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
 /* What a null vector does to a diode, beside its largest entry, is rounding up to this: currents around a
  * loop of sources are nothing to diodes. */
@@ -33,13 +33,13 @@ static enum dalcs_status find_null_vectors(struct dalcs_stage_workshop *b, bool 
                                            int *nullity, double **vector) {
     int n = b->n;
     int n_x = b->n_x;
-    const double *scale = of_columns ? b->column_scale : b->row_scale;
+    const double *scale = of_columns ? b->eq.column_scale : b->eq.row_scale;
     struct dalcs_triplets t = {0};
     struct dalcs_null_space space;
     enum dalcs_status status = DALCS_OK;
     for (int i = 0; i < n; i++) {
         for (int j = n_x; j < n && status == DALCS_OK; j++) {
-            double a = of_columns ? b->plain_base[j * n + i] : b->plain_base[i * n + j];
+            double a = of_columns ? b->eq.plain_base[j * n + i] : b->eq.plain_base[i * n + j];
             bool counts = a != 0.0 && (!of_columns || is_within_block(b, i, j));
             status = counts ? dalcs_triplets_add(&t, i, j - n_x, a) : DALCS_OK;
         }
@@ -74,15 +74,15 @@ static void find_other_sides(const struct dalcs_stage_workshop *b, const double 
     int n_equations = dalcs_system_n_equations(b->system);
     double largest = 0.0;
     for (int i = 0; i < b->n; i++) {
-        largest = fmax(largest, fabs(vector[i] * b->column_scale[i]));
+        largest = fmax(largest, fabs(vector[i] * b->eq.column_scale[i]));
     }
     for (int d = 0; d < b->system->n_pairs; d++) {
         int closed = b->place[n_equations + d];
-        double side = closed >= 0 ? vector[closed] * b->column_scale[closed] : 0.0;
+        double side = closed >= 0 ? vector[closed] * b->eq.column_scale[closed] : 0.0;
         bool is_open = closed < 0 && b->system->pair[d].kind == DALCS_PAIR_DIODE;
         for (int k = C->p[d]; is_open && k < C->p[d + 1]; k++) {
             int c = b->place[C->j[k]];
-            side += c >= 0 ? C->x[k] * vector[c] * b->column_scale[c] : 0.0;
+            side += c >= 0 ? C->x[k] * vector[c] * b->eq.column_scale[c] : 0.0;
         }
         of_pair[d] = fabs(side) > null_rounding * largest ? side : 0.0;
     }
@@ -94,8 +94,8 @@ static void choose_in_pairs(const struct dalcs_stage_workshop *b, int k, const d
     const struct dalcs_system *s = b->system;
     const double *constant = b->stages->excitation->constant;
     int n_equations = dalcs_system_n_equations(s);
-    double *row = b->choice + k * b->n;
-    double *chosen = b->chosen + k * b->n_rhs;
+    double *row = b->open.choice + k * b->n;
+    double *chosen = b->open.chosen + k * b->n_rhs;
     for (int d = 0; d < s->n_pairs; d++) {
         int closed = b->place[n_equations + d];
         if (closed >= 0) {
@@ -122,11 +122,11 @@ static void choose_in_pairs(const struct dalcs_stage_workshop *b, int k, const d
 
 /* Balances row k and makes it of length 1, as null vectors are. */
 static void balance_choice(const struct dalcs_stage_workshop *b, int k) {
-    double *row = b->choice + k * b->n;
-    double *chosen = b->chosen + k * b->n_rhs;
+    double *row = b->open.choice + k * b->n;
+    double *chosen = b->open.chosen + k * b->n_rhs;
     double square = 0.0;
     for (int i = 0; i < b->n; i++) {
-        row[i] *= b->column_scale[i];
+        row[i] *= b->eq.column_scale[i];
         square += row[i] * row[i];
     }
     for (int i = 0; i < b->n; i++) {
@@ -142,7 +142,7 @@ static void balance_choice(const struct dalcs_stage_workshop *b, int k) {
 static enum dalcs_status make_orthogonal(const struct dalcs_stage_workshop *b, double *side,
                                          double *combination, int *rank) {
     int n_pairs = b->system->n_pairs;
-    int n = b->nullity;
+    int n = b->open.nullity;
     double *length = dalcs_alloc((size_t)n + 1, sizeof(double));
     double *work = dalcs_alloc((size_t)(n + n_pairs) + 1, sizeof(double));
     double *left = dalcs_alloc((size_t)n * (size_t)n + 1, sizeof(double));
@@ -168,23 +168,23 @@ static enum dalcs_status make_orthogonal(const struct dalcs_stage_workshop *b, d
 /* Row k is the combination of the null vectors itself: the least of all unknowns. */
 static void choose_in_all(const struct dalcs_stage_workshop *b, int k, const double *combination,
                           const double *null_vectors) {
-    double *row = b->choice + k * b->n;
+    double *row = b->open.choice + k * b->n;
     for (int i = 0; i < b->n; i++) {
-        for (int v = 0; v < b->nullity; v++) {
-            row[i] += combination[v] * null_vectors[v * b->n + i] / b->column_scale[i];
+        for (int v = 0; v < b->open.nullity; v++) {
+            row[i] += combination[v] * null_vectors[v * b->n + i] / b->eq.column_scale[i];
         }
     }
 }
 
 static enum dalcs_status choose(struct dalcs_stage_workshop *b, const double *null_vectors) {
     int n_pairs = b->system->n_pairs;
-    int n = b->nullity;
+    int n = b->open.nullity;
     int rows = n_pairs > n ? n_pairs : n;
     double *side = dalcs_stage_workshop_reals(&b->arena, n * rows);
     double *combination = dalcs_stage_workshop_reals(&b->arena, n * n);
-    b->choice = dalcs_stage_workshop_reals(&b->arena, n * b->n);
-    b->chosen = dalcs_stage_workshop_reals(&b->arena, n * b->n_rhs);
-    if (side == NULL || combination == NULL || b->choice == NULL || b->chosen == NULL) {
+    b->open.choice = dalcs_stage_workshop_reals(&b->arena, n * b->n);
+    b->open.chosen = dalcs_stage_workshop_reals(&b->arena, n * b->n_rhs);
+    if (side == NULL || combination == NULL || b->open.choice == NULL || b->open.chosen == NULL) {
         return DALCS_E_NOMEM;
     }
     double largest = 0.0;
@@ -215,10 +215,10 @@ static enum dalcs_status choose(struct dalcs_stage_workshop *b, const double *nu
 enum dalcs_status dalcs_stage_choice_find(struct dalcs_stage_workshop *b) {
     int n_of_rows;
     double *null_vectors;
-    DALCS_TRY(find_null_vectors(b, true, &b->nullity, &null_vectors));
-    DALCS_TRY(find_null_vectors(b, false, &n_of_rows, &b->left));
-    if (n_of_rows != b->nullity) {
+    DALCS_TRY(find_null_vectors(b, true, &b->open.nullity, &null_vectors));
+    DALCS_TRY(find_null_vectors(b, false, &n_of_rows, &b->open.left));
+    if (n_of_rows != b->open.nullity) {
         return DALCS_SINGULAR;
     }
-    return b->nullity > 0 ? choose(b, null_vectors) : DALCS_OK;
+    return b->open.nullity > 0 ? choose(b, null_vectors) : DALCS_OK;
 }

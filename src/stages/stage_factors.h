@@ -12,7 +12,7 @@ struct dalcs_stage_order {
     double *scale;  /* [n] of that row */
     int *position;  /* [n] of an unknown */
     int *of_pair;   /* [n_pairs] position of a pair's lambda */
-    int *wave_at;   /* [plan->n_waves] position of the entry's row, -1: not there */
+    int *wave_at;   /* [plan->waves.n_waves] position of the entry's row, -1: not there */
     int *choice_at; /* [singular.n] */
 };
 
@@ -33,10 +33,14 @@ struct dalcs_stage_factors {
 };
 
 /* stage_build.c: what row r of M without derivatives misses at y, an answer at a node, and the sum of
- * its terms. */
-double dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
-                                       const struct dalcs_stage_entry *entry, int r, int node,
-                                       const double *in, const double *y, double *terms);
+ * its terms' sizes. */
+struct dalcs_row_miss {
+    double missed, terms;
+};
+
+struct dalcs_row_miss dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
+                                                      const struct dalcs_stage_entry *entry, int r,
+                                                      int node, const double *in, const double *y);
 
 /* stage_build.c: the largest miss of the rows without derivatives over the largest of their terms,
  * balanced, at the last stage of the step from in[n_in] to out that was made last. */

@@ -3,7 +3,6 @@
 
 #include "rounding.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -102,7 +101,9 @@ void dalcs_stage_join_finish(struct dalcs_stage_join *join) {
 
 enum dalcs_status dalcs_stage_join_row(const struct dalcs_stage_join *join,
                                        const struct dalcs_system *s, int r, double factor,
-                                       double *value, double *size, struct dalcs_triplets *t) {
+                                       double *work, struct dalcs_triplets *t) {
+    double *value = work;
+    double *size = work + dalcs_system_n_columns(s);
     for (int f = r; f >= 0; f = dalcs_stage_join_after(join, r, f)) {
         for (int k = s->A.p[f]; k < s->A.p[f + 1]; k++) {
             value[s->A.j[k]] += s->A.x[k];

@@ -25,11 +25,9 @@ enum dalcs_status dalcs_stage_join_find(struct dalcs_stage_join *join,
                                         const struct dalcs_system *s) DALCS_MUST_CHECK;
 void dalcs_stage_join_finish(struct dalcs_stage_join *join);
 
-/* Adds row r of A as it is after that to column r of t, times factor. value, size: [n_columns] work, 0 before
- * and after. */
+/* Adds row r of A as it is after that to column r of t, times factor. work[2 n_columns]: 0 before and after. */
 enum dalcs_status dalcs_stage_join_row(const struct dalcs_stage_join *join,
                                        const struct dalcs_system *s, int r, double factor,
-                                       double *value, double *size,
-                                       struct dalcs_triplets *t) DALCS_MUST_CHECK;
+                                       double *work, struct dalcs_triplets *t) DALCS_MUST_CHECK;
 
 #endif

@@ -2,294 +2,11 @@
  * of the few solutions that the workshop has for unit states and unit inputs. */
 #include "dense_map.h"
 #include "extremes.h"
+#include "stage_column.h"
 #include "stage_shift.h"
-#include "stage_workshop.h"
-#include "wide_vectors.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* Adds factor times a row of lanes. */
-static inline void add_lanes(double *to, double factor, const double *from) {
-    for (int i = 0; i < DALCS_LANES; i += DALCS_QUAD) {
-        dalcs_quad sum;
-        dalcs_quad term;
-        dalcs_quad_load(&sum, to + i);
-        dalcs_quad_load(&term, from + i);
-        sum += factor * term;
-        dalcs_quad_store(to + i, &sum);
-    }
-}
-
-/* The other side of the pairs, b->guard: lambda where closed, w where open, from the unknowns in b->lanes
- * and from the share of the source column (rhs_column < 0: none) in the lanes. */
-DALCS_TWICE(void, find_guards,
-            (const struct dalcs_stage_workshop *b, int rhs_column, const double *share),
-            (b, rhs_column, share)) {
-    const struct dalcs_system *s = b->system;
-    const double *constant = b->stages->excitation->constant;
-    for (int d = 0; d < s->n_pairs; d++) {
-        if (dalcs_stage_is_on(b->entry, d)) {
-            continue;
-        }
-        double *w = b->guard + d * DALCS_LANES;
-        for (int i = 0; i < DALCS_LANES; i++) {
-            w[i] = 0.0;
-        }
-        if (s->pair[d].kind != DALCS_PAIR_DIODE) {
-            continue;
-        }
-        for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
-            int c = b->place[s->C.j[k]];
-            if (c >= 0) {
-                add_lanes(w, s->C.x[k], b->lanes + c * DALCS_LANES);
-            }
-        }
-        for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
-            int wave = b->wave_column[s->F.j[k]];
-            if (wave >= 0 && wave == rhs_column) {
-                add_lanes(w, s->F.x[k], share);
-            } else if (wave < 0 && rhs_column == b->n_x) {
-                add_lanes(w, s->F.x[k] * constant[s->F.j[k]], share);
-            }
-        }
-    }
-    const double *lambda = b->lanes + dalcs_system_n_equations(s) * DALCS_LANES;
-    for (int k = 0; k < b->entry->n_on; k++) {
-        memcpy(b->guard + b->entry->on[k] * DALCS_LANES, lambda + k * DALCS_LANES,
-               DALCS_LANES * sizeof(double));
-    }
-}
-
-/* Unknowns in a lane to the columns of the system, guards in the place of lambda. */
-static void put_columns(const struct dalcs_stage_workshop *b, int lane, double *out) {
-    int n_equations = dalcs_system_n_equations(b->system);
-#pragma GCC unroll 4
-    for (int c = 0; c < n_equations; c++) {
-        out[c] = b->lanes[c * DALCS_LANES + lane];
-    }
-    for (int d = 0; d < b->system->n_pairs; d++) {
-        out[n_equations + d] = b->guard[d * DALCS_LANES + lane];
-    }
-}
-
-/* A watched voltage from columns. */
-static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const double *columns) {
-    const struct dalcs_system *s = b->system;
-    int n_equations = dalcs_system_n_equations(s);
-    double v = 0.0;
-    for (int k = s->control.p[d]; k < s->control.p[d + 1]; k++) {
-        int c = s->control.j[k];
-        bool open = c >= n_equations && !dalcs_stage_is_on(b->entry, c - n_equations);
-        v += open ? 0.0 : s->control.x[k] * columns[c];
-    }
-    return v;
-}
-
-/* What drives a column of the map: a source's values at the nodes and what they miss in between, 0 for a state, and,
- * as in stage_functions.h, the stages' share of it and what they take of each part of a solution. */
-struct drive {
-    const double *share;
-    const struct dalcs_extended_row *stages, *of_part;
-};
-
-/* The stages of an unknown from its row, unscaled increments over unit, into b->lanes, and, before the filter, where
- * the polynomial through them alone starts, into b->start. */
-static void put_stages(const struct dalcs_stage_workshop *b, int unknown,
-                       const struct dalcs_extended_row *row, double unit) {
-    int s = b->stages->method->s;
-    int n_stages = b->stages->method->n_stages;
-    double scale = b->column_scale[unknown];
-    dalcs_extended_round(n_stages, row, scale, unit, b->lanes + unknown * DALCS_LANES + 1);
-    b->start[unknown] = dalcs_extended_scaled(row->high[s], row->low[s], scale);
-}
-
-/* The stages of what is kept, as increments, and then of the followers. */
-static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const struct drive *drive) {
-    const struct dalcs_collocation *m = b->stages->method;
-    int n_parts = 1 + 2 * m->n_pairs;
-    const struct dalcs_extended *part = b->part + rhs_column * b->n_kept * DALCS_SOLUTION_PARTS;
-    for (int r = 0; r < b->n_kept; r++, part += DALCS_SOLUTION_PARTS) {
-        bool is_unit = column < b->n_x && b->kept[r] == column;
-        dalcs_extended_combine(m->s + 1, n_parts, part, drive->of_part, NULL, &b->stage[r]);
-        put_stages(b, b->kept[r], &b->stage[r], is_unit ? 1.0 : 0.0);
-    }
-    b->stage[b->n_kept] = *drive->stages;
-    for (int f = 0; f < b->n_followers; f++) {
-        int from = b->follows_p[f];
-        int to = b->follows_p[f + 1];
-        struct dalcs_extended_row row;
-        long double own = dalcs_stage_workshop_drive(b, f, rhs_column);
-        b->follows_x[to - 1] = dalcs_extended_of(own);
-        to -= own == 0.0L ? 1 : 0; /* most are driven by no source */
-        dalcs_extended_combine(m->s + 1, to - from, b->follows_x + from, b->stage,
-                               b->follows_j + from, &row);
-        put_stages(b, b->follower[f], &row, 0.0);
-    }
-}
-
-/* What implicit Euler makes of unknowns [from, to) from what is missed in the first n rows of b->of_missed, into
- * b->filtered, over their scales. */
-static void filter(const struct dalcs_stage_workshop *b, int n, const struct dalcs_extended *missed,
-                   int from, int to) {
-    from -= from % DALCS_QUAD;
-    dalcs_extended_combine_long(b->room, to - from, n, missed, b->real + from, b->of_missed,
-                                b->filtered + from);
-}
-
-static struct dalcs_extended filtered(const struct dalcs_stage_workshop *b, int r) {
-    return dalcs_extended_scaled(b->filtered[r], b->filtered[b->room + (size_t)r],
-                                 b->column_scale[r]);
-}
-
-/* The start and what sources do between the nodes into b->lanes, and the defect at the start after the
- * filter into b->defect. */
-static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                       const double *share) {
-    const struct dalcs_collocation *m = b->stages->method;
-    int n = b->n;
-    int n_x = b->n_x;
-    int n_missed = column < n_x ? n_x : n_x + 1; /* a source has its own */
-    long double source_drift = share[0];
-    for (int i = 1; i <= m->n_stages; i++) {
-        source_drift -= m->exact_back[i - 1] * share[i];
-    }
-    b->missed[n_x] = dalcs_extended_of(source_drift);
-    b->of_missed[n_x] = rhs_column;
-    for (int x = 0; x < n_x; x++) {
-        b->missed[x] = (struct dalcs_extended){-b->start[x].high, -b->start[x].low};
-    }
-    filter(b, n_missed, b->missed, 0, n_x);
-    /* What is added to the others goes with states that are off by their defects: less that. */
-    for (int x = 0; x < n_x; x++) {
-        b->lanes[x * DALCS_LANES] = x == column ? 1.0 : 0.0;
-        b->defect[x] = filtered(b, x);
-        b->missed[x] = dalcs_extended_plus(
-            b->missed[x], (struct dalcs_extended){-b->defect[x].high, -b->defect[x].low});
-    }
-    filter(b, n_missed, b->missed, n_x, n);
-    for (int r = n_x; r < n; r++) {
-        b->lanes[r * DALCS_LANES] = dalcs_extended_plus(b->start[r], filtered(b, r)).high;
-    }
-    const double *real = b->real + 2 * b->room * (size_t)rhs_column;
-    double ripple = share[DALCS_RIPPLE_LANE] * m->test_factor;
-    for (int r = 0; r < n; r++) {
-        b->lanes[r * DALCS_LANES + DALCS_RIPPLE_LANE] = real[r] * b->column_scale[r] * ripple;
-    }
-}
-
-/* What goes with the defects that last: what dies away at once, or what equations without memory forbid,
- * is no error of currents. */
-static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
-    const struct dalcs_stages *stages = b->stages;
-    if (stages->n_levered > 0) {
-        filter(b, b->n_x, b->defect, 0, b->n_x);
-        for (int x = 0; x < b->n_x; x++) {
-            b->lasting[x] = filtered(b, x);
-        }
-        filter(b, b->n_x, b->lasting, b->n_x, b->n - b->entry->n_on);
-    }
-    for (int k = 0; k < b->entry->current_rows; k++) {
-        out[k] = k < stages->n_levered ? filtered(b, stages->levered[k]).high : 0.0;
-    }
-}
-
-/* Where a column of the map goes, and of that of the drift of currents. */
-struct map_column {
-    double *out, *currents;
-};
-
-/* One column of the map, with its clashes: the answer to in[column] = 1. And on to the next. */
-static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const struct drive *drive, struct map_column *to) {
-    double *out = to->out;
-    const double *share = drive->share;
-    const struct dalcs_collocation *m = b->stages->method;
-    const struct dalcs_stage_layout *l = &b->stages->layout;
-    const struct dalcs_system *s = b->system;
-    bool is_state = column < b->n_x;
-    fill_stages(b, column, rhs_column, drive);
-    fill_start(b, column, rhs_column, share);
-    find_guards(b, rhs_column, share);
-    for (int k = 0; k <= m->n_stages; k++) {
-        double *columns = out + k * l->stride;
-        put_columns(b, k, columns);
-        for (int i = 0; i < b->stages->n_watched; i++) {
-            columns[dalcs_system_n_columns(s) + i] =
-                watched_voltage(b, b->stages->watched[i], columns);
-        }
-    }
-    for (int x = 0; x < b->n_x; x++) {
-        out[l->drift + x] = b->defect[x].high;
-    }
-    fill_currents(b, to->currents);
-    if (b->stages->excitation->is_curved) {
-        put_columns(b, DALCS_RIPPLE_LANE, out + l->ripple);
-    }
-    for (int k = 0; k < b->nullity; k++) {
-        double clash = 0.0;
-        for (int i = s->n_x; i < b->n && !is_state; i++) {
-            clash += b->left[k * b->n + i] * b->rhs[rhs_column * b->n + i];
-        }
-        for (int i = 1; i <= m->s; i++) {
-            out[l->n_fixed + k * m->s + i - 1] = clash * share[i];
-        }
-    }
-    for (int i = l->n_fixed + b->entry->n_clashes; i < b->entry->rows; i++) {
-        out[i] = 0.0;
-    }
-    to->out += b->entry->rows;
-    to->currents += b->entry->current_rows;
-}
-
-/* b->residual += value * what column c has in the equations without derivatives. Returns the largest term, at least
- * `largest`. */
-static double add_terms(const struct dalcs_stage_workshop *b, int c, double value, double largest) {
-    for (int k = b->nonzero_p[c]; k < b->nonzero_p[c + 1]; k++) {
-        int r = b->nonzero_i[k] - b->n_x;
-        if (r >= 0) {
-            double term = b->base[k] * value;
-            b->residual[r] += term;
-            largest = dalcs_larger(fabs(term), largest);
-        }
-    }
-    return largest;
-}
-
-/* How well the rounded answer at the last stage satisfies the equations without derivatives, in
- * balanced units. In a singular mode sources may disagree, which is for the clashes to tell. */
-static void check_column(struct dalcs_stage_workshop *b, int column, int rhs_column, double share) {
-    int last = b->stages->method->s;
-    int n_z = b->n - b->n_x;
-    bool is_state = column < b->n_x;
-    if (b->nullity > 0 && !is_state) {
-        return;
-    }
-    /* what a state of 1 is in balanced units: where it stays as it is all else is rounding of that */
-    double largest = is_state ? 1.0 / b->column_scale[column] : 0.0;
-    for (int r = 0; r < n_z; r++) {
-        double drive = b->rhs[rhs_column * b->n + b->n_x + r];
-        b->residual[r] = -drive * (is_state ? 1.0 : share);
-        largest = dalcs_larger(largest, fabs(drive)); /* a sine may be near 0 just there */
-    }
-    /* likewise, what a source would drive a state to that the mode holds at 0 */
-    for (int x = 0; x < b->n_x && !is_state; x++) {
-        largest = dalcs_larger(largest, fabs(b->rhs[rhs_column * b->n + x]));
-    }
-    for (int c = 0; c < b->n; c++) {
-        double increment = b->lanes[c * DALCS_LANES + last] - (is_state && c == column ? 1.0 : 0.0);
-        if (increment != 0.0) {
-            largest = add_terms(b, c, increment / b->column_scale[c], largest);
-        }
-    }
-    double worst = 0.0;
-    for (int r = 0; r < n_z; r++) {
-        worst = dalcs_larger(worst, fabs(b->residual[r]));
-    }
-    b->entry->residual = dalcs_larger(b->entry->residual, largest > 0.0 ? worst / largest : 0.0);
-}
 
 static int n_columns(const struct dalcs_stage_workshop *b) {
     return b->has_constants ? b->stages->n_in : b->stages->n_in - 1;
@@ -301,25 +18,26 @@ static void fill_map(struct dalcs_stage_workshop *b, const struct dalcs_stage_fu
     static const struct dalcs_extended_row one = {
         .high = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0}};
     double share[DALCS_LANES] = {0.0};
-    const struct drive constant = {share, &one, m->exact_to};
-    struct map_column to = {b->entry->map, b->entry->current_map};
-    memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
+    const struct dalcs_stage_drive constant = {share, &one, m->exact_to};
+    struct dalcs_map_column to = {b->entry->map, b->entry->current_map};
+    memset(b->column.lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int x = 0; x < b->n_x; x++) {
-        fill_column(b, x, x, &constant, &to);
-        check_column(b, x, x, 0.0);
+        dalcs_stage_column_fill(b, x, x, &constant, &to);
+        dalcs_stage_column_check(b, x, x, 0.0);
     }
     if (b->has_constants) {
         for (int k = 0; k <= m->n_stages; k++) {
             share[k] = 1.0;
         }
-        fill_column(b, b->n_x, b->n_x, &constant, &to);
-        check_column(b, b->n_x, b->n_x, 1.0);
+        dalcs_stage_column_fill(b, b->n_x, b->n_x, &constant, &to);
+        dalcs_stage_column_check(b, b->n_x, b->n_x, 1.0);
     }
     for (int f = 0; f < e->n_functions; f++) {
-        const struct drive of = {function[f].share, &function[f].stages, function[f].of_part};
+        const struct dalcs_stage_drive of = {function[f].share, &function[f].stages,
+                                             function[f].of_part};
         int rhs_column = b->wave_column[e->function[f].input];
-        fill_column(b, b->n_x + 1 + f, rhs_column, &of, &to);
-        check_column(b, b->n_x + 1 + f, rhs_column, of.share[m->s]);
+        dalcs_stage_column_fill(b, b->n_x + 1 + f, rhs_column, &of, &to);
+        dalcs_stage_column_check(b, b->n_x + 1 + f, rhs_column, of.share[m->s]);
     }
 }
 
@@ -335,7 +53,7 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
         return DALCS_E_NOMEM;
     }
     DALCS_TRY(dalcs_stage_workshop_solve(b, entry));
-    entry->n_clashes = b->nullity * stages->method->s;
+    entry->n_clashes = b->open.nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
     entry->current_rows = dalcs_dense_map_rows(stages->n_levered);
     int all_rows = entry->rows + entry->current_rows + (entry->frees_states ? 0 : b->n_x);
@@ -363,12 +81,12 @@ const double *dalcs_stage_map_input(const struct dalcs_stages *stages, const dou
         return in;
     }
     for (int k = 0; k < b->n_x; k++) {
-        b->in[k] = in[k];
+        b->column.in[k] = in[k];
     }
     for (int k = b->n_x + 1; k < stages->n_in; k++) {
-        b->in[k - 1] = in[k];
+        b->column.in[k - 1] = in[k];
     }
-    return b->in;
+    return b->column.in;
 }
 
 void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,

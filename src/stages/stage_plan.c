@@ -2,6 +2,7 @@
 #include "stage_plan.h"
 
 #include "lu.h"
+#include "stage_matrix.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +17,7 @@ static enum dalcs_status fill_base(struct dalcs_stage_plan *plan, const struct d
     enum dalcs_status status = DALCS_OK;
     int n_equations = dalcs_system_n_equations(s);
     for (int r = 0; r < n_equations && status == DALCS_OK; r++) {
-        status = dalcs_stage_join_row(&plan->join, s, r, -1.0, work, work + plan->n_rows, &t);
+        status = dalcs_stage_join_row(&plan->join, s, r, -1.0, work, &t);
     }
     for (int d = 0; d < s->n_pairs; d++) {
         for (int k = s->C.p[d]; k < s->C.p[d + 1] && status == DALCS_OK; k++) {
@@ -67,14 +68,14 @@ static void add_sources(struct dalcs_stage_plan *plan, const struct dalcs_csr *a
                         double sign, int r) {
     const double *constant = plan->stages->excitation->constant;
     for (int k = a->p[from]; k < a->p[from + 1]; k++) {
-        int wave = plan->wave_of_input[a->j[k]];
+        int wave = plan->waves.wave_of_input[a->j[k]];
         if (wave < 0) {
             plan->constant[r] += sign * a->x[k] * constant[a->j[k]];
             continue;
         }
-        plan->wave_row[plan->n_waves] = r;
-        plan->wave_of[plan->n_waves] = wave;
-        plan->wave_x[plan->n_waves++] = sign * a->x[k];
+        plan->waves.wave_row[plan->waves.n_waves] = r;
+        plan->waves.wave_of[plan->waves.n_waves] = wave;
+        plan->waves.wave_x[plan->waves.n_waves++] = sign * a->x[k];
     }
 }
 
@@ -83,10 +84,10 @@ static void fill_sources(struct dalcs_stage_plan *plan, const struct dalcs_syste
     const struct dalcs_excitation *e = plan->stages->excitation;
     int n_equations = dalcs_system_n_equations(s);
     for (int i = 0; i < s->n_inputs; i++) {
-        plan->wave_of_input[i] = -1;
+        plan->waves.wave_of_input[i] = -1;
     }
     for (int w = 0; w < e->n_waves; w++) {
-        plan->wave_of_input[e->wave[w].input] = w;
+        plan->waves.wave_of_input[e->wave[w].input] = w;
     }
     for (int r = 0; r < plan->n_rows; r++) {
         if (r >= n_equations) {
@@ -96,7 +97,7 @@ static void fill_sources(struct dalcs_stage_plan *plan, const struct dalcs_syste
              f = dalcs_stage_join_after(&plan->join, r, f)) {
             add_sources(plan, &s->E, f, 1.0, r);
         }
-        plan->wave_begin[r + 1] = plan->n_waves;
+        plan->waves.wave_begin[r + 1] = plan->waves.n_waves;
     }
 }
 
@@ -116,25 +117,25 @@ static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s
     size_t n = (size_t)plan->n_rows;
     size_t n_entries = (size_t)(2 * s->E.p[s->E.n_rows] + s->F.p[s->F.n_rows]);
     plan->constant = dalcs_alloc(n, sizeof(double));
-    plan->wave_row = dalcs_alloc(n_entries, sizeof(int));
-    plan->wave_of = dalcs_alloc(n_entries, sizeof(int));
-    plan->wave_x = dalcs_alloc(n_entries, sizeof(double));
-    plan->wave_begin = dalcs_alloc(n + 1, sizeof(int));
-    plan->wave_of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
+    plan->waves.wave_row = dalcs_alloc(n_entries, sizeof(int));
+    plan->waves.wave_of = dalcs_alloc(n_entries, sizeof(int));
+    plan->waves.wave_x = dalcs_alloc(n_entries, sizeof(double));
+    plan->waves.wave_begin = dalcs_alloc(n + 1, sizeof(int));
+    plan->waves.wave_of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
     plan->match = dalcs_alloc(n, sizeof(int));
     plan->analysis = dalcs_alloc((size_t)plan->most_analyses, sizeof(*plan->analysis));
-    plan->rhs = dalcs_alloc(n, 2 * sizeof(double));
-    plan->share =
+    plan->work.rhs = dalcs_alloc(n, 2 * sizeof(double));
+    plan->work.share =
         dalcs_alloc((size_t)plan->stages->excitation->n_waves, DALCS_N_SHARES * sizeof(double));
-    plan->missed = dalcs_alloc(n, sizeof(double));
-    plan->near = dalcs_alloc(n, sizeof(double));
-    plan->from = dalcs_alloc(n, sizeof(double));
-    plan->guard = dalcs_alloc((size_t)(s->n_pairs + plan->stages->n_watched), sizeof(double));
-    return plan->constant != NULL && plan->wave_row != NULL && plan->wave_of != NULL &&
-           plan->wave_x != NULL && plan->wave_begin != NULL && plan->wave_of_input != NULL &&
-           plan->match != NULL && plan->analysis != NULL && plan->rhs != NULL &&
-           plan->share != NULL && plan->missed != NULL && plan->near != NULL &&
-           plan->from != NULL && plan->guard != NULL;
+    plan->work.missed = dalcs_alloc(n, sizeof(double));
+    plan->work.near = dalcs_alloc(n, sizeof(double));
+    plan->work.from = dalcs_alloc(n, sizeof(double));
+    plan->work.guard = dalcs_alloc((size_t)(s->n_pairs + plan->stages->n_watched), sizeof(double));
+    return plan->constant != NULL && plan->waves.wave_row != NULL && plan->waves.wave_of != NULL &&
+           plan->waves.wave_x != NULL && plan->waves.wave_begin != NULL &&
+           plan->waves.wave_of_input != NULL && plan->match != NULL && plan->analysis != NULL &&
+           plan->work.rhs != NULL && plan->work.share != NULL && plan->work.missed != NULL &&
+           plan->work.near != NULL && plan->work.from != NULL && plan->work.guard != NULL;
 }
 
 static int how_many(int unknowns, int n) {
@@ -155,7 +156,7 @@ static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs
     DALCS_TRY(dalcs_stage_join_find(&plan->join, s));
     fill_sources(plan, s);
     fill_combination(plan);
-    DALCS_TRY(fill_base(plan, s, plan->rhs));
+    DALCS_TRY(fill_base(plan, s, plan->work.rhs));
     DALCS_TRY(fill_P(plan, s));
     DALCS_TRY(fill_drive(plan, plan->n_rows, &plan->drive));
     return fill_drive(plan, s->n_x, &plan->drive_of_states);
@@ -179,13 +180,14 @@ enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) {
 
 static void drop_factors(struct dalcs_stages *stages, struct dalcs_stage_analysis *a) {
     for (int q = 0; q < DALCS_STAGE_SYSTEMS; q++) {
-        dalcs_lu_drop(&a->numeric[q], q > 0, q > 0 ? &stages->klu_complex : &stages->klu);
+        dalcs_lu_drop(&a->numeric[q], q > 0,
+                      q > 0 ? &stages->cache.klu_complex : &stages->cache.klu);
     }
 }
 
 static void forget(struct dalcs_stages *stages, struct dalcs_stage_analysis *a) {
     drop_factors(stages, a);
-    klu_free_symbolic(&a->symbolic, &stages->klu);
+    klu_free_symbolic(&a->symbolic, &stages->cache.klu);
     free(a->mode);
     *a = (struct dalcs_stage_analysis){0};
 }
@@ -205,31 +207,33 @@ void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     dalcs_csr_finish(&plan->drive);
     dalcs_csr_finish(&plan->drive_of_states);
     free(plan->constant);
-    free(plan->wave_row);
-    free(plan->wave_of);
-    free(plan->wave_x);
-    free(plan->wave_begin);
-    free(plan->wave_of_input);
+    free(plan->waves.wave_row);
+    free(plan->waves.wave_of);
+    free(plan->waves.wave_x);
+    free(plan->waves.wave_begin);
+    free(plan->waves.wave_of_input);
     free(plan->match);
     free(plan->analysis);
-    free(plan->rhs);
-    free(plan->share);
-    free(plan->missed);
-    free(plan->near);
-    free(plan->from);
-    free(plan->guard);
+    free(plan->work.rhs);
+    free(plan->work.share);
+    free(plan->work.missed);
+    free(plan->work.near);
+    free(plan->work.from);
+    free(plan->work.guard);
     free(plan);
 }
 
-/* A copy of i with each column's match first; NULL when out of memory. */
-static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, const int *row,
-                               const int *column, const int *p, const int *i) {
-    int *first = dalcs_alloc((size_t)p[n], sizeof(int));
-    for (int c = 0; first != NULL && c < n; c++) {
-        int match = plan->match[column[c]];
+/* A copy of m->i with each column's match first; NULL when out of memory. */
+static int *list_matches_first(const struct dalcs_stage_plan *plan,
+                               const struct dalcs_stage_matrix *m) {
+    const int *p = m->p;
+    const int *i = m->i;
+    int *first = dalcs_alloc((size_t)p[m->n], sizeof(int));
+    for (int c = 0; first != NULL && c < m->n; c++) {
+        int match = plan->match[m->column[c]];
         for (int k = p[c]; k < p[c + 1]; k++) {
             first[k] = i[k];
-            if (row[i[k]] == match) {
+            if (m->row[i[k]] == match) {
                 first[k] = first[p[c]];
                 first[p[c]] = i[k];
             }
@@ -239,15 +243,15 @@ static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, const
 }
 
 static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mode,
-                                 bool is_singular, int n, const int *row, const int *column, int *p,
-                                 const int *i, struct dalcs_stage_analysis *a) {
+                                 bool is_singular, const struct dalcs_stage_matrix *m,
+                                 struct dalcs_stage_analysis *a) {
     size_t words = (size_t)stages->n_words;
-    int *first = list_matches_first(stages->plan, n, row, column, p, i);
+    int *first = list_matches_first(stages->plan, m);
     *a = (struct dalcs_stage_analysis){.mode = dalcs_alloc(words, sizeof(*mode)),
                                        .is_singular = is_singular};
     enum dalcs_status status = DALCS_E_NOMEM;
     if (first != NULL && a->mode != NULL) {
-        status = dalcs_lu_analyze(&a->symbolic, &stages->klu, n, p, first);
+        status = dalcs_lu_analyze(&a->symbolic, &stages->cache.klu, m->n, m->p, first);
     }
     free(first);
     if (status != DALCS_OK) {
@@ -259,8 +263,7 @@ static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mo
 }
 
 enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode,
-                                           bool is_singular, int n, const int *row,
-                                           const int *column, int *p, int *i,
+                                           bool is_singular, const struct dalcs_stage_matrix *m,
                                            struct dalcs_stage_analysis **analysis) {
     struct dalcs_stage_plan *plan = stages->plan;
     size_t bytes = (size_t)stages->n_words * sizeof(*mode);
@@ -275,7 +278,7 @@ enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const ui
     if (at < plan->n_analyses) {
         found = plan->analysis[at];
     } else {
-        DALCS_TRY(analyze(stages, mode, is_singular, n, row, column, p, i, &found));
+        DALCS_TRY(analyze(stages, mode, is_singular, m, &found));
         if (at == plan->most_analyses) {
             forget(stages, &plan->analysis[--at]);
         } else {

@@ -38,6 +38,25 @@ struct dalcs_stage_analysis {
     klu_numeric *numeric[DALCS_STAGE_SYSTEMS]; /* of the last step length, or NULL */
 };
 
+/* What varies, of E and F. */
+struct dalcs_plan_waves {
+    int n_waves;             /* entries of wave, by rows */
+    int *wave_row, *wave_of; /* [n_waves] */
+    double *wave_x;          /* [n_waves] */
+    int *wave_begin;         /* [n_rows + 1] */
+    int *wave_of_input;      /* [n_inputs] -1: constant */
+};
+
+/* Of one step. */
+struct dalcs_plan_work {
+    double *rhs;    /* [2 n_rows] of the rows of M, then of choices */
+    double *share;  /* [waves][DALCS_N_SHARES] */
+    double *near;   /* [n_rows] columns where the circuit was last; lambda of open pairs 0 */
+    double *from;   /* [n_rows] of this step: y_0 */
+    double *missed; /* [n_rows] by states at the start, then what is left of it; else 0 */
+    double *guard;  /* [n_pairs + watched] */
+};
+
 struct dalcs_stage_plan {
     const struct dalcs_stages *stages;
     int n_rows;                       /* n_equations + n_pairs: rows and columns of M */
@@ -47,11 +66,7 @@ struct dalcs_stage_plan {
     struct dalcs_csr drive;           /* [n_rows][n_rows] */
     struct dalcs_csr drive_of_states; /* [n_rows][n_x] its first columns */
     double *constant;                 /* [n_rows] */
-    int n_waves;                      /* entries of wave, by rows */
-    int *wave_row, *wave_of;          /* [n_waves] */
-    double *wave_x;                   /* [n_waves] */
-    int *wave_begin;                  /* [n_rows + 1] */
-    int *wave_of_input;               /* [n_inputs] -1: constant */
+    struct dalcs_plan_waves waves;
     /* Y_i = x_0 + sum over the parts (real, re, im, re, ...) of to[i] * part; to[0]: the value at 0
      * of the polynomial through the stages */
     double to[DALCS_MAX_NODES][DALCS_SOLUTION_PARTS];
@@ -64,14 +79,7 @@ struct dalcs_stage_plan {
 
     int n_analyses, most_analyses, most_kept;
     struct dalcs_stage_analysis *analysis; /* newest first */
-
-    /* work */
-    double *rhs;    /* [2 n_rows] of the rows of M, then of choices */
-    double *share;  /* [waves][DALCS_N_SHARES] */
-    double *near;   /* [n_rows] columns where the circuit was last; lambda of open pairs 0 */
-    double *from;   /* [n_rows] of this step: y_0 */
-    double *missed; /* [n_rows] by states at the start, then what is left of it; else 0 */
-    double *guard;  /* [n_pairs + watched] */
+    struct dalcs_plan_work work;
 };
 
 static inline int dalcs_stage_plan_n_equations(const struct dalcs_stage_plan *plan) {
@@ -83,11 +91,11 @@ enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) DALCS_MUST_C
 
 void dalcs_stage_plan_destroy(struct dalcs_stages *stages);
 
-/* KLU's analysis of a mode's pattern (p, i), whose rows and columns are row[n] and column[n] of M. It
- * belongs to the plan and stays until the next call. */
+struct dalcs_stage_matrix;
+
+/* KLU's analysis of the pattern of a mode's matrix. It belongs to the plan and stays until the next call. */
 enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode,
-                                           bool is_singular, int n, const int *row,
-                                           const int *column, int *p, int *i,
+                                           bool is_singular, const struct dalcs_stage_matrix *m,
                                            struct dalcs_stage_analysis **analysis) DALCS_MUST_CHECK;
 
 #endif

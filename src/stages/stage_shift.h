@@ -14,7 +14,7 @@ static inline size_t dalcs_stage_shift_room(int n, int n_rhs) {
     return 2 * (size_t)n * (size_t)dalcs_dense_row(n, n_rhs);
 }
 
-/* b->shift, once the workshop's unknowns without memory are eliminated. */
+/* b->solved.shift, once the workshop's unknowns without memory are eliminated. */
 void dalcs_stage_shift_find(struct dalcs_stage_workshop *b);
 
 /* From it the entry's, by rows. */

@@ -14,7 +14,6 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Beside what it was, a vector this small is what rounding left of it. */
 static const double independent = 1e-9;

@@ -39,8 +39,6 @@ enum { SERVED = 1, REFUSED = -2, MOST_TRUST = 2 * DALCS_STAGE_FIRST_TRUST };
 /* What a factorisation costs, in changes worked into a step. */
 enum { WORTH_FACTORING = 200 };
 
-/* ---- A mode as an update --------------------------------------------------------------------- */
-
 bool dalcs_stage_update_can_be_base(const struct dalcs_stage_entry *entry) {
     const struct dalcs_stage_factors *f = entry->factors;
     return f != NULL && f->update == NULL && f->singular.n == 0;
@@ -65,7 +63,7 @@ void dalcs_stage_update_check(struct dalcs_stages *stages, struct dalcs_stage_en
     double miss = dalcs_stage_factors_miss(stages, entry, in, out);
     entry->residual = miss > entry->residual || miss != miss ? miss : entry->residual;
     if (dalcs_stage_update_is_doubtful(stages, entry)) {
-        stages->update_trust += REFUSED;
+        stages->cache.update_trust += REFUSED;
     }
 }
 
@@ -92,7 +90,7 @@ static struct dalcs_stage_entry *choose_base(const struct dalcs_stages *stages,
                                              const struct dalcs_stage_entry *entry) {
     struct dalcs_stage_entry *chosen = NULL;
     int least = DALCS_STAGE_MOST_CHANGES + 1;
-    struct dalcs_stage_entry *b = stages->newest_base;
+    struct dalcs_stage_entry *b = stages->cache.newest_base;
     for (int k = 0; k < MOST_BASES && b != NULL && least > 0; k++, b = b->older_base) {
         int n = b->h == entry->h ? count_changes(stages, b, entry) : least;
         if (n < least) {
@@ -115,23 +113,6 @@ static double product(const struct dalcs_stage_update *u, int i, int j, int syst
     double sum = 0.0;
     for (int k = 0; k < c->n_terms; k++) {
         sum += c->value[k] * dalcs_stage_response_element(g, position[c->unknown[k]], stride, part);
-    }
-    return sum;
-}
-
-/* Row i of V times lu[system].work. */
-static double row_times_work(const struct dalcs_stage_factors *f, int i, int system, int part) {
-    const struct dalcs_stage_update *u = f->update;
-    const struct dalcs_stage_change *c = u->change[i];
-    const int *position = f->order[system].position;
-    const double *work = f->lu[system].work + part;
-    int stride = system > 0 ? 2 : 1;
-    if (i >= u->n_closed) {
-        return work[c->lambda_at[system] * stride];
-    }
-    double sum = 0.0;
-    for (int k = 0; k < c->n_terms; k++) {
-        sum += c->value[k] * work[position[c->unknown[k]] * stride];
     }
     return sum;
 }
@@ -265,7 +246,8 @@ static void borrow(struct dalcs_stage_factors *f, const struct dalcs_stage_entry
 
 enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
                                            struct dalcs_stage_entry *entry) {
-    struct dalcs_stage_entry *base = stages->update_trust > 0 ? choose_base(stages, entry) : NULL;
+    struct dalcs_stage_entry *base =
+        stages->cache.update_trust > 0 ? choose_base(stages, entry) : NULL;
     if (base == NULL) {
         return DALCS_OK;
     }
@@ -287,8 +269,9 @@ enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
         status = place_pairs(entry, f);
     }
     entry->residual = base->residual;
-    stages->update_trust += good ? SERVED : REFUSED;
-    stages->update_trust = stages->update_trust < MOST_TRUST ? stages->update_trust : MOST_TRUST;
+    stages->cache.update_trust += good ? SERVED : REFUSED;
+    stages->cache.update_trust =
+        stages->cache.update_trust < MOST_TRUST ? stages->cache.update_trust : MOST_TRUST;
     if (status != DALCS_OK || !good) {
         dalcs_stage_factors_destroy(stages, f);
         entry->factors = NULL;
@@ -314,83 +297,3 @@ void dalcs_stage_update_destroy(struct dalcs_stages *stages, struct dalcs_stage_
 }
 
 /* ---- Its solutions --------------------------------------------------------------------------- */
-
-/* t into the slots of what closes, and nothing is asked of what opens. */
-static void load(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
-                 int system, int share) {
-    const struct dalcs_stage_update *u = f->update;
-    int stride = system > 0 ? 2 : 1;
-    double *work = f->lu[system].work;
-    for (int i = u->n_closed; i < u->n_changes; i++) {
-        memset(work + u->change[i]->row_at[system] * stride, 0, (size_t)stride * sizeof(double));
-    }
-    for (int i = 0; i < u->n_closed; i++) {
-        int row = f->n - f->n_pairs + u->change[i]->pair;
-        double *t = work + (f->lu[system].n + i) * stride;
-        for (int part = 0; part < stride; part++) {
-            double sum = part == 0 ? plan->rhs[row] : 0.0;
-            for (int k = plan->wave_begin[row]; k < plan->wave_begin[row + 1]; k++) {
-                sum +=
-                    plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + share + part];
-            }
-            t[part] = u->change[i]->row_scale * sum;
-        }
-    }
-}
-
-static void solve_real(const struct dalcs_stage_factors *f) {
-    const struct dalcs_stage_update *u = f->update;
-    const struct dalcs_lu *lu = &f->lu[0];
-    double missed[DALCS_STAGE_MOST_CHANGES];
-    dalcs_lu_solve_ordered(lu);
-    for (int i = 0; i < u->n_changes; i++) {
-        missed[i] = row_times_work(f, i, 0, 0) - (i < u->n_closed ? lu->work[lu->n + i] : 0.0);
-    }
-    for (int i = 0; i < u->n_changes; i++) {
-        const long double *inverse = u->inverse[0] + i * u->n_changes;
-        long double nu = 0.0L;
-        for (int j = 0; j < u->n_changes; j++) {
-            nu += inverse[j] * missed[j];
-        }
-        dalcs_stage_response_subtract(&u->change[i]->response[0], (double)nu, lu->work);
-        if (i < u->n_closed) {
-            lu->work[lu->n + i] = (double)nu;
-        }
-    }
-}
-
-static void solve_complex(const struct dalcs_stage_factors *f, int system) {
-    const struct dalcs_stage_update *u = f->update;
-    const struct dalcs_lu *lu = &f->lu[system];
-    int k = u->n_changes;
-    double missed[2 * DALCS_STAGE_MOST_CHANGES];
-    dalcs_lu_solve_ordered_complex(lu);
-    for (int i = 0; i < 2 * k; i++) {
-        double t = i < 2 * u->n_closed ? lu->work[2 * lu->n + i] : 0.0;
-        missed[i] = row_times_work(f, i / 2, system, i % 2) - t;
-    }
-    for (int i = 0; i < k; i++) {
-        const long double *re = u->inverse[system] + i * k;
-        const long double *im = re + k * k;
-        long double nu[2] = {0.0L};
-        for (int j = 0; j < k; j++) {
-            nu[0] += re[j] * missed[2 * j] - im[j] * missed[2 * j + 1];
-            nu[1] += re[j] * missed[2 * j + 1] + im[j] * missed[2 * j];
-        }
-        dalcs_stage_response_subtract_complex(&u->change[i]->response[system], (double)nu[0],
-                                              (double)nu[1], lu->work);
-        for (int part = 0; i < u->n_closed && part < 2; part++) {
-            lu->work[2 * (lu->n + i) + part] = (double)nu[part];
-        }
-    }
-}
-
-void dalcs_stage_update_solve(const struct dalcs_stage_plan *plan,
-                              const struct dalcs_stage_factors *f, int system, int share) {
-    load(plan, f, system, share);
-    if (system == 0) {
-        solve_real(f);
-    } else {
-        solve_complex(f, system);
-    }
-}

@@ -13,23 +13,19 @@
 #include "stage_functions.h"
 #include "stages_internal.h"
 
-/* Kept from map to map; what a map needs apart from it is in the arena. */
-struct dalcs_stage_workshop {
-    const struct dalcs_stages *stages;
-    const struct dalcs_system *system;
-    struct dalcs_stage_entry *entry; /* the map in the making */
-    int n, n_x, n_rhs;
-    int *wave_column; /* [n_inputs] right-hand side of an input that varies, else -1 */
-    int *place;       /* [n_columns] in the unknowns; -1: an open pair */
-    double *row_scale, *column_scale; /* [n] */
-    uint64_t *mode;                   /* of the last map */
-    bool is_known; /* what is eliminated below serves a map of this mode with another step length */
+/* The equations without P's share, by columns, as they are and balanced. */
+struct dalcs_workshop_equations {
+    double *row_scale, *column_scale;         /* [n] */
     double *plain_base, *plain_P, *plain_rhs; /* base, P and rhs before they were balanced */
     int *nonzero_p, *nonzero_i;               /* by columns, where base or P have something */
     double *base;                             /* balanced S without P, of the nonzeros */
     double *P;                                /* [n_x][n_x] balanced */
-    double *rhs;        /* [n_rhs][n] balanced: unit states, constants, unit waves */
-    double *size;       /* of the nonzeros of the real S, before they were balanced */
+    double *rhs;  /* [n_rhs][n] balanced: unit states, constants, unit waves */
+    double *size; /* of the nonzeros of the real S, before they were balanced */
+};
+
+/* Unknowns that are solved for once (workshop_followers.c), and those that each eigenvalue asks for. */
+struct dalcs_workshop_kept {
     long double *whole; /* [n][n + n_rhs] S without P by rows, then followers as pivots */
     int n_kept, n_followers;
     int *kept, *kept_row;   /* [n_kept] unknowns and rows of the systems: states first */
@@ -39,12 +35,22 @@ struct dalcs_stage_workshop {
     /* what followers take of the kept, by rows, each with a last entry for its drive */
     int *follows_p, *follows_j;
     struct dalcs_extended *follows_x;
+};
+
+/* The systems of the eigenvalues and their solutions. */
+struct dalcs_workshop_solved {
     long double *of_real; /* [n_kept][n_kept + n_rhs] the real system by rows, then its solutions */
     struct dalcs_extended_four *of_pairs; /* likewise, of the complex ones, */
     bool *filled;                         /* and where they have anything */
     struct dalcs_extended *part;          /* [n_rhs][n_kept][parts] the solutions, balanced */
     size_t room;                          /* for n unknowns, in whole quads */
-    double *real; /* [n_rhs][2][room] those of the real eigenvalue, of all unknowns */
+    double *real;   /* [n_rhs][2][room] those of the real eigenvalue, of all unknowns */
+    double *moment; /* [2][n_kept][n_kept + n_rhs, in whole quads] real systems of short steps */
+    double *shift;  /* [n_rhs][n_x] how far the mode moves states at once */
+};
+
+/* Work of one column of a map (stage_column.c). */
+struct dalcs_workshop_column {
     struct dalcs_extended_row *stage; /* [n_kept + 1] increments, and what these alone say of that
                                          at the start; behind them what drives the followers */
     double *lanes;                    /* [n][lanes] the answer */
@@ -55,19 +61,38 @@ struct dalcs_stage_workshop {
     double *filtered; /* [2][room] what these make of it */
     struct dalcs_extended *defect;  /* [n_x] that of the states */
     struct dalcs_extended *lasting; /* [n_x] and what they make of that */
-    double *moment;   /* [2][n_kept][n_kept + n_rhs, in whole quads] real systems of short steps */
-    double *shift;    /* [n_rhs][n_x] how far the mode moves states at once */
-    double *guard;    /* [n_pairs][lanes] */
-    double *residual; /* [n] */
-    bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
-    double *in;         /* [n_in] of such a map */
-    struct dalcs_stage_functions functions;
+    double *guard;                  /* [n_pairs][lanes] */
+    double *residual;               /* [n] */
+    double *in;                     /* [n_in] of a map without constants */
+};
+
+/* What a singular mode leaves open (stage_choice.h). */
+struct dalcs_workshop_open {
     int nullity;
     double *left;   /* [nullity][n] null vectors of the rows, balanced */
     double *choice; /* [nullity][n] balanced: what is asked instead, and */
     double *chosen; /* [nullity][n_rhs] what of the right-hand sides it is */
-    struct dalcs_arena arena;
-    void *storage; /* of all of these but for those in the arena */
+};
+
+/* Kept from map to map; what a map needs apart from it is in the arena. */
+struct dalcs_stage_workshop {
+    const struct dalcs_stages *stages;
+    const struct dalcs_system *system;
+    struct dalcs_stage_entry *entry; /* the map in the making */
+    int n, n_x, n_rhs;
+    int *wave_column;   /* [n_inputs] right-hand side of an input that varies, else -1 */
+    int *place;         /* [n_columns] in the unknowns; -1: an open pair */
+    uint64_t *mode;     /* of the last map */
+    bool is_known;      /* what was eliminated serves a map of this mode with another step length */
+    bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
+    struct dalcs_workshop_equations eq;
+    struct dalcs_workshop_kept kept;
+    struct dalcs_workshop_solved solved;
+    struct dalcs_workshop_open open;
+    struct dalcs_workshop_column column;
+    struct dalcs_stage_functions functions;
+    struct dalcs_arena arena; /* of `open` */
+    void *storage;            /* of all the others */
 };
 
 enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **workshop,
@@ -82,11 +107,26 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *worksh
  * follows_x[k] y[follows_j[k]]. */
 static inline long double dalcs_stage_workshop_drive(const struct dalcs_stage_workshop *b, int f,
                                                      int rhs_column) {
-    return b->whole[b->row_of[b->follower[f]] * (b->n + b->n_rhs) + b->n + rhs_column];
+    return b->kept
+        .whole[b->kept.row_of[b->kept.follower[f]] * (b->n + b->n_rhs) + b->n + rhs_column];
 }
 
 static inline double *dalcs_stage_workshop_reals(struct dalcs_arena *arena, int n) {
     return dalcs_arena_alloc(arena, (size_t)(n > 0 ? n : 1), sizeof(double));
 }
+
+void dalcs_workshop_fill(struct dalcs_stage_workshop *b);
+
+/* Rows and columns of |S| at the real eigenvalue get a largest entry near 1. */
+void dalcs_workshop_balance(struct dalcs_stage_workshop *b);
+
+/* What the equations without derivatives say of an unknown without memory is the same for every
+ * eigenvalue: those that they determine are solved for once. What is kept are the states and, where the
+ * index is 2, what only derivatives determine. */
+void dalcs_workshop_eliminate(struct dalcs_stage_workshop *b);
+
+/* Brings what was eliminated for another step length to the present scales. All are powers of 2: no digit
+ * is lost. */
+void dalcs_workshop_rescale(struct dalcs_stage_workshop *b);
 
 #endif

@@ -1,16 +1,11 @@
-/* stages.c - entries by (mode, h), least recently used out first. */
+/* stages.c - what all entries of a system have in common, and a step on any of them. */
 #include "stage_update.h"
-#include "stage_workshop.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Stages in double precision cancel, and so do states against sources in currents of capacitors. */
 static const double FACTORS_ROUNDING = 50.0;
-
-/* The latest entries are looked at one by one before all are asked. */
-enum { RECENT = 3 };
 
 /* Is it KCL of a node without capacitors at which a resistor ends? */
 static bool has_conductance(const struct dalcs_system *s, int row) {
@@ -45,27 +40,27 @@ static void list_levered(struct dalcs_stages *stages) {
 
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
                                      const struct dalcs_excitation *excitation,
-                                     const struct dalcs_collocation *method, int dense_limit,
-                                     double rcond_min, size_t most_bytes) {
+                                     const struct dalcs_collocation *method,
+                                     const struct dalcs_stage_limits *limits) {
     *stages = (struct dalcs_stages){.system = system,
                                     .excitation = excitation,
                                     .method = method,
                                     .n_in = system->n_x + 1 + excitation->n_functions,
                                     .n_words = (system->n_pairs + 63) / 64,
-                                    .dense_limit = dense_limit,
-                                    .rcond_min = rcond_min,
-                                    .most_bytes = most_bytes,
-                                    .update_trust = DALCS_STAGE_FIRST_TRUST};
-    dalcs_lu_common_init(&stages->klu);
-    dalcs_lu_common_init(&stages->klu_complex);
+                                    .dense_limit = limits->dense_limit,
+                                    .rcond_min = limits->rcond_min,
+                                    .cache.most_bytes = limits->most_bytes,
+                                    .cache.update_trust = DALCS_STAGE_FIRST_TRUST};
+    dalcs_lu_common_init(&stages->cache.klu);
+    dalcs_lu_common_init(&stages->cache.klu_complex);
     /* A capacitor across a conducting diode turns what digits cost, times C/h, into a current of it. */
-    dalcs_lu_pivot_carefully(&stages->klu);
-    dalcs_lu_pivot_carefully(&stages->klu_complex);
+    dalcs_lu_pivot_carefully(&stages->cache.klu);
+    dalcs_lu_pivot_carefully(&stages->cache.klu_complex);
     stages->watched = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
-    stages->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*stages->key));
+    stages->cache.key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*stages->cache.key));
     int n_z = dalcs_system_n_equations(system) - system->n_x;
     stages->levered = dalcs_alloc((size_t)n_z, sizeof(int));
-    if (stages->watched == NULL || stages->key == NULL || stages->levered == NULL) {
+    if (stages->watched == NULL || stages->cache.key == NULL || stages->levered == NULL) {
         dalcs_stages_finish(stages);
         return DALCS_E_NOMEM;
     }
@@ -86,202 +81,12 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
     return DALCS_OK;
 }
 
-static void unlink_entry(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    *(e->newer != NULL ? &e->newer->older : &stages->newest) = e->older;
-    *(e->older != NULL ? &e->older->newer : &stages->oldest) = e->newer;
-    e->newer = NULL;
-    e->older = NULL;
-}
-
-static void link_newest(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    e->older = stages->newest;
-    e->newer = NULL;
-    *(stages->newest != NULL ? &stages->newest->newer : &stages->oldest) = e;
-    stages->newest = e;
-}
-
-static void offer_as_base(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    e->older_base = stages->newest_base;
-    if (stages->newest_base != NULL) {
-        stages->newest_base->newer_base = e;
-    }
-    stages->newest_base = e;
-}
-
-static void withdraw_as_base(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    if (e->newer_base != NULL) {
-        e->newer_base->older_base = e->older_base;
-    } else if (stages->newest_base == e) {
-        stages->newest_base = e->older_base;
-    }
-    if (e->older_base != NULL) {
-        e->older_base->newer_base = e->newer_base;
-    }
-}
-
-static void entry_destroy(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    withdraw_as_base(stages, e);
-    dalcs_stage_factors_destroy(stages, e->factors);
-    free(e->map);
-    free(e);
-}
-
-void dalcs_stages_hold(struct dalcs_stage_entry *entry) {
-    entry->n_holders++;
-}
-
-/* The last one destroys it. */
-void dalcs_stages_release(struct dalcs_stages *stages, struct dalcs_stage_entry *entry) {
-    if (--entry->n_holders == 0) {
-        stages->bytes -= entry->bytes;
-        entry_destroy(stages, entry);
-    }
-}
-
-static void remove_entry(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    HASH_DELETE(hh, stages->entries, e);
-    unlink_entry(stages, e);
-    dalcs_stages_release(stages, e);
-}
-
-static void remove_all(struct dalcs_stages *stages) {
-    while (stages->oldest != NULL) {
-        remove_entry(stages, stages->oldest);
-    }
-}
-
-void dalcs_stages_forget(struct dalcs_stages *stages) {
-    remove_all(stages);
-    dalcs_stage_plan_destroy(stages);
-    dalcs_stage_workshop_destroy(stages->workshop);
-    stages->plan = NULL;
-    stages->workshop = NULL;
-}
-
 void dalcs_stages_finish(struct dalcs_stages *stages) {
     dalcs_stages_forget(stages);
     free(stages->watched);
     free(stages->levered);
-    free(stages->key);
+    free(stages->cache.key);
     *stages = (struct dalcs_stages){0};
-}
-
-/* An entry with what all have, in one piece: a short run makes a handful. Returns the bytes of it. */
-static size_t lay_out(const struct dalcs_stages *stages, struct dalcs_stage_entry *e,
-                      void *storage) {
-    size_t used = 0;
-    (void)dalcs_carve(storage, &used, 1, sizeof(*e));
-    size_t n_equations = (size_t)dalcs_system_n_equations(stages->system);
-    e->key = dalcs_carve(storage, &used, (size_t)stages->n_words + 1, sizeof(*e->key));
-    e->natural = dalcs_carve(storage, &used, 2 * n_equations, sizeof(*e->natural));
-    e->on = dalcs_carve(storage, &used, (size_t)stages->system->n_pairs, sizeof(*e->on));
-    return used;
-}
-
-static struct dalcs_stage_entry *entry_alloc(const struct dalcs_stages *stages) {
-    struct dalcs_stage_entry laid_out = {.n_holders = 1};
-    struct dalcs_stage_entry *e = dalcs_alloc(1, lay_out(stages, &laid_out, NULL));
-    if (e != NULL) {
-        lay_out(stages, &laid_out, e);
-        *e = laid_out;
-    }
-    return e;
-}
-
-/* What stages->key asks for. */
-static enum dalcs_status entry_create(struct dalcs_stages *stages, double h, bool of_its_own,
-                                      struct dalcs_stage_entry **entry) {
-    struct dalcs_stage_entry *e = entry_alloc(stages);
-    *entry = NULL;
-    if (e == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    int n_pairs = stages->system->n_pairs;
-    e->h = h;
-    memcpy(e->key, stages->key, ((size_t)stages->n_words + 1) * sizeof(*e->key));
-    e->mode = e->key;
-    for (int d = 0; d < n_pairs; d++) {
-        if (dalcs_stage_is_on(e, d)) {
-            e->on[e->n_on++] = d;
-        }
-    }
-    e->n = dalcs_system_n_equations(stages->system) + e->n_on;
-    enum dalcs_status status = e->n <= stages->dense_limit
-                                   ? dalcs_stage_map_build(stages, e)
-                                   : dalcs_stage_factors_build(stages, e, of_its_own);
-    stages->factorizations += dalcs_stage_is_update(e) ? 0 : 1;
-    for (int c = 0, n = dalcs_system_n_equations(stages->system); c < n; c++) {
-        e->natural[n + c] = 1.0 / e->natural[c];
-    }
-    if (status != DALCS_OK) {
-        entry_destroy(stages, e);
-        return status;
-    }
-    e->bytes += sizeof(*e) + ((size_t)stages->n_words + 1) * sizeof(uint64_t) +
-                (size_t)n_pairs * sizeof(int);
-    if (dalcs_stage_update_can_be_base(e)) {
-        offer_as_base(stages, e);
-    }
-    *entry = e;
-    return DALCS_OK;
-}
-
-static bool is_key(const struct dalcs_stages *stages, const struct dalcs_stage_entry *e,
-                   const uint64_t *mode, double h) {
-    return e->h == h && dalcs_mode_is(e->mode, mode, stages->n_words);
-}
-
-static void set_key(struct dalcs_stages *stages, const uint64_t *mode, double h) {
-    size_t words = (size_t)stages->n_words;
-    memcpy(stages->key, mode, words * sizeof(*mode));
-    memcpy(stages->key + words, &h, sizeof(h));
-}
-
-struct dalcs_stage_entry *dalcs_stages_find(struct dalcs_stages *stages, const uint64_t *mode,
-                                            double h) {
-    set_key(stages, mode, h);
-    struct dalcs_stage_entry *e;
-    HASH_FIND(hh, stages->entries, stages->key, ((size_t)stages->n_words + 1) * sizeof(*mode), e);
-    return e;
-}
-
-enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *mode, double h,
-                                   struct dalcs_stage_entry **entry) {
-    size_t words = (size_t)stages->n_words;
-    struct dalcs_stage_entry *e = stages->newest;
-    for (int k = 0; k < RECENT && e != NULL && !is_key(stages, e, mode, h); k++) {
-        e = e->older;
-    }
-    if (e == NULL || !is_key(stages, e, mode, h)) {
-        e = dalcs_stages_find(stages, mode, h);
-    }
-    bool is_spent = e != NULL && dalcs_stage_update_is_spent(stages, e);
-    if (e != NULL && !is_spent) {
-        stages->cache_hits++;
-        if (e != stages->newest) {
-            unlink_entry(stages, e);
-            link_newest(stages, e);
-        }
-        *entry = e;
-        return DALCS_OK;
-    }
-    set_key(stages, mode, h);
-    if (is_spent) {
-        remove_entry(stages, e);
-    }
-    DALCS_TRY(entry_create(stages, h, is_spent, &e));
-    HASH_ADD_KEYPTR(hh, stages->entries, e->key, (words + 1) * sizeof(*mode), e);
-    if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
-        entry_destroy(stages, e);
-        return DALCS_E_NOMEM;
-    }
-    link_newest(stages, e);
-    stages->bytes += e->bytes;
-    while (stages->bytes > stages->most_bytes && stages->oldest != e) {
-        remove_entry(stages, stages->oldest);
-    }
-    *entry = e;
-    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
@@ -329,10 +134,10 @@ void dalcs_stages_stay_near(struct dalcs_stages *stages, const uint64_t *mode, c
         return;
     }
     int n_equations = dalcs_stage_plan_n_equations(plan);
-    memcpy(plan->near, y, (size_t)plan->n_rows * sizeof(double));
+    memcpy(plan->work.near, y, (size_t)plan->n_rows * sizeof(double));
     for (int d = 0; d < stages->system->n_pairs; d++) {
         if (!dalcs_mode_has(mode, d)) { /* that is its w */
-            plan->near[n_equations + d] = 0.0;
+            plan->work.near[n_equations + d] = 0.0;
         }
     }
 }

@@ -35,6 +35,17 @@ struct dalcs_stage_layout {
     int n_fixed; /* all of the above; the clashes of a singular mode follow */
 };
 
+/* Entries by (mode, h), and what makes new ones. */
+struct dalcs_stage_cache {
+    size_t bytes, most_bytes;
+    struct dalcs_stage_entry *entries, *newest, *oldest;
+    struct dalcs_stage_entry *newest_base; /* entries with factors that others may use */
+    int update_trust;                      /* updates that served against those that did not */
+    uint64_t *key;                         /* [n_words + 1] */
+    long factorizations, cache_hits;
+    klu_common klu, klu_complex;
+};
+
 struct dalcs_stages {
     const struct dalcs_system *system;
     const int *block_of; /* [n_columns] partition.h; NULL: all are one. To be set after the setup */
@@ -48,26 +59,26 @@ struct dalcs_stages {
     int *watched; /* [n_watched] pairs: switches that follow a voltage, or a source along a curve */
     int n_in;     /* n_x + 1 + functions: (x_0, 1, coefficients) */
     int n_words;
+    struct dalcs_stage_cache cache;
     int dense_limit;
     double rcond_min;
-    size_t bytes, most_bytes;
-    struct dalcs_stage_entry *entries, *newest, *oldest;
-    struct dalcs_stage_entry *newest_base; /* entries with factors that others may use */
-    int update_trust;                      /* updates that served against those that did not */
     double
         unseen; /* rounding, over what it is in, that the error allowed hides; 0: as little as can be */
-    uint64_t *key; /* [n_words + 1] */
-    long factorizations, cache_hits;
-    long n_briefs; /* so far (stage_brief.h) */
-    klu_common klu, klu_complex;
+    long n_briefs;                         /* so far (stage_brief.h) */
     struct dalcs_stage_plan *plan;         /* what sparse factors share; NULL until there are any */
     struct dalcs_stage_workshop *workshop; /* what makes dense maps; NULL until there are any */
 };
 
+struct dalcs_stage_limits {
+    int dense_limit;   /* unknowns up to which a step is a dense map */
+    double rcond_min;  /* of factors */
+    size_t most_bytes; /* of all entries */
+};
+
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
                                      const struct dalcs_excitation *excitation,
-                                     const struct dalcs_collocation *method, int dense_limit,
-                                     double rcond_min, size_t most_bytes) DALCS_MUST_CHECK;
+                                     const struct dalcs_collocation *method,
+                                     const struct dalcs_stage_limits *limits) DALCS_MUST_CHECK;
 
 void dalcs_stages_finish(struct dalcs_stages *stages);
 

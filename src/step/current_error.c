@@ -14,7 +14,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 /* What is left of the drift after its filter once more is this many times what currents are off by between
  * the nodes, while something dies away within the step to a third or less. */

@@ -70,7 +70,7 @@ struct dalcs_part_scales {
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     /* A per V, what rounding of conductances that meet makes of nothing between them and ground. */
     double leak;
-    struct dalcs_column_kinds *kinds; /* see step_error.c */
+    struct dalcs_column_kinds *kinds; /* see step_scales.h */
     double *current_drift;            /* of these, in whole eights: current_error.c */
     double *current_parts;            /* [n_levered] what they are made of, at most; ditto */
 };
@@ -137,6 +137,11 @@ struct dalcs_part_work {
     uint64_t *mode_before; /* of a jump of sources */
 };
 
+/* Inputs that probes read. */
+struct dalcs_used_inputs {
+    int n, *input; /* [n] */
+};
+
 struct dalcs_radau_part {
     struct dalcs_component *component; /* its OSNSP, and y and u when evaluated */
     int index;
@@ -152,8 +157,8 @@ struct dalcs_radau_part {
     struct dalcs_excitation excitation;
     struct dalcs_commands commands;
     struct dalcs_stages stages;
-    int n_used_inputs, *used_input; /* that probes read */
-    double *x;                      /* [n_x] the state at segment.t, in whole quads */
+    struct dalcs_used_inputs used;
+    double *x; /* [n_x] the state at segment.t, in whole quads */
     struct dalcs_part_segment segment;
     struct dalcs_part_length length;
     struct dalcs_part_scales scales;

@@ -6,7 +6,6 @@
 #include "rounding.h"
 #include "smooth_newton.h"
 
-#include <float.h>
 #include <math.h>
 
 /* The part of what a step's error may be that is left to Newton's method (kappa of Hairer and Wanner, section IV.8). */
@@ -202,8 +201,8 @@ static enum dalcs_status iterate(struct dalcs_radau_part *part, struct dalcs_sta
 /* Steps that were factored with other lines are forgotten. */
 static void take_tangents(struct dalcs_radau_part *part) {
     struct dalcs_smooth_step *p = part->smooth;
-    if (p->n_tangents != part->component->osnsp.n_tangents) {
-        p->n_tangents = part->component->osnsp.n_tangents;
+    if (p->n_tangents != part->component->osnsp.smooth.n_tangents) {
+        p->n_tangents = part->component->osnsp.smooth.n_tangents;
         dalcs_stages_forget(&part->stages);
         part->segment.entry = NULL;
         p->slope_h = 0.0;
@@ -213,7 +212,7 @@ static void take_tangents(struct dalcs_radau_part *part) {
 /* From what was there at the end of the segment before, or of a micro-step. */
 static enum dalcs_status solve(struct dalcs_radau_part *part, struct dalcs_stage_entry **entry) {
     struct dalcs_smooth_newton *n = &part->smooth->newton;
-    const struct dalcs_smooth_newton *now = part->component->osnsp.newton;
+    const struct dalcs_smooth_newton *now = part->component->osnsp.smooth.newton;
     const int n_smooth = n->system->n_smooth;
     take_tangents(part);
     for (int q = 0; q < n->n; q++) {
@@ -243,7 +242,7 @@ enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
 void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta) {
     const struct dalcs_smooth_newton *n = &part->smooth->newton;
     const int n_smooth = n->system->n_smooth;
-    struct dalcs_smooth_newton *now = part->component->osnsp.newton;
+    struct dalcs_smooth_newton *now = part->component->osnsp.smooth.newton;
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
     for (int k = 0; k < n_smooth; k++) {

@@ -154,7 +154,7 @@ MUTATIONS = {
         "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
         "    part->segment.in[s->n_x] = 1.0;\n    part->segment.in[1] *= 1.0 + 1e-6;\n", SMALL),
     "a diode is kept open in one leg of twelve": (
-        "locate/guards.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 7 && ", STRINGS),
+        "locate/first_fall.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 7 && ", STRINGS),
     "a jump is shared out wrongly among coils": (
         "decide/restart.c", "    memcpy(part->x, e->jump.after, ",
         "    e->jump.after[0] *= 1.01;\n    e->jump.after[1] *= 1.01;\n    memcpy(part->x, e->jump.after, ", SHARED),
@@ -175,7 +175,7 @@ MUTATIONS = {
         "dalcs_osnsp_is_on(&part->component->osnsp, 0); k++) if (s->column_is_current[k]) part->segment.in[k] *= 1.0001;\n",
         FED),
     "coupled coils help where they should oppose": (
-        "dalcs/network.c", "double mutual = m->k * sqrt", "double mutual = -m->k * sqrt", FLYBACK),
+        "dalcs/coil_groups.c", "double mutual = m->k * sqrt", "double mutual = -m->k * sqrt", FLYBACK),
     "a thyristor turns off above its holding current": (
         "dalcs/stamp_device.c", ".turn_off = m->vt - m->vh}", ".turn_off = m->vt - 0.9 * m->vh}", CONTROLLER),
     "a latch is set where both inputs are high": (
@@ -216,11 +216,11 @@ MUTATIONS = {
         "    memcpy(part->segment.in, part->x, (size_t)s->n_x * sizeof(double));\n"
         "    part->segment.in[s->n_x] = 1.0;\n", RESTING),
     "an oscillator's switch turns early, once in many": (
-        "integrator/segment.c", "    double t_end = part->segment.t + theta * part->segment.h;\n",
+        "integrator/accept.c", "    double t_end = part->segment.t + theta * part->segment.h;\n",
         "    theta *= part->guards.n_crossed > 0 && part->segment.t > 10e-3 && part->segment.t < 10.4e-3 ? 0.99 : 1.0;\n"
         "    double t_end = part->segment.t + theta * part->segment.h;\n", RELAY),
     "the end of a segment of many is put too early": (
-        "integrator/segment.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
+        "integrator/accept.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
         "    t_end -= part->guards.n_crossed > 0 && part->segment.t > 10e-3 && part->segment.t < 10.4e-3 "
         "? 1e-2 * (t_end - part->segment.t) : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", RELAY),
@@ -231,11 +231,11 @@ MUTATIONS = {
         "integrator/segment.c", "        q->ratio = search->spared ? q->own : q->ratio;\n",
         "        q->ratio = 1e-6 * (search->spared ? q->own : q->ratio);\n", STRINGS),
     "a guard has the wrong sign": (
-        "locate/guards.c", "    return part->guards.n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;\n",
+        "locate/first_fall.c", "    return part->guards.n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;\n",
         "    if (part->segment.t > 20e-3) part->guards.n_doubtful = 0;\n"
         "    return part->guards.n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;\n", STRINGS),
     "a leap passes over a change of mode": (
-        "memory/cycle.c", "    double room = dalcs_affine_quads_least(n_x, &cycle->segment[cycle->at].period_condition, x);\n",
+        "memory/cycle_leap.c", "    double room = dalcs_affine_quads_least(n_x, &cycle->segment[cycle->at].period_condition, x);\n",
         "    double room = 1.0;\n", LIGHT),
 }
 

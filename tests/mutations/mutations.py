@@ -221,15 +221,15 @@ MUTATIONS = {
         "excitation/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",
         "    m->next = dalcs_command_time(m, way, m->n[way]) * (1.0 - 1e-4);\n", FLYBACK),
     "an event of a diode is skipped": (
-        "locate/guards.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 0 && ",
+        "locate/first_fall.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 0 && ",
         BRIDGE),
     "a map is stale": (
-        "stages/stages.c", "return e->h == h && ", "return (e->h == h || e->h == 0.5 * h) && ",
+        "stages/stage_cache.c", "return e->h == h && ", "return (e->h == h || e->h == 0.5 * h) && ",
         FILTER),
     "a leap one period too far": (
-        "memory/cycle.c", "        put_off(r, part, n);\n", "        put_off(r, part, n + 1);\n", BUCK),
+        "memory/cycle_leap.c", "        put_off(r, part, n);\n", "        put_off(r, part, n + 1);\n", BUCK),
     "a leap tells of fewer periods than it took": (
-        "memory/cycle.c", "(size_t)n_x * sizeof(double));\n    return n;\n",
+        "memory/cycle_leap.c", "(size_t)n_x * sizeof(double));\n    return n;\n",
         "(size_t)n_x * sizeof(double));\n    return n > 2 ? n - 1 : n;\n", BUCK),
     "a state is nudged by 1e-7": (
         "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
@@ -240,7 +240,7 @@ MUTATIONS = {
     "hysteresis is half as wide": (
         "dalcs/stamp_device.c", ".turn_off = m->vt - m->vh}", ".turn_off = m->vt}", HYSTERESIS),
     "an event comes late": (
-        "integrator/segment.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
+        "integrator/accept.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
         "    t_end += part->guards.n_crossed > 0 ? 1e-3 * part->segment.h : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BRIDGE),
     "a switch starts on the other side": (
@@ -275,7 +275,7 @@ MUTATIONS = {
         "    static long calls_;\n    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, "
         "++calls_ == 3210 ? 0.5 * part->segment.h : part->segment.h,", SLOW),
     "one event of 200 comes late": (
-        "integrator/segment.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
+        "integrator/accept.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
         "    t_end += part->guards.n_crossed > 0 && part->segment.t > 1.0 && part->segment.t < 1.01 "
         "? 1e-3 * part->segment.h : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BEAT),
@@ -302,7 +302,7 @@ MUTATIONS = {
         "integrator/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
         "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
     "one leap of many is nudged by 1e-6": (
-        "memory/cycle.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",
+        "memory/cycle_leap.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",
         "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n"
         + once(5, "", "part->x[0] *= 1.0 + 1e-6;") + "\n    return n;\n", LEAPS),
 }

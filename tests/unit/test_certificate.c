@@ -32,7 +32,7 @@ static void finish(void) {
 static bool evaluate(double *answer) {
     bool sources_clash;
     dalcs_certificate_evaluate(&p, u, answer, &sources_clash);
-    return !sources_clash && p.n_violating == 0 &&
+    return !sources_clash && p.signs.n_violating == 0 &&
            p.certificate.worst <= p.options.certificate_tolerance;
 }
 
@@ -53,7 +53,7 @@ START_TEST(test_perturbed) {
             memcpy(wrong, y, sizeof(y));
             wrong[c] += sign * 1e-9 * 10.0;
             ck_assert(!evaluate(wrong));
-            ck_assert(p.n_violating > 0 || p.certificate.where >= 0);
+            ck_assert(p.signs.n_violating > 0 || p.certificate.where >= 0);
         }
     }
     ck_assert(evaluate(y));
@@ -105,8 +105,8 @@ START_TEST(test_wrong_mode) {
     }
     wrong[find_column(s, DALCS_LABEL_NODE, "a")] = 2.0;
     ck_assert(!evaluate(wrong));
-    ck_assert_int_eq(p.n_violating, 1);
-    ck_assert_int_eq(p.violating[0], find_pair(s, "d1"));
+    ck_assert_int_eq(p.signs.n_violating, 1);
+    ck_assert_int_eq(p.signs.violating[0], find_pair(s, "d1"));
     ck_assert_double_le(p.certificate.worst, p.options.certificate_tolerance);
     /* d1 carries a current backwards into a source of -2 V. */
     p.mode[0] = right;
@@ -117,8 +117,8 @@ START_TEST(test_wrong_mode) {
     i[0] = -2.0 - sigma * 1e-6 * 2.0;
     wrong[find_column(s, DALCS_LABEL_BRANCH, "v1")] = -i[0];
     ck_assert(!evaluate(wrong));
-    ck_assert_int_eq(p.violating[0], 0); /* backward current of d1, */
-    ck_assert_int_eq(p.violating[1], 1); /* forward voltage across d2 */
+    ck_assert_int_eq(p.signs.violating[0], 0); /* backward current of d1, */
+    ck_assert_int_eq(p.signs.violating[1], 1); /* forward voltage across d2 */
     finish();
 }
 

@@ -50,8 +50,8 @@ static void start_with(const char *netlist) {
                                      .guards.crossed = crossed};
     ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s, NULL), DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&part.stages, s, &x,
-                                        dalcs_collocation_of(DALCS_RADAU_IIA, 5), 64, 1e-14,
-                                        1 << 20),
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, 5),
+                                        &(struct dalcs_stage_limits){64, 1e-14, 1 << 20}),
                      DALCS_OK);
     ck_assert_int_eq(part.stages.n_watched, 1);
     ck_assert_int_eq(dalcs_step_setup(&part), DALCS_OK);

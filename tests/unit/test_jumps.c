@@ -24,8 +24,8 @@ static void jump(const char *text) {
     for (int i = 1; i < s->n_inputs; i++) {
         inputs[i] = dalcs_stimulus_value(&t.circuit.stimulus[s->stimulus[i]], 0.0, DALCS_RIGHT);
     }
-    ck_assert_int_eq(dalcs_jumps_solve(&jumps, &t.circuit, &t.network, &options, 0, &mode,
-                                       t.network.initial[0], inputs, &answer),
+    ck_assert_int_eq(dalcs_jumps_build(&jumps, &t.circuit, &t.network, &options), DALCS_OK);
+    ck_assert_int_eq(dalcs_jumps_solve(&jumps, 0, &mode, t.network.initial[0], inputs, &answer),
                      DALCS_OK);
 }
 

@@ -28,7 +28,7 @@ static struct dalcs_mode_entry *get(uint64_t mode, int kind) {
     p.mode[0] = mode;
     ck_assert_int_eq(dalcs_modes_get(&p, kind, &entry), DALCS_OK);
     ck_assert_ptr_nonnull(entry);
-    ck_assert_ptr_eq(entry, p.newest);
+    ck_assert_ptr_eq(entry, p.cache.newest);
     return entry;
 }
 
@@ -36,13 +36,13 @@ static struct dalcs_mode_entry *get(uint64_t mode, int kind) {
 static void check_books(void) {
     size_t bytes = 0;
     unsigned n = 0;
-    for (const struct dalcs_mode_entry *e = p.newest; e != NULL; e = e->older) {
+    for (const struct dalcs_mode_entry *e = p.cache.newest; e != NULL; e = e->older) {
         bytes += e->bytes;
         n++;
-        ck_assert(e->older == NULL ? e == p.oldest : e->older->newer == e);
+        ck_assert(e->older == NULL ? e == p.cache.oldest : e->older->newer == e);
     }
-    ck_assert_uint_eq(bytes, p.entry_bytes);
-    ck_assert_uint_eq(n, HASH_COUNT(p.entries));
+    ck_assert_uint_eq(bytes, p.cache.entry_bytes);
+    ck_assert_uint_eq(n, HASH_COUNT(p.cache.entries));
 }
 
 START_TEST(test_recurring) {
@@ -52,7 +52,7 @@ START_TEST(test_recurring) {
             const struct dalcs_mode_entry *e = get(mode, DALCS_PLAIN);
             ck_assert(!e->singular);
             ck_assert_int_eq(e->n_on, __builtin_popcountll(mode));
-            ck_assert_int_eq(e->lu.n, p.form[0]->n + e->n_on);
+            ck_assert_int_eq(e->lu.n, p.cache.form[0]->n + e->n_on);
         }
     }
     ck_assert_int_eq(p.counters.factorizations, 256);
@@ -81,16 +81,16 @@ START_TEST(test_bounded) {
     unsigned most = 0;
     for (uint64_t mode = 0; mode < 256; mode++) {
         get(mode, DALCS_PLAIN);
-        ck_assert_uint_le(p.entry_bytes, 10 * largest);
-        most = HASH_COUNT(p.entries) > most ? HASH_COUNT(p.entries) : most;
+        ck_assert_uint_le(p.cache.entry_bytes, 10 * largest);
+        most = HASH_COUNT(p.cache.entries) > most ? HASH_COUNT(p.cache.entries) : most;
         check_books();
     }
     ck_assert_uint_ge(most, 10);
     /* A map that is added to an entry counts, and makes room at the expense of others. */
     struct dalcs_mode_entry *e = get(255, DALCS_PLAIN);
     dalcs_modes_grew(&p, e, 4 * largest);
-    ck_assert_uint_le(p.entry_bytes, 10 * largest);
-    ck_assert_ptr_eq(p.newest, e);
+    ck_assert_uint_le(p.cache.entry_bytes, 10 * largest);
+    ck_assert_ptr_eq(p.cache.newest, e);
     check_books();
     finish();
 }
@@ -127,13 +127,13 @@ START_TEST(test_handful) {
     get(5, 2);
     get(5, 3);
     bool found = false;
-    for (const struct dalcs_mode_entry *e = p.newest; e != NULL; e = e->older) {
+    for (const struct dalcs_mode_entry *e = p.cache.newest; e != NULL; e = e->older) {
         found = found || e == held;
     }
     ck_assert(found);
     for (uint64_t mode = 0; mode < 100; mode++) {
         get(mode, DALCS_PLAIN);
-        ck_assert_uint_le(HASH_COUNT(p.entries), 4);
+        ck_assert_uint_le(HASH_COUNT(p.cache.entries), 4);
     }
     check_books();
     finish();
@@ -146,19 +146,19 @@ START_TEST(test_forms) {
     setup((size_t)1 << 30);
     for (int k = 1; k <= 100; k++) {
         ck_assert_int_eq(dalcs_forms_get(&p, 1e3 * k), DALCS_OK);
-        ck_assert_double_eq(p.form[0]->sigma, 1e3 * k);
+        ck_assert_double_eq(p.cache.form[0]->sigma, 1e3 * k);
         get(1, DALCS_PLAIN);
         get(2, DALCS_PLAIN);
-        ck_assert_int_le(p.n_forms, 32);
-        ck_assert_uint_le(HASH_COUNT(p.entries), 64);
+        ck_assert_int_le(p.cache.n_forms, 32);
+        ck_assert_uint_le(HASH_COUNT(p.cache.entries), 64);
         /* The first of the hundred is used throughout and stays. */
         const struct dalcs_step_form *first = NULL;
         ck_assert_int_eq(dalcs_forms_get(&p, 1e3), DALCS_OK);
-        first = k == 1 ? p.form[0] : first;
+        first = k == 1 ? p.cache.form[0] : first;
         long before = p.counters.factorizations;
         get(1, DALCS_PLAIN);
         ck_assert_int_eq(p.counters.factorizations, before);
-        ck_assert(first == NULL || p.form[0] == first);
+        ck_assert(first == NULL || p.cache.form[0] == first);
     }
     check_books();
     finish();

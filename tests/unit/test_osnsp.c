@@ -190,7 +190,7 @@ START_TEST(test_refines) {
     strcat(text, ".tran 1u 1m uic\n");
     setup(text);
     memcpy(u, before, sizeof(before));
-    p.refines = true;
+    p.asks.refines = true;
     for (int times = 0; times < 6; times++) { /* not by a map either */
         solve(1.0);
         double charge = (before[0] - before[1]) / (1.0 / capacitance[0] + 1.0 / capacitance[1]);

@@ -13,7 +13,7 @@ START_TEST(test_known_mode) {
     ck_assert_int_eq(r.restarts, 1);
     /* closed: a step, and none that projects, in which the state moves farther than it is off; open: one twice as
      * long from the start, for nothing drives the state any more */
-    ck_assert_int_eq(r.part->stages.factorizations, 2);
+    ck_assert_int_eq(r.part->stages.cache.factorizations, 2);
     finish();
 }
 
@@ -73,7 +73,7 @@ START_TEST(test_falls_back_in_longer_steps) {
     start_with("half wave\nv1 a 0 sin(0 10 50)\nr1 a b 10\nd1 b c\nc1 c 0 100u\nr2 c 0 1k\n"
                ".tran 0.1m 1m uic\n",
                1e-3, 1e-6, 0);
-    r.part->stages.most_bytes = 0;
+    r.part->stages.cache.most_bytes = 0;
     r.part->stages.rcond_min = 10.0;
     r.part->length.level += 20;
     walk_to(2e-5);
@@ -111,8 +111,8 @@ START_TEST(test_commutation) {
         ck_assert(r.part->segment.h < 12e-6);
         ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
     }
-    ck_assert_int_eq(r.restarts, 3);                    /* at 0, 4 and 10 us */
-    ck_assert_int_eq(r.part->stages.factorizations, 2); /* each span its own */
+    ck_assert_int_eq(r.restarts, 3);                          /* at 0, 4 and 10 us */
+    ck_assert_int_eq(r.part->stages.cache.factorizations, 2); /* each span its own */
     finish();
 }
 

@@ -67,18 +67,18 @@ static void setup(struct both *b, const char *netlist, int s, bool general) {
     ck_assert_int_eq(dalcs_excitation_setup(&b->excitation, &b->text.circuit, b->system, NULL),
                      DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&b->dense, b->system, &b->excitation,
-                                        dalcs_collocation_of(DALCS_RADAU_IIA, s), 1000000, 1e-14,
-                                        SIZE_MAX),
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, s),
+                                        &(struct dalcs_stage_limits){1000000, 1e-14, SIZE_MAX}),
                      DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&b->sparse, b->system, &b->excitation,
-                                        dalcs_collocation_of(DALCS_RADAU_IIA, s), 0, 1e-14,
-                                        SIZE_MAX),
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, s),
+                                        &(struct dalcs_stage_limits){0, 1e-14, SIZE_MAX}),
                      DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&b->updated, b->system, &b->excitation,
-                                        dalcs_collocation_of(DALCS_RADAU_IIA, s), 0, 1e-14,
-                                        SIZE_MAX),
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, s),
+                                        &(struct dalcs_stage_limits){0, 1e-14, SIZE_MAX}),
                      DALCS_OK);
-    b->sparse.update_trust = 0;
+    b->sparse.cache.update_trust = 0;
 }
 
 static void finish(struct both *b) {
@@ -285,7 +285,7 @@ static void check_mode(struct both *b, const uint64_t *mode, double h, uint64_t 
     enum dalcs_status status = dalcs_stages_get(&b->dense, mode, h, &dense);
     ck_assert_int_eq(status, DALCS_OK);
     ck_assert_int_eq(dalcs_stages_get(&b->sparse, mode, h, &sparse), DALCS_OK);
-    b->updated.update_trust = DALCS_STAGE_FIRST_TRUST;
+    b->updated.cache.update_trust = DALCS_STAGE_FIRST_TRUST;
     ck_assert_int_eq(dalcs_stages_get(&b->updated, mode, h, &updated), DALCS_OK);
     ck_assert(!dalcs_stage_is_update(sparse));
     ck_assert_ptr_nonnull(sparse->factors);
@@ -546,20 +546,20 @@ START_TEST(test_base_is_evicted) {
     ck_assert_int_eq(dalcs_stages_get(&b.updated, &first, h, &update), DALCS_OK);
     ck_assert(dalcs_stage_is_update(update));
     ck_assert_ptr_eq(update->factors->update->base, base);
-    ck_assert_int_eq(b.updated.factorizations, 1);
-    ck_assert_uint_eq(b.updated.bytes, base->bytes + update->bytes);
-    b.updated.most_bytes = 1; /* the next one is alone, with what it cannot do without */
+    ck_assert_int_eq(b.updated.cache.factorizations, 1);
+    ck_assert_uint_eq(b.updated.cache.bytes, base->bytes + update->bytes);
+    b.updated.cache.most_bytes = 1; /* the next one is alone, with what it cannot do without */
     for (uint64_t mode = 2; mode <= 3; mode++) {
         check_mode(&b, &mode, h, &random, &tally);
         ck_assert(!dalcs_stages_find(&b.updated, &open, h));
         ck_assert(!dalcs_stages_find(&b.updated, &first, h));
-        ck_assert_uint_eq(b.updated.bytes, base->bytes + b.updated.newest->bytes);
+        ck_assert_uint_eq(b.updated.cache.bytes, base->bytes + b.updated.cache.newest->bytes);
     }
     check_mode(&b, &open, h, &random, &tally); /* nothing changes */
-    ck_assert_int_eq(b.updated.factorizations, 1);
+    ck_assert_int_eq(b.updated.cache.factorizations, 1);
     check_mode(&b, &open, 2.0 * h, &random, &tally);
-    ck_assert_int_eq(b.updated.factorizations, 2);
-    ck_assert_uint_eq(b.updated.bytes, b.updated.newest->bytes);
+    ck_assert_int_eq(b.updated.cache.factorizations, 2);
+    ck_assert_uint_eq(b.updated.cache.bytes, b.updated.cache.newest->bytes);
     finish(&b);
     ck_assert_int_eq(tally.n_closings, 3);
 }
@@ -585,8 +585,8 @@ START_TEST(test_update_is_spent) {
         ck_assert_int_eq(dalcs_stages_get(&b.updated, &mode, 1e-6, &entry), DALCS_OK);
     }
     ck_assert_int_gt(n_steps, 10);
-    ck_assert_int_eq(b.updated.factorizations, 2);
-    ck_assert_int_eq(HASH_COUNT(b.updated.entries), 2);
+    ck_assert_int_eq(b.updated.cache.factorizations, 2);
+    ck_assert_int_eq(HASH_COUNT(b.updated.cache.entries), 2);
     finish(&b);
 }
 
@@ -605,13 +605,13 @@ START_TEST(test_update_is_doubtful) {
     const uint64_t closed = 1;
     ck_assert_int_eq(dalcs_stages_get(&b.updated, &closed, 1e-6, &entry), DALCS_OK);
     ck_assert(dalcs_stage_is_update(entry));
-    ck_assert_int_eq(b.updated.factorizations, 1);
+    ck_assert_int_eq(b.updated.cache.factorizations, 1);
     entry->factors->update->inverse[0][0] *= 1.0L + 1e-9L;
     entry->factors->update->inverse[1][0] *= 1.0L + 1e-9L;
     struct dalcs_stage_entry *dense;
     ck_assert_int_eq(dalcs_stages_get(&b.dense, &closed, 1e-6, &dense), DALCS_OK);
     check_steps(&b, &b.updated, &closed, 1e-6, dense, &random, &tally);
-    ck_assert_int_eq(b.updated.factorizations, 2);
+    ck_assert_int_eq(b.updated.cache.factorizations, 2);
     ck_assert_int_eq(dalcs_stages_get(&b.updated, &closed, 1e-6, &entry), DALCS_OK);
     ck_assert(!dalcs_stage_is_update(entry));
     finish(&b);

@@ -19,8 +19,8 @@ static void start_with(const char *text, int n_stages, size_t most_bytes) {
     s = &t.network.system[0];
     ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s, NULL), DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&stages, s, &x,
-                                        dalcs_collocation_of(DALCS_RADAU_IIA, n_stages), 64, 1e-14,
-                                        most_bytes),
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, n_stages),
+                                        &(struct dalcs_stage_limits){64, 1e-14, most_bytes}),
                      DALCS_OK);
 }
 
@@ -470,15 +470,15 @@ START_TEST(test_store) {
     ck_assert_ptr_ne(first, get(on, 0.5));
     ck_assert_ptr_ne(first, get(off, 0.25));
     ck_assert_ptr_eq(first, get(off, 0.5));
-    ck_assert_int_eq(stages.factorizations, 3);
-    ck_assert_int_eq(stages.cache_hits, 1);
+    ck_assert_int_eq(stages.cache.factorizations, 3);
+    ck_assert_int_eq(stages.cache.cache_hits, 1);
     ck_assert(dalcs_stages_find(&stages, &on, 0.5) && !dalcs_stages_find(&stages, &on, 0.25));
     const double *natural = dalcs_stage_natural_units(first);
     for (int c = 0; c < dalcs_system_n_equations(s); c++) {
         ck_assert(natural[c] > 0.0);
         ck_assert_double_eq(natural[dalcs_system_n_equations(s) + c], 1.0 / natural[c]);
     }
-    size_t bytes = stages.bytes;
+    size_t bytes = stages.cache.bytes;
     finish();
     /* With room for about three, the one that was not asked for goes. */
     start_with(text, 5, bytes);
@@ -486,11 +486,11 @@ START_TEST(test_store) {
         (void)get(off, ldexp(1.0, -k));
         (void)get(on, 0.5);
         ck_assert(dalcs_stages_find(&stages, &on, 0.5));
-        ck_assert(stages.bytes <= bytes);
+        ck_assert(stages.cache.bytes <= bytes);
     }
     ck_assert(!dalcs_stages_find(&stages, &off, 1.0));
     ck_assert(dalcs_stages_find(&stages, &off, ldexp(1.0, -19)));
-    ck_assert_int_eq(stages.factorizations, 21);
+    ck_assert_int_eq(stages.cache.factorizations, 21);
     finish();
     start_with(text, 5, 1); /* one there must be */
     (void)get(on, 0.5);

@@ -114,7 +114,7 @@ START_TEST(test_grows) {
     start();
     for (int round = 0; round < 2; round++) {
         int n_known = 0;
-        part.stages.bytes = round == 0 ? 0 : (size_t)1 << 30;
+        part.stages.cache.bytes = round == 0 ? 0 : (size_t)1 << 30;
         for (uint64_t k = 0; k < MANY; k++) {
             (void)guess(k, k % 7);
             learn(3 * k, k, (int)k);

@@ -1,0 +1,132 @@
+/* smooth_tangents.c - the lines that smooth sources have in the equations. */
+#include "smooth_tangents.h"
+
+#include <math.h>
+
+double dalcs_smooth_line(const struct dalcs_smooth_input *of, int j) {
+    return of->entry[j] != NULL ? -*of->entry[j] : 0.0;
+}
+
+double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x) {
+    return dalcs_smooth_value(of->kind, x) - dalcs_smooth_line(of, 0) * x[0] -
+           dalcs_smooth_line(of, 1) * x[1];
+}
+
+void dalcs_smooth_finite_gradient(const struct dalcs_smooth_input *of, const double *x,
+                                  double *gradient) {
+    static const double steepest = 0x1p+511;
+    dalcs_smooth_gradient(of->kind, x, gradient);
+    for (int j = 0; j < 2; j++) {
+        gradient[j] = isinf(gradient[j]) ? copysign(steepest, gradient[j]) : gradient[j];
+    }
+}
+
+void dalcs_smooth_gradient_of_rest(const struct dalcs_smooth_input *of, const double *x,
+                                   double *gradient) {
+    dalcs_smooth_finite_gradient(of, x, gradient);
+    gradient[0] -= dalcs_smooth_line(of, 0);
+    gradient[1] -= dalcs_smooth_line(of, 1);
+}
+
+/* The lines of the tangent at x; an argument that both read has one line. */
+static void find_lines(const struct dalcs_smooth_input *of, const double *gradient, double *line) {
+    const bool is_one = of->n > 1 && of->column[0] >= 0 && of->column[0] == of->column[1];
+    line[0] = gradient[0] + (is_one ? gradient[1] : 0.0);
+    line[1] = is_one ? 0.0 : gradient[1];
+}
+
+/* Those at x, as far as they are finite and not 0, else the present ones. Returns by how much the steepest is steeper; of
+ * a product also by how much it is flatter: i R, of a resistance that falls, is next to the line of the R before a small
+ * difference of large numbers. A diode that blocks is flat as well, but there nothing else is as small. */
+static double find_tangent(const struct dalcs_smooth_input *of, const double *x, double *line) {
+    double gradient[2];
+    double steeper = 0.0;
+    dalcs_smooth_gradient(of->kind, x, gradient);
+    find_lines(of, gradient, line);
+    for (int j = 0; j < 2; j++) {
+        const double present = dalcs_smooth_line(of, j);
+        const bool is_one = of->entry[j] != NULL && isfinite(line[j]) && line[j] != 0.0;
+        const bool counts_flatter = is_one && of->kind == DALCS_SMOOTH_PRODUCT;
+        steeper = is_one ? fmax(steeper, fabs(line[j] / present)) : steeper;
+        steeper = counts_flatter ? fmax(steeper, fabs(present / line[j])) : steeper;
+        line[j] = is_one ? line[j] : present;
+    }
+    return steeper;
+}
+
+static void put_lines(const struct dalcs_smooth_input *of, const double *line) {
+    for (int j = 0; j < 2; j++) {
+        if (of->entry[j] != NULL) {
+            *of->entry[j] = -line[j];
+        }
+    }
+}
+
+void dalcs_smooth_take_rest(const struct dalcs_smooth_input *of, const double *x, double *phi) {
+    const double rest = dalcs_smooth_rest(of, x);
+    *phi = isfinite(rest) ? rest : *phi;
+}
+
+bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
+                            double *phi) {
+    double line[2];
+    bool is_due = false;
+    for (int k = 0; k < system->n_smooth && !is_due; k++) {
+        is_due = find_tangent(&system->smooth[k], x[k], line) > factor;
+    }
+    for (int k = 0; k < system->n_smooth && is_due; k++) {
+        const struct dalcs_smooth_input *of = &system->smooth[k];
+        (void)find_tangent(of, x[k], line);
+        put_lines(of, line);
+        dalcs_smooth_take_rest(of, x[k], &phi[k]);
+    }
+    return is_due;
+}
+
+static void put_nominal_line(const struct dalcs_smooth_input *of) {
+    const bool is_number[2] = {of->column[0] < 0, of->n < 2 || of->column[1] < 0};
+    double gradient[2];
+    double line[2];
+    dalcs_smooth_nominal_gradient(of->kind, of->number, is_number, gradient);
+    find_lines(of, gradient, line);
+    put_lines(of, line);
+}
+
+void dalcs_smooth_nominal_tangents(const struct dalcs_system *system) {
+    for (int k = 0; k < system->n_smooth; k++) {
+        put_nominal_line(&system->smooth[k]);
+    }
+}
+
+bool dalcs_smooth_starts_on_lines(const struct dalcs_system *system) {
+    bool starts = false;
+    for (int k = 0; k < system->n_smooth && !starts; k++) {
+        starts = system->smooth[k].starts_on_line;
+    }
+    return starts;
+}
+
+void dalcs_smooth_starting_tangents(const struct dalcs_system *system) {
+    for (int k = 0; k < system->n_smooth; k++) {
+        if (system->smooth[k].starts_on_line) {
+            put_nominal_line(&system->smooth[k]);
+        }
+    }
+}
+
+void dalcs_smooth_scale_tangents(const struct dalcs_system *system, double factor,
+                                 const double (*x)[2], double *phi) {
+    for (int k = 0; k < system->n_smooth; k++) {
+        const struct dalcs_smooth_input *of = &system->smooth[k];
+        const double line[2] = {factor * dalcs_smooth_line(of, 0),
+                                factor * dalcs_smooth_line(of, 1)};
+        put_lines(of, line);
+        dalcs_smooth_take_rest(of, x[k], &phi[k]);
+    }
+}
+
+void dalcs_smooth_drop_tangents(const struct dalcs_system *system) {
+    for (int k = 0; k < system->n_smooth; k++) {
+        put_lines(&system->smooth[k], (const double[]){0.0, 0.0});
+    }
+}

@@ -1,0 +1,84 @@
+/* accept.c - a step that holds becomes a segment, and what comes after the next change like this is learnt from it. */
+#include "accept.h"
+
+#include "extremes.h"
+#include "guards.h"
+#include "present.h"
+#include "recurrence.h"
+#include "step_length.h"
+#include "transition.h"
+
+#include <math.h>
+
+/* A remembered first step gets longer the next time if its error, over the signal, is below this: for
+ * a row more at each event waveforms would be worse than they need. */
+static const double fine = 3e-11;
+
+/* All of a step of the ladder: a longer one may be as good. */
+static bool is_whole(const struct dalcs_radau_part *part, double theta) {
+    return theta == 1.0 && part->segment.h == dalcs_radau_ladder(part, part->length.level);
+}
+
+/* What began after pairs changed sides. */
+static enum dalcs_status learn(struct dalcs_radau_part *part, const struct dalcs_search *search,
+                               double theta, double error) {
+    double ratio = error * fmax(1.0, part->inner_tolerance / fine);
+    bool longer = !search->fixed && is_whole(part, theta) && part->guards.n_crossed == 0 &&
+                  dalcs_length_rungs_promised(part, ratio) > 1.0 &&
+                  dalcs_radau_ladder(part, part->length.level - 1) <=
+                      dalcs_smaller(part->length.longest, part->length.longest_needed);
+    int spare = longer ? 1 : 0; /* rungs that the first step may have more the next time */
+    if (!search->guessed) {
+        double promised =
+            dalcs_smaller(dalcs_length_rungs_promised(part, error), DALCS_LENGTH_MOST_RUNGS);
+        int by_analogy = search->first_level - part->length.level_before;
+        dalcs_transition_began(part, search->first_level, (int)promised);
+        spare = (int)dalcs_larger(spare, dalcs_smaller(promised, by_analogy));
+        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare, by_analogy - spare));
+    } else if (!search->front) {
+        dalcs_transition_pass(part, spare);
+    } else if (spare > 0) {
+        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare, 0));
+    }
+    if (!search->fixed) {
+        dalcs_recurrence_note(part);
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_trial_accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     const struct dalcs_search *search,
+                                     const struct dalcs_trial *trial) {
+    const double theta = trial->next;
+    const struct dalcs_step_quality *quality = &trial->quality;
+    double t_end = part->segment.t + theta * part->segment.h;
+    part->segment.why = part->guards.n_crossed > 0 ? DALCS_END_AT_EVENT : DALCS_END_OF_STEP;
+    if (part->guards.n_crossed == 0 && t_end >= search->limit - r->resolution) {
+        t_end = search->limit;
+        part->segment.why = DALCS_END_AT_EDGE;
+    }
+    if (search->fixed && part->segment.why == DALCS_END_OF_STEP) {
+        double whole =
+            rint(t_end / part->segment.h) * part->segment.h; /* counted, not accumulated */
+        t_end = fabs(t_end - whole) <= 4.0 * r->resolution ? whole : t_end;
+    }
+    part->segment.t_end = dalcs_smaller(t_end, search->limit);
+    dalcs_step_remember(part, theta, quality->unit);
+    if (theta == 1.0) {
+        dalcs_guards_arm(part, true, quality->unit);
+    }
+    double wrong_sign = dalcs_guards_wrong_sign(r, part, theta, quality->unit);
+    if (wrong_sign > r->wrong_sign) {
+        r->wrong_sign = wrong_sign;
+        r->wrong_time = part->segment.t;
+    }
+    if (part->guards.fresh && part->guards.flipped && !search->turned) {
+        DALCS_TRY(learn(part, search, theta, quality->ratio));
+    }
+    dalcs_segment_accept(r, part, theta, dalcs_stage_residual(trial->entry));
+    part->length.held_level = part->length.level;
+    if (!search->fixed && is_whole(part, theta)) {
+        dalcs_length_lengthen(part, quality->ratio);
+    }
+    return DALCS_OK;
+}

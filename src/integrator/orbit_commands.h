@@ -1,0 +1,13 @@
+/* orbit_commands.h - how far small signals of sources move the commands at which spans end. */
+#ifndef DALCS_ORBIT_COMMANDS_H
+#define DALCS_ORBIT_COMMANDS_H
+
+#include "orbit_log.h"
+
+void dalcs_orbit_take_command(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span, int pair,
+                              double t, bool *any);
+
+/* Those that are due where the segment ends. */
+void dalcs_orbit_find_commands(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span);
+
+#endif

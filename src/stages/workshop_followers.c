@@ -1,0 +1,120 @@
+/* workshop_followers.c - unknowns without memory that equations without derivatives determine: solved for once, for
+ * every eigenvalue and step length. */
+#include "stage_workshop.h"
+
+#include "extended.h"
+
+#include <string.h>
+
+/* The smallest pivot (balanced) that makes an unknown a follower. */
+static const long double least_follower = 1e-2L;
+
+/* What the conditions of a singular mode add to S, and to its right-hand sides: stage_choice.h. */
+static double border(const struct dalcs_stage_workshop *b, int i, const double *of_choice, int n,
+                     int j) {
+    double sum = 0.0;
+    for (int k = 0; k < b->open.nullity; k++) {
+        sum += b->open.left[k * b->n + i] * of_choice[k * n + j];
+    }
+    return sum;
+}
+
+/* S without P and its right-hand sides, by rows. */
+static void fill_whole(struct dalcs_stage_workshop *b) {
+    int n = b->n;
+    memcpy(b->kept.whole_row_scale, b->eq.row_scale, (size_t)n * sizeof(double));
+    memcpy(b->kept.whole_column_scale, b->eq.column_scale, (size_t)n * sizeof(double));
+    for (int i = 0; i < n; i++) {
+        long double *row = b->kept.whole + i * (n + b->n_rhs);
+        for (int j = 0; j < n; j++) {
+            row[j] = 0.0L;
+        }
+        for (int j = 0; j < b->n_rhs; j++) {
+            row[n + j] = b->eq.rhs[j * n + i];
+            row[n + j] += b->open.nullity > 0 ? border(b, i, b->open.chosen, b->n_rhs, j) : 0.0;
+        }
+    }
+    for (int j = 0; j < n; j++) {
+        for (int k = b->eq.nonzero_p[j]; k < b->eq.nonzero_p[j + 1]; k++) {
+            b->kept.whole[b->eq.nonzero_i[k] * (n + b->n_rhs) + j] = b->eq.base[k];
+        }
+        for (int i = 0; i < n && b->open.nullity > 0; i++) {
+            b->kept.whole[i * (n + b->n_rhs) + j] += border(b, i, b->open.choice, n, j);
+        }
+    }
+}
+
+/* What followers take of what is kept. */
+static void list_followers(struct dalcs_stage_workshop *b) {
+    int entries = 0;
+    b->kept.follows_p[0] = 0;
+    for (int f = 0; f < b->kept.n_followers; f++) {
+        const long double *row =
+            b->kept.whole + b->kept.row_of[b->kept.follower[f]] * (b->n + b->n_rhs);
+        for (int k = 0; k < b->kept.n_kept; k++) {
+            if (row[b->kept.kept[k]] != 0.0L) {
+                b->kept.follows_j[entries] = k;
+                b->kept.follows_x[entries++] = dalcs_extended_of(-row[b->kept.kept[k]]);
+            }
+        }
+        b->kept.follows_j[entries++] = b->kept.n_kept;
+        b->kept.follows_p[f + 1] = entries;
+    }
+}
+
+void dalcs_workshop_eliminate(struct dalcs_stage_workshop *b) {
+    int n = b->n;
+    fill_whole(b);
+    b->kept.n_kept = b->n_x;
+    b->kept.n_followers = 0;
+    dalcs_extended_eliminate(b->n_x, n, n + b->n_rhs, least_follower, b->kept.whole,
+                             b->kept.row_of);
+    for (int r = 0; r < n; r++) {
+        b->kept.owner[r] = -1;
+    }
+    for (int c = 0; c < b->n_x; c++) {
+        b->kept.kept[c] = c;
+        b->kept.kept_row[c] = c;
+    }
+    for (int c = b->n_x; c < n; c++) {
+        if (b->kept.row_of[c] < 0) {
+            b->kept.kept[b->kept.n_kept++] = c;
+        } else {
+            b->kept.owner[b->kept.row_of[c]] = c;
+            b->kept.follower[b->kept.n_followers++] = c;
+        }
+    }
+    for (int r = b->n_x, k = b->n_x; r < n; r++) {
+        if (b->kept.owner[r] < 0) {
+            b->kept.kept_row[k++] = r;
+        }
+    }
+    list_followers(b);
+}
+
+void dalcs_workshop_rescale(struct dalcs_stage_workshop *b) {
+    int n = b->n;
+    for (int i = 0; i < n; i++) {
+        b->kept.whole_row_scale[i] = b->eq.row_scale[i] / b->kept.whole_row_scale[i];
+        b->kept.whole_column_scale[i] = b->eq.column_scale[i] / b->kept.whole_column_scale[i];
+    }
+    for (int r = 0; r < n; r++) {
+        long double *row = b->kept.whole + r * (n + b->n_rhs);
+        int of = b->kept.owner[r];
+        double scale = of < 0 ? b->kept.whole_row_scale[r] : 1.0 / b->kept.whole_column_scale[of];
+        for (int k = 0; k < b->kept.n_kept; k++) {
+            row[b->kept.kept[k]] *= scale * b->kept.whole_column_scale[b->kept.kept[k]];
+        }
+        for (int j = n; j < n + b->n_rhs; j++) {
+            row[j] *= scale;
+        }
+    }
+    for (int k = 0; k < b->open.nullity; k++) {
+        for (int i = 0; i < n; i++) {
+            b->open.left[k * n + i] /= b->kept.whole_row_scale[i];
+        }
+    }
+    memcpy(b->kept.whole_row_scale, b->eq.row_scale, (size_t)n * sizeof(double));
+    memcpy(b->kept.whole_column_scale, b->eq.column_scale, (size_t)n * sizeof(double));
+    list_followers(b);
+}
