@@ -91,7 +91,8 @@ static bool is_own(const struct dalcs_affine_term *term, int row) {
 static void raise_lambdas(struct dalcs_audit *audit, int device, int row,
                           const struct dalcs_affine *a, double size) {
     double *scale = audit->scale.lambda + audit->net.first_lambda[device];
-    const bool is_room = a->n == 1; /* H - lambda, of the pair before */
+    const bool is_room =
+        a->n == 1 && a->term[0].kind == DALCS_QUANTITY_PAIR; /* H - lambda, of the pair before */
     if (is_room) {
         double *of = &scale[a->term[0].index];
         *of = fmax(*of, a->constant);

@@ -124,7 +124,8 @@ static bool read_fill(struct dalcs_reader *reader, struct dalcs_circuit_options 
         return false;
     }
     options->fill = value;
-    options->fill_where = dalcs_builder_keep_location(reader->builder, place);
+    options->fill_where =
+        dalcs_builder_keep_location(reader->builder, dalcs_reader_previous(reader));
     return true;
 }
 
