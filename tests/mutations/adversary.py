@@ -216,9 +216,9 @@ MUTATIONS = {
         "    memcpy(part->segment.in, part->x, (size_t)s->n_x * sizeof(double));\n"
         "    part->segment.in[s->n_x] = 1.0;\n", RESTING),
     "an oscillator's switch turns early, once in many": (
-        "integrator/accept.c", "    double t_end = part->segment.t + theta * part->segment.h;\n",
-        "    theta *= part->guards.n_crossed > 0 && part->segment.t > 10e-3 && part->segment.t < 10.4e-3 ? 0.99 : 1.0;\n"
-        "    double t_end = part->segment.t + theta * part->segment.h;\n", RELAY),
+        "integrator/accept.c", "    const double theta = trial->next;\n",
+        "    const bool is_it = part->guards.n_crossed > 0 && part->segment.t > 10e-3 && part->segment.t < 10.4e-3;\n"
+        "    const double theta = trial->next * (is_it ? 0.99 : 1.0);\n", RELAY),
     "the end of a segment of many is put too early": (
         "integrator/accept.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
         "    t_end -= part->guards.n_crossed > 0 && part->segment.t > 10e-3 && part->segment.t < 10.4e-3 "
