@@ -20,7 +20,7 @@ static bool is_loose(const struct dalcs_audit *audit, int node) {
     return !audit->crossing.is_firm[audit->net.node_of[node]];
 }
 
-/* Of a node that a G reads: where a coil jumps each that nothing ties may have one. */
+/* Of a node that is read: where a coil jumps each that nothing ties may have one. */
 static bool may_have(const struct dalcs_audit *audit, int node) {
     return has(audit, node) || (audit->crossing.coils_jump && is_loose(audit, node));
 }
@@ -85,7 +85,7 @@ static bool reads_impulse(const struct reading *r, int control) {
 static void note_term(void *to, const struct dalcs_affine_term *term) {
     struct reading *r = to;
     r->current |= term->kind == DALCS_QUANTITY_CURRENT && reads_impulse(r, term->index);
-    r->voltage |= term->kind == DALCS_QUANTITY_VOLTAGE && has(r->audit, term->index);
+    r->voltage |= term->kind == DALCS_QUANTITY_VOLTAGE && may_have(r->audit, term->index);
 }
 
 /* What acts by a current. */
@@ -101,7 +101,8 @@ static bool acts_by_voltage(const struct dalcs_audit *audit, const struct audit_
                             const struct dalcs_device *d) {
     struct reading r = {.audit = audit, .part = part};
     dalcs_behaviour_visit(d->behaviour, note_term, &r);
-    return r.voltage || (reads_voltage(d) && (has(audit, d->node[2]) || has(audit, d->node[3])));
+    return r.voltage ||
+           (reads_voltage(d) && (may_have(audit, d->node[2]) || may_have(audit, d->node[3])));
 }
 
 /* The ends of a device that are not firm get it; whether one had none. */
@@ -154,19 +155,6 @@ static bool has_jumping_coil(const struct dalcs_audit *audit, const struct audit
     return has;
 }
 
-static void note_loose(void *to, const struct dalcs_affine_term *term) {
-    struct reading *r = to;
-    r->voltage |= term->kind == DALCS_QUANTITY_VOLTAGE && is_loose(r->audit, term->index);
-}
-
-/* Does it read a node whose voltage may be an impulse where a coil jumps? */
-static bool reads_loose(const struct dalcs_audit *audit, const struct dalcs_device *d) {
-    struct reading r = {.audit = audit};
-    dalcs_behaviour_visit(d->behaviour, note_loose, &r);
-    return r.voltage ||
-           (reads_voltage(d) && (is_loose(audit, d->node[2]) || is_loose(audit, d->node[3])));
-}
-
 /* Marks in acts[] what puts out an impulse of a current that it reads. */
 static bool mark_actors(const struct dalcs_audit *audit, const struct audit_part *part,
                         double *acts) {
@@ -197,10 +185,9 @@ void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *par
         audit->crossing.is_firm[node] = dalcs_union_find(audit->crossing.cluster, node) == 0;
     }
     audit->crossing.coils_jump = by_coils;
-    for (int k = 0; k < part->n_devices; k++) {
-        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
-        if ((by_currents && acts[part->device[k]] != 0.0) || (by_coils && reads_loose(audit, d))) {
-            (void)spread(audit, d);
+    for (int k = 0; by_currents && k < part->n_devices; k++) {
+        if (acts[part->device[k]] != 0.0) {
+            (void)spread(audit, &audit->circuit->device[part->device[k]]);
         }
     }
     spread_all(audit, part);

@@ -3,6 +3,7 @@
  * Besides, AC magnitude and phase for .ac. Checks that need .tran (the frequency that a SIN may
  * leave out is 1/tstop, as in SPICE) are made when all cards are read. */
 #include "builder.h"
+#include "pi.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,7 +14,7 @@ static const char USAGE[] =
 /* AC [magnitude [phase in degrees]]; 1 and 0 when left out. False when an error was reported. */
 static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                     struct dalcs_stimulus *stimulus) {
-    static const double degree = 3.14159265358979323846 / 180.0;
+    const double degree = dalcs_pi / 180.0;
     double value[2] = {1.0, 0.0};
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
     const bool is_open = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
@@ -39,7 +40,7 @@ static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
 /* ACPHASE degrees behind AC magnitude, as Qucs-S writes it. */
 static bool read_ac_phase(struct dalcs_reader *reader, const struct dalcs_token *word, bool has_ac,
                           struct dalcs_stimulus *stimulus) {
-    static const double degree = 3.14159265358979323846 / 180.0;
+    const double degree = dalcs_pi / 180.0;
     double phase;
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
     if (!dalcs_reader_number(reader, DALCS_PLAIN, "a phase in degrees", &phase)) {

@@ -2,15 +2,12 @@
 #include "table_audit.h"
 
 #include "memory.h"
+#include "rounding.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-/* Of the largest value: a sum and what is added to it are rounded a few times. */
-static const double rounding = 16.0 * DBL_EPSILON;
 
 /* Rows are looked at again after so many, on an average: a look takes some 40 instructions a row, a row 20 and more for each
  * signal that it has. */
@@ -80,9 +77,10 @@ static const char *compare(const struct dalcs_table_audit_sums *a,
         t = time[k];
     }
     const double largest = fmax(fabs(least), fabs(most));
-    const double off = rounding * ((double)n * largest * (t - begin) + fabs(now->integral));
-    const double off_square =
-        rounding * ((double)n * largest * largest * (t - begin) + fabs(now->square_integral));
+    const double off =
+        dalcs_sum_rounded * ((double)n * largest * (t - begin) + fabs(now->integral));
+    const double off_square = dalcs_sum_rounded * ((double)n * largest * largest * (t - begin) +
+                                                   fabs(now->square_integral));
     if (!isfinite(now->square_integral) || !isfinite(square) || !isfinite(sum)) {
         return a->wrong; /* beyond all numbers */
     }
@@ -155,9 +153,10 @@ static const char *told_wrong(const struct dalcs_table_audit_sums *a,
     if (!(length > 0.0)) {
         return mean != s->final ? "the average" : NULL;
     }
-    return !(fabs(mean * length - s->integral) <= rounding * fabs(s->integral)) ? "the average"
-           : !(rms >= 0.0 &&
-               fabs(rms * rms * length - s->square_integral) <= rounding * s->square_integral)
+    return !(fabs(mean * length - s->integral) <= dalcs_sum_rounded * fabs(s->integral))
+               ? "the average"
+           : !(rms >= 0.0 && fabs(rms * rms * length - s->square_integral) <=
+                                 dalcs_sum_rounded * s->square_integral)
                ? "the rms value"
                : NULL;
 }

@@ -1,6 +1,7 @@
 /* audit_losses.c - sums of losses, checked at times of the auditor's own: of one device in a stretch, its integrals of
  * voltage, current, their squares and their product. The first stretches of the window take one device after the other. */
 #include "audit_losses.h"
+#include "rounding.h"
 
 #include "audit_reader.h"
 #include "results.h"
@@ -12,9 +13,6 @@ static const double device_work = 1500.0, check_work = 150000.0;
 
 /* What checks may cost of that. */
 static const double share = 0.03;
-
-/* Sums and quotients of a few numbers that were each rounded. */
-static const double rounding = 16.0 * DBL_EPSILON;
 
 /* What is asked of a device. */
 struct asked {
@@ -146,7 +144,7 @@ void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_los
 
 /* So much is told, and is so much, of a number of this size. */
 static double part_off(double told, double is, double size) {
-    const double off = fabs(told - is) - rounding * (fabs(told) + fabs(is) + size);
+    const double off = fabs(told - is) - dalcs_sum_rounded * (fabs(told) + fabs(is) + size);
     return off > 0.0 ? off / fmax(fmax(fabs(is), size), 0x1p-1022) : 0.0;
 }
 

@@ -5,12 +5,9 @@
 #include "audit_measures.h"
 
 #include "audit_reader.h"
+#include "pi.h"
 #include "results.h"
-
-#include <float.h>
-
-/* Sums and quotients of a few numbers that were each rounded. */
-static const double rounding = 16.0 * DBL_EPSILON;
+#include "rounding.h"
 
 struct told {
     struct dalcs_audit_measures *a;
@@ -24,13 +21,13 @@ struct told {
 /* So far off in the unit of the formula. */
 static void off(const struct told *q, double by) {
     const struct dalcs_audit_number number = {DALCS_AUDIT_MEASURE, q->k, q->scale};
-    const double allowed = rounding * fmax(q->scale, fabs(q->measurement->value));
+    const double allowed = dalcs_sum_rounded * fmax(q->scale, fabs(q->measurement->value));
     dalcs_audit_off(q->a->run->audit, &number, fabs(by) - allowed, q->m->stop);
 }
 
 /* A time that is told is another one: over the run, as a part of the scale. */
 static void off_in_time(const struct told *q, double told, double is) {
-    const double near = 4.0 * q->a->run->radau->resolution + rounding * fabs(is);
+    const double near = 4.0 * q->a->run->radau->resolution + dalcs_sum_rounded * fabs(is);
     const double by = fabs(told - is) > near ? fabs(told - is) / (q->m->stop - q->m->start) : 0.0;
     const struct dalcs_audit_number number = {DALCS_AUDIT_MEASURE, q->k, fmax(q->scale, 1.0)};
     dalcs_audit_off(q->a->run->audit, &number, by * number.scale, q->m->stop);
@@ -133,7 +130,7 @@ void dalcs_audit_measures_told(struct dalcs_audit_measures *a, const struct dalc
 /* A series of cosines and sines, put together again from what is told. */
 void dalcs_audit_fourier_told(struct dalcs_audit_measures *a, const struct dalcs_measuring *m,
                               int k, const struct dalcs_fourier *told) {
-    static const double radians = 0.017453292519943295769;
+    const double radians = dalcs_pi / 180.0;
     if (a->run == NULL) {
         return;
     }
@@ -153,6 +150,6 @@ void dalcs_audit_fourier_told(struct dalcs_audit_measures *a, const struct dalcs
     const double by = m->analysis == DALCS_MEASURED_TRAN ? window * h->scale : 0.0;
     dalcs_audit_off(a->run->audit, &number,
                     fmax(fmax(worst, fabs(distortion)), by) -
-                        rounding * (double)told->n_harmonics * h->scale,
+                        dalcs_sum_rounded * (double)told->n_harmonics * h->scale,
                     told->to);
 }
