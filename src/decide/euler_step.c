@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-static void fill_out(struct dalcs_radau_part *part, const double *before) {
+/* States go straight, and all else is what it is at the end. */
+static void fill_out(struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_columns = dalcs_system_n_columns(p->system);
@@ -21,7 +22,7 @@ static void fill_out(struct dalcs_radau_part *part, const double *before) {
         double *out = part->segment.out + k * l->stride;
         double at = part->stages.method->node[k];
         for (int c = 0; c < n_columns; c++) {
-            double start = c < p->system->n_x ? part->x[c] : before != NULL ? before[c] : end[c];
+            double start = c < p->system->n_x ? part->x[c] : end[c];
             out[c] = k + 1 < l->n_nodes ? start + at * (end[c] - start) : end[c];
         }
         for (int i = 0; i < part->stages.n_watched; i++) {
@@ -30,10 +31,9 @@ static void fill_out(struct dalcs_radau_part *part, const double *before) {
     }
 }
 
-void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                              const double *before) {
+void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                              double h) {
     double limit = dalcs_radau_limit(r, part);
-    fill_out(part, before);
     part->segment.by_euler = true;
     part->segment.h = h;
     part->segment.end = 1.0;
@@ -43,14 +43,31 @@ void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_pa
     part->guards.fresh = true;
 }
 
+void dalcs_radau_accept_implicit(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                 double h) {
+    const struct dalcs_component *c = part->component;
+    const struct dalcs_observer *observer = r->base->observer;
+    if (observer != NULL) {
+        observer->scale(observer->user, part->index, &c->osnsp.certificate);
+        observer->step(observer->user, part->index, part->x, part->work.y1,
+                       part->work.u + c->system->n_x, h);
+    }
+    fill_out(part);
+    dalcs_radau_accept_euler(r, part, h);
+}
+
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) {
     struct dalcs_component *c = part->component;
-    dalcs_micro_positions(part, true);
-    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
-    if (c->positions.alternates) {
-        bool slides;
-        DALCS_TRY(dalcs_slide_step(r, part, h, &slides));
+    bool slides = part->guards.slides;
+    part->guards.slides = false;
+    if (!slides) {
+        dalcs_micro_positions(part, true);
+        DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
+        slides = c->positions.alternates;
+    }
+    if (slides) {
+        DALCS_TRY(dalcs_slide_step(r, part, dalcs_radau_limit(r, part), true, &slides));
         if (slides) {
             return DALCS_OK;
         }
@@ -58,13 +75,7 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
         DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
     }
     c->delayed_commands += c->positions.settled ? 0 : 1; /* the present command stands */
-    const struct dalcs_observer *observer = r->base->observer;
-    if (observer != NULL) {
-        observer->scale(observer->user, part->index, &c->osnsp.certificate);
-        observer->step(observer->user, part->index, part->x, part->work.y1,
-                       part->work.u + c->system->n_x, h);
-    }
-    dalcs_radau_accept_euler(r, part, h, NULL);
+    dalcs_radau_accept_implicit(r, part, h);
     r->euler_steps++;
     return DALCS_OK;
 }

@@ -26,9 +26,11 @@ enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_
                                             double h, double tau, const double *state,
                                             double *y) DALCS_MUST_CHECK;
 
-/* part->work.y1 at the end of a step of implicit Euler of length h becomes the present segment, along which states go
- * straight; all columns do, from before[n_columns], if that is not NULL. */
-void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                              const double *before);
+/* The last such answer, in part->work.y1, becomes the present segment. */
+void dalcs_radau_accept_implicit(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                 double h);
+
+/* part->segment.out, made by implicit Euler in a step of length h, becomes the present segment. */
+void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part, double h);
 
 #endif

@@ -6,7 +6,6 @@
 #include "present.h"
 #include "projection.h"
 #include "restart.h"
-#include "slide.h"
 #include "step_length.h"
 
 #include <math.h>
@@ -23,7 +22,7 @@ enum {
     MOST_REFINED = 4,
     FALL_BACK_LEAST = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
-    SLIDING = 12    /* and are this many below the longest one where a switch slides */
+    RIPPLE = 12     /* and are this many below the longest one where a switch goes to and fro */
 };
 
 enum dalcs_status dalcs_search_project(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -63,10 +62,10 @@ enum dalcs_status dalcs_search_ask(struct dalcs_radau *r, struct dalcs_radau_par
     return dalcs_search_go_on_from_answer(r, part, search, is_off);
 }
 
-/* s: a step along a threshold, or between two sides of a switch with ripple in proportion. */
-static double slide_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+/* s: a step between two sides of a switch, with ripple in proportion. */
+static double ripple_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     double fixed = r->options.fixed_step;
-    return ldexp(fixed > 0.0 ? fixed : part->length.longest, -SLIDING);
+    return ldexp(fixed > 0.0 ? fixed : part->length.longest, -RIPPLE);
 }
 
 enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -80,19 +79,12 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
     if (part->length.tries > 0 && fixed == 0.0) { /* however short the ladder's step has become */
         h = fmax(h, fmin(2.0 * part->length.fell_back, ldexp(part->length.longest, -FALL_BACK)));
     }
-    if (part->guards.slides) { /* between two sides of a switch */
-        h = fmin(h, slide_length(r, part));
-        part->guards.slides = false;
+    if (part->guards.slides) {
+        h = fmin(h, ripple_length(r, part));
     }
     part->length.tries++;
     part->length.fell_back = fmin(h, limit - part->segment.t);
     return dalcs_radau_euler_step(r, part, part->length.fell_back);
-}
-
-enum dalcs_status dalcs_search_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                        double limit, bool *slides) {
-    double h = fmax(slide_length(r, part), dalcs_length_shortest(r));
-    return dalcs_slide_step(r, part, fmin(h, limit - part->segment.t), slides);
 }
 
 /* Where dalcs_search_project() cannot tell. */

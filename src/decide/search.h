@@ -85,8 +85,4 @@ enum dalcs_status dalcs_search_go_on_trying(struct dalcs_radau_part *part,
 enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double limit, int level, double most) DALCS_MUST_CHECK;
 
-/* A switch slid in the segment before. *slides: so it does in this one. */
-enum dalcs_status dalcs_search_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                        double limit, bool *slides) DALCS_MUST_CHECK;
-
 #endif

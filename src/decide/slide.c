@@ -1,14 +1,19 @@
-/* slide.c - a segment along the threshold of a switch that opens what closes it and closes what opens it.
- *
- * Filippov's mean of both sides (sliding.h), by steps of implicit Euler that are extrapolated: twice the answer of two
- * steps, less that of one twice as long, is off by the square of the step. */
+/* slide.c - a segment along the threshold of a switch that opens what closes it and closes what opens it: how long it is,
+ * where it begins and where it ends. */
 #include "slide.h"
 
 #include "guard_scale.h"
+#include "present.h"
 #include "restart.h"
+#include "slide_try.h"
 #include "sliding.h"
+#include "step_error.h"
+#include "step_length.h"
 
-#include <string.h>
+#include <math.h>
+
+/* The first segment of a run that slides is so many powers of 2 shorter than the longest. */
+enum { FIRST = 12 };
 
 /* At a threshold that a switch slides along the state is as exact as digits are. */
 static void prepare_positions(struct dalcs_radau_part *part) {
@@ -20,96 +25,127 @@ static void prepare_positions(struct dalcs_radau_part *part) {
     }
 }
 
-/* A step of length h from state[n_x] to part->segment.t + tau into y, which counts so many times. */
-struct counted_step {
-    double h, tau, times;
-    const double *state;
-    double *y;
-};
+static void take_back(const struct dalcs_radau *r) {
+    if (r->base->observer != NULL) {
+        r->base->observer->take_back(r->base->observer->user);
+    }
+}
 
-/* In the energies *taken. */
-static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                   const struct counted_step *step, double *taken, bool *slides) {
-    struct dalcs_component *c = part->component;
+static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                   const struct dalcs_slide_try *of) {
     const struct dalcs_observer *observer = r->base->observer;
-    *slides = false;
-    enum dalcs_status status =
-        dalcs_radau_implicit_step(r, part, step->h, step->tau, step->state, step->y);
-    if (status != DALCS_OK || !c->positions.alternates) {
-        return status < DALCS_OK ? status : DALCS_OK; /* without an answer it does not slide */
-    }
-    memcpy(c->scratch, step->y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
-    double weight = dalcs_sliding_mean(&c->positions, step->y);
-    *slides = weight > 0.0;
-    if (*slides && observer != NULL) {
-        const struct dalcs_observed_sides sides = {.y = {c->scratch, c->positions.other_y},
-                                                   .weight = {1.0 - weight, weight},
-                                                   .time = step->times * step->h};
-        observer->scale(observer->user, part->index, &c->osnsp.certificate);
-        *taken +=
-            step->times * observer->sliding_step(observer->user, part->index, step->state, step->y,
-                                                 &sides, part->work.u + c->system->n_x);
-    }
-    return DALCS_OK;
-}
-
-static void extrapolate(double *fine, const double *coarse, int n) {
-    for (int k = 0; k < n; k++) {
-        fine[k] += fine[k] - coarse[k];
-    }
-}
-
-/* One step, and two of half its length: part->work.y1 and the other side's values are extrapolated from them. */
-static enum dalcs_status three_steps(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                                     double *taken, bool *slides) {
-    struct dalcs_component *c = part->component;
-    const struct dalcs_system *s = c->system;
-    DALCS_TRY(
-        mean_step(r, part, &(struct counted_step){h, h, -1.0, part->x, c->probe_y}, taken, slides));
-    memcpy(part->work.w1, c->osnsp.w, (size_t)s->n_pairs * sizeof(double));
-    if (*slides) {
-        DALCS_TRY(mean_step(r, part,
-                            &(struct counted_step){0.5 * h, 0.5 * h, 2.0, part->x, part->work.y2},
-                            taken, slides));
-    }
-    if (*slides) {
-        DALCS_TRY(mean_step(r, part,
-                            &(struct counted_step){0.5 * h, h, 2.0, part->work.y2, part->work.y1},
-                            taken, slides));
-    }
-    if (*slides) {
-        extrapolate(part->work.y1, c->probe_y, dalcs_system_n_columns(s));
-        extrapolate(c->osnsp.w, part->work.w1, s->n_pairs);
-    }
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                                   bool *slides) {
-    struct dalcs_component *c = part->component;
-    const struct dalcs_observer *observer = r->base->observer;
-    double taken = 0.0;
-    if (observer != NULL) {
-        observer->hold(observer->user);
-    }
-    prepare_positions(part);
-    enum dalcs_status status = three_steps(r, part, h, &taken, slides);
-    part->guards.slides = false;
-    if (!*slides) {
-        if (observer != NULL) {
-            observer->take_back(observer->user);
-        }
-        return status;
-    }
-    c->slid_steps++;
-    bool is_same = dalcs_sliding_join(&c->positions);
-    bool goes_on = is_same && part->segment.by_euler && part->segment.why == DALCS_END_OF_STEP;
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *last = part->segment.out_before + (l->n_nodes - 1) * l->stride;
+    part->component->slid_steps++;
+    dalcs_sliding_join(&part->component->positions, part->work.mode_first);
     if (observer != NULL) {
-        observer->slide(observer->user, part->index, part->x, part->work.y1, taken);
+        observer->slide(observer->user, part->index, part->x,
+                        part->segment.out + (ptrdiff_t)(l->n_nodes - 1) * l->stride, of->taken);
     }
-    dalcs_radau_accept_euler(r, part, h, goes_on ? last : NULL);
+    dalcs_step_take_in(part);
+    dalcs_radau_accept_euler(r, part, of->h);
     r->steps++;
+}
+
+/* s: with room up to `limit`, and at most half way to where it is known not to slide any more. */
+static double length_to_try(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                            double limit) {
+    const struct dalcs_part_length *l = &part->length;
+    const double fixed = r->options.fixed_step;
+    double h = l->slide > 0.0 ? l->slide : ldexp(l->longest, -FIRST);
+    h = fmin(fixed > 0.0 ? fixed : h, l->longest);
+    return fmin(h, fmin(limit - part->segment.t, 0.5 * (l->slide_until - part->segment.t)));
+}
+
+/* The error of an event is not along the threshold: the first step would go that way so much the faster, the shorter it is.
+ * The state goes to where micro-steps along it begin. *slides: they do. */
+static enum dalcs_status put_on_threshold(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                          double most, bool *slides) {
+    *slides = false;
+    for (int longer = 0; !*slides; longer++) {
+        const double h = dalcs_radau_micro_length(r, part, longer);
+        if (h > most) {
+            return DALCS_OK;
+        }
+        DALCS_TRY(dalcs_slide_micro_steps(r, part, h, slides));
+    }
+    for (int x = 0; x < part->component->system->n_x; x++) {
+        part->work.after[x] = 2.0 * part->work.y1[x] - part->work.y2[x];
+    }
+    dalcs_radau_go_after(r, part);
     return DALCS_OK;
+}
+
+/* What is known of lengths behind a try. The estimate is of the order of what is extrapolated less one, over a segment; what
+ * rounding makes is less in a longer one. */
+static void note(struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
+    struct dalcs_part_length *l = &part->length;
+    const double of_length = of->pairs / (1.0 + of->noise / part->inner_tolerance);
+    if (!of->slides) {
+        l->slide_until = part->segment.t + of->h;
+    } else if (fmax(of->states, of->pairs) > 1.0) {
+        l->slide = 0.5 * of->h;
+    } else if (of->h >= l->slide) {
+        const double longer = ldexp(fmax(of->states, of_length), DALCS_SLIDE_ORDER);
+        l->slide = longer < 1.0 ? 2.0 * of->h : of->h;
+    }
+}
+
+/* Is the try exact enough? Currents that jump where a diode turns, or are rounded, do not even shrink as the step does. */
+static bool is_exact(const struct dalcs_slide_try *of, double pairs_before) {
+    return of->slides && of->states <= 1.0 && (of->pairs <= 1.0 || of->pairs > 0.5 * pairs_before);
+}
+
+/* Where a slide ends the flow of one side is along the threshold, and what is left of it is so short that its square is
+ * not worth a word: a step on that side. */
+static enum dalcs_status finish(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                bool *done) {
+    prepare_positions(part);
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
+    *done = part->component->positions.settled;
+    part->guards.slides = false;
+    if (*done) {
+        part->component->slid_steps++;
+        dalcs_radau_accept_implicit(r, part, h);
+    }
+    return DALCS_OK;
+}
+
+/* Shorter and shorter ones. Where a diode turns, a state is off by no more than the step. */
+static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     struct dalcs_slide_try *of, bool *slides) {
+    const double shortest = dalcs_length_shortest(r);
+    const double before = part->length.slide > 0.0 ? part->length.slide : of->h;
+    const double least = fmax(shortest, part->inner_tolerance * before);
+    const double least_end = fmax(shortest, sqrt(part->inner_tolerance) * before);
+    double pairs_before = INFINITY;
+    for (;;) {
+        DALCS_TRY(dalcs_slide_attempt(r, part, of));
+        bool is_last =
+            r->options.fixed_step > 0.0 || 0.5 * of->h < (of->slides ? least : least_end);
+        *slides = of->slides && (is_last || is_exact(of, pairs_before));
+        note(part, of);
+        if (*slides) {
+            part->length.slide = is_last || of->pairs > 1.0 ? before : part->length.slide;
+            accept(r, part, of);
+            return DALCS_OK;
+        }
+        take_back(r);
+        if (is_last) {
+            return finish(r, part, of->h, slides);
+        }
+        pairs_before = of->slides ? of->pairs : INFINITY;
+        of->h *= 0.5;
+    }
+}
+
+enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                   double limit, bool starts, bool *slides) {
+    part->length.slide_until = starts ? INFINITY : part->length.slide_until;
+    prepare_positions(part);
+    struct dalcs_slide_try of = dalcs_slide_try_of(length_to_try(r, part, limit));
+    *slides = true;
+    if (starts) {
+        DALCS_TRY(put_on_threshold(r, part, of.h, slides));
+    }
+    return *slides ? find_length(r, part, &of, slides) : DALCS_OK;
 }

@@ -4,9 +4,9 @@
 
 #include "radau_state.h"
 
-/* One segment of length h along a threshold, as the present one. *slides: there is one; if not, nothing is changed but
- * part->work.y1 and part->y2. */
-enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                                   bool *slides) DALCS_MUST_CHECK;
+/* One segment along a threshold, as the present one, as long as its error allows and up to `limit` (s) at most. starts: the
+ * one before did not slide. *slides: there is one; if not, nothing is changed but part->work. */
+enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                   double limit, bool starts, bool *slides) DALCS_MUST_CHECK;
 
 #endif

@@ -25,12 +25,11 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
     p->present = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->mark = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->other = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
-    p->joint = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->other_y = dalcs_arena_alloc(arena, (size_t)dalcs_system_n_columns(s), sizeof(double));
     p->other_w = dalcs_arena_alloc(arena, (size_t)s->n_pairs, sizeof(double));
     if (p->pair == NULL || p->slack == NULL || p->mask == NULL || p->first == NULL ||
-        p->present == NULL || p->mark == NULL || p->other == NULL || p->joint == NULL ||
-        p->other_y == NULL || p->other_w == NULL) {
+        p->present == NULL || p->mark == NULL || p->other == NULL || p->other_y == NULL ||
+        p->other_w == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int d = 0, i = 0; d < s->n_pairs; d++) {

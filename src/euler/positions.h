@@ -22,7 +22,6 @@ struct dalcs_positions {
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
     uint64_t *other;           /* and its mode, [n_words] */
     bool joined;               /* sliding.h */
-    uint64_t *joint;           /* [n_words] the mode then */
     uint64_t *mask;            /* [n_words] bits of these switches */
     uint64_t *first, *present, *mark; /* [n_words] */
 

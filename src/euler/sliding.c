@@ -2,17 +2,20 @@
 #include "sliding.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Does the i-th switch stand differently on both sides? */
 static bool turns(const struct dalcs_positions *p, int i) {
     return dalcs_osnsp_is_on(p->osnsp, p->pair[i]) != dalcs_mode_has(p->other, p->pair[i]);
 }
 
-/* The weight of the other side with which the control of the i-th switch is its threshold. */
-static double weight_of(const struct dalcs_positions *p, int i, const double *y) {
+/* The weight of the other side with which the control of the i-th switch is its threshold, and what rounding may make of
+ * it. */
+static double weight_of(const struct dalcs_positions *p, int i, const double *y, double *noise) {
     const struct dalcs_system *s = p->osnsp->system;
     double here = dalcs_csr_row_dot(&s->control, p->pair[i], y);
     double there = dalcs_csr_row_dot(&s->control, p->pair[i], p->other_y);
+    *noise = p->slack[i] / fabs(there - here);
     return (s->pair[p->pair[i]].turn_on - here) / (there - here);
 }
 
@@ -33,14 +36,14 @@ static void mix(double *a, const double *b, double weight, int n) {
     }
 }
 
-double dalcs_sliding_mean(struct dalcs_positions *p, double *y) {
+double dalcs_sliding_mean(struct dalcs_positions *p, double *y, double *noise) {
     const struct dalcs_system *s = p->osnsp->system;
     double weight = 0.0;
     for (int i = 0; i < p->n; i++) {
         if (!turns(p, i)) {
             continue;
         }
-        weight = weight > 0.0 ? weight : weight_of(p, i, y);
+        weight = weight > 0.0 ? weight : weight_of(p, i, y, noise);
         bool fits = !dalcs_pair_remembers(&s->pair[p->pair[i]]) && weight > 0.0 && weight < 1.0 &&
                     is_at_threshold(p, i, weight, y);
         if (!fits) {
@@ -52,25 +55,19 @@ double dalcs_sliding_mean(struct dalcs_positions *p, double *y) {
     return weight;
 }
 
-bool dalcs_sliding_join(struct dalcs_positions *p) {
-    bool is_same = true;
+void dalcs_sliding_join(struct dalcs_positions *p, const uint64_t *conducted) {
     for (int k = 0; k < p->osnsp->n_words; k++) {
         p->mark[k] = p->osnsp->mode[k];
-        p->osnsp->mode[k] |= p->other[k];
-        is_same = is_same && p->joint[k] == p->osnsp->mode[k];
-        p->joint[k] = p->osnsp->mode[k];
+        p->osnsp->mode[k] |= conducted[k];
     }
     p->joined = true;
-    return is_same;
 }
 
 bool dalcs_sliding_leave(struct dalcs_positions *p) {
     if (!p->joined) {
         return false;
     }
-    for (int k = 0; k < p->osnsp->n_words; k++) {
-        p->osnsp->mode[k] &= ~(p->other[k] & ~p->mark[k]);
-    }
+    memcpy(p->osnsp->mode, p->mark, (size_t)p->osnsp->n_words * sizeof(uint64_t));
     p->joined = false;
     return true;
 }

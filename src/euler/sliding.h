@@ -10,18 +10,19 @@
 #include "positions.h"
 
 /* y[n_columns] and p->osnsp->w, the answer on one side, become the mean with that on the other side, whose weight is
- * returned. 0: there is no such mean, and nothing is changed. */
-double dalcs_sliding_mean(struct dalcs_positions *p, double *y);
+ * returned, with what rounding may make of it. 0: there is no such mean, and nothing is changed. */
+double dalcs_sliding_mean(struct dalcs_positions *p, double *y, double *noise);
 
-/* While it lasts, what differs between both sides is on. Returns whether that makes the mode that it made the last time. */
-bool dalcs_sliding_join(struct dalcs_positions *p);
+/* While it lasts all that has conducted, on either side, is on. */
+void dalcs_sliding_join(struct dalcs_positions *p, const uint64_t *conducted);
 
 /* Where it has been joined it is on one side again. Returns whether it was. */
 bool dalcs_sliding_leave(struct dalcs_positions *p);
 
 /* Does a pair stand on both sides in turn at present? */
 static inline bool dalcs_sliding_turns(const struct dalcs_positions *p, int pair) {
-    return p->joined && dalcs_mode_has(p->mark, pair) != dalcs_mode_has(p->other, pair);
+    bool stays = dalcs_mode_has(p->mark, pair) && dalcs_mode_has(p->other, pair);
+    return p->joined && dalcs_osnsp_is_on(p->osnsp, pair) && !stays;
 }
 
 #endif

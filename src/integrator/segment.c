@@ -15,6 +15,7 @@
 #include "present.h"
 #include "projection.h"
 #include "recurrence.h"
+#include "slide.h"
 #include "sliding.h"
 #include "step_length.h"
 #include "tied.h"
@@ -264,7 +265,7 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
     double limit = dalcs_radau_limit(r, part);
     bool slides = false;
     if (dalcs_sliding_leave(&part->component->positions)) {
-        DALCS_TRY(dalcs_search_slide_on(r, part, limit, &slides));
+        DALCS_TRY(dalcs_slide_step(r, part, limit, false, &slides));
     }
     if (slides) {
         return DALCS_OK;

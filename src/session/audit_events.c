@@ -121,7 +121,7 @@ static void check_jump(struct dalcs_audit_run *a, size_t number, double t) {
         const struct dalcs_jump_state *x = &jump->state[i];
         const int device = device_of(&a->run->s->circuit, x->element);
         const int part = part_of(a, device);
-        const bool is_coarse = part >= 0 && a->radau->part[part].segment.by_euler;
+        const bool is_coarse = part >= 0 && dalcs_segment_is_coarse(&a->radau->part[part]);
         if (part < 0 || is_coarse || (t > 0.0 && !a->part[part].was_left)) {
             continue;
         }

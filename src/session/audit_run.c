@@ -234,14 +234,14 @@ static double checking_work(const struct dalcs_audit_run *a) {
     return work;
 }
 
-/* Between the sides of a switch that slides rows are means, and on a step of implicit Euler lines. And a segment may be so
+/* On a step of implicit Euler rows are lines. And a segment may be so
  * short that the resolution of its times is more of it than is allowed of a value. */
 static bool is_coarse(const struct dalcs_audit_run *a) {
     const double shortest = 4.0 * a->radau->resolution / dalcs_audit_most_allowed(a);
     bool is = false;
     for (int i = 0; i < a->n_stepped && !is; i++) {
         const struct dalcs_radau_part *part = &a->radau->part[a->stepped[i]];
-        is = part->segment.by_euler || part->segment.t_end - part->segment.t < shortest;
+        is = dalcs_segment_is_coarse(part) || part->segment.t_end - part->segment.t < shortest;
     }
     return is;
 }

@@ -58,6 +58,8 @@ struct dalcs_part_length {
     double span[DALCS_SPANS]; /* s */
     int tries;                /* falls back to implicit Euler in a row */
     double fell_back;         /* s, length of the last */
+    double slide;             /* s, of a step along a threshold; 0: none so far */
+    double slide_until;       /* s, a time that the present slide does not reach */
     long held_back;           /* steps that would have been longer, had the longest one been */
 };
 
@@ -131,6 +133,7 @@ struct dalcs_part_memory {
 struct dalcs_part_work {
     double *u, *y1, *y2, *w1, *after; /* y1 and y2 in whole quads */
     double *out_tried;                /* a step put aside while the state is projected */
+    double *node_w; /* [n_nodes][n_pairs] of a slide; NULL: no switch can slide */
     double *before; /* [n_x] the state before a jump, while the one behind is looked for */
     uint64_t *mode_tied, *mode_turned;
     uint64_t *mode_first;  /* of the first of two micro-steps */
@@ -169,6 +172,11 @@ struct dalcs_radau_part {
     struct dalcs_part_work work;
     struct dalcs_arena arena; /* what has the same size during the run */
 };
+
+/* Has nobody controlled the error of the present segment? */
+static inline bool dalcs_segment_is_coarse(const struct dalcs_radau_part *part) {
+    return part->segment.by_euler && !part->component->positions.joined;
+}
 
 struct dalcs_radau_options {
     double tolerance;     /* largest error over each waveform's scale */

@@ -46,6 +46,9 @@ double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const d
 /* Remembers the largest magnitudes of an accepted segment. */
 void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double *unit);
 
+/* And those of a whole segment that nobody has judged. */
+void dalcs_step_take_in(struct dalcs_radau_part *part);
+
 /* Do sources disagree in a singular mode? Then it cannot be this one. */
 bool dalcs_step_clashes(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
                         double end, const double *unit);

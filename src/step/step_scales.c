@@ -196,3 +196,9 @@ void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double
     part->scales.unit[0] = unit[0];
     part->scales.unit[1] = unit[1];
 }
+
+void dalcs_step_take_in(struct dalcs_radau_part *part) {
+    double unit[2] = {part->scales.unit[0], part->scales.unit[1]};
+    dalcs_step_find_magnitudes(part, 1.0, unit);
+    dalcs_step_remember(part, 1.0, unit);
+}

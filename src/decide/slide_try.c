@@ -1,0 +1,240 @@
+/* slide_try.c - a segment of some length along a threshold, and how far it is off.
+ *
+ * Filippov's mean of both sides (sliding.h) by implicit Euler, extrapolated (Hairer and Wanner, Solving ODEs II, sec.
+ * IV.9): between each two nodes of the method go 1, 2, ..., ORDER steps, and where their errors in powers of the step
+ * cancel is the polynomial's value there. */
+#include "slide_try.h"
+
+#include "restart.h"
+#include "sliding.h"
+#include "step_error.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ORDER = DALCS_SLIDE_ORDER };
+
+/* weight[j - 1] of the sequence with j steps, in the value at step 0 of the polynomial through those from `first` on
+ * (Aitken and Neville). */
+static void find_weights(int first, double *weight) {
+    for (int j = 1; j <= ORDER; j++) {
+        weight[j - 1] = j < first ? 0.0 : 1.0;
+        for (int i = first; i <= ORDER; i++) {
+            weight[j - 1] *= i != j ? (double)j / (j - i) : 1.0;
+        }
+    }
+}
+
+struct dalcs_slide_try dalcs_slide_try_of(double h) {
+    struct dalcs_slide_try of = {.h = h};
+    find_weights(1, of.weight);
+    find_weights(2, of.estimate);
+    return of;
+}
+
+/* A step of length h from state[n_x] to part->segment.t + tau into y, which counts so many times. */
+struct counted_step {
+    double h, tau, times;
+    const double *state;
+    double *y;
+};
+
+static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                   const struct counted_step *step, struct dalcs_slide_try *of) {
+    struct dalcs_component *c = part->component;
+    const struct dalcs_observer *observer = r->base->observer;
+    of->slides = false;
+    enum dalcs_status status =
+        dalcs_radau_implicit_step(r, part, step->h, step->tau, step->state, step->y);
+    if (status != DALCS_OK || !c->positions.alternates) {
+        return status < DALCS_OK ? status : DALCS_OK; /* without an answer it does not slide */
+    }
+    memcpy(c->scratch, step->y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+    double noise = 0.0;
+    double weight = dalcs_sliding_mean(&c->positions, step->y, &noise);
+    of->noise = fmax(of->noise, noise);
+    of->slides = weight > 0.0;
+    for (int k = 0; k < c->osnsp.n_words; k++) {
+        part->work.mode_first[k] |= c->osnsp.mode[k] | c->positions.other[k];
+    }
+    if (of->slides && observer != NULL) {
+        const struct dalcs_observed_sides sides = {.y = {c->scratch, c->positions.other_y},
+                                                   .weight = {1.0 - weight, weight},
+                                                   .time = step->times * step->h};
+        observer->scale(observer->user, part->index, &c->osnsp.certificate);
+        of->taken +=
+            step->times * observer->sliding_step(observer->user, part->index, step->state, step->y,
+                                                 &sides, part->work.u + c->system->n_x);
+    }
+    return DALCS_OK;
+}
+
+/* The columns and voltages of pairs at a node take so much of y, and those to estimate errors by. */
+static void add_to_node(struct dalcs_radau_part *part, int node, const double *y, double weight,
+                        double estimate) {
+    const struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    const int stride = part->stages.layout.stride;
+    double *out = part->segment.out + (ptrdiff_t)node * stride;
+    for (int k = 0; k < dalcs_system_n_columns(s); k++) {
+        out[k] += weight * y[k];
+    }
+    double *tried = part->work.out_tried + (ptrdiff_t)node * stride;
+    for (int k = 0; k < dalcs_system_n_columns(s); k++) {
+        tried[k] += estimate * y[k];
+    }
+    double *w = part->work.node_w + (ptrdiff_t)node * s->n_pairs;
+    for (int d = 0; d < s->n_pairs; d++) {
+        w[d] += weight * c->osnsp.w[d];
+    }
+}
+
+/* The sequence with j steps from node to node. */
+static enum dalcs_status run_sequence(struct dalcs_radau *r, struct dalcs_radau_part *part, int j,
+                                      struct dalcs_slide_try *of) {
+    const struct dalcs_collocation *method = part->stages.method;
+    const double *state = part->x;
+    double *y = part->work.y1;
+    for (int node = 1; node <= method->s; node++) {
+        const double from = method->node[node - 1];
+        const double width = method->node[node] - from;
+        for (int k = 1; k <= j; k++) {
+            const struct counted_step step = {.h = of->h * width / j,
+                                              .tau = of->h * (from + width * k / j),
+                                              .times = of->weight[j - 1],
+                                              .state = state,
+                                              .y = y};
+            DALCS_TRY(mean_step(r, part, &step, of));
+            if (!of->slides) {
+                return DALCS_OK;
+            }
+            state = y;
+            y = y == part->work.y1 ? part->work.y2 : part->work.y1;
+        }
+        add_to_node(part, node, state, of->weight[j - 1], of->estimate[j - 1]);
+    }
+    return DALCS_OK;
+}
+
+/* In place of the current of a pair that is open all the time stands its voltage. */
+static void put_voltages(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    for (int node = 1; node < l->n_nodes; node++) {
+        const int first = node * l->stride + dalcs_system_n_equations(s);
+        for (int d = 0; d < s->n_pairs; d++) {
+            bool is_on = dalcs_mode_has(part->work.mode_first, d);
+            part->segment.out[first + d] += is_on ? 0.0 : part->work.node_w[node * s->n_pairs + d];
+        }
+    }
+}
+
+/* At the start all but the states are where the polynomial through the other nodes begins. */
+static void begin_columns(struct dalcs_radau_part *part) {
+    const struct dalcs_collocation *method = part->stages.method;
+    const int stride = part->stages.layout.stride;
+    const int n_x = part->component->system->n_x;
+    double *out = part->segment.out;
+    for (int node = 1; node <= method->s; node++) {
+        for (int k = 0; k < stride; k++) {
+            out[k] += method->back[node - 1] * out[node * stride + k];
+        }
+    }
+    memcpy(part->work.after, out, (size_t)n_x * sizeof(double));
+    memcpy(out, part->x, (size_t)n_x * sizeof(double));
+}
+
+/* How far a column is off, over what is allowed: what the last order changes, and of a state how far the polynomial through
+ * the nodes misses the start, as of any other step (step_error.c). */
+static double error_of_column(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                              int column, bool is_current) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const bool is_state = column < part->component->system->n_x;
+    double error = 0.0;
+    double size = 0.0;
+    if (is_state) {
+        error = l->n_nodes > 2 ? fabs(part->work.after[column] - part->x[column]) : 0.0;
+        size = fabs(part->x[column]);
+    }
+    for (int node = 1; node < l->n_nodes; node++) {
+        const double value = part->segment.out[node * l->stride + column];
+        error = fmax(error, fabs(value - part->work.out_tried[node * l->stride + column]));
+        size = fmax(size, fabs(value));
+    }
+    size = fmax(size, dalcs_step_scale(part, column, part->scales.unit));
+    return error > 0.0 ? error / (part->inner_tolerance * size + r->besides[is_current]) : 0.0;
+}
+
+/* The largest of states. */
+static double error_of_states(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    double worst = 0.0;
+    for (int x = 0; x < s->n_x; x++) {
+        worst = fmax(worst, error_of_column(r, part, x, s->column_is_current[x]));
+    }
+    return worst;
+}
+
+/* And of the currents of pairs that conduct on either side, but for what rounding makes of them, which is the more the
+ * shorter the step is. */
+static double error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                             const struct dalcs_slide_try *of) {
+    const struct dalcs_system *s = part->component->system;
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    const size_t bytes = (size_t)p->n_words * sizeof(uint64_t);
+    double worst = 0.0;
+    memcpy(part->work.mode_before, p->mode, bytes);
+    memcpy(p->mode, part->work.mode_first, bytes);
+    for (int d = 0; d < s->n_pairs; d++) {
+        if (dalcs_mode_has(p->mode, d)) {
+            worst = fmax(worst, error_of_column(r, part, dalcs_system_n_equations(s) + d, true));
+        }
+    }
+    memcpy(p->mode, part->work.mode_before, bytes);
+    return worst / (1.0 + of->noise / part->inner_tolerance);
+}
+
+enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      struct dalcs_slide_try *of) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const size_t bytes = (size_t)l->n_nodes * (size_t)l->stride * sizeof(double);
+    const struct dalcs_observer *observer = r->base->observer;
+    memset(part->segment.out, 0, bytes);
+    memset(part->work.out_tried, 0, bytes);
+    memset(part->work.node_w, 0,
+           (size_t)l->n_nodes * (size_t)part->component->system->n_pairs * sizeof(double));
+    memset(part->work.mode_first, 0, (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
+    if (observer != NULL) {
+        observer->hold(observer->user);
+    }
+    of->taken = of->noise = 0.0;
+    of->slides = true;
+    for (int j = ORDER; j > 0 && of->slides; j--) {
+        DALCS_TRY(run_sequence(r, part, j, of));
+    }
+    part->guards.slides = false;
+    of->states = of->pairs = INFINITY;
+    if (of->slides) {
+        put_voltages(part);
+        begin_columns(part);
+        of->states = error_of_states(r, part);
+        of->pairs = error_of_pairs(r, part, of);
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_slide_micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                          double h, bool *slides) {
+    struct dalcs_slide_try of = {.h = h};
+    const struct counted_step first = {
+        .h = h, .tau = h, .times = 0.0, .state = part->x, .y = part->work.y1};
+    const struct counted_step second = {
+        .h = h, .tau = 2.0 * h, .times = 0.0, .state = part->work.y1, .y = part->work.y2};
+    DALCS_TRY(mean_step(r, part, &first, &of));
+    if (of.slides) {
+        DALCS_TRY(mean_step(r, part, &second, &of));
+    }
+    *slides = of.slides;
+    part->guards.slides = false;
+    return DALCS_OK;
+}

@@ -1,0 +1,32 @@
+/* slide_try.h - a segment of some length along a threshold. Private to slide.c. */
+#ifndef DALCS_SLIDE_TRY_H
+#define DALCS_SLIDE_TRY_H
+
+#include "radau_state.h"
+
+enum { DALCS_SLIDE_ORDER = 5 };
+
+struct dalcs_slide_try {
+    double h;                         /* s */
+    double weight[DALCS_SLIDE_ORDER]; /* of the sequences in the values */
+    double
+        estimate[DALCS_SLIDE_ORDER]; /* and in those of an order less, without the first of them */
+    double taken;                    /* J */
+    bool slides;
+    double noise;         /* of the weights of both sides */
+    double states, pairs; /* errors over what is allowed */
+};
+
+/* One of length h (s), that is still to be tried. */
+struct dalcs_slide_try dalcs_slide_try_of(double h);
+
+/* Tries it: part->segment.out, and what conducts on either side in part->work.mode_first. The observer holds what it knew
+ * before. */
+enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      struct dalcs_slide_try *of) DALCS_MUST_CHECK;
+
+/* Two micro-steps of length h along the threshold, into part->work.y1 and y2. *slides: there are two. */
+enum dalcs_status dalcs_slide_micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                          double h, bool *slides) DALCS_MUST_CHECK;
+
+#endif
