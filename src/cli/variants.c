@@ -46,7 +46,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
     if (*wanted || !is_asked) {
         return DALCS_OK;
     }
-    dalcs_cli_error(cli, "--shard, --resume and --jobs are of many variants: %s",
+    dalcs_cli_error(cli, "--shard, --resume and --jobs need many variants: %s",
                     !is_table ? "write -o none --measures FILE.csv, and no other result"
                     : !can_read
                         ? "each thread reads the netlist, so give the name of a file in place of -"

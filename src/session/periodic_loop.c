@@ -115,7 +115,7 @@ static void tell_load(struct dalcs_periodic_ac *ac) {
     const struct dalcs_device *load = ac->loop.is_loaded ? NULL : find_load(c, ac->loop.device);
     if (load != NULL) {
         dalcs_diag_add(&ac->run->s->diag, DALCS_NOTE, &c->ac.where,
-                       "injection=both, or --injection both, counts what it takes",
+                       "injection=both, or --injection both, accounts for that current",
                        "loop: behind '%s' '%s' may take a current, and the gain is the loop's only "
                        "if that is small",
                        loop->name, load->name);

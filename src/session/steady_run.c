@@ -135,7 +135,7 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     if (c->periodic.oscillates && !is_free) {
         return dalcs_steady_refuse(
             r, "leave osc out: the period follows from the sources",
-            "osc is of circuits that oscillate by themselves, and here a source repeats");
+            "osc is for circuits that oscillate by themselves, and here a source repeats");
     }
     const bool uic = c->transient.use_initial_conditions || c->periodic.use_initial_conditions;
     take_period(r, period, uic);
