@@ -175,7 +175,7 @@ static void tell_rest(const struct variants *v, enum dalcs_status status) {
     tell_failed(v, v->file.partial);
 }
 
-/* A mean over values that somebody has chosen says nothing. */
+/* A mean over chosen values has no meaning. */
 static bool is_random(const struct variants *v) {
     double value;
     return dalcs_session_drawn(v->pool.session, 0, &value) != NULL && v->n_done > 1;

@@ -52,7 +52,7 @@ static int place_in(const struct coil_group *g, int device) {
     return k;
 }
 
-/* A factor of 0 on a K card is no missing one; of the matrix nobody asks any more. */
+/* A factor of 0 on a K card counts as given; nothing reads the matrix after this. */
 static void mark_zeros(const struct dalcs_circuit *c, const struct coil_group *g) {
     for (int k = 0; k < c->n_couplings; k++) {
         const struct dalcs_coupling *m = &c->coupling[k];

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Rows in a period, where nobody asks for another distance. */
+/* Rows in a period, unless the netlist gives their distance. */
 static const double rows_in_a_period = 1000.0;
 
 /* What comes back after one more period may be off by so much, over the scale of a state: no more than what the search
