@@ -172,6 +172,8 @@ class Usage(Case):
         """Without a verb it is a name with a dot or a slash, and no verb."""
         for name in "nowhere.cir", "in/it":
             self.assertIn(f"cannot read '{name}': No such file", self.dalcs(name, expect=INPUT_OUTPUT).stderr)
+        for verb in "run", "steady", "bode", "envelope", "equations", "check", "plot":
+            self.assertTrue(self.dalcs(verb, "no.cir", expect=INPUT_OUTPUT).stderr.startswith("dalcs: error: cannot read 'no.cir'"), verb)
 
     def test_no_ground(self):
         netlist = "A rectifier\nV1 a b SIN(0 10 50)\nD1 a p\nR1 p b 1k\n.tran 10u 20m\n.end\n"
