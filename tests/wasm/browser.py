@@ -280,6 +280,25 @@ class Page(unittest.TestCase):
         self.wait("document.body.dataset.ready === 'yes'")
         self.assertTrue(self.picture() == first)
 
+    def test_implicit_euler_from_the_steady_state(self):
+        """It begins where the run begins, and with short steps stays near to it."""
+        for name in LESSONS:
+            self.open(name)
+            self.script("document.getElementById('steps').value = 2000; const e = document.getElementById('euler');"
+                        "e.checked = true; e.dispatchEvent(new Event('change'));")
+            self.wait("document.body.dataset.ready === 'yes'")
+            self.assertNotIn("implicit Euler", self.script("return document.getElementById('messages').textContent;"), name)
+            states = self.script("return forEuler(document.getElementById('netlist').value).states;")
+            for state in states:
+                start, end, other, scale = self.script(
+                    "const [plus, minus] = arguments, all = (r) => [...r.time].map((t, k) => "
+                    "(r.signals[plus] ? r.signals[plus][k] : 0) - (r.signals[minus] ? r.signals[minus][k] : 0));"
+                    "const run = all(play.result), euler = all(play.euler);"
+                    "return [Math.abs(run[0] - euler[0]), run.at(-1), euler.at(-1), Math.max(...run.map(Math.abs))];",
+                    state["plus"], state["minus"])
+                self.assertLess(start, 0.01 * scale, f"{name}: {state}")
+                self.assertLess(abs(end - other), 0.1 * scale, f"{name}: {state}")
+
     def test_implicit_euler_besides(self):
         if "08-implicit-euler" not in LESSONS:
             self.skipTest("not asked for")

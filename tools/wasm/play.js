@@ -38,6 +38,17 @@ function elementsOf(netlist) {
         .filter((found) => found).map(([, name, anode, cathode]) => ({name, anode, cathode}));
 }
 
+/** The netlist for implicit Euler, whose fixed steps find no steady state: {netlist, states}. Where the run begins in the
+ *  steady state, states are the signals whose values it begins with, each with its name on .ic. */
+function forEuler(netlist) {
+    const text = withAllSignals(netlist.replace(/^\.pss\b.*$/gim, '*'));
+    if (!/\buic=steady\b/i.test(text)) return {netlist: text, states: []};
+    const states = text.toLowerCase().split('\n').slice(1).map((line) => line.match(/^([cl]\w*)\s+(\S+)\s+(\S+)/)).filter((found) => found)
+        .map(([, name, a, b]) => name[0] === 'l' ? {name: `i(${name})`, plus: `i(${name})`, minus: null}
+            : {name: b === '0' ? `v(${a})` : `v(${a},${b})`, plus: `v(${a})`, minus: `v(${b})`});
+    return {netlist: text.replace(/\buic=steady\b/i, 'uic'), states};
+}
+
 // ---- A result ---------------------------------------------------------------------------------------
 
 /** The values of v(a), v(a,b), i(x), or of a sum or difference of such. */
@@ -179,7 +190,7 @@ function askRun() {
     const netlist = byId('netlist').value;
     play.runs++;
     play.engine.ask({kind: 'run', shown: netlist, since: play.since || performance.now(), netlist: withAllSignals(withoutSearch(netlist)),
-        euler: byId('euler').checked ? withAllSignals(netlist.replace(/^\.pss\b.*$/gim, '*')) : null, // fixed steps find no steady state
+        euler: byId('euler').checked ? forEuler(netlist) : null,
         steps: +byId('steps').value});
     play.since = 0;
     play.changed = false;
@@ -187,6 +198,7 @@ function askRun() {
 
 function showRun({result, euler, h}, {shown, since, steps}) {
     play.result = result;
+    play.euler = euler;
     play.shown = shown;
     byId('results').classList.toggle('stale', result.status !== 0);
     if (result.status === 0 && h > 0) {

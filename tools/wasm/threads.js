@@ -23,11 +23,16 @@ function engineThread(startEngine) {
     }
 
     const answers = {
-        /** A run, and one with implicit Euler in so many steps where there is a second netlist. */
+        /** A run, and where `euler` is given one with implicit Euler in so many steps, from the same states. */
         run(call, heap, {netlist, method = '', step = 0, euler, steps}) {
             const result = simulate(call, heap, netlist, method, step), {status, time} = result;
             const h = time.length > 1 ? (time[time.length - 1] - time[0]) / steps : 0;
-            return {result, h, euler: euler && status === 0 && h > 0 ? simulate(call, heap, euler, 'euler', h) : null};
+            if (!euler || status !== 0 || h === 0) return {result, h, euler: null};
+            const first = (signal) => (result.signals[signal] || [0])[0];
+            const start = euler.states.map((state) => `${state.name}=${first(state.plus) - first(state.minus)}`);
+            const card = start.length ? `.ic ${start.join(' ')}\n` : '';
+            const text = euler.netlist.replace(/^\.end\b|$(?![\s\S])/im, (end) => card + end);
+            return {result, h, euler: simulate(call, heap, text, 'euler', h)};
         },
         /** What takes longer: the steady state where there is a second netlist, the equations, what theory says. */
         theory(call, heap, {netlist, search}) {
