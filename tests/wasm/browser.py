@@ -240,7 +240,7 @@ class Page(unittest.TestCase):
         """A run of many seconds ends when the netlist is changed again, and the page moves while it lasts."""
         self.open(LESSONS[0])
         first, good = self.script("return [document.getElementById('waveforms').innerHTML, document.getElementById('netlist').value];")
-        slow = re.sub(r"(?im)^\.tran.*$", ".tran 1u 1000 uic", re.sub(r"(?im)^V1.*$", "V1 in 0 SIN(0 1 1Meg)", good))
+        slow = re.sub(r"(?im)^\.tran.*$", ".tran 1m 1000 uic", re.sub(r"(?im)^V1.*$", "V1 in 0 SIN(0 1 1Meg)", good))
         self.assertNotEqual(slow, good)
         self.script("const n = document.getElementById('netlist'); n.value = arguments[0]; request();", slow)
         self.wait("play.engine.asked !== null && play.engine.asked.shown === arguments[0]", slow)
