@@ -36,7 +36,8 @@ class Part:
         self.value = ""
         if self.letter == "b":
             self.kind = "controlled-voltage" if re.match(r"v *=", rest, re.IGNORECASE) else self.kind
-            self.value = rest.partition("=")[2].strip()[:18]
+            formula = rest.partition("=")[2].strip()
+            self.value = formula if len(formula) <= 18 else formula[:17] + "…"
         elif shape and self.letter == "v":
             self.kind = "sine" if shape[1].lower() == "sin" else "pulse"
         if shape and shape[1].lower() == "sin":

@@ -73,9 +73,9 @@ static const struct dalcs_form *multiply(struct dalcs_compiler *c, const struct 
     }
     return kind == DALCS_PRODUCT_IS
                ? product
-               : refuse(
-                     c, f, "an ideal switch S turns a voltage or a current on and off",
-                     "the height of this jump is not constant: no complementarity pairs make it");
+               : refuse(c, f, "an ideal switch S turns a voltage or a current on and off",
+                        "the height of this jump is not constant: complementarity pairs cannot "
+                        "describe it");
 }
 
 static const struct dalcs_form *divide(struct dalcs_compiler *c, const struct dalcs_formula *f,
@@ -363,11 +363,11 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
         return refuse_name(
             c, f,
             "sums of u(...) make a staircase of so many steps, and PULSE(0 1 0 T 0 0 T) a sawtooth",
-            "%s(...) of a quantity that varies has steps without end");
+            "%s(...) of a quantity that varies has infinitely many steps");
     }
     if (dalcs_builder_is_one_of(f->function, points, sizeof points / sizeof points[0])) {
         return refuse_name(c, f, "gt0, lt0, ge0 and le0 compare",
-                           "%s(...) of a quantity that varies tells single points only");
+                           "%s(...) of a quantity that varies differs at single points only");
     }
     enum dalcs_smooth_kind kind;
     if (dalcs_smooth_find(smooth_name(c, f), f->n, &kind)) {

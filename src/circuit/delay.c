@@ -179,8 +179,8 @@ static bool find_way(struct dalcs_compiler *c, const struct dalcs_formula *f,
     if (!delay->is_source && !has_other &&
         !(s != NULL && find_gate_levels(c->builder->circuit, s, delay)) &&
         (form == NULL || !find_levels(c, x, form, delay))) {
-        (void)refuse(c, f, "a line of coils and capacitors delays what has more values",
-                     "delay() of what is neither a V source to ground nor a signal of two values");
+        (void)refuse(c, f, "write a line of coils and capacitors to delay any other signal",
+                     "delay() takes a V source to ground or a signal of two values");
         return false;
     }
     int source;

@@ -287,7 +287,8 @@ static bool check_berkeley(struct dalcs_builder *builder, struct dalcs_parameter
         return false;
     }
     if (p[BV].value == 0) {
-        dalcs_builder_warn(builder, p[BV].place, NULL, "a breakdown at 0 V is taken for none");
+        dalcs_builder_warn(builder, p[BV].place, NULL,
+                           "a breakdown voltage of 0 V counts as no breakdown");
         p[BV].value = INFINITY;
     }
     return true;
@@ -344,19 +345,20 @@ static void note_mapping(struct dalcs_reader *reader, const struct dalcs_token *
                                                 model->vrev, model->rrev)
                            : "";
     if (!builder->circuit->options.has_diode_current) {
-        dalcs_builder_note(builder, place,
-                           ".options diodecurrent=amperes takes it at that current, "
-                           "D(Ron=ohms Vfwd=volts) is another line",
-                           "the exponential diode is its tangent at the current that it carries; "
-                           "at %g A that is Vfwd = %.4g V and Ron = %.4g ohm%s%s",
-                           at, model->vfwd, model->ron, back != NULL ? back : "", ignored);
+        dalcs_builder_note(
+            builder, place,
+            ".options diodecurrent=amperes chooses the current, D(Ron=ohms Vfwd=volts) gives the "
+            "line itself",
+            "the exponential diode is replaced by its tangent at the current that it carries; "
+            "at %g A that is Vfwd = %.4g V and Ron = %.4g ohm%s%s",
+            at, model->vfwd, model->ron, back != NULL ? back : "", ignored);
         return;
     }
     dalcs_builder_note(
         builder, place,
         ".options diodecurrent=amperes chooses another point, D(Ron=ohms Vfwd=volts) "
         "another line",
-        "the exponential diode is its tangent at %g A here, Vfwd = %.4g V and Ron = "
+        "the exponential diode is replaced by its tangent at %g A here, Vfwd = %.4g V and Ron = "
         "%.4g ohm%s: at %g A its voltage is %.3g mV higher, at %g A %.3g mV%s",
         at, model->vfwd, model->ron, back != NULL ? back : "", 0.1 * at, 1e3 * above[0], 10 * at,
         1e3 * above[2], ignored);

@@ -1,5 +1,5 @@
-/* drivers.c - which devices stand between a node and ground, in their order. Products of formulas ask while they add
- * devices of their own; a look at all devices for each would make a netlist of many products take its square. */
+/* drivers.c - which devices stand between a node and ground, in their order. Products of formulas look this up while they add
+ * devices of their own; a search of all devices for each would take the square of the number of products. */
 #include "drivers.h"
 
 #include "builder.h"

@@ -177,9 +177,10 @@ static bool take_request(struct dalcs_builder *builder) {
         losses->to = request->to;
         if (!(losses->from < fmin(losses->to, stop)) ||
             (isfinite(losses->to) && losses->to > stop)) {
-            dalcs_builder_error_at(builder, &where, NULL,
-                                   "--losses: %g s to %g s is no window of a run from 0 to %g s",
-                                   losses->from, fmin(losses->to, stop), stop);
+            dalcs_builder_error_at(
+                builder, &where, NULL,
+                "--losses: %g s to %g s is not a window of the run from 0 to %g s", losses->from,
+                fmin(losses->to, stop), stop);
         }
     }
     return true;

@@ -98,7 +98,7 @@ const struct dalcs_form *dalcs_memory_form(struct dalcs_compiler *c,
     }
     if (first != NULL && !dalcs_form_is_number(first)) {
         dalcs_builder_error_at(c->builder, &f->argument[1]->where, NULL,
-                               "what '%s' begins at is a number", f->function);
+                               "the initial value of '%s' must be a number", f->function);
         c->failed = true;
         return NULL;
     }

@@ -349,7 +349,7 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
             dalcs_builder_error(
                 builder, name,
                 builder->netlist->missing_library != NULL
-                    ? dalcs_builder_hint(builder, "it may be in '%s', which is not here",
+                    ? dalcs_builder_hint(builder, "it may be in '%s', which was not found",
                                          builder->netlist->missing_library)
                 : builder->n_models > 0
                     ? dalcs_builder_suggest(builder, &builder->models, name->text, "models")

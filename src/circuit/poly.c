@@ -3,7 +3,7 @@
  *     p0 + p1 c1 + ... + pn cn + p11 c1 c1 + p12 c1 c2 + ..., c a voltage (E, G) or the current of a V source (F, H)
  *
  * Each term is a device of its own: the voltages of E and H in series, the currents of F and G side
- * by side behind a short that is no unknown where nobody asks for the sum. Products are in poly_products.c. */
+ * by side behind a short, which is an unknown only if a signal is the sum. Products are in poly_products.c. */
 #include "poly.h"
 
 #include <string.h>

@@ -60,7 +60,7 @@ void dalcs_sensitivity_parse(struct dalcs_builder *builder, const struct dalcs_c
     }
     if (builder->pss == NULL && !builder->netlist->asks_steady) {
         dalcs_builder_error(builder, card->token, "write .pss beside it",
-                            ".sens is of periodic steady states, and there is no .pss");
+                            ".sens differentiates a periodic steady state, and there is no .pss");
         return;
     }
     sens->item = dalcs_arena_alloc(&builder->circuit->arena, (size_t)card->n, sizeof *sens->item);
@@ -104,7 +104,7 @@ void dalcs_sensitivity_check(struct dalcs_builder *builder) {
     if (card->present && builder->circuit->n_steps > 0) {
         dalcs_builder_error_at(builder, &builder->circuit->step[0].where,
                                "leave one of them out; .sens itself varies the values",
-                               "sensitivities are of one circuit, and .step makes several");
+                               "sensitivities belong to one circuit, and .step makes several");
         card->present = false;
     }
     if (card->present && card->n == 0) {

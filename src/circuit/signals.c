@@ -415,10 +415,10 @@ static void add_power_column(struct dalcs_builder *builder, char letter, int dev
 static void note_power(struct dalcs_builder *builder, const struct dalcs_token *token,
                        const char *argument) {
     if (!builder->noted_power) {
-        dalcs_builder_note(builder, token, "{v(a,b)*i(x)} is that of two terminals",
-                           "a power that one voltage and one current do not make is not "
-                           "recorded: %s%s is left out",
-                           token->text, argument);
+        dalcs_builder_note(
+            builder, token, "{v(a,b)*i(x)} is that of two terminals",
+            "a power that is not one voltage times one current is not recorded: %s%s is left out",
+            token->text, argument);
         builder->noted_power = true;
     }
 }
@@ -433,10 +433,9 @@ static bool read_device_current(struct dalcs_reader *reader) {
     const size_t length =
         is_power ? (size_t)(bracket - token->text) - 1 : dalcs_names_current_of(token->text);
     if (length == 0) {
-        dalcs_builder_warn(
-            builder, token,
-            "of an element its current and its power are recorded: @name[i], @name[p]",
-            "'%s' is not a signal: it is left out", token->text);
+        dalcs_builder_warn(builder, token,
+                           "current and power of an element are recorded: @name[i], @name[p]",
+                           "'%s' is not a signal: it is left out", token->text);
         reader->at++;
         return true;
     }

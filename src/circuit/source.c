@@ -347,10 +347,10 @@ static void start_up(struct dalcs_builder *builder) {
                        "LTspice; those with a function start as they are",
                        n_risen, n_risen == 1 ? "" : "s", n_risen == 1 ? "s" : "");
     if (first != NULL) {
-        dalcs_builder_warn(builder, builder->startup, NULL,
-                           "source '%s' has a function that does not start at 0: LTspice would "
-                           "let it rise too",
-                           first);
+        dalcs_builder_warn(
+            builder, builder->startup, NULL,
+            "source '%s' has a function that does not start at 0: LTspice would ramp it up too",
+            first);
     }
 }
 
@@ -369,7 +369,7 @@ void dalcs_source_check(struct dalcs_builder *builder) {
             circuit->transient.present && circuit->ac.n == 0) {
             dalcs_builder_warn(
                 builder, builder->device_token[k], "SIN(0 12 60) is a sine of 12 and 60 Hz",
-                "source '%s' has an AC value alone, which .tran does not see: it is 0",
+                "source '%s' has an AC value alone, which .tran does not use: it is 0",
                 device->name);
         }
     }

@@ -138,9 +138,8 @@ static void refuse_signal(struct copying *c, const struct dalcs_formula *f) {
                                      "voltage",
                                      c->card->token[1].text, c->card->token[2].text);
     dalcs_builder_error_at(c->w->builder, &f->where, hint,
-                           is_coil
-                               ? "an inductance follows no other quantity than its own current"
-                               : "a capacitance follows no other quantity than its own voltage");
+                           is_coil ? "an inductance may depend on its own current only"
+                                   : "a capacitance may depend on its own voltage only");
     c->failed = true;
 }
 

@@ -219,7 +219,8 @@ static bool check_smooth(struct dalcs_builder *builder, const struct dalcs_token
         }
         if (fall != 0) {
             dalcs_builder_warn(
-                builder, place, "limit(x, low, high) in the place of x lets it stay where it is",
+                builder, place,
+                "write limit(x, low, high) for x to keep it constant outside of this range",
                 "the %s falls %s a %s of about %.2g %s: the circuit has no solution there",
                 word->what, fall > 0 ? "above" : "below", word->of, fall, word->unit);
         }

@@ -171,7 +171,7 @@ static enum dalcs_quantity quantity_of(const struct dalcs_builder *builder,
 static bool count(struct dalcs_builder *builder, const struct dalcs_token *const *place,
                   const char *usage, struct dalcs_sweep *sweep) {
     if (sweep->spacing == DALCS_LINEAR && sweep->step == 0.0 && sweep->start != sweep->stop) {
-        dalcs_builder_error(builder, place[2], usage, "a step of 0 never comes to %g", sweep->stop);
+        dalcs_builder_error(builder, place[2], usage, "a step of 0 never reaches %g", sweep->stop);
         return false;
     }
     if (sweep->spacing != DALCS_LINEAR) {

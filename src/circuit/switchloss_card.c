@@ -125,7 +125,7 @@ static void give(struct dalcs_builder *builder, const struct dalcs_token *name, 
     if (n == 0) {
         dalcs_builder_error(builder, name, USAGE,
                             own < 0 ? "'%s' is neither a switch or diode nor a model of one in use"
-                                    : "'%s' is not what has an energy of this kind",
+                                    : "'%s' has no energy of this kind",
                             name->text);
     }
 }

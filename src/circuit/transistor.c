@@ -235,7 +235,7 @@ void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_ca
     struct dalcs_reader reader = dalcs_reader_start(builder, card, usage_of(card->letter));
     if (card->letter == 'q' && !builder->bipolar_is_switch) {
         dalcs_builder_error(builder, card->token,
-                            "where it is one, .options bjt=switch takes it for saturated or off",
+                            ".options bjt=switch treats it as a switch that is saturated or off",
                             "'%s' is a bipolar transistor, which need not be a switch",
                             card->token->text);
         builder->hidden |= DALCS_HIDDEN_ELEMENTS;

@@ -174,8 +174,8 @@ static bool is_switch(struct dalcs_builder *builder, const struct dalcs_transist
     const char *name = use->name->text;
     if (use->gate == use->drain && is_mosfet) {
         dalcs_builder_error(builder, use->name, "write a diode D, or a voltage source",
-                            "the gate of '%s' is its drain: it works in its linear region, as no "
-                            "switch does",
+                            "the gate of '%s' is connected to its drain: it works in its linear "
+                            "region, not as a switch",
                             name);
         return false;
     }
@@ -186,14 +186,14 @@ static bool is_switch(struct dalcs_builder *builder, const struct dalcs_transist
     if (drive->is_decided && gate->low > threshold && gate->high > gate->low) {
         dalcs_builder_error(builder, use->name, hint,
                             "the gate of '%s' moves from %g to %g V and never turns it off, below "
-                            "%g V: it is an amplifier, no switch",
+                            "%g V: it is an amplifier, not a switch",
                             name, gate->low, gate->high, threshold);
         return false;
     }
     if (drive->is_follower && gate->high <= threshold) {
         dalcs_builder_error(
             builder, use->name, "drive the gate against the source, or higher than the supply",
-            "'%s' is a follower, no switch: if it were on, its gate would be at %g V "
+            "'%s' is a follower, not a switch: if it were on, its gate would be at %g V "
             "at most against its source, and it is off below %g V",
             name, gate->high, threshold);
         return false;
@@ -258,7 +258,8 @@ static double high_level(struct dalcs_builder *builder, const struct dalcs_trans
     }
     const double high = fmax(usual_high, threshold + least_overdrive);
     *at = dalcs_builder_hint(
-        builder, " at %g V, as no source says what it is on with (Vgon= of the model does)",
+        builder,
+        " at %g V, since no source gives the voltage that turns it on (Vgon= of the model does)",
         sign * high);
     return high;
 }

@@ -93,7 +93,7 @@ void dalcs_worst_case_check(struct dalcs_builder *builder) {
     }
     if (circuit->n_steps > 0 || circuit->sensitivity.present) {
         dalcs_builder_error_at(builder, &worst->where, "leave one of them out",
-                               "a worst case is of one circuit, and %s",
+                               "a worst case belongs to one circuit, and %s",
                                circuit->n_steps > 0 ? ".step and .mc make several"
                                                     : ".sens varies its values itself");
     } else if (builder->netlist->n_script_lines > 0) {

@@ -233,7 +233,7 @@ enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
     if (arguments->steady && text != NULL) {
         dalcs_cli_error(
             cli,
-            "--losses: those of a steady state are over its whole orbit: leave the window out");
+            "--losses: a steady state has the losses of its whole orbit: leave the window out");
         return DALCS_E_OPTION;
     }
     arguments->losses = true;

@@ -336,7 +336,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
     }
     if (status == DALCS_OK && !arguments->help && arguments->samples > 0 &&
         (arguments->plot || arguments->multipliers_plot)) {
-        dalcs_cli_error(cli, "--bifurcation and --samples are of many orbits, not with --plot or "
+        dalcs_cli_error(cli, "--bifurcation and --samples draw many orbits: leave out --plot and "
                              "--multipliers-plot");
         status = DALCS_E_OPTION;
     }

@@ -1,4 +1,4 @@
-/* audit.c - `dalcs audit`: which laws of a netlist a file of waveforms breaks. */
+/* audit.c - `dalcs audit`: check a file of waveforms against the laws of a netlist. */
 #include "cli.h"
 
 #include "audit_columns.h"

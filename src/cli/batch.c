@@ -194,10 +194,9 @@ static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **ar
     if (status == DALCS_OK && b.help) {
         fputs(help, cli->out);
     } else if (status == DALCS_OK && b.version) {
-        fprintf(
-            cli->out,
-            "******\n** ngspice-39 is what programs may take this for: it is dalcs %s\n******\n",
-            dalcs_version());
+        fprintf(cli->out,
+                "******\n** ngspice-39, for programs that look for it: this is dalcs %s\n******\n",
+                dalcs_version());
     } else if (status == DALCS_OK) {
         b.arguments.log = b.log;
         status = dalcs_paths_check(cli, &b.arguments);

@@ -77,20 +77,6 @@ static enum dalcs_status parse(struct arguments *arguments, const struct dalcs_c
     return dalcs_verb_take_netlist(cli, "check", argc, argv, &arguments->netlist);
 }
 
-/* Notes speak of runs; errors and warnings of the netlist. */
-static size_t write_messages(const struct dalcs_cli *cli, const struct dalcs_session *session) {
-    size_t n_written = 0;
-    for (size_t i = 0; i < dalcs_session_n_messages(session); i++) {
-        enum dalcs_level level = DALCS_LEVEL_NOTE;
-        const char *text = dalcs_session_message(session, i, &level);
-        if (level != DALCS_LEVEL_NOTE) {
-            fprintf(cli->err, "%s\n", text);
-            n_written++;
-        }
-    }
-    return n_written;
-}
-
 static enum dalcs_status check_netlist(const struct dalcs_cli *cli,
                                        const struct arguments *arguments,
                                        struct dalcs_session *session) {
@@ -99,7 +85,8 @@ static enum dalcs_status check_netlist(const struct dalcs_cli *cli,
     if (status == DALCS_OK) {
         status = dalcs_session_check(session, arguments->step, &check);
     }
-    size_t n_messages = write_messages(cli, session);
+    size_t n_messages = 0;
+    dalcs_cli_write_messages(cli, session, &n_messages, true); /* notes are about runs */
     if (status != DALCS_OK) {
         if (n_messages == 0) {
             dalcs_cli_error(cli, "%s: %s", arguments->netlist, dalcs_status_text(status));

@@ -20,11 +20,11 @@ static const struct verb {
      dalcs_cli_run},
     {"equations", "write the complementarity system of a netlist", dalcs_cli_equations},
     {"check", "what theory says of a netlist before it runs", dalcs_cli_check},
-    {"audit", "which laws of a netlist a file of waveforms breaks", dalcs_cli_audit},
+    {"audit", "check a file of waveforms against the laws of a netlist", dalcs_cli_audit},
     {"plot", "draw the waveforms of a file", dalcs_cli_plot},
     {"compare", "run a netlist here and in ngspice: errors, times, waveforms", dalcs_cli_compare},
     {"converge", "errors and orders of fixed steps", dalcs_cli_converge},
-    {"as-ngspice", "run a program for which dalcs is ngspice", dalcs_cli_as_ngspice},
+    {"as-ngspice", "run a program with dalcs in the place of ngspice", dalcs_cli_as_ngspice},
 };
 
 enum { N_VERBS = sizeof verb / sizeof verb[0] };

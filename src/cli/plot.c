@@ -31,7 +31,7 @@ static const char help[] =
     "                      a page with zoom, cursors and a list of the signals\n"
     "  -s, --signals LIST  signals and expressions of them, separated by commas:\n"
     "                      'v(out),v(a,b)' 'v(out)*i(r1)' 'db(v(out))'; may be repeated: each\n"
-    "                      list gets panels of its own (default: all, the most telling first)\n"
+    "                      list gets panels of its own (default: all, outputs first)\n"
     "      --from T, --to T  the range of the time axis, SPICE suffixes allowed: 1m\n"
     "      --spectrum F    amplitudes over frequency up to F Hz, of the range from --from to "
     "--to:\n"
@@ -314,8 +314,7 @@ static enum dalcs_status check_paths(const struct dalcs_cli *cli,
     for (size_t i = 0; i < 2 && arguments->output; i++) {
         if (input[i] && stat(input[i], &a) == 0 && stat(arguments->output, &b) == 0 &&
             a.st_dev == b.st_dev && a.st_ino == b.st_ino) {
-            dalcs_cli_error(cli, "'%s' is what is read: give another name with -o",
-                            arguments->output);
+            dalcs_cli_error(cli, "'%s' is the input: give another name with -o", arguments->output);
             return DALCS_E_OPTION;
         }
     }

@@ -29,7 +29,7 @@ static enum dalcs_status draw_tornado(const struct dalcs_cli *cli,
     char message[DALCS_GNUPLOT_MESSAGE];
     if (arguments->n_groups != 1) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, "choose it with -s",
-                       "a tornado is of one column of the table");
+                       "a tornado chart shows one column of the table");
         return DALCS_E_OPTION;
     }
     DALCS_TRY(dalcs_tornado_make(&tornado, waveforms, arguments->group[0],

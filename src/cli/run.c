@@ -160,7 +160,7 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
         if (is_plot && (arguments->steady || arguments->bode || arguments->envelope)) {
             continue; /* it draws the file that is written */
         } else if (option[i].given && arguments->bode && !is_of_steps) {
-            fprintf(cli->err, "dalcs: warning: %s is of waveforms: it has no effect\n",
+            fprintf(cli->err, "dalcs: warning: %s applies to waveforms: it has no effect\n",
                     option[i].name);
         } else if (option[i].given && !arguments->bode &&
                    (is_plot ? !request->transient

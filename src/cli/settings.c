@@ -55,7 +55,7 @@ enum dalcs_status dalcs_settings_check_script(const struct dalcs_cli *cli,
         const char *line = dalcs_session_script_line(session, k);
         line += strspn(line, " \t");
         if (strncasecmp(line, "tran", 4) == 0 && strchr(" \t", line[4]) != NULL) {
-            dalcs_cli_error(cli, "%s is of the netlist's .tran: the .control block has '%s'",
+            dalcs_cli_error(cli, "%s changes the netlist's .tran, and the .control block has '%s'",
                             arguments->transient != NULL ? "--tran" : "--tstop", line);
             return DALCS_E_OPTION;
         }

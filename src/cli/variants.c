@@ -46,7 +46,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
     if (*wanted || !is_asked) {
         return DALCS_OK;
     }
-    dalcs_cli_error(cli, "--shard, --resume and --jobs are of many variants: %s",
+    dalcs_cli_error(cli, "--shard, --resume and --jobs need many variants: %s",
                     !is_table ? "write -o none --measures FILE.csv, and no other result"
                     : !can_read
                         ? "each thread reads the netlist, so give the name of a file in place of -"
@@ -175,7 +175,7 @@ static void tell_rest(const struct variants *v, enum dalcs_status status) {
     tell_failed(v, v->file.partial);
 }
 
-/* A mean over values that somebody has chosen says nothing. */
+/* A mean over chosen values has no meaning. */
 static bool is_random(const struct variants *v) {
     double value;
     return dalcs_session_drawn(v->pool.session, 0, &value) != NULL && v->n_done > 1;

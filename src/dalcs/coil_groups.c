@@ -52,7 +52,7 @@ static int place_in(const struct coil_group *g, int device) {
     return k;
 }
 
-/* A factor of 0 on a K card is no missing one; of the matrix nobody asks any more. */
+/* A factor of 0 on a K card counts as given; nothing reads the matrix after this. */
 static void mark_zeros(const struct dalcs_circuit *c, const struct coil_group *g) {
     for (int k = 0; k < c->n_couplings; k++) {
         const struct dalcs_coupling *m = &c->coupling[k];
@@ -90,7 +90,7 @@ static const char *name_uncoupled(const struct dalcs_circuit *c, const struct co
     int n_pairs;
     mark_zeros(c, g);
     if (!find_uncoupled(g, &i, &j, &n_pairs)) {
-        return g->n > 2 ? "of three coils, k12 = k13 = 1 leaves only k23 = 1" : NULL;
+        return g->n > 2 ? "with three coils and k12 = k13 = 1, k23 must be 1" : NULL;
     }
     const char *a = c->device[g->device[i]].name;
     const char *b = c->device[g->device[j]].name;
@@ -113,7 +113,7 @@ static const char *name_uncoupled(const struct dalcs_circuit *c, const struct co
     return width < 1e-9
                ? dalcs_arena_printf(arena,
                                     "no K card couples '%s' with '%s': add K9 %s %s %.9g, the only "
-                                    "factor that can be",
+                                    "possible factor",
                                     a, b, a, b, ki * kj)
                : dalcs_arena_printf(arena,
                                     "no K card couples '%s' with '%s': add K9 %s %s k, k from %.4g "

@@ -63,7 +63,7 @@ static bool has_ground(const struct dalcs_circuit *c) {
 static void note_references(const struct dalcs_layout *l, struct dalcs_diag *diag) {
     const struct dalcs_circuit *c = l->circuit;
     const char *hint =
-        has_ground(c) ? NULL : "no element is at ground: call the node that it is 0 or gnd";
+        has_ground(c) ? NULL : "no element is connected to ground: call the ground node 0 or gnd";
     for (int n = 1; n < c->n_nodes; n++) {
         if (l->topology.is_reference[n]) {
             dalcs_diag_add(

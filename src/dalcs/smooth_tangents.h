@@ -1,4 +1,4 @@
-/* smooth_tangents.h - what Newton's method asks of one smooth source. Private to src/dalcs. */
+/* smooth_tangents.h - what Newton's method needs of one smooth source. Private to src/dalcs. */
 #ifndef DALCS_SMOOTH_TANGENTS_H
 #define DALCS_SMOOTH_TANGENTS_H
 
@@ -6,8 +6,8 @@
 
 double dalcs_smooth_line(const struct dalcs_smooth_input *of, int j);
 
-/* A root at 0 is vertical, and where sources alone decide its argument nobody asks for its slope: 0 times the square
- * root of the largest number is 0. */
+/* A root has an infinite slope at 0. Its finite substitute is the square root of the largest number: where sources
+ * alone set the argument, 0 times it is 0. */
 void dalcs_smooth_finite_gradient(const struct dalcs_smooth_input *of, const double *x,
                                   double *gradient);
 

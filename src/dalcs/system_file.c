@@ -1,7 +1,7 @@
 /* system_file.c - reading a DALCS as text: sizes, labels, then the matrices by entries.
  *
  * Numbers have 17 digits, so that what is read is what was written, to the bit, and a point whatever
- * the locale. The reader believes nothing: the engine indexes with what it is given. */
+ * the locale. The reader checks every number: the engine uses them as indices. */
 #include "system_file.h"
 
 #include "system_file_format.h"

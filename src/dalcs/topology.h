@@ -24,7 +24,7 @@ struct dalcs_topology {
     int *forest_root; /* [n_nodes] root of the capacitor tree that a node is in; itself if none */
 };
 
-/* wants_current[n_devices]: a signal asks for i(device). */
+/* wants_current[n_devices]: a signal is i(device). */
 enum dalcs_status dalcs_topology_build(struct dalcs_topology *topology,
                                        const struct dalcs_circuit *circuit,
                                        const bool *wants_current) DALCS_MUST_CHECK;

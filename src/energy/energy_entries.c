@@ -1,4 +1,4 @@
-/* energy_entries.c - what the engine tells of steps, jumps and moves, entered in the ledger. */
+/* energy_entries.c - steps, jumps and moves of the engine, entered in the ledger of energies. */
 #include "energy_entries.h"
 #include "extremes.h"
 

@@ -57,7 +57,7 @@ static bool differ(const struct dalcs_gate_variation *g, const double *a, const 
     return off > alike * size;
 }
 
-/* g->due: how late the instant is. What is of two minds, an event of the circuit and one of gates that meet, has no
+/* g->due: how late the instant is. Where an event of the circuit and one of gates coincide, there is no
  * derivative. */
 static void find_instant(struct dalcs_gate_variation *g, const struct dalcs_logic_instant *instant,
                          double *work) {

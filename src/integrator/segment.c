@@ -23,8 +23,8 @@
 
 #include <math.h>
 
-/* Signals so many times as large as any before. It may be that a coil's current has nowhere to go in this mode, and a step
- * that short makes of it what vouches for any error. */
+/* Signals so many times as large as any before. A coil's current may have no path in this mode. In a step that short it makes signals so
+ * large that any error is small beside them. */
 static const double outsized = 1e6;
 
 enum {
@@ -50,7 +50,7 @@ static bool is_at_command(const struct dalcs_radau_part *part) {
 }
 
 /* A command has moved a switch: what it carried goes elsewhere, through pairs that have not crossed anything. On
- * dense maps to ask the circuit of them costs less than a step in a mode that is wrong. */
+ * dense maps a one-step problem costs less than a step in a wrong mode. */
 static bool is_commutation(const struct dalcs_radau_part *part) {
     return part->guards.flipped && is_at_command(part);
 }
@@ -201,7 +201,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     return DALCS_OK;
 }
 
-/* Nothing conducts any more: what sines have forced upon states through diodes is over, and these go on by themselves.
+/* Nothing conducts any more: sines no longer act on the states through diodes, and the states decay by themselves.
  * Where pulses or commands end steps that says nothing of their length, and fewer stages would use up what is allowed:
  * of a multiplier's voltages 0.4 of the tolerance instead of 0.01. */
 static bool is_let_go(const struct dalcs_radau_part *part) {

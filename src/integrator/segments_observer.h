@@ -1,4 +1,4 @@
-/* segments_observer.h - an observer that is told of segments alone; what else a run tells goes nowhere. */
+/* segments_observer.h - an observer of segments alone; all other calls of a run do nothing. */
 #ifndef DALCS_SEGMENTS_OBSERVER_H
 #define DALCS_SEGMENTS_OBSERVER_H
 

@@ -353,7 +353,7 @@ static void report_unknown(const struct call *call) {
     const char *missing = language->netlist->missing_library;
     const char *hint =
         missing != NULL
-            ? dalcs_language_text(language, "it may be in '%s', which is not here", missing)
+            ? dalcs_language_text(language, "it may be in '%s', which was not found", missing)
             : NULL;
     language->deck->hides_elements = true;
     language->deck->has_errors = true;

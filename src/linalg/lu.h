@@ -61,7 +61,7 @@ enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n
 enum { DALCS_LU_SMALL = 16 };
 
 /* The same of such a matrix, by plain elimination. DALCS_SINGULAR where a pivot is 0 or, over another one, less
- * than `apart`: then it may be singular, or ask for an order that follows its pattern, and dalcs_lu_factor tells. */
+ * than `apart`: then it may be singular, or need an order that follows its pattern; dalcs_lu_factor decides that. */
 enum dalcs_status dalcs_lu_factor_small(struct dalcs_lu *lu, int n, const int *p, const int *i,
                                         const double *x, double apart) DALCS_MUST_CHECK;
 

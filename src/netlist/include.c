@@ -78,7 +78,7 @@ static void leave_out(struct dalcs_lexer *lexer, const struct dalcs_token *token
     const struct dalcs_location where = dalcs_token_location(token);
     dalcs_diag_add(lexer->diag, DALCS_WARNING, &where,
                    "the models and subcircuits of the elements must be in the netlist",
-                   "the library '%s' is not here: it is left out", name);
+                   "the library '%s' was not found: it is left out", name);
     lexer->netlist->missing_library = name;
 }
 

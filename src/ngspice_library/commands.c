@@ -124,7 +124,7 @@ static enum dalcs_status listing(struct ng_library *l, const char *rest) {
 static enum dalcs_status version(struct ng_library *l, const char *rest) {
     (void)rest;
     fprintf(l->talk.out,
-            "** ngspice-39 is what programs may take this for: it is dalcs %s\n"
+            "** ngspice-39, for programs that look for it: this is dalcs %s\n"
             "** with ideal diodes and switches, and without transistor amplifiers\n",
             dalcs_version());
     return DALCS_OK;

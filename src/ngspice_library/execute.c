@@ -125,7 +125,7 @@ static bool execute_lines(struct ng_library *l, size_t first, size_t end, bool i
     fflush(l->talk.out);
     const size_t n_errors = ng_talk_messages(&l->talk, l->circuit->session, &l->circuit->n_told);
     if (status == DALCS_E_CANCELLED) {
-        ng_talk_say(&l->talk, "Note: the run ended before its time, its rows so far are kept");
+        ng_talk_say(&l->talk, "Note: the run ended early; its rows so far are kept");
     } else if (status != DALCS_OK && n_errors == 0 && !l->fails) {
         ng_talk_fail(&l->talk, "%s", dalcs_status_text(status));
     }

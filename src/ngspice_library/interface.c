@@ -42,7 +42,7 @@ int ngSpice_Init(ng_send_char *send_char, ng_send_status *send_status,
     }
     ng_receive_open(&ng_the);
     ng_talk_say(&ng_the.talk, "******");
-    ng_talk_say(&ng_the.talk, "** ngspice-39 is what programs may take this for: it is dalcs %s",
+    ng_talk_say(&ng_the.talk, "** ngspice-39, for programs that look for it: this is dalcs %s",
                 dalcs_version());
     ng_talk_say(&ng_the.talk, "******");
     return 0;

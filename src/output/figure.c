@@ -212,7 +212,7 @@ static void widen_by_levels(const struct dalcs_figure *figure, struct dalcs_figu
     }
 }
 
-/* Impulses last a step whatever its length, so their height says nothing: they do not count for the
+/* Impulses last a step whatever its length, so their height has no meaning: they do not count for the
  * range where they would dwarf all the rest. */
 static void find_ranges(const struct dalcs_figure *figure, struct dalcs_figure_view *view,
                         const struct dalcs_report *report) {

@@ -40,7 +40,7 @@ static size_t choose_column(const struct dalcs_waveforms *w, size_t n_runs, cons
         }
         if (k >= w->n_columns) {
             dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL,
-                           "no column of the file tells its %zu runs apart", n_runs);
+                           "no column of the file differs between its %zu runs", n_runs);
         }
         return k;
     }
@@ -88,7 +88,7 @@ static enum dalcs_status take_selected(struct dalcs_family *family, struct dalcs
                                        struct dalcs_diag *diag) {
     if (selection->n != 1) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, "choose it with -s",
-                       "a family is of one signal, and these are %zu", selection->n);
+                       "a family shows one signal, and these are %zu", selection->n);
         return DALCS_E_OPTION;
     }
     if (family->n == 0) {
@@ -126,7 +126,7 @@ enum dalcs_status dalcs_family_make(struct dalcs_family *family, struct dalcs_wa
     const size_t n_runs = dalcs_waveforms_find_run(waveforms, 1, &first, &end);
     if (n_runs < 2) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, "write .step into the netlist, and run it with -o",
-                       "a family is of several runs, and the file has %zu", n_runs);
+                       "a family needs several runs, and the file has %zu", n_runs);
         return DALCS_E_OPTION;
     }
     const size_t column = choose_column(waveforms, n_runs, by, diag);

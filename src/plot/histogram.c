@@ -89,12 +89,12 @@ enum dalcs_status dalcs_histogram_make(struct dalcs_waveforms *histogram,
     struct values v = {0};
     if (selection->n != 1) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, "choose it with -s",
-                       "a histogram is of one signal, and these are %zu", selection->n);
+                       "a histogram shows one signal, and these are %zu", selection->n);
         return DALCS_E_OPTION;
     }
     if (selection->waveforms->dimension[0].second != 0) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, "--measures of 'dalcs run' writes such a table",
-                       "a histogram is of a table with a row for each run, not of waveforms");
+                       "a histogram shows a table with a row for each run, not waveforms");
         return DALCS_E_OPTION;
     }
     enum dalcs_status status = dalcs_selection_each_row(selection, add_row, &v);

@@ -45,7 +45,7 @@ static enum dalcs_status execute_foreach(struct dalcs_script *script, size_t loo
 
 static enum dalcs_status refuse_endless(struct dalcs_script *script,
                                         const struct dalcs_statement *s) {
-    return dalcs_script_refuse(script, s, NULL, "this loop has gone round %d times",
+    return dalcs_script_refuse(script, s, NULL, "this loop has run %d times",
                                (int)DALCS_MOST_ROUNDS);
 }
 

@@ -318,7 +318,7 @@ static enum dalcs_status take_frequencies(struct spectrum *p, const char **text)
     }
     if (value[1] > highest * DALCS_ROUNDED_UP) {
         return dalcs_script_refuse(p->script, p->statement, "a smaller tstep of tran",
-                                   "rows every %g s tell nothing above %g Hz", p->grid.step,
+                                   "rows every %g s contain nothing above %g Hz", p->grid.step,
                                    highest);
     }
     p->from = value[0];

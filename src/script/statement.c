@@ -254,7 +254,7 @@ static void refuse_word(struct dalcs_session *session, const struct dalcs_statem
 /* What would be simulated is another thing without it. */
 static void refuse_change(struct dalcs_session *session, const struct dalcs_statement *s) {
     char text[120];
-    snprintf(text, sizeof text, "'%.60s' is not done here", s->word);
+    snprintf(text, sizeof text, "'%.60s' is not supported here", s->word);
     say(session, s, DALCS_LEVEL_ERROR, reason_of(s->word), text);
 }
 
@@ -270,8 +270,8 @@ static void warn_of_skipped(struct dalcs_session *session, const struct dalcs_st
     }
     const bool is_card = s->word[0] == '.';
     snprintf(text, sizeof text,
-             is_card ? "'%.60s' is a card, no command: it is skipped, as ngspice does"
-                     : "'%.60s' is not done here and skipped",
+             is_card ? "'%.60s' is a card, not a command: it is skipped, as ngspice does"
+                     : "'%.60s' is not supported here and skipped",
              s->word);
     say(session, s, DALCS_LEVEL_WARNING,
         is_card ? "put it outside of the .control block" : reason_of(s->word), text);

@@ -1,5 +1,5 @@
-/* drawn_values.c - what random functions gave in the session's circuit, also in one that could not be built: which
- * values those were is what a person wants to know first. */
+/* drawn_values.c - the values of random functions in the session's circuit, also in one that could not be built: then
+ * these values explain the failure. */
 #include "expand.h"
 #include "session_internal.h"
 

@@ -103,9 +103,9 @@ static enum dalcs_status check(struct dalcs_run *r) {
         measures = measures || c->measure[k].analysis == DALCS_MEASURED_TRAN;
     }
     if (measures || r->options->n_at > 0) {
-        return refuse(r, "read them from the rows, or run .tran",
-                      "measurements, losses and --at are of all periods, of which .env "
-                      "leaves most out");
+        return refuse(
+            r, "read them from the rows, or run .tran",
+            "measurements, losses and --at need all periods, and .env leaves most of them out");
     }
     return DALCS_OK;
 }

@@ -1,6 +1,6 @@
 /* envelope.h - .env: a run of many periods of the sources, most of which are not run.
  *
- * Where states x change slowly from period to period, x_{n+1} = Phi(x_n), a few periods tell what the others do: with
+ * Where states x change slowly from period to period, x_{n+1} = Phi(x_n), a few periods determine the others: with
  * F = Phi(x) - x and M = dPhi/dx,
  *
  *     F_{j+1} = M F_j + g + j h,    x_{j+1} = x_j + F_j

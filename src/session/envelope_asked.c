@@ -23,7 +23,7 @@ static void leave_out(struct dalcs_run *r) {
     }
     if ((n > 0 || c->n_fouriers > 0 || losses) && (r->step == NULL || r->step->step == 0)) {
         dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL, "'dalcs run' measures a run of all periods",
-                       "%s: left out, for an envelope has few of the periods",
+                       "%s: left out, since an envelope computes few of the periods",
                        n > 0               ? ".meas"
                        : c->n_fouriers > 0 ? ".four"
                                            : ".losses");
@@ -70,7 +70,7 @@ enum dalcs_status dalcs_envelope_ask(struct dalcs_run *r) {
     }
     if (t->starts_steady) {
         return refuse(r, "leave uic=steady out, or run .tran",
-                      "an envelope is of a start, and uic=steady begins on the orbit itself");
+                      "an envelope computes a start, and uic=steady begins on the orbit itself");
     }
     t->start = t->step = t->first_step = 0.0;
     t->use_initial_conditions = t->use_initial_conditions || c->periodic.use_initial_conditions;

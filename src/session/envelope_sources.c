@@ -31,7 +31,7 @@ static const double time_constants = 36.8;
 static enum dalcs_status refuse(struct dalcs_run *r, int stimulus) {
     dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL,
                    "write it as PWL, which may be as long as the run",
-                   "'%s' neither repeats nor comes to an end: .env knows of no other slow sources",
+                   "'%s' neither repeats nor comes to an end: .env accepts no other slow sources",
                    dalcs_steady_source_name(&r->s->circuit, stimulus));
     return DALCS_E_OPTION;
 }

@@ -60,17 +60,15 @@ static enum dalcs_status complete(struct whole *w, struct dalcs_session *s) {
 static enum dalcs_status eliminate(struct whole *w, struct dalcs_session *s) {
     const char *because;
     if (s->circuit.n_smooth > 0) {
-        dalcs_diag_add(&s->diag, DALCS_WARNING, NULL,
-                       "the DALCS is no worse for that: --form dalcs",
+        dalcs_diag_add(&s->diag, DALCS_WARNING, NULL, "the DALCS can be written: --form dalcs",
                        "z cannot be eliminated: products and functions in formulas read it");
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_equations_reduce(&s->network, &w->reduced, &s->arena, &because));
     w->equations.network = &w->reduced;
     if (because != NULL) {
-        dalcs_diag_add(&s->diag, DALCS_WARNING, NULL,
-                       "the DALCS is no worse for that: --form dalcs", "z cannot be eliminated: %s",
-                       because);
+        dalcs_diag_add(&s->diag, DALCS_WARNING, NULL, "the DALCS can be written: --form dalcs",
+                       "z cannot be eliminated: %s", because);
     }
     return DALCS_OK;
 }

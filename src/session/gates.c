@@ -53,8 +53,8 @@ void dalcs_warn_of_restless_gates(struct dalcs_run *r, struct dalcs_logic_run *l
         return;
     }
     const char *names = list_moving(r, logic);
-    dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, "a .tran shows how they go on",
-                   "gates have no rest at the operating point: %s", names == NULL ? "" : names);
+    dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, "a .tran shows how they change",
+                   "gates do not settle at the operating point: %s", names == NULL ? "" : names);
 }
 
 enum dalcs_status dalcs_gate_samples_setup(struct dalcs_gate_samples *s,

@@ -1,7 +1,7 @@
 /* interruption.c - coils whose current an ideal switch cuts off.
  *
  * The current stops at once, and the voltage is an impulse: a jump like any other, but hardly ever what
- * was meant. A real switch would burn. Which switch it was the circuit's graph tells: what conducts
+ * was meant. A real switch would burn. The circuit's graph shows which switch it was: what conducts
  * after the jump makes its two nodes one, and between what is left run coils. One that jumps is cut off
  * by a switch that has just opened and lies with it on a loop of coils and of what has just opened: around any other
  * loop its flux could not go. */

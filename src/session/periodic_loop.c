@@ -114,11 +114,12 @@ static void tell_load(struct dalcs_periodic_ac *ac) {
     const struct dalcs_device *loop = &c->device[ac->loop.device];
     const struct dalcs_device *load = ac->loop.is_loaded ? NULL : find_load(c, ac->loop.device);
     if (load != NULL) {
-        dalcs_diag_add(&ac->run->s->diag, DALCS_NOTE, &c->ac.where,
-                       "injection=both, or --injection both, counts what it takes",
-                       "loop: behind '%s' '%s' may take a current, and the gain is the loop's only "
-                       "if that is small",
-                       loop->name, load->name);
+        dalcs_diag_add(
+            &ac->run->s->diag, DALCS_NOTE, &c->ac.where,
+            "injection=both, or --injection both, accounts for that current",
+            "loop: '%s' may draw a current behind '%s', and the gain is that of the loop "
+            "only if this current is small",
+            load->name, loop->name);
     }
 }
 
@@ -156,7 +157,7 @@ enum dalcs_status dalcs_periodic_loop_find(struct dalcs_periodic_ac *ac) {
     }
     if (ac->run->options->loop_is_loaded || c->orbit_ac.is_loaded) {
         return refuse(ac, "name the voltage source in it: loop=vloop, or --loop vloop",
-                      "%s: injection is of the gain of a loop", "no loop is asked for");
+                      "%s: injection needs the gain of a loop", "no loop is asked for");
     }
     for (int k = 0; k < c->n_stimuli; k++) {
         if (c->stimulus[k].ac_real != 0.0 || c->stimulus[k].ac_imaginary != 0.0) {

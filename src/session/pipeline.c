@@ -318,7 +318,7 @@ static enum dalcs_status run_stroboscope(struct dalcs_session *session,
     if (session->steps.n == 0 || !options->steady) {
         dalcs_diag_add(&session->diag, DALCS_ERROR, NULL,
                        "write a card such as: .step param load 1 10 0.1",
-                       "samples are of one value after the other, and the netlist has no .step");
+                       "samples need one value after the other, and the netlist has no .step");
         return DALCS_E_OPTION;
     }
     session->stroboscope = &stroboscope;

@@ -147,9 +147,9 @@ static bool say_equations(struct dalcs_refusal *r) {
         r->because = explain_modes(r);
         return true;
     }
-    r->because = plain_list(r, n == 1 ? "its equation cannot be met, whatever else happens"
-                                      : "their equations contradict each other, whatever else "
-                                        "happens");
+    r->because = plain_list(
+        r, n == 1 ? "its equation cannot be met, whatever the other unknowns are"
+                  : "their equations contradict each other, whatever the other unknowns are");
     return true;
 }
 

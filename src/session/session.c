@@ -83,7 +83,7 @@ static enum dalcs_status read_system(struct dalcs_session *s, const char *name, 
     struct dalcs_description d;
     if (s->transient != NULL || s->transient_stop != NULL) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "change the .tran in the file",
-                       "--tran and --tstop are of netlists, not of system files");
+                       "--tran and --tstop apply to netlists, not to system files");
         return DALCS_E_OPTION;
     }
     DALCS_TRY(dalcs_description_read_text(&d, name, text, length, &s->diag));

@@ -101,7 +101,7 @@ enum dalcs_status dalcs_steady_find_oscillation(struct dalcs_steady *st, double 
     bool rests;
     DALCS_TRY(dalcs_steady_oscillation(st, guess, &found, &rests));
     if (rests && st->layout.n_x == 0) {
-        return dalcs_steady_refuse(st->run, ".op has what there is",
+        return dalcs_steady_refuse(st->run, ".op computes its operating point",
                                    "no source repeats, and nothing in the circuit has a memory");
     }
     if (rests) {
@@ -110,7 +110,8 @@ enum dalcs_status dalcs_steady_find_oscillation(struct dalcs_steady *st, double 
             st->run->options->bode
                 ? "a run with .ac dec 20 1 1meg has the response around that state; if the circuit "
                   "is to oscillate, start it with IC= and uic"
-                : ".op has that state; if the circuit is to oscillate, start it with IC= and uic",
+                : ".op computes that state; if the circuit is to oscillate, start it with IC= and "
+                  "uic",
             "there is no oscillation: no source repeats, and the circuit comes to rest, "
             "at %s",
             states_text(st));

@@ -1,7 +1,7 @@
 /* steady_gates.c - after how many periods of the sources gates are where they were: a counter that divides by n makes the
  * period n times as long.
  *
- * A run tells: what gates remember, but for numbers, is compared from period to period, over spans each twice as long. */
+ * A run shows it: what gates remember, without numbers, is compared from period to period, over spans each twice as long. */
 #include "steady.h"
 
 #include "quantity.h"

@@ -187,13 +187,11 @@ static enum dalcs_status look_at(struct clocks *c, struct dalcs_stimulus *s, con
         return refuse(c->run, NULL, "make that source repeat", sentence);
     }
     double level = c->at_start ? dalcs_stimulus_value(s, 0.0, DALCS_LEFT) : last_level(s);
-    char text[DALCS_QUANTITY_SIZE];
     if (strchr(name, '(') == NULL) { /* not a part of an element */
         dalcs_diag_add(&c->run->s->diag, DALCS_NOTE, NULL, NULL,
-                       "%s'%s' does not repeat: in the steady state it is what it %s, %s",
+                       "%s'%s' does not repeat: the steady state is that with its value %s, %.9g",
                        is_part ? "a source in the formula of " : "", name,
-                       c->at_start ? "is at t = 0" : "comes to",
-                       dalcs_quantity_write(text, level, "", 9));
+                       c->at_start ? "at t = 0" : "in the end", level);
     }
     *s = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .dc = level, .has_dc = true};
     return DALCS_OK;

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Rows in a period, where nobody asks for another distance. */
+/* Rows in a period, unless the netlist gives their distance. */
 static const double rows_in_a_period = 1000.0;
 
 /* What comes back after one more period may be off by so much, over the scale of a state: no more than what the search
@@ -135,7 +135,7 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     if (c->periodic.oscillates && !is_free) {
         return dalcs_steady_refuse(
             r, "leave osc out: the period follows from the sources",
-            "osc is of circuits that oscillate by themselves, and here a source repeats");
+            "osc is for circuits that oscillate by themselves, and here a source repeats");
     }
     const bool uic = c->transient.use_initial_conditions || c->periodic.use_initial_conditions;
     take_period(r, period, uic);

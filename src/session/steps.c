@@ -1,6 +1,6 @@
 /* steps.c - one netlist, several circuits: .step and what alter changes.
  *
- * A step is the netlist expanded again with other values; nothing else knows of it. */
+ * A step is the netlist expanded again with other values; no other file depends on .step. */
 #include "session_internal.h"
 
 #include "source_conflicts.h"

@@ -1,4 +1,4 @@
-/* transient_report.c - what a transient tells of itself: methods, work, rows that are too few, steps that were cut short,
+/* transient_report.c - what a transient reports: methods, work, rows that are too few, steps that were cut short,
  * the ledger of energies. */
 #include "transient.h"
 
@@ -71,7 +71,7 @@ static void note_held_back(struct dalcs_run *r, const struct dalcs_radau *radau)
     }
 }
 
-/* A wrong sign below this, or so many tolerances, is what a guard may be let be by. */
+/* A wrong sign below this, or below so many tolerances, is accepted without a warning. */
 static const double noted_sign = 1e-4;
 static const double noted_sign_over_tolerance = 100.0;
 

@@ -43,7 +43,7 @@ static void tell_corner(const struct dalcs_worst_case *w, size_t result, bool la
     if (found > dalcs_worst_case_told(w, w->n_results - 1, true)) {
         dalcs_diag_add(&w->session->diag, DALCS_NOTE, NULL, NULL,
                        ".wcase: '%s' is %s, %.6g, in a corner that the single tolerances do not "
-                       "tell; by them it would be %.6g",
+                       "predict; they give %.6g",
                        w->result[result].name, largest ? "largest" : "smallest",
                        w->run[found].value[result], w->run[told].value[result]);
     }

@@ -1,6 +1,6 @@
-/* stage_brief.h - of a step on a dense map, what tells whether it is a segment: no more than the states at
- * its end, their drift, and the guards as polynomials. The whole answer has many times as many rows. Of a step
- * that may be a segment only in part the states at all nodes, too. */
+/* stage_brief.h - the part of a step's answer, on a dense map, that decides whether the step is a segment: the states at
+ * its end, their drift, and the guards as polynomials. The whole answer has many times as many rows. If only a part of
+ * the step may be a segment, the states at all nodes are in it, too. */
 #ifndef DALCS_STAGE_BRIEF_H
 #define DALCS_STAGE_BRIEF_H
 

@@ -1,4 +1,4 @@
-/* stage_change.h - what a factored mode, a base, knows of pairs of its that change. */
+/* stage_change.h - changes of single pairs of a factored mode, the base. */
 #ifndef DALCS_STAGE_CHANGE_H
 #define DALCS_STAGE_CHANGE_H
 
@@ -11,7 +11,7 @@ struct dalcs_stage_response {
     double *value;    /* of all runs, one behind the other */
 };
 
-/* What a base knows of one of its pairs that changes: an open one closes, a closed one opens. */
+/* One pair of the base changes: an open one closes, a closed one opens. */
 struct dalcs_stage_change {
     int pair;
     bool refused;                   /* digits would cancel: nothing else is known */
@@ -26,8 +26,8 @@ struct dalcs_stage_change {
     size_t bytes;
 };
 
-/* What the base, whose factors are its own, knows of a change of pair d. It belongs to the base, and
- * is found out when it is asked for the first time. */
+/* The change of pair d of a base that has factors of its own. It belongs to the base, and is computed at the first
+ * call. */
 enum dalcs_status dalcs_stage_change_get(struct dalcs_stages *stages,
                                          struct dalcs_stage_entry *base, int d,
                                          struct dalcs_stage_change **change) DALCS_MUST_CHECK;

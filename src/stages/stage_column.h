@@ -21,7 +21,7 @@ void dalcs_stage_column_fill(struct dalcs_stage_workshop *b, int column, int rhs
                              const struct dalcs_stage_drive *drive, struct dalcs_map_column *to);
 
 /* How well the rounded answer at the last stage satisfies the equations without derivatives, in
- * balanced units. In a singular mode sources may disagree, which is for the clashes to tell. */
+ * balanced units. In a singular mode sources may disagree; the clashes show that. */
 void dalcs_stage_column_check(struct dalcs_stage_workshop *b, int column, int rhs_column,
                               double share);
 

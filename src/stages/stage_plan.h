@@ -30,7 +30,7 @@ enum {
     DALCS_N_SHARES
 };
 
-/* What KLU knows of a mode. */
+/* KLU's analysis of a mode. */
 struct dalcs_stage_analysis {
     uint64_t *mode;
     bool is_singular; /* with choices in it */

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A pivot smaller than this (balanced) asks whether the mode is singular. */
+/* With a pivot smaller than this (balanced) the mode may be singular. */
 static const double doubtful_pivot = 1e-9;
 
 /* Below this pivot (balanced) an elimination in long double leaves of a solution that is 1 more than 32 roundings of a

@@ -140,7 +140,7 @@ static inline size_t dalcs_stages_room(const struct dalcs_stages *stages) {
 /* How much more of the answer is rounding than in one from a dense map: 1 for those. */
 double dalcs_stage_rounding(const struct dalcs_stage_entry *entry);
 
-/* May every state be what it likes in this mode? false: not, or not known, as on factors. */
+/* Is every state free in this mode? false: no, or not known, as on factors. */
 bool dalcs_stage_frees_states(const struct dalcs_stage_entry *entry);
 
 /* [2 n_equations] units in which the columns are in balance with each other, then their inverses. */

@@ -179,7 +179,7 @@ static void draw_panel(FILE *script, const struct dalcs_comparison *c, size_t s,
         fprintf(script, "set format x '%%g'\nset xlabel 'time (%ss)' textcolor rgb '#3c4043'\n",
                 strcmp(time_prefix, "u") == 0 ? "\302\265" : time_prefix);
     }
-    fprintf(script, "plot $dalcs with lines lw 3.5 lc rgb '%s' title 'dalcs as it comes'",
+    fprintf(script, "plot $dalcs with lines lw 3.5 lc rgb '%s' title 'dalcs by default'",
             dalcs_chart_colour[5]);
     if (c->search.stock >= 0) {
         fprintf(script, ", $stock with lines lw 1.3 lc rgb '%s' title 'ngspice, stock'",
@@ -234,7 +234,7 @@ void dalcs_comparison_draw_errors(FILE *script, const struct dalcs_comparison *c
     snprintf(label, sizeof label, "error of %.90s", c->reference.samples.plot->name[s]);
     dalcs_chart_write_quoted(script, label);
     fputs(" textcolor rgb '#3c4043'\n", script);
-    fprintf(script, "plot $dalcs with lines lw 1.2 lc rgb '%s' title 'dalcs as it comes'",
+    fprintf(script, "plot $dalcs with lines lw 1.2 lc rgb '%s' title 'dalcs by default'",
             dalcs_chart_colour[0]);
     if (c->search.best >= 0) {
         fprintf(script, ", $best with lines lw 1.2 lc rgb '%s' title 'ngspice, most exact'",

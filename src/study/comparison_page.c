@@ -50,7 +50,7 @@ static void write_settings(FILE *page, const struct dalcs_comparison *c) {
         dalcs_page_quantity_cell(page, trial->cpu_s, "s");
         fputs("</tr>\n", page);
     }
-    fputs("</table>\n<p>In bold: dalcs as it comes; ngspice with stock devices at their best, and "
+    fputs("</table>\n<p>In bold: dalcs by default; ngspice with stock devices at their best, and "
           "its "
           "most exact setting.</p>\n",
           page);
@@ -93,7 +93,7 @@ static void write_signals(FILE *page, const struct dalcs_comparison *c) {
         c->search.stock >= 0 ? &c->search.trial[c->search.stock].deviation : NULL};
     fputs(
         "<h2>Error of each signal</h2>\n<table>\n<tr><th class=\"t\" rowspan=\"2\">signal</th>"
-        "<th rowspan=\"2\">scale</th><th colspan=\"2\">dalcs as it comes</th><th colspan=\"2\">"
+        "<th rowspan=\"2\">scale</th><th colspan=\"2\">dalcs by default</th><th colspan=\"2\">"
         "ngspice, most exact</th><th colspan=\"2\">ngspice, stock</th><th rowspan=\"2\">reference "
         "known to</th></tr>\n<tr><th>rms</th><th>largest</th><th>rms</th><th>largest</th>"
         "<th>rms</th><th>largest</th></tr>\n",

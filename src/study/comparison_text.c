@@ -139,9 +139,9 @@ static void write_accuracy(FILE *stream, const struct dalcs_comparison *c, const
     }
     double theirs = c->search.trial[c->search.best].deviation.worst_rms;
     fprintf(stream, "%s%s is more exact: %.1e in the worst signal against %.1e%s%s", before,
-            theirs < ours ? "ngspice's most exact setting" : "dalcs as it comes",
-            fmin(ours, theirs), fmax(ours, theirs),
-            theirs < ours ? " of dalcs as it comes." : " of ngspice's most exact setting.", after);
+            theirs < ours ? "ngspice's most exact setting" : "dalcs by default", fmin(ours, theirs),
+            fmax(ours, theirs),
+            theirs < ours ? " of dalcs by default." : " of ngspice's most exact setting.", after);
     if (c->reference.doubt[c->reference.most_doubt] > 0.1 * fmin(ours, theirs)) {
         fprintf(stream, "%sThe reference itself is not known much better than that.%s", before,
                 after);

@@ -63,7 +63,7 @@ static enum dalcs_status check_still(struct dalcs_findings *f, const struct dalc
         f, "M(s)", HSW99 "theorem 4.9",
         "M(s) + M(s)' >= 0 for every s > 0, its kernel in that of B", dalcs_answer_of(*is_monotone),
         "A = 0; least eigenvalues (scaled) of D and C B: %.3g, %.3g%s", least[0], least[1],
-        rank[0] == rank[1] ? "" : "; B sees the kernel");
+        rank[0] == rank[1] ? "" : "; B is not 0 on the kernel");
 }
 
 static enum dalcs_status check_minors(struct dalcs_findings *f, const struct dalcs_modes *modes) {

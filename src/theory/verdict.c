@@ -18,7 +18,7 @@ static enum dalcs_status not_passive_by_mode(struct dalcs_facts *facts) {
     }
     DALCS_TRY(dalcs_findings_verdict(
         facts->f, "passive", DALCS_NO,
-        "an eigenvalue of a mode, against every P of " BG09 "definition 1",
+        "an eigenvalue of a mode, which refutes every P of " BG09 "definition 1",
         "no: with %s and no source it grows as exp(t * %.4g/s)", text, mode->value[0]));
     return dalcs_motion_witness(facts->f, &facts->blocks, mode->value, mode->is_on, mode->y,
                                 facts->power);
@@ -93,7 +93,7 @@ enum dalcs_status dalcs_verdict_passive(struct dalcs_facts *facts) {
     }
     if (facts->has_lcs && facts->lure.is_refuted) {
         DALCS_TRY(dalcs_findings_verdict(
-            facts->f, "passive", DALCS_NO, "Z >= 0 against every P of " BG09 "definition 1",
+            facts->f, "passive", DALCS_NO, "Z >= 0, which refutes every P of " BG09 "definition 1",
             "no: no quadratic form of the states bounds the energy that it supplies"));
         return dalcs_lure_refutation_witness(facts->f, &facts->lcs, &facts->lure.refutation, true);
     }

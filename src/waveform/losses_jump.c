@@ -21,8 +21,8 @@ static bool holds_current(const struct dalcs_device *d) {
 }
 
 /* impulse[], the charges, so far of switches and diodes: those of capacitors, and by KCL those of what
- * holds a voltage, again and again where one of them alone is left at a node. They are a forest but for
- * wires in loops, of which nobody asks. */
+ * holds a voltage, again and again where one of them alone is left at a node. Their graph is a forest, apart
+ * from wires in loops, whose charges nothing reads. */
 static void solve_charges(const struct dalcs_losses_sum *sum) {
     const struct dalcs_circuit *c = sum->circuit;
     bool moves = true;

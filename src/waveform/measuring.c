@@ -135,7 +135,7 @@ struct climb {
     double *best, *where;
 };
 
-/* Of extremes that only rounding tells apart, as those of periods are, the place is the first one's. */
+/* Extremes that differ by rounding alone, as those of periods do, have the place of the first one. */
 static void consider(const struct climb *c, double value, double time) {
     double higher = c->sign * (value - *c->best);
     if (higher > same * c->scale) {

@@ -244,7 +244,7 @@ double dalcs_recorder_due(const struct dalcs_recorder *r) {
     return due_before_stop(&r->schedule);
 }
 
-/* Those of a grid before both `until` and the stop time. They ascend, so the last one may tell of all. */
+/* Those of a grid before both `until` and the stop time. They ascend, so the last one may stand for all. */
 static int list_grid(const struct dalcs_schedule *s, double until, double near, double *due,
                      int most) {
     const double start = s->start;

@@ -112,8 +112,8 @@ def check_words(checker, program, folder):
             (step, ["--bifurcation", "c.txt"], 2, "name it .svg, .png, .pdf or .html"),
             (step, ["--samples", "0"], 2, "--samples"), (step, ["--samples", "2e9"], 2, "--samples"),
             (step, ["--samples", "9999999"], 2, "--samples: more than 1000000 periods"),
-            (step, ["--samples", "5", "--plot", "c.svg"], 2, "not with --plot"),
-            (step, ["--bifurcation", "d.svg", "--multipliers-plot", "c.svg"], 2, "not with --plot")):
+            (step, ["--samples", "5", "--plot", "c.svg"], 2, "leave out --plot"),
+            (step, ["--bifurcation", "d.svg", "--multipliers-plot", "c.svg"], 2, "leave out --plot")):
         done = run(program, folder, text, "-q", "-o", "c.csv", *options)
         checker.check(done.returncode == code and words in done.stderr, f"{options}: {done.returncode} {done.stderr}")
     done = subprocess.run([program, "run", "c.cir", "--samples", "5"], cwd=folder, capture_output=True, text=True,

@@ -188,7 +188,7 @@ def check_words(checker, program, folder):
     """A load is told of, where a voltage alone is injected; mistakes are."""
     text = SWITCHED.format(load="10", pole="10n")
     for options, code, words in (
-            (["--loop", "vcut2"], 0, "behind 'vcut2' 'rb' may take a current"),
+            (["--loop", "vcut2"], 0, "'rb' may draw a current behind 'vcut2'"),
             (["--loop", "vcut3"], 0, None), (["--loop", "vcut2", "--injection", "both"], 0, None),
             (["--loop", "vcut2", "--injection", "twice"], 2, "--injection: 'twice' is neither voltage nor both"),
             (["--injection", "both"], 2, "no loop is asked for"),

@@ -86,7 +86,7 @@ class Compare(unittest.TestCase):
         self.assertRegex(out, r"it differs by at most \d\.\de-(09|1\d) \(")
         self.assertRegex(out, r"ngspice +1\.\de-01 .* D stock; ")  # 0.8 V of 10 V
         self.assertRegex(out, r"v\(out\) +(?:9\.\d+|10) V +\d\.\de-(0[7-9]|1\d) +\d\.\de-0[4-9] +\d\.\de-0[12]\n")
-        self.assertIn("dalcs as it comes is more exact", out)
+        self.assertIn("dalcs by default is more exact", out)
 
     def test_without_a_first_time(self):
         """ngspice has no .tran of one time, and 0 is no step for it."""
@@ -121,7 +121,7 @@ class Compare(unittest.TestCase):
         out = self.compare(netlist, "--methods", "euler").stdout
         self.assertIn("nearer to the reference than dalcs's default in i(l1).", out)
         self.assertRegex(out, r"ngspice's most exact setting is more exact: \S+ in the worst signal "
-                              r"against \S+ of dalcs as it comes\.")
+                              r"against \S+ of dalcs by default\.")
 
     def test_what_is_not_determined(self):
         netlist = self.write("a.cir", HALF_WAVE.replace("D1 in out", "D1 in out\nD2 in out"))

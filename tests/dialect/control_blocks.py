@@ -428,7 +428,7 @@ def messages(checker, program):
             ("op\nsetplot tran1", "there is no plot 'tran1'"), ("op\nlinearize", "takes the rows of a transient"),
             ("ac lin 2 1 2\nfft v(out)", "takes the rows of a transient"),
             ("tran 1m 10m\nset specwindow=hanniing\nfft v(out)", "there is no window 'hanniing'"),
-            ("tran 1m 10m\nspec 0 1k 100 v(out)", "tell nothing above 500 Hz"),
+            ("tran 1m 10m\nspec 0 1k 100 v(out)", "contain nothing above 500 Hz"),
             ("tran 1m 100m\nspec 0 100 10 v(out)\nspec 0 100 10 v(out)", "takes the rows of a transient"),
             ("tran 1m 10m\nspec 0 100 1 v(out)", "shorter than a period of 1 Hz"),
             ("tran 1m 10m\nlet lin-tstep = 1\nlinearize", "no rows lie every 1 s"),

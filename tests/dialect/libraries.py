@@ -52,7 +52,7 @@ REFUSED = [
     (".include parts.inc", HERE, "cannot read"),
     (".include parts.cir", HERE, "cannot read"),
     (".lib parts.lib typical", HERE, "cannot read"),
-    (".lib parts.lib", BODY, "it may be in 'parts.lib', which is not here"),
+    (".lib parts.lib", BODY, "it may be in 'parts.lib', which was not found"),
     (".include C:\\a b\\parts.lib", BODY, "it may be in 'C:\\a b\\parts.lib'"),
     (".lib parts.lib", "V1 a 0 1\nD1 a b special\nR1 b 0 1\n.op\n.end\n", "it may be in 'parts.lib'"),
     (".lib parts.lib", "V1 a 0 1\nS1 a b a 0 special\nR1 b 0 1\n.op\n.end\n",
@@ -92,7 +92,7 @@ def main():
         checker.check(not elsewhere or "is read in its place" in said, f"{card}: without a note\n{said}")
     for card in LEFT_OUT:
         status, value, said = attempt(program, card, HERE)
-        checker.check(status == 0 and value == 5 and "is not here: it is left out" in said,
+        checker.check(status == 0 and value == 5 and "was not found: it is left out" in said,
                       f"{card}: {status}, {value}\n{said}")
     for card, body, words in REFUSED:
         status, value, said = attempt(program, card, body)

@@ -101,7 +101,7 @@ def loops(c):
         c.prints("foreach", DIVIDER + f".control\nop\n{line}\n.endc\n", wanted)
     err = c.prints("a card in a script", DIVIDER + ".control\nop\n.print op v(a)\n.print op v(b)\n"
                    "print v(b)\n.endc\n", [0.5])
-    c.check(err.count("is a card, no command") == 1, err)
+    c.check(err.count("is a card, not a command") == 1, err)
     for line in (".op", ".tran 1u 1m", ".save v(a)", ".ic v(a)=1", ".foo"):
         c.prints("a card in a script", DIVIDER + f".control\nop\n{line}\nprint v(b)\n.endc\n", [0.5])
     for line in ("set", "set\nset x=1\nset", "set \nset y", "set filetype=ascii\nset"):

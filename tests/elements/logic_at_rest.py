@@ -105,7 +105,7 @@ def words(checker, program):
     cards = ["v1 a 0 1", "a1 a 0 0 0 0 0 o 0 BUF", "r1 o x 1k", "c1 x 0 1u"]
     loop = ["a1 a 0 0 0 0 o 0 0 BUF", "r1 o a 1k", "c1 a 0 1u"]
     done = run(program, "\n".join(["x", *loop, ".op", ".end", ""]), method=None, quiet=False)
-    checker.check("gates have no rest at the operating point: a1" in done.stderr, done.stderr)
+    checker.check("gates do not settle at the operating point: a1" in done.stderr, done.stderr)
     done = run(program, "\n".join(["x", *cards, ".op", ".end", ""]), method=None, quiet=False)
     checker.check("no rest" not in done.stderr, done.stderr)
 

@@ -235,11 +235,11 @@ REFUSED = (
     ("m1 d g nx", "has 3 or 4 nodes"),
     ("m1 d g 0 x y nx", "has 3 or 4 nodes"),
     ("m1 d g 0 in nx", "bulk of 'm1' is not on its source"),
-    ("m1 d d 0 0 nx", "gate of 'm1' is its drain"),
-    ("m1 d g 0 0 nx\nvs g 0 sin(5 0.1 1k)", "it is an amplifier, no switch"),
-    ("m1 d g 0 0 nx\nvs g 0 pulse(5 8 0 1u 1u 5u 10u)", "it is an amplifier, no switch"),
-    ("m1 in g d nx\nvs g 0 pulse(0 10 0 0 0 5u 10u)", "is a follower, no switch"),
-    ("m1 d g 0 0 px\nvs g 0 sin(-5 0.1 1k)", "it is an amplifier, no switch"),
+    ("m1 d d 0 0 nx", "gate of 'm1' is connected to its drain"),
+    ("m1 d g 0 0 nx\nvs g 0 sin(5 0.1 1k)", "it is an amplifier, not a switch"),
+    ("m1 d g 0 0 nx\nvs g 0 pulse(5 8 0 1u 1u 5u 10u)", "it is an amplifier, not a switch"),
+    ("m1 in g d nx\nvs g 0 pulse(0 10 0 0 0 5u 10u)", "is a follower, not a switch"),
+    ("m1 d g 0 0 px\nvs g 0 sin(-5 0.1 1k)", "it is an amplifier, not a switch"),
     ("m1 d g 0 0 nx foo=1\nvs g 0 1", "has no parameter 'foo'"),
     ("m1 d g 0 0 nx m=0\nvs g 0 1", "must be positive"),
     ("m1 d g 0 0 bs\n.model bs NMOS(level=14)", "is of integrated circuits"),
@@ -260,7 +260,7 @@ def refusals(checker, program):
         checker.check(done.status == 3 and words in done.stderr, f"{lines}: {done.status} {done.stderr}")
     drive = "b1 g 0 V=u(sin(2*pi*1e5*time))*12"
     done = run_at(program, f"unknown\nv1 in 0 12\nr1 in d 10\n{drive}\nm1 d g 0 nx\n.model nx NMOS(Vto=2 Kp=1)\n.tran 1u 20u\n.end\n", quiet=False)
-    checker.check(done.status == 0 and "at 10 V, as no source says" in done.stderr, done.stderr)
+    checker.check(done.status == 0 and "at 10 V, since no source gives" in done.stderr, done.stderr)
 
 
 def main():

@@ -38,7 +38,7 @@ CASES = {
                        ("to ground: its voltage is 0 by convention", 3, 6)),
     "capacitors alone": ([V, *many(30, "caK n mK 1u\ncbK mK 0 1u"), OP], ("only capacitors connect", 3, 27)),
     "two values of one kind": ([V, *many(5, "daK n mK dK\nrK mK 0 1\n.model dK d(is=1e-1K)"), OP],
-                               ("the exponential diode is its tangent", 5, 0)),
+                               ("the exponential diode is replaced by its tangent", 5, 0)),
     "in two files of messages": ([V, *many(5, "rK n mK 1k"), *many(6, "caK n qK 1u\ncbK qK 0 1u"), OP],
                                  ("has one connection only", 3, 2), ("only capacitors connect", 3, 3)),
 }
@@ -52,7 +52,7 @@ def judge(checker, name, cards, kinds):
         counted = {sentence: int(n) for _, n, sentence in REST.findall(outcome.stderr)}
         plain = REST.sub("", outcome.stderr)
         for part, printed, left in kinds:
-            is_note = f"note: {part}" in plain or part in ("the exponential diode is its tangent", "only capacitors connect",
+            is_note = f"note: {part}" in plain or part in ("the exponential diode is replaced by its tangent", "only capacitors connect",
                                                            "to ground: its voltage is 0 by convention")
             expected = (0, 0) if quiet and is_note else (printed, left)
             found = (plain.count(part), sum(n for sentence, n in counted.items() if part in sentence))

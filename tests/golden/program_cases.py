@@ -172,13 +172,15 @@ class Usage(Case):
         """Without a verb it is a name with a dot or a slash, and no verb."""
         for name in "nowhere.cir", "in/it":
             self.assertIn(f"cannot read '{name}': No such file", self.dalcs(name, expect=INPUT_OUTPUT).stderr)
+        for verb in "run", "steady", "bode", "envelope", "equations", "check", "plot":
+            self.assertTrue(self.dalcs(verb, "no.cir", expect=INPUT_OUTPUT).stderr.startswith("dalcs: error: cannot read 'no.cir'"), verb)
 
     def test_no_ground(self):
         netlist = "A rectifier\nV1 a b SIN(0 10 50)\nD1 a p\nR1 p b 1k\n.tran 10u 20m\n.end\n"
         self.write(netlist)
-        self.assertIn("no element is at ground: call the node that it is 0 or gnd", self.dalcs("run", "a.cir").stderr)
+        self.assertIn("no element is connected to ground: call the ground node 0 or gnd", self.dalcs("run", "a.cir").stderr)
         self.write(netlist.replace(".tran", "R2 c 0 1k\n.tran"))
-        self.assertNotIn("no element is at ground", self.dalcs("run", "a.cir").stderr)
+        self.assertNotIn("no element is connected to ground", self.dalcs("run", "a.cir").stderr)
 
     def test_slips_of_system_files(self):
         self.write("x1' = -x1 + lambda\n0 <= lambda _|_ x1 >= 0\n", "mine.dalcs")

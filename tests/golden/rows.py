@@ -131,7 +131,7 @@ class Transient(Case):
         self.assertIn("'dalcs envelope' has --stop", self.run_it("--tstop", "1", status=2, verb="envelope").stderr)
         self.assertIn("--tran is an option of 'dalcs run'", self.run_it("--tran", "1", status=2, verb="bode").stderr)
         self.write(CIRCUIT.replace(".end", ".control\n tran 1u 2m\n.endc"))
-        self.assertIn("--tstop is of the netlist's .tran: the .control block has 'tran 1u 2m'",
+        self.assertIn("--tstop changes the netlist's .tran, and the .control block has 'tran 1u 2m'",
                       self.run_it("--tstop", "1m", status=2).stderr)
         self.write(CIRCUIT.replace(".tran 100u 2m uic", ".op").replace(".meas", "*"))
         said = self.run_it("--tstop", "1m", status=3).stderr

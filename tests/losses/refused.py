@@ -57,7 +57,7 @@ def main():
         checker.check(run.status == 2 and "--losses" in run.stderr, f"{option}: {run.stderr}")
     for option in ("--losses=0:200u", "--losses=100u:"):
         run = dalcs_program.run(sys.argv[1], plain, options=(option,))
-        checker.check(run.status == 3 and "no window of a run" in run.stderr, f"{option}: {run.stderr}")
+        checker.check(run.status == 3 and "not a window of the run" in run.stderr, f"{option}: {run.stderr}")
     return checker.finish()
 
 

@@ -66,7 +66,7 @@ class AsNgspice(unittest.TestCase):
 
     def test_program(self):
         for program in self.programs:
-            self.assertIn("it is dalcs", self.as_ngspice(program, "ngspice", "-v"))
+            self.assertIn("this is dalcs", self.as_ngspice(program, "ngspice", "-v"))
             self.assertEqual(self.as_ngspice(program, "ngspice", "-n", "-a", "-q", "-D", "ngbehavior=ltpsa", "-D",
                                              "filetype=ascii", "-r", "half.raw", "-o", "half.log", "half.cir"), "")
             raw = (self.root / "half.raw").read_text(encoding="utf-8")

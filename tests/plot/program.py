@@ -206,7 +206,7 @@ class Plot(unittest.TestCase):
         texts = self.texts("histogram.svg")
         self.assertIn("number of runs", texts)
         self.assertTrue(any(text.startswith("ripple") for text in texts), texts)
-        self.assertIn("not of waveforms", self.refused("buck.raw", "-s", "v(out)", "--histogram", "-o", "x.svg"))
+        self.assertIn("not waveforms", self.refused("buck.raw", "-s", "v(out)", "--histogram", "-o", "x.svg"))
         self.assertIn("not both", self.refused("runs.csv", "--histogram", "--spectrum", "1k"))
 
     def test_width(self):
@@ -267,7 +267,7 @@ class Plot(unittest.TestCase):
                 (["plane.csv", "-s", "y", "--tornado=a,bb"], "the table has no column 'bb'"),
                 (["plane.csv", "-s", "y", "--tornado=a,b,a"], "'a' is constant in the table, or follows from"),
                 (["worst.csv", "-s", "y", "--tornado=z"], "'z' is constant in the table"),
-                (["plane.csv", "--tornado=a"], "a tornado is of one column"),
+                (["plane.csv", "--tornado=a"], "a tornado chart shows one column"),
                 (["plane.csv", "-s", "y", "--tornado=a", "--family"], "--tornado or --family, not both"),
                 (["plane.csv", "-s", "y", "--tornado=a", "--events"], "leave out --report and --events")]:
             self.assertIn(message, self.refused(*arguments), arguments)
@@ -295,11 +295,11 @@ class Plot(unittest.TestCase):
             for arguments, message in [
                     (["--family=in", "-s", "v(out)", "-o", "x.svg"], "the file has no column 'in'"),
                     (["--family=v(in)", "-s", "v(out)", "-o", "x.svg"], "'v(in)' does not have one value in each run"),
-                    (["--family", "-o", "x.svg"], "a family is of one signal"),
+                    (["--family", "-o", "x.svg"], "a family shows one signal"),
                     (["--family", "-s", "v(out)"], "a family of curves is not drawn as text"),
                     (["--family", "-s", "v(no)", "-o", "x.svg"], "no signal 'v(no)'")]:
                 self.assertIn(message, self.refused(name, *arguments), arguments)
-        self.assertIn("a family is of several runs, and the file has 1",
+        self.assertIn("a family needs several runs, and the file has 1",
                       self.refused("buck.raw", "-s", "v(out)", "--family", "-o", "x.svg"))
         self.assertIn("the first of 4 runs", self.plot("step.csv", "-s", "v(out)").stderr)
 
@@ -351,7 +351,7 @@ class Plot(unittest.TestCase):
 
     def test_input_is_not_overwritten(self):
         shutil.copy(self.folder / "buck.csv", self.folder / "in.svg")
-        self.assertIn("'./in.svg' is what is read", self.refused("in.svg", "-o", "./in.svg"))
+        self.assertIn("'./in.svg' is the input", self.refused("in.svg", "-o", "./in.svg"))
 
     def test_help(self):
         text = self.plot("--help").stdout

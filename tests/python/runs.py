@@ -246,6 +246,10 @@ class Errors(unittest.TestCase):
             dalcs.run(NETLIST, rload="2kk2")
 
     def test_an_option_by_another_name(self):
+        for name, choices in dalcs._session.CHOICES.items():  # pylint: disable=protected-access
+            self.assertIn(f"its values are {', '.join(choices)}", str(self.failure(dalcs.OptionError, NETLIST, **{name: "zz"})))
+            for choice in choices:
+                dalcs._session.Options({name: choice})  # pylint: disable=protected-access
         self.assertIn("did you mean the option 'tol'?", str(self.failure(dalcs.OptionError, NETLIST, tolerance=1e-9)))
         self.assertNotIn("option", str(self.failure(dalcs.OptionError, NETLIST, zz9=1e-9)))
 

@@ -7,6 +7,7 @@ usage: sweeps.py SOURCE_FOLDER, with PYTHONPATH=build/src/python
 import os
 import pathlib
 import pickle
+import re
 import signal
 import sys
 import threading
@@ -26,6 +27,13 @@ def bytes_of(sweep):
 
 
 class Sweeps(unittest.TestCase):
+    def test_a_table_of_nothing_says_so(self):
+        bare = re.sub(r"(?im)^\.meas.*\n", "", NETLIST)
+        self.assertIn("nothing was kept: write .meas", repr(dalcs.sweep(bare, {"rload": LOADS[:2]})))
+        for sweep in (dalcs.sweep(bare, {"rload": LOADS[:2]}, each=len), dalcs.sweep(bare, {"rload": [0.0]}),
+                      dalcs.sweep(NETLIST, {"rload": LOADS[:2]})):
+            self.assertNotIn("nothing", repr(sweep))
+
     def test_closed_form(self):
         sweep = dalcs.sweep(NETLIST, {"rload": LOADS}, workers=2)
         self.assertEqual(sweep["rload"].tobytes(), LOADS.tobytes())

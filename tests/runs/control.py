@@ -245,7 +245,7 @@ listing
         checker.check(dict(printed(ours.stdout)) == {"v(out)-v(x)": 0.25, "v(out,x)": 0.25},
                       f"altermod: {ours.stdout}")
         checker.check("x is 4, twice 8" in ours.stdout, ours.stdout)
-        checker.check(ours.stderr.count("'listing' is not done here") == 1, ours.stderr)
+        checker.check(ours.stderr.count("'listing' is not supported here") == 1, ours.stderr)
     with tempfile.TemporaryDirectory() as folder:
         ours, _ = both.run(folder, "no analysis", CIRCUIT.format(title="late") + """.op
 .control

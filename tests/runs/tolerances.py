@@ -221,7 +221,7 @@ class Tolerances(unittest.TestCase):
         off = json.loads((self.folder / "r.json").read_text())["worst_case"]["results"][0]
         self.assertAlmostEqual(off["smallest"], -10 * abs(1 / 1.9 - 1 / 2.1), delta=1e-9)
         self.assertEqual(off["at_smallest"]["r1"], -off["at_smallest"]["r3"])
-        self.assertIn("'off' is smallest, -0.501253, in a corner that the single tolerances do not tell", done.stderr)
+        self.assertIn("'off' is smallest, -0.501253, in a corner that the single tolerances do not predict", done.stderr)
         self.assertNotIn("largest", done.stderr)
         done = self.run_it(text + ".wcase corners=no\n", "--report", "r.json")
         off = json.loads((self.folder / "r.json").read_text())["worst_case"]["results"][0]
@@ -359,7 +359,7 @@ class Tolerances(unittest.TestCase):
             ".wcase\n.wcase": "a second .wcase",
             ".wcase vary all": "expected 'dev', 'lot' or 'both'",
             ".wcase corners=some": "expected 'yes' or 'no'",
-            ".wcase\n.mc 10": "a worst case is of one circuit, and .step and .mc make several",
+            ".wcase\n.mc 10": "a worst case belongs to one circuit, and .step and .mc make several",
             ".distribution d (-1,1) (1,1)": "distributions by tables are not supported",
         }
         for card, wanted in cards.items():

@@ -108,7 +108,7 @@ def figures(case):
     stepped = case.losses("steady", buck + ".step r1 list 2 3\n.losses\n")["losses"]
     case.checker.check([one.get("step") for one in stepped] == ["r1 = 2", "r1 = 3"], f"steps: {stepped}")
     case.refuses("steady", buck + ".losses from=1u\n", "of its whole orbit", 3)
-    case.refuses("steady", buck, "over its whole orbit", 2, "--losses=1u:2u")
+    case.refuses("steady", buck, "of its whole orbit", 2, "--losses=1u:2u")
     case.refuses("run", buck, "of its whole orbit", 3, "--losses=1u:2u")
     case.refuses("bode", buck, "--losses is an option of 'dalcs run' and 'dalcs steady'", 2, "--losses")
 

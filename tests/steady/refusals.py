@@ -123,7 +123,7 @@ def periods(case):
     case.finds("* of two\nVp p q PULSE(0 1 7u 0 0 4u 10u)\nVq q 0 SIN(0 0.1 50k 8u)\n" + formula, 20e-6, mean=MEAN)
     case.finds("* and of one that comes to something\n" + CLOCK + BUCK + "Vl l 0 PWL(0 0 100u 0 100u 1)\n"
                "Bl out 0 I=v(l) > 0.5 ? 0.1 : 0\n.pss uic\n", 10e-6, "formula of 'bl' does not repeat",
-               "it is what it comes to, 1", mean=MEAN)
+               "with its value in the end, 1", mean=MEAN)
     done, report = case.run("* quiet\nV1 a 0 PULSE(0 1 0 0 0 4u 10u)\nR1 a 0 1k\n.pss\n")
     case.checker.check(done.returncode == 0 and report["steady"]["multipliers"] == [],
                        f"without states: {done.stderr}")

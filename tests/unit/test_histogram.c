@@ -69,10 +69,10 @@ START_TEST(test_refusals) {
     static const struct {
         const char *text, *signal, *why;
     } known[] = {
-        {"run,a,b\n1,2,3\n2,3,4\n", "a,b", "of one signal, and these are 2"},
+        {"run,a,b\n1,2,3\n2,3,4\n", "a,b", "shows one signal, and these are 2"},
         {"run,a\n1,2\n2,2\n", "a", "all values of 'a' are the same"},
         {"run,a\n1,nan\n2,nan\n", "a", "'a' has no values"},
-        {"time,v(a)\n1,2\n2,3\n", "v(a)", "not of waveforms"},
+        {"time,v(a)\n1,2\n2,3\n", "v(a)", "not waveforms"},
     };
 
     for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {

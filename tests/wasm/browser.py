@@ -41,6 +41,7 @@ except ImportError:
 import age  # noqa: E402  pylint: disable=wrong-import-position,import-error
 import dalcs_program  # noqa: E402  pylint: disable=wrong-import-position,import-error
 import marionette  # noqa: E402  pylint: disable=wrong-import-position,import-error
+import play  # noqa: E402  pylint: disable=wrong-import-position,import-error
 
 LESSONS = os.environ.get("DALCS_LESSONS", "").split() or sorted(
     path.stem for path in (TOP / "doc/lessons/src").glob("[0-9]*.txt"))
@@ -74,9 +75,9 @@ class Page(unittest.TestCase):
     def script(self, text, *arguments):
         return self.driver.execute_script(text, *arguments)
 
-    def wait(self, condition):
+    def wait(self, condition, *arguments):
         for _ in range(1200):
-            if self.script("return " + condition):
+            if self.script("return " + condition, *arguments):
                 return
             time.sleep(0.05)
         self.fail(f"did not come true: {condition}")
@@ -89,7 +90,7 @@ class Page(unittest.TestCase):
         """Moves a slider to a place from 0 to 1000, and gives the picture."""
         self.script("const r = document.querySelectorAll('#sliders input')[arguments[0]]; r.value = arguments[1];"
                     "r.dispatchEvent(new Event('input'));", slider, place)
-        self.wait("play.frame === 0")
+        self.wait("document.body.dataset.ready === 'yes'")
         self.millis.append(self.script("return play.millis;"))
         return self.picture()
 
@@ -97,25 +98,33 @@ class Page(unittest.TestCase):
         return self.script("return document.getElementById('waveforms').innerHTML;")
 
     def type(self, netlist):
-        self.script("document.body.dataset.ready = 'no'; const n = document.getElementById('netlist');"
+        self.script("const n = document.getElementById('netlist');"
                     "n.value = arguments[0]; n.dispatchEvent(new Event('input'));", netlist)
         self.wait("document.body.dataset.ready === 'yes'")
+
+    def simulate(self, netlist, method="", step=0.0):
+        """A run beside those of the page; its result is `found`."""
+        self.script("window.found = null;"
+                    "window.other = window.other || new Engine(({result}) => { window.found = result; }, alert);"
+                    "other.ask({kind: 'run', netlist: arguments[0], method: arguments[1], step: arguments[2]});",
+                    netlist, method, step)
+        self.wait("found !== null")
 
     def compare(self, name):
         """The engine's result against the program's, of the netlist that the page has.
 
         Without rows that are added where curves bend: rounding decides whether there is one more."""
         netlist, status, shown = self.script(
-            "window.plain = withCard(document.getElementById('netlist').value, '.options fill=none');"
-            "window.result = simulate(plain);"
-            "return [withAllSignals(plain), play.result.status, document.getElementById('messages').textContent];")
+            "return [withAllSignals(withCard(document.getElementById('netlist').value, '.options fill=none')),"
+            "play.result.status, document.getElementById('messages').textContent];")
+        self.simulate(netlist)
         run = dalcs_program.run(DALCS, netlist, method=None)
         self.assertEqual(status != 0, run.status != 0, f"{name}: {shown}{run.stderr}\n{netlist}")
         if status != 0:
             return
         at, signals, events = self.script(
-            "return [[...result.time], Object.entries(result.signals).map(([n, v]) => [n, [...v]]),"
-            "result.report.events];")
+            "return [[...found.time], Object.entries(found.signals).map(([n, v]) => [n, [...v]]),"
+            "found.report.events];")
         self.assertEqual(sorted(signal for signal, _ in signals), sorted(run.names[1:]), name)
         stop = run.time[-1]
         here, there = numpy.array(at), numpy.array(run.time)
@@ -171,7 +180,7 @@ class Page(unittest.TestCase):
 
     @unittest.skipUnless(BROWSER == "chromium", "its log names what a page loads")
     def test_pages_are_small_and_load_nothing_else(self):
-        files = sum((self.site / "lessons" / name).stat().st_size for name in ("dalcs-engine.js", "draw.js", "play.js"))
+        files = sum((self.site / "lessons" / name).stat().st_size for name in ("dalcs-engine.js", *play.SCRIPTS))
         for name in LESSONS:
             pictures = sum(path.stat().st_size for path in (self.site / "lessons/pictures").glob(f"{name}*"))
             size = files + pictures + (self.site / "lessons" / f"{name}.html").stat().st_size
@@ -220,12 +229,28 @@ class Page(unittest.TestCase):
             "for (const place of [100, 300, 500, 700]) { r.value = place; r.dispatchEvent(new Event('input')); }"
             "return [play.runs, document.getElementById('netlist').value];")
         self.assertEqual(runs, before)
-        self.wait("play.frame === 0")
+        self.wait("document.body.dataset.ready === 'yes'")
         self.assertEqual(self.script("return play.runs;"), before + 1)
         self.assertFalse(self.script("return !!play.result.report.steady;"))
         self.wait("document.body.dataset.theory === 'yes'")
-        self.assertEqual(self.script("return play.runs;"), before + (2 if ".pss" in card else 1))
+        self.assertEqual(self.script("return play.runs;"), before + 1)
         self.assertEqual(self.script("return document.getElementById('netlist').value;"), card)
+
+    def test_the_newest_question_wins(self):
+        """A run of many seconds ends when the netlist is changed again, and the page moves while it lasts."""
+        self.open(LESSONS[0])
+        first, good = self.script("return [document.getElementById('waveforms').innerHTML, document.getElementById('netlist').value];")
+        slow = re.sub(r"(?im)^\.tran.*$", ".tran 1m 1000 uic", re.sub(r"(?im)^V1.*$", "V1 in 0 SIN(0 1 1Meg)", good))
+        self.assertNotEqual(slow, good)
+        self.script("const n = document.getElementById('netlist'); n.value = arguments[0]; request();", slow)
+        self.wait("play.engine.asked !== null && play.engine.asked.shown === arguments[0]", slow)
+        for _ in range(3):
+            self.script("request();")
+            self.wait("play.frame === 0")
+        self.assertEqual(self.script("return document.body.dataset.ready;"), "no")
+        self.type(good)
+        self.assertTrue(self.picture() == first)
+        self.assertGreater(self.script("return play.engine.threads;"), 1)
 
     def test_pictures_are_small_whatever_the_rows(self):
         """Four points for each column of pixels: a hundred times the rows are no more to draw."""
@@ -252,18 +277,38 @@ class Page(unittest.TestCase):
         self.assertNotIn("stale", self.script("return document.getElementById('results').className;"))
         self.move(0, 100)
         self.script("document.getElementById('again').click();")
+        self.wait("document.body.dataset.ready === 'yes'")
         self.assertTrue(self.picture() == first)
+
+    def test_implicit_euler_from_the_steady_state(self):
+        """It begins where the run begins, and with short steps stays near to it."""
+        for name in LESSONS:
+            self.open(name)
+            self.script("document.getElementById('steps').value = 2000; const e = document.getElementById('euler');"
+                        "e.checked = true; e.dispatchEvent(new Event('change'));")
+            self.wait("document.body.dataset.ready === 'yes'")
+            self.assertNotIn("implicit Euler", self.script("return document.getElementById('messages').textContent;"), name)
+            states = self.script("return forEuler(document.getElementById('netlist').value).states;")
+            for state in states:
+                start, end, other, scale = self.script(
+                    "const [plus, minus] = arguments, all = (r) => [...r.time].map((t, k) => "
+                    "(r.signals[plus] ? r.signals[plus][k] : 0) - (r.signals[minus] ? r.signals[minus][k] : 0));"
+                    "const run = all(play.result), euler = all(play.euler);"
+                    "return [Math.abs(run[0] - euler[0]), run.at(-1), euler.at(-1), Math.max(...run.map(Math.abs))];",
+                    state["plus"], state["minus"])
+                self.assertLess(start, 0.01 * scale, f"{name}: {state}")
+                self.assertLess(abs(end - other), 0.1 * scale, f"{name}: {state}")
 
     def test_implicit_euler_besides(self):
         if "08-implicit-euler" not in LESSONS:
             self.skipTest("not asked for")
         self.open("08-implicit-euler")
         self.script("const s = document.getElementById('steps'); s.value = 1000; s.dispatchEvent(new Event('input'));")
-        self.wait("play.frame === 0")
+        self.wait("document.body.dataset.ready === 'yes'")
         dashed = self.script("return document.querySelectorAll('.curve[stroke-dasharray]').length;")
         self.assertEqual(dashed, 3)
-        last = self.script("const r = simulate(document.getElementById('netlist').value, 'euler', 5e-6);"
-                           "const v = r.signals['v(1)']; return v[v.length - 1];")
+        self.simulate(self.script("return document.getElementById('netlist').value;"), "euler", 5e-6)
+        last = self.script("return found.signals['v(1)'].at(-1);")
         run = dalcs_program.run(DALCS, TOP / "netlists/tanks/lc_bridge.cir", method="euler", options=["--step", "5u"])
         self.assertAlmostEqual(last, run.column("v(1)")[-1], delta=1e-9)
 

@@ -1,10 +1,10 @@
-// play.js - the panel of a lesson: its netlist, sliders, and what a run of it shows. Needs dalcs-engine.js and draw.js.
+// play.js - the panel of a lesson: its netlist, sliders, and what a run of it shows. Needs threads.js and draw.js.
 'use strict';
 
 const SUFFIXES = [[1e6, 'Meg'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'u'], [1e-9, 'n'], [1e-12, 'p']];
 const byId = (id) => document.getElementById(id);
 const lesson = JSON.parse(byId('lesson').textContent);
-const play = {engine: null, result: null, runs: 0, frame: 0, later: 0};
+const play = {result: null, runs: 0, frame: 0, later: 0, since: 0, changed: false, first: true};
 
 // ---- The netlist -------------------------------------------------------------------------------
 
@@ -38,28 +38,18 @@ function elementsOf(netlist) {
         .filter((found) => found).map(([, name, anode, cathode]) => ({name, anode, cathode}));
 }
 
-// ---- A run ---------------------------------------------------------------------------------------
-
-const call = (name, kind, ...values) =>
-    play.engine.ccall(name, kind, values.map((value) => typeof value === 'string' ? 'string' : 'number'), values);
-
-/** {status, messages, time, signals, report} of a netlist. */
-function simulate(netlist, method = '', step = 0) {
-    let status = call('engine_read', 'number', withAllSignals(netlist));
-    play.runs++;
-    if (status === 0) status = call('engine_run', 'number', method, step);
-    const nRows = status === 0 ? call('engine_n_rows', 'number') : 0;
-    const nSignals = nRows ? call('engine_n_signals', 'number') : 0;
-    const heap = play.engine.HEAPF64;
-    const time = nRows ? heap.slice(call('engine_scale', 'number') / 8, call('engine_scale', 'number') / 8 + nRows) : new Float64Array();
-    const values = nRows ? call('engine_values', 'number') / 8 : 0, signals = {};
-    for (let j = 0; j < nSignals; j++) {
-        const column = signals[call('engine_signal', 'string', j)] = new Float64Array(nRows);
-        for (let k = 0; k < nRows; k++) column[k] = heap[values + k * nSignals + j];
-    }
-    return {status, messages: call('engine_messages', 'string'), time, signals,
-        report: status === 0 ? JSON.parse(call('engine_report', 'string')) : {events: []}};
+/** The netlist for implicit Euler, whose fixed steps find no steady state: {netlist, states}. Where the run begins in the
+ *  steady state, states are the signals whose values it begins with, each with its name on .ic. */
+function forEuler(netlist) {
+    const text = withAllSignals(netlist.replace(/^\.pss\b.*$/gim, '*'));
+    if (!/\buic=steady\b/i.test(text)) return {netlist: text, states: []};
+    const states = text.toLowerCase().split('\n').slice(1).map((line) => line.match(/^([cl]\w*)\s+(\S+)\s+(\S+)/)).filter((found) => found)
+        .map(([, name, a, b]) => name[0] === 'l' ? {name: `i(${name})`, plus: `i(${name})`, minus: null}
+            : {name: b === '0' ? `v(${a})` : `v(${a},${b})`, plus: `v(${a})`, minus: `v(${b})`});
+    return {netlist: text.replace(/\buic=steady\b/i, 'uic'), states};
 }
+
+// ---- A result ---------------------------------------------------------------------------------------
 
 /** The values of v(a), v(a,b), i(x), or of a sum or difference of such. */
 function column(result, expression) {
@@ -176,16 +166,19 @@ function showWaveforms(result, euler) {
             `<tr><td>${escapeText(mode)}</td><td>${visits}</td><td>${(100 * share).toFixed(1)} %</td></tr>`).join('');
 }
 
+// ---- What is asked -------------------------------------------------------------------------------
+
 /** The steady state, and what theory says, are slower than a run: they wait until the sliders rest. */
-function showRest(netlist) {
-    if (withoutSearch(netlist) !== netlist) {
-        const whole = simulate(netlist);
-        showMessages(whole.messages);
-        if (whole.status === 0) showHappenings(whole.report);
-    }
-    call('engine_read', 'number', netlist); // without the signals that the picture needs
-    byId('equations').textContent = call('engine_equations', 'string');
-    const check = JSON.parse(call('engine_check', 'string'));
+function askTheory(netlist) {
+    play.theory = play.theory || new Engine(showTheory, showMessages);
+    play.theory.ask({kind: 'theory', netlist, search: withoutSearch(netlist) !== netlist ? withAllSignals(netlist) : null});
+}
+
+function showTheory({steady, equations, check}, {netlist}) {
+    if (netlist !== play.shown || play.engine.busy || play.changed) return; // it is of an older netlist
+    if (steady) showMessages(steady.messages);
+    if (steady && steady.status === 0) showHappenings(steady.report);
+    byId('equations').textContent = equations;
     byId('check').innerHTML = (check.parts || []).map((part) => `<p>${escapeText(part.summary)}</p><table>` +
         Object.entries(part.verdicts).map(([question, {answer, sentence}]) =>
             `<tr><th>${escapeText(question)}</th><td class="${escapeText(answer)}">${escapeText(sentence)}</td></tr>`).join('') +
@@ -193,35 +186,47 @@ function showRest(netlist) {
     document.body.dataset.theory = 'yes';
 }
 
-function update() {
-    const start = performance.now(), netlist = byId('netlist').value, steps = +byId('steps').value;
-    const result = play.result = simulate(withoutSearch(netlist));
-    let messages = result.messages;
-    byId('results').classList.toggle('stale', result.status !== 0);
-    document.body.dataset.theory = 'no';
-    clearTimeout(play.later);
-    if (result.status === 0 && result.time.length > 1) {
-        const step = (result.time[result.time.length - 1] - result.time[0]) / steps;
-        let euler = null;
-        if (byId('euler').checked) {
-            euler = simulate(netlist.replace(/^\.pss\b.*$/gim, '*'), 'euler', step); // fixed steps find no steady state
-            messages += euler.status ? `\nimplicit Euler: ${euler.messages}` : '';
-        }
-        byId('stepsize').textContent = `${steps} steps, h = ${quantity(step, 's', 3)}`;
-        showWaveforms(result, euler && euler.status === 0 ? euler : null);
-        play.later = setTimeout(showRest, 200, netlist);
-    }
-    showMessages(messages);
-    play.millis = performance.now() - start;
-    byId('millis').textContent = `answered in ${play.millis.toFixed(0)} ms`;
-    document.body.dataset.ready = 'yes';
+function askRun() {
+    const netlist = byId('netlist').value;
+    play.runs++;
+    play.engine.ask({kind: 'run', shown: netlist, since: play.since || performance.now(), netlist: withAllSignals(withoutSearch(netlist)),
+        euler: byId('euler').checked ? forEuler(netlist) : null,
+        steps: +byId('steps').value});
+    play.since = 0;
+    play.changed = false;
 }
 
-/** One answer for all that was moved since the last picture: a slider may send more than the screen shows. */
+function showRun({result, euler, h}, {shown, since, steps}) {
+    play.result = result;
+    play.euler = euler;
+    play.shown = shown;
+    byId('results').classList.toggle('stale', result.status !== 0);
+    if (result.status === 0 && h > 0) {
+        byId('stepsize').textContent = `${steps} steps, h = ${quantity(h, 's', 3)}`;
+        showWaveforms(result, euler && euler.status === 0 ? euler : null);
+        if (!play.engine.busy && !play.changed) play.later = setTimeout(askTheory, 200, shown);
+    }
+    showMessages(result.messages + (euler && euler.status ? `\nimplicit Euler: ${euler.messages}` : ''));
+    play.millis = performance.now() - since;
+    byId('millis').textContent = `${play.first ? 'started' : 'answered'} in ${play.millis.toFixed(0)} ms`;
+    play.first = false;
+    if (!play.engine.busy && !play.changed) document.body.dataset.ready = 'yes';
+}
+
+/** What is shown is no longer that of the netlist. */
+function change() {
+    clearTimeout(play.later);
+    play.changed = true;
+    document.body.dataset.ready = document.body.dataset.theory = 'no';
+}
+
+/** One run for all that was moved since the last picture: a slider may send more than the screen shows. */
 function request() {
+    change();
+    play.since = play.since || performance.now();
     play.frame = play.frame || requestAnimationFrame(() => {
         play.frame = 0;
-        update();
+        askRun();
     });
 }
 
@@ -245,25 +250,26 @@ function addSlider({label, unit, card, from, to, log, value}) {
     byId('sliders').append(row);
 }
 
-function begin(engine) {
-    play.engine = engine;
+function begin() {
     byId('netlist').value = lesson.netlist;
     byId('netlist').rows = Math.min(24, lesson.netlist.split('\n').length);
     lesson.sliders.forEach(addSlider);
     byId('netlist').addEventListener('input', () => {
+        change();
         clearTimeout(play.typing);
-        play.typing = setTimeout(update, 250);
+        play.typing = setTimeout(request, 250);
     });
-    byId('euler').addEventListener('change', update);
+    byId('euler').addEventListener('change', request);
     byId('steps').addEventListener('input', () => { byId('euler').checked = true; request(); });
     byId('again').addEventListener('click', () => {
         byId('sliders').innerHTML = '';
         lesson.sliders.forEach(addSlider);
         byId('euler').checked = false;
         byId('netlist').value = lesson.netlist;
-        update();
+        request();
     });
-    update();
+    play.engine = new Engine(showRun, showMessages);
+    request();
 }
 
-dalcsEngine().then(begin, (error) => { byId('messages').textContent = `The simulator did not start: ${error}`; });
+begin();

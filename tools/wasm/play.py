@@ -14,11 +14,12 @@ HERE = pathlib.Path(__file__).resolve().parent
 SUFFIXES = {"meg": 1e6, "k": 1e3, "": 1.0, "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12}
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 STYLE = """
-body.playing{flex-wrap:nowrap}.playing main{max-width:44em;padding:1em 1.5em 4em}
-#play{flex:1 1 40em;max-width:56em;height:100vh;overflow:auto;position:sticky;top:0;box-sizing:border-box;padding:1em;
+body.playing{flex-wrap:nowrap}.playing main{flex:1 1 36em;max-width:44em;padding:1em 1.5em 4em}
+#play{flex:1 1 46em;max-width:56em;height:100vh;overflow:auto;position:sticky;top:0;box-sizing:border-box;padding:1em;
   border-left:1px solid #ddd;background:#fcfcfa;font-size:14px}
 #play h2{margin:.9em 0 .3em;font-size:1em}#play svg{display:block;width:100%;height:auto;font:12px sans-serif}
-#planes{display:flex;flex-wrap:wrap}#play svg.plane{width:190px}#results.stale{opacity:.35}
+#planes{display:flex;flex-wrap:wrap}#play svg.plane{width:190px}#results.stale,body[data-theory=no] :is(#equations,#check){opacity:.35}
+body[data-ready=no] #results{opacity:.35;transition:opacity 0s .4s}
 #sliders label{display:grid;grid-template-columns:11em 1fr 6em;gap:.8em;align-items:center}
 #netlist{width:100%;box-sizing:border-box;font:13px/1.35 monospace}
 #messages{white-space:pre-wrap;background:none;color:#a33;max-height:11em;padding:0}#messages.notes{color:#555}#messages:empty{display:none}
@@ -29,13 +30,15 @@ body.playing{flex-wrap:nowrap}.playing main{max-width:44em;padding:1em 1.5em 4em
 @media(max-width:60em){#play{position:static;height:auto;max-width:none;border:0}}
 """
 FORM = """<aside id="play"><h2>Play</h2><div id="sliders"></div>
-<p><label><input type="checkbox" id="euler"> implicit Euler besides, dashed</label>
+<p><label><input type="checkbox" id="euler"> implicit Euler too, dashed</label>
 <input type="range" id="steps" min="10" max="2000" value="100"> <span id="stepsize"></span></p>
 <textarea id="netlist" rows="10" spellcheck="false" aria-label="netlist"></textarea>
 <p><button id="again">as it was</button> <span id="millis"></span></p><pre id="messages"></pre><div id="results">
 <div id="waveforms"></div><div id="happenings"></div><section><h2>Each diode in the plane of its rule: reverse voltage w,
 current λ</h2><div id="planes"></div></section><h2>Modes</h2><table id="modes"></table><h2>Equations</h2><pre id="equations"></pre>
 <h2>What <code>dalcs check</code> says</h2><div id="check"></div></div></aside>"""
+
+SCRIPTS = ("threads.js", "draw.js", "play.js")  # beside the engine, in this order
 
 
 class Wrong(Exception):
@@ -97,7 +100,7 @@ def describe(source, changed):
 def panel(description):
     """The panel as HTML, with what it is told and the scripts, which lie beside the page."""
     told = json.dumps(description).replace("<", "\\u003c")
-    scripts = "".join(f'<script src="{name}"></script>' for name in ("dalcs-engine.js", "draw.js", "play.js"))
+    scripts = "".join(f'<script src="{name}"></script>' for name in ("dalcs-engine.js", *SCRIPTS))
     return f'{FORM}<script type="application/json" id="lesson">{told}</script>{scripts}'
 
 

@@ -222,6 +222,10 @@ def _interruptibly(session: Session, call: Callable[[], int]) -> int:
     return status
 
 
+CHOICES = {"method": ("auto", "radau", "lobatto", "euler"), "stages": ("1", "3", "5", "7", "9"),
+           "curve": ("cubics", "lines"), "audit": ("sample", "full", "off")}
+
+
 class Options:
     """Options of a run by their names; `at` are times in s, `frequencies` those of bode, both ascending."""
 
@@ -237,7 +241,8 @@ class Options:
                 text = repr(float(value))
             self._texts.append(text.encode())
             if c.lib.dalcs_run_options_set(self.handle, name.encode(), self._texts[-1]) != c.OK:
-                raise OptionError(c.E_OPTION, [f"error: {text!r} is no value of the option {name}"])
+                hint = f"\n  hint: its values are {', '.join(CHOICES[name])}" if name in CHOICES else ""
+                raise OptionError(c.E_OPTION, [f"error: {text!r} is no value of the option {name}{hint}"])
         if at is not None:
             self.times = np.ascontiguousarray(at, dtype=float)
             address = self.times.ctypes.data if self.times.size else None

@@ -59,6 +59,7 @@ class Sweep:
         for rows in (self.points, given):
             for name in dict.fromkeys(name for row in rows for name in row):
                 self.columns[name] = _column_of([row.get(name, np.nan) for row in rows])
+        self._keeps_nothing = len(self.errors) < len(self.points) and not any(given)
         self.columns["error"] = np.array([_message_of(self.errors.get(k))
                                           for k in range(len(self.points))], dtype=object)
 
@@ -132,7 +133,8 @@ class Sweep:
         return xarray.Dataset.from_dataframe(frame)
 
     def __repr__(self) -> str:
-        return f"<sweep of {len(self)} runs, {len(self.errors)} failed: {', '.join(self.columns)}>"
+        nothing = "; nothing was kept: write .meas into the netlist, or give each=" if self._keeps_nothing else ""
+        return f"<sweep of {len(self)} runs, {len(self.errors)} failed: {', '.join(self.columns)}{nothing}>"
 
 
 def _message_of(error: Optional[Exception]) -> str:
