@@ -139,6 +139,15 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
                       struct audit_screen *screen, const struct audit_question *q,
                       struct audit_answer *answer);
 
+/* quick.c: the stretch has been passed over; so may be those that repeat it. */
+void audit_repeat_from(struct dalcs_audit *audit, struct audit_part *part,
+                       const struct dalcs_audit_stretch *stretch);
+
+/* A node beside each of the times, as they are drawn at the same chance. */
+static inline int audit_node_of(const struct dalcs_audit_polynomials *p, int m) {
+    return 1 + m * (p->n_nodes - 1) / AUDIT_SCREEN_TIMES;
+}
+
 /* What the rows make of n_nodes values of each column, without constants and stimuli, at the m-th time. */
 void audit_screen_place(const struct audit_watch *watch, const struct audit_screen *screen,
                         const struct dalcs_audit_polynomials *p, int m, const double *value,
