@@ -25,7 +25,13 @@ void audit_repeat_from(struct dalcs_audit *audit, struct audit_part *part,
     }
     const double near =
         part->tolerance * (stretch->to - stretch->from) + 4.0 * audit->options.resolution;
+    const struct audit_window *window = &screen->window[screen->window_at];
     const bool has_guards = screen->n_guards > 0;
+    const double past =
+        has_guards ? audit_window_past(window, stretch->from + near, stretch->to - near) : 0.0;
+    if (isnan(past)) {
+        return;
+    }
     watch->repeat =
         (struct audit_repeat){.screen = screen,
                               .at = image->at,
@@ -33,8 +39,8 @@ void audit_repeat_from(struct dalcs_audit *audit, struct audit_part *part,
                               .n_columns = dalcs_quads_of(p->n_columns),
                               .length = p->end * p->step,
                               .near = near,
-                              .from = has_guards ? screen->guarded_from - near : -INFINITY,
-                              .to = has_guards ? screen->guarded_to + near : INFINITY,
+                              .from = has_guards ? window->from + past - near : -INFINITY,
+                              .to = has_guards ? window->to + past + near : INFINITY,
                               .work = repeat_work + input_work * p->n_inputs};
     for (int m = 0; m < AUDIT_SCREEN_TIMES; m++) {
         watch->repeat.node[m] = audit_node_of(p, m) * p->stride;
