@@ -9,9 +9,6 @@
  * (doc/testing.md). */
 static const double device_work = 300.0, node_work = 120.0;
 
-/* Of the work of the run, the part that closer looks may cost in any case, however much screens take. */
-static const double least_share = 0.005;
-
 /* Of switches, whose controls are read, and sources, whose edges are looked for. */
 static const double moving_work = 1800.0;
 
@@ -115,9 +112,7 @@ void dalcs_audit_add_position(struct dalcs_audit *audit, int device, double defe
 }
 
 void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
-    const double left = audit->options.share * work - audit->budget.spent;
-    const double least = least_share * work;
-    audit->budget.credit += left > least ? left : least;
+    audit->budget.credit += audit_earned(audit, work, audit->budget.spent);
     audit->budget.spent = 0.0;
 }
 
@@ -127,13 +122,11 @@ enum { FULL_INSTANTS = 3, FULL_PIECES = 2, INTERVAL_INSTANTS = 7 };
 /* Of the looks of a sample, those with an interval, which costs more than twice as much as all else. */
 static const double with_interval = 0.25;
 
-/* Times in a stretch are known to a rounding of t, over its length that is what a value in it may be off by where it
- * changes by its whole scale: it has to be less than the tolerance. */
 static bool can_look_inside(const struct dalcs_audit *audit,
                             const struct dalcs_audit_stretch *stretch) {
-    const double tolerance = audit->part[stretch->part].tolerance;
     return stretch->rule == DALCS_AUDIT_SMOOTH &&
-           (stretch->to - stretch->from) * tolerance > 4.0 * 0x1p-52 * stretch->to;
+           audit_can_tell_times(&audit->part[stretch->part], stretch->to - stretch->from,
+                                stretch->to);
 }
 
 /* Where a screen asks for a look, at that time. */
@@ -199,6 +192,7 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->count.stretches++;
+    part->watch->repeat.screen = NULL;
     part->at.past = part->at.length;
     part->at.length = stretch->to - stretch->from;
     part->at.past_coarse = part->at.was_coarse;
@@ -209,7 +203,8 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     if (part->at.is_drawn) {
         return false;
     }
-    const bool asks = audit_watch_asks(audit, stretch, can_look_inside(audit, stretch));
+    const bool can_look = can_look_inside(audit, stretch);
+    const bool asks = audit_watch_asks(audit, stretch, can_look);
     const uint64_t key = stretch->stored != NULL ? stretch->stored->key : 0;
     part->watch->has_turned =
         part->n_latches > 0 && audit_latches_turn(audit, part, key) && !part->watch->saw_beginning;
@@ -218,6 +213,7 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     const bool passes = !asks && !part->at.is_drawn && !part->watch->has_turned;
     if (passes) {
         leave_behind(part);
+        audit_repeat_from(audit, part, stretch);
     }
     return passes;
 }
@@ -229,6 +225,7 @@ bool dalcs_audit_begins(struct dalcs_audit *audit, int index) {
 
 void dalcs_audit_put_off(struct dalcs_audit *audit, int index) {
     audit->part[index].watch->is_put_off = true;
+    audit->part[index].watch->repeat.screen = NULL;
 }
 
 /* past: s, the length of the stretch before. */

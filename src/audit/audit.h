@@ -77,7 +77,7 @@ struct dalcs_audit_reader {
 
     /* Sees to the values of the present stretch, where nobody has asked for them yet. NULL: nothing is stored. */
     void (*complete)(void *user, int part);
-    /* [n_nodes stride] what input j is multiplied by. */
+    /* [n_nodes stride] what input j is multiplied by; NULL: by 0. */
     const double *(*column)(void *user, int part, int j);
     /* Adds so many times the voltage of a node, the current of a device and a formula's lambda, as read() has them. */
     void (*add_voltage)(void *user, int part, int node, double factor, struct dalcs_audit_row *row);
@@ -169,6 +169,12 @@ void dalcs_audit_destroy(struct dalcs_audit *audit);
 
 /* Of a part that oscillates for ever, a switch that opens what closes it, there is no operating point: it begins somewhere. */
 void dalcs_audit_has_no_rest(struct dalcs_audit *audit, int part);
+
+/* A stretch has the mode, the step, the end and the map of the one before of that part: then, of what it is stored as, only
+ * input and value are read. Is there nothing to look at? Then it has been passed over; else dalcs_audit_passes_over() is
+ * asked. */
+bool dalcs_audit_repeats(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
+                         double work);
 
 /* A stretch is complete, which took so much work, in instructions, about: need nobody look at it more closely? Where
  * somebody must, and at the last one in any case, dalcs_audit_leave() follows. */

@@ -57,6 +57,19 @@ struct audit_watch {
         [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
     bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there */
     double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
+
+    struct audit_repeat {
+        struct audit_screen
+            *screen; /* that passed the stretch before over, by an image; NULL: none */
+        struct audit_image_at *at;    /* [AUDIT_SCREEN_TIMES] */
+        int n_times;                  /* of the watch's, before its end */
+        int n_columns;                /* in whole quads */
+        int node[AUDIT_SCREEN_TIMES]; /* where the values at a node are */
+        double length, near;          /* s */
+        double from, to;              /* s: no guard is below 0 in between */
+        double work;                  /* instructions, about */
+    } repeat;
+
     double *column; /* [2][n_columns in whole quads] work */
     double *place;  /* work */
     size_t place_room;
@@ -216,6 +229,16 @@ static inline double audit_draw(struct dalcs_audit *audit) {
     return (double)(audit->seed >> 11) * 0x1p-53;
 }
 
+/* Of the work of the run, the part that closer looks may cost in any case, however much screens take. */
+#define AUDIT_LEAST_SHARE 0.005
+
+/* What closer looks may cost more, now that the run has done so much and screens have spent some. */
+static inline double audit_earned(const struct dalcs_audit *audit, double work, double spent) {
+    const double left = audit->options.share * work - spent;
+    const double least = AUDIT_LEAST_SHARE * work;
+    return left > least ? left : least;
+}
+
 /* Where nothing is, a value is as much as there is. */
 static inline double audit_ratio(double value, double scale) {
     return value == 0.0 ? 0.0 : value / fmax(scale, 0x1p-1022);
@@ -230,6 +253,12 @@ static inline double audit_ratio(double value, double scale) {
 static inline double audit_voltage(const struct dalcs_audit_state *s,
                                    const struct dalcs_device *d) {
     return s->v[d->node[0]] - s->v[d->node[1]];
+}
+
+/* Times in a stretch are known to a rounding of t, over its length that is what a value in it may be off by where it
+ * changes by its whole scale: it has to be less than the tolerance. */
+static inline bool audit_can_tell_times(const struct audit_part *part, double length, double to) {
+    return length * part->tolerance > 4.0 * 0x1p-52 * to;
 }
 
 /* What a voltage between two nodes is held to. */

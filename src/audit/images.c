@@ -51,6 +51,9 @@ static void compose(const struct dalcs_audit *audit, const struct audit_part *pa
     for (int j = 0; j < p->n_inputs; j++) {
         const double *value = r->column(r->user, (int)(part - audit->part), j);
         double *place = at->place + j * screen->n_places;
+        if (value == NULL) {
+            continue;
+        }
         audit_screen_place(part->watch, screen, p, m, value, place);
         for (int k = AUDIT_PLACE_SIGNS; k < screen->n_places; k++) {
             at->reach[j] = fmax(at->reach[j], fabs(place[k]));

@@ -213,7 +213,9 @@ static bool put(struct audit_watch *watch, struct audit_screen *screen, int n_co
         n_terms += fill->list[k].n;
     }
     screen->n_guards = fill->n_guards;
-    screen->guarded_from = INFINITY;
+    for (int k = 0; k < AUDIT_WINDOWS; k++) {
+        screen->window[k] = (struct audit_window){.from = INFINITY};
+    }
     screen->n_places = dalcs_quads_of(AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * fill->n_signs);
     free(screen->row);
     free(screen->term[0]);

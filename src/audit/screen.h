@@ -71,6 +71,14 @@ enum { AUDIT_MOST_NUMBERS = 1 << 20 };
 /* Commands cut the steps of a mode to a few lengths. */
 enum { AUDIT_IMAGES = 4 };
 
+/* Between edges of sources that command switches: a mode comes back in a few places of their period. */
+enum { AUDIT_WINDOWS = 4 };
+
+struct audit_window {
+    double from, to; /* s: no guard is below 0 in between; from is INFINITY: there is none */
+    double period;   /* s: nor so much later; 0: that is not known */
+};
+
 struct audit_screen {
     uint64_t key;
     bool is_made;
@@ -82,7 +90,8 @@ struct audit_screen {
     double rate;      /* 1/s, of what is integrated */
     int n_places;     /* in whole quads */
     int n_guards;
-    double guarded_from, guarded_to; /* s: no guard is below 0 in between */
+    struct audit_window window[AUDIT_WINDOWS];
+    int window_at; /* the one that was found last */
     int n_terms[AUDIT_N_TERM_KINDS];
     struct audit_term *term[AUDIT_N_TERM_KINDS]; /* one behind the other */
     double step, end;                            /* of the stretch before that had no image */
@@ -139,6 +148,15 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
                       struct audit_screen *screen, const struct audit_question *q,
                       struct audit_answer *answer);
 
+/* quick.c: the stretch has been passed over; so may be those that repeat it. */
+void audit_repeat_from(struct dalcs_audit *audit, struct audit_part *part,
+                       const struct dalcs_audit_stretch *stretch);
+
+/* A node beside each of the times, as they are drawn at the same chance. */
+static inline int audit_node_of(const struct dalcs_audit_polynomials *p, int m) {
+    return 1 + m * (p->n_nodes - 1) / AUDIT_SCREEN_TIMES;
+}
+
 /* What the rows make of n_nodes values of each column, without constants and stimuli, at the m-th time. */
 void audit_screen_place(const struct audit_watch *watch, const struct audit_screen *screen,
                         const struct dalcs_audit_polynomials *p, int m, const double *value,
@@ -156,6 +174,24 @@ static inline int audit_n_times_before(const struct audit_watch *watch, double e
     return n;
 }
 
+/* How much later than in the window two times are that it has, s; no number: it has them not. */
+static inline double audit_window_past(const struct audit_window *w, double from, double to) {
+    const double past =
+        w->period > 0.0 && from >= w->from ? floor((from - w->from) / w->period) * w->period : 0.0;
+    return w->from + past <= from && to <= w->to + past ? past : NAN;
+}
+
+/* Is it known that no guard is below 0 between two times? Then screen->window_at is where. */
+static inline bool audit_is_guarded(struct audit_screen *screen, double from, double to) {
+    bool is = false;
+    for (int k = 0; k < AUDIT_WINDOWS && !is; k++) {
+        const int at = (screen->window_at + k) % AUDIT_WINDOWS;
+        is = !isnan(audit_window_past(&screen->window[at], from, to));
+        screen->window_at = is ? at : screen->window_at;
+    }
+    return is;
+}
+
 /* guards.c: how far below 0 the worst guard is at three times. */
 double audit_worst_guard_between(struct dalcs_audit *audit, struct audit_screen *screen,
                                  double from, double to, double t);
@@ -164,7 +200,7 @@ static inline double audit_worst_guard(struct dalcs_audit *audit, struct audit_s
                                        const struct audit_question *q, double t) {
     const double from = q->stretch->from + q->near;
     const double to = q->stretch->to - q->near;
-    return screen->guarded_from <= from && to <= screen->guarded_to
+    return audit_is_guarded(screen, from, to)
                ? 0.0
                : audit_worst_guard_between(audit, screen, from, to, t);
 }

@@ -1,7 +1,6 @@
 /* screen_sum.c - what the rows of a screen give for a stretch. */
-#include "screen.h"
+#include "image_sum.h"
 
-#include "quads.h"
 #include "wide_vectors.h"
 
 #include <string.h>
@@ -40,19 +39,6 @@ static void flow_weights(const struct dalcs_audit_polynomials *p, const double *
     }
 }
 
-static inline __attribute__((always_inline)) double find_product(int n, const double *row,
-                                                                 const double *value) {
-    dalcs_quad sum = {0.0};
-    for (int c = 0; c < n; c += DALCS_QUAD) {
-        dalcs_quad of;
-        dalcs_quad by;
-        dalcs_quad_load(&of, value + c);
-        dalcs_quad_load(&by, row + c);
-        sum += of * by;
-    }
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
 /* ---- Places -------------------------------------------------------------------------------------- */
 
 /* Of a time in the stretch and its end. Beside them a node. */
@@ -60,11 +46,6 @@ struct weights {
     const double *now, *flow, *end;
     int node;
 };
-
-/* One for each time, as they are drawn at the same chance. */
-static int node_of(const struct dalcs_audit_polynomials *p, int m) {
-    return 1 + m * (p->n_nodes - 1) / AUDIT_SCREEN_TIMES;
-}
 
 /* Sums of a quad of columns over the nodes: at the time, over the time before it, and at the end. */
 struct audit_quads {
@@ -155,72 +136,31 @@ void audit_screen_place(const struct audit_watch *watch, const struct audit_scre
                         double *place) {
     double end[AUDIT_MOST_NODES];
     weights_at(p, watch->barycentric, p->end, end);
-    const struct weights w = {watch->now[m], watch->flow[m], end, node_of(p, m)};
+    const struct weights w = {watch->now[m], watch->flow[m], end, audit_node_of(p, m)};
     add_places(watch, screen, p, &w, value, place);
 }
 
-/* The least of the signs; no number where one of them is none. */
-static inline __attribute__((always_inline)) double find_least_sign(int n_places,
-                                                                    const double *place) {
-    dalcs_quad least = {INFINITY, INFINITY, INFINITY, INFINITY};
-    dalcs_quad sum = {0.0};
-    for (int k = AUDIT_PLACE_SIGNS; k < n_places; k += DALCS_QUAD) {
-        dalcs_quad of;
-        dalcs_quad_load(&of, place + k);
-        dalcs_quad_lower(&least, &of);
-        sum += of;
-    }
-    const double all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    dalcs_quad most = -least;
-    return all == all ? -dalcs_quad_largest(&most) : all;
-}
-
 DALCS_TWICE(double, least_sign, (int n_places, const double *place), (n_places, place)) {
-    return find_least_sign(n_places, place);
+    return audit_least_sign(n_places, place);
 }
 
-/* Laws and states, and how far the input is from that at which signs were asked; by these, where that is too far. Where
- * there are values, those at a node are held to the image, *off. The least of the signs, or less. */
+/* Laws and states, and the least of the signs, or less, where the input is near one at which they were asked. Where there
+ * are values, those at a node are held to the image, *off. */
 DALCS_TWICE(double, multiply,
             (const struct audit_screen *screen, const struct dalcs_audit_polynomials *p, int m,
              struct audit_image_at *at, double *place, double *off),
             (screen, p, m, at, place, off)) {
-    const int n_places = screen->n_places;
-    const int n_inputs = p->n_inputs;
-    const double *input = p->input;
-    const double *from = at->place;
-    double far = 0.0;
     dalcs_quad sum;
-    dalcs_quad_load(&sum, screen->constant);
-    for (int j = 0; j < n_inputs; j++, from += n_places) {
-        dalcs_quad of;
-        dalcs_quad_load(&of, from);
-        sum += of * input[j];
-        far += at->reach[j] * fabs(input[j] - at->input[j]);
-    }
+    double far;
+    audit_image_laws(screen->constant, screen->n_places, p->input, p->n_inputs, at, &sum, &far);
     dalcs_quad_store(place, &sum);
     if (p->value != NULL) {
         const int n = dalcs_quads_of(p->n_columns);
-        *off = fabs(place[AUDIT_PLACE_NODE] - find_product(n, screen->row + AUDIT_ROW_NOW * n,
-                                                           p->value + node_of(p, m) * p->stride));
+        *off = fabs(place[AUDIT_PLACE_NODE] -
+                    audit_product(n, screen->row + AUDIT_ROW_NOW * n,
+                                  p->value + audit_node_of(p, m) * p->stride));
     }
-    if (far <= at->slack) {
-        return at->slack - far - 1.0;
-    }
-    for (int first = AUDIT_PLACE_SIGNS; first < n_places; first += DALCS_QUAD) {
-        dalcs_quad_load(&sum, screen->constant + first);
-        from = at->place + first;
-        for (int j = 0; j < n_inputs; j++, from += n_places) {
-            dalcs_quad of;
-            dalcs_quad_load(&of, from);
-            sum += of * input[j];
-        }
-        dalcs_quad_store(place + first, &sum);
-    }
-    memcpy(at->input, input, (size_t)n_inputs * sizeof(double));
-    const double least = find_least_sign(n_places, place);
-    at->slack = screen->n_terms[AUDIT_TERM_SIGN] == 0 ? least + 1.0 : -1.0;
-    return least;
+    return far <= at->slack ? at->slack - far - 1.0 : audit_image_signs(screen, p, at, place);
 }
 
 /* ---- Stimuli ------------------------------------------------------------------------------------- */

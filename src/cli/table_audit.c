@@ -197,14 +197,31 @@ static bool read_csv(const struct dalcs_table_audit_sums *a, FILE *file, double 
     return reads;
 }
 
-static bool read_raw(const struct dalcs_table_audit_sums *a, FILE *file, double *row) {
-    const size_t width = (1 + a->plot->n_signals) * sizeof(double);
+/* Behind the header, whose last line it is. */
+static bool find_line(FILE *file, const char *line) {
     char piece[PIECE];
     bool is_there = false;
     while (!is_there && fgets(piece, sizeof piece, file) != NULL) {
-        is_there = strcmp(piece, "Binary:\n") == 0;
+        is_there = strcmp(piece, line) == 0;
     }
-    return is_there && fseeko(file, (off_t)(a->kept * width), SEEK_CUR) == 0 &&
+    return is_there;
+}
+
+/* A row is its number and a value on each line, and an empty line. */
+static bool read_raw_ascii(const struct dalcs_table_audit_sums *a, FILE *file, double *row) {
+    const size_t n = 1 + a->plot->n_signals;
+    size_t number = 0;
+    bool reads = find_line(file, "Values:\n") && skip_lines(file, a->kept * (n + 1)) &&
+                 fscanf(file, "%zu", &number) == 1 && number == a->kept;
+    for (size_t k = 0; k < n && reads; k++) {
+        reads = fscanf(file, "%lf", &row[k]) == 1;
+    }
+    return reads;
+}
+
+static bool read_raw(const struct dalcs_table_audit_sums *a, FILE *file, double *row) {
+    const size_t width = (1 + a->plot->n_signals) * sizeof(double);
+    return find_line(file, "Binary:\n") && fseeko(file, (off_t)(a->kept * width), SEEK_CUR) == 0 &&
            fread(row, width, 1, file) == 1;
 }
 
@@ -212,7 +229,8 @@ enum dalcs_status dalcs_table_audit_file(const struct dalcs_table_audit_sums *a,
                                          const struct dalcs_table_format *format, const char *path,
                                          const struct dalcs_cli *cli) {
     struct stat is;
-    const bool is_known = format == &dalcs_csv_format || format == &dalcs_raw_format;
+    const bool is_known = format == &dalcs_csv_format || format == &dalcs_raw_format ||
+                          format == &dalcs_raw_ascii_format;
     if (a->plot == NULL || a->n_rows == 0 || !is_known || a->plot->n_parameters > 0 ||
         dalcs_is_standard_output(path) || stat(path, &is) != 0 || !S_ISREG(is.st_mode)) {
         return DALCS_OK;
@@ -222,7 +240,9 @@ enum dalcs_status dalcs_table_audit_file(const struct dalcs_table_audit_sums *a,
     FILE *file = fopen(path, "rb");
     bool is_right = true;
     if (file != NULL && row != NULL) {
-        is_right = format == &dalcs_csv_format ? read_csv(a, file, row) : read_raw(a, file, row);
+        is_right = format == &dalcs_csv_format         ? read_csv(a, file, row)
+                   : format == &dalcs_raw_ascii_format ? read_raw_ascii(a, file, row)
+                                                       : read_raw(a, file, row);
         for (size_t k = 0; k < n && is_right; k++) {
             is_right = row[k] == a->row[k];
         }

@@ -157,28 +157,36 @@ static uint64_t key_of(const struct dalcs_radau_part *part) {
     return hash;
 }
 
-/* The map whose image of part->in the segment is; NULL: none. One of those kept of a period has none, and another start. */
-static inline const struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *part) {
-    if (part->segment.late != NULL) {
-        return part->segment.late;
-    }
-    const struct dalcs_stage_entry *entry =
-        part->segment.brief != NULL ? part->segment.brief->entry : part->segment.entry;
-    if (entry == NULL || !dalcs_stages_have_maps(&part->stages) || !dalcs_stage_has_map(entry)) {
-        return NULL;
-    }
+static inline const struct dalcs_stage_entry *entry_of(const struct dalcs_radau_part *part) {
+    return part->segment.late != NULL    ? part->segment.late
+           : part->segment.brief != NULL ? part->segment.brief->entry
+                                         : part->segment.entry;
+}
+
+/* Does the segment begin with its input? One of those kept of a period has another start. */
+static inline bool begins_with_input(const struct dalcs_radau_part *part) {
     const int n_x = part->component->system->n_x;
+    const double *in = part->segment.in;
+    const double *out = part->segment.out;
+    bool is = true;
     for (int x = 0; x < n_x; x++) {
-        if (part->segment.in[x] != part->segment.out[x]) {
-            return NULL;
-        }
+        is &= in[x] == out[x];
     }
-    return entry;
+    return is;
+}
+
+/* The map whose image of part->in the segment is; NULL: none. */
+static const struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *part) {
+    const struct dalcs_stage_entry *entry = entry_of(part);
+    const bool has_map =
+        entry != NULL && dalcs_stages_have_maps(&part->stages) && dalcs_stage_has_map(entry);
+    return part->segment.late != NULL || (has_map && begins_with_input(part)) ? entry : NULL;
 }
 
 static const struct dalcs_audit_polynomials *store(struct audit_members *m,
                                                    const struct dalcs_radau_part *part) {
     struct dalcs_audit_polynomials *p = &m->stored;
+    m->map = NULL;
     if (part->segment.by_euler || part->component->positions.joined) {
         return NULL;
     }
@@ -186,15 +194,8 @@ static const struct dalcs_audit_polynomials *store(struct audit_members *m,
     p->step = part->segment.h;
     p->end = part->segment.end;
     p->value = part->segment.late != NULL ? NULL : part->segment.out;
-    p->input = NULL;
-    if (m->has_maps && map_of(part) != NULL) {
-        if (p->n_inputs == 0) { /* which nobody knows before the first map */
-            p->n_inputs = dalcs_stage_brief_columns(&part->stages);
-            m->takes_in = p->n_inputs == part->stages.n_in;
-        }
-        p->input = m->takes_in ? part->segment.in
-                               : dalcs_stage_brief_input(&part->stages, part->segment.in);
-    }
+    m->map = m->has_maps ? map_of(part) : NULL;
+    p->input = m->map != NULL ? part->segment.in : NULL;
     return p;
 }
 
@@ -212,6 +213,24 @@ struct dalcs_audit_stretch *dalcs_audit_reader_stretch(struct dalcs_audit_run *a
     return stretch;
 }
 
+bool dalcs_audit_reader_repeats(const struct dalcs_radau_part *part, struct audit_members *m) {
+    const struct dalcs_osnsp *osnsp = &part->component->osnsp;
+    if (m->map == NULL || entry_of(part) != m->map || part->segment.h != m->stored.step ||
+        part->segment.end != m->last_end || part->segment.by_euler ||
+        part->component->positions.joined) {
+        return false;
+    }
+    bool is_same = part->segment.late != NULL || begins_with_input(part);
+    for (int k = 0; k < osnsp->n_words; k++) {
+        is_same &= osnsp->mode[k] == m->last_mode[k];
+    }
+    m->stretch.from = part->segment.t;
+    m->stretch.to = part->segment.t_end;
+    m->stored.input = part->segment.in;
+    m->stored.value = part->segment.late != NULL ? NULL : part->segment.out;
+    return is_same;
+}
+
 static void complete(void *user, int index) {
     const struct dalcs_audit_run *a = user;
     struct dalcs_radau_part *part = &a->radau->part[index];
@@ -221,7 +240,12 @@ static void complete(void *user, int index) {
 
 static const double *column(void *user, int index, int j) {
     const struct dalcs_audit_run *a = user;
-    return dalcs_stage_brief_column(map_of(&a->radau->part[index]), j);
+    const struct dalcs_radau_part *part = &a->radau->part[index];
+    const int n_x = part->component->system->n_x;
+    const int missing = part->stages.n_in - dalcs_stage_brief_columns(&part->stages);
+    return j == n_x && missing > 0
+               ? NULL
+               : dalcs_stage_brief_column(map_of(part), j < n_x ? j : j - missing);
 }
 
 /* In the place of the lambda of an open pair is another number, and sources alone decide bystanders. */

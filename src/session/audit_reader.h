@@ -13,9 +13,10 @@ struct audit_members {
     bool was_left;                         /* its segment ended at the present time */
     struct dalcs_audit_polynomials stored; /* the present segment */
     struct dalcs_audit_stretch stretch;    /* likewise */
-    bool has_maps, takes_in;               /* they take the segment's own numbers in */
-    double work, brief_work;               /* of a segment, in instructions; of one that recurs */
-    double elements;                       /* of its maps, likewise */
+    bool has_maps;
+    double work, brief_work;             /* of a segment, in instructions; of one that recurs */
+    double elements;                     /* of its maps, likewise */
+    const struct dalcs_stage_entry *map; /* that gave it; NULL: none */
     /* Of the segment that ended last, where it did. */
     double *last_out;
     double last_end, last_time; /* in steps; s */
@@ -39,6 +40,9 @@ struct dalcs_audit_reader dalcs_audit_reader_of(struct dalcs_audit_run *a);
 /* The present segment of a part, up to a time. */
 struct dalcs_audit_stretch *dalcs_audit_reader_stretch(struct dalcs_audit_run *a, int index,
                                                        double to);
+
+/* Is the present segment of the mode, the step, the end and the map that the one before was of? Then its stretch is ready. */
+bool dalcs_audit_reader_repeats(const struct dalcs_radau_part *part, struct audit_members *m);
 
 /* The present segment of a part ends: its end can be read until the next one has. */
 void dalcs_audit_reader_keep(const struct dalcs_audit_run *a, int index);

@@ -85,6 +85,7 @@ static void start_part(struct audit_members *m, const struct dalcs_radau_part *p
     m->stored = (struct dalcs_audit_polynomials){
         .n_columns = dalcs_system_n_columns(part->component->system),
         .n_nodes = stages->layout.n_nodes,
+        .n_inputs = stages->n_in,
         .stride = stages->layout.stride,
         .node = stages->method->node};
     m->has_maps = dalcs_stages_have_maps(stages);
@@ -161,9 +162,8 @@ void dalcs_audit_run_begin(struct dalcs_audit_run *a) {
     }
 }
 
-static void leave(struct dalcs_audit_run *a, int k, double to) {
-    const struct dalcs_part_segment *segment = &a->radau->part[k].segment;
-    const struct audit_members *m = &a->part[k];
+static double work_of(const struct dalcs_audit_run *a, const struct audit_members *m,
+                      const struct dalcs_part_segment *segment) {
     double work = segment->late != NULL ? m->brief_work : m->work;
     if (segment->why == DALCS_END_AT_EVENT) {
         work += event_work;
@@ -171,8 +171,31 @@ static void leave(struct dalcs_audit_run *a, int k, double to) {
     if (a->has_rows) {
         work += read_work;
     }
-    struct dalcs_audit_stretch *stretch = dalcs_audit_reader_stretch(a, k, to);
+    return work;
+}
+
+/* It repeats the one before, and need not be looked at. */
+static inline bool repeats(struct dalcs_audit_run *a, int k) {
+    const struct dalcs_radau_part *part = &a->radau->part[k];
+    struct audit_members *m = &a->part[k];
+    if (!dalcs_audit_reader_repeats(part, m) ||
+        !dalcs_audit_repeats(a->audit, &m->stretch, work_of(a, m, &part->segment))) {
+        return false;
+    }
+    m->last_out = part->segment.out;
+    m->last_time = part->segment.t_end;
+    return true;
+}
+
+static void leave(struct dalcs_audit_run *a, int k, double to) {
+    const struct dalcs_part_segment *segment = &a->radau->part[k].segment;
+    const struct audit_members *m = &a->part[k];
     const bool is_last = to >= a->radau->options.stop;
+    if (to == segment->t_end && !is_last && repeats(a, k)) {
+        return;
+    }
+    const double work = work_of(a, m, segment);
+    struct dalcs_audit_stretch *stretch = dalcs_audit_reader_stretch(a, k, to);
     if (!dalcs_audit_passes_over(a->audit, stretch, work) || is_last) {
         stretch->is_last = is_last;
         /* of a late one only what tells that it is a segment was computed */

@@ -67,6 +67,35 @@ static const struct dalcs_location *place_of(const struct dalcs_audit_run *a,
     }
 }
 
+/* Is the voltage of a node 0 by convention, as nothing ties it to ground? */
+static bool is_reference(const struct dalcs_audit_run *a, int node) {
+    const struct dalcs_network *network = &a->run->s->network;
+    const char *name = a->run->s->circuit.node_name[node];
+    bool is = false;
+    for (int k = 0; k < network->n_systems && !is; k++) {
+        const struct dalcs_system *s = &network->system[k];
+        for (int c = 0; c < dalcs_system_n_equations(s) && !is; c++) {
+            is = s->column[c].kind == DALCS_LABEL_REFERENCE &&
+                 strcmp(s->column[c].element, name) == 0;
+        }
+    }
+    return is;
+}
+
+/* All laws hold but Kirchhoff's at such a node: there it is what those at the other nodes of the island leave over, which is
+ * what sources drive into the island. Then no waveform can fulfil it. */
+static bool is_driven_island(const struct dalcs_audit_run *a,
+                             const struct dalcs_audit_summary *found) {
+    bool is = found->law == DALCS_AUDIT_KCL && is_reference(a, found->index);
+    for (int law = 0; law < DALCS_AUDIT_N_LAWS && is; law++) {
+        for (int i = 0; i < dalcs_audit_n_of(a->audit, law) && is; i++) {
+            is = (law == DALCS_AUDIT_KCL && i == found->index) ||
+                 dalcs_audit_finding_of(a->audit, law, i).defect <= dalcs_audit_most_allowed(a);
+        }
+    }
+    return is;
+}
+
 static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
                                      const struct dalcs_audit_summary *found, const char *name) {
     char time[DALCS_QUANTITY_SIZE];
@@ -78,6 +107,15 @@ static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
                        "a result seems wrong: the audit finds %s off by %.2g of its scale at t = "
                        "%s, and %.2g is allowed",
                        name, found->defect, time, dalcs_audit_most_allowed(a));
+    } else if (is_driven_island(a, found)) {
+        const char *node = a->run->s->circuit.node_name[found->index];
+        dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, NULL,
+                       "tie it to ground, by a large resistor for instance, or look for the source "
+                       "whose current has no way back",
+                       "Kirchhoff's current law cannot hold at t = %s: nothing connects node '%s' "
+                       "and the part around it to ground, and what sources drive into it does not "
+                       "come out",
+                       time, node);
     } else {
         dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, NULL,
                        "the report lists the laws that are broken; please report this netlist",

@@ -198,6 +198,9 @@ enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures,
     if (!measures->wanted || !ends_at(measures, radau, t, near)) {
         return DALCS_OK;
     }
+    if (t <= measures->begin) { /* before all windows: as where a leap passes over it */
+        measures->t = t;
+    }
     while (measures->t < t) {
         double to = fmin(t, measures->t + longest(measures, measures->t));
         if (to - measures->t > near) {

@@ -359,7 +359,8 @@ def verdict(program, netlist, where):
     (where / "at").write_text(OFTEN if netlist == LEAPS else AT)
     few_rows = ["--at", str(where / "at")] if netlist in FEW else []
     try:
-        command = [str(program), "run", str(where / "circuit.cir"), "-o", str(where / "out.csv")]
+        output = "out.raw" if "filetype=" in netlist else "out.csv"
+        command = [str(program), "run", str(where / "circuit.cir"), "-o", str(where / output)]
         ran = subprocess.run(command + few_rows, capture_output=True, text=True, timeout=60)
     except subprocess.TimeoutExpired:
         return "fails otherwise", "it takes more than 60 s"

@@ -34,6 +34,8 @@ r2 out 0 100
 .tran 0.2m 0.1
 """
 
+TEXT = METER.replace(".tran", ".options filetype=ascii\n.tran")
+
 TABLES = METER.replace(".losses from=20m to=60m\n", ".losses\n")
 
 SHARED = """a capacitor on a switch, again and again
@@ -128,6 +130,12 @@ MUTATIONS = {
     "each row of a file has the values of the one before": (
         "output/csv.c", "write_row(csv, stream, time[k], value + k * csv->n_values);",
         "write_row(csv, stream, time[k], value + (k > 0 ? k - 1 : 0) * csv->n_values);", METER),
+    "each row of a raw file as text has the values of the one before": (
+        "output/raw.c", "write_text(raw, stream, raw->block + k * raw->width,",
+        "write_text(raw, stream, raw->block + (k > 0 ? k - 1 : 0) * raw->width,", TEXT),
+    "a raw file as text has digits of a float": (
+        "output/raw.c", "dalcs_decimal_write(raw->decimal, number, text)",
+        "dalcs_decimal_write(raw->decimal, (double)(float)number, text)", TEXT),
     "rows on the right of an event are those on its left": (
         "waveform/recorder.c", "        r->row[i] = rows->value[i].at[0];\n",
         "        r->row[i] = is_due ? rows->value[i].at[0] : r->row[i];\n", SHARED),

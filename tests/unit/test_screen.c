@@ -44,6 +44,9 @@ enum fault {
 static struct text_network t;
 static enum fault fault;
 static int present;
+static bool
+    are_images; /* stretches are stored with the state and the 1 that they are an image of, and repeat each other */
+static int n_repeated; /* that were passed over as such */
 static double value[N_NODES * STRIDE];
 
 static int named(const char *name) {
@@ -171,6 +174,18 @@ static void raise_to_known(void *user, int part, double *v, double *i, double *l
     }
 }
 
+/* What the state at the start, and 1, are multiplied by. */
+static const double *column_of_map(void *user, int part, int j) {
+    static double of[N_NODES * STRIDE];
+    (void)user;
+    (void)part;
+    for (int k = 0; k < N_NODES; k++) {
+        of[k * STRIDE + V_C] = j == 0 ? 1.0 : NODE[k];
+        of[k * STRIDE + V_OUT] = j == 0 ? 0.0 : 90.0;
+    }
+    return of;
+}
+
 static struct dalcs_audit *make(void) {
     static const int part[16] = {0};
     static const double tolerance = 1e-9;
@@ -185,6 +200,7 @@ static struct dalcs_audit *make(void) {
     const struct dalcs_audit_reader reader = {.read = read_present,
                                               .read_before = read_before,
                                               .complete = complete,
+                                              .column = column_of_map,
                                               .add_voltage = add_voltage,
                                               .add_current = add_current,
                                               .raise = raise_to_known};
@@ -197,11 +213,13 @@ static struct dalcs_audit *make(void) {
 static struct dalcs_audit_summary audited(enum fault which, int n, double closes, double short_by) {
     char netlist[sizeof RAMP + 32];
     fault = which;
+    n_repeated = 0;
     snprintf(netlist, sizeof netlist, RAMP, closes);
     build_good_network(&t, netlist);
     struct dalcs_audit *audit = make();
     for (int k = 0; k < n; k++) {
         fill(k);
+        const double input[] = {at(k, V_C, 0.0), 1.0};
         const double end = which == SHORT && k == FAULTY ? 1.0 - short_by : 1.0;
         const struct dalcs_audit_polynomials stored = {.key = 1,
                                                        .n_columns = N_COLUMNS,
@@ -210,11 +228,17 @@ static struct dalcs_audit_summary audited(enum fault which, int n, double closes
                                                        .node = NODE,
                                                        .step = STEP,
                                                        .end = end,
+                                                       .n_inputs = are_images ? 2 : 0,
+                                                       .input = are_images ? input : NULL,
                                                        .value = value};
         const struct dalcs_audit_stretch stretch = {
             .from = k * STEP, .to = (k + 1) * STEP, .step = STEP, .degree = 2, .stored = &stored};
         if (dalcs_audit_begins(audit, 0)) {
             dalcs_audit_enter(audit, &stretch);
+        }
+        if (are_images && k > 0 && dalcs_audit_repeats(audit, &stretch, 1.0)) {
+            n_repeated++;
+            continue;
         }
         if (!dalcs_audit_passes_over(audit, &stretch, 1.0)) {
             dalcs_audit_leave(audit, &stretch);
@@ -233,6 +257,32 @@ START_TEST(test_right_stretches_are_asked_and_not_looked_at) {
     ck_assert_msg(found.defect < 1e-12, "%g", found.defect);
     ck_assert_int_eq(found.screened, N_STRETCHES);
     ck_assert_int_eq(found.audited, 0);
+}
+
+END_TEST
+
+/* Those that repeat the one before are asked by a way of their own. */
+START_TEST(test_stretches_that_repeat_are_asked) {
+    are_images = true;
+    const struct dalcs_audit_summary right = audited(NONE, N_STRETCHES, NEVER, 0.0);
+    ck_assert_msg(right.defect < 1e-12, "%g", right.defect);
+    ck_assert_int_eq(right.screened, N_STRETCHES);
+    ck_assert_int_eq(right.audited, 0);
+    ck_assert_msg(n_repeated > N_STRETCHES / 4, "%d", n_repeated);
+
+    const enum fault faults[] = {SLOW, NUDGED};
+
+    for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
+        const struct dalcs_audit_summary found = audited(faults[k], N_STRETCHES, NEVER, 0.0);
+        ck_assert_msg(found.defect > 1e-9, "fault %d: %g", (int)faults[k], found.defect);
+        ck_assert_msg(n_repeated > 0, "fault %d", (int)faults[k]);
+    }
+    const double end = (FAULTY + 1) * STEP;
+    const struct dalcs_audit_summary late = audited(NONE, FAULTY + 1, end - 3.0 * NEAR, 0.0);
+    ck_assert_int_eq(late.law, DALCS_AUDIT_POSITION);
+    ck_assert_msg(late.defect > 1e-9, "%g", late.defect);
+    ck_assert_int_eq(audited(NONE, FAULTY + 1, end - NEAR / 3.0, 0.0).audited, 0);
+    are_images = false;
 }
 
 END_TEST
@@ -280,7 +330,8 @@ START_TEST(test_few_false_alarms_are_looked_at) {
 
 END_TEST
 
-RUN_TESTS("screen", test_right_stretches_are_asked_and_not_looked_at, test_one_fault_is_found,
+RUN_TESTS("screen", test_right_stretches_are_asked_and_not_looked_at,
+          test_stretches_that_repeat_are_asked, test_one_fault_is_found,
           test_a_command_within_a_stretch_is_found,
           test_values_that_end_before_the_stretch_are_looked_at,
           test_few_false_alarms_are_looked_at)
