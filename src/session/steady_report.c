@@ -139,20 +139,21 @@ bool dalcs_steady_is_unstable(const struct dalcs_report *report) {
     return report->steady.n_multipliers > 0 && hypot(m[0].re, m[0].im) > 1.0 + near_one;
 }
 
-/* How what is beside the orbit, of that period, leaves it. */
+/* How what is beside the orbit, of that period, leaves it; as slowly as that is, not "by 1". */
 static const char *growth_text(struct dalcs_arena *arena, const struct dalcs_floquet *m,
                                double period) {
     const double size = hypot(m->re, m->im);
+    const int digits = size < 1.001 ? 10 : 4;
     char text[DALCS_QUANTITY_SIZE];
     if (m->im != 0.0) {
         return dalcs_arena_printf(
-            arena, "unstable: an oscillation of %s at %s grows by %.4g each period", m->state,
+            arena, "unstable: an oscillation of %s at %s grows by %.*g each period", m->state,
             dalcs_quantity_write(text, fabs(carg(m->re + I * m->im)) / (2.0 * acos(-1.0) * period),
                                  "Hz", 4),
-            size);
+            digits, size);
     }
-    return dalcs_arena_printf(arena, "unstable: a deviation of %s %sgrows by %.4g each period",
-                              m->state, m->re < 0.0 ? "changes its sign and " : "", size);
+    return dalcs_arena_printf(arena, "unstable: a deviation of %s %sgrows by %.*g each period",
+                              m->state, m->re < 0.0 ? "changes its sign and " : "", digits, size);
 }
 
 static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floquet *m, size_t n) {

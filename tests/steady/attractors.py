@@ -255,6 +255,7 @@ class Look:
                 self.of_many(name, netlist, steady["period"], n, growth)
             return
         self.checker.check(found.get("kind") == expected, f"{name}: {found}, not {expected}")
+        self.checker.check("grows by 1 each" not in verdict, f"{name}: {verdict}")
         word = {"chaos": "chaotic", "quasi-periodic": "quasi-periodic"}.get(expected, "grows by")
         self.checker.check(word in verdict, f"{name}: {verdict}")
         if expected == "quasi-periodic":
