@@ -12,6 +12,10 @@
 /* A multiplier is 1 within what rounding and the tolerance make of it. */
 static const double near_one = 1e-9;
 
+/* The size of a pair is, within what a hundred steps of a period make of an oscillation that the orbit does not have: the
+ * steps are as long as the orbit allows, each to the 1e-9 that small circuits are held to. */
+static const double near_circle = 1e-7;
+
 /* Smaller than this beside 1 is none: nothing of it is left after one period. */
 static const double vanishes = 1e-12;
 
@@ -134,9 +138,14 @@ static double take_out_flow(struct dalcs_floquet *m, size_t *n) {
 
 /* ---- Verdict ------------------------------------------------------------------------------------- */
 
+/* By how much the largest lies outside the unit circle; within what is not known, 0. */
+static double outside(const struct dalcs_floquet *m, size_t n) {
+    const double by = n > 0 ? hypot(m[0].re, m[0].im) - 1.0 : -1.0;
+    return fabs(by) > (n > 0 && m[0].im != 0.0 ? near_circle : near_one) ? by : 0.0;
+}
+
 bool dalcs_steady_is_unstable(const struct dalcs_report *report) {
-    const struct dalcs_floquet *m = report->steady.multiplier;
-    return report->steady.n_multipliers > 0 && hypot(m[0].re, m[0].im) > 1.0 + near_one;
+    return outside(report->steady.multiplier, report->steady.n_multipliers) > 0.0;
 }
 
 /* How what is beside the orbit, of that period, leaves it; as slowly as that is, not "by 1". */
@@ -158,8 +167,8 @@ static const char *growth_text(struct dalcs_arena *arena, const struct dalcs_flo
 
 static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floquet *m, size_t n) {
     struct dalcs_arena *arena = &st->run->s->arena;
-    const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
-    if (size > 1.0 + near_one) {
+    const double by = outside(m, n);
+    if (by > 0.0) {
         return growth_text(arena, m, st->period);
     }
     if (st->is_free && st->n_free > 0) {
@@ -168,7 +177,7 @@ static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floque
     if (st->n_conserved > 0) {
         return "not unique: a conserved quantity keeps its initial value";
     }
-    return size < 1.0 - near_one ? "stable" : "at the border of stability";
+    return by < 0.0 ? "stable" : "at the border of stability";
 }
 
 /* "v(c2) - 0.5 v(c1)": the terms of a conserved quantity, the largest as 1. */
@@ -275,7 +284,7 @@ enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one
     n = count_lasting(m, n);
     const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
     report->steady.doubled.period = 2.0 * one;
-    report->steady.doubled.stable = size < 1.0 - near_one;
+    report->steady.doubled.stable = outside(m, n) < 0.0;
     report->steady.doubled.n_multipliers = n;
     report->steady.doubled.multiplier = m;
     report->steady.verdict = dalcs_arena_printf(
@@ -284,7 +293,7 @@ enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one
         "periods=2 gives it",
         growth_text(arena, report->steady.multiplier, one),
         dalcs_quantity_write(text, 2.0 * one, "s", 12),
-        size < 1.0 - near_one ? "stable" : "unstable too", size);
+        report->steady.doubled.stable ? "stable" : "unstable too", size);
     return report->steady.verdict != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -360,8 +369,7 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
     s->report.steady.exact = st->is_exact;
     s->report.steady.multiplier = m;
     s->report.steady.n_multipliers = n;
-    s->report.steady.stable = st->n_conserved == 0 && st->n_free == 0 &&
-                              (n == 0 || hypot(m[0].re, m[0].im) < 1.0 - near_one);
+    s->report.steady.stable = st->n_conserved == 0 && st->n_free == 0 && outside(m, n) < 0.0;
     s->report.steady.verdict = verdict_of(st, m, n);
     DALCS_TRY(tell_conserved(st));
     return s->report.steady.verdict != NULL ? dalcs_steady_report_signals(st) : DALCS_E_NOMEM;
