@@ -75,16 +75,13 @@ static void take_period(struct dalcs_run *r, double period, bool uic) {
 
 /* ---- All of it ----------------------------------------------------------------------------------- */
 
-/* With gates the period may be a multiple of that of the sources. */
+/* The period may be a multiple of that of the sources: of gates, and of an orbit nearby. */
 static enum dalcs_status take_repeats(struct dalcs_steady *st, bool uic) {
     struct dalcs_run *r = st->run;
     int n = 1;
-    if (r->s->circuit.n_gates == 0) {
-        return DALCS_OK;
-    }
     if (r->s->near != NULL) {
         n = (int)rint(r->s->near->period / st->period);
-    } else {
+    } else if (r->s->circuit.n_gates > 0) {
         DALCS_TRY(dalcs_steady_find_repeats(st, &n));
         dalcs_steady_note_repeats(st, n);
     }

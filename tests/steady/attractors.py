@@ -301,6 +301,20 @@ def lines(look):
         look.checker.check(off < 0.15, f"{output} V: grows by {found.get('growth')}, not by {due}")
 
 
+def differentiated(look):
+    """Derivatives of an orbit of two periods by a value are those of differences."""
+    measured = ".pss uic\n.meas pss top max v(c)"
+    done, report = look.run(forced(0.05, 2.03), measured + "\n.sens r1")
+    if not look.checker.check(done.returncode == 0 and "sensitivity" in report, f"sensitivities: {done.stderr}"):
+        return
+    tops = [look.run(forced(0.05, 2.03).replace("R1 y c 1k", f"R1 y c {ohms!r}"), measured)[1]["measurements"][0]["value"]
+            for ohms in (999.9, 1000.1)]
+    found = next(entry for entry in report["sensitivity"]["results"] if entry["name"] == "top")
+    due = (tops[1] - tops[0]) / 0.2
+    value = found["derivatives"]["r1"]
+    look.checker.check(abs(value / due - 1) < 1e-4, f"sensitivity: {value}, not {due}")
+
+
 def stepped(look):
     """Steps of a sweep are not followed: they have orbits alone."""
     netlist = boost(3).replace("Vin in 0 10", ".param v=10\nVin in 0 {v}")
@@ -317,6 +331,7 @@ def main():
         for case in AHEAD:
             look.ahead(*case)
         lines(look)
+        differentiated(look)
         stepped(look)
     return look.checker.finish()
 
