@@ -815,6 +815,14 @@ struct dalcs_report {
             const struct dalcs_floquet *multiplier; /* over both periods */
         } doubled; /* where a multiplier below -1 says that a run leaves the orbit for such a one */
 
+        struct {
+            const char *
+                kind; /* "orbit", "quasi-periodic", "chaos"; NULL: not known, or the orbit is stable */
+            int periods;   /* of the sources; 0: of no orbit */
+            double period; /* s; likewise */
+            double growth; /* of a small difference: in each period; of an orbit in all of them */
+        } attractor;       /* what a run comes to that leaves an unstable orbit */
+
         bool self_oscillating; /* no source has a period: the circuit's own was found */
         double
             flow; /* its multiplier along the orbit, 1 but for rounding, which is none of those above */

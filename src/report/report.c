@@ -234,6 +234,16 @@ static void write_steady(struct dalcs_json *json, const struct dalcs_report *rep
                           report->steady.doubled.n_multipliers);
         dalcs_json_close(json, '}');
     }
+    if (report->steady.attractor.kind != NULL) {
+        dalcs_json_open(json, "attractor", '{', false);
+        dalcs_json_string(json, "kind", report->steady.attractor.kind);
+        if (report->steady.attractor.periods > 0) {
+            dalcs_json_integer(json, "periods", report->steady.attractor.periods);
+            dalcs_json_number(json, "period", report->steady.attractor.period);
+        }
+        dalcs_json_number(json, "growth", report->steady.attractor.growth);
+        dalcs_json_close(json, '}');
+    }
     dalcs_json_open(json, "conserved", '[', false);
     for (size_t i = 0; i < report->steady.n_conserved; i++) {
         dalcs_json_string(json, NULL, report->steady.conserved[i]);

@@ -13,18 +13,18 @@ static const long waits[] = {60, 240, 960};
 /* By such a part of the scale the run starts beside the orbit. */
 static const double beside = 1e-2;
 
-/* Does the orbit of n periods through st->at come back after fewer of them? Two orbits that part where a multiplier
- * passes -1 by d are sqrt(d) apart, which is far more than what st->at is off by. */
-static enum dalcs_status repeats_earlier(struct dalcs_steady *st, double one, int n, bool *it) {
+/* Two orbits that part where a multiplier passes -1 by d are sqrt(d) apart, which is far more than what st->at is off
+ * by. */
+enum dalcs_status dalcs_steady_find_repeat(struct dalcs_steady *st, double one, int n, int *first) {
     const double whole = st->period;
     const double distance = st->distance;
     enum dalcs_status status = DALCS_OK;
-    *it = false;
-    for (int k = 1; k < n && !*it && status == DALCS_OK; k++) {
+    *first = n;
+    for (int k = 1; k < n && *first == n && status == DALCS_OK; k++) {
         if (n % k == 0) {
             st->period = k * one;
             status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
-            *it = status == DALCS_OK && dalcs_steady_comes_back(st, distance);
+            *first = status == DALCS_OK && dalcs_steady_comes_back(st, distance) ? k : n;
             status = status < DALCS_OK ? status : DALCS_OK; /* a run that fails is none of it */
         }
     }
@@ -33,7 +33,7 @@ static enum dalcs_status repeats_earlier(struct dalcs_steady *st, double one, in
     return status;
 }
 
-static void step_aside(struct dalcs_steady *st) {
+void dalcs_steady_step_aside(struct dalcs_steady *st) {
     double part = 0.5;
     for (int x = 0; x < st->layout.n_x; x++) {
         part = fmod(part + 0.6180339887498949, 1.0);
@@ -49,7 +49,7 @@ static enum dalcs_status look_for(struct dalcs_steady *st, double one, int n, bo
     }
     *found = false;
     for (size_t k = 0; k < sizeof waits / sizeof waits[0] && !*found; k++) {
-        bool is_shorter = false;
+        int first = n;
         st->period = one;
         DALCS_TRY(dalcs_steady_pass(st, waits[k], DALCS_STEADY_PLAIN));
         dalcs_steady_take(st);
@@ -59,9 +59,9 @@ static enum dalcs_status look_for(struct dalcs_steady *st, double one, int n, bo
         if (*found) {
             const enum dalcs_status status = dalcs_steady_next_step(st); /* how far it is off */
             DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-            DALCS_TRY(repeats_earlier(st, one, n, &is_shorter));
+            DALCS_TRY(dalcs_steady_find_repeat(st, one, n, &first));
         }
-        *found = *found && !is_shorter;
+        *found = *found && first == n;
         if (!*found) {
             dalcs_steady_copy_point(st, &st->at, &run);
         }
@@ -70,9 +70,8 @@ static enum dalcs_status look_for(struct dalcs_steady *st, double one, int n, bo
     return *found ? dalcs_steady_refine(st, &run) : DALCS_OK;
 }
 
-/* As st is, with its last pass. */
-static enum dalcs_status go_back(struct dalcs_steady *st, const struct dalcs_orbit_point *orbit,
-                                 double period) {
+enum dalcs_status dalcs_steady_go_back(struct dalcs_steady *st,
+                                       const struct dalcs_orbit_point *orbit, double period) {
     dalcs_steady_copy_point(st, &st->at, orbit);
     st->period = period;
     return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
@@ -81,40 +80,27 @@ static enum dalcs_status go_back(struct dalcs_steady *st, const struct dalcs_orb
 enum dalcs_status dalcs_steady_replace(struct dalcs_steady *st, double one, int n) {
     const double whole = st->period;
     struct dalcs_orbit_point orbit;
-    bool is_shorter;
+    int first;
     bool found = false;
     if (!dalcs_steady_make_point(st, &orbit)) {
         return DALCS_E_NOMEM;
     }
     dalcs_steady_copy_point(st, &orbit, &st->at);
-    DALCS_TRY(repeats_earlier(st, one, n, &is_shorter));
-    DALCS_TRY(go_back(st, &orbit, whole));
-    if (!is_shorter || dalcs_steady_largest_multiplier(st) <= 1.0 + 1e-9) {
+    DALCS_TRY(dalcs_steady_find_repeat(st, one, n, &first));
+    DALCS_TRY(dalcs_steady_go_back(st, &orbit, whole));
+    if (first == n || dalcs_steady_largest_multiplier(st) <= 1.0 + 1e-9) {
         return DALCS_OK;
     }
-    step_aside(st);
+    dalcs_steady_step_aside(st);
     DALCS_TRY(look_for(st, one, n, &found));
-    return found ? DALCS_OK : go_back(st, &orbit, whole);
+    return found ? DALCS_OK : dalcs_steady_go_back(st, &orbit, whole);
 }
 
 enum dalcs_status dalcs_steady_look_for_double(struct dalcs_steady *st) {
     const double one = st->period;
-    const struct dalcs_steady_count count = st->n;
-    const bool is_exact = st->is_exact;
-    struct dalcs_orbit_point orbit;
     bool found;
-    if (!dalcs_steady_make_point(st, &orbit)) {
-        return DALCS_E_NOMEM;
-    }
-    dalcs_steady_copy_point(st, &orbit, &st->at);
-    step_aside(st);
+    dalcs_steady_step_aside(st);
     enum dalcs_status status = look_for(st, one, 2, &found);
     status = status == DALCS_OK && found ? dalcs_steady_report_double(st, one) : status;
-    if (status > DALCS_OK) { /* a run that fails there is not this orbit's */
-        status = DALCS_OK;
-    }
-    status = status == DALCS_OK ? go_back(st, &orbit, one) : status;
-    st->n = count;
-    st->is_exact = is_exact;
-    return status;
+    return status > DALCS_OK ? DALCS_OK : status; /* a run that fails there is not this orbit's */
 }

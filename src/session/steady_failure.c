@@ -56,7 +56,30 @@ static const char *moves_text(struct dalcs_steady *st) {
     return text == NULL ? "" : text;
 }
 
-enum dalcs_status dalcs_steady_tell_failure(struct dalcs_steady *st, bool endless) {
+/* That what a run comes to is no orbit, or not soon. */
+static const char *is_none_text(struct dalcs_steady *st, const struct dalcs_steady_attractor *a) {
+    struct dalcs_arena *arena = &st->run->s->arena;
+    switch (a->kind) {
+    case DALCS_STEADY_CHAOS:
+        return dalcs_arena_printf(arena,
+                                  ": a run is chaotic, what two of them differ by grows by %.4g "
+                                  "each period, on average",
+                                  a->growth);
+    case DALCS_STEADY_TORUS:
+        return ": a run is quasi-periodic, it has an oscillation that has no common period with "
+               "the sources";
+    case DALCS_STEADY_SETTLING:
+        return dalcs_arena_printf(arena,
+                                  ": what two runs differ by fades by %.9g each period, so that "
+                                  "there may be an orbit of many periods",
+                                  a->growth);
+    default:
+        return "";
+    }
+}
+
+enum dalcs_status dalcs_steady_tell_failure(struct dalcs_steady *st, bool endless,
+                                            const struct dalcs_steady_attractor *a) {
     struct dalcs_session *s = st->run->s;
     for (int x = 0; x < st->layout.n_x; x++) {
         st->step[x] = st->then.x[x] - st->at.x[x];
@@ -72,11 +95,12 @@ enum dalcs_status dalcs_steady_tell_failure(struct dalcs_steady *st, bool endles
                        moves_text(st));
         return DALCS_NOT_CONVERGED;
     }
+    const char *none = is_none_text(st, a);
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
                    "look at it with .tran; a switch that follows the circuit may have a clock of "
                    "its own",
-                   "no periodic steady state was found in %ld periods; in the last one %s",
-                   st->n.periods, moves_text(st));
+                   "no periodic steady state was found in %ld periods%s; in the last one %s",
+                   st->n.periods, none == NULL ? "" : none, moves_text(st));
     return DALCS_NOT_CONVERGED;
 }
 

@@ -12,6 +12,10 @@
 /* A multiplier is 1 within what rounding and the tolerance make of it. */
 static const double near_one = 1e-9;
 
+/* The size of a pair is, within what a hundred steps of a period make of an oscillation that the orbit does not have: the
+ * steps are as long as the orbit allows, each to the 1e-9 that small circuits are held to. */
+static const double near_circle = 1e-7;
+
 /* Smaller than this beside 1 is none: nothing of it is left after one period. */
 static const double vanishes = 1e-12;
 
@@ -134,32 +138,38 @@ static double take_out_flow(struct dalcs_floquet *m, size_t *n) {
 
 /* ---- Verdict ------------------------------------------------------------------------------------- */
 
+/* By how much the largest lies outside the unit circle; within what is not known, 0. */
+static double outside(const struct dalcs_floquet *m, size_t n) {
+    const double by = n > 0 ? hypot(m[0].re, m[0].im) - 1.0 : -1.0;
+    return fabs(by) > (n > 0 && m[0].im != 0.0 ? near_circle : near_one) ? by : 0.0;
+}
+
 bool dalcs_steady_is_unstable(const struct dalcs_report *report) {
-    const struct dalcs_floquet *m = report->steady.multiplier;
-    return report->steady.n_multipliers > 0 && hypot(m[0].re, m[0].im) > 1.0 + near_one;
+    return outside(report->steady.multiplier, report->steady.n_multipliers) > 0.0;
+}
+
+/* How what is beside the orbit, of that period, leaves it; as slowly as that is, not "by 1". */
+static const char *growth_text(struct dalcs_arena *arena, const struct dalcs_floquet *m,
+                               double period) {
+    const double size = hypot(m->re, m->im);
+    const int digits = size < 1.001 ? 10 : 4;
+    char text[DALCS_QUANTITY_SIZE];
+    if (m->im != 0.0) {
+        return dalcs_arena_printf(
+            arena, "unstable: an oscillation of %s at %s grows by %.*g each period", m->state,
+            dalcs_quantity_write(text, fabs(carg(m->re + I * m->im)) / (2.0 * acos(-1.0) * period),
+                                 "Hz", 4),
+            digits, size);
+    }
+    return dalcs_arena_printf(arena, "unstable: a deviation of %s %sgrows by %.*g each period",
+                              m->state, m->re < 0.0 ? "changes its sign and " : "", digits, size);
 }
 
 static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floquet *m, size_t n) {
     struct dalcs_arena *arena = &st->run->s->arena;
-    const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
-    char text[DALCS_QUANTITY_SIZE];
-    if (size > 1.0 + near_one && m[0].im != 0.0) {
-        return dalcs_arena_printf(
-            arena, "unstable: an oscillation of %s at %s grows by %.4g each period", m[0].state,
-            dalcs_quantity_write(
-                text, fabs(carg(m[0].re + I * m[0].im)) / (2.0 * acos(-1.0) * st->period), "Hz", 4),
-            size);
-    }
-    if (size > 1.0 + near_one && m[0].re < 0.0) {
-        return dalcs_arena_printf(
-            arena,
-            "unstable: a deviation of %s changes its sign and grows by %.4g each period; a run "
-            "goes to an orbit of two periods or more: try a period of %s",
-            m[0].state, size, dalcs_quantity_write(text, 2.0 * st->period, "s", 12));
-    }
-    if (size > 1.0 + near_one) {
-        return dalcs_arena_printf(arena, "unstable: a deviation of %s grows by %.4g each period",
-                                  m[0].state, size);
+    const double by = outside(m, n);
+    if (by > 0.0) {
+        return growth_text(arena, m, st->period);
     }
     if (st->is_free && st->n_free > 0) {
         return "not unique: nothing determines its amplitude, or another conserved quantity";
@@ -167,7 +177,7 @@ static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floque
     if (st->n_conserved > 0) {
         return "not unique: a conserved quantity keeps its initial value";
     }
-    return size < 1.0 - near_one ? "stable" : "at the border of stability";
+    return by < 0.0 ? "stable" : "at the border of stability";
 }
 
 /* "v(c2) - 0.5 v(c1)": the terms of a conserved quantity, the largest as 1. */
@@ -266,7 +276,7 @@ double dalcs_steady_largest_multiplier(struct dalcs_steady *st) {
 
 enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one) {
     struct dalcs_report *report = &st->run->s->report;
-    const struct dalcs_floquet *of_one = &report->steady.multiplier[0];
+    struct dalcs_arena *arena = &st->run->s->arena;
     struct dalcs_floquet *m;
     size_t n;
     char text[DALCS_QUANTITY_SIZE];
@@ -274,16 +284,67 @@ enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one
     n = count_lasting(m, n);
     const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
     report->steady.doubled.period = 2.0 * one;
-    report->steady.doubled.stable = size < 1.0 - near_one;
+    report->steady.doubled.stable = outside(m, n) < 0.0;
     report->steady.doubled.n_multipliers = n;
     report->steady.doubled.multiplier = m;
     report->steady.verdict = dalcs_arena_printf(
-        &st->run->s->arena,
-        "unstable: a deviation of %s changes its sign and grows by %.4g each period; an orbit of "
-        "two periods, %s, was found: %s, with a largest factor of %.6g; .pss periods=2 gives it",
-        of_one->state, hypot(of_one->re, of_one->im),
+        arena,
+        "%s; an orbit of two periods, %s, was found: %s, with a largest factor of %.6g; .pss "
+        "periods=2 gives it",
+        growth_text(arena, report->steady.multiplier, one),
         dalcs_quantity_write(text, 2.0 * one, "s", 12),
-        size < 1.0 - near_one ? "stable" : "unstable too", size);
+        report->steady.doubled.stable ? "stable" : "unstable too", size);
+    return report->steady.verdict != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* What a run comes to, as the end of a sentence; "": that is not known. */
+static const char *attractor_text(struct dalcs_arena *arena, const struct dalcs_steady_attractor *a,
+                                  double period) {
+    char text[DALCS_QUANTITY_SIZE];
+    switch (a->kind) {
+    case DALCS_STEADY_ORBIT:
+        return a->n == 1 ? dalcs_arena_printf(
+                               arena,
+                               "; another orbit of one period was found: stable, with a "
+                               "largest factor of %.6g; start nearer to it with IC= and uic",
+                               a->growth)
+                         : dalcs_arena_printf(arena,
+                                              "; an orbit of %d periods, %s, was found: stable, "
+                                              "with a largest factor of "
+                                              "%.6g; .pss periods=%d gives it",
+                                              a->n, dalcs_quantity_write(text, period, "s", 12),
+                                              a->growth, a->n);
+    case DALCS_STEADY_TORUS:
+        return "; a run beside it is quasi-periodic: an oscillation that has no common period with "
+               "the sources";
+    case DALCS_STEADY_CHAOS:
+        return dalcs_arena_printf(
+            arena,
+            "; a run beside it is chaotic: what two runs differ by grows by %.4g each period, on "
+            "average",
+            a->growth);
+    case DALCS_STEADY_SETTLING:
+    case DALCS_STEADY_UNKNOWN:
+        break;
+    }
+    return "";
+}
+
+enum dalcs_status dalcs_steady_report_attractor(struct dalcs_steady *st, double one,
+                                                const struct dalcs_steady_attractor *a) {
+    static const char *const kind[] = {[DALCS_STEADY_ORBIT] = "orbit",
+                                       [DALCS_STEADY_TORUS] = "quasi-periodic",
+                                       [DALCS_STEADY_CHAOS] = "chaos"};
+    struct dalcs_report *report = &st->run->s->report;
+    const double period = a->n * one;
+    const char *text = attractor_text(&st->run->s->arena, a, period);
+    report->steady.attractor.kind = kind[a->kind];
+    report->steady.attractor.periods = a->n;
+    report->steady.attractor.period = period;
+    report->steady.attractor.growth = a->growth;
+    report->steady.verdict =
+        text == NULL ? NULL
+                     : dalcs_arena_printf(&st->run->s->arena, "%s%s", report->steady.verdict, text);
     return report->steady.verdict != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -308,8 +369,7 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
     s->report.steady.exact = st->is_exact;
     s->report.steady.multiplier = m;
     s->report.steady.n_multipliers = n;
-    s->report.steady.stable = st->n_conserved == 0 && st->n_free == 0 &&
-                              (n == 0 || hypot(m[0].re, m[0].im) < 1.0 - near_one);
+    s->report.steady.stable = st->n_conserved == 0 && st->n_free == 0 && outside(m, n) < 0.0;
     s->report.steady.verdict = verdict_of(st, m, n);
     DALCS_TRY(tell_conserved(st));
     return s->report.steady.verdict != NULL ? dalcs_steady_report_signals(st) : DALCS_E_NOMEM;

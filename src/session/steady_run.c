@@ -75,22 +75,13 @@ static void take_period(struct dalcs_run *r, double period, bool uic) {
 
 /* ---- All of it ----------------------------------------------------------------------------------- */
 
-/* Does the largest multiplier say that each second period differs? */
-static bool is_subharmonic(const struct dalcs_report *report) {
-    const struct dalcs_floquet *m = report->steady.multiplier;
-    return dalcs_steady_is_unstable(report) && m[0].im == 0.0 && m[0].re < 0.0;
-}
-
-/* With gates the period may be a multiple of that of the sources. */
+/* The period may be a multiple of that of the sources: of gates, and of an orbit nearby. */
 static enum dalcs_status take_repeats(struct dalcs_steady *st, bool uic) {
     struct dalcs_run *r = st->run;
     int n = 1;
-    if (r->s->circuit.n_gates == 0) {
-        return DALCS_OK;
-    }
     if (r->s->near != NULL) {
         n = (int)rint(r->s->near->period / st->period);
-    } else {
+    } else if (r->s->circuit.n_gates > 0) {
         DALCS_TRY(dalcs_steady_find_repeats(st, &n));
         dalcs_steady_note_repeats(st, n);
     }
@@ -105,6 +96,7 @@ static enum dalcs_status search(struct dalcs_steady *st, bool is_free, bool leav
     const double guess = st->period;
     bool found = false;
     bool endless = false;
+    struct dalcs_steady_attractor attractor = {.kind = DALCS_STEADY_UNKNOWN};
     DALCS_TRY(n_periods == 1.0 ? dalcs_steady_anchor_try(st, leaves, is_free, &found) : DALCS_OK);
     if (is_free) {
         DALCS_TRY(found ? DALCS_OK : dalcs_steady_find_oscillation(st, guess));
@@ -112,8 +104,12 @@ static enum dalcs_status search(struct dalcs_steady *st, bool is_free, bool leav
         return n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK;
     }
     DALCS_TRY(found ? DALCS_OK : dalcs_steady_search(st, &found, &endless));
+    if (!found && !endless) {
+        DALCS_TRY(dalcs_steady_look_ahead(st, &found, &attractor));
+        return found ? DALCS_OK : dalcs_steady_tell_failure(st, false, &attractor);
+    }
     if (!found) {
-        return dalcs_steady_tell_failure(st, endless);
+        return dalcs_steady_tell_failure(st, true, &attractor);
     }
     return n_periods > 1.0 ? dalcs_steady_replace(st, st->period / n_periods, (int)n_periods)
                            : DALCS_OK;
@@ -161,8 +157,8 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     DALCS_TRY(dalcs_steady_next_step(st)); /* how far it may be off, and what is conserved */
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
     DALCS_TRY(dalcs_steady_report(st));
-    return n_periods == 1.0 && r->s->near == NULL && is_subharmonic(&r->s->report)
-               ? dalcs_steady_look_for_double(st)
+    return n_periods == 1.0 && r->s->near == NULL && dalcs_steady_is_unstable(&r->s->report)
+               ? dalcs_steady_look_beside(st)
                : DALCS_OK;
 }
 

@@ -1,0 +1,284 @@
+/* steady_attractor.c - where a run comes to that stays on no orbit of one period.
+ *
+ * Its points at the ends of periods are kept. Newton's method is tried on so many periods n as take them nearest to where
+ * they were, and what it finds counts by the same check as any other orbit. Where there is none, the run is on a torus or
+ * in chaos: in chaos what two runs differ by grows without end, by M of one period after the other, as long as it is
+ * small; on a torus it neither grows nor fades, and there is always an n that brings all points back nearly. */
+#include "steady.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Points of a run. Half of them are compared with those n before. In a cascade of period doublings each orbit has 1/4.67 of
+ * the range of the one before (Feigenbaum): those of more than 128 periods have 1/50000 of all. */
+enum { KEPT = 256, MOST_PERIODS = KEPT / 2 };
+
+/* Periods of the run before each look, but for those kept; the first suffices where differences fade by 0.9 each. */
+static const long waits[] = {60, 240, 960};
+
+/* What is beside an unstable orbit by 1e-2, of which a hundredth may grow, has to be large many times over. */
+static const double grown = 1e6;
+
+/* Between two looks a run that has no end to go to grows by `grown`, another one by less than this. */
+static const double bounded = 10.0;
+
+/* Nearer than this, over the scale, is the same point: what an orbit may be off by. */
+static const double good = 1e-10;
+
+/* As in steady_report.c. */
+static const double near_one = 1e-9;
+
+/* Steps of the run times unknowns: seconds. More are for the user to ask for, with .tran. */
+static const double most_work = 1e7;
+
+/* The growth of a difference is a mean of logarithms, of so many sums of so many periods; before it, it turns to where it
+ * grows most. */
+enum { SUMS = 16, PERIODS_OF_A_SUM = 64, TURNING = 64 };
+
+/* It is not 0 where it is this many times its standard deviation. */
+static const double certain = 4.0;
+
+/* Of 129 points on a circle two are nearer than 2 pi/129 of its radius, 0.025 of its width (Dirichlet); where points are
+ * not evenly spread it is more. */
+static const double near_return = 0.2;
+
+struct follow {
+    struct dalcs_steady *st;
+    double one;    /* s, a period */
+    double before; /* steps at the beginning */
+    double work_of_a_step;
+    struct dalcs_orbit_point kept[KEPT];
+    double *scale;   /* [n_x] of the periods that are kept */
+    double *vector;  /* [2 n_x] work */
+    double width;    /* of the kept points, over the scale */
+    bool is_bounded; /* no state is much larger than when the run was looked at before */
+    double nearest;  /* how near they come to those n before */
+    int n;           /* periods that do */
+};
+
+static bool make_room(struct follow *f) {
+    struct dalcs_steady *st = f->st;
+    const size_t n_x = (size_t)st->layout.n_x;
+    bool complete = true;
+    for (int k = 0; k < KEPT && complete; k++) {
+        complete = dalcs_steady_make_point(st, &f->kept[k]);
+    }
+    f->scale = dalcs_arena_alloc(&st->arena, n_x + 1, sizeof(double));
+    f->vector = dalcs_arena_alloc(&st->arena, 2 * n_x + 1, sizeof(double));
+    return complete && f->scale != NULL && f->vector != NULL;
+}
+
+static void begin(struct follow *f, struct dalcs_steady *st) {
+    const struct dalcs_network *network = &st->run->s->network;
+    *f = (struct follow){
+        .st = st, .one = st->period, .before = (double)st->run->s->report.work.steps};
+    for (int k = 0; k < network->n_systems; k++) {
+        f->work_of_a_step += network->system[k].n_x + network->system[k].n_z;
+    }
+}
+
+/* Is there enough left for so many periods more, of those that took `steps`? */
+static bool may_go_on(const struct follow *f, double steps, double periods) {
+    const double so_far = (double)f->st->run->s->report.work.steps - f->before;
+    return (so_far + steps * periods) * f->work_of_a_step <= most_work;
+}
+
+/* ---- How near points come to those before -------------------------------------------------------- */
+
+/* Of states alone: on a torus switches and bits are somewhere else after any number of periods. */
+static double distance(const struct follow *f, const struct dalcs_orbit_point *a,
+                       const struct dalcs_orbit_point *b) {
+    double most = 0.0;
+    for (int x = 0; x < f->st->layout.n_x; x++) {
+        const double off = fabs(a->x[x] - b->x[x]);
+        most = off > 0.0 ? fmax(most, off / f->scale[x]) : most;
+    }
+    return most;
+}
+
+/* The first n that takes the last points nearest to where they were. */
+static void find_nearest(struct follow *f) {
+    f->nearest = INFINITY;
+    for (int n = 1; n <= MOST_PERIODS; n++) {
+        double most = good;
+        for (int i = KEPT - MOST_PERIODS; i < KEPT; i++) {
+            most = fmax(most, distance(f, &f->kept[i], &f->kept[i - n]));
+        }
+        f->n = most < f->nearest ? n : f->n;
+        f->nearest = fmin(most, f->nearest);
+    }
+}
+
+static void find_width(struct follow *f) {
+    f->width = 0.0;
+    for (int x = 0; x < f->st->layout.n_x; x++) {
+        double low = f->kept[0].x[x];
+        double high = low;
+        for (int i = 1; i < KEPT; i++) {
+            low = fmin(low, f->kept[i].x[x]);
+            high = fmax(high, f->kept[i].x[x]);
+        }
+        f->width = high > low ? fmax(f->width, (high - low) / f->scale[x]) : f->width;
+    }
+}
+
+/* ---- Orbits -------------------------------------------------------------------------------------- */
+
+/* On from st->at by so many periods and those that are kept. */
+static enum dalcs_status run_on(struct follow *f, long wait) {
+    struct dalcs_steady *st = f->st;
+    st->period = f->one;
+    DALCS_TRY(dalcs_steady_pass(st, wait, DALCS_STEADY_PLAIN));
+    dalcs_steady_take(st);
+    memset(f->vector, 0, (size_t)st->layout.n_x * sizeof(double));
+    for (int k = 0; k < KEPT; k++) {
+        DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN));
+        dalcs_steady_take(st);
+        dalcs_steady_copy_point(st, &f->kept[k], &st->at);
+        for (int x = 0; x < st->layout.n_x; x++) {
+            f->vector[x] = fmax(f->vector[x], st->scale[x]);
+        }
+    }
+    f->is_bounded = true;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        f->is_bounded = f->is_bounded && f->vector[x] <= bounded * f->scale[x];
+        f->scale[x] = f->vector[x];
+    }
+    find_nearest(f);
+    find_width(f);
+    return DALCS_OK;
+}
+
+/* From where the run is: a stable orbit of f->n periods, or of a part of them; else the run is where it was. */
+static enum dalcs_status try_orbit(struct follow *f, bool *found, int *n, double *largest) {
+    struct dalcs_steady *st = f->st;
+    *found = false;
+    st->period = f->n * f->one;
+    DALCS_TRY(dalcs_steady_burst(st, found));
+    if (*found) {
+        enum dalcs_status status = dalcs_steady_next_step(st); /* how far it is off */
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        DALCS_TRY(dalcs_steady_find_repeat(st, f->one, f->n, n));
+        st->period = *n * f->one;
+        status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        *largest = dalcs_steady_largest_multiplier(st);
+        *found = status == DALCS_OK && *largest < 1.0 - near_one;
+    }
+    if (!*found) {
+        st->period = f->one;
+        dalcs_steady_copy_point(st, &st->at, &f->kept[KEPT - 1]);
+    }
+    return DALCS_OK;
+}
+
+/* ---- What a small difference becomes ------------------------------------------------------------- */
+
+/* The logarithm of what M makes of a vector of length 1, which then is that, of length 1. */
+static double multiply(struct follow *f) {
+    const struct dalcs_steady *st = f->st;
+    double *v = f->vector;
+    double *w = f->vector + st->layout.n_x;
+    double size = 0.0;
+    for (int k = 0; k < st->layout.n_systems; k++) {
+        const int first = st->layout.first[k];
+        const int n = st->layout.first[k + 1] - first;
+        const double *M = st->M + st->layout.first_of_M[k];
+        for (int x = 0; x < n; x++) {
+            double sum = 0.0;
+            for (int i = 0; i < n; i++) {
+                sum += M[i * n + x] * v[first + i];
+            }
+            w[first + x] = sum;
+            size = hypot(size, f->scale[first + x] > 0.0 ? sum / f->scale[first + x] : 0.0);
+        }
+    }
+    for (int x = 0; x < st->layout.n_x; x++) {
+        v[x] = size > 0.0 ? w[x] / size : v[x];
+    }
+    return log(size);
+}
+
+/* Over the run on from st->at: the mean logarithm for a period, and its standard deviation; *known: M was exact. */
+static enum dalcs_status find_growth(struct follow *f, double *mean, double *deviation,
+                                     bool *known) {
+    struct dalcs_steady *st = f->st;
+    double square = 0.0;
+    *mean = 0.0;
+    *known = true;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        f->vector[x] = f->scale[x] * (0.5 + fmod(0.6180339887498949 * (x + 1), 1.0));
+    }
+    for (int k = -TURNING; k < SUMS * PERIODS_OF_A_SUM; k += PERIODS_OF_A_SUM) {
+        double sum = 0.0;
+        for (int i = 0; i < PERIODS_OF_A_SUM; i++) {
+            DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
+            dalcs_steady_take(st);
+            *known = *known && st->is_exact;
+            sum += multiply(f) / PERIODS_OF_A_SUM;
+        }
+        *mean += k >= 0 ? sum / SUMS : 0.0;
+        square += k >= 0 ? sum * sum / SUMS : 0.0;
+    }
+    *deviation = sqrt(fmax(0.0, square - *mean * *mean) / (SUMS - 1));
+    *known = *known && isfinite(*mean);
+    return DALCS_OK;
+}
+
+static enum dalcs_status tell_apart(struct follow *f, struct dalcs_steady_attractor *a) {
+    double mean;
+    double deviation;
+    bool known;
+    DALCS_TRY(find_growth(f, &mean, &deviation, &known));
+    const bool is_zero = fabs(mean) <= certain * deviation;
+    if (known && mean > 0.0 && !is_zero) {
+        a->kind = DALCS_STEADY_CHAOS;
+    } else if (known && is_zero && f->nearest <= near_return * f->width) {
+        a->kind = DALCS_STEADY_TORUS;
+    } else if (known && mean < 0.0 && !is_zero) {
+        a->kind = DALCS_STEADY_SETTLING;
+    }
+    a->growth = exp(mean);
+    return DALCS_OK;
+}
+
+/* ---- All of it ----------------------------------------------------------------------------------- */
+
+static enum dalcs_status follow(struct follow *f, double growth, struct dalcs_steady_attractor *a) {
+    struct dalcs_steady *st = f->st;
+    const double leaving = growth > 1.0 ? ceil(log(grown) / log(growth)) : 0.0;
+    double steps = (double)st->run->s->report.work.steps;
+    bool found = false;
+    DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN));
+    steps = (double)st->run->s->report.work.steps - steps;
+    for (size_t k = 0; k < sizeof waits / sizeof waits[0]; k++) {
+        const double wait = fmax((double)waits[k], leaving);
+        if (!may_go_on(f, steps, wait + KEPT)) {
+            return DALCS_OK;
+        }
+        DALCS_TRY(run_on(f, (long)wait));
+        DALCS_TRY(try_orbit(f, &found, &a->n, &a->growth));
+        if (found) {
+            a->kind = DALCS_STEADY_ORBIT;
+            return dalcs_steady_refine(st, &f->kept[0]);
+        }
+    }
+    return f->is_bounded && may_go_on(f, steps, 2.0 * SUMS * PERIODS_OF_A_SUM) ? tell_apart(f, a)
+                                                                               : DALCS_OK;
+}
+
+enum dalcs_status dalcs_steady_find_attractor(struct dalcs_steady *st, double growth,
+                                              struct dalcs_steady_attractor *a) {
+    struct follow f;
+    *a = (struct dalcs_steady_attractor){.kind = DALCS_STEADY_UNKNOWN};
+    begin(&f, st);
+    if (!make_room(&f)) {
+        return DALCS_E_NOMEM;
+    }
+    const enum dalcs_status status = follow(&f, growth, a);
+    if (a->kind != DALCS_STEADY_ORBIT) {
+        st->period = f.one;
+        a->n = 0;
+    }
+    return status < DALCS_OK ? status : DALCS_OK; /* a run that fails has not been followed */
+}
