@@ -238,14 +238,15 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
     audit->now.t = stretch->from;
     audit->now.side = DALCS_RIGHT;
     /* An event is early or late by what changes no value by more than the tolerance: that share of the stretch that it
-     * ended, over which values change by their scales at most. A diode may have its signs that much later. */
+     * ended, over which values change by their scales at most. A diode may have its signs that much later, and a switch
+     * its control. */
     part->at.lateness = fmin(part->tolerance * past, stretch->to - stretch->from);
     look(audit, stretch->part, &audit->now);
-    part->at.lateness = 0.0;
     if (part->is_open) {
         audit_check_crossing(audit, part, &audit->before, &audit->now);
         audit->budget.credit -= part->cost;
     }
+    part->at.lateness = 0.0;
     if (!part->has_entered && stretch->from == 0.0) {
         audit_check_start(audit, part, &audit->now, stretch->stored);
     }
