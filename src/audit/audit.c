@@ -259,7 +259,7 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
 static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     if (!part->watch->is_put_off && part->at.past > 0.0) {
-        audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
+        audit->reader.read_before(audit->reader.user, stretch->part, 0.0, &audit->before);
         part->is_open = true;
     }
     part->at.from_coarse = part->at.past_coarse;
@@ -270,7 +270,7 @@ static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretc
 /* The switches that have changed over where it begins. */
 static void look_at_turn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
-    audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
+    audit->reader.read_before(audit->reader.user, stretch->part, 0.0, &audit->before);
     audit->now.t = stretch->from;
     audit->now.side = DALCS_RIGHT;
     audit->reader.read(audit->reader.user, stretch->part, &audit->now);
