@@ -235,14 +235,15 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
     audit->now.t = stretch->from;
     audit->now.side = DALCS_RIGHT;
     /* An event is early or late by what changes no value by more than the tolerance: that share of the stretch that it
-     * ended, over which values change by their scales at most. A diode may have its signs that much later. */
+     * ended, over which values change by their scales at most. A diode may have its signs that much later, and a switch
+     * its control. */
     part->at.lateness = fmin(part->tolerance * past, stretch->to - stretch->from);
     look(audit, stretch->part, &audit->now);
-    part->at.lateness = 0.0;
     if (part->is_open) {
         audit_check_crossing(audit, part, &audit->before, &audit->now);
         audit->budget.credit -= part->cost;
     }
+    part->at.lateness = 0.0;
     if (!part->has_entered && stretch->from == 0.0) {
         audit_check_start(audit, part, &audit->now, stretch->stored);
     }
@@ -255,7 +256,7 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
 static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     if (!part->watch->is_put_off && part->at.past > 0.0) {
-        audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
+        audit->reader.read_before(audit->reader.user, stretch->part, 0.0, &audit->before);
         part->is_open = true;
     }
     part->at.from_coarse = part->at.past_coarse;
@@ -266,7 +267,7 @@ static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretc
 /* The switches that have changed over where it begins. */
 static void look_at_turn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
-    audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
+    audit->reader.read_before(audit->reader.user, stretch->part, 0.0, &audit->before);
     audit->now.t = stretch->from;
     audit->now.side = DALCS_RIGHT;
     audit->reader.read(audit->reader.user, stretch->part, &audit->now);

@@ -87,8 +87,8 @@ struct dalcs_audit_reader {
                        struct dalcs_audit_row *row);
     /* Of a switch, in the present stretch. */
     bool (*is_closed)(void *user, int part, int device);
-    /* The state where the stretch before the present one ended. */
-    void (*read_before)(void *user, int part, struct dalcs_audit_state *state);
+    /* The state where the stretch before the present one ended, or so many s earlier. */
+    void (*read_before)(void *user, int part, double earlier, struct dalcs_audit_state *state);
     /* The state of the part at state->t, as the limit from state->side. */
     void (*read)(void *user, int part, struct dalcs_audit_state *state);
     /* Raises v[n_nodes] and i[n_devices] to the largest magnitudes of the part so far. */

@@ -76,9 +76,10 @@ double audit_control(const struct dalcs_audit *audit, const struct dalcs_audit_s
 
 double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *s, int device) {
+    const double moved = fmax(audit->options.resolution, part->at.lateness);
     double half_width;
     audit->shifted.side = s->side;
-    audit->shifted.t = s->t + (s->side == DALCS_RIGHT ? 1.0 : -1.0) * audit->options.resolution;
+    audit->shifted.t = s->t + (s->side == DALCS_RIGHT ? 1.0 : -1.0) * moved;
     audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
     return fabs(audit_control(audit, &audit->shifted, device, &half_width) -
                 audit_control(audit, s, device, &half_width));

@@ -5,7 +5,7 @@
 
 void dalcs_audit_look_before(struct dalcs_audit *audit, int part, bool is_same) {
     if (!is_same) {
-        audit->reader.read_before(audit->reader.user, part, &audit->later);
+        audit->reader.read_before(audit->reader.user, part, 0.0, &audit->later);
     }
 }
 

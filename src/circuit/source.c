@@ -277,7 +277,14 @@ static void check_pulse(struct dalcs_builder *builder, const struct dalcs_token 
                         const struct dalcs_stimulus *s) {
     const double length = s->u.pulse.rise + s->u.pulse.width + s->u.pulse.fall;
     const double period = s->u.pulse.period;
-    if (length > period * (1 + 1e-12)) {
+    const double flanks = s->u.pulse.rise + s->u.pulse.fall;
+    if (length > period * (1 + 1e-12) && fabs(flanks - period) <= 1e-12 * period) {
+        /* how a triangle is written: elsewhere a width may not be 0 */
+        dalcs_builder_note(builder, name, NULL,
+                           "the flanks fill the period of %g s: each pulse is cut by the next one, "
+                           "%g s before its end",
+                           period, length - period);
+    } else if (length > period * (1 + 1e-12)) {
         dalcs_builder_warn(builder, name, NULL,
                            "the pulse lasts %g s, longer than its period of %g s: each is cut by "
                            "the next",

@@ -17,6 +17,13 @@ struct dalcs_search {
     int restarts, flips;
     int turns; /* of switches with hysteresis since the state has jumped, by what turns did */
     int jumps; /* by such turns */
+
+    enum dalcs_turning {
+        DALCS_TURN_ALONE,
+        DALCS_TURN_TOGETHER, /* more than one have, at once */
+        DALCS_TURN_ONE_BY_ONE
+    } turning;
+
     bool turned;
     bool guessed; /* the mode is one remembered from the last time, or that of a front */
     bool front;   /* the latter */

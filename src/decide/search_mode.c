@@ -3,6 +3,7 @@
 
 #include "blocks.h"
 #include "guard_scale.h"
+#include "guard_values.h"
 #include "guards.h"
 #include "restart.h"
 #include "step_length.h"
@@ -126,16 +127,62 @@ static bool comes_round(const struct dalcs_radau_part *part, struct dalcs_search
     return false;
 }
 
+/* Where a switch reaches its threshold on a straight way from what its control was before the instant to what it is now,
+ * 0 to 1: as a resistance that goes from one end to the other would take it there. What was past it before is there at
+ * once, but what has just turned, as by a formula that jumps, turns back last. */
+static double way_to_turn(const struct dalcs_radau_part *part, int guard) {
+    const struct dalcs_system *s = part->component->system;
+    const int d = dalcs_guard_pair(part, guard);
+    const double now = dalcs_guard_control_at(part, guard, 0);
+    const double at_once = dalcs_guard_has_flipped(part, d) ? 1.0 : 0.0;
+    if (part->segment.by_euler || !(part->segment.t > 0.0)) {
+        return at_once; /* before is not known */
+    }
+    const double *control =
+        part->segment.out_before + dalcs_system_n_columns(s) + guard - s->n_pairs;
+    const double v =
+        dalcs_guard_value_at(part, control, part->stages.layout.stride, part->segment.end_before);
+    const double before = dalcs_osnsp_is_on(&part->component->osnsp, d) ? v - s->pair[d].turn_off
+                                                                        : s->pair[d].turn_on - v;
+    return before > 0.0 ? before / fmax(before - now, before) : at_once;
+}
+
+/* Of the switches that have crossed, the first on that way; of equals the first of the netlist. */
+static void keep_first(struct dalcs_radau_part *part) {
+    struct dalcs_part_guards *g = &part->guards;
+    int first = g->crossed[0];
+    double least = way_to_turn(part, first);
+    for (int k = 1; k < g->n_crossed; k++) {
+        const double way = way_to_turn(part, g->crossed[k]);
+        first = way < least ? g->crossed[k] : first;
+        least = fmin(way, least);
+    }
+    g->crossed[0] = first;
+    g->n_crossed = 1;
+}
+
 /* A switch that remembers stands as it was commanded until a voltage says otherwise, and at one instant that is the one
  * behind the last jump: in an accurate step of the mode it has led to. Past the other threshold there, it turns back,
- * and the circuit is asked what that does: a finite sequence of turns and jumps. One that comes round to the same mode
- * without a jump would not end, nor would one with a jump each time: the switches slide. */
+ * and the circuit is asked what that does: a finite sequence of turns and jumps. All that have to turn at once. Where
+ * that comes round to the same mode without a jump, one closing may undo what made another one open, as gaps in series
+ * do that break down together: they turn one by one. Where that does not end either, nor does one with a jump each time,
+ * the switches slide. */
 static enum dalcs_status turn_switches(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        struct dalcs_search *search) {
-    if (comes_round(part, search) || search->jumps > MOST_JUMPS) {
+    const bool is_round = comes_round(part, search);
+    if (search->jumps > MOST_JUMPS || (is_round && search->turning != DALCS_TURN_TOGETHER)) {
         part->guards.slides = true;
         part->component->delayed_commands++;
         return DALCS_OK;
+    }
+    if (is_round) {
+        search->turning = DALCS_TURN_ONE_BY_ONE;
+        search->turns = 0;
+    }
+    if (search->turning == DALCS_TURN_ONE_BY_ONE) {
+        keep_first(part);
+    } else if (part->guards.n_crossed > 1) {
+        search->turning = DALCS_TURN_TOGETHER;
     }
     bool has_jumped = part->segment.jumped;
     search->turns++;

@@ -142,6 +142,9 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     if (part->guards.slips && search->guessed && !search->front) {
         return dalcs_search_refuse(part, search);
     }
+    if (search->guessed && !search->front && dalcs_guards_overreach(part, q->unit)) {
+        return dalcs_search_refuse(part, search);
+    }
     if (at_once && part->guards.fresh) {
         return dalcs_search_change_mode(r, part, search, q->unit, &trial->done);
     }

@@ -186,7 +186,10 @@ static double depth_of_fall(const struct dalcs_radau *r, const struct dalcs_rada
 static void note_fall(struct dalcs_radau_part *part, const struct look *a,
                       const struct dalcs_crossing *c, double depth, bool *at_once) {
     struct dalcs_part_guards *guards = &part->guards;
-    const double near = dalcs_doubt_band(part) * a->scale;
+    /* On factors a guard that is above what rounding leaves of it falls at a time of its own, however soon: of diodes beside
+     * closed switches, which take over one after the other, the band of kilovolts would be all of their nanovolts. */
+    const double near =
+        part->segment.rounding > 1.0 ? a->zero + a->rounding : dalcs_doubt_band(part) * a->scale;
     const bool slips = guards->fresh && c->theta <= from_rest && c->peak <= depth;
     guards->slips = guards->slips || slips;
     const bool soon =

@@ -87,6 +87,19 @@ void dalcs_guards_flip(struct dalcs_radau_part *part) {
     }
 }
 
+bool dalcs_guards_overreach(const struct dalcs_radau_part *part, const double *unit) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const uint64_t *flipped = part->memory.modes_before + p->n_words;
+    const double *value = part->segment.out + dalcs_system_n_equations(p->system);
+    bool any = false;
+    for (int d = 0; d < p->system->n_pairs && !any; d++) {
+        const bool is_on = dalcs_osnsp_is_on(p, d);
+        any = is_on != dalcs_mode_has(flipped, d) && p->lists.is_diode[d] && value[d] < 0.0 &&
+              value[d] < -dalcs_doubt_about(part, d, dalcs_guard_scale(part, d, unit), unit);
+    }
+    return any;
+}
+
 /* Is it 0 at all nodes, as far as digits tell? */
 static bool rests(const struct dalcs_radau_part *part, int guard, const double *unit) {
     double nothing = dalcs_guard_rounding(part, guard, unit);

@@ -45,6 +45,10 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_r
 /* What crossed changes sides. */
 void dalcs_guards_flip(struct dalcs_radau_part *part);
 
+/* Does a guess change a diode beside those that crossed which begins below 0 by more than it may be off by? What crosses at
+ * an event begins with the error of its time, and what crosses a little later does not yet. */
+bool dalcs_guards_overreach(const struct dalcs_radau_part *part, const double *unit);
+
 /* A switch without hysteresis is on above its threshold alone. One that has just closed because its control came up to
  * it, and whose control stays there, is open again. Returns whether any is. */
 bool dalcs_guards_open_resting(struct dalcs_radau_part *part, const double *unit);

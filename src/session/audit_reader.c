@@ -108,6 +108,7 @@ void dalcs_audit_reader_keep(const struct dalcs_audit_run *a, int index) {
     struct audit_members *m = &a->part[index];
     m->last_out = part->segment.out;
     m->last_end = part->segment.end;
+    m->last_step = part->segment.h;
     m->last_time = part->segment.t_end;
     for (int k = 0; k < c->osnsp.n_words; k++) {
         m->last_mode[k] = c->osnsp.mode[k];
@@ -115,7 +116,7 @@ void dalcs_audit_reader_keep(const struct dalcs_audit_run *a, int index) {
 }
 
 /* The numbers of that segment are where they were until the next one has ended. */
-static void read_before(void *user, int index, struct dalcs_audit_state *s) {
+static void read_before(void *user, int index, double earlier, struct dalcs_audit_state *s) {
     const struct dalcs_audit_run *a = user;
     struct dalcs_radau_part *part = &a->radau->part[index];
     const struct dalcs_component *c = part->component;
@@ -124,16 +125,16 @@ static void read_before(void *user, int index, struct dalcs_audit_state *s) {
     dalcs_recurrence_complete_before(part);
     double *present = part->segment.out;
     part->segment.out = m->last_out;
-    dalcs_step_values(part, m->last_end, part->work.y1);
+    dalcs_step_values(part, m->last_end - earlier / m->last_step, part->work.y1);
     part->segment.out = present;
     for (int d = 0; d < c->system->n_pairs; d++) {
         part->work.y1[n_equations + d] *= dalcs_mode_has(m->last_mode, d) ? 1.0 : 0.0;
     }
     for (int i = 0; i < part->excitation.bystanders.n; i++) {
         part->work.y1[part->excitation.bystanders.column[i]] =
-            dalcs_radau_bystander(part, i, m->last_time, DALCS_LEFT);
+            dalcs_radau_bystander(part, i, m->last_time - earlier, DALCS_LEFT);
     }
-    s->t = m->last_time;
+    s->t = m->last_time - earlier;
     s->side = DALCS_LEFT;
     copy_answer(a, index, part->work.y1, m->last_mode, s);
 }

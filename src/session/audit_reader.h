@@ -20,6 +20,7 @@ struct audit_members {
     /* Of the segment that ended last, where it did. */
     double *last_out;
     double last_end, last_time; /* in steps; s */
+    double last_step;           /* s */
     uint64_t *last_mode;
 };
 

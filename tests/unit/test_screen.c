@@ -131,12 +131,12 @@ static void read_present(void *user, int part, struct dalcs_audit_state *s) {
     read_stretch(present, s->t / STEP - present, s);
 }
 
-static void read_before(void *user, int part, struct dalcs_audit_state *s) {
+static void read_before(void *user, int part, double earlier, struct dalcs_audit_state *s) {
     (void)user;
     (void)part;
-    s->t = present * STEP;
+    s->t = present * STEP - earlier;
     s->side = DALCS_LEFT;
-    read_stretch(present - 1, 1.0, s);
+    read_stretch(present - 1, 1.0 - earlier / STEP, s);
 }
 
 static void complete(void *user, int part) {
