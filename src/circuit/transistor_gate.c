@@ -32,30 +32,6 @@ static struct dalcs_gate_range between(double a, double b) {
     return (struct dalcs_gate_range){true, fmin(a, b), fmax(a, b)};
 }
 
-static struct dalcs_gate_range range_of(const struct dalcs_stimulus *s) {
-    struct dalcs_gate_range r = {0};
-    switch (s->kind) {
-    case DALCS_STIMULUS_DC:
-        return between(s->dc, s->dc);
-    case DALCS_STIMULUS_PULSE:
-        return between(s->u.pulse.low, s->u.pulse.high);
-    case DALCS_STIMULUS_SIN:
-        return between(s->u.sine.offset - s->u.sine.amplitude,
-                       s->u.sine.offset + s->u.sine.amplitude);
-    case DALCS_STIMULUS_EXP:
-        return between(s->u.exponential.low, s->u.exponential.high);
-    case DALCS_STIMULUS_PWL:
-        r = between(s->u.pwl.v[0], s->u.pwl.v[0]);
-        for (int k = 1; k < s->u.pwl.n; k++) {
-            r.low = fmin(r.low, s->u.pwl.v[k]);
-            r.high = fmax(r.high, s->u.pwl.v[k]);
-        }
-        return r;
-    default:
-        return r;
-    }
-}
-
 static struct dalcs_gate_range minus(const struct dalcs_gate_range *a,
                                      const struct dalcs_gate_range *b) {
     return (struct dalcs_gate_range){a->is_known && b->is_known, a->low - b->high,
@@ -65,7 +41,8 @@ static struct dalcs_gate_range minus(const struct dalcs_gate_range *a,
 /* Of the V source that an end of a device is; from there to its other end. */
 static struct dalcs_gate_range across(const struct dalcs_circuit *c, const struct dalcs_device *d,
                                       int end) {
-    const struct dalcs_gate_range r = range_of(&c->stimulus[d->stimulus]);
+    struct dalcs_gate_range r = {0};
+    r.is_known = dalcs_stimulus_bounds(&c->stimulus[d->stimulus], &r.low, &r.high);
     return end == 0 ? r : (struct dalcs_gate_range){r.is_known, -r.high, -r.low};
 }
 
