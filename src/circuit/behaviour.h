@@ -298,6 +298,23 @@ int dalcs_compiler_new_node(struct dalcs_compiler *c, const char *what);
 bool dalcs_memory_is(const struct dalcs_formula *f);
 const struct dalcs_form *dalcs_memory_form(struct dalcs_compiler *c, const struct dalcs_formula *f);
 
+/* ---- formula_range.c ------------------------------------------------------------------------------- */
+
+struct dalcs_range {
+    double low, high; /* -INFINITY, INFINITY: not known */
+};
+
+struct dalcs_range dalcs_formula_range(const struct dalcs_compiler *c,
+                                       const struct dalcs_formula *f);
+
+/* ---- staircase.c ----------------------------------------------------------------------------------- */
+
+/* int(x), floor(x), ... and remainders; argument: what they are of. */
+bool dalcs_staircase_is(const struct dalcs_formula *f);
+const struct dalcs_form *dalcs_staircase_form(struct dalcs_compiler *c,
+                                              const struct dalcs_formula *f,
+                                              const struct dalcs_form **argument);
+
 /* ---- commutate.c ----------------------------------------------------------------------------------- */
 
 /* steps (quantity - less); less NULL: nothing. A condition is 1 where it is not 0. */

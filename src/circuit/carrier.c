@@ -4,7 +4,7 @@
  *     asin(sin(x)), acos(cos(x)), ...       a triangle
  *
  * Each is a PULSE with a phase, whose edges are met exactly; as functions of functions a triangle would have infinite
- * slopes within, and floor has steps without end. */
+ * slopes within, and floor steps without end. */
 #include "behaviour.h"
 #include "pi.h"
 
@@ -43,6 +43,10 @@ static const struct dalcs_form *line_form(struct dalcs_compiler *c, struct line 
 
 static const struct dalcs_form *floor_of(struct dalcs_compiler *c, struct line x) {
     return dalcs_form_add(c, line_form(c, x), -1, fraction(c, x));
+}
+
+static const struct dalcs_form *ceil_of(struct dalcs_compiler *c, struct line x) {
+    return dalcs_form_scale(c, -1, floor_of(c, (struct line){-x.rate, -x.offset}));
 }
 
 /* A triangle between 0 and pi, 0 at x = 0, with a period of 2 pi: acos(cos(x)). */
@@ -105,12 +109,16 @@ static const struct dalcs_form *remainder_of(struct dalcs_compiler *c,
 static const struct dalcs_form *steps_of(struct dalcs_compiler *c, const struct dalcs_formula *f) {
     struct line x;
     const char *name = f->function;
-    if (f->n != 1 || !find_line(c, f->argument[0], &x) ||
-        (strcmp(name, "int") == 0 && (x.rate < 0 || x.offset < 0))) {
+    if (f->n != 1 || !find_line(c, f->argument[0], &x)) {
         return NULL;
     }
     if (strcmp(name, "ceil") == 0) {
-        return dalcs_form_scale(c, -1, floor_of(c, (struct line){-x.rate, -x.offset}));
+        return ceil_of(c, x);
+    }
+    if (strcmp(name, "int") == 0 && (x.rate < 0 || x.offset < 0)) { /* floor above 0, ceil below */
+        const struct dalcs_form *zero = dalcs_form_number(c, 0);
+        return dalcs_form_add(c, dalcs_form_max(c, floor_of(c, x), zero), 1,
+                              dalcs_form_min(c, ceil_of(c, x), zero));
     }
     if (strcmp(name, "round") == 0 || strcmp(name, "nint") == 0) {
         x.offset += 0.5;

@@ -190,7 +190,7 @@ static const struct dalcs_form *operation(struct dalcs_compiler *c, const struct
         }
         return f->code == DALCS_JUMP_AND ? multiply(c, f, x, y) : dalcs_form_either(c, x, y);
     default:
-        return refuse(c, f, NULL, "a remainder of a quantity that varies is not piecewise linear");
+        return NULL; /* a remainder is a staircase */
     }
 }
 
@@ -308,7 +308,6 @@ static const char *smooth_name(const struct dalcs_compiler *c, const struct dalc
 
 static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                      const struct dalcs_form **argument) {
-    static const char *const steps[] = {"int", "floor", "ceil", "nint", "round", "fmod"};
     static const char *const points[] = {"eq0", "ne0"};
     const struct dalcs_form *a = argument[0];
     if (is_named(f, "abs")) {
@@ -359,12 +358,6 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
         argument[1]->affine.constant == 1) {
         return a;
     }
-    if (dalcs_builder_is_one_of(f->function, steps, sizeof steps / sizeof steps[0])) {
-        return refuse_name(
-            c, f,
-            "sums of u(...) make a staircase of so many steps, and PULSE(0 1 0 T 0 0 T) a sawtooth",
-            "%s(...) of a quantity that varies has infinitely many steps");
-    }
     if (dalcs_builder_is_one_of(f->function, points, sizeof points / sizeof points[0])) {
         return refuse_name(c, f, "gt0, lt0, ge0 and le0 compare",
                            "%s(...) of a quantity that varies differs at single points only");
@@ -407,6 +400,9 @@ static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
     }
     if (c->failed) {
         return NULL;
+    }
+    if (dalcs_staircase_is(f)) {
+        return dalcs_staircase_form(c, f, argument);
     }
     struct dalcs_affine time;
     switch (f->kind) {

@@ -139,15 +139,42 @@ void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     read_model(&reader, device);
 }
 
+/* An A element that is neither logic nor a block nor a diode. */
+static void refuse_block(struct dalcs_builder *builder, const struct dalcs_card *card,
+                         const struct dalcs_token *type) {
+    static const char *const functions[] = {"and",        "or",      "xor",     "buf",
+                                            "inv",        "schmitt", "dflop",   "srflop",
+                                            "samplehold", "counter", "modulate"};
+    const size_t n = sizeof functions / sizeof functions[0];
+    const char *name = card->token->text;
+    const struct dalcs_token *last = &card->token[card->n - 1];
+    builder->hidden |= DALCS_HIDDEN_ELEMENTS;
+    if (type != NULL) {
+        dalcs_builder_error(
+            builder, card->token, "write it with B sources, switches, gates or other code models",
+            "'%s' is an A element with a model of type %s, which dalcs does not have", name,
+            type->text);
+    } else if (dalcs_builder_is_one_of(last->text, functions, n)) {
+        dalcs_builder_error(builder, card->token,
+                            "Aname in1 in2 in3 in4 in5 inverse out common function",
+                            "'%s' has not the eight nodes of a function of LTspice", name);
+    } else {
+        dalcs_builder_error(
+            builder, card->token,
+            dalcs_builder_suggest_of(builder, functions, n, last->text,
+                                     "functions are and, or, xor, buf, inv, schmitt, dflop, "
+                                     "srflop, samplehold, counter and modulate"),
+            "'%s' has the function or model '%s', which neither dalcs nor the netlist has", name,
+            last->text);
+    }
+}
+
 void dalcs_diode_parse_block(struct dalcs_builder *builder, const struct dalcs_card *card) {
     const struct dalcs_token *last = &card->token[card->n - 1];
     const int index = dalcs_names_find(&builder->models, last->text);
     if (index < 0 || builder->model[index].type == NULL ||
         strcmp(builder->model[index].type->text, "sidiode") != 0) {
-        dalcs_builder_error(builder, card->token, NULL,
-                            "XSPICE and special function blocks are not supported yet ('%s')",
-                            card->token->text);
-        builder->hidden |= DALCS_HIDDEN_ELEMENTS;
+        refuse_block(builder, card, index >= 0 ? builder->model[index].type : NULL);
         return;
     }
     struct dalcs_reader reader =

@@ -479,9 +479,26 @@ static bool is_run(const struct dalcs_builder *builder, enum dalcs_measured_anal
     }
 }
 
+/* `.meas noise x INTEG ...`: of an analysis that is not here, and not a measurement that is called noise. */
+static bool is_of_other_analysis(const struct dalcs_card *card) {
+    static const char *const analyses[] = {"noise", "sp",   "four", "pz",
+                                           "disto", "sens", "tf",   "hb"};
+    bool is = card->n > 3 && dalcs_builder_is_one_of(card->token[1].text, analyses,
+                                                     sizeof analyses / sizeof analyses[0]);
+    for (int k = 0; k < N_KINDS && is; k++) {
+        is = strcmp(card->token[2].text, KINDS[k].name) != 0;
+    }
+    return is;
+}
+
 void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct reading r = {
         .builder = builder, .card = card, .reader = dalcs_reader_start(builder, card, USAGE)};
+    if (is_of_other_analysis(card)) {
+        dalcs_builder_note(builder, &card->token[1], NULL,
+                           "dalcs has no such analysis: this measurement is left out");
+        return;
+    }
     const enum dalcs_measured_analysis analysis = read_analysis(&r);
     const struct dalcs_token *name;
     if (!dalcs_reader_name(&r.reader, "a name", &name)) {

@@ -106,6 +106,9 @@ double dalcs_stimulus_value(const struct dalcs_stimulus *s, double t, enum dalcs
  * edge is a jump of the value or of the slope. */
 double dalcs_stimulus_next_edge(const struct dalcs_stimulus *s, double t);
 
+/* The least and the largest value that it may have; false: it has none, or they are not known. */
+bool dalcs_stimulus_bounds(const struct dalcs_stimulus *s, double *low, double *high);
+
 /* Does the value itself jump at time t? */
 bool dalcs_stimulus_jumps_at(const struct dalcs_stimulus *s, double t);
 

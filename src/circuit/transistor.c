@@ -25,7 +25,8 @@ static const char *usage_of(char letter) {
     return letter == 'm' ? MOSFET_USAGE : letter == 'z' ? IGBT_USAGE : BIPOLAR_USAGE;
 }
 
-/* A model that nothing defines, from the table of transistors; NULL: it is not in there. */
+/* A model that nothing defines: from the table of transistors or, where a library is not here that may have it, a
+ * typical one. NULL: neither. */
 static struct dalcs_transistor *take_part(struct dalcs_builder *builder,
                                           const struct dalcs_token *name) {
     struct dalcs_transistor *t = dalcs_arena_alloc(&builder->scratch, 1, sizeof *t);
@@ -34,6 +35,7 @@ static struct dalcs_transistor *take_part(struct dalcs_builder *builder,
         return NULL;
     }
     *t = (struct dalcs_transistor){.kind = DALCS_MOSFET,
+                                   .name = name->text,
                                    .width = 1,
                                    .length = 1,
                                    .leakage = (double)INFINITY,
@@ -42,8 +44,9 @@ static struct dalcs_transistor *take_part(struct dalcs_builder *builder,
                                              .emission = 1,
                                              .breakdown = (double)INFINITY,
                                              .breakdown_current = 1}};
+    const bool is_listed = dalcs_transistor_part_find(name->text, t);
     if (builder->n_models >= builder->model_capacity ||
-        !dalcs_transistor_part_find(name->text, t)) {
+        (!is_listed && builder->netlist->missing_library == NULL)) {
         return NULL;
     }
     builder->model[builder->n_models] = (struct dalcs_model){
@@ -53,10 +56,14 @@ static struct dalcs_transistor *take_part(struct dalcs_builder *builder,
         return NULL;
     }
     builder->n_models++;
-    dalcs_builder_warn(
-        builder, name,
-        dalcs_builder_hint(builder, "add a line: .model %s VDMOS(Vto=... Ron=...)", name->text),
-        "model '%s' is not in the netlist: typical datasheet values are used", name->text);
+    if (is_listed) {
+        dalcs_builder_warn(
+            builder, name,
+            dalcs_builder_hint(builder, "add a line: .model %s VDMOS(Vto=... Ron=...)", name->text),
+            "model '%s' is not in the netlist: typical datasheet values are used", name->text);
+    } else {
+        dalcs_transistor_make_typical(t, name);
+    }
     return t;
 }
 
@@ -174,6 +181,7 @@ static bool add_diode(struct dalcs_builder *builder, struct dalcs_transistor_use
         lines->exponential = (struct dalcs_exponential){0}; /* the line stays where it is */
     }
     use->diode = diode->model = circuit->n_diode_models++;
+    use->diode_device = (int)(diode - circuit->device);
     diode->node[0] = node[0];
     diode->node[1] = node[1];
     return true;

@@ -25,6 +25,7 @@ struct dalcs_transistor {
     double drop;          /* V of that of an IGBT */
     bool was_noted;       /* and with these: */
     double noted_ohms;
+    const struct dalcs_token *typical; /* where it is named, if no card and no table has it; NULL */
     struct dalcs_diode_card diode; /* its body diode or, of a bipolar one, from base to emitter */
 };
 
@@ -35,11 +36,45 @@ struct dalcs_transistor_use {
     struct dalcs_transistor *of;
     int drain, gate, source;        /* nodes */
     double width, length, parallel; /* m, m; so many of them */
-    int diode;                      /* its model among the circuit's, -1: none */
+    int diode, diode_device;        /* its model among the circuit's and the diode; -1: none */
     struct dalcs_transistor_use *before;
 };
 
+/* V between two nodes. */
+struct dalcs_gate_range {
+    bool is_known;
+    double low, high;
+};
+
+/* Resistors and V sources by their nodes. */
+struct dalcs_gate_links {
+    int *first;     /* [n_nodes] 2 device + end + 1, 0: none */
+    int (*next)[2]; /* [n_devices] */
+};
+
+struct dalcs_gate_drive {
+    struct dalcs_gate_range gate; /* v(gate, source), its sign turned for a p channel */
+    bool is_follower; /* `gate` is against the drain, where the source is when it is on */
+    bool is_decided;  /* sources alone say what it is at all times */
+};
+
+/* Sets out_of_memory and returns false where there is none. */
+bool dalcs_gate_list_links(struct dalcs_builder *builder, struct dalcs_gate_links *links);
+
+struct dalcs_gate_drive dalcs_gate_drive_of(const struct dalcs_circuit *c,
+                                            const struct dalcs_gate_links *links,
+                                            const struct dalcs_transistor_use *use);
+
 /* A transistor by the name that people write, such as IRF540; false: the table does not know it. */
 bool dalcs_transistor_part_find(const char *name, struct dalcs_transistor *transistor);
+
+/* An n channel one of a name that is known nowhere. */
+void dalcs_transistor_make_typical(struct dalcs_transistor *transistor,
+                                   const struct dalcs_token *name);
+
+/* Channel and threshold of the typical ones among the elements from `first` on, as their gates are driven. */
+void dalcs_transistor_settle_typical(struct dalcs_builder *builder,
+                                     const struct dalcs_gate_links *links,
+                                     struct dalcs_transistor_use *first);
 
 #endif

@@ -13,161 +13,11 @@
 
 #include <math.h>
 
-/* V between two nodes. */
-struct range {
-    bool is_known;
-    double low, high;
-};
-
-/* Resistors and V sources by their nodes. */
-struct links {
-    int *first;     /* [n_nodes] 2 device + end + 1, 0: none */
-    int (*next)[2]; /* [n_devices] */
-};
-
 static const double usual_high = 10, least_overdrive = 5; /* V */
-
-enum { MOST_HOPS = 16 }; /* nodes that resistors lead to */
-
-static bool list_links(struct dalcs_builder *builder, struct links *links) {
-    const struct dalcs_circuit *c = builder->circuit;
-    links->first = dalcs_arena_alloc(&builder->scratch, (size_t)c->n_nodes, sizeof *links->first);
-    links->next = dalcs_arena_alloc(&builder->scratch, (size_t)c->n_devices, sizeof *links->next);
-    if (links->first == NULL || links->next == NULL) {
-        builder->out_of_memory = true;
-        return false;
-    }
-    for (int i = c->n_devices - 1; i >= 0; i--) {
-        const struct dalcs_device *d = &c->device[i];
-        for (int e = 0; e < 2 && (d->kind == DALCS_VSOURCE || d->kind == DALCS_RESISTOR); e++) {
-            links->next[i][e] = links->first[d->node[e]];
-            links->first[d->node[e]] = 2 * i + e + 1;
-        }
-    }
-    return true;
-}
-
-/* ---- Voltages that sources decide -------------------------------------------------------------------- */
-
-static struct range between(double a, double b) {
-    return (struct range){true, fmin(a, b), fmax(a, b)};
-}
-
-static struct range range_of(const struct dalcs_stimulus *s) {
-    struct range r = {0};
-    switch (s->kind) {
-    case DALCS_STIMULUS_DC:
-        return between(s->dc, s->dc);
-    case DALCS_STIMULUS_PULSE:
-        return between(s->u.pulse.low, s->u.pulse.high);
-    case DALCS_STIMULUS_SIN:
-        return between(s->u.sine.offset - s->u.sine.amplitude,
-                       s->u.sine.offset + s->u.sine.amplitude);
-    case DALCS_STIMULUS_EXP:
-        return between(s->u.exponential.low, s->u.exponential.high);
-    case DALCS_STIMULUS_PWL:
-        r = between(s->u.pwl.v[0], s->u.pwl.v[0]);
-        for (int k = 1; k < s->u.pwl.n; k++) {
-            r.low = fmin(r.low, s->u.pwl.v[k]);
-            r.high = fmax(r.high, s->u.pwl.v[k]);
-        }
-        return r;
-    default:
-        return r;
-    }
-}
-
-static struct range minus(const struct range *a, const struct range *b) {
-    return (struct range){a->is_known && b->is_known, a->low - b->high, a->high - b->low};
-}
-
-/* Of the V source that an end of a device is; from there to its other end. */
-static struct range across(const struct dalcs_circuit *c, const struct dalcs_device *d, int end) {
-    const struct range r = range_of(&c->stimulus[d->stimulus]);
-    return end == 0 ? r : (struct range){r.is_known, -r.high, -r.low};
-}
-
-/* v(node) against `reference` where a V source joins them; with_resistors: or one behind resistors. */
-static struct range voltage(const struct dalcs_circuit *c, const struct links *links, int node,
-                            int reference, bool with_resistors) {
-    int seen[MOST_HOPS] = {node};
-    int n = 1;
-    for (int k = 0; k < n; k++) {
-        if (seen[k] == reference) {
-            return between(0, 0);
-        }
-        for (int at = links->first[seen[k]]; at != 0;
-             at = links->next[(at - 1) / 2][(at - 1) % 2]) {
-            const struct dalcs_device *d = &c->device[(at - 1) / 2];
-            const int end = (at - 1) % 2;
-            if (d->kind == DALCS_VSOURCE && d->node[1 - end] == reference) {
-                return across(c, d, end);
-            }
-        }
-        for (int at = links->first[seen[k]]; at != 0 && with_resistors;
-             at = links->next[(at - 1) / 2][(at - 1) % 2]) {
-            const struct dalcs_device *d = &c->device[(at - 1) / 2];
-            const int other = d->node[1 - (at - 1) % 2];
-            bool is_new = d->kind == DALCS_RESISTOR && other != reference && n < MOST_HOPS;
-            for (int i = 0; i < n; i++) {
-                is_new = is_new && seen[i] != other;
-            }
-            if (is_new) {
-                seen[n++] = other;
-            }
-        }
-    }
-    return (struct range){0};
-}
-
-/* Do resistors alone lead to ground? */
-static bool is_grounded(const struct dalcs_circuit *c, const struct links *links, int node) {
-    for (int at = links->first[node]; at != 0; at = links->next[(at - 1) / 2][(at - 1) % 2]) {
-        const struct dalcs_device *d = &c->device[(at - 1) / 2];
-        if (d->kind == DALCS_RESISTOR && d->node[1 - (at - 1) % 2] == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* ---- Drives ------------------------------------------------------------------------------------------------ */
-
-struct drive {
-    struct range gate; /* v(gate, source), its sign turned for a p channel */
-    bool is_follower;  /* `gate` is against the drain, where the source is when it is on */
-    bool is_decided;   /* sources alone say what it is at all times */
-};
-
-static struct range turned(const struct range *r, bool is_p) {
-    return is_p ? (struct range){r->is_known, -r->high, -r->low} : *r;
-}
-
-static struct drive drive_of(const struct dalcs_circuit *c, const struct links *links,
-                             const struct dalcs_transistor_use *use) {
-    const bool is_p = use->of->is_p;
-    struct range gate = voltage(c, links, use->gate, use->source, true);
-    if (gate.is_known) {
-        return (struct drive){.gate = turned(&gate, is_p), .is_decided = true};
-    }
-    gate = voltage(c, links, use->gate, 0, true);
-    const struct range source = voltage(c, links, use->source, 0, false);
-    if (source.is_known) {
-        gate = minus(&gate, &source);
-        return (struct drive){.gate = turned(&gate, is_p), .is_decided = gate.is_known};
-    }
-    const struct range drain = voltage(c, links, use->drain, 0, false);
-    if (gate.is_known && drain.is_known) {
-        gate = minus(&gate, &drain);
-        return (struct drive){.gate = turned(&gate, is_p), .is_follower = true};
-    }
-    gate.is_known = gate.is_known && is_grounded(c, links, use->source);
-    return (struct drive){.gate = turned(&gate, is_p)};
-}
 
 /* False when an error was reported. */
 static bool is_switch(struct dalcs_builder *builder, const struct dalcs_transistor_use *use,
-                      const struct drive *drive, double threshold) {
+                      const struct dalcs_gate_drive *drive, double threshold) {
     static const char hint[] =
         "dalcs has transistors as switches: give the gate a drive that turns it on and off";
     const bool is_mosfet = use->of->kind == DALCS_MOSFET;
@@ -179,7 +29,7 @@ static bool is_switch(struct dalcs_builder *builder, const struct dalcs_transist
                             name);
         return false;
     }
-    const struct range *gate = &drive->gate;
+    const struct dalcs_gate_range *gate = &drive->gate;
     if (!gate->is_known || use->of->kind == DALCS_BIPOLAR) {
         return true;
     }
@@ -245,7 +95,7 @@ static void note(struct dalcs_builder *builder, const struct dalcs_transistor_us
 
 /* The gate's level that it is on with, above 0 also of a p channel, and in words. */
 static double high_level(struct dalcs_builder *builder, const struct dalcs_transistor_use *use,
-                         const struct drive *drive, double threshold, const char **at) {
+                         const struct dalcs_gate_drive *drive, double threshold, const char **at) {
     const struct dalcs_transistor *t = use->of;
     const double sign = t->is_p ? -1 : 1;
     if (t->high != 0) {
@@ -279,7 +129,7 @@ static void note_saturation(struct dalcs_builder *builder, const struct dalcs_tr
                                   .where = c->device[use->device].where};
 }
 
-static void settle(struct dalcs_builder *builder, const struct links *links,
+static void settle(struct dalcs_builder *builder, const struct dalcs_gate_links *links,
                    const struct dalcs_transistor_use *use) {
     struct dalcs_circuit *c = builder->circuit;
     const struct dalcs_transistor *t = use->of;
@@ -288,7 +138,7 @@ static void settle(struct dalcs_builder *builder, const struct links *links,
     model->vt = is_bipolar ? 0.5 * c->diode_model[use->diode].vfwd
                 : t->is_p  ? -t->threshold
                            : t->threshold;
-    const struct drive drive = drive_of(c, links, use);
+    const struct dalcs_gate_drive drive = dalcs_gate_drive_of(c, links, use);
     if (!is_switch(builder, use, &drive, model->vt)) {
         return;
     }
@@ -333,8 +183,9 @@ static struct dalcs_transistor_use *in_order(struct dalcs_transistor_use *last) 
 }
 
 void dalcs_transistor_resolve(struct dalcs_builder *builder) {
-    struct links links;
-    if (builder->transistor == NULL || builder->out_of_memory || !list_links(builder, &links)) {
+    struct dalcs_gate_links links;
+    if (builder->transistor == NULL || builder->out_of_memory ||
+        !dalcs_gate_list_links(builder, &links)) {
         return;
     }
     struct dalcs_transistor_use *first = in_order(builder->transistor);
@@ -343,6 +194,7 @@ void dalcs_transistor_resolve(struct dalcs_builder *builder) {
         n++;
     }
     struct dalcs_circuit *c = builder->circuit;
+    dalcs_transistor_settle_typical(builder, &links, first);
     c->saturation = dalcs_arena_alloc(&c->arena, n, sizeof *c->saturation);
     if (c->saturation == NULL) {
         builder->out_of_memory = true;

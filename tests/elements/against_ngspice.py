@@ -207,6 +207,41 @@ r9 p 0 1k
 .end
 """
 
+# What is behind them shows where the steps are, too.
+STAIRCASES = """whole numbers
+v1 a 0 sin(2.45 2.4 1k)
+v2 t 0 pulse(0.01 8.01 0 1m 1m 1u 2.001m)
+b1 x 0 v=floor(v(a))
+b2 y 0 v=ceil(v(t)/3)
+b3 z 0 v=nint(v(t)-4)
+b5 m 0 v=v(t)-3*floor(v(t)/3)
+r1 x xf 1k
+c1 xf 0 0.1u ic=0
+r2 y yf 1k
+c2 yf 0 0.1u ic=0
+r3 z zf 1k
+c3 zf 0 0.1u ic=0
+r5 m mf 1k
+c5 mf 0 0.1u ic=0
+.tran 0.5u 4m 0 0.5u uic
+.end
+"""
+
+TRANSFER = """transfer functions
+v1 in 0 pulse(0 1 0.1m 1u 1u 1.1m 3m)
+a1 in o1 low
+.model low s_xfer(gain=2 num_coeff=[1e4] den_coeff=[1 1e4] int_ic=[0])
+a2 in o2 ringing
+.model ringing s_xfer(gain=1 num_coeff=[1e8] den_coeff=[1 4e3 1e8] int_ic=[0 0])
+a3 in o3 lead
+.model lead s_xfer(gain=0.5 num_coeff=[1 2e3] den_coeff=[1 2e4] int_ic=[0])
+r1 o1 0 1k
+r2 o2 0 1k
+r3 o3 0 1k
+.tran 0.5u 4m 0 0.5u
+.end
+"""
+
 
 def at(times, values, t):
     """Between two points."""
@@ -252,6 +287,9 @@ def main():
         compare(checker, program, DIGITAL, [f"v(a{x})" for x in ("q", "nq", "j", "t", "g", "x")], 800e-9, 2e-2)
         compare(checker, program, BLOCKS, ["v(g1)", "v(s1)", "v(l1)", "v(i1)", "v(w1)", "v(p1)", "v(g2)"], 4e-3, 4e-3)
         compare(checker, program, OSCILLATORS, [f"v({x})" for x in ("t2", "s1", "s2", "q2", "h", "d", "b", "p")], 8e-3, 8e-3)
+        compare(checker, program, STAIRCASES, [f"v({x})" for x in ("y", "xf", "yf", "zf", "mf")],
+                4e-3, 4e-3)
+        compare(checker, program, TRANSFER, ["v(o1)", "v(o2)", "v(o3)"], 4e-3, 8e-3)
     except ngspice_batch.NoNgspice:
         print("ngspice is not installed")
         return SKIPPED

@@ -232,7 +232,7 @@ def check_refusals(checker, program, method):
         "sqrt(": ("v1 a 0 -1\nb1 x 0 v=sqrt(v(a))\nrx x 0 1\n.op", 1),
         "40 / v(a)": ("v1 in 0 10\nr1 in a 1\nb1 a 0 i=40/v(a)\n.op", 1),
         "the circuit around d1": ("v1 in 0 5\nd1 in 0 di\nr1 in a 10\nb1 a 0 i=1m*v(a)*v(a)\n.model di d(ron=0)\n.op", 1),
-        "not a smooth function": ("v1 a 0 1\nb1 x 0 v=floor(v(a))+fmod(v(a),2)\nrx x 0 1\n.op", 3),
+        "not a smooth function": ("v1 a 0 1\nb1 x 0 v=floor(i(v1))+fmod(i(v1),2)\nrx x 0 1\n.op", 3),
     }
     for words, (cards, status) in cases.items():
         result = run(program, f"refused\n{cards}\n", method=method)

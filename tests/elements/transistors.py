@@ -263,10 +263,51 @@ def refusals(checker, program):
     checker.check(done.status == 0 and "at 10 V, since no source gives" in done.stderr, done.stderr)
 
 
+# Elements with a model that is in a library on another machine; the channel and the threshold that the drive asks for,
+# and what a 10 ohm load at 12 V carries on average, in parts of what it would behind 50 mohm all the time.
+TYPICAL = (
+    ("m1 d g 0 0 far\nr1 in d 10\nvs g 0 pulse(0 12 0 0 0 4u 10u)", "an n", 3, 0.4),
+    ("m1 d g 0 far\nr1 in d 10\nvs g 0 pulse(0 5 1u 0 0 7u 10u)", "an n", 3, 0.7),
+    ("m1 d g 0 far\nr1 in d 10\nvs g 0 pulse(-5 15 0 0 0 2u 10u)", "an n", 3, 0.2),
+    ("m1 d g 0 far\nr1 in d 10\nvs g 0 pulse(0 2.5 0 0 0 6u 10u)", "an n", 1.25, 0.6),
+    ("m1 d g 0 far\nr1 in d 10\nvs x 0 pulse(10 0 0 0 0 4u 10u)\nr2 x g 10", "an n", 3, 0.6),
+    ("m1 in g s far\nr1 s 0 10\nvs g s pulse(0 9 0 0 0 5u 10u)", "an n", 3, 0.5),
+    ("m1 in g s far\nr1 s 0 10\nvs g 0 pulse(0 24 0 0 0 3u 10u)", "an n", 3, 0.3),
+    ("m1 d g in in far\nr1 d 0 10\nvs g 0 pulse(12 0 0 0 0 4u 10u)", "a p", -3, 0.4),
+    ("m1 d g in far\nr1 d 0 10\nvs g 0 pulse(12 9.5 0 0 0 8u 10u)", "a p", -1.25, 0.8),
+    ("m1 d g in far\nr1 d 0 10\nvs g in pulse(-15 5 0 0 0 3u 10u)", "a p", -3, 0.7),
+    ("m1 d g 0 far\nr1 in d 10\nb1 g 0 V=u(sin(2*pi*1e5*time))*10", "an n", 3, 0.5),
+    ("m1 d g 0 far m=1\nr1 in d 10\nm2 d2 g 0 far\nr3 in d2 10\nvs g 0 pulse(0 5 0 0 0 4u 10u)", "an n", 3, 0.4),
+)
+
+
+def typical(checker, program):
+    on = 12 / 10.05
+    for lines, channel, threshold, part in TYPICAL:
+        text = f"far away\nv1 in 0 12\n{lines}\n.lib C:\\LTC\\lib\\cmp\\standard.mos\n.tran 1u 20u\n" \
+               ".meas tran i avg i(r1)\n.end\n"
+        done = run_at(program, text, quiet=False)
+        if checker.check(done.status == 0, f"{lines}: {done.stderr}"):
+            checker.close(value_of(done, "i"), part * on, 1e-9, lines)
+            said = f"in its place is {channel} channel of 50 mohm, on {'above' if threshold > 0 else 'below'} v(gs) = {threshold:g} V"
+            checker.check(done.stderr.count(said) == 1 and "is a switch" not in done.stderr, f"{lines}: {done.stderr}")
+    # the body diode of a p channel leads from drain to source
+    text = "backwards\nv1 in 0 12\nm1 d g in far\nvs g 0 pulse(12 0 5u 0 0 1u 10u)\nr1 d x 10\nv2 x 0 20\n" \
+           ".lib far.lib\n.tran 1u 4u\n.meas tran i find i(v2) at=2u\n.end\n"
+    done = run_at(program, text)
+    if checker.check(done.status == 0, done.stderr):
+        checker.close(value_of(done, "i"), -(8 - BODY_VOLT) / (10 + BODY_OHM), 1e-9, "body diode of a p channel")
+    for lines, words in (("vs g 0 sin(5 0.1 1k)", "it is an amplifier, no switch"),
+                         ("vs g 0 pulse(4 10 0 0 0 4u 10u)", "it is an amplifier, no switch")):
+        text = f"amplifier\nv1 in 0 12\nr1 in d 10\nm1 d g 0 far\n{lines}\n.lib far.lib\n.tran 1u 20u\n.end\n"
+        done = run_at(program, text)
+        checker.check(done.status == 3 and words in done.stderr, f"{lines}: {done.status} {done.stderr}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("transistors")
-    for part in (cards, circuits, saturations, igbts, bipolars, refusals):
+    for part in (cards, circuits, saturations, igbts, bipolars, refusals, typical):
         part(checker, program)
     return checker.finish()
 
