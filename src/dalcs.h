@@ -297,7 +297,7 @@ struct dalcs_plot {
 /* Receives results while they are made: for each analysis begin, rows, end, in this order: .op, .dc,
  * .pss, .ac, .tran; with .step all steps of an analysis before the next analysis. Any
  * callback may be NULL, or return a status other than DALCS_OK, which ends the run with that
- * status; end is then not called. */
+ * status; end is then not called. Nor is it for a step of .step that fails: the next begin follows. */
 struct dalcs_sink {
     void *user;
     enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
@@ -436,7 +436,8 @@ void dalcs_run_options_set_frequencies(struct dalcs_run_options *options, const 
  * messages name the time and the elements; rows already handed to the sink stay true. DALCS_REFUTED: they name the law
  * that the rows break, and where. A second run
  * replaces the report of the first. With .step the report is that of the last step that was run, but for
- * its work and measurements, which are of all. */
+ * its work, measurements and failed steps, which are of all. A step that fails loses none of the others: the status is
+ * that of the first one that did. */
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
@@ -659,6 +660,14 @@ struct dalcs_losses {
     double efficiency;    /* output over input and what switching takes; not a number where neither
                              has a meaning */
     const char *inputs, *outputs; /* which elements these are of */
+};
+
+/* A step of .step that failed. */
+struct dalcs_failed_step {
+    size_t step;        /* from 0 */
+    const char *values; /* "r = 500, c = 1e-06" */
+    enum dalcs_status status;
+    const char *because; /* the sentence of its first error */
 };
 
 /* What a run did. Strings and arrays are borrowed from the session and live until its next run. */
@@ -892,6 +901,9 @@ struct dalcs_report {
             const char *error;        /* NULL: there is none */
         } * run;                      /* [n_runs] */
     } worst_case;
+
+    size_t n_steps, n_failed_steps; /* of .step, 0 without; of those that were asked for */
+    const struct dalcs_failed_step *failed_step; /* each once; all other steps were run */
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

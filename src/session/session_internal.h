@@ -68,7 +68,8 @@ struct dalcs_session {
     struct dalcs_steps steps;
     struct dalcs_drawn_value *unbuilt; /* [n_unbuilt] drawn for a step that could not be built */
     size_t n_unbuilt;
-    size_t n_resets; /* of a circuit with random values: each draws them anew */
+    const char *why_unbuilt; /* the first error of that; the arena's */
+    size_t n_resets;         /* of a circuit with random values: each draws them anew */
     bool has_seed;
     uint64_t seed;
     const char *transient, *transient_stop; /* in place of the netlist's .tran, or NULL */

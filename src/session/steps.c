@@ -93,7 +93,12 @@ static bool was_said(const struct dalcs_diag *diag, const char *text) {
 
 /* Messages of a circuit that is built once more; most of them have been said. */
 static void take_messages(struct dalcs_session *s, const struct dalcs_diag *diag) {
+    s->why_unbuilt = NULL;
     for (size_t k = 0; k < diag->n; k++) {
+        if (diag->item[k].severity == DALCS_ERROR && s->why_unbuilt == NULL) {
+            s->why_unbuilt =
+                dalcs_arena_copy(&s->arena, diag->item[k].text, strlen(diag->item[k].text));
+        }
         if (!was_said(&s->diag, diag->item[k].text)) {
             dalcs_diag_add_text(&s->diag, diag->item[k].severity, diag->item[k].text);
         }

@@ -10,6 +10,7 @@ import ctypes
 
 from . import _library as c
 from ._equations import System, systems_of
+from ._errors import Error
 from ._response import Response
 from ._result import Result
 from ._session import Netlist, Number, Options, Session, Window
@@ -62,7 +63,8 @@ class Circuit:
                   (threads of .wcase);
                   any other name is one of `values`
 
-        Raises NetlistError, OptionError, NoSolution. Ctrl-C ends the run.
+        Raises NetlistError, OptionError, NoSolution, whose `result` has the rows until then. Ctrl-C ends
+        the run. A step of .step that fails loses none of the others, which are in that result.
         """
         options: Dict[str, Any] = {"record": True}
         options.update((name, value) for name, value in more.items() if name in c.OPTIONS)
@@ -74,7 +76,13 @@ class Circuit:
         session = self._read(losses, _asks_of(options, sensitivities), {**(values or {}), **own}, seed)
         chosen = Options(options, at, frequencies)
         kind = Response if options.get("bode") else Result
-        return kind(session, session.run(chosen, progress, rows), bool(options.get("only")))
+        is_alone = bool(options.get("only"))
+        try:
+            return kind(session, session.run(chosen, progress, rows), is_alone)
+        except Error as error:
+            if error.rows:
+                error.result = kind(session, error.rows, is_alone)
+            raise
 
     def steady(self, values: Optional[Mapping[str, Number]] = None, *,
                period: Optional[float] = None, **more: Any) -> Result:

@@ -54,8 +54,11 @@ class Tables:
     def __del__(self) -> None:
         c.lib.dalcs_tables_destroy(self.handle)
 
+    def __len__(self) -> int:
+        return int(c.lib.dalcs_tables_count(self.handle))
+
     def __iter__(self):  # type: ignore[no-untyped-def]
-        for index in range(c.lib.dalcs_tables_count(self.handle)):
+        for index in range(len(self)):
             yield c.lib.dalcs_tables_get(self.handle, index).contents
 
 
@@ -166,7 +169,9 @@ class Session:
         if failure:
             raise failure[0]
         if status != c.OK:
-            raise error_of(status, self.messages(), self.report() if status > 0 else None)
+            error = error_of(status, self.messages(), self.report() if status > 0 else None)
+            error.rows = tables
+            raise error
         return tables
 
     def report(self) -> str:
