@@ -5,8 +5,8 @@
 #include "sensitivity_json.h"
 #include "worst_case_json.h"
 
-#include "json.h"
 #include "failed_steps_json.h"
+#include "json.h"
 #include "losses_json.h"
 #include "method_text.h"
 

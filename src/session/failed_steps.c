@@ -41,6 +41,22 @@ static const char *find_reason(struct dalcs_session *s, enum dalcs_status status
     return dalcs_arena_copy(&s->arena, reason, length);
 }
 
+/* The circuit that the names are of goes. */
+static enum dalcs_status keep_infeasible(struct dalcs_failed_steps *failed,
+                                         struct dalcs_session *s) {
+    const size_t n = s->report.infeasible.n_elements;
+    const char **element = dalcs_arena_alloc(&s->arena, n, sizeof(*element));
+    bool complete = element != NULL;
+    for (size_t k = 0; k < n && complete; k++) {
+        const char *name = s->report.infeasible.element[k];
+        element[k] = dalcs_arena_copy(&s->arena, name, strlen(name));
+        complete = element[k] != NULL;
+    }
+    failed->report.infeasible = s->report.infeasible;
+    failed->report.infeasible.element = element;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
 enum dalcs_status dalcs_failed_steps_add(struct dalcs_failed_steps *failed, struct dalcs_session *s,
                                          const struct dalcs_plot *step, enum dalcs_status status,
                                          const struct dalcs_diag_mark *before) {
@@ -51,7 +67,10 @@ enum dalcs_status dalcs_failed_steps_add(struct dalcs_failed_steps *failed, stru
     }
     DALCS_TRY(dalcs_grow(&failed->step, &failed->capacity, failed->n + 1, sizeof(*failed->step)));
     failed->step[failed->n++] = (struct dalcs_failed_step){step->step, values, status, because};
-    failed->first = failed->first == DALCS_OK ? status : failed->first;
+    if (failed->first == DALCS_OK) {
+        failed->first = status;
+        DALCS_TRY(keep_infeasible(failed, s));
+    }
     if (failed->n > MOST_TOLD) {
         dalcs_diag_forget(&s->diag, before);
         return DALCS_OK;
@@ -85,6 +104,7 @@ enum dalcs_status dalcs_failed_steps_report(const struct dalcs_failed_steps *fai
     }
     memcpy(step, failed->step, failed->n * sizeof(*step));
     qsort(step, failed->n, sizeof(*step), by_number);
+    s->report.infeasible = failed->report.infeasible; /* goes with the status */
     s->report.failed_step = step;
     s->report.n_failed_steps = failed->n;
     return DALCS_OK;

@@ -8,7 +8,8 @@
 struct dalcs_failed_steps {
     struct dalcs_failed_step *step; /* heap; texts are the session's */
     size_t n, capacity;
-    enum dalcs_status first; /* of the first one; DALCS_OK: there is none */
+    enum dalcs_status first;    /* of the first one; DALCS_OK: there is none */
+    struct dalcs_report report; /* of that one: infeasible alone */
 };
 
 /* Is it one after which the others may be run? */
