@@ -446,6 +446,33 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
  * that another thread, or a signal handler, may make while the session runs. */
 void dalcs_session_cancel(struct dalcs_session *session);
 
+/* ---- Co-simulation ---------------------------------------------------------------------------- */
+
+/* What the circuit and a program outside tell each other at one time. */
+struct dalcs_exchange {
+    double time; /* s; first 0, before there is anything to read */
+    size_t n_signals, n_inputs;
+    const char *const *name; /* [n_signals] "v(out)", "i(l1)" */
+    const double *value;     /* [n_signals] just before `time`; NULL the first time */
+    const char *const *
+        input; /* [n_inputs] V and I with the word EXTERNAL on their card, as dalcs_session_input_name */
+    double
+        *given;  /* [n_inputs] V or A, as it was; the program gives what they are from `time` on */
+    double next; /* s, > time: the program gives when to ask it again; INFINITY, as it was: never */
+};
+
+/* Names of the external sources, in the netlist's order; NULL when index is too large. */
+const char *dalcs_session_input_name(const struct dalcs_session *session, size_t index);
+
+/* Before runs of a netlist with external sources: nothing else gives them values. In each .tran, of .step in each step,
+ * exchange is called at 0 and at the times that it asks for, the end of the run among them, and between them sources stay
+ * as they are. Events and steps are not tied to these times. A status other than DALCS_OK ends the run with that. NULL: no
+ * more. DALCS_E_OPTION: there is no external source. */
+enum dalcs_status dalcs_session_couple(struct dalcs_session *session,
+                                       enum dalcs_status (*exchange)(void *user,
+                                                                     struct dalcs_exchange *e),
+                                       void *user) DALCS_MUST_CHECK;
+
 /* ---- Rows in memory --------------------------------------------------------------------------- */
 
 /* What a run gave a sink, kept: for languages in which a callback for each row costs more than the row. */
@@ -537,6 +564,12 @@ enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, c
  * "dmod(vfwd)", a parameter of a model. For a netlist with a script, or that is kept. DALCS_E_OPTION: a
  * message says why. */
 enum dalcs_status dalcs_session_set_value(struct dalcs_session *session, const char *name,
+                                          double value) DALCS_MUST_CHECK;
+
+/* With what a capacitor (V) or coil (A) starts all later runs of .tran, which then begin as with uic: those of which nothing is
+ * said have their IC=, else 0. A report's state_name and final go on where its run ended, if the sources are there what
+ * they were at 0. For a netlist with a script, or that is kept. DALCS_E_OPTION: a message says why. */
+enum dalcs_status dalcs_session_set_state(struct dalcs_session *session, const char *element,
                                           double value) DALCS_MUST_CHECK;
 
 /* Builds the circuit with the values that were set, as the next run or check does by itself: what

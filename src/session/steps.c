@@ -142,6 +142,7 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
     }
     enum dalcs_status status = dalcs_circuit_build_with(circuit, &session->netlist, all, n, &diag);
     if (status == DALCS_OK) {
+        dalcs_session_apply_states(session, circuit);
         status = dalcs_source_conflicts(circuit, &diag);
         if (status == DALCS_OK) {
             const struct dalcs_network_options options = {
