@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const char USAGE[] =
-    "a source is: Vname node node [DC value] [SIN, PULSE, PWL, EXP, AM, SFFM(...) or EXTERNAL]";
+    "a source is: Vname node node [DC value] [SIN, PULSE, PWL, EXP, AM or SFFM(...)]";
 
 /* AC [magnitude [phase in degrees]]; 1 and 0 when left out. False when an error was reported. */
 static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,

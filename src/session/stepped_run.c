@@ -75,7 +75,6 @@ static enum dalcs_status fill_failed(struct measured *all, const struct blocks *
         pattern = blocks->n[k] > most ? at : pattern;
         most = blocks->n[k] > most ? blocks->n[k] : most;
     }
-    const struct dalcs_measurement *one = all->measurement + pattern;
     for (size_t f = 0; f < failed->n && most > 0; f++) {
         const struct dalcs_failed_step *step = &failed->step[f];
         if (step->step >= blocks->n_steps || blocks->n[step->step] > 0) {
@@ -90,7 +89,7 @@ static enum dalcs_status fill_failed(struct measured *all, const struct blocks *
         pattern += pattern >= at ? most : 0;
         memmove(all->measurement + at + most, all->measurement + at,
                 (all->n - at) * sizeof(*all->measurement));
-        one = all->measurement + pattern;
+        const struct dalcs_measurement *one = all->measurement + pattern;
         for (size_t k = 0; k < most; k++) {
             all->measurement[at + k] = (struct dalcs_measurement){
                 .name = one[k].name, .step = step->values, .failure = step->because};
