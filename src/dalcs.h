@@ -297,7 +297,7 @@ struct dalcs_plot {
 /* Receives results while they are made: for each analysis begin, rows, end, in this order: .op, .dc,
  * .pss, .ac, .tran; with .step all steps of an analysis before the next analysis. Any
  * callback may be NULL, or return a status other than DALCS_OK, which ends the run with that
- * status; end is then not called. */
+ * status; end is then not called. Nor is it for a step of .step that fails: the next begin follows. */
 struct dalcs_sink {
     void *user;
     enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
@@ -436,7 +436,8 @@ void dalcs_run_options_set_frequencies(struct dalcs_run_options *options, const 
  * messages name the time and the elements; rows already handed to the sink stay true. DALCS_REFUTED: they name the law
  * that the rows break, and where. A second run
  * replaces the report of the first. With .step the report is that of the last step that was run, but for
- * its work and measurements, which are of all. */
+ * its work, measurements and failed steps, which are of all. A step that fails loses none of the others: the status is
+ * that of the first one that did. */
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
@@ -444,6 +445,33 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
 /* Ends the run at hand with DALCS_E_CANCELLED, or where none is, the next one as it begins. The one call
  * that another thread, or a signal handler, may make while the session runs. */
 void dalcs_session_cancel(struct dalcs_session *session);
+
+/* ---- Co-simulation ---------------------------------------------------------------------------- */
+
+/* What the circuit and a program outside tell each other at one time. */
+struct dalcs_exchange {
+    double time; /* s; first 0, before there is anything to read */
+    size_t n_signals, n_inputs;
+    const char *const *name; /* [n_signals] "v(out)", "i(l1)" */
+    const double *value;     /* [n_signals] just before `time`; NULL the first time */
+    const char *const *
+        input; /* [n_inputs] V and I with the word EXTERNAL on their card, as dalcs_session_input_name */
+    double
+        *given;  /* [n_inputs] V or A, as it was; the program gives what they are from `time` on */
+    double next; /* s, > time: the program gives when to ask it again; INFINITY, as it was: never */
+};
+
+/* Names of the external sources, in the netlist's order; NULL when index is too large. */
+const char *dalcs_session_input_name(const struct dalcs_session *session, size_t index);
+
+/* Before runs of a netlist with external sources: nothing else gives them values. In each .tran, of .step in each step,
+ * exchange is called at 0 and at the times that it asks for, the end of the run among them, and between them sources stay
+ * as they are. Events and steps are not tied to these times. A status other than DALCS_OK ends the run with that. NULL: no
+ * more. DALCS_E_OPTION: there is no external source. */
+enum dalcs_status dalcs_session_couple(struct dalcs_session *session,
+                                       enum dalcs_status (*exchange)(void *user,
+                                                                     struct dalcs_exchange *e),
+                                       void *user) DALCS_MUST_CHECK;
 
 /* ---- Rows in memory --------------------------------------------------------------------------- */
 
@@ -536,6 +564,12 @@ enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, c
  * "dmod(vfwd)", a parameter of a model. For a netlist with a script, or that is kept. DALCS_E_OPTION: a
  * message says why. */
 enum dalcs_status dalcs_session_set_value(struct dalcs_session *session, const char *name,
+                                          double value) DALCS_MUST_CHECK;
+
+/* With what a capacitor (V) or coil (A) starts all later runs of .tran, which then begin as with uic: those of which nothing is
+ * said have their IC=, else 0. A report's state_name and final go on where its run ended, if the sources are there what
+ * they were at 0. For a netlist with a script, or that is kept. DALCS_E_OPTION: a message says why. */
+enum dalcs_status dalcs_session_set_state(struct dalcs_session *session, const char *element,
                                           double value) DALCS_MUST_CHECK;
 
 /* Builds the circuit with the values that were set, as the next run or check does by itself: what
@@ -659,6 +693,14 @@ struct dalcs_losses {
     double efficiency;    /* output over input and what switching takes; not a number where neither
                              has a meaning */
     const char *inputs, *outputs; /* which elements these are of */
+};
+
+/* A step of .step that failed. */
+struct dalcs_failed_step {
+    size_t step;        /* from 0 */
+    const char *values; /* "r = 500, c = 1e-06" */
+    enum dalcs_status status;
+    const char *because; /* the sentence of its first error */
 };
 
 /* What a run did. Strings and arrays are borrowed from the session and live until its next run. */
@@ -900,6 +942,9 @@ struct dalcs_report {
             const char *error;        /* NULL: there is none */
         } * run;                      /* [n_runs] */
     } worst_case;
+
+    size_t n_steps, n_failed_steps; /* of .step, 0 without; of those that were asked for */
+    const struct dalcs_failed_step *failed_step; /* each once; all other steps were run */
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

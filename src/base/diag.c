@@ -261,6 +261,26 @@ void dalcs_diag_sort(struct dalcs_diag *diag) {
     }
 }
 
+struct dalcs_diag_mark dalcs_diag_mark(const struct dalcs_diag *diag) {
+    return (struct dalcs_diag_mark){diag->n, diag->n_errors, diag->n_other};
+}
+
+void dalcs_diag_forget(struct dalcs_diag *diag, const struct dalcs_diag_mark *mark) {
+    while (diag->n > mark->n) {
+        free(diag->item[--diag->n].text);
+    }
+    diag->n_errors = mark->n_errors;
+    diag->n_other = mark->n_other;
+}
+
+const char *dalcs_diag_sentence(const char *text, size_t *length) {
+    static const char label[] = "error: ";
+    const char *at = strstr(text, label);
+    const char *sentence = at != NULL ? at + sizeof label - 1 : text;
+    *length = strcspn(sentence, "\n");
+    return sentence;
+}
+
 void dalcs_diag_finish(struct dalcs_diag *diag) {
     for (size_t k = 0; k < diag->n; k++) {
         free(diag->item[k].text);

@@ -74,6 +74,19 @@ void dalcs_diag_add_text(struct dalcs_diag *diag, enum dalcs_severity severity, 
  * passes over a netlist find its errors in no order that a reader would expect. */
 void dalcs_diag_sort(struct dalcs_diag *diag);
 
+/* How many messages there are, to come back to. */
+struct dalcs_diag_mark {
+    size_t n, n_errors, n_other;
+};
+
+struct dalcs_diag_mark dalcs_diag_mark(const struct dalcs_diag *diag);
+
+/* As if those behind the mark had not been. */
+void dalcs_diag_forget(struct dalcs_diag *diag, const struct dalcs_diag_mark *mark);
+
+/* What a message says, without its place, its level and what stands below; of any other text its first line. */
+const char *dalcs_diag_sentence(const char *text, size_t *length);
+
 void dalcs_diag_finish(struct dalcs_diag *diag);
 
 #endif

@@ -229,6 +229,7 @@ struct dalcs_circuit {
     struct dalcs_logic_gate *gate;
     int n_comparators;
     int *comparator; /* [n_comparators] switches that nothing flows in: what gates read */
+    int n_externals; /* sources that a program outside gives values (stimulus.h) */
     bool is_whole;   /* all of it is one system: gates carry small signals from part to part */
     int n_signals;   /* default: every node voltage, then currents of V, L, D, S, W, E, H */
     struct dalcs_signal *signal;

@@ -74,9 +74,10 @@ static bool read_dc(struct dalcs_reader *reader, enum dalcs_quantity quantity,
 
 /* A word that is neither DC, AC nor the name of a function. */
 static void report_word(struct dalcs_reader *reader, const struct dalcs_token *token) {
-    static const char *const later[] = {"trnoise", "trrandom", "external", "port",
-                                        "value",   "poly",     "table",    "laplace"};
-    static const char *const known[] = {"sin", "pulse", "pwl", "exp", "am", "sffm", "dc", "ac"};
+    static const char *const later[] = {"trnoise", "trrandom", "port",   "value",
+                                        "poly",    "table",    "laplace"};
+    static const char *const known[] = {"sin",  "pulse", "pwl", "exp",     "am",
+                                        "sffm", "dc",    "ac",  "external"};
     struct dalcs_builder *builder = reader->builder;
     if (dalcs_builder_is_one_of(token->text, later, sizeof later / sizeof later[0])) {
         dalcs_builder_error(builder, token, NULL, "'%s' on a source is not supported yet",
@@ -187,6 +188,10 @@ static bool read_item(struct dalcs_reader *reader, struct source *source) {
     if (dalcs_reader_take_word(reader, "acphase")) {
         return read_ac_phase(reader, token, source->has_ac, source->stimulus);
     }
+    if (!source->has_function && dalcs_reader_take_word(reader, "external")) {
+        source->has_function = source->stimulus->is_external = true;
+        return true;
+    }
     if (quantity == DALCS_CURRENT && dalcs_reader_take_word(reader, "load")) {
         source->is_load = true;
         return true;
@@ -239,6 +244,30 @@ static void multiply(struct dalcs_builder *builder, struct source *source, doubl
     source->limits.reverse *= m;
 }
 
+/* What a program outside gives, which is not known yet: for the time being its DC value. */
+static void make_external(struct dalcs_builder *builder, const struct dalcs_card *card,
+                          struct dalcs_stimulus *s) {
+    double *point = dalcs_arena_alloc(&builder->circuit->arena, 2, sizeof *point);
+    if (point == NULL) {
+        builder->out_of_memory = true;
+        return;
+    }
+    if (card->parallel > 0) {
+        dalcs_builder_error(
+            builder, card->token, "several cards",
+            "an external source cannot be several in parallel, which m= makes of it");
+    }
+    point[1] = s->dc;
+    s->has_dc = true;
+    s->is_written = true;
+    s->kind = DALCS_STIMULUS_PWL;
+    s->u.pwl.n = 1;
+    s->u.pwl.t = point;
+    s->u.pwl.v = point + 1;
+    s->u.pwl.repeats = false;
+    builder->circuit->n_externals++;
+}
+
 void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                         enum dalcs_device_kind kind) {
     struct dalcs_circuit *circuit = builder->circuit;
@@ -252,6 +281,9 @@ void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *
                             .stimulus = &circuit->stimulus[device->stimulus],
                             .limits = {INFINITY, INFINITY}};
     read_source(&reader, &source);
+    if (source.stimulus->is_external) {
+        make_external(builder, card, source.stimulus);
+    }
     if (card->parallel > 0) {
         multiply(builder, &source, card->parallel);
     }

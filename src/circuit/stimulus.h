@@ -46,7 +46,8 @@ struct dalcs_stimulus {
     bool has_dc;
     double ac_real, ac_imaginary; /* of the card's AC magnitude and phase; V or A */
     bool is_ac_alone;             /* the card has nothing else */
-    bool is_written;              /* while a run goes on, by a gate: it is not known before */
+    bool is_written;  /* while a run goes on, by a gate or from outside: it is not known before */
+    bool is_external; /* the latter */
 
     union {
         /* offset + amplitude exp(-damping (t - delay)) sin(2 pi frequency (t - delay) + phase);

@@ -25,6 +25,20 @@ enum dalcs_status dalcs_measures_file_open(struct dalcs_measures_file *m,
     return tell_failure(m, cli);
 }
 
+/* What steps are, also those that cannot be built; of these nothing is drawn. */
+static void start_values(struct dalcs_measures_file *m, const struct dalcs_session *session) {
+    const size_t n_values = m->n_parameters + m->n_drawn;
+    for (size_t step = 0; m->value != NULL && step < m->n_steps; step++) {
+        double *value = m->value + step * n_values;
+        for (size_t k = 0; k < m->n_parameters; k++) {
+            (void)dalcs_session_step_parameter(session, step, k, &value[k]);
+        }
+        for (size_t k = m->n_parameters; k < n_values; k++) {
+            value[k] = NAN;
+        }
+    }
+}
+
 enum dalcs_status dalcs_measures_file_plot(struct dalcs_measures_file *m,
                                            const struct dalcs_session *session,
                                            const struct dalcs_plot *plot) {
@@ -41,6 +55,7 @@ enum dalcs_status dalcs_measures_file_plot(struct dalcs_measures_file *m,
         const size_t n = m->n_parameters + m->n_drawn;
         m->name = dalcs_alloc(n, sizeof *m->name);
         m->value = dalcs_alloc(plot->n_steps * n, sizeof *m->value);
+        start_values(m, session);
     }
     if (m->value == NULL || m->name == NULL) {
         return DALCS_E_NOMEM;
@@ -68,7 +83,16 @@ static size_t block_at(const struct dalcs_report *report, size_t at) {
     return n;
 }
 
-/* The last column of a table with several rows: here all went well. */
+/* Why a step failed; "" where it went well. */
+static const char *error_of(const struct dalcs_report *report, size_t step) {
+    const char *error = "";
+    for (size_t k = 0; k < report->n_failed_steps; k++) {
+        error = report->failed_step[k].step == step ? report->failed_step[k].because : error;
+    }
+    return error;
+}
+
+/* The last column of a table with several rows. */
 static void end_row(struct dalcs_csv_cells *c, const struct dalcs_measures_file *m,
                     const char *error) {
     if (m->n_parameters > 0) {
@@ -125,7 +149,7 @@ static void write_step(struct dalcs_csv_cells *c, const struct dalcs_measures_fi
         }
         at += n * m->n_steps;
     }
-    end_row(c, m, "");
+    end_row(c, m, error_of(report, step));
 }
 
 /* Of .wcase a row each run. */
@@ -153,10 +177,9 @@ static void write_steps(struct dalcs_csv_cells *c, const struct dalcs_measures_f
 enum dalcs_status dalcs_measures_file_close(struct dalcs_measures_file *m,
                                             const struct dalcs_cli *cli,
                                             const struct dalcs_arguments *arguments,
-                                            const struct dalcs_report *report,
-                                            enum dalcs_status run) {
+                                            const struct dalcs_report *report, bool is_whole) {
     enum dalcs_status status = DALCS_OK;
-    if (m->path != NULL && run == DALCS_OK && report != NULL) {
+    if (m->path != NULL && is_whole && report != NULL) {
         struct dalcs_decimal decimal;
         struct dalcs_csv_cells c = {.out = m->file.stream, .decimal = &decimal};
         dalcs_decimal_init(&decimal);

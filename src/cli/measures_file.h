@@ -31,6 +31,6 @@ enum dalcs_status dalcs_measures_file_close(struct dalcs_measures_file *m,
                                             const struct dalcs_cli *cli,
                                             const struct dalcs_arguments *arguments,
                                             const struct dalcs_report *report,
-                                            enum dalcs_status run) DALCS_MUST_CHECK;
+                                            bool is_whole) DALCS_MUST_CHECK;
 
 #endif

@@ -153,7 +153,8 @@ static enum dalcs_status close_table(struct dalcs_table *table, const struct dal
                                      FILE *out, bool complete) {
     char *left_at = NULL;
     bool written = table->file.stream != NULL;
-    complete = complete && dalcs_table_flush(table) == DALCS_OK;
+    complete =
+        complete && dalcs_table_end(table) == DALCS_OK && dalcs_table_flush(table) == DALCS_OK;
     enum dalcs_status status =
         complete ? dalcs_table_commit(table) : dalcs_table_keep(table, &left_at);
     status = tell(cli, out, table->path, table->file.error, status, complete && written, left_at);
@@ -199,9 +200,8 @@ static enum dalcs_status close_report(struct dalcs_outputs *outputs, const struc
 
 enum dalcs_status dalcs_outputs_close(struct dalcs_outputs *outputs, const struct dalcs_cli *cli,
                                       FILE *out, const struct dalcs_report *report,
-                                      enum dalcs_status run) {
+                                      enum dalcs_status run, bool complete) {
     enum dalcs_status worst = DALCS_OK;
-    bool complete = run == DALCS_OK;
     for (size_t i = 0; i < outputs->n_tables; i++) {
         if (outputs->table[i].n_left_out > 0) {
             fprintf(cli->err,

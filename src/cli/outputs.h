@@ -49,7 +49,7 @@ enum dalcs_status dalcs_outputs_audit(const struct dalcs_outputs *outputs,
  * nowhere) and what is partial or failed on cli->err. Returns DALCS_E_IO when a file failed. */
 enum dalcs_status dalcs_outputs_close(struct dalcs_outputs *outputs, const struct dalcs_cli *cli,
                                       FILE *out, const struct dalcs_report *report,
-                                      enum dalcs_status run) DALCS_MUST_CHECK;
+                                      enum dalcs_status run, bool complete) DALCS_MUST_CHECK;
 
 /* Accepts a zeroed one. Files that were not closed are removed. */
 void dalcs_outputs_finish(struct dalcs_outputs *outputs);

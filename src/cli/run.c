@@ -185,6 +185,19 @@ static enum dalcs_analysis main_analysis(const struct dalcs_request *request,
 
 /* ---- The run -------------------------------------------------------------------------------- */
 
+/* All is there that there is: of .step perhaps some have failed, and others have not. */
+static bool is_whole(const struct dalcs_report *report, enum dalcs_status status) {
+    bool is = status == DALCS_OK;
+    if (report != NULL && report->n_failed_steps > 0) {
+        is = (status > DALCS_OK || status == DALCS_E_NETLIST) &&
+             report->n_failed_steps < report->n_steps;
+    }
+    for (size_t k = 0; report != NULL && k < report->n_failed_steps && is; k++) {
+        is = report->failed_step[k].status != DALCS_REFUTED; /* rows of that one are wrong */
+    }
+    return is;
+}
+
 static void write_summary(const struct run *run, const struct dalcs_arguments *arguments,
                           const struct dalcs_report *report, enum dalcs_status status) {
     FILE *out = run->cli->out;
@@ -195,7 +208,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     dalcs_envelope_lines_write(out, report);
     dalcs_steady_lines_write(out, report);
     dalcs_bode_lines_write(out, report);
-    if (status != DALCS_OK) {
+    if (status != DALCS_OK && !is_whole(report, status)) {
         char text[DALCS_QUANTITY_SIZE];
         fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
                 dalcs_status_text(status));
@@ -214,7 +227,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
         if (is_envelope) {
             dalcs_summary_write_ends(out, &run->outputs.measure[shown[i]], arguments->all_signals);
         } else if (plot != NULL && plot->n_steps > 1) {
-            dalcs_step_lines_write(out, &run->outputs.steps, shown[i]);
+            dalcs_step_lines_write(out, &run->outputs.steps, report, shown[i]);
         } else {
             dalcs_summary_write_signals(out, &run->outputs.measure[shown[i]],
                                         arguments->all_signals);
@@ -400,8 +413,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     }
     const struct dalcs_report *report = dalcs_session_report(session);
     write_summary(run, arguments, report, status);
+    const bool whole = is_whole(report, status);
     enum dalcs_status files = dalcs_outputs_close(
-        &run->outputs, run->cli, arguments->quiet ? NULL : run->cli->out, report, status);
+        &run->outputs, run->cli, arguments->quiet ? NULL : run->cli->out, report, status, whole);
     if (status == DALCS_OK && arguments->losses_plot != NULL) {
         status = draw_losses(run->cli, arguments, report);
     }
@@ -416,7 +430,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
         status = draw_orbit(run->cli, arguments, report);
     }
     const enum dalcs_status measures =
-        dalcs_measures_file_close(&run->measures, run->cli, arguments, report, status);
+        dalcs_measures_file_close(&run->measures, run->cli, arguments, report, whole);
     files = files == DALCS_OK ? measures : files;
     if (status == DALCS_OK && report != NULL) {
         status = dalcs_worst_case_tell_failed(run->cli, report);

@@ -26,6 +26,7 @@ enum dalcs_status dalcs_step_lines_add(struct dalcs_step_lines *lines,
     }
     struct dalcs_step_line *line = &lines->line[lines->n++];
     line->analysis = plot->analysis;
+    line->step = plot->step;
     lines->plot[plot->analysis] = plot;
     for (size_t i = 0; i < least(plot->n_parameters, DALCS_STEP_PARAMETERS); i++) {
         line->parameter[i] = plot->parameter_value[i];
@@ -61,8 +62,26 @@ static void write_line(FILE *out, const struct dalcs_plot *plot,
     fputc('\n', out);
 }
 
+static const struct dalcs_failed_step *find_failed(const struct dalcs_report *report, size_t step) {
+    const struct dalcs_failed_step *found = NULL;
+    for (size_t k = 0; k < report->n_failed_steps && found == NULL; k++) {
+        found = report->failed_step[k].step == step ? &report->failed_step[k] : NULL;
+    }
+    return found;
+}
+
+static const struct dalcs_step_line *find_line(const struct dalcs_step_lines *lines,
+                                               enum dalcs_analysis analysis, size_t step) {
+    const struct dalcs_step_line *found = NULL;
+    for (size_t k = 0; k < lines->n && found == NULL; k++) {
+        const struct dalcs_step_line *line = &lines->line[k];
+        found = line->analysis == analysis && line->step == step ? line : NULL;
+    }
+    return found;
+}
+
 void dalcs_step_lines_write(FILE *out, const struct dalcs_step_lines *lines,
-                            enum dalcs_analysis analysis) {
+                            const struct dalcs_report *report, enum dalcs_analysis analysis) {
     static const char *const what[] = {[DALCS_OPERATING_POINT] = "operating point",
                                        [DALCS_TRANSIENT] = "average over .tran",
                                        [DALCS_PERIODIC] = "average over a period",
@@ -81,11 +100,15 @@ void dalcs_step_lines_write(FILE *out, const struct dalcs_step_lines *lines,
         fprintf(out, " %*s", width_of(plot->name[i]), plot->name[i]);
     }
     fputc('\n', out);
-    for (size_t k = 0; k < lines->n && n_written < MOST_LINES; k++) {
-        if (lines->line[k].analysis == analysis) {
-            write_line(out, plot, &lines->line[k]);
-            n_written++;
+    for (size_t k = 0; k < plot->n_steps && n_written < MOST_LINES; k++) {
+        const struct dalcs_step_line *line = find_line(lines, analysis, k);
+        const struct dalcs_failed_step *failed = find_failed(report, k);
+        if (failed != NULL) {
+            fprintf(out, "  %s: failed, %s\n", failed->values, failed->because);
+        } else if (line != NULL) {
+            write_line(out, plot, line);
         }
+        n_written += failed != NULL || line != NULL ? 1 : 0;
     }
     if (n_written == MOST_LINES && plot->n_steps > MOST_LINES) {
         fprintf(out, "  ... and %zu more\n", plot->n_steps - MOST_LINES);

@@ -10,6 +10,7 @@ enum { DALCS_STEP_SIGNALS = 4, DALCS_STEP_PARAMETERS = 4 };
 
 struct dalcs_step_line {
     enum dalcs_analysis analysis;
+    size_t step;
     double parameter[DALCS_STEP_PARAMETERS];
     double value[DALCS_STEP_SIGNALS]; /* average of .tran, largest of .ac, else the last */
 };
@@ -24,8 +25,9 @@ struct dalcs_step_lines {
 enum dalcs_status dalcs_step_lines_add(struct dalcs_step_lines *lines,
                                        const struct dalcs_measure *measure) DALCS_MUST_CHECK;
 
+/* Steps that failed stand in their place, with the report's reason. */
 void dalcs_step_lines_write(FILE *out, const struct dalcs_step_lines *lines,
-                            enum dalcs_analysis analysis);
+                            const struct dalcs_report *report, enum dalcs_analysis analysis);
 
 void dalcs_step_lines_finish(struct dalcs_step_lines *lines);
 

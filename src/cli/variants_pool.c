@@ -4,6 +4,7 @@
 #include "variants_pool.h"
 
 #include "csv_cells.h"
+#include "diag.h"
 #include "memory.h"
 #include "settings.h"
 #include "verb.h"
@@ -109,18 +110,16 @@ static double drawn(const struct dalcs_session *session, const char *name, size_
 /* The sentence of the first error since message `first`, else the status in words. */
 static void find_reason(const struct dalcs_session *session, size_t first, enum dalcs_status status,
                         const char **reason, size_t *length) {
-    static const char label[] = "error: ";
     enum dalcs_level level;
-    *reason = dalcs_status_text(status);
+    const char *said = dalcs_status_text(status);
     for (size_t k = first; k < dalcs_session_n_messages(session); k++) {
         const char *text = dalcs_session_message(session, k, &level);
         if (level == DALCS_LEVEL_ERROR) {
-            const char *at = strstr(text, label);
-            *reason = at != NULL ? at + sizeof label - 1 : text;
+            said = text;
             break;
         }
     }
-    *length = strcspn(*reason, "\n");
+    *reason = dalcs_diag_sentence(said, length);
 }
 
 /* session: NULL: it crashed, and nothing is known of the step. */

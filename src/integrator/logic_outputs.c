@@ -139,3 +139,31 @@ enum dalcs_status dalcs_logic_output_restore(struct dalcs_logic_run *l,
                     : write(s, time, at, &o->capacity[2 * pin->which],
                             &(struct ramp){0.0, level, lasts, g->high - g->low});
 }
+
+enum dalcs_status dalcs_logic_inputs_start(struct dalcs_logic_run *l) {
+    bool changed = false;
+    for (int k = 0; k < l->inputs->n; k++) {
+        struct dalcs_logic_given *g = &l->inputs->source[k];
+        DALCS_TRY(start(&l->circuit->stimulus[g->stimulus], &g->time, &g->value, g->capacity,
+                        g->now, &changed));
+    }
+    for (int k = 0; l->radau != NULL && k < l->radau->n_parts && changed; k++) {
+        dalcs_excitation_enter(&l->radau->part[k].excitation, 0.0);
+    }
+    l->inputs->is_given = false;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_logic_inputs_show(struct dalcs_logic_run *l, double t, bool *acts) {
+    for (int k = 0; l->inputs->is_given && k < l->inputs->n; k++) {
+        struct dalcs_logic_given *g = &l->inputs->source[k];
+        struct dalcs_stimulus *s = &l->circuit->stimulus[g->stimulus];
+        if (s->u.pwl.v[s->u.pwl.n - 1] != g->now) {
+            l->changed[g->stimulus] = *acts = true;
+            DALCS_TRY(
+                write(s, &g->time, &g->value, g->capacity, &(struct ramp){t, g->now, 0.0, 1.0}));
+        }
+    }
+    l->inputs->is_given = false;
+    return DALCS_OK;
+}

@@ -20,4 +20,11 @@ enum dalcs_status dalcs_logic_output_restore(struct dalcs_logic_run *l,
                                              const struct dalcs_logic_pin *pin,
                                              double value) DALCS_MUST_CHECK;
 
+/* What was given from outside, at the start of a run. */
+enum dalcs_status dalcs_logic_inputs_start(struct dalcs_logic_run *l) DALCS_MUST_CHECK;
+
+/* The same from t on; *acts becomes true where it is another value. */
+enum dalcs_status dalcs_logic_inputs_show(struct dalcs_logic_run *l, double t,
+                                          bool *acts) DALCS_MUST_CHECK;
+
 #endif

@@ -71,7 +71,7 @@ static enum dalcs_status allocate(struct dalcs_logic_run *l) {
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
                                         struct dalcs_euler *euler, struct dalcs_radau *radau) {
     *l = (struct dalcs_logic_run){.euler = euler, .radau = radau};
-    if (circuit->n_gates == 0) {
+    if (circuit->n_gates == 0 && circuit->n_externals == 0) {
         return DALCS_OK;
     }
     l->circuit = circuit;
@@ -280,7 +280,7 @@ static enum dalcs_status show_changes(struct dalcs_logic_run *l, double t, bool 
             *acts = true;
         }
     }
-    return DALCS_OK;
+    return l->inputs != NULL ? dalcs_logic_inputs_show(l, t, acts) : DALCS_OK;
 }
 
 /* All parts that the changes act on; implicit Euler looks at what is just after t. */

@@ -19,8 +19,23 @@ struct dalcs_logic_observer {
     enum dalcs_status (*decided)(void *user, double t, long number); /* all that happens at t has */
 };
 
+/* Sources that a program outside gives values, from one instant at which it is asked to the next. */
+struct dalcs_logic_inputs {
+    int n;
+
+    struct dalcs_logic_given {
+        int stimulus;
+        double *time, *value; /* heap */
+        size_t capacity[2];
+        double now; /* V or A; what was given last */
+    } * source;     /* [n] */
+
+    double next;   /* s, when it is asked again; INFINITY: never */
+    bool is_given; /* at this instant, and not shown yet */
+};
+
 struct dalcs_logic_run {
-    struct dalcs_circuit *circuit; /* whose stimuli are written; NULL: there is no logic */
+    struct dalcs_circuit *circuit; /* whose stimuli are written; NULL: none is */
     struct dalcs_euler *euler;     /* whose switches are read */
     struct dalcs_radau *radau;     /* on it; NULL: at rest alone, or steps of implicit Euler */
     struct dalcs_logic_network network;
@@ -55,10 +70,11 @@ struct dalcs_logic_run {
     int *sample; /* [n_samples] gates */
     double *
         taken; /* [n gates] V: what samples may take at t, as it was before anything happened there */
-    bool *changed; /* [n_stimuli] in the present round */
-    double now;    /* s, of the changes of q that the queue is told of */
-    long number;   /* the last one given */
-    long instant;  /* the number of this one */
+    bool *changed;                     /* [n_stimuli] in the present round */
+    double now;                        /* s, of the changes of q that the queue is told of */
+    long number;                       /* the last one given */
+    long instant;                      /* the number of this one */
+    struct dalcs_logic_inputs *inputs; /* NULL: nothing comes from outside */
     const struct dalcs_logic_observer *observer; /* NULL: nobody asks */
     bool out_of_memory;
     struct dalcs_stimulus *as_built; /* [n_stimuli] what the circuit had */
@@ -69,7 +85,7 @@ enum dalcs_status dalcs_logic_find_comparators(const struct dalcs_circuit *circu
                                                const struct dalcs_euler *euler,
                                                struct dalcs_logic_place *place) DALCS_MUST_CHECK;
 
-/* Does nothing where the circuit has no logic. radau, on that engine, may be NULL: rest alone is asked for, or the run is
+/* Does nothing where no stimulus of the circuit is written. radau, on that engine, may be NULL: rest alone is asked for, or the run is
  * one of implicit Euler. */
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
                                         struct dalcs_euler *euler,

@@ -133,9 +133,14 @@ static double fit_rung(double promising) {
     return isinf(promising) ? 1.0 : floor(64.0 * frexp(paced, &exponent)) / 32.0;
 }
 
-/* What gates do is not known to recur, and steps with smooth sources are no maps of their states. */
+/* What gates do, and what comes from outside, is not known to recur. */
+static bool is_known(const struct dalcs_circuit *c) {
+    return c->n_gates == 0 && c->n_externals == 0;
+}
+
+/* Steps with smooth sources are no maps of their states. */
 static bool may_recur(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    return r->base->circuit->n_gates == 0 && part->component->system->n_smooth == 0;
+    return is_known(r->base->circuit) && part->component->system->n_smooth == 0;
 }
 
 static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -204,7 +209,7 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
         r->part[k].index = k;
         status = part_setup(r, &r->part[k], osnsp);
     }
-    const bool may_leap = base->circuit->n_gates == 0 && base->circuit->n_smooth == 0;
+    const bool may_leap = is_known(base->circuit) && base->circuit->n_smooth == 0;
     status = status == DALCS_OK && may_leap ? dalcs_cycle_setup(r) : status;
     if (status != DALCS_OK) {
         dalcs_radau_finish(r);

@@ -85,7 +85,17 @@ static const char *title_of_step(const struct dalcs_plot *plot, char *text, size
     return text;
 }
 
+enum dalcs_status dalcs_table_end(struct dalcs_table *table) {
+    if (table->skipping || !table->in_plot) {
+        return DALCS_OK;
+    }
+    table->in_plot = false;
+    table->format->end(table->state, table->file.stream);
+    return check_stream(table);
+}
+
 enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalcs_plot *plot) {
+    DALCS_TRY(dalcs_table_end(table)); /* of a step that failed: its rows stay */
     if (is_left_out(table, plot)) {
         return DALCS_OK;
     }
@@ -117,15 +127,6 @@ enum dalcs_status dalcs_table_rows(struct dalcs_table *table, size_t n, const do
     }
     table->format->rows(table->state, table->file.stream, n, time, value);
     table->n_rows += n;
-    return check_stream(table);
-}
-
-enum dalcs_status dalcs_table_end(struct dalcs_table *table) {
-    if (table->skipping || !table->in_plot) {
-        return DALCS_OK;
-    }
-    table->in_plot = false;
-    table->format->end(table->state, table->file.stream);
     return check_stream(table);
 }
 

@@ -5,6 +5,7 @@
 #include "sensitivity_json.h"
 #include "worst_case_json.h"
 
+#include "failed_steps_json.h"
 #include "json.h"
 #include "losses_json.h"
 #include "method_text.h"
@@ -393,6 +394,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     dalcs_response_json_write(&json, report);
     dalcs_sensitivity_json_write(&json, report);
     dalcs_worst_case_json_write(&json, report);
+    dalcs_failed_steps_json_write(&json, report);
     write_infeasible(&json, report);
     dalcs_json_close(&json, '}');
 }

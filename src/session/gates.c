@@ -96,13 +96,16 @@ static double read_probe(const struct dalcs_euler *e, const struct dalcs_probe *
     return c == NULL ? 0.0 : dalcs_probe_value(probe, c->y, c->u + c->system->n_x);
 }
 
+double dalcs_gates_read_output(const struct dalcs_euler *e, const struct dalcs_output *output) {
+    return read_probe(e, &output->plus) - read_probe(e, &output->minus);
+}
+
 void dalcs_gates_read_euler(const struct dalcs_network *network, struct dalcs_logic_run *logic) {
     const struct dalcs_circuit *c = logic->circuit;
     for (int k = 0; k < logic->n_samples; k++) {
         const int gate = logic->sample[k];
-        const struct dalcs_output *out = &network->output[c->measured[c->gate[gate].sampled]];
-        logic->taken[gate] =
-            read_probe(logic->euler, &out->plus) - read_probe(logic->euler, &out->minus);
+        logic->taken[gate] = dalcs_gates_read_output(
+            logic->euler, &network->output[c->measured[c->gate[gate].sampled]]);
     }
 }
 

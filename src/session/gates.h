@@ -36,4 +36,7 @@ enum dalcs_status dalcs_gate_samples_read(struct dalcs_gate_samples *s,
 
 void dalcs_gate_samples_finish(struct dalcs_gate_samples *s);
 
+/* An output as implicit Euler has it. */
+double dalcs_gates_read_output(const struct dalcs_euler *e, const struct dalcs_output *output);
+
 #endif

@@ -57,6 +57,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
     }
     free(session->override);
     free(session->own);
+    free(session->state);
     free(session->document);
     dalcs_spice_names_finish(&session->spice);
     dalcs_arena_finish(&session->checked);

@@ -11,6 +11,7 @@
 
 #include <stdatomic.h>
 
+struct dalcs_cosimulation;
 struct dalcs_logic_run;
 struct dalcs_losses_run;
 struct dalcs_orbit_point;
@@ -45,6 +46,12 @@ struct dalcs_steps {
     const char **drawn; /* [n_drawn] the values that are drawn, by name */
 };
 
+/* What a capacitor or coil starts with. */
+struct dalcs_set_state {
+    const char *element;
+    double value; /* V or A */
+};
+
 struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
@@ -68,6 +75,13 @@ struct dalcs_session {
     struct dalcs_steps steps;
     struct dalcs_drawn_value *unbuilt; /* [n_unbuilt] drawn for a step that could not be built */
     size_t n_unbuilt;
+    const char *why_unbuilt; /* the first error of that; the arena's */
+    /* What external sources are told by, or NULL. */
+    enum dalcs_status (*exchange)(void *user, struct dalcs_exchange *e);
+    void *exchange_user;
+    struct dalcs_set_state
+        *state; /* [n_set_states] that runs start with; heap, names are the arena's */
+    size_t n_set_states, state_capacity;
     size_t n_resets; /* of a circuit with random values: each draws them anew */
     bool has_seed;
     uint64_t seed;
@@ -127,8 +141,9 @@ struct dalcs_run {
     const char *
         *name; /* [n_outputs] of the network: rows have the first n_shown, messages may name any */
     enum dalcs_unit *unit;
-    struct dalcs_names interrupting; /* switches that a warning has named */
-    struct dalcs_losses_run *losses; /* of the transient that runs; NULL: none */
+    struct dalcs_names interrupting;         /* switches that a warning has named */
+    struct dalcs_losses_run *losses;         /* of the transient that runs; NULL: none */
+    struct dalcs_cosimulation *cosimulation; /* of it, likewise */
     struct dalcs_undetermined undetermined;
     int n_told[DALCS_FINDING_KINDS];    /* messages of what is not determined */
     long n_untold[DALCS_FINDING_KINDS]; /* signals of which there is no message */
@@ -174,6 +189,9 @@ enum dalcs_status dalcs_steps_find(struct dalcs_session *session) DALCS_MUST_CHE
 
 /* How often .step and .mc have everything run; 1 without. */
 size_t dalcs_steps_count(const struct dalcs_session *session);
+
+/* What was set becomes the initial values of the circuit's elements. */
+void dalcs_session_apply_states(const struct dalcs_session *session, struct dalcs_circuit *circuit);
 
 /* A circuit and its network from the session's netlist, with what alter says and the overrides behind
  * that. Messages that the session has not said yet go to it. On failure nothing is left to free. */

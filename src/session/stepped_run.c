@@ -1,7 +1,8 @@
 /* stepped_run.c - .step: the analyses with each value, and what was measured in all of them. */
-#include "pipeline.h"
+#include "failed_steps.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* What a step cost on top of those before it. */
 static void add_work(struct dalcs_report *sum, const struct dalcs_report *one) {
@@ -20,28 +21,6 @@ static void add_work(struct dalcs_report *sum, const struct dalcs_report *one) {
     sum->work.wall_s += one->work.wall_s;
 }
 
-/* "r = 500, c = 1e-06" */
-static const char *step_text(struct dalcs_session *s, const struct dalcs_plot *step) {
-    const char *values = "";
-    for (size_t k = 0; k < step->n_parameters && values != NULL; k++) {
-        values = dalcs_arena_printf(&s->arena, "%s%s%s = %.9g", values, k > 0 ? ", " : "",
-                                    step->parameter[k], step->parameter_value[k]);
-    }
-    return values;
-}
-
-/* Names the step that failed, and says how to come to those behind it. */
-static void blame_step(struct dalcs_session *s, const struct dalcs_plot *step, size_t k,
-                       bool has_more) {
-    const char *values = step_text(s, step);
-    dalcs_diag_add(&s->diag, DALCS_NOTE, NULL,
-                   has_more ? "those behind it are not run; -o none --measures FILE.csv makes a "
-                              "table of all, and so does dalcs.variants in Python"
-                            : NULL,
-                   "this was step %zu of %zu: %s", k + 1, dalcs_steps_count(s),
-                   values != NULL ? values : "");
-}
-
 /* What was measured in all steps. */
 struct measured {
     size_t n, capacity, n_fourier, fourier_capacity;
@@ -57,7 +36,7 @@ static enum dalcs_status collect_measured(struct measured *all, struct dalcs_ses
     if (one->n_measurements + one->n_fourier + one->n_losses == 0) {
         return DALCS_OK;
     }
-    const char *text = step_text(s, step);
+    const char *text = dalcs_step_text(s, step);
     if (text == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -78,6 +57,45 @@ static enum dalcs_status collect_measured(struct measured *all, struct dalcs_ses
     for (size_t k = 0; k < one->n_losses; k++) {
         all->losses[all->n_losses] = one->losses[k];
         all->losses[all->n_losses++].step = text;
+    }
+    return DALCS_OK;
+}
+
+/* The measurements of one analysis, from number `first` on: how many each step has. */
+struct blocks {
+    size_t first, n_steps;
+    size_t *n; /* [n_steps] */
+};
+
+/* Each step has the same ones: those of a step that failed before it measured were not found. */
+static enum dalcs_status fill_failed(struct measured *all, const struct blocks *blocks,
+                                     const struct dalcs_failed_steps *failed) {
+    size_t most = 0, at = blocks->first, pattern = at;
+    for (size_t k = 0; k < blocks->n_steps; at += blocks->n[k++]) {
+        pattern = blocks->n[k] > most ? at : pattern;
+        most = blocks->n[k] > most ? blocks->n[k] : most;
+    }
+    for (size_t f = 0; f < failed->n && most > 0; f++) {
+        const struct dalcs_failed_step *step = &failed->step[f];
+        if (step->step >= blocks->n_steps || blocks->n[step->step] > 0) {
+            continue;
+        }
+        DALCS_TRY(dalcs_grow(&all->measurement, &all->capacity, all->n + most,
+                             sizeof(*all->measurement)));
+        at = blocks->first;
+        for (size_t k = 0; k < step->step; k++) {
+            at += blocks->n[k];
+        }
+        pattern += pattern >= at ? most : 0;
+        memmove(all->measurement + at + most, all->measurement + at,
+                (all->n - at) * sizeof(*all->measurement));
+        const struct dalcs_measurement *one = all->measurement + pattern;
+        for (size_t k = 0; k < most; k++) {
+            all->measurement[at + k] = (struct dalcs_measurement){
+                .name = one[k].name, .step = step->values, .failure = step->because};
+        }
+        all->n += most;
+        blocks->n[step->step] = most;
     }
     return DALCS_OK;
 }
@@ -124,11 +142,99 @@ static bool is_asked(const struct dalcs_circuit *circuit, const struct dalcs_run
     return asked[analysis];
 }
 
+/* All steps, with what they have in common. */
+struct stepping {
+    struct dalcs_session *session;
+    const struct dalcs_run_options *options;
+    const struct dalcs_sink *sink;
+    size_t first, end; /* steps */
+    struct dalcs_report sum;
+    struct measured measured;
+    struct dalcs_failed_steps failed;
+    const char *title; /* of a circuit that was built; the arena's */
+};
+
+/* One analysis of step k. */
+static enum dalcs_status run_step(struct stepping *g, enum dalcs_analysis analysis, size_t k,
+                                  struct dalcs_plot *step) {
+    struct dalcs_session *session = g->session;
+    DALCS_TRY(dalcs_steady_anchor_prepare(session, g->options, g->sink, analysis, k));
+    DALCS_TRY(dalcs_session_take_step(session, k, step));
+    if (g->options->only_step > 0) {
+        step->step = 0;
+        step->n_steps = 1; /* what follows is of one run */
+    }
+    if (g->title == NULL) {
+        const char *title = session->circuit.title;
+        g->title = dalcs_arena_copy(&session->arena, title, strlen(title));
+    }
+    DALCS_TRY(dalcs_operating_currents(session, g->options, g->sink));
+    const enum dalcs_status status =
+        dalcs_run_analyses(session, g->options, g->sink, step, &analysis, 1);
+    add_work(&g->sum, &session->report);
+    const enum dalcs_status kept = collect_measured(&g->measured, session, step);
+    return status == DALCS_OK ? kept : status;
+}
+
+/* May the steps behind one that ended so be run? What is looked at once a period goes on from value to value. */
+static bool goes_on(const struct stepping *g, enum dalcs_status status) {
+    return dalcs_step_lets_go_on(status) && g->session->stroboscope == NULL;
+}
+
+static enum dalcs_status run_steps(struct stepping *g, enum dalcs_analysis analysis,
+                                   struct blocks *blocks) {
+    for (size_t k = g->first; k < g->end; k++) {
+        const struct dalcs_diag_mark before = dalcs_diag_mark(&g->session->diag);
+        const size_t n = g->measured.n;
+        struct dalcs_plot step = {0};
+        enum dalcs_status status = DALCS_OK;
+        if (!dalcs_failed_steps_has(&g->failed, k)) {
+            status = run_step(g, analysis, k, &step);
+        }
+        blocks->n[k] = g->measured.n - n;
+        if (dalcs_step_lets_go_on(status)) {
+            step.step = k;
+            DALCS_TRY(dalcs_failed_steps_add(&g->failed, g->session, &step, status, &before));
+        }
+        if (status != DALCS_OK && !goes_on(g, status)) {
+            return status;
+        }
+    }
+    return fill_failed(&g->measured, blocks, &g->failed);
+}
+
+/* There is one, too, where the last step could not be built. */
+static void make_report(struct stepping *g) {
+    struct dalcs_session *s = g->session;
+    if (!s->has_report && g->title != NULL) {
+        s->report = (struct dalcs_report){.netlist = s->name,
+                                          .title = g->title,
+                                          .method = dalcs_method_name(0),
+                                          .certificate = {.where = ""}};
+        s->has_report = true;
+    }
+}
+
+static enum dalcs_status run_all_steps(struct stepping *g) {
+    const struct dalcs_circuit *circuit = &g->session->circuit;
+    struct blocks blocks = {.n_steps = g->end};
+    bool asked[DALCS_N_IN_ORDER];
+    for (size_t a = 0; a < DALCS_N_IN_ORDER; a++) {
+        asked[a] = is_asked(circuit, g->options, dalcs_analyses_in_order[a]);
+    }
+    blocks.n = dalcs_alloc(g->end, sizeof(*blocks.n));
+    enum dalcs_status status = blocks.n == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    for (size_t a = 0; a < DALCS_N_IN_ORDER && status == DALCS_OK; a++) {
+        blocks.first = g->measured.n;
+        status = asked[a] ? run_steps(g, dalcs_analyses_in_order[a], &blocks) : DALCS_OK;
+    }
+    free(blocks.n);
+    return status;
+}
+
 enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) {
-    struct dalcs_report sum = {0};
-    struct measured measured = {0};
     const size_t n_all = dalcs_steps_count(session);
     const size_t only = options->only_step;
     if (only > n_all) {
@@ -137,41 +243,18 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
         return DALCS_E_OPTION;
     }
     dalcs_steady_anchor_enter(session, options);
-    const size_t first = only > 0 ? only - 1 : 0;
-    const size_t end = only > 0 ? only : n_all;
-    bool asked[DALCS_N_IN_ORDER];
-    for (size_t a = 0; a < DALCS_N_IN_ORDER; a++) {
-        asked[a] = is_asked(&session->circuit, options, dalcs_analyses_in_order[a]);
-    }
-    enum dalcs_status status = DALCS_OK;
-    for (size_t a = 0; a < DALCS_N_IN_ORDER && status == DALCS_OK; a++) {
-        for (size_t k = first; asked[a] && k < end && status == DALCS_OK; k++) {
-            struct dalcs_plot step = {0};
-            status =
-                dalcs_steady_anchor_prepare(session, options, sink, dalcs_analyses_in_order[a], k);
-            if (status == DALCS_OK) {
-                status = dalcs_session_take_step(session, k, &step);
-            }
-            if (only > 0) {
-                step.step = 0;
-                step.n_steps = 1; /* what follows is of one run */
-            }
-            if (status == DALCS_OK) {
-                status = dalcs_operating_currents(session, options, sink);
-            }
-            if (status == DALCS_OK) {
-                status = dalcs_run_analyses(session, options, sink, &step,
-                                            &dalcs_analyses_in_order[a], 1);
-                add_work(&sum, &session->report);
-                const enum dalcs_status kept = collect_measured(&measured, session, &step);
-                status = status == DALCS_OK ? kept : status;
-            }
-            if (status > DALCS_OK || status == DALCS_E_NETLIST) {
-                blame_step(session, &step, k, k + 1 < end);
-            }
-        }
-    }
-    session->report.work = sum.work;
-    const enum dalcs_status told = report_measured(&measured, session);
-    return status == DALCS_OK ? told : status;
+    struct stepping g = {.session = session,
+                         .options = options,
+                         .sink = sink,
+                         .first = only > 0 ? only - 1 : 0,
+                         .end = only > 0 ? only : n_all};
+    enum dalcs_status status = run_all_steps(&g);
+    make_report(&g);
+    session->report.work = g.sum.work;
+    const enum dalcs_status told = report_measured(&g.measured, session);
+    const enum dalcs_status listed = dalcs_failed_steps_report(&g.failed, session, g.end - g.first);
+    status = status != DALCS_OK ? status : g.failed.first;
+    dalcs_failed_steps_finish(&g.failed);
+    status = status != DALCS_OK ? status : told;
+    return status != DALCS_OK ? status : listed;
 }

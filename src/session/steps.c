@@ -93,7 +93,12 @@ static bool was_said(const struct dalcs_diag *diag, const char *text) {
 
 /* Messages of a circuit that is built once more; most of them have been said. */
 static void take_messages(struct dalcs_session *s, const struct dalcs_diag *diag) {
+    s->why_unbuilt = NULL;
     for (size_t k = 0; k < diag->n; k++) {
+        if (diag->item[k].severity == DALCS_ERROR && s->why_unbuilt == NULL) {
+            s->why_unbuilt =
+                dalcs_arena_copy(&s->arena, diag->item[k].text, strlen(diag->item[k].text));
+        }
         if (!was_said(&s->diag, diag->item[k].text)) {
             dalcs_diag_add_text(&s->diag, diag->item[k].severity, diag->item[k].text);
         }
@@ -137,6 +142,7 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
     }
     enum dalcs_status status = dalcs_circuit_build_with(circuit, &session->netlist, all, n, &diag);
     if (status == DALCS_OK) {
+        dalcs_session_apply_states(session, circuit);
         status = dalcs_source_conflicts(circuit, &diag);
         if (status == DALCS_OK) {
             const struct dalcs_network_options options = {

@@ -5,6 +5,7 @@
 #include "transient.h"
 
 #include "audit_run.h"
+#include "cosimulation.h"
 #include "energy.h"
 #include "gates.h"
 #include "losses_run.h"
@@ -63,7 +64,13 @@ struct parts {
     struct dalcs_losses_run losses;
     struct dalcs_audit_run audit;
     struct dalcs_logic_run logic;
+    struct dalcs_cosimulation cosimulation;
 };
+
+/* s, the next time at which stimuli that are written may change. */
+static double next_written(const struct parts *p) {
+    return fmin(dalcs_logic_run_next(&p->logic), p->cosimulation.inputs.next);
+}
 
 /* What is just after a time at which sources jump, or gates decide. */
 static enum dalcs_status cross(struct dalcs_run *r, struct parts *p) {
@@ -75,7 +82,7 @@ static enum dalcs_status cross(struct dalcs_run *r, struct parts *p) {
     DALCS_TRY(e->at_jump ? dalcs_euler_cross(e) : DALCS_OK);
     if (has_gates) {
         DALCS_TRY(dalcs_transient_decide(r, &p->logic, e->t));
-        dalcs_grid_disturb(&e->grid, dalcs_logic_run_next(&p->logic));
+        dalcs_grid_disturb(&e->grid, next_written(p));
     }
     if (e->at_jump || (has_gates && dalcs_sources_jump(&r->s->circuit, e->t))) {
         DALCS_TRY(dalcs_recorder_cross(&r->s->recorder, e));
@@ -89,12 +96,15 @@ static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct parts *p) {
     struct dalcs_euler *e = &p->euler;
     const long interval = dalcs_transient_progress_interval(&r->s->network);
     if (p->logic.circuit != NULL) {
-        dalcs_grid_disturb(&e->grid, dalcs_logic_run_next(&p->logic));
+        dalcs_grid_disturb(&e->grid, next_written(p));
     }
     while (!dalcs_grid_at_end(&e->grid)) {
         DALCS_TRY(dalcs_euler_step(e));
         DALCS_TRY(dalcs_recorder_step(recorder, e));
         dalcs_measures_step(&p->measures, e);
+        if (dalcs_cosimulation_is_due(&p->cosimulation, e->t, e->grid.resolution)) {
+            DALCS_TRY(dalcs_cosimulation_ask(&p->cosimulation, e->t, NULL, e));
+        }
         if ((e->at_jump || p->logic.circuit != NULL) && !dalcs_grid_at_end(&e->grid)) {
             DALCS_TRY(cross(r, p));
         }
@@ -144,6 +154,8 @@ static enum dalcs_status set_up_others(struct dalcs_run *r, struct parts *p) {
         DALCS_TRY(dalcs_radau_setup(&p->radau, &p->euler, &options, &r->osnsp));
     }
     DALCS_TRY(dalcs_logic_run_setup(&p->logic, &s->circuit, &p->euler, radau_of(p)));
+    DALCS_TRY(dalcs_cosimulation_start(&p->cosimulation, r, &p->logic));
+    r->cosimulation = &p->cosimulation;
     if (dalcs_run_wants_losses(r)) {
         DALCS_TRY(dalcs_losses_run_start(&p->losses, r, &p->euler, p->is_euler,
                                          p->is_euler ? 0.0 : p->radau.resolution));
@@ -209,6 +221,8 @@ static enum dalcs_status walk_and_report(struct dalcs_run *r, struct parts *p) {
 static void finish(struct dalcs_run *r, struct parts *p) {
     dalcs_audit_run_finish(&p->audit);
     dalcs_logic_run_finish(&p->logic);
+    dalcs_cosimulation_finish(&p->cosimulation);
+    r->cosimulation = NULL;
     dalcs_measures_finish(&p->measures);
     dalcs_losses_run_finish(&p->losses);
     r->losses = NULL;

@@ -3,6 +3,7 @@
 #include "transient.h"
 
 #include "audit_run.h"
+#include "cosimulation.h"
 #include "cycle.h"
 #include "extremes.h"
 #include "filling.h"
@@ -38,6 +39,7 @@ struct transient {
     struct dalcs_measures *measures;
     struct dalcs_audit_run *audit;
     struct dalcs_logic_run *logic;
+    struct dalcs_cosimulation *cosimulation;
     struct dalcs_rows rows;
     struct dalcs_gate_samples samples;
     struct dalcs_filling filling;
@@ -160,6 +162,18 @@ static enum dalcs_status sample(struct transient *c, double t) {
     return dalcs_audit_run_sample(c->audit, t);
 }
 
+/* A program outside reads what is just before t, if it is to be asked now; *edge: it gives sources other values. */
+static enum dalcs_status exchange(struct transient *c, double t, bool *edge) {
+    int n_done;
+    if (!dalcs_cosimulation_is_due(c->cosimulation, t, c->radau->resolution)) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_rows_fill(&c->rows, &t, 1, DALCS_LEFT, &n_done));
+    DALCS_TRY(dalcs_cosimulation_ask(c->cosimulation, t, &c->rows, NULL));
+    *edge = *edge || dalcs_cosimulation_has_changed(c->cosimulation);
+    return DALCS_OK;
+}
+
 /* What happens at one time. */
 struct stop {
     double t;
@@ -181,6 +195,7 @@ static enum dalcs_status next_stop(struct transient *c, struct stop *next, bool 
     double end = dalcs_radau_next_stop(radau, &next->happens);
     double t = dalcs_smaller(dalcs_smaller(end, stop),
                              dalcs_smaller(c->next_edge, c->measures->next_edge));
+    t = dalcs_smaller(t, c->cosimulation->inputs.next);
     bool comes = c->next_row + near < t;
     if (comes || dalcs_filling_is_on(&c->filling, t)) {
         bool stops =
@@ -226,7 +241,9 @@ static enum dalcs_status advance(struct transient *c) {
     const double t = next.t;
     const bool event = next.ends && next.happens;
     c->t = t;
-    if (has_gates(c)) {
+    DALCS_TRY(exchange(c, t, &next.edge));
+    const bool passes = next.ends || (next.edge && has_gates(c));
+    if ((passes || next.is_last) && has_gates(c)) {
         dalcs_measures_end_at(c->measures, t);
     }
     DALCS_TRY(dalcs_measures_reach(c->measures, c->radau, dalcs_smaller(t, stop), near));
@@ -236,7 +253,6 @@ static enum dalcs_status advance(struct transient *c) {
         DALCS_TRY(row(c, DALCS_LEFT, is_due));
         dalcs_filling_row(&c->filling, t, next.edge || event);
     }
-    bool passes = next.ends || (next.edge && has_gates(c));
     if (passes || next.is_last) {
         dalcs_audit_run_leave(c->audit, next.is_last ? stop : t);
     }
@@ -275,7 +291,8 @@ enum dalcs_status dalcs_transient_walk(struct dalcs_run *r, struct dalcs_radau *
                           .radau = radau,
                           .measures = measures,
                           .audit = audit,
-                          .logic = logic};
+                          .logic = logic,
+                          .cosimulation = r->cosimulation};
     logic->cut_user = audit;
     logic->on_cut = tell_cut;
     c.next_row = dalcs_recorder_due(c.recorder);

@@ -44,6 +44,49 @@ def has(module):
     return True
 
 
+STEPS = """A rectifier with a load that shorts it in one step
+.options dialect=ltspice
+V1 in 0 SIN(0 10 50)
+D1 in out
+C1 out 0 10u
+R1 out 0 {load}
+.param load=1k
+.step param load list 1k 0 4.7k
+.tran 10u 20m uic
+.meas tran vlow min v(out) from=10m
+.end
+"""
+
+
+class Failures(unittest.TestCase):
+    def test_a_step_that_fails_loses_none_of_the_others(self):
+        with self.assertRaises(dalcs.NoSolution) as caught:
+            dalcs.run(STEPS)
+        result = caught.exception.result
+        self.assertEqual([step["number"] for step in result.report["failed_steps"]], [2])
+        whole = [table for table in result.tables if table.parameters["load"] > 0.0]
+        self.assertEqual([table.parameters["load"] for table in whole], [1e3, 4.7e3])
+        for table, low in zip(whole, (result.measures["vlow"][0], result.measures["vlow"][2])):
+            one = dalcs.run(STEPS.replace("list 1k 0 4.7k", f"list {table.parameters['load']}"))
+            np.testing.assert_array_equal(table.values, one.values)
+            self.assertEqual(low, one.measures["vlow"][0])
+        self.assertTrue(math.isnan(result.measures["vlow"][1]))
+
+    def test_a_run_that_fails_has_its_rows(self):
+        netlist = """A source that comes to drive a diode without anything else
+V1 in 0 PULSE(-1 5 1m 1u 1u 1 2)
+D1 in 0
+.tran 10u 3m
+.end
+"""
+        with self.assertRaises(dalcs.NoSolution) as caught:
+            dalcs.run(netlist)
+        result = caught.exception.result
+        self.assertGreater(len(result), 50)
+        self.assertLess(result.t[-1], 1.01e-3)
+        np.testing.assert_allclose(result["v(in)"][result.t < 1e-3], -1.0)
+
+
 class Values(unittest.TestCase):
     def test_half_wave(self):
         for ohm in 50.0, 1e3, 20e3:

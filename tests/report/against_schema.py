@@ -43,6 +43,8 @@ MADE = {
                "R1 b 0 {r}\nVc c 0 PULSE(0 1 0 0 0 0.1m 0.3m)\n.model m SW(Vt=0.5)\n.param r=1\n"
                ".step param r list 1 2\n.tran 10u 1m\n.losses out=r1\n"
                ".switchloss m eon v=(0 0.1) i=(0 0.1) e=(0 0 0 1n)\n.end\n", 0, None),
+    "steps": ("a step with a short\n.options dialect=ltspice\nV1 a 0 SIN(0 1 1k)\nD1 a b\nR1 b 0 {r}\n.param r=1\n"
+              ".step param r list 1 0 2\n.tran 10u 1m\n.meas tran v max v(b)\n.end\n", 1, "loop"),
     "equal": ("what is not unique\nI1 0 a 1\nD1 a 0\nD2 a 0\nD3 0 m\nD4 m n\nV1 n 0 1\n.op\n.end\n",
               0, None),
 }
@@ -179,7 +181,7 @@ def main():
     jsonschema.Draft202012Validator.check_schema(schema)
     source = "".join((root / "src" / "report" / name).read_text(encoding="utf-8")
                      for name in ("report.c", "losses_json.c", "response_json.c", "sensitivity_json.c",
-                                  "worst_case_json.c"))
+                                  "worst_case_json.c", "failed_steps_json.c"))
     netlists = sorted((root / "netlists").glob("**/*.cir")) + sorted(
         (root / "tests" / "reference").glob("*.cir"))
     with tempfile.TemporaryDirectory() as name:

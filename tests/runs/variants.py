@@ -5,6 +5,7 @@ usage: variants.py PROGRAM [LIBRARY]     (of crash_at.c)
 """
 
 import csv
+import json
 import math
 import os
 import pathlib
@@ -83,18 +84,40 @@ class Variants(unittest.TestCase):
         self.assertIn("7 of 15 variants failed", said)
         self.assertEqual(sorted(os.listdir(self.folder)), ["a.cir", "m.csv"])
 
-    def test_a_run_with_waveforms_says_how_to_go_on(self):
-        """It ends at the first step that fails, and the last one has nothing behind it."""
-        done = subprocess.run([PROGRAM, "run", "a.cir"], cwd=self.folder, capture_output=True, text=True,
-                              check=False)
-        self.assertEqual(done.returncode, 3)  # a capacitance below 0
+    def test_a_run_with_waveforms_goes_on(self):
+        """Its table is that of the run without them, its rows those of each step alone, and the report says which failed."""
+        done = subprocess.run([PROGRAM, "run", "a.cir", "-o", "a.csv", "-o", "a.raw", "--measures", "w.csv",
+                               "--report", "a.json"], cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 3)  # of the first that fails, with a capacitance below 0
         self.assertIn("this was step 3 of 15: c = -1e-06, load = 100", done.stderr)
-        self.assertIn("those behind it are not run; -o none --measures FILE.csv makes a table of all", done.stderr)
-        self.write(CIRCUIT.replace("100 0 1k 2k 10k", "100 0").replace("10u 20u -1u", "10u"))
-        done = subprocess.run([PROGRAM, "run", "a.cir"], cwd=self.folder, capture_output=True, text=True,
+        self.assertNotIn("partial", done.stderr)
+        self.assertIn("c = 1e-05, load = 0: failed, from t = 0 on no solution exists", done.stdout)
+        self.run_it("m.csv", status=1)
+        self.assertEqual(self.text("w.csv"), self.text("m.csv"))
+        with open(os.path.join(self.folder, "a.json"), encoding="utf-8") as report:
+            failed = json.load(report)["failed_steps"]
+        self.assertEqual([step["number"] for step in failed], [3, 4, 5, 6, 9, 12, 15])
+        rows = [row for row in self.rows("w.csv") if row["error"] == ""]
+        self.assertEqual(len(rows), 8)
+        of_all = self.rows("a.csv")
+        for row in rows:
+            mine = [list(other.values())[2:] for other in of_all
+                    if other["c"] == row["c"] and other["load"] == row["load"]]
+            self.run_it("one.csv", "-o", "one.wave.csv", "--only", str(1 + self.rows("w.csv").index(row)))
+            self.assertEqual(mine, [list(other.values())[2:] for other in self.rows("one.wave.csv")])
+        header, _, points = (self.folder / "a.raw").read_bytes().partition(b"Binary:\n")
+        fields = dict(line.split(": ", 1) for line in header.decode().splitlines() if ": " in line)
+        self.assertEqual(int(fields["No. Points"]), len(of_all))
+        self.assertEqual(len(points), 8 * int(fields["No. Variables"]) * len(of_all))
+
+    def test_of_many_that_fail_a_few_are_told(self):
+        self.write(CIRCUIT.replace("100 0 1k 2k 10k", "0").replace("list 10u 20u -1u", "-30u 30u 1u"))
+        done = subprocess.run([PROGRAM, "run", "a.cir", "-o", "a.raw"], cwd=self.folder, capture_output=True, text=True,
                               check=False)
-        self.assertIn("this was step 2 of 2", done.stderr)
-        self.assertNotIn("those behind it", done.stderr)
+        self.assertEqual(done.returncode, 3)
+        self.assertEqual(done.stderr.count("this was step"), 10)
+        self.assertIn("61 of 61 steps failed, the first 10 as told above", done.stderr)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "a.raw")))  # there is nothing in it
 
     def test_each_row_is_what_a_run_alone_gives(self):
         self.run_it("m.csv", status=1)

@@ -35,11 +35,12 @@ from ._response import Response
 from ._result import Result, Table
 from ._sensitivities import Sensitivities
 from ._session import Netlist, Number
+from ._simulation import Simulation
 from ._sweep import Grid, Sweep
 
 __version__: str = _library.lib.dalcs_version().decode()
 __all__ = ["Cancelled", "Circuit", "Error", "NetlistError", "NoSolution", "OptionError", "Response",
-           "Result", "Sensitivities", "Sweep", "System", "Table", "WrongWaveform", "bode", "check",
+           "Result", "Sensitivities", "Simulation", "Sweep", "System", "Table", "WrongWaveform", "bode", "check",
            "envelope", "equations", "run", "steady", "sweep", "variants"]
 
 

@@ -10,9 +10,11 @@ import ctypes
 
 from . import _library as c
 from ._equations import System, systems_of
+from ._errors import Error
 from ._response import Response
 from ._result import Result
-from ._session import Netlist, Number, Options, Session, Window
+from ._session import Exchange, Netlist, Number, Options, Session, Window
+from ._simulation import Simulation
 from ._sweep import Grid, Sweep, sweep_of, variants_of
 
 
@@ -46,7 +48,9 @@ class Circuit:
             at: Optional[Sequence[float]] = None, losses: Window = False, rows: bool = True,
             seed: Optional[int] = None, sensitivities: bool = False,
             frequencies: Optional[Sequence[float]] = None,
-            progress: Optional[Callable[[float, float], Any]] = None, **more: Any) -> Result:
+            progress: Optional[Callable[[float, float], Any]] = None,
+            exchange: Optional[Exchange] = None, initial: Optional[Mapping[str, Number]] = None,
+            **more: Any) -> Result:
         """Runs its .op, .dc, .ac, .pss and .tran.
 
         values    other values, by name: a parameter of .param, an element ("r1"), "dmod(vfwd)"; a number,
@@ -57,12 +61,19 @@ class Circuit:
         seed      of random values, in place of the netlist's
         sensitivities, frequencies   of steady() and bode()
         progress  called as progress(time, stop) now and then; what it raises ends the run
+        exchange  gives sources with the word EXTERNAL their values: exchange(t, signals, inputs) -> next t.
+                  It is called at 0, when `signals` is empty, then at the times (s) that it returns; None:
+                  never again. `signals` has all signals by name just before t (V, A); what it writes into
+                  the dict `inputs` are the sources' values from t on
+        initial   voltages of capacitors (V) and currents of coils (A) by their names, with which .tran starts, as
+                  with uic; `report["final"]` of another run goes on where that ended
         more      options as on the command line: tol, method, stages, step (s), fill, curve, compress,
                   audit, energy, record, only (of .step and .mc this run alone, from 1 on), workers
                   (threads of .wcase);
                   any other name is one of `values`
 
-        Raises NetlistError, OptionError, NoSolution. Ctrl-C ends the run.
+        Raises NetlistError, OptionError, NoSolution, whose `result` has the rows until then. Ctrl-C ends
+        the run. A step of .step that fails loses none of the others, which are in that result.
         """
         options: Dict[str, Any] = {"record": True}
         options.update((name, value) for name, value in more.items() if name in c.OPTIONS)
@@ -72,9 +83,16 @@ class Circuit:
                        if name not in ("fill", "curve", "compress")}
         own = {name: value for name, value in more.items() if name not in c.OPTIONS}
         session = self._read(losses, _asks_of(options, sensitivities), {**(values or {}), **own}, seed)
+        session.set_states(initial or {})
         chosen = Options(options, at, frequencies)
         kind = Response if options.get("bode") else Result
-        return kind(session, session.run(chosen, progress, rows), bool(options.get("only")))
+        is_alone = bool(options.get("only"))
+        try:
+            return kind(session, session.run(chosen, progress, rows, exchange), is_alone)
+        except Error as error:
+            if error.rows:
+                error.result = kind(session, error.rows, is_alone)
+            raise
 
     def steady(self, values: Optional[Mapping[str, Number]] = None, *,
                period: Optional[float] = None, **more: Any) -> Result:
@@ -122,6 +140,10 @@ class Circuit:
         if stop is not None:
             more["envelope_stop"] = float(stop)
         return self.run(values, envelope=True, **more)
+
+    def start(self, values: Optional[Mapping[str, Number]] = None, **options: Any) -> Simulation:
+        """A run that goes on step by step, for circuits with EXTERNAL sources; arguments are those of run()."""
+        return Simulation(lambda exchange: self.run(values, exchange=exchange, **options))
 
     def sweep(self, grid: Optional[Grid] = None, *, workers: Optional[int] = None,
               each: Optional[Callable[[Result], Any]] = None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Optional, Sequence
+from typing import Any, Optional, Sequence
 
 from . import _library as c
 
@@ -21,6 +21,8 @@ class Error(Exception):
     element   the element that is to blame, in lower case, or None
     elements  all of those that are
     status    the number of dalcs.h, < 0 or a numerical failure
+    result    of a run that ended early: the rows until then, and of .step the steps that did not fail;
+              None where there are no rows. Its report tells under "failed_steps" which did
     """
 
     def __init__(self, status: int, messages: Sequence[str], elements: Sequence[str] = ()) -> None:
@@ -32,6 +34,8 @@ class Error(Exception):
         self.file: Optional[str] = None
         self.line: Optional[int] = None
         self.column: Optional[int] = None
+        self.rows: Any = None  # the library's, for `result`
+        self.result: Any = None
         self._take_place()
         super().__init__("\n".join(self.messages) or self.message)
 

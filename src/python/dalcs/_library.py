@@ -78,6 +78,22 @@ class Sink(ctypes.Structure):
     ]
 
 
+class Exchange(ctypes.Structure):
+    """struct dalcs_exchange"""
+
+    _fields_ = [
+        ("time", c_double),
+        ("n_signals", c_size_t),
+        ("n_inputs", c_size_t),
+        ("name", POINTER(c_char_p)),
+        ("value", POINTER(c_double)),
+        ("input", POINTER(c_char_p)),
+        ("given", POINTER(c_double)),
+        ("next", c_double),
+    ]
+
+
+Exchanging = CFUNCTYPE(c_int, c_void_p, POINTER(Exchange))
 Progress = CFUNCTYPE(c_int, c_void_p, c_double, c_double)
 
 # name: (result, arguments)
@@ -102,6 +118,8 @@ CALLS = {
     "dalcs_session_set_value": (c_int, (c_void_p, c_char_p, c_double)),
     "dalcs_session_apply_values": (c_int, (c_void_p,)),
     "dalcs_session_parameter": (c_int, (c_void_p, c_char_p, POINTER(c_double))),
+    "dalcs_session_couple": (c_int, (c_void_p, Exchanging, c_void_p)),
+    "dalcs_session_set_state": (c_int, (c_void_p, c_char_p, c_double)),
     "dalcs_session_parameter_name": (c_char_p, (c_void_p, c_size_t)),
     "dalcs_session_element_name": (c_char_p, (c_void_p, c_size_t)),
     "dalcs_run_option_name": (c_char_p, (c_size_t,)),

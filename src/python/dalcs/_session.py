@@ -8,7 +8,7 @@ import math
 import os
 import signal
 import threading
-from typing import Any, Callable, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -18,7 +18,8 @@ from ._errors import OptionError, error_of
 Netlist = Union[str, "os.PathLike[str]"]
 Window = Union[bool, Tuple[float, float]]
 Number = Union[float, str]  # a str as in netlists: "4.7k"
-OWN_OPTIONS = frozenset(("at", "frequencies", "losses", "progress", "rows", "seed", "sensitivities",
+Exchange = Callable[[float, Mapping[str, float], Dict[str, float]], Optional[float]]
+OWN_OPTIONS = frozenset(("at", "exchange", "frequencies", "initial", "losses", "progress", "rows", "seed", "sensitivities",
                          "values"))  # of Circuit.run
 
 
@@ -54,8 +55,11 @@ class Tables:
     def __del__(self) -> None:
         c.lib.dalcs_tables_destroy(self.handle)
 
+    def __len__(self) -> int:
+        return int(c.lib.dalcs_tables_count(self.handle))
+
     def __iter__(self):  # type: ignore[no-untyped-def]
-        for index in range(c.lib.dalcs_tables_count(self.handle)):
+        for index in range(len(self)):
             yield c.lib.dalcs_tables_get(self.handle, index).contents
 
 
@@ -117,6 +121,10 @@ class Session:
                 hint = f"\n  hint: did you mean the option {meant[0]!r}?"
                 raise OptionError(error.status, [*error.messages[:-1], error.messages[-1] + hint]) from None
 
+    def set_states(self, states: Mapping[str, Number]) -> None:
+        for name, value in states.items():
+            self._check(c.lib.dalcs_session_set_state(self.handle, name.encode(), number_of(value)))
+
     def _values(self, call: Callable[..., Optional[bytes]], *arguments: int) -> dict[str, float]:
         """All names and values that a call gives by index."""
         found: dict[str, float] = {}
@@ -149,9 +157,12 @@ class Session:
         return (text.value or b"").decode()
 
     def run(self, options: "Options", progress: Optional[Callable[[float, float], Any]],
-            keeps_rows: bool) -> Optional[Tables]:
+            keeps_rows: bool, exchange: Optional[Exchange] = None) -> Optional[Tables]:
         """The rows, if they are kept."""
         failure: list[BaseException] = []
+        coupled = None if exchange is None else _exchanging(exchange, failure)
+        if coupled is not None:
+            self._check(c.lib.dalcs_session_couple(self.handle, coupled, None))
         tell = _pulse if progress is None else _told(progress, failure)
         handle = ctypes.c_void_p()
 
@@ -166,7 +177,9 @@ class Session:
         if failure:
             raise failure[0]
         if status != c.OK:
-            raise error_of(status, self.messages(), self.report() if status > 0 else None)
+            error = error_of(status, self.messages(), self.report() if status > 0 else None)
+            error.rows = tables
+            raise error
         return tables
 
     def report(self) -> str:
@@ -197,6 +210,33 @@ def _told(progress: Callable[[float, float], Any], failure: list[BaseException])
             return c.E_CANCELLED
         return c.OK
     return tell
+
+
+def _exchanging(exchange: Exchange, failure: list[BaseException]) -> Any:
+    names: list[str] = []
+    inputs: list[str] = []
+
+    @c.Exchanging
+    def call(_user, pointer):  # type: ignore[no-untyped-def]
+        e = pointer.contents
+        try:
+            if not e.value:
+                names[:] = [e.name[k].decode("utf-8", "replace") for k in range(e.n_signals)]
+                inputs[:] = [e.input[k].decode("utf-8", "replace") for k in range(e.n_inputs)]
+            read = dict(zip(names, e.value[:e.n_signals])) if e.value else {}
+            given = dict(zip(inputs, e.given[:e.n_inputs]))
+            again = exchange(e.time, read, given)
+            unknown = given.keys() - set(inputs)
+            if unknown:
+                raise KeyError(f"no external source {min(unknown)!r} among {', '.join(inputs)}")
+            for k, name in enumerate(inputs):
+                e.given[k] = given[name]
+            e.next = math.inf if again is None else again
+        except BaseException as error:  # pylint: disable=broad-except
+            failure.append(error)
+            return c.E_CANCELLED
+        return c.OK
+    return call
 
 
 def _interruptibly(session: Session, call: Callable[[], int]) -> int:
