@@ -297,11 +297,7 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         h *= dalcs_micro_shorter;
         moves = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
     }
-    bool is_over = moves && noticeable && !e->jump.is_known;
-    *moves_little = moves && !is_over;
-    if (is_over) {
-        dalcs_radau_go_after(r, part);
-    }
+    *moves_little = moves;
     return DALCS_OK;
 }
 

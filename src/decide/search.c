@@ -180,11 +180,6 @@ static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_pa
 /* No shorter step mends the error, and it is rounding's: is it let pass from now on? */
 static bool lets_pass(const struct dalcs_radau_part *part, struct dalcs_search *search,
                       const struct dalcs_step_quality *quality) {
-    bool is_rounding = search->stuck >= STUCK && quality->of_unit < dalcs_doubt_noise(part);
-    if (is_rounding && isfinite(quality->ratio) && search->tolerated == 1.0) {
-        search->tolerated = 4.0 * quality->ratio;
-        return true;
-    }
     if (search->stuck < LEVERED_STUCK || !is_levered(part, quality)) {
         return false;
     }

@@ -38,8 +38,7 @@ struct dalcs_search {
     int stuck;
     double ratio_before;
     int level_before_stuck;
-    double tolerated; /* the ratio that is let pass */
-    bool spared;      /* errors of states alone count */
+    bool spared; /* errors of states alone count */
 };
 
 /* The error is too large for this step. */

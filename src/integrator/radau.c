@@ -103,19 +103,13 @@ double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
 /* Events closer upon each other than this part of the stop time are a flurry. */
 static const double close = 0x1p-30;
 
-/* Too many events in no time: an accumulation, or a mode that cannot be told. Or one upon the other without
- * end: rounding of what is 0 goes to and fro. Steps of implicit Euler leave either behind, with no event at
- * their ends. */
-static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    if (part->segment.t - part->memory.crowd_since > 1e4 * r->resolution) {
-        part->memory.crowd_since = part->segment.t;
-        part->memory.crowd = 0;
-    }
+/* One event upon the other: an accumulation, a mode that cannot be told, or rounding of what is 0 that goes to and fro.
+ * Steps of implicit Euler leave them behind, with no event at their ends. */
+static void count_flurry(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     part->memory.flurry = part->segment.t - part->memory.last_event > close * r->options.stop
                               ? 0
                               : part->memory.flurry;
     if (part->guards.n_crossed > 0) {
-        part->memory.crowd++;
         part->memory.flurry++;
         part->memory.last_event = part->segment.t;
     }
@@ -224,7 +218,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         part->guards.flipped = true;
     }
     if (part->guards.n_crossed > 0 || part->segment.by_euler) {
-        count_crowd(r, part);
+        count_flurry(r, part);
     }
     const bool commanded = enter_changes(r, part, goes_on);
     if (part->segment.t >= r->options.stop) {

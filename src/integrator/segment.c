@@ -29,7 +29,6 @@ static const double outsized = 1e6;
 
 enum {
     MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
-    CROWD = 40,
     FLURRY = 4096,
     MOST_FRONTS_REFUSED = 16
 };
@@ -96,8 +95,7 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
     if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= dalcs_largest_residual)) {
         return recover_residual(r, part, search, is_first, &trial->done);
     }
-    bool means_something =
-        status == DALCS_OK && !(search->front && dalcs_stage_n_clashes(entry) > 0);
+    bool means_something = status == DALCS_OK;
     if (means_something) {
         double end = end_of(part, search);
         dalcs_step_judge(r, part, entry, end, q);
@@ -108,7 +106,7 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
         }
     }
     bool controlled = !search->fixed || is_first;
-    if (!means_something || (controlled && !(q->ratio <= search->tolerated))) {
+    if (!means_something || (controlled && !(q->ratio <= 1.0))) {
         q->ratio = means_something ? q->ratio : INFINITY;
         q->own = means_something ? q->own : INFINITY;
         return dalcs_search_recover(r, part, search, q, &trial->done);
@@ -243,8 +241,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
                                   .asked_level = part->length.level,
                                   .fixed = r->options.fixed_step > 0.0,
                                   .guessed = guessed,
-                                  .ratio_before = INFINITY,
-                                  .tolerated = 1.0};
+                                  .ratio_before = INFINITY};
     bool asks = is_commutation(part) && !guessed && !search.fixed;
     if (part->guards.fresh && part->guards.flipped && !guessed && !asks &&
         part->memory.fronts_refused < MOST_FRONTS_REFUSED) {
@@ -273,8 +270,7 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
     if (slides) {
         return DALCS_OK;
     }
-    if (part->memory.crowd > CROWD + 4 * part->component->system->n_pairs ||
-        part->memory.flurry > FLURRY) {
+    if (part->memory.flurry > FLURRY) {
         part->guards.fresh = true;
         return dalcs_search_fall_back(r, part, limit, part->length.level, INFINITY);
     }

@@ -173,30 +173,3 @@ double dalcs_doubt_of_closed(const struct dalcs_radau_part *part, int pair, doub
     int place = dalcs_system_n_equations(part->component->system) + pair;
     return dalcs_larger(band, of_all(part, spread_at_start(part, place), scale));
 }
-
-/* Is a row below -`least` at all nodes behind the start? */
-static bool is_below(const struct dalcs_radau_part *part, int row, double least) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    bool below = true;
-    for (int k = 1; k < l->n_nodes && below; k++) {
-        below = part->segment.out[k * l->stride + row] < -least;
-    }
-    return below;
-}
-
-double dalcs_doubt_of_fall(const struct dalcs_radau_part *part, int guard, double scale,
-                           const double *unit) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    const struct dalcs_system *s = part->component->system;
-    double doubt = dalcs_doubt_about(part, guard, scale, unit);
-    int place = dalcs_system_n_equations(s) + guard;
-    bool has_map = part->segment.entry != NULL && dalcs_stage_has_map(part->segment.entry);
-    if (guard >= s->n_pairs || !has_map || !is_below(part, place, 0.0)) {
-        return doubt;
-    }
-    double spread =
-        dalcs_stage_spread(&part->stages, part->segment.entry, (l->n_nodes - 1) * l->stride + place,
-                           part->segment.in, part->scales.column);
-    double at_end = within_band(part, largest_of(part, place) + spread, scale, scale);
-    return is_below(part, place, at_end) ? dalcs_smaller(doubt, at_end) : doubt;
-}

@@ -43,10 +43,4 @@ double dalcs_doubt_about(const struct dalcs_radau_part *part, int guard, double 
  * within nanoseconds, may be more than the band. */
 double dalcs_doubt_of_closed(const struct dalcs_radau_part *part, int pair, double scale);
 
-/* The same of one that is not armed and may fall below 0. What errors of voltages across milliohms make of a
- * current at first dies away within the step: one that is below 0 throughout it, by more than what is left of
- * them at its end, is in no doubt. */
-double dalcs_doubt_of_fall(const struct dalcs_radau_part *part, int guard, double scale,
-                           const double *unit);
-
 #endif

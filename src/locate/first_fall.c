@@ -116,7 +116,7 @@ static double doubt_of(struct dalcs_radau_part *part, const struct look *a) {
         (a->end < 1.0 ? dalcs_guard_value_at(part, value, a->stride, a->end) : last) <= a->zero) {
         return a->zero; /* it does not come back */
     }
-    double doubt = dalcs_doubt_of_fall(part, guard, a->scale, a->unit);
+    double doubt = dalcs_doubt_about(part, guard, a->scale, a->unit);
     if (is_armed) {
         return dalcs_larger(a->zero, dalcs_part_of_doubt * doubt);
     }
@@ -166,14 +166,6 @@ static void disarm(const struct dalcs_radau_part *part, const struct look *a, do
     }
 }
 
-static void arm_what_goes_on(const struct dalcs_radau_part *part, const struct look *a) {
-    bool *armed = &part->guards.armed[a->guard];
-    if (!*armed && !part->guards.fresh && a->value[0] > a->zero + a->rounding) {
-        *armed = a->guard < part->component->system->n_pairs &&
-                 dalcs_guard_goes_on(part, a->guard, a->value[0]);
-    }
-}
-
 /* How deep a fall must be: deeper than `depth`, and than a beginning below 0 that is over soon. */
 static double depth_of_fall(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                             const struct look *a, double depth) {
@@ -216,7 +208,6 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         if (bound >= -a.zero - a.rounding) {
             continue;
         }
-        arm_what_goes_on(part, &a);
         double depth = doubt_of(part, &a) + a.rounding;
         if (bound >= -depth) {
             continue;

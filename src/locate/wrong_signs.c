@@ -13,9 +13,8 @@
 /* An error of the polynomial may be so many bands at its start. */
 static const double shallow = 100.0;
 
-/* And so much is let be in any case, over the unit's scale, where it is over at once; so much, where time
- * does not tell it from nothing. */
-static const double slight = 1e-8, unresolved = 1e-5;
+/* And so much is let be in any case, over the unit's scale, where time does not tell it from nothing. */
+static const double unresolved = 1e-5;
 
 /* What dies away between two nodes leaves so much of itself, of either sign, at those behind: in the first step
  * of a mode, and in later ones, which have got longer meanwhile. */
@@ -30,7 +29,7 @@ static bool is_over_at_once(const struct dalcs_radau *r, const struct dalcs_rada
 
 bool dalcs_guard_is_over_soon(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                               const double *value, int stride, double scale) {
-    double little = fmax(shallow * dalcs_doubt_band(part), slight) * scale;
+    double little = shallow * dalcs_doubt_band(part) * scale;
     return (value[0] >= -little &&
             dalcs_guard_value_at(part, value, stride, dalcs_soon_after) > 0.0) ||
            (value[0] >= -unresolved * scale && is_over_at_once(r, part, value, stride));
@@ -89,20 +88,16 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
     return all;
 }
 
-/* Is it below 0 from the start on, and does not come back by half up to `end`? By more than `least`, or by more
- * than `nothing` and always the same, as no error of the polynomial is. */
-static bool stays_below(const struct dalcs_radau_part *part, int pair, double end, double least,
-                        double nothing) {
+/* Is it below 0 from the start on, by more than `least`, and does not come back by half up to `end`? */
+static bool stays_below(const struct dalcs_radau_part *part, int pair, double end, double least) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const double *value =
         part->segment.out + dalcs_system_n_equations(part->component->system) + pair;
-    bool stays = value[0] < -nothing;
-    bool same = true;
+    bool stays = value[0] < -least;
     for (int k = 1; k < l->n_nodes && part->stages.method->node[k] <= end && stays; k++) {
         stays = value[k * l->stride] < 0.5 * value[0];
-        same = same && fabs(value[k * l->stride] - value[0]) <= -dalcs_guard_agreeing * value[0];
     }
-    return stays && (same || value[0] < -least);
+    return stays;
 }
 
 bool dalcs_guards_stay_negative(const struct dalcs_radau_part *part, double end,
@@ -114,10 +109,9 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau_part *part, double end,
     for (int k = 0; k < part->guards.n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {
         int d = part->guards.doubtful[k];
         if (d < n_pairs) {
-            double scale = dalcs_guard_scale(part, d, unit);
-            double rounding = dalcs_guard_rounding(part, d, unit);
-            negative =
-                stays_below(part, d, end, least * scale + rounding, noise * scale + rounding);
+            negative = stays_below(part, d, end,
+                                   least * dalcs_guard_scale(part, d, unit) +
+                                       dalcs_guard_rounding(part, d, unit));
         }
     }
     return negative;

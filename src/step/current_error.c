@@ -161,9 +161,5 @@ void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry
             continue;
         }
         *worst = dalcs_larger(*worst, error / allowed);
-        if (error > allowed) {
-            double scale = unit[part->component->system->column_is_current[stages->levered[k]]];
-            e->of_unit = dalcs_larger(e->of_unit, error / scale);
-        }
     }
 }

@@ -9,7 +9,6 @@ struct dalcs_lever_error {
     double
         of_currents; /* the largest of a branch current without memory; 0 if far less than allowed */
     double of_voltages; /* of a voltage that resistors make of coils' currents; likewise */
-    double of_unit;     /* the largest that is not allowed, over its unit */
 };
 
 /* Those of the step that was solved last. */

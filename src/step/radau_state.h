@@ -120,9 +120,7 @@ struct dalcs_part_memory {
 
     int fronts_refused;     /* guesses that a front goes on, which were wrong */
     uint64_t *modes_before; /* the one that held, the one after pairs changed sides */
-    long crowd;             /* events since `crowd_since` */
-    double crowd_since;
-    long flurry; /* events, one close upon the other, up to the last one */
+    long flurry;            /* events, one close upon the other, up to the last one */
     double last_event;
     struct dalcs_periodic *periodic; /* NULL: nothing can come back (periodic.h) */
     struct dalcs_cycle *cycle;       /* NULL: no period is leapt over (cycle.h) */

@@ -53,10 +53,7 @@ double dalcs_step_rounding(const struct dalcs_radau_part *part,
 
 /* One more error, over what is allowed for it. Divisions are dear, and few columns are worse than all
  * before. */
-static inline void judge(struct dalcs_step_quality *q, double error, double allowed, int of) {
-    if (!(error <= allowed)) {
-        q->of_unit = dalcs_larger(q->of_unit, error / q->unit[of]);
-    }
+static inline void judge(struct dalcs_step_quality *q, double error, double allowed) {
     if (!(error <= q->ratio * allowed) && q->ratio == q->ratio) {
         q->ratio = error / allowed;
     }
@@ -101,7 +98,6 @@ static void compare(const struct dalcs_radau_part *part, const struct allowance 
     bool curved = part->excitation.is_curved;
     q->ratio = 0.0;
     q->drift = 0.0;
-    q->of_unit = 0.0;
     int n_equations = dalcs_system_n_equations(s);
     for (int c = 0; c < (curved ? n_equations : s->n_x); c++) {
         int of = s->column_is_current[c] ? 1 : 0;
@@ -114,12 +110,12 @@ static void compare(const struct dalcs_radau_part *part, const struct allowance 
         if (error > q->drift * allowed) {
             q->drift = error / allowed;
         }
-        judge(q, curved ? dalcs_larger(error, fabs(ripple[c])) : error, allowed, of);
+        judge(q, curved ? dalcs_larger(error, fabs(ripple[c])) : error, allowed);
     }
     for (int c = n_equations; curved && c < n_equations + s->n_pairs; c++) {
         if (part->scales.kinds->counts[c] != 0) { /* an open one's voltage is one of the columns */
             double scale = dalcs_step_scale(part, c, q->unit);
-            judge(q, fabs(ripple[c]), a->tolerance * scale + a->besides[2], 1);
+            judge(q, fabs(ripple[c]), a->tolerance * scale + a->besides[2]);
         }
     }
 }
@@ -200,7 +196,6 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
         dalcs_current_error(part, entry, q->unit, a.besides, &e);
         q->own = dalcs_larger(q->ratio, e.of_currents);
         q->ratio = dalcs_larger(q->own, e.of_voltages);
-        q->of_unit = e.of_unit;
     }
 }
 

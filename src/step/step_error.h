@@ -9,7 +9,6 @@ struct dalcs_step_quality {
     double ratio;   /* estimated error over what is allowed; NaN when the step means nothing */
     double own;     /* the part of it without voltages that states are levered up to */
     double drift;   /* the part of it that comes from where the states start */
-    double of_unit; /* the errors that are not allowed, over the largest of their unit */
     double here[2]; /* V, A: the largest of each in the segment */
     double unit[2]; /* V, A: so far */
 };

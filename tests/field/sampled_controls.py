@@ -12,7 +12,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from without_euler import compare_ends  # noqa: E402
 
 ALLOWED = 1e-7
 OHMS = {"ideal": "", "real": " ron=1m roff=10meg"}
@@ -42,22 +42,6 @@ def netlist(case, ohms):
     return "\n".join(["sampled control", *cards, ".end", ""])
 
 
-def main():
-    program = sys.argv[1]
-    checker = Checker("sampled_controls")
-    for k, case in enumerate(CASES):
-        for name, ohms in OHMS.items():
-            what = f"{case[0]} {k}, {name}"
-            text = netlist(case, ohms)
-            outcome = run(program, text, method=None, options=["--audit", "full"])
-            exact = run(program, text, method=None, tolerance=1e-11, stages=9)
-            if checker.check(outcome.status == exact.status == 0, f"{what}: {outcome.stderr[:300]}"):
-                n_euler = outcome.report["work"]["euler_steps"]
-                checker.check(n_euler == 0, f"{what}: {n_euler} steps of implicit Euler")
-                wanted = exact.column("v(out)")[-1]
-                checker.close(outcome.column("v(out)")[-1], wanted, ALLOWED * abs(wanted), f"{what}: v(out)")
-    return checker.finish()
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(compare_ends(sys.argv[1], "sampled_controls", CASES, OHMS, netlist,
+                          "v(out)", {"tolerance": 1e-11, "stages": 9}, ALLOWED))

@@ -176,6 +176,10 @@ def at_threshold(c, size, volts):
     fall = 5 * EXP(-0.4)
     c.measured(f"rests at {volts} V, {size}", [f"v1 a 0 sin(0 {2 * volts!r} 1meg)", f"b1 g 0 v=min({volts!r},v(a))", *load,
                                               f".model sw sw(vt={volts!r} ron=1m)"], "10n 3u", {"MAX v(o)": (0.0, 1e-9)})
+    for stored in [], ["c2 g 0 1p"]:
+        c.measured(f"clamped at {volts} V, {size}, {len(stored)} capacitors", [
+            f"v1 a 0 sin(0 {2 * volts!r} 1meg)", "r1 a g 1k", "d1 g k d", f"v3 k 0 {volts!r}", ".model d d", *stored, *load,
+            f".model sw sw(vt={volts!r} ron=1m)"], "10n 3u", {"MAX v(o)": (0.0, 1e-9)})
     c.measured(f"rests at 0 V, {size}", [f"v1 a 0 sin(0 {volts!r} 1meg)", "b1 g 0 v=max(0,v(a))", *load,
                                         ".model sw sw(vt=0 ron=1m)"], "10n 3u", {
         "FIND v(o) AT=.25u": 5.0, "FIND v(o) AT=.9u": fall, "FIND v(o) AT=2.9u": fall}, allowed=1e-4)
