@@ -40,27 +40,76 @@ static bool is_ideal(const struct dalcs_audit *audit, const struct audit_part *p
     }
 }
 
-static void check_currents(struct dalcs_audit *audit, const struct audit_part *part,
-                           const struct dalcs_audit_state *first) {
-    int *cluster = audit->crossing.cluster;
+/* Stages of a step lie behind a transient of L/R, or RC, that is shorter than it, and their polynomial is off at its
+ * beginning by so much less than how the voltage, or the current, goes on: so far, times the polynomial's Lebesgue function
+ * there, from its stages alone. That is 13 for seven stages. 0: nothing is known of them. */
+static double reach_of(const struct dalcs_audit_polynomials *p) {
+    double sum = 0.0;
+    for (int j = 0; p != NULL && j < p->n_nodes; j++) {
+        double product = p->node[j] > 0.0 ? 1.0 : 0.0;
+        for (int k = 0; k < p->n_nodes && p->node[j] > 0.0; k++) {
+            product *= k == j || !(p->node[k] > 0.0) ? 1.0 : p->node[k] / (p->node[k] - p->node[j]);
+        }
+        sum += fabs(product);
+    }
+    return sum;
+}
+
+/* Into crossing.offset: what leaves each node through all but capacitors at the end of the step. */
+static void sum_later_currents(struct dalcs_audit *audit, const struct audit_part *part,
+                               const struct dalcs_audit_state *first) {
+    audit->shifted.side = DALCS_LEFT;
+    audit->shifted.t = first->t + part->at.step;
+    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
+    audit_sum_currents(audit, part, &audit->shifted);
+    for (int k = 0; k < part->n_nodes; k++) {
+        audit->crossing.offset[part->node[k]] = audit->sums.current[part->node[k]];
+    }
+}
+
+/* F, at the nodes of a cluster, each between two of them twice. */
+static double capacitance_at(const struct dalcs_audit *audit, const struct audit_part *part,
+                             int root) {
+    double sum = 0.0;
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        for (int end = 0; end < 2 && d->kind == DALCS_CAPACITOR; end++) {
+            sum += dalcs_union_find(audit->crossing.cluster, d->node[end]) == root ? d->value : 0.0;
+        }
+    }
+    return sum;
+}
+
+static void add_to_clusters(struct dalcs_audit *audit, const struct audit_part *part) {
     struct audit_sums *sums = &audit->sums;
-    audit_sum_currents(audit, part, first);
-    audit_find_clusters(audit, part, first, first, is_ideal);
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
-        const int root = dalcs_union_find(cluster, node);
+        const int root = dalcs_union_find(audit->crossing.cluster, node);
         if (root != node) {
             sums->current[root] += sums->current[node];
             sums->scale[root] += sums->scale[node];
             sums->rounding[root] += sums->rounding[node];
+            audit->crossing.offset[root] += audit->crossing.offset[node];
         }
     }
+}
+
+static void check_currents(struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *first, double reach) {
+    struct audit_sums *sums = &audit->sums;
+    sum_later_currents(audit, part, first);
+    audit_sum_currents(audit, part, first);
+    audit_find_clusters(audit, part, first, first, is_ideal);
+    add_to_clusters(audit, part);
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
-        if (dalcs_union_find(cluster, node) == node) {
+        if (dalcs_union_find(audit->crossing.cluster, node) == node) {
             const double duration = audit->net.has_charge[node] ? part->at.step : 1.0;
-            const double off =
-                fabs(sums->current[node]) - sums->rounding[node] - audit->options.abstol;
+            const double known = part->at.step * part->floor.most;
+            const double later = fabs(audit->crossing.offset[node] - sums->current[node]);
+            const double behind = known > 0.0 ? reach * later / known : 0.0;
+            double off = fabs(sums->current[node]) - sums->rounding[node] - audit->options.abstol;
+            off -= off > 0.0 ? behind * capacitance_at(audit, part, node) : 0.0;
             audit_find(audit, part, DALCS_AUDIT_KCL, node, off * duration,
                        sums->scale[node] * duration, first->t);
         }
@@ -79,25 +128,8 @@ static bool has_moving_current(const struct dalcs_audit *audit, const struct aud
     return has;
 }
 
-/* Stages of a step lie behind a transient of L/R that is shorter than it, and their polynomial is off there by R/L less than
- * how the voltage goes on: so far, times the polynomial's Lebesgue function at its beginning, from its stages alone. That is
- * 13 for seven stages. */
-static double reach_of(const struct dalcs_audit_polynomials *p) {
-    double sum = 0.0;
-    for (int j = 0; j < p->n_nodes; j++) {
-        double product = p->node[j] > 0.0 ? 1.0 : 0.0;
-        for (int k = 0; k < p->n_nodes && p->node[j] > 0.0; k++) {
-            product *= k == j || !(p->node[k] > 0.0) ? 1.0 : p->node[k] / (p->node[k] - p->node[j]);
-        }
-        sum += fabs(product);
-    }
-    return sum;
-}
-
 static void check_coils(struct dalcs_audit *audit, const struct audit_part *part,
-                        const struct dalcs_audit_state *first,
-                        const struct dalcs_audit_polynomials *stored) {
-    const double reach = reach_of(stored);
+                        const struct dalcs_audit_state *first, double reach) {
     bool is_read = false;
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
@@ -126,9 +158,10 @@ void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
         check_initial(audit, part, first);
     } else if (audit->options.origin == DALCS_AUDIT_FROM_REST && !part->has_reader &&
                !part->is_restless) {
-        check_currents(audit, part, first);
+        const double reach = reach_of(stored);
+        check_currents(audit, part, first, reach);
         if (stored != NULL && !has_moving_current(audit, part)) {
-            check_coils(audit, part, first, stored);
+            check_coils(audit, part, first, reach);
         }
     }
 }

@@ -3,18 +3,44 @@
 
 #include <string.h>
 
-static bool is_new(bool *seen, int node) {
-    const bool was = seen[node];
-    seen[node] = true;
-    return !was;
+/* A node whose voltage system `of` has, if it is not listed yet. Returns whether it is. */
+static bool add_node(const struct dalcs_audit_run *a, int *system, int node, int of, bool lists) {
+    const int column = a->run->s->network.readout->node_column[node];
+    if (node == 0 || column < 0 || system[node] >= 0) {
+        return false;
+    }
+    struct audit_members *m = &a->part[of];
+    if (lists) {
+        m->node[m->n_nodes] = node;
+        m->node_column[m->n_nodes] = column;
+    }
+    m->n_nodes++;
+    system[node] = of;
+    return true;
+}
+
+/* Nodes that hang on shorts alone, which are in no system: a formula may read them. */
+static void add_shorted_nodes(const struct dalcs_audit_run *a, int *system, bool lists) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    bool grows = true;
+    while (grows) {
+        grows = false;
+        for (int i = 0; i < c->n_devices; i++) {
+            const int *node = c->device[i].node;
+            for (int e = 0; e < 2 && dalcs_device_is_short(&c->device[i]); e++) {
+                const int of = node[e] > 0 ? system[node[e]] : -1;
+                grows = (of >= 0 && add_node(a, system, node[1 - e], of, lists)) || grows;
+            }
+        }
+    }
 }
 
 /* Counts, or lists where there is room, the nodes and currents of all parts. */
-static void list_members(const struct dalcs_audit_run *a, bool *seen, bool lists) {
+static void list_members(const struct dalcs_audit_run *a, int *system, bool lists) {
     const struct dalcs_circuit *c = &a->run->s->circuit;
     const struct dalcs_readout *r = a->run->s->network.readout;
     int next_lambda = 0;
-    memset(seen, 0, (size_t)c->n_nodes * sizeof *seen);
+    memset(system, -1, (size_t)c->n_nodes * sizeof *system);
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         const int n_lambdas = d->behaviour != NULL ? d->behaviour->n_pairs : 0;
@@ -24,14 +50,7 @@ static void list_members(const struct dalcs_audit_run *a, bool *seen, bool lists
         }
         struct audit_members *m = &a->part[r->device_system[i]];
         for (int e = 0; e < 4; e++) {
-            const int node = d->node[e];
-            if (node > 0 && r->node_column[node] >= 0 && is_new(seen, node)) {
-                if (lists) {
-                    m->node[m->n_nodes] = node;
-                    m->node_column[m->n_nodes] = r->node_column[node];
-                }
-                m->n_nodes++;
-            }
+            add_node(a, system, d->node[e], r->device_system[i], lists);
         }
         if (r->start[i + 1] > r->start[i] || d->kind == DALCS_SWITCH) {
             if (lists) {
@@ -49,16 +68,17 @@ static void list_members(const struct dalcs_audit_run *a, bool *seen, bool lists
         }
         next_lambda += n_lambdas;
     }
+    add_shorted_nodes(a, system, lists);
 }
 
 enum dalcs_status dalcs_audit_members_make(struct dalcs_audit_run *a) {
     const int n = a->run->s->network.n_systems;
-    bool *seen = dalcs_arena_alloc(&a->arena, (size_t)a->run->s->circuit.n_nodes, sizeof(*seen));
+    int *system = dalcs_arena_alloc(&a->arena, (size_t)a->run->s->circuit.n_nodes, sizeof(*system));
     a->part = dalcs_arena_alloc(&a->arena, (size_t)n, sizeof(*a->part));
-    if (seen == NULL || a->part == NULL) {
+    if (system == NULL || a->part == NULL) {
         return DALCS_E_NOMEM;
     }
-    list_members(a, seen, false);
+    list_members(a, system, false);
     int n_lambdas = 0;
     for (int i = 0; i < a->run->s->circuit.n_devices; i++) {
         const struct dalcs_behaviour *b = a->run->s->circuit.device[i].behaviour;
@@ -83,6 +103,6 @@ enum dalcs_status dalcs_audit_members_make(struct dalcs_audit_run *a) {
         }
         m->n_nodes = m->n_devices = m->n_lambdas = 0;
     }
-    list_members(a, seen, true);
+    list_members(a, system, true);
     return DALCS_OK;
 }

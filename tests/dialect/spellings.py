@@ -597,7 +597,7 @@ CARRIERS = [
         "atan(tan(pi*f*time - pi/2))/pi + 0.5",
         "f*time + 1 - ceil(f*time)",
         "f*time - round(f*time) + 1",
-    ], [("v(a) - floor(v(a)) + 1", "infinitely many steps")]),
+    ], [("v(a) - floor(v(a)) + 1", "steps without end")]),
     Kind("the same four periods later", FOUR, "f*time - 3", "v(a)", 0.73, [
         "time*f-floor(time*f)",
         "(time % 1m)/1m",

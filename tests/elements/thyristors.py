@@ -261,7 +261,7 @@ def names(checker, program):
                         ("a1 a o g 0 th\n.model th thyristor(Ih=-1)", "cannot be negative"),
                         ("a1 a o g 0 th\n.model th triac(Vgoff=1)", "make it a gto"),
                         ("a1 a o g 0 th\n.model th thyristor(Vgtt=1)", "did you mean 'vgt'"),
-                        ("d1 a o th\n.model th thyristor", "here D is wanted"), ("a1 a o g 0 th", "not supported yet")):
+                        ("d1 a o th\n.model th thyristor", "here D is wanted"), ("a1 a o g 0 th", "neither dalcs nor the netlist has")):
         done = run_at(program, cards.format("wrong", line))
         checker.check(done.status == 3 and words in done.stderr, f"{line}: {done.status} {done.stderr}")
 

@@ -297,8 +297,8 @@ def typical(checker, program):
     done = run_at(program, text)
     if checker.check(done.status == 0, done.stderr):
         checker.close(value_of(done, "i"), -(8 - BODY_VOLT) / (10 + BODY_OHM), 1e-9, "body diode of a p channel")
-    for lines, words in (("vs g 0 sin(5 0.1 1k)", "it is an amplifier, no switch"),
-                         ("vs g 0 pulse(4 10 0 0 0 4u 10u)", "it is an amplifier, no switch")):
+    for lines, words in (("vs g 0 sin(5 0.1 1k)", "it is an amplifier, not a switch"),
+                         ("vs g 0 pulse(4 10 0 0 0 4u 10u)", "it is an amplifier, not a switch")):
         text = f"amplifier\nv1 in 0 12\nr1 in d 10\nm1 d g 0 far\n{lines}\n.lib far.lib\n.tran 1u 20u\n.end\n"
         done = run_at(program, text)
         checker.check(done.status == 3 and words in done.stderr, f"{lines}: {done.status} {done.stderr}")

@@ -55,6 +55,24 @@ CIRCUITS = {
     "a spark gap on the voltage across it": (
         "v1 in 0 10\nr1 in a1 1k\nc1 a1 b1 1u\nr2 b1 0 1k\nr3 a1 a2 1k\nc2 a2 b2 1u\nr4 b1 b2 1k\ns1 a1 b2 a1 b1 sp\n"
         "s2 a2 o a2 b2 sp\nrl o 0 10k\n.model sp SW(vt=6 vh=3 ron=0.1)\n.tran 0.1m 60m uic\n", [], {}),
+    "a ramp into a farad through a microhm, from rest": (
+        "c1 s 0 0.3\nv1 a 0 PWL(0 0 20u 88.4)\ns1 s a g 0 sw\nv2 g 0 1\nr1 s 0 100\n"
+        ".model sw SW(Ron=1u Roff=1G Vt=.5)\n.tran 1m\n", [], {}),
+    "a ramp into 10 mF through a milliohm, from rest": (
+        "v1 a 0 PWL(0 0 1u 400)\nr1 a s 1m\nc1 s 0 10m\nr2 s 0 10\n.tran 1u 100u\n", [], {}),
+    "a ramp through a diode of a microhm, from 5 V": (
+        "v1 a 0 PWL(0 5 10u 50)\nd1 a s dm\nc1 s 0 1\nr2 s 0 1\n.model dm D(Ron=1u)\n.tran 1u 100u\n", [], {}),
+    "a ramp into two capacitors and a coil, from rest": (
+        "v1 a 0 PWL(0 0 5u -20)\nr1 a s 10u\nc1 s 0 50m\nr2 s t 5u\nc2 t 0 0.1\nl1 t u 1u\nr3 u 0 1\n.tran 1u 50u\n",
+        [], {}),
+    "a step reads a node behind a short": (
+        "v1 a 0 SIN(2.5 2.4 1k)\nr1 a h 0\nb1 i 0 v=u(v(h)-1)\nr2 i 0 1k\n.tran 1u 2m\n", [], {("v(i)", 0.2e-3): 1.0}),
+    "steps read a node behind three shorts, the last one first": (
+        "v1 a 0 SIN(2.5 2.4 1k)\nr3 c h 0\nr2 b c 0\nr1 a b 0\nb1 i 0 v=u(v(h)-1)+u(v(h)-3)\nr4 i 0 1k\n.tran 1u 2m\n",
+        [], {("v(i)", 0.2e-3): 2.0}),
+    "a limit reads a node behind a short of a capacitor's": (
+        "v1 a 0 SIN(0 5 1k)\nr1 a b 1k\nc1 b 0 100n\nr2 h b 0\nb1 0 i i=limit(v(h),-1,1)\nr3 i 0 1k\n.tran 1u 2m\n",
+        [], {}),
 }
 
 
