@@ -60,6 +60,7 @@ struct dalcs_cell {
     struct dalcs_affine argument;
     double resistance; /* 1 / slope, 0: a jump */
     double height;     /* INFINITY: a kink, of one pair; else of two */
+    double rest;       /* of a jump: the part of its height at its knot */
     int pair;          /* the first */
 };
 

@@ -54,7 +54,10 @@ struct dalcs_behaviour {
     struct dalcs_affine
         output; /* V or A; of a smooth function what it reads, without a meaning as a sum */
     int n_pairs;
-    const struct dalcs_affine *w;      /* [n_pairs] */
+    const struct dalcs_affine *w; /* [n_pairs] */
+    const double *
+        rest; /* [n_pairs] of the first pair of a jump: the part of its height that it has where its argument
+                         * rests at the knot; NAN: of no jump */
     const struct dalcs_smooth *smooth; /* NULL: piecewise linear */
     bool is_part; /* of another formula: its value is no voltage that others are measured by */
 

@@ -15,11 +15,11 @@
 
 /* The cell of these numbers, one that is there already if possible: its first pair. */
 static int add_cell(struct dalcs_compiler *c, const struct dalcs_affine *argument,
-                    double resistance, double height) {
+                    double resistance, double height, double rest) {
     for (size_t k = 0; k < c->n_cells; k++) {
         const struct dalcs_cell *known = &c->cell[k];
         double factor;
-        if (known->resistance == resistance && known->height == height &&
+        if (known->resistance == resistance && known->height == height && known->rest == rest &&
             known->argument.constant == argument->constant &&
             dalcs_affine_is_along(argument, &known->argument, &factor) && factor != 0 &&
             argument->term[0].coefficient == known->argument.term[0].coefficient) {
@@ -33,7 +33,7 @@ static int add_cell(struct dalcs_compiler *c, const struct dalcs_affine *argumen
         return 0;
     }
     const int pair = c->n_pairs;
-    c->cell[c->n_cells++] = (struct dalcs_cell){*argument, resistance, height, pair};
+    c->cell[c->n_cells++] = (struct dalcs_cell){*argument, resistance, height, rest, pair};
     c->n_pairs += isinf(height) ? 1 : 2;
     return pair;
 }
@@ -83,7 +83,7 @@ static void add_saturation(struct dalcs_compiler *c, const struct half *h, int k
     const double height =
         near_value(h, knot_of(h, k + 1)) - far_value(h, knot_of(h, k)) - before * width;
     if (slope != 0 && height != 0) {
-        add_pair(c, sum, height > 0 ? 1 : -1, add_cell(c, beyond, 1 / slope, fabs(height)));
+        add_pair(c, sum, height > 0 ? 1 : -1, add_cell(c, beyond, 1 / slope, fabs(height), 0));
     }
 }
 
@@ -100,13 +100,14 @@ static void add_half(struct dalcs_compiler *c, const struct half *h, struct dalc
         const double bend = saturates ? 0 : slope_of(h, k + 1) - before;
         const double jump = far_value(h, knot) - near_value(h, knot);
         if (jump != 0) {
-            const int pair = add_cell(c, &beyond, 0, fabs(jump));
+            const double rest = (knot->value - near_value(h, knot)) / jump;
+            const int pair = add_cell(c, &beyond, 0, fabs(jump), rest);
             add_pair(c, sum, jump > 0 ? 1 : -1, pair);
             if (bend != 0) {
                 add_pair(c, sum, bend, pair + 1);
             }
         } else if (bend != 0) {
-            add_pair(c, sum, bend > 0 ? 1 : -1, add_cell(c, &beyond, 1 / fabs(bend), INFINITY));
+            add_pair(c, sum, bend > 0 ? 1 : -1, add_cell(c, &beyond, 1 / fabs(bend), INFINITY, 0));
         }
         if (saturates) {
             add_saturation(c, h, k, before, &beyond, sum);
@@ -224,7 +225,9 @@ static struct dalcs_affine keep(struct dalcs_compiler *c, const struct dalcs_aff
 }
 
 static void keep_cell(struct dalcs_compiler *c, const struct dalcs_cell *cell,
-                      struct dalcs_affine *w) {
+                      struct dalcs_affine *w, double *rest) {
+    const bool is_jump = cell->resistance == 0;
+    rest[cell->pair] = is_jump ? cell->rest : NAN;
     const struct dalcs_affine zero = dalcs_affine_constant(0);
     struct dalcs_affine excess = dalcs_affine_add(c, &zero, -1, &cell->argument);
     add_pair(c, &excess, cell->resistance, cell->pair);
@@ -233,6 +236,7 @@ static void keep_cell(struct dalcs_compiler *c, const struct dalcs_cell *cell,
         add_pair(c, &room, -1, cell->pair);
         add_pair(c, &excess, 1, cell->pair + 1);
         w[cell->pair + 1] = keep(c, &room);
+        rest[cell->pair + 1] = NAN;
     }
     w[cell->pair] = keep(c, &excess);
 }
@@ -247,14 +251,15 @@ struct dalcs_behaviour *dalcs_behaviour_make(struct dalcs_compiler *c,
     }
     struct dalcs_behaviour *behaviour = dalcs_arena_alloc(arena, 1, sizeof *behaviour);
     struct dalcs_affine *w = dalcs_arena_alloc(arena, (size_t)c->n_pairs, sizeof *w);
-    if (behaviour == NULL || w == NULL) {
+    double *rest = dalcs_arena_alloc(arena, (size_t)c->n_pairs, sizeof *rest);
+    if (behaviour == NULL || w == NULL || rest == NULL) {
         c->builder->out_of_memory = true;
         return NULL;
     }
-    *behaviour =
-        (struct dalcs_behaviour){.output = keep(c, &frozen), .n_pairs = c->n_pairs, .w = w};
+    *behaviour = (struct dalcs_behaviour){
+        .output = keep(c, &frozen), .n_pairs = c->n_pairs, .w = w, .rest = rest};
     for (size_t k = 0; k < c->n_cells && !c->failed; k++) {
-        keep_cell(c, &c->cell[k], w);
+        keep_cell(c, &c->cell[k], w, rest);
     }
     return c->failed ? NULL : behaviour;
 }

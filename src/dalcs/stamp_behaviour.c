@@ -45,10 +45,13 @@ enum dalcs_status dalcs_stamp_behaviour_branch(struct stamps *b, int device) {
     dalcs_stamp_new_branch(b, device, &column, &row);
     DALCS_TRY(dalcs_stamp_branch_current(b, d, column, 1.0));
     l->pair[device] = b->next_pair;
+    const double *rest = d->behaviour->rest;
     for (int k = 0; k < d->behaviour->n_pairs; k++) {
         int pair = b->next_pair++;
         s->pair[pair] =
             (struct dalcs_pair){.kind = DALCS_PAIR_DIODE, .element = d->name, .is_formula = true};
+        s->pair[pair].is_left_out[0] = rest != NULL && k > 0 && rest[k - 1] == 0.0;
+        s->pair[pair].is_left_out[1] = rest != NULL && rest[k] == 1.0;
         s->column_is_current[s->n_x + s->n_z + pair] = true;
     }
     if (d->kind == DALCS_VCVS) {

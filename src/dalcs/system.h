@@ -46,6 +46,7 @@ struct dalcs_pair {
     const char *element;      /* "d1", "s1" */
     bool is_breakdown;        /* the reverse branch of a diode with Vrev */
     bool is_formula;          /* a kink or a jump of a source: its lambda carries no charge */
+    bool is_left_out[2];      /* while it is open, while it is closed: of a choice of least norm */
     bool initially_on;        /* switches */
     bool is_direct;           /* switches: use direct_control, known before the step is solved */
     double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, V or A */

@@ -33,7 +33,8 @@ static double product(const struct choices *c, int i, int k) {
     const double *w_k = voltages_of(c, k);
     double sum = 0.0;
     for (size_t d = 0; d < c->n_pairs; d++) {
-        sum += c->conductance * w_i[d] * w_k[d] + lambda_i[d] * lambda_k[d] / c->conductance;
+        double currents = c->s->pair[d].is_left_out[1] ? 0.0 : lambda_i[d] * lambda_k[d];
+        sum += c->conductance * w_i[d] * w_k[d] + currents / c->conductance;
     }
     return sum;
 }
@@ -47,7 +48,8 @@ static void find_voltages(const struct choices *c, int k) {
         for (int i = c->s->C.p[d]; i < c->s->C.p[d + 1]; i++) {
             terms += fabs(c->s->C.x[i] * vector[c->s->C.j[i]]);
         }
-        bool is_closed = c->whole->place[c->n_columns - c->n_pairs + (size_t)d] >= 0;
+        bool is_closed = c->whole->place[c->n_columns - c->n_pairs + (size_t)d] >= 0 ||
+                         c->s->pair[d].is_left_out[0];
         voltages_of(c, k)[d] = is_closed ? 0.0 : dalcs_csr_row_dot(&c->s->C, d, vector);
         size += is_closed ? lambda[d] * lambda[d] / c->conductance : c->conductance * terms * terms;
     }

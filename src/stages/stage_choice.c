@@ -78,8 +78,10 @@ static void find_other_sides(const struct dalcs_stage_workshop *b, const double 
     }
     for (int d = 0; d < b->system->n_pairs; d++) {
         int closed = b->place[n_equations + d];
-        double side = closed >= 0 ? vector[closed] * b->eq.column_scale[closed] : 0.0;
-        bool is_open = closed < 0 && b->system->pair[d].kind == DALCS_PAIR_DIODE;
+        const struct dalcs_pair *pair = &b->system->pair[d];
+        bool is_closed = closed >= 0 && !pair->is_left_out[1];
+        bool is_open = closed < 0 && pair->kind == DALCS_PAIR_DIODE && !pair->is_left_out[0];
+        double side = is_closed ? vector[closed] * b->eq.column_scale[closed] : 0.0;
         for (int k = C->p[d]; is_open && k < C->p[d + 1]; k++) {
             int c = b->place[C->j[k]];
             side += c >= 0 ? C->x[k] * vector[c] * b->eq.column_scale[c] : 0.0;

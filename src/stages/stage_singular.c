@@ -163,7 +163,9 @@ static enum dalcs_status find_traces(struct search *s) {
         double *vector = s->vector + k * s->n_columns;
         for (int d = 0; d < n_pairs; d++) {
             bool is_diode = s->system->pair[d].kind == DALCS_PAIR_DIODE;
-            s->of_pair[d] = is_diode ? other_side(s, d, vector) : 0.0;
+            bool is_on = dalcs_stage_is_on(s->entry, d);
+            bool counts = is_diode && !s->system->pair[d].is_left_out[is_on ? 1 : 0];
+            s->of_pair[d] = counts ? other_side(s, d, vector) : 0.0;
         }
         dalcs_partition_keep_first(s->plan->stages->block_of, s->system, s->of_pair);
         double before = norm_of(s->of_pair, n_pairs);
