@@ -377,6 +377,24 @@ int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_par
 double audit_charge_gained(const struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *after, int device, double *scale);
 
+/* Is a node of a device among those that `root` names? */
+typedef bool audit_has_node(const struct dalcs_audit *audit, int node, int root);
+bool audit_is_in_cluster(const struct dalcs_audit *audit, int node, int root);
+
+/* What hangs on such nodes: all capacitances, and the largest conductance. */
+struct audit_hanging {
+    double farad, siemens;
+};
+struct audit_hanging audit_find_hanging(const struct dalcs_audit *audit,
+                                        const struct audit_part *part,
+                                        const struct dalcs_audit_state *at, audit_has_node *has,
+                                        int root);
+
+/* C, what that conductance moves in a time that the run does not resolve: an event is no better known. */
+double audit_charge_unresolved(const struct dalcs_audit *audit, const struct audit_part *part,
+                               const struct dalcs_audit_state *after, audit_has_node *has,
+                               int root);
+
 /* directions.c: where diodes let it pass one way only. */
 void audit_check_directions(struct dalcs_audit *audit, const struct audit_part *part,
                             const struct dalcs_audit_state *before,

@@ -147,6 +147,46 @@ static void gather_charge(struct dalcs_audit *audit, const struct dalcs_device *
     audit->sums.scale[cluster] += scale;
 }
 
+static double conductance_of(const struct dalcs_audit *audit, const struct dalcs_audit_state *first,
+                             int device) {
+    const struct dalcs_circuit *c = audit->circuit;
+    const struct dalcs_device *d = &c->device[device];
+    if (d->kind == DALCS_SWITCH && first->is_closed[device]) {
+        return 1.0 / c->switch_model[d->model].ron;
+    }
+    if (d->kind == DALCS_DIODE && first->i[device] != 0.0) {
+        return 1.0 / c->diode_model[d->model].ron;
+    }
+    return d->kind == DALCS_RESISTOR ? fabs(1.0 / d->value) : 0.0;
+}
+
+struct audit_hanging audit_find_hanging(const struct dalcs_audit *audit,
+                                        const struct audit_part *part,
+                                        const struct dalcs_audit_state *at, audit_has_node *has,
+                                        int root) {
+    struct audit_hanging on = {0.0, 0.0};
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        if (has(audit, d->node[0], root) != has(audit, d->node[1], root)) {
+            const double siemens = conductance_of(audit, at, part->device[k]);
+            on.siemens = isfinite(siemens) ? fmax(on.siemens, siemens) : on.siemens;
+            on.farad += d->kind == DALCS_CAPACITOR ? d->value : 0.0;
+        }
+    }
+    return on;
+}
+
+double audit_charge_unresolved(const struct dalcs_audit *audit, const struct audit_part *part,
+                               const struct dalcs_audit_state *after, audit_has_node *has,
+                               int root) {
+    const struct audit_hanging on = audit_find_hanging(audit, part, after, has, root);
+    return on.siemens * part->floor.largest_volt * audit->options.resolution;
+}
+
+bool audit_is_in_cluster(const struct dalcs_audit *audit, int node, int root) {
+    return dalcs_union_find(audit->crossing.cluster, audit->net.node_of[node]) == root;
+}
+
 /* What the largest conductance moves in that time. */
 static double charge_at_start(const struct dalcs_audit *audit, const struct audit_part *part) {
     return part->floor.most * part->floor.largest_volt * AUDIT_PROMISED * audit->options.resolution;
@@ -174,9 +214,11 @@ static void check_charge(struct dalcs_audit *audit, const struct audit_part *par
         const int node = part->node[k];
         const double scale = audit->sums.scale[node];
         if (scale > 0.0 && dalcs_union_find(audit->crossing.cluster, node) == node) {
-            const double allowed = AUDIT_ROUNDING * scale + slack;
-            audit_find(audit, part, DALCS_AUDIT_KCL, node,
-                       fabs(audit->sums.current[node]) - allowed, scale, after->t);
+            double off = fabs(audit->sums.current[node]) - AUDIT_ROUNDING * scale - slack;
+            off -= off > 0.0
+                       ? audit_charge_unresolved(audit, part, after, audit_is_in_cluster, node)
+                       : 0.0;
+            audit_find(audit, part, DALCS_AUDIT_KCL, node, off, scale, after->t);
         }
     }
 }

@@ -65,6 +65,10 @@ static bool find_set(const struct dalcs_audit *audit, const struct audit_part *p
     return !grows && !in[0];
 }
 
+static bool is_in_set(const struct dalcs_audit *audit, int node, int mark) {
+    return audit->crossing.cluster[audit->net.node_of[node]] == mark;
+}
+
 static void check_set(struct dalcs_audit *audit, const struct audit_part *part,
                       const struct dalcs_audit_state *after, int node, double sign) {
     double charge = 0.0;
@@ -75,8 +79,9 @@ static void check_set(struct dalcs_audit *audit, const struct audit_part *part,
             scale += audit->sums.scale[part->node[k]];
         }
     }
-    audit_find(audit, part, DALCS_AUDIT_KCL, node, charge - AUDIT_ROUNDING * scale, scale,
-               after->t);
+    double off = charge - AUDIT_ROUNDING * scale;
+    off -= off > 0.0 ? audit_charge_unresolved(audit, part, after, is_in_set, 1) : 0.0;
+    audit_find(audit, part, DALCS_AUDIT_KCL, node, off, scale, after->t);
 }
 
 /* Of each node: the charge that it gained, in crossing.offset, and what that is held to, in sums.scale. */

@@ -67,17 +67,13 @@ static void sum_later_currents(struct dalcs_audit *audit, const struct audit_par
     }
 }
 
-/* F, at the nodes of a cluster, each between two of them twice. */
-static double capacitance_at(const struct dalcs_audit *audit, const struct audit_part *part,
-                             int root) {
-    double sum = 0.0;
-    for (int k = 0; k < part->n_devices; k++) {
-        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
-        for (int end = 0; end < 2 && d->kind == DALCS_CAPACITOR; end++) {
-            sum += dalcs_union_find(audit->crossing.cluster, d->node[end]) == root ? d->value : 0.0;
-        }
-    }
-    return sum;
+/* How far stages that lie behind a transient of RC may be off at their beginning, in A; no more than what the promised
+ * error of a voltage drives through the resistance. */
+static double behind_transient(const struct dalcs_audit *audit, const struct audit_part *part,
+                               const struct audit_hanging *on, double later, double reach) {
+    const double known = part->at.step * on->siemens;
+    const double behind = known > 0.0 ? reach * later * on->farad / known : 0.0;
+    return fmin(behind, on->siemens * part->floor.largest_volt * audit->options.failure);
 }
 
 static void add_to_clusters(struct dalcs_audit *audit, const struct audit_part *part) {
@@ -105,11 +101,13 @@ static void check_currents(struct dalcs_audit *audit, const struct audit_part *p
         const int node = part->node[k];
         if (dalcs_union_find(audit->crossing.cluster, node) == node) {
             const double duration = audit->net.has_charge[node] ? part->at.step : 1.0;
-            const double known = part->at.step * part->floor.most;
             const double later = fabs(audit->crossing.offset[node] - sums->current[node]);
-            const double behind = known > 0.0 ? reach * later / known : 0.0;
             double off = fabs(sums->current[node]) - sums->rounding[node] - audit->options.abstol;
-            off -= off > 0.0 ? behind * capacitance_at(audit, part, node) : 0.0;
+            if (off > 0.0) {
+                const struct audit_hanging on =
+                    audit_find_hanging(audit, part, first, audit_is_in_cluster, node);
+                off -= behind_transient(audit, part, &on, later, reach);
+            }
             audit_find(audit, part, DALCS_AUDIT_KCL, node, off * duration,
                        sums->scale[node] * duration, first->t);
         }
