@@ -131,7 +131,7 @@ struct dalcs_part_memory {
 struct dalcs_part_work {
     double *u, *y1, *y2, *w1, *after; /* y1 and y2 in whole quads */
     double *out_tried;                /* a step put aside while the state is projected */
-    double *node_w; /* [n_nodes][n_pairs] of a slide; NULL: no switch can slide */
+    double *node_w;                   /* [n_nodes][n_pairs] of a slide; NULL: no switch can slide */
     double *before; /* [n_x] the state before a jump, while the one behind is looked for */
     uint64_t *mode_tied, *mode_turned;
     uint64_t *mode_first;  /* of the first of two micro-steps */
