@@ -215,7 +215,7 @@ static void check_charge(struct dalcs_audit *audit, const struct audit_part *par
         const double scale = audit->sums.scale[node];
         if (scale > 0.0 && dalcs_union_find(audit->crossing.cluster, node) == node) {
             double off = fabs(audit->sums.current[node]) - AUDIT_ROUNDING * scale - slack;
-            off -= off > 0.0
+            off -= off > part->tolerance * scale
                        ? audit_charge_unresolved(audit, part, after, audit_is_in_cluster, node)
                        : 0.0;
             audit_find(audit, part, DALCS_AUDIT_KCL, node, off, scale, after->t);

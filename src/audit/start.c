@@ -103,7 +103,7 @@ static void check_currents(struct dalcs_audit *audit, const struct audit_part *p
             const double duration = audit->net.has_charge[node] ? part->at.step : 1.0;
             const double later = fabs(audit->crossing.offset[node] - sums->current[node]);
             double off = fabs(sums->current[node]) - sums->rounding[node] - audit->options.abstol;
-            if (off > 0.0) {
+            if (off > part->tolerance * sums->scale[node]) {
                 const struct audit_hanging on =
                     audit_find_hanging(audit, part, first, audit_is_in_cluster, node);
                 off -= behind_transient(audit, part, &on, later, reach);
