@@ -117,7 +117,11 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
     const double before = part->length.slide > 0.0 ? part->length.slide : of->h;
     const double least = fmax(shortest, part->inner_tolerance * before);
     const double least_end = fmax(shortest, sqrt(part->inner_tolerance) * before);
+    const double left = part->length.slide_until - part->segment.t;
     double pairs_before = INFINITY;
+    if (left < 2.0 * least_end) {
+        return finish(r, part, left, slides);
+    }
     for (;;) {
         DALCS_TRY(dalcs_slide_attempt(r, part, of));
         bool is_last =
