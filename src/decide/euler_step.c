@@ -35,6 +35,7 @@ void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_pa
                               double h) {
     double limit = dalcs_radau_limit(r, part);
     part->segment.by_euler = true;
+    part->segment.is_coarse = true;
     part->segment.h = h;
     part->segment.end = 1.0;
     part->segment.t_end = fmin(part->segment.t + h, limit);

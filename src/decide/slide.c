@@ -43,6 +43,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     }
     dalcs_step_take_in(part);
     dalcs_radau_accept_euler(r, part, of->h);
+    part->segment.is_coarse = of->is_coarse;
     r->steps++;
 }
 
@@ -79,13 +80,14 @@ static enum dalcs_status put_on_threshold(struct dalcs_radau *r, struct dalcs_ra
  * rounding makes is less in a longer one. */
 static void note(struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
     struct dalcs_part_length *l = &part->length;
-    const double of_length = of->pairs / (1.0 + of->noise / part->inner_tolerance);
+    const double of_length =
+        fmax(of->states, of->pairs) / (1.0 + of->noise / part->inner_tolerance);
     if (!of->slides) {
         l->slide_until = part->segment.t + of->h;
     } else if (fmax(of->states, of->pairs) > 1.0) {
         l->slide = 0.5 * of->h;
     } else if (of->h >= l->slide) {
-        const double longer = ldexp(fmax(of->states, of_length), DALCS_SLIDE_ORDER);
+        const double longer = ldexp(of_length, DALCS_SLIDE_ORDER);
         l->slide = longer < 1.0 ? 2.0 * of->h : of->h;
     }
 }
@@ -146,7 +148,8 @@ enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_par
                                    double limit, bool starts, bool *slides) {
     part->length.slide_until = starts ? INFINITY : part->length.slide_until;
     prepare_positions(part);
-    struct dalcs_slide_try of = dalcs_slide_try_of(length_to_try(r, part, limit));
+    struct dalcs_slide_try of =
+        dalcs_slide_try_of(part->stages.method, length_to_try(r, part, limit));
     *slides = true;
     if (starts) {
         DALCS_TRY(put_on_threshold(r, part, of.h, slides));

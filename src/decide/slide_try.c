@@ -25,10 +25,21 @@ static void find_weights(int first, double *weight) {
     }
 }
 
-struct dalcs_slide_try dalcs_slide_try_of(double h) {
+/* Lagrange's polynomial through the nodes behind the start. */
+static void find_start(const struct dalcs_collocation *method, double *start) {
+    for (int i = 1; i <= method->s; i++) {
+        start[i] = 1.0;
+        for (int k = 1; k <= method->s; k++) {
+            start[i] *= k != i ? method->node[k] / (method->node[k] - method->node[i]) : 1.0;
+        }
+    }
+}
+
+struct dalcs_slide_try dalcs_slide_try_of(const struct dalcs_collocation *method, double h) {
     struct dalcs_slide_try of = {.h = h};
     find_weights(1, of.weight);
     find_weights(2, of.estimate);
+    find_start(method, of.start);
     return of;
 }
 
@@ -130,14 +141,14 @@ static void put_voltages(struct dalcs_radau_part *part) {
 }
 
 /* At the start all but the states are where the polynomial through the other nodes begins. */
-static void begin_columns(struct dalcs_radau_part *part) {
+static void begin_columns(struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
     const struct dalcs_collocation *method = part->stages.method;
     const int stride = part->stages.layout.stride;
     const int n_x = part->component->system->n_x;
     double *out = part->segment.out;
     for (int node = 1; node <= method->s; node++) {
         for (int k = 0; k < stride; k++) {
-            out[k] += method->back[node - 1] * out[node * stride + k];
+            out[k] += of->start[node] * out[node * stride + k];
         }
     }
     memcpy(part->work.after, out, (size_t)n_x * sizeof(double));
@@ -175,10 +186,8 @@ static double error_of_states(const struct dalcs_radau *r, const struct dalcs_ra
     return worst;
 }
 
-/* And of the currents of pairs that conduct on either side, but for what rounding makes of them, which is the more the
- * shorter the step is. */
-static double error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                             const struct dalcs_slide_try *of) {
+/* And of the currents of pairs that conduct on either side. */
+static double error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     struct dalcs_osnsp *p = &part->component->osnsp;
     const size_t bytes = (size_t)p->n_words * sizeof(uint64_t);
@@ -191,7 +200,7 @@ static double error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_par
         }
     }
     memcpy(p->mode, part->work.mode_before, bytes);
-    return worst / (1.0 + of->noise / part->inner_tolerance);
+    return worst;
 }
 
 enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -216,9 +225,11 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
     of->states = of->pairs = INFINITY;
     if (of->slides) {
         put_voltages(part);
-        begin_columns(part);
+        begin_columns(part, of);
         of->states = error_of_states(r, part);
-        of->pairs = error_of_pairs(r, part, of);
+        of->pairs = error_of_pairs(r, part);
+        of->is_coarse = of->pairs > 1.0 || part->stages.method->s == 1;
+        of->pairs /= 1.0 + of->noise / part->inner_tolerance;
     }
     return DALCS_OK;
 }

@@ -12,14 +12,17 @@ struct dalcs_slide_try {
     double weight[DALCS_SLIDE_ORDER]; /* of the sequences in the values */
     double
         estimate[DALCS_SLIDE_ORDER]; /* and in those of an order less, without the first of them */
+    double start[DALCS_MAX_NODES];   /* of the nodes behind the start, in the value at the start */
     double taken;                    /* J */
     bool slides;
-    double noise;         /* of the weights of both sides */
-    double states, pairs; /* errors over what is allowed */
+    double noise; /* what rounding may make of the mean of both sides, over it */
+    /* Errors over what is allowed; of pairs without noise. */
+    double states, pairs;
+    bool is_coarse; /* noise may hide an error of pairs */
 };
 
 /* One of length h (s), that is still to be tried. */
-struct dalcs_slide_try dalcs_slide_try_of(double h);
+struct dalcs_slide_try dalcs_slide_try_of(const struct dalcs_collocation *method, double h);
 
 /* Tries it: part->segment.out, and what conducts on either side in part->work.mode_first. The observer holds what it knew
  * before. */

@@ -28,7 +28,8 @@ struct dalcs_part_segment {
     double t_end;
     enum dalcs_radau_end why;
     bool jumped;     /* at t, when the segment began */
-    bool by_euler;   /* the segment is a step of implicit Euler */
+    bool by_euler;   /* the segment is a step of implicit Euler, or is extrapolated from some */
+    bool is_coarse;  /* then: nobody controls its error */
     bool open;       /* its mode leaves something open, and nobody was told */
     double ratio;    /* the error of the step over what is allowed, up to 1 */
     double rounding; /* of out, over that of a dense map */
@@ -173,7 +174,7 @@ struct dalcs_radau_part {
 
 /* Has nobody controlled the error of the present segment? */
 static inline bool dalcs_segment_is_coarse(const struct dalcs_radau_part *part) {
-    return part->segment.by_euler && !part->component->positions.joined;
+    return part->segment.by_euler && part->segment.is_coarse;
 }
 
 struct dalcs_radau_options {

@@ -238,12 +238,14 @@ def ripple(c):
         reference.advance(at, 2 if at == corners[1] else 4000)
         if at not in corners:
             wanted.append((at, reference.x[0], reference.out(reference.x)))
-    for periods in some_of((1, 2, 10, 40)):
+    runs = [(1, []), (2, []), (10, []), (40, []), (2, ["--stages", "3"]), (2, ["--stages", "5"]), (2, ["--stages", "9"]),
+            (2, ["--method", "lobatto"]), (2, ["--tol", "1e-10"])]
+    for periods, options in some_of(runs):
         cards = [f".meas tran {what}{k} find {signal} at={at!r}" for k, (at, *_) in enumerate(wanted)
                  for what, signal in (("i", "i(l1)"), ("v", "v(out)"))]
         outcome = run(sys.argv[1], REGULATOR.format(stop=periods * 70.001e-6) + "\n".join(cards) + "\n.end\n",
-                      method=None, options=("--audit", "full"))
-        name = f"ripple, {periods} periods"
+                      method=None, options=("--audit", "full", *options))
+        name = f"ripple, {periods} periods, {options}"
         if not c.check(outcome.status == 0, f"{name}: {outcome.stderr}"):
             continue
         c.check(outcome.report["work"]["euler_steps"] == 0, f"{name}: implicit Euler")
