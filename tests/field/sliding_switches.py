@@ -261,7 +261,7 @@ def main():
         current_limit(c, *size)
         complementary(c, *size)
         moving_threshold(c, *size)
-    for name, volts, seconds in (("volts", 5.0, 1e-3), ("kilovolts", 5e3, 1e3), ("microvolts", 5e-6, 1e-9)):
+    for name, volts, seconds in some_of((("volts", 5.0, 1e-3), ("kilovolts", 5e3, 1e3), ("microvolts", 5e-6, 1e-9))):
         thermostat(c, name, volts, seconds)
         inverter(c, name, volts, seconds)
         leaves(c, name, volts, seconds)

@@ -326,9 +326,9 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as name:
         look = Look(program, pathlib.Path(name))
-        for case in BESIDE:
+        for case in dalcs_program.some_of(BESIDE):
             look.beside(*case)
-        for case in AHEAD:
+        for case in dalcs_program.some_of(AHEAD):
             look.ahead(*case)
         lines(look)
         differentiated(look)
