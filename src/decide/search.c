@@ -177,9 +177,9 @@ static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_pa
                : DALCS_OK;
 }
 
-/* No shorter step mends the error, and it is rounding's: is it let pass from now on? */
-static bool lets_pass(const struct dalcs_radau_part *part, struct dalcs_search *search,
-                      const struct dalcs_step_quality *quality) {
+/* Do shorter steps see the same in voltages that states are levered up to? Then errors of states alone count from now on. */
+static bool spares_levered(const struct dalcs_radau_part *part, struct dalcs_search *search,
+                           const struct dalcs_step_quality *quality) {
     if (search->stuck < LEVERED_STUCK || !is_levered(part, quality)) {
         return false;
     }
@@ -201,7 +201,7 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
     }
     r->rejected++;
     count_stuck(part, search, quality);
-    if (lets_pass(part, search, quality)) {
+    if (spares_levered(part, search, quality)) {
         part->length.level = search->level_before_stuck;
         return DALCS_OK;
     }
