@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes every allocation of a run fail, one after the other, and then all from there on.
+"""Makes each kind of allocation of a run fail, one after the other, and then all from there on.
 
 usage: every_allocation.py PROGRAM LIBRARY CASE METHOD
 
@@ -14,7 +14,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "support")]
 from dalcs_program import Checker  # noqa: E402
-from preload import run_preloaded  # noqa: E402
+from preload import calls_to_fail, run_preloaded  # noqa: E402
 
 CASES = {  # netlist and status without a failure
     "system": ("""dalcs-system 2 Everything that a system file may have
@@ -656,10 +656,13 @@ class Case:
                             "-o", "out.csv"]
         self.checker = Checker(f"{name} with {method}")
 
-    def run(self, **variables):
+    def prepared(self):
         if not self.output.exists() or self.output.read_bytes() != OLD:
             self.output.write_bytes(OLD)  # of thousands of runs few touch it
-        return run_preloaded(self.library, self.command, self.folder, **variables)
+        return self.command
+
+    def run(self, **variables):
+        return run_preloaded(self.library, self.prepared(), self.folder, **variables)
 
     def judge(self, done, tally, wanted, where):
         """Checks one run in which tally.refused allocations failed."""
@@ -674,33 +677,36 @@ class Case:
             check(self.output.read_bytes() == OLD, f"{where}: failed, yet touched the output")
             check(tally.refused == 0 or error.strip(), f"{where}: failed without a word")
 
-    def every(self, variable):
-        done, whole = self.run()
+    def every(self):
+        done, whole, first, both = calls_to_fail(self.library, self.prepared(), self.folder)
         error = done.stderr.decode(errors="replace")
         if not self.checker.check(done.returncode == self.status and whole.refused == 0,
                                   f"status {done.returncode}, not {self.status}:\n{error}"):
             return
         wanted = self.output.read_bytes()
         self.checker.check((wanted == OLD) == (self.status != 0), "the output was not as expected")
+        for variable, numbers in ("DALCS_FAIL_AT", both), ("DALCS_FAIL_FROM", first):
+            self.refuse(variable, numbers, wanted)
+            _, tally = self.run(**{variable: whole.calls + 1})
+            self.checker.check(tally.refused == 0, "another run has more allocations")
+            print(f"{variable}: {len(numbers)} of {whole.calls} allocations")
+
+    def refuse(self, variable, numbers, wanted):
         failed = 0
-        for number in range(1, 10 * whole.calls):
+        for number in numbers:
             done, tally = self.run(**{variable: number})
-            if tally.refused == 0:
-                break
+            self.checker.check(tally.refused > 0, f"{variable}={number}: another run has fewer allocations")
             self.judge(done, tally, wanted, f"{variable}={number}")
             failed += done.returncode != 0
-        self.checker.check(number > 1 and tally.refused == 0, "the failures never ended")
-        self.checker.check(failed > number // 2 or self.status != 0,
-                           f"only {failed} of {number - 1} failures were noticed")
-        print(f"{variable}: {number - 1} allocations, {failed} runs ended with an error")
+        self.checker.check(failed > len(numbers) // 2 or self.status != 0,
+                           f"only {failed} of {len(numbers)} failures were noticed")
 
 
 def main():
     program, library, name, method = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
         case = Case(program, library, name, method, folder)
-        for variable in ("DALCS_FAIL_AT", "DALCS_FAIL_FROM"):
-            case.every(variable)
+        case.every()
         return case.checker.finish()
 
 

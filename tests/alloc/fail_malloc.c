@@ -3,13 +3,16 @@
  * DALCS_FAIL_AT=N   the N-th allocation returns NULL (N >= 1)
  * DALCS_FAIL_FROM=N that one and all later ones return NULL
  * DALCS_TALLY=FILE  a file that receives struct tally, up to date at every moment
+ * DALCS_PATHS=FILE  a file that receives 64 bits for each allocation, in order: equal where the calls that led to it are
  *
  * Allocations are counted from the first call in main: what the constructors of other libraries do
- * without memory, such as Fortran's, is not the program's to answer for. Not for threads.
+ * without memory, such as Fortran's, is not the program's to answer for. Programs that this one starts are neither
+ * counted nor made to fail. Not for threads.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <malloc.h>
 #include <stdint.h>
@@ -37,6 +40,7 @@ struct tally {
 static struct tally here;
 static struct tally *tally = &here;
 static int64_t fail_at, fail_from;
+static int paths = -1; /* file descriptor */
 static int counting;
 
 static int64_t number_from(const char *name) {
@@ -44,10 +48,34 @@ static int64_t number_from(const char *name) {
     return text != NULL ? strtoll(text, NULL, 10) : 0;
 }
 
+/* The first backtrace loads a library and allocates: it is made before anything is counted. */
+static void start_paths(const char *path) {
+    void *frame;
+    if (path != NULL) {
+        paths = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+        backtrace(&frame, 1);
+    }
+}
+
+/* FNV-1a over the innermost return addresses: three are of this library, and who is further out sees no more than an
+ * error that was passed on. */
+static void write_path(void) {
+    void *frames[12];
+    uint64_t hash = 14695981039346656037u;
+    int count = backtrace(frames, 12);
+    for (int k = 0; k < count; k++) {
+        hash = (hash ^ (uint64_t)(uintptr_t)frames[k]) * 1099511628211u;
+    }
+    if (write(paths, &hash, sizeof hash) != (ssize_t)sizeof hash) {
+        abort(); /* a path that is missing would shift all others */
+    }
+}
+
 __attribute__((constructor)) static void start(void) {
     const char *path = getenv("DALCS_TALLY");
     fail_at = number_from("DALCS_FAIL_AT");
     fail_from = number_from("DALCS_FAIL_FROM");
+    start_paths(getenv("DALCS_PATHS"));
     if (path != NULL) {
         int file = open(path, O_RDWR | O_CREAT, 0600);
         if (file >= 0 && ftruncate(file, sizeof *tally) == 0) {
@@ -61,6 +89,10 @@ __attribute__((constructor)) static void start(void) {
             close(file);
         }
     }
+    unsetenv("DALCS_TALLY");
+    unsetenv("DALCS_FAIL_AT");
+    unsetenv("DALCS_FAIL_FROM");
+    unsetenv("DALCS_PATHS");
 }
 
 typedef int main_function(int, char **, char **);
@@ -102,6 +134,9 @@ static int refuse(void) {
         return 0;
     }
     tally->calls++;
+    if (paths >= 0) {
+        write_path();
+    }
     if (tally->calls != fail_at && (fail_from == 0 || tally->calls < fail_from)) {
         return 0;
     }

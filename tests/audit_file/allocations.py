@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes every allocation of `dalcs audit` fail, one after the other: it ends by itself with a status and a message,
+"""Makes each kind of allocation of `dalcs audit` fail, one after the other: it ends by itself with a status and a message,
 or with the whole answer if it could do without that memory.
 
 usage: allocations.py PROGRAM LIBRARY"""
@@ -12,7 +12,7 @@ from audit_program import dalcs_program, simulate
 from formats import BRIDGE, NESTED, ltspice
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "alloc"))
-from preload import run_preloaded  # noqa: E402
+from preload import calls_to_fail, run_preloaded  # noqa: E402
 
 
 def main(program, library):
@@ -29,12 +29,11 @@ def main(program, library):
             (folder / "circuit.cir").write_text(netlist)
             (folder / "waves").write_bytes(ltspice(table) if as_raw else table.csv().encode())
             command = [program, "audit", "circuit.cir", "waves", "--json"]
-            done, whole = run_preloaded(library, command, folder)
+            done, _, _, numbers = calls_to_fail(library, command, folder)
             checker.check(done.returncode == 0, f"{name}: {done.returncode} {done.stderr}")
-            for number in range(1, 10 * whole.calls):
+            for number in numbers:
                 again, tally = run_preloaded(library, command, folder, DALCS_FAIL_AT=number)
-                if tally.refused == 0:
-                    break
+                checker.check(tally.refused > 0, f"{name} at {number}: nothing was refused")
                 good = again.returncode == 0 and again.stdout == done.stdout or \
                     1 <= again.returncode <= 4 and again.stderr.strip()
                 checker.check(good, f"{name} at {number}: {again.returncode} {again.stderr}")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes every allocation of `dalcs check` fail, one after the other: it ends by itself with a status and a
+"""Makes each kind of allocation of `dalcs check` fail, one after the other: it ends by itself with a status and a
 message, or with the whole answer if it could do without that memory.
 
 usage: allocations.py PROGRAM LIBRARY"""
@@ -10,7 +10,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "alloc")]
-from preload import run_preloaded  # noqa: E402
+from preload import calls_to_fail, run_preloaded  # noqa: E402
 
 NETLISTS = {
     "bridge": """bridge
@@ -50,26 +50,24 @@ def main(program, library):
         with tempfile.TemporaryDirectory() as folder:
             (pathlib.Path(folder) / "circuit.cir").write_text(text)
             command = [program, "check", "circuit.cir", "--json"]
-            done, whole = run_preloaded(library, command, folder)
+            done, whole, _, numbers = calls_to_fail(library, command, folder)
             if done.returncode != 0:
                 print(f"FAILED {name}: status {done.returncode}")
                 return 1
-            noticed = number = 0
-            for number in range(1, 10 * whole.calls):
+            noticed = 0
+            for number in numbers:
                 again, tally = run_preloaded(library, command, folder, DALCS_FAIL_AT=number)
-                if tally.refused == 0:
-                    break
                 error = again.stderr.decode(errors="replace").strip()
                 good = again.returncode == 0 and again.stdout == done.stdout or \
                     1 <= again.returncode <= 4 and error
                 noticed += again.returncode != 0
-                if not good:
+                if not good or tally.refused == 0:
                     failures += 1
                     print(f"FAILED {name} at {number}: status {again.returncode}: {error}")
-            if noticed <= number // 2:
+            if noticed <= len(numbers) // 2:
                 failures += 1
-                print(f"FAILED {name}: only {noticed} of {number} were noticed")
-            print(f"{name}: {number - 1} allocations, {noticed} ended with an error")
+                print(f"FAILED {name}: only {noticed} of {len(numbers)} were noticed")
+            print(f"{name}: {len(numbers)} of {whole.calls} allocations, {noticed} ended with an error")
     return 1 if failures else 0
 
 

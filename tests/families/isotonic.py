@@ -24,7 +24,7 @@ CERTIFIED = 2e-13
 STATE = 1e-12    # of the largest voltage
 CHARGE = 1e-9    # of the largest charge of the pool
 ENERGY = 1e-9
-LARGE = 100000     # one seed of one shape
+LARGE = 40000      # from here on one seed of one shape
 MOST_SOLVES = 100  # mode changes and one-step problems of a whole run
 SHAPES = {
     "random": lambda values: values,
@@ -138,7 +138,7 @@ def main():
     checker = Checker(f"isotonic {what}")
     for n in sizes:
         for shape in some_of(SHAPES) if n < LARGE else ["random"]:
-            for seed in range(max(1, min(5, LARGE // (10 * n)))):
+            for seed in range(max(1, min(5, 10000 // n))):
                 chance = random.Random(f"{n} {shape} {seed}")
                 capacitance = [10.0 ** chance.uniform(-12.0, -3.0) for _ in range(n)]
                 before = SHAPES[shape]([chance.uniform(-10.0, 10.0) for _ in range(n)])

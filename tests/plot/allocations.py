@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws with each allocation failing in turn: the program must end with a message and leave no file.
+"""Draws with each kind of allocation failing in turn: the program must end with a message and leave no file.
 
 usage: allocations.py DALCS FAIL_MALLOC
 """
@@ -38,11 +38,11 @@ def main(program, library):
             (folder / "a.csv").write_text(STEPS if name == "family" else TABLE)
             (folder / "a.json").write_text(REPORT)
             command = [program, "plot", "a.csv", *options]
-            done, tally = preload.run_preloaded(library, command, folder)
+            done, tally, _, numbers = preload.calls_to_fail(library, command, folder)
             if b"without the library" in done.stderr:
                 continue
             expected = done.returncode
-            for at in range(1, tally.calls + 1):
+            for at in numbers:
                 for made in "a.html", "a.svg":
                     (folder / made).unlink(missing_ok=True)
                 done, _ = preload.run_preloaded(library, command, folder, DALCS_FAIL_AT=at)
