@@ -2,6 +2,7 @@
 #include "micro_steps.h"
 #include "doubt.h"
 #include "guard_scale.h"
+#include "magnitudes.h"
 #include "present.h"
 #include "restart.h"
 #include "step_error.h"
@@ -20,11 +21,8 @@ static const double jump_ratio = 4.0;
 static const double steady = 0.99;
 
 /* The same where a small transient may hide its mode: in a much shorter one an event's error would weigh
- * more than what the circuit does. So many inner tolerances are no such error. */
-static const double a_little_shorter = 1.0 / 32.0, beyond_error = 10.0;
-
-/* An event's state may be off by so many inner tolerances. */
-static const double of_an_event = 1e3;
+ * more than what the circuit does. */
+static const double a_little_shorter = 1.0 / 32.0;
 
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u, enum dalcs_status status) {
@@ -39,7 +37,7 @@ enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_par
 
 /* What the control of a watched switch may be off by: its guard, but for what only a step tells. */
 static double slack_of(const struct dalcs_radau_part *part, int guard) {
-    return dalcs_doubts_over_tolerance * part->inner_tolerance *
+    return dalcs_beyond * part->inner_tolerance *
                dalcs_guard_control_scale(part, guard, part->scales.unit) +
            dalcs_guard_most_rounding(part, guard, part->scales.unit);
 }
@@ -111,7 +109,8 @@ void dalcs_micro_raise(const struct dalcs_system *s, const double *y, int n, dou
 }
 
 double dalcs_micro_noticeable(const struct dalcs_radau_part *part) {
-    return fmax(of_an_event * part->inner_tolerance, dalcs_smallest_jump);
+    return fmax(1.0 / dalcs_small * part->inner_tolerance,
+                dalcs_alike); /* what an event's state may be off by */
 }
 
 /* The states just after part->segment.t from the micro-steps y1 and y2. Does any jump, and by more than the
@@ -145,7 +144,7 @@ bool dalcs_micro_extrapolate(const struct dalcs_radau_part *part, double *after,
         bool dies_away = !moved && second < steady * first;
         if (dies_away && first > smallest * scale) {
             *closer = dalcs_micro_shorter;
-        } else if (dies_away && first > beyond_error * part->inner_tolerance * scale) {
+        } else if (dies_away && first > dalcs_beyond * part->inner_tolerance * scale) {
             *closer = fmin(*closer, a_little_shorter);
         }
         after[x] = 2.0 * part->work.y1[x] - part->work.y2[x];

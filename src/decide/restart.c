@@ -5,9 +5,11 @@
  * the limit of vanishing steps, which for passive circuits is the projection in the energy norm
  * (Heemels, Schumacher and Weiland 1999; Brogliato 2022, sec. 4). */
 #include "restart.h"
+#include "magnitudes.h"
 #include "micro_steps.h"
 #include "present.h"
 #include "recurrence.h"
+#include "rounding.h"
 #include "step_error.h"
 #include "step_length.h"
 
@@ -37,7 +39,7 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
         double before = fabs(longer[x] - part->x[x]);
         double now = fabs(part->work.y1[x] - part->x[x]);
         bool stays = fabs(part->work.y1[x] - longer[x]) < 0.5 * now;
-        bool moves = now > dalcs_smallest_jump * largest[s->column_is_current[x]];
+        bool moves = now > dalcs_alike * largest[s->column_is_current[x]];
         jumps = jumps || (moves && stays);
         runs_away = runs_away || (moves && now > runaway * before);
     }
@@ -88,7 +90,7 @@ static void find_noise(const struct dalcs_radau_part *part, const double *after,
     for (int x = 0; x < s->n_x; x++) {
         double own = fmax(dalcs_step_scale(part, x, part->scales.unit),
                           fmax(fabs(part->x[x]), fabs(after[x])));
-        noise[x] = fmax(dalcs_jump_remainder * own,
+        noise[x] = fmax(dalcs_answer_rounded * own,
                         dalcs_micro_rounding(part, s->column_is_current[x], largest));
     }
 }

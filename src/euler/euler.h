@@ -113,12 +113,9 @@ enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k,
 /* Calls on_open if the last answer of component k, now in its y, may be one of several. */
 enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) DALCS_MUST_CHECK;
 
-/* A state that moves by less, over the largest of its unit, has not jumped: a one-step problem is right to 1e-9. */
-static const double dalcs_smallest_jump = 1e-9;
-
-/* V or A, and so of its impulses: what is left of a state that falls to 0, over the largest that it was; and of one
- * that has always been 0, over the physical scale of its unit. */
-static const double dalcs_jump_remainder = 1e-12, dalcs_jump_rounding = 1e-15;
+/* V or A, and so of its impulses: what is left of a state that has always been 0, over the physical scale of its unit. Of
+ * one that falls to 0 it is dalcs_answer_rounded over the largest that it was. */
+static const double dalcs_jump_rounding = 1e-15;
 
 /* 1/2 x' storage x for states [n_x], J. */
 double dalcs_euler_stored_energy(const struct dalcs_system *s, const double *x);

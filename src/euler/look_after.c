@@ -1,6 +1,9 @@
 /* look_after.c - micro-steps of implicit Euler that tell what happens at a discontinuity. */
 #include "euler_internal.h"
 
+#include "magnitudes.h"
+#include "rounding.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -54,7 +57,7 @@ static void find_noise(struct dalcs_euler *e, int k, const double *before) {
     for (int x = 0; x < s->n_x; x++) {
         double own = fmax(c->largest[x], fmax(fabs(before[x]), fabs(e->jump.after[x])));
         e->noise[x] =
-            fmax(dalcs_jump_remainder * own, dalcs_jump_rounding * scale[s->column_is_current[x]]);
+            fmax(dalcs_answer_rounded * own, dalcs_jump_rounding * scale[s->column_is_current[x]]);
     }
 }
 
@@ -148,8 +151,7 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
     memcpy(e->after, u, (size_t)s->n_x * sizeof(double));
     double limit[2];
     for (int unit = 0; unit < 2; unit++) {
-        limit[unit] =
-            dalcs_smallest_jump * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
+        limit[unit] = dalcs_alike * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
     }
     if (!has_moved(s, u, y, limit)) {
         return DALCS_OK;

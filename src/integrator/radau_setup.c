@@ -3,6 +3,7 @@
 #include "cycle.h"
 #include "dense_map.h"
 #include "guards.h"
+#include "magnitudes.h"
 #include "periodic.h"
 #include "quads.h"
 #include "radau.h"
@@ -117,12 +118,10 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
 }
 
 /* Where a circuit carries no current, rounding must not be taken for one: its voltages could drive a
- * current through the least of its conductances, and a millionth of that counts as nothing. */
-static const double nothing = 1e-6;
-
+ * current through the least of its conductances. */
 static void find_cross_scales(const struct dalcs_conductances *g, double *cross) {
-    cross[0] = g->most > 0.0 ? nothing / g->most : nothing;
-    cross[1] = g->most > 0.0 ? nothing * g->least : nothing;
+    cross[0] = g->most > 0.0 ? dalcs_nothing / g->most : dalcs_nothing;
+    cross[1] = g->most > 0.0 ? dalcs_nothing * g->least : dalcs_nothing;
 }
 
 /* One of the rungs is a step that follows the fastest source, which sets the pace where nothing else

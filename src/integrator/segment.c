@@ -12,6 +12,7 @@
 #include "extremes.h"
 #include "front.h"
 #include "guards.h"
+#include "magnitudes.h"
 #include "present.h"
 #include "projection.h"
 #include "recurrence.h"
@@ -23,22 +24,20 @@
 
 #include <math.h>
 
-/* Signals so many times as large as any before. A coil's current may have no path in this mode. In a step that short it makes signals so
- * large that any error is small beside them. */
-static const double outsized = 1e6;
-
 enum {
     MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
     FLURRY = 4096,
     MOST_FRONTS_REFUSED = 16
 };
 
+/* Are all signals before nothing beside these? A coil's current may have no path in this mode. In a step that short it makes
+ * signals so large that any error is small beside them. */
 static bool is_outsized(const struct dalcs_radau_part *part,
                         const struct dalcs_step_quality *quality) {
     bool is = false;
     for (int unit = 0; unit < 2; unit++) {
         double before = part->scales.unit[unit];
-        is = is || (before > 0.0 && quality->here[unit] > outsized * before);
+        is = is || (before > 0.0 && dalcs_nothing * quality->here[unit] > before);
     }
     return is;
 }
@@ -119,7 +118,7 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
 static bool is_worth_projecting(struct dalcs_radau_part *part, const struct dalcs_search *search,
                                 const struct dalcs_step_quality *q) {
     return part->guards.fresh && !search->projected && !search->states_free &&
-           q->drift > (search->fixed ? 0.0 : dalcs_worth_projecting) &&
+           q->drift > (search->fixed ? 0.0 : dalcs_slight) &&
            dalcs_projection_sees(part, search->fixed);
 }
 

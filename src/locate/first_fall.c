@@ -6,21 +6,12 @@
 #include "extremes.h"
 #include "guard_scale.h"
 #include "guard_values.h"
+#include "magnitudes.h"
 #include "quads.h"
+#include "rounding.h"
 #include "tied.h"
 
 #include <math.h>
-
-/* A guard that begins a mode next to 0 is off by so many times that, as far as its beginning tells. */
-static const double began = 10.0;
-
-/* The voltage of a diode that has just opened, and rises, may begin so far below 0, over the largest: what a sum of
- * siemens and microsiemens rounds of the latter, where only these lead on, is no event. */
-static const double blocking = 1e-9;
-
-/* Falls this near to each other, in steps, are one event. */
-static const double same_on_maps = 1e-13;
-static const double same_on_factors = 1e-9;
 
 /* And those that are so near and no more than their doubt above 0 at the first of them. */
 static const double same_by_value = 1e-10;
@@ -98,7 +89,7 @@ static double end_of_events(const struct dalcs_radau *r, const struct dalcs_rada
 static double doubt_at_first(struct dalcs_radau_part *part, const struct look *a, double doubt) {
     const struct dalcs_collocation *m = part->stages.method;
     const double *value = a->value;
-    double least = dalcs_larger(began * fabs(value[0]), dalcs_part_of_doubt * doubt);
+    double least = dalcs_larger(dalcs_beyond * fabs(value[0]), dalcs_small * doubt);
     double depth = dalcs_smaller(doubt, dalcs_larger(least, part->segment.ratio * doubt));
     for (int k = 1; k <= m->s && m->node[k] <= a->end && !part->guards.may_dip; k++) {
         part->guards.may_dip = value[k * a->stride] < -least && value[k * a->stride] >= -depth;
@@ -106,7 +97,12 @@ static double doubt_at_first(struct dalcs_radau_part *part, const struct look *a
     return depth;
 }
 
-/* How far a guard may fall and is no event: where it is armed by noise, or as far as it may be touching 0. */
+/* How far a guard may fall and is no event: where it is armed by noise, or as far as it may be touching 0.
+ *
+ * A small part of its doubt counts in later steps where such a pair goes on falling, or stays where it is: a diode that waits
+ * for the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. One that comes down to 0
+ * from above and goes up again, as that of a peak detector without a load at each peak, may be on the other side by as
+ * much. */
 static double doubt_of(struct dalcs_radau_part *part, const struct look *a) {
     const int guard = a->guard;
     const double *value = a->value;
@@ -118,18 +114,20 @@ static double doubt_of(struct dalcs_radau_part *part, const struct look *a) {
     }
     double doubt = dalcs_doubt_about(part, guard, a->scale, a->unit);
     if (is_armed) {
-        return dalcs_larger(a->zero, dalcs_part_of_doubt * doubt);
+        return dalcs_larger(a->zero, dalcs_small * doubt);
     }
     if (part->guards.fresh && guard < part->component->system->n_pairs &&
         dalcs_guard_has_crossed(part, guard, value, a->stride, a->unit)) {
+        /* Below 0 by what a sum of siemens and microsiemens rounds of the latter, where only these lead on, a voltage
+         * that rises is no event. */
         return dalcs_osnsp_is_on(&part->component->osnsp, guard)
                    ? dalcs_doubt_of_closed(part, guard, a->scale)
-                   : dalcs_larger(dalcs_doubt_band(part), blocking) * a->scale;
+                   : dalcs_larger(dalcs_doubt_band(part), dalcs_alike) * a->scale;
     }
     if (part->guards.fresh) {
         return doubt_at_first(part, a, doubt);
     }
-    return last < (1.0 - dalcs_guard_agreeing) * value[0] ? dalcs_part_of_doubt * doubt : doubt;
+    return last < (1.0 - dalcs_slight) * value[0] ? dalcs_small * doubt : doubt;
 }
 
 /* Does a guard that falls at `theta` or later do so at an event that is no farther before than errors move it? Diodes
@@ -160,7 +158,7 @@ static bool all_fall_with(const struct dalcs_radau_part *part, double event, dou
 /* What has died away has no sign any more. */
 static void disarm(const struct dalcs_radau_part *part, const struct look *a, double band) {
     const double last = a->value[(part->stages.layout.n_nodes - 1) * a->stride];
-    if (!part->guards.fresh && a->value[0] <= dalcs_part_of_doubt * band * a->scale &&
+    if (!part->guards.fresh && a->value[0] <= dalcs_small * band * a->scale &&
         fabs(last) <= a->zero + a->rounding) {
         part->guards.armed[a->guard] = false;
     }
@@ -187,7 +185,7 @@ static void note_fall(struct dalcs_radau_part *part, const struct look *a,
     const bool soon =
         c->at_once ||
         (slips && (!guards->flipped || dalcs_tied_was_at_rest(part, a->guard, a->unit))) ||
-        (c->theta <= dalcs_soon_after && c->peak <= near);
+        (c->theta <= dalcs_nothing && c->peak <= near); /* this early is from the start */
     *at_once = *at_once || (!guards->armed[a->guard] && soon);
     guards->crossed[guards->n_crossed++] = a->guard;
 }
@@ -196,7 +194,7 @@ static void note_fall(struct dalcs_radau_part *part, const struct look *a,
 static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
                          const double *unit, bool *at_once) {
     double first = INFINITY;
-    double same = part->segment.rounding > 1.0 ? same_on_factors : same_on_maps;
+    double same = part->segment.rounding > 1.0 ? dalcs_alike : dalcs_answer_rounded;
     double together = dalcs_larger(same, 2.0 * r->resolution / part->segment.h);
     double band = dalcs_doubt_band(part);
     double too_late = end_of_events(r, part, end, band);

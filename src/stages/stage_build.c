@@ -1,12 +1,11 @@
 /* stage_build.c - the factors of a mode and step length: made, tried out on a step, dropped. */
 #include "stage_update.h"
 
+#include "rounding.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* And one that pivots next to 0 spoke against has not, if it is no worse than this: rounding. */
-static const double largest_of_doubtful = 1e-13;
 
 /* mu / h of a system. */
 static void find_eigenvalue(const struct dalcs_stages *stages, double h, int system, double *re,
@@ -242,7 +241,7 @@ static enum dalcs_status factor_doubtful(struct dalcs_stages *stages,
         }
         drop_systems(f);
     }
-    *largest = largest_of_doubtful;
+    *largest = dalcs_answer_rounded;
     return factor_all(stages, entry, f, m, stages->rcond_min * stages->rcond_min);
 }
 

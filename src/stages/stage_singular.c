@@ -7,6 +7,7 @@
  * first: what later blocks read of them (partition.h) follows. */
 #include "stage_singular.h"
 
+#include "magnitudes.h"
 #include "null_space.h"
 #include "partition.h"
 #include "stages_internal.h"
@@ -14,9 +15,6 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* Beside what it was, a vector this small is what rounding left of it. */
-static const double independent = 1e-9;
 
 /* A sum this small beside its terms is rounding. */
 static const double rounding = 1e-14;
@@ -180,11 +178,11 @@ static enum dalcs_status find_traces(struct search *s) {
             }
         }
         double norm = norm_of(s->of_pair, n_pairs);
-        if (!(norm > independent * before)) {
-            continue;
+        if (!(norm > dalcs_alike * before)) {
+            continue; /* what rounding left of it */
         }
         for (int d = 0; d < n_pairs; d++) {
-            s->of_pair[d] = fabs(s->of_pair[d]) > independent * norm ? s->of_pair[d] / norm : 0.0;
+            s->of_pair[d] = fabs(s->of_pair[d]) > dalcs_alike * norm ? s->of_pair[d] / norm : 0.0;
         }
         for (int c = 0; c < s->n_columns; c++) {
             vector[c] /= norm;
