@@ -5,6 +5,7 @@
 #include "magnitudes.h"
 #include "present.h"
 #include "restart.h"
+#include "rounding.h"
 #include "step_error.h"
 
 #include <math.h>
@@ -97,7 +98,7 @@ void dalcs_micro_raise_to_drives(const struct dalcs_radau_part *part, double *la
 /* V or A: a state that changes by less has not: rounding of the largest of its unit, or what rounding of the other unit
  * drives. */
 double dalcs_micro_rounding(const struct dalcs_radau_part *part, int of, const double *largest) {
-    return fmax(dalcs_jump_rounding * largest[of], dalcs_step_crossed(part, of, largest));
+    return fmax(dalcs_sum_rounded * largest[of], dalcs_step_crossed(part, of, largest));
 }
 
 /* V, A: no less than |y[0..n-1]|. */

@@ -19,9 +19,6 @@
 /* Micro-steps without a certificate get longer so many times. */
 enum { LONGER_TRIES = 4 };
 
-/* How much farther a state goes in a shorter micro-step that has no limit. */
-static const double runaway = 4.0;
-
 /* Where a component is not passive, a state may jump although another one runs away, the farther the
  * shorter the micro-step: the derivative of an impulse. */
 static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -41,7 +38,7 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
         bool stays = fabs(part->work.y1[x] - longer[x]) < 0.5 * now;
         bool moves = now > dalcs_alike * largest[s->column_is_current[x]];
         jumps = jumps || (moves && stays);
-        runs_away = runs_away || (moves && now > runaway * before);
+        runs_away = runs_away || (moves && now > dalcs_beyond * before);
     }
     if (jumps && runs_away) {
         dalcs_osnsp_blame_states(&part->component->osnsp, part->x, longer, part->work.y1);

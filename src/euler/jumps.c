@@ -2,12 +2,10 @@
 #include "jumps_internal.h"
 
 #include "magnitudes.h"
+#include "rounding.h"
 
 #include <math.h>
 #include <string.h>
-
-/* States that change by less than this part of the largest have not jumped; less than it is 0. */
-static const double rounding = 1e-14;
 
 static void command(struct dalcs_jump_part *part, const uint64_t *mode) {
     for (int d = 0; d < part->osnsp.system->n_pairs; d++) {
@@ -44,11 +42,12 @@ static void read_answer(const struct dalcs_jump_part *part, const double *inputs
         }
     }
     for (int x = 0; x < s->n_x; x++) {
-        bool moves = fabs(part->y[x] - part->u[x]) > rounding * largest;
+        /* what is rounding of the largest has not jumped, or is 0 */
+        bool moves = fabs(part->y[x] - part->u[x]) > dalcs_sum_rounded * largest;
         /* what reads the voltage of a coil that is cut off reads what is left of its current over no time */
         if (is_its_own(part, x) && (moves || answer->is_first)) {
             answer->after[part->state[x]] =
-                fabs(part->y[x]) > rounding * largest ? part->y[x] : 0.0;
+                fabs(part->y[x]) > dalcs_sum_rounded * largest ? part->y[x] : 0.0;
             answer->moves = answer->moves || moves;
         }
     }

@@ -28,8 +28,9 @@ static double largest_state(const struct dalcs_system *s, const double *y, bool 
     return largest;
 }
 
-/* The step from x is one of impulses of higher order than implicit Euler can follow: y1 and y2 are answers of steps one of
- * which is shorter. */
+/* Refuses a jump that two steps from x with the answers y1 and y2, one half as long as the other, do not agree about: what
+ * moves the farther the shorter the step is, the derivative of an impulse moves, which implicit Euler cannot follow. Those
+ * states are to blame. */
 static enum dalcs_status refuse_derivative(struct dalcs_euler *e, int k, const double *x,
                                            const double *y1, const double *y2) {
     dalcs_osnsp_blame_states(&e->component[k].osnsp, x, y1, y2);
@@ -41,8 +42,9 @@ static enum dalcs_status refuse_derivative(struct dalcs_euler *e, int k, const d
     return DALCS_INFEASIBLE;
 }
 
-/* What certificates may leave of the states' own sizes, or rounding of the largest of their unit so far and of what the
- * other unit vouches for. */
+/* Into e->noise: the change of each state that is rounding and no jump. A certificate leaves a state as much of its own size,
+ * and a sum as much of the largest of its unit so far, or of what the other unit drives through the circuit's
+ * conductances. */
 static void find_noise(struct dalcs_euler *e, int k, const double *before) {
     const struct dalcs_component *c = &e->component[k];
     const struct dalcs_system *s = c->system;
@@ -57,7 +59,7 @@ static void find_noise(struct dalcs_euler *e, int k, const double *before) {
     for (int x = 0; x < s->n_x; x++) {
         double own = fmax(c->largest[x], fmax(fabs(before[x]), fabs(e->jump.after[x])));
         e->noise[x] =
-            fmax(dalcs_answer_rounded * own, dalcs_jump_rounding * scale[s->column_is_current[x]]);
+            fmax(dalcs_answer_rounded * own, dalcs_sum_rounded * scale[s->column_is_current[x]]);
     }
 }
 

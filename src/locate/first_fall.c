@@ -13,9 +13,6 @@
 
 #include <math.h>
 
-/* And those that are so near and no more than their doubt above 0 at the first of them. */
-static const double same_by_value = 1e-10;
-
 /* So early a fall may be one from the start where no pair has changed sides and it was above 0 by no more than its
  * doubt: from rest a circuit may begin to move as a power of time. */
 static const double from_rest = 1.0 / 64.0;
@@ -27,7 +24,8 @@ struct look {
     int stride;
     double work[DALCS_MAX_NODES];
     double end;
-    double scale, rounding, zero; /* the last: what noise leaves of 0 */
+    double scale;
+    double nothing; /* what rounding leaves of a guard that is 0 */
     const double *unit;
 };
 
@@ -38,8 +36,7 @@ static void look_at(struct look *a, const struct dalcs_radau_part *part, int gua
     a->unit = unit;
     a->value = dalcs_guard_values(part, guard, a->work, &a->stride);
     a->scale = dalcs_guard_scale(part, guard, unit);
-    a->rounding = dalcs_guard_rounding(part, guard, unit);
-    a->zero = dalcs_doubt_noise_about(part, guard, a->scale, unit);
+    a->nothing = dalcs_tied_nothing(part, guard, unit);
 }
 
 static void bound_controls(const struct dalcs_radau_part *part) {
@@ -97,7 +94,7 @@ static double doubt_at_first(struct dalcs_radau_part *part, const struct look *a
     return depth;
 }
 
-/* How far a guard may fall and is no event: where it is armed by noise, or as far as it may be touching 0.
+/* How far a guard may fall beyond rounding and is no event: where it is armed not at all, or as far as it may be touching 0.
  *
  * A small part of its doubt counts in later steps where such a pair goes on falling, or stays where it is: a diode that waits
  * for the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. One that comes down to 0
@@ -108,13 +105,13 @@ static double doubt_of(struct dalcs_radau_part *part, const struct look *a) {
     const double *value = a->value;
     const double last = value[(part->stages.layout.n_nodes - 1) * a->stride];
     const bool is_armed = part->guards.armed[guard];
-    if (is_armed &&
-        (a->end < 1.0 ? dalcs_guard_value_at(part, value, a->stride, a->end) : last) <= a->zero) {
-        return a->zero; /* it does not come back */
+    if (is_armed && (a->end < 1.0 ? dalcs_guard_value_at(part, value, a->stride, a->end) : last) <=
+                        a->nothing) {
+        return 0.0; /* it does not come back */
     }
     double doubt = dalcs_doubt_about(part, guard, a->scale, a->unit);
     if (is_armed) {
-        return dalcs_larger(a->zero, dalcs_small * doubt);
+        return dalcs_small * doubt;
     }
     if (part->guards.fresh && guard < part->component->system->n_pairs &&
         dalcs_guard_has_crossed(part, guard, value, a->stride, a->unit)) {
@@ -134,7 +131,7 @@ static double doubt_of(struct dalcs_radau_part *part, const struct look *a) {
  * in series open together, whichever has a rounding more: leaks alone would take that down, late. */
 static bool falls_with(const struct dalcs_radau_part *part, int guard, double event, double theta,
                        const double *unit) {
-    if (!part->guards.armed[guard] || theta - event > same_by_value) {
+    if (!part->guards.armed[guard] || theta - event > dalcs_alike) {
         return false;
     }
     double work[DALCS_MAX_NODES];
@@ -159,7 +156,7 @@ static bool all_fall_with(const struct dalcs_radau_part *part, double event, dou
 static void disarm(const struct dalcs_radau_part *part, const struct look *a, double band) {
     const double last = a->value[(part->stages.layout.n_nodes - 1) * a->stride];
     if (!part->guards.fresh && a->value[0] <= dalcs_small * band * a->scale &&
-        fabs(last) <= a->zero + a->rounding) {
+        fabs(last) <= a->nothing) {
         part->guards.armed[a->guard] = false;
     }
 }
@@ -179,7 +176,7 @@ static void note_fall(struct dalcs_radau_part *part, const struct look *a,
     /* On factors a guard that is above what rounding leaves of it falls at a time of its own, however soon: of diodes beside
      * closed switches, which take over one after the other, the band of kilovolts would be all of their nanovolts. */
     const double near =
-        part->segment.rounding > 1.0 ? a->zero + a->rounding : dalcs_doubt_band(part) * a->scale;
+        part->segment.rounding > 1.0 ? a->nothing : dalcs_doubt_band(part) * a->scale;
     const bool slips = guards->fresh && c->theta <= from_rest && c->peak <= depth;
     guards->slips = guards->slips || slips;
     const bool soon =
@@ -203,10 +200,10 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         look_at(&a, part, part->guards.doubtful[k], end, unit);
         disarm(part, &a, band);
         const double bound = part->guards.bound[a.guard];
-        if (bound >= -a.zero - a.rounding) {
+        if (bound >= -a.nothing) {
             continue;
         }
-        double depth = doubt_of(part, &a) + a.rounding;
+        double depth = dalcs_larger(a.nothing, doubt_of(part, &a));
         if (bound >= -depth) {
             continue;
         }

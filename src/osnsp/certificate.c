@@ -7,7 +7,6 @@
 #include "magnitudes.h"
 #include "rounding.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -175,7 +174,8 @@ bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, 
     return hold;
 }
 
-/* V, A: rows of larger ones may overflow, and infinite rows would vouch for any residual. */
+/* V, A: rows of larger ones may overflow, and infinite rows would vouch for any residual. Above what a state may grow to
+ * (component.c), which is told as growth. */
 static const double largest_scale = 1e250;
 
 void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *y,

@@ -10,14 +10,12 @@
 #include "magnitudes.h"
 #include "null_space.h"
 #include "partition.h"
+#include "rounding.h"
 #include "stages_internal.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* A sum this small beside its terms is rounding. */
-static const double rounding = 1e-14;
 
 /* What a solution that is 0 on every right-hand side has in diodes. */
 struct trace {
@@ -104,7 +102,7 @@ static double other_side(const struct search *s, int pair, const double *vector)
         sum += term;
         size += fabs(term);
     }
-    return fabs(sum) > rounding * size ? sum : 0.0;
+    return fabs(sum) > dalcs_sum_rounded * size ? sum : 0.0;
 }
 
 static enum dalcs_status keep_trace(struct search *s, struct trace *trace) {
