@@ -17,11 +17,7 @@ enum { MICRO = 20 };
 /* States that move in the first micro-step by more than this many times the second have jumped. */
 static const double jump_ratio = 4.0;
 
-/* States that move in the second by less than this part of the first, and more than jump_ratio says, may
- * have jumped by what a fast transient hides. */
-static const double steady = 0.99;
-
-/* The same where a small transient may hide its mode: in a much shorter one an event's error would weigh
+/* A micro-step over one in which a small transient may hide its mode: in a much shorter one an event's error would weigh
  * more than what the circuit does. */
 static const double a_little_shorter = 1.0 / 32.0;
 
@@ -142,7 +138,7 @@ bool dalcs_micro_extrapolate(const struct dalcs_radau_part *part, double *after,
         bool moved = first > jump_ratio * second && first > nothing[s->column_is_current[x]];
         jumps = jumps || moved;
         *noticeable = *noticeable || (moved && first > smallest * scale);
-        bool dies_away = !moved && second < steady * first;
+        bool dies_away = !moved && second < (1.0 - dalcs_slight) * first;
         if (dies_away && first > smallest * scale) {
             *closer = dalcs_micro_shorter;
         } else if (dies_away && first > dalcs_beyond * part->inner_tolerance * scale) {

@@ -120,7 +120,7 @@ static enum dalcs_status try_projection(struct dalcs_radau_part *part, double li
     }
     struct dalcs_stage_entry *entry;
     enum dalcs_status status = dalcs_segment_solve(part, &entry);
-    *means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_largest_residual;
+    *means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_nothing;
     return status;
 }
 

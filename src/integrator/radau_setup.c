@@ -31,9 +31,6 @@ static const double paced_part = 0.65;
 
 enum { FIRST_STEPS = 64 };
 
-/* There is a power of 2 from a length up to twice that. */
-static const double below_twice = 2.0 * (1.0 - 1e-9);
-
 static double inner_tolerance_of(double tolerance) {
     return fmax(smallest_inner, fmin(largest_inner, inner_part * tolerance));
 }
@@ -174,7 +171,8 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     }
     list_used_inputs(part, r->base->network, used);
     part->length.longest = dalcs_length_longest(r, part);
-    part->length.longest_needed = below_twice * dalcs_length_of_spans(part);
+    /* there is a power of 2 from a length up to twice that */
+    part->length.longest_needed = 2.0 * (1.0 - dalcs_alike) * dalcs_length_of_spans(part);
     double first = fmin(part->length.longest_needed,
                         fmin(part->length.longest, r->options.stop / FIRST_STEPS));
     double promising = dalcs_length_promising(part);

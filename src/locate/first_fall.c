@@ -13,10 +13,6 @@
 
 #include <math.h>
 
-/* So early a fall may be one from the start where no pair has changed sides and it was above 0 by no more than its
- * doubt: from rest a circuit may begin to move as a power of time. */
-static const double from_rest = 1.0 / 64.0;
-
 /* A guard that is looked at, up to `end`, in steps. */
 struct look {
     int guard;
@@ -177,7 +173,7 @@ static void note_fall(struct dalcs_radau_part *part, const struct look *a,
      * closed switches, which take over one after the other, the band of kilovolts would be all of their nanovolts. */
     const double near =
         part->segment.rounding > 1.0 ? a->nothing : dalcs_doubt_band(part) * a->scale;
-    const bool slips = guards->fresh && c->theta <= from_rest && c->peak <= depth;
+    const bool slips = guards->fresh && c->theta <= dalcs_early_in_step && c->peak <= depth;
     guards->slips = guards->slips || slips;
     const bool soon =
         c->at_once ||

@@ -65,7 +65,7 @@ static enum dalcs_status find_map(struct dalcs_radau_part *part, double h, bool 
         dalcs_stages_get(&part->stages, part->component->osnsp.mode, h, &entry);
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
     if (status == DALCS_OK && dalcs_stage_has_map(entry) && dalcs_stage_n_clashes(entry) == 0 &&
-        dalcs_stage_residual(entry) <= dalcs_largest_residual) {
+        dalcs_stage_residual(entry) <= dalcs_nothing) {
         return dalcs_stage_brief_create(&part->stages, entry, with_nodes, step);
     }
     return DALCS_OK;

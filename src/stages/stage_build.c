@@ -1,6 +1,7 @@
 /* stage_build.c - the factors of a mode and step length: made, tried out on a step, dropped. */
 #include "stage_update.h"
 
+#include "magnitudes.h"
 #include "rounding.h"
 
 #include <math.h>
@@ -270,7 +271,7 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
     memcpy(f->column_scale, m->column_scale, (size_t)m->n * sizeof(double));
     memcpy(entry->natural, f->column_scale, (size_t)dalcs_system_n_equations(s) * sizeof(double));
     enum dalcs_status status = factor_all(stages, entry, f, m, stages->rcond_min);
-    double largest = dalcs_largest_residual;
+    double largest = dalcs_nothing;
     if (status == DALCS_OK) {
         remember_pivots(plan, m, f);
     } else if (status == DALCS_SINGULAR && s->n_pairs > 0) {
