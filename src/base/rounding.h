@@ -13,4 +13,9 @@ static const double dalcs_rounded = 4.0 * DBL_EPSILON;
 /* Of a sum of products, over the sum of their sizes: a row of up to sixteen terms, of two operations each. */
 static const double dalcs_sum_rounded = 16.0 * DBL_EPSILON;
 
+/* Of a certified answer, over the scale of each equation: 900 units in the last place. Elimination of n unknowns leaves a small
+ * multiple of n of them (Higham, theorem 9.3): 14 for each of 64 unknowns, the most that a dense map has. The default of
+ * the certificate's tolerance; what a solution leaves where it should leave 0 is rounding up to this. */
+static const double dalcs_answer_rounded = 2e-13;
+
 #endif

@@ -2,13 +2,11 @@
  * matrix of coupling factors, whose diagonal is 1 so that the rank decision has no units. */
 #include "inductance.h"
 
+#include "rounding.h"
+
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* 1 - k^2 below this is perfect coupling: the leakage would be lost in the rounding of the netlist's
- * own numbers. */
-static const double perfect_coupling = 1e-13;
 
 static double coupling(const double *L, int n, int i, int j) {
     return i == j ? 1.0 : L[i * n + j] / sqrt(L[i * n + i] * L[j * n + j]);
@@ -64,7 +62,7 @@ static enum dalcs_status split(struct dalcs_inductance *group, const double *L, 
     }
     lapack_int rank = 0;
     lapack_int info =
-        LAPACKE_dpstrf(LAPACK_ROW_MAJOR, 'U', n, U, n, pivot, &rank, perfect_coupling);
+        LAPACKE_dpstrf(LAPACK_ROW_MAJOR, 'U', n, U, n, pivot, &rank, dalcs_answer_rounded);
     if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR) {
         return DALCS_E_NOMEM;
     }

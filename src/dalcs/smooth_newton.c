@@ -2,6 +2,7 @@
 #include "smooth_newton.h"
 
 #include "extremes.h"
+#include "rounding.h"
 #include "smooth_tangents.h"
 
 #include <float.h>
@@ -89,9 +90,8 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
     }
 }
 
-/* Over an argument: what rounding makes of it and of the function of it, two units in the last place; and, over the terms
- * that it is made of, what the residual of an answer may be (the certificate's 900). */
-static const double rounded = 2.0 * DBL_EPSILON, solved = 2e-13;
+/* Over an argument: what rounding makes of it and of the function of it, two units in the last place. */
+static const double rounded = 2.0 * DBL_EPSILON;
 
 double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x) {
     double gradient[2];
@@ -125,7 +125,7 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
             bool is_read = of->column[j] >= 0;
             double slope = fabs(gradient[j]) + fabs(dalcs_smooth_line(of, j));
             least += is_read ? rounded * slope * fabs(newton->x[q][j]) : 0.0;
-            most += is_read ? solved * slope * newton->terms[q][j] : 0.0;
+            most += is_read ? dalcs_answer_rounded * slope * newton->terms[q][j] : 0.0;
         }
         double off = fabs(dalcs_smooth_rest(of, newton->x[q]) - newton->phi[q]);
         double ratio = over(off, most);

@@ -1,14 +1,12 @@
 /* source_sums.c - sums of sources that must be 0 at all times. */
 #include "source_sums.h"
 
+#include "magnitudes.h"
 #include "quantity.h"
 #include "rounding.h"
 
 #include <math.h>
 #include <string.h>
-
-/* What a sum of constants leaves, over its size, that is certainly not 0. */
-static const double surely = 1e-9;
 
 static bool same_points(const struct dalcs_stimulus *a, const struct dalcs_stimulus *b) {
     size_t n = (size_t)a->u.pwl.n;
@@ -69,7 +67,7 @@ enum dalcs_sum_verdict dalcs_source_sum_judge(const struct dalcs_circuit *c,
             size += fabs(a->dc);
         }
     }
-    return fabs(*left) > surely * size           ? DALCS_SUM_CONTRADICTS
+    return fabs(*left) > dalcs_alike * size      ? DALCS_SUM_CONTRADICTS
            : fabs(*left) <= dalcs_rounded * size ? DALCS_SUM_AGREES
                                                  : DALCS_SUM_UNKNOWN;
 }

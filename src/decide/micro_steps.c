@@ -2,8 +2,10 @@
 #include "micro_steps.h"
 #include "doubt.h"
 #include "guard_scale.h"
+#include "magnitudes.h"
 #include "present.h"
 #include "restart.h"
+#include "rounding.h"
 #include "step_error.h"
 
 #include <math.h>
@@ -15,16 +17,9 @@ enum { MICRO = 20 };
 /* States that move in the first micro-step by more than this many times the second have jumped. */
 static const double jump_ratio = 4.0;
 
-/* States that move in the second by less than this part of the first, and more than jump_ratio says, may
- * have jumped by what a fast transient hides. */
-static const double steady = 0.99;
-
-/* The same where a small transient may hide its mode: in a much shorter one an event's error would weigh
- * more than what the circuit does. So many inner tolerances are no such error. */
-static const double a_little_shorter = 1.0 / 32.0, beyond_error = 10.0;
-
-/* An event's state may be off by so many inner tolerances. */
-static const double of_an_event = 1e3;
+/* A micro-step over one in which a small transient may hide its mode: in a much shorter one an event's error would weigh
+ * more than what the circuit does. */
+static const double a_little_shorter = 1.0 / 32.0;
 
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u, enum dalcs_status status) {
@@ -39,7 +34,7 @@ enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_par
 
 /* What the control of a watched switch may be off by: its guard, but for what only a step tells. */
 static double slack_of(const struct dalcs_radau_part *part, int guard) {
-    return dalcs_doubts_over_tolerance * part->inner_tolerance *
+    return dalcs_beyond * part->inner_tolerance *
                dalcs_guard_control_scale(part, guard, part->scales.unit) +
            dalcs_guard_most_rounding(part, guard, part->scales.unit);
 }
@@ -99,7 +94,7 @@ void dalcs_micro_raise_to_drives(const struct dalcs_radau_part *part, double *la
 /* V or A: a state that changes by less has not: rounding of the largest of its unit, or what rounding of the other unit
  * drives. */
 double dalcs_micro_rounding(const struct dalcs_radau_part *part, int of, const double *largest) {
-    return fmax(dalcs_jump_rounding * largest[of], dalcs_step_crossed(part, of, largest));
+    return fmax(dalcs_sum_rounded * largest[of], dalcs_step_crossed(part, of, largest));
 }
 
 /* V, A: no less than |y[0..n-1]|. */
@@ -111,7 +106,8 @@ void dalcs_micro_raise(const struct dalcs_system *s, const double *y, int n, dou
 }
 
 double dalcs_micro_noticeable(const struct dalcs_radau_part *part) {
-    return fmax(of_an_event * part->inner_tolerance, dalcs_smallest_jump);
+    return fmax(1.0 / dalcs_small * part->inner_tolerance,
+                dalcs_alike); /* what an event's state may be off by */
 }
 
 /* The states just after part->segment.t from the micro-steps y1 and y2. Does any jump, and by more than the
@@ -142,10 +138,10 @@ bool dalcs_micro_extrapolate(const struct dalcs_radau_part *part, double *after,
         bool moved = first > jump_ratio * second && first > nothing[s->column_is_current[x]];
         jumps = jumps || moved;
         *noticeable = *noticeable || (moved && first > smallest * scale);
-        bool dies_away = !moved && second < steady * first;
+        bool dies_away = !moved && second < (1.0 - dalcs_slight) * first;
         if (dies_away && first > smallest * scale) {
             *closer = dalcs_micro_shorter;
-        } else if (dies_away && first > beyond_error * part->inner_tolerance * scale) {
+        } else if (dies_away && first > dalcs_beyond * part->inner_tolerance * scale) {
             *closer = fmin(*closer, a_little_shorter);
         }
         after[x] = 2.0 * part->work.y1[x] - part->work.y2[x];

@@ -2,6 +2,7 @@
 #include "projection.h"
 
 #include "extremes.h"
+#include "magnitudes.h"
 #include "present.h"
 #include "step_error.h"
 
@@ -37,7 +38,7 @@ static bool is_in_place(struct dalcs_radau_part *part) {
         part->smooth == NULL
             ? dalcs_stages_find(&part->stages, part->component->osnsp.mode, part->segment.h)
             : NULL;
-    double most = dalcs_worth_projecting * part->inner_tolerance;
+    double most = dalcs_slight * part->inner_tolerance;
     bool is = entry != NULL;
     for (int x = 0; x < part->component->system->n_x && is; x++) {
         double shift = dalcs_stage_shift(&part->stages, entry, x, part->segment.in);
@@ -119,7 +120,7 @@ static enum dalcs_status try_projection(struct dalcs_radau_part *part, double li
     }
     struct dalcs_stage_entry *entry;
     enum dalcs_status status = dalcs_segment_solve(part, &entry);
-    *means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_largest_residual;
+    *means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_nothing;
     return status;
 }
 

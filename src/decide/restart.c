@@ -5,9 +5,11 @@
  * the limit of vanishing steps, which for passive circuits is the projection in the energy norm
  * (Heemels, Schumacher and Weiland 1999; Brogliato 2022, sec. 4). */
 #include "restart.h"
+#include "magnitudes.h"
 #include "micro_steps.h"
 #include "present.h"
 #include "recurrence.h"
+#include "rounding.h"
 #include "step_error.h"
 #include "step_length.h"
 
@@ -16,9 +18,6 @@
 
 /* Micro-steps without a certificate get longer so many times. */
 enum { LONGER_TRIES = 4 };
-
-/* How much farther a state goes in a shorter micro-step that has no limit. */
-static const double runaway = 4.0;
 
 /* Where a component is not passive, a state may jump although another one runs away, the farther the
  * shorter the micro-step: the derivative of an impulse. */
@@ -37,9 +36,9 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
         double before = fabs(longer[x] - part->x[x]);
         double now = fabs(part->work.y1[x] - part->x[x]);
         bool stays = fabs(part->work.y1[x] - longer[x]) < 0.5 * now;
-        bool moves = now > dalcs_smallest_jump * largest[s->column_is_current[x]];
+        bool moves = now > dalcs_alike * largest[s->column_is_current[x]];
         jumps = jumps || (moves && stays);
-        runs_away = runs_away || (moves && now > runaway * before);
+        runs_away = runs_away || (moves && now > dalcs_beyond * before);
     }
     if (jumps && runs_away) {
         dalcs_osnsp_blame_states(&part->component->osnsp, part->x, longer, part->work.y1);
@@ -88,7 +87,7 @@ static void find_noise(const struct dalcs_radau_part *part, const double *after,
     for (int x = 0; x < s->n_x; x++) {
         double own = fmax(dalcs_step_scale(part, x, part->scales.unit),
                           fmax(fabs(part->x[x]), fabs(after[x])));
-        noise[x] = fmax(dalcs_jump_remainder * own,
+        noise[x] = fmax(dalcs_answer_rounded * own,
                         dalcs_micro_rounding(part, s->column_is_current[x], largest));
     }
 }

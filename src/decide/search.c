@@ -3,6 +3,7 @@
 
 #include "blocks.h"
 #include "doubt.h"
+#include "magnitudes.h"
 #include "present.h"
 #include "projection.h"
 #include "restart.h"
@@ -12,9 +13,6 @@
 
 /* Defects of a state, over what is allowed, that interpolation may leave; more is a jump. */
 static const double most_projected = 1e4;
-
-/* And errors that one or two steps half as long mend. */
-static const double nearly = 1e3;
 
 enum {
     STUCK = 3,         /* smaller steps without a smaller error */
@@ -117,11 +115,11 @@ static bool is_shortest(const struct dalcs_radau *r, const struct dalcs_radau_pa
     return dalcs_radau_ladder(part, part->length.level) < dalcs_length_shortest(r) && !has_grown;
 }
 
-/* Will steps do that are not much shorter, though it is that short? They are no less exact for it: the last digit of the
+/* Will steps do that are half or a quarter as long, though it is that short? They are no less exact for it: the last digit of the
  * time at which one begins moves only sources. */
 static bool is_nearly_right(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                             const struct dalcs_step_quality *quality) {
-    return quality->own < nearly &&
+    return dalcs_small * quality->own < 1.0 &&
            dalcs_radau_ladder(part, part->length.level) >= 8.0 * r->resolution;
 }
 

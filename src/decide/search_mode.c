@@ -13,9 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-/* A mode may be over after so little of a step. */
-static const double briefly = 1.0 / 64.0;
-
 enum {
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
@@ -243,7 +240,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
     bool is_resolved =
         recovery * part->segment.h >= dalcs_length_shortest(r); /* else no micro-step sees it */
-    if (recovery > 0.0 && recovery < briefly && is_resolved) {
+    if (recovery > 0.0 && recovery < dalcs_early_in_step && is_resolved) {
         return ask_closer(r, part, search, recovery);
     }
     if (search->closer && search->flips_closer++ < MOST_FLIPS_CLOSER) {

@@ -2,6 +2,7 @@
 #include "energy_entries.h"
 
 #include "refute.h"
+#include "rounding.h"
 #include "source_products.h"
 
 #include <math.h>
@@ -37,9 +38,6 @@ static void unit_inputs(const struct dalcs_component *c, const struct waves *w, 
     }
 }
 
-/* What a wave does along a ray is 0 below this part of what the others do: 1e4 roundings. */
-static const double rounding = 1e-12;
-
 /* Binds one wave to others: where one alone has no answer, sources close a loop or feed a part, and a sum of waves was 0
  * all the time that there were answers. */
 static enum dalcs_status bind(struct dalcs_component *c, struct waves *w, int wave) {
@@ -58,7 +56,7 @@ static enum dalcs_status bind(struct dalcs_component *c, struct waves *w, int wa
         return DALCS_INFEASIBLE;
     }
     for (int k = 0; k < w->n; k++) {
-        bool takes_part = k != wave && fabs(sum[k]) > rounding * most;
+        bool takes_part = k != wave && fabs(sum[k]) > dalcs_answer_rounded * most;
         w->bond[wave * w->n + k] = takes_part ? -sum[k] / sum[wave] : 0.0;
     }
     w->is_bound[wave] = true;

@@ -4,6 +4,7 @@
 #include "energy_entries.h"
 #include "extremes.h"
 #include "micro_steps.h"
+#include "rounding.h"
 #include "step_error.h"
 
 #include <math.h>
@@ -169,7 +170,7 @@ enum dalcs_status dalcs_energy_close(struct dalcs_energy *energy, struct dalcs_e
             close_euler(energy, k, &e->component[k], stop, largest);
         }
         energy->sum.rounding +=
-            dalcs_energy_residual_part * stop * power_of_rounding(part->system, stop, largest);
+            dalcs_answer_rounded * stop * power_of_rounding(part->system, stop, largest);
     }
     energy->sum.stored_change += energy->sum.account[DALCS_POWER_STORED];
     return DALCS_OK;

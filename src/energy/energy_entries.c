@@ -1,6 +1,7 @@
 /* energy_entries.c - steps, jumps and moves of the engine, entered in the ledger of energies. */
 #include "energy_entries.h"
 #include "extremes.h"
+#include "rounding.h"
 
 #include <math.h>
 
@@ -23,7 +24,7 @@ double dalcs_energy_enter_swing(struct dalcs_energy *energy, const struct dalcs_
         distance += part->half[i] * step * step;
     }
     energy->sum.turnover += turnover;
-    energy->sum.rounding += dalcs_energy_residual_part * size;
+    energy->sum.rounding += dalcs_answer_rounded * size;
     return distance;
 }
 

@@ -4,9 +4,6 @@
 
 #include "energy.h"
 
-/* What is off by a part of this may be rounding: residuals that answers may have, over the scales of the certificate. */
-static const double dalcs_energy_residual_part = 1e-12;
-
 /* Adds joules to an account and to the turnover. */
 void dalcs_energy_enter(struct dalcs_energy *energy, enum dalcs_power_account account,
                         double joule);

@@ -98,27 +98,21 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) DALCS_MUST_CHECK;
 /* At a jump of the sources: y becomes the values just after e->t; the state stays. */
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) DALCS_MUST_CHECK;
 
-/* Hands a jump of component k, from before[n_x] to e->jump.after, to the ledger, and to on_jump unless no state
- * changes by more than e->noise. Impulses of a unit of which none does are rounding as well, and become 0. from and
- * to[n_columns] tell what the other columns are just before and after; NULL: nobody knows. */
+/* Tells of a jump of component k from before[n_x] to e->jump.after: the ledger always, on_jump only if a state changes by
+ * more than e->noise. If no voltage does, impulses of charge are rounding and become 0; if no current does, those of flux
+ * likewise. from and to[n_columns]: all columns just before and after; NULL: nobody knows. */
 enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
                                           const double *before, const double *from,
                                           const double *to) DALCS_MUST_CHECK;
 
-/* The jump of component k from u = (x, s), with the mode after it, into e->jump: exactly where it is
- * covered, else from e->after, e->charge and e->flux. */
+/* Finds the jump of component k from u = (x, s) in the mode that the component has after it, into e->jump. Where the
+ * networks of charge and flux (jumps.h) have an answer it is exact, else it is what two micro-steps told of it: e->after,
+ * e->charge and e->flux. */
 enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k,
                                         const double *u) DALCS_MUST_CHECK;
 
 /* Calls on_open if the last answer of component k, now in its y, may be one of several. */
 enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) DALCS_MUST_CHECK;
-
-/* A state that moves by less, over the largest of its unit, has not jumped: a one-step problem is right to 1e-9. */
-static const double dalcs_smallest_jump = 1e-9;
-
-/* V or A, and so of its impulses: what is left of a state that falls to 0, over the largest that it was; and of one
- * that has always been 0, over the physical scale of its unit. */
-static const double dalcs_jump_remainder = 1e-12, dalcs_jump_rounding = 1e-15;
 
 /* 1/2 x' storage x for states [n_x], J. */
 double dalcs_euler_stored_energy(const struct dalcs_system *s, const double *x);

@@ -1,11 +1,10 @@
 /* jump_report.c - a jump of a component: what it is, what it costs, and how it is told. */
 #include "euler.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 #include <string.h>
-
-/* What two micro-steps tell of what is no state, over its size. */
-static const double micro_error = 1e-6;
 
 double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *before,
                                const double *after) {
@@ -74,15 +73,15 @@ static bool tell_states(struct dalcs_euler *e, const struct dalcs_system *s, con
     return jumps[0] || jumps[1];
 }
 
-/* And the other columns of the equations, as far as they are known. */
+/* And the other columns of the equations, as far as two micro-steps tell of them. */
 static void tell_columns(struct dalcs_euler *e, const struct dalcs_system *s, const double *from,
                          const double *to) {
     for (int c = s->n_x; c < dalcs_system_n_equations(s); c++) {
         double size = fmax(fabs(from[c]), fabs(to[c]));
         e->told_from[c] = from[c];
-        e->told[c] = fabs(to[c] - from[c]) <= micro_error * size  ? from[c]
-                     : fabs(to[c]) <= micro_error * fabs(from[c]) ? 0.0
-                                                                  : to[c];
+        e->told[c] = fabs(to[c] - from[c]) <= dalcs_nothing * size  ? from[c]
+                     : fabs(to[c]) <= dalcs_nothing * fabs(from[c]) ? 0.0
+                                                                    : to[c];
     }
 }
 

@@ -1,15 +1,11 @@
 /* jumps.c - the two networks of a jump, and the way between their unknowns and the circuit's. */
 #include "jumps_internal.h"
 
+#include "magnitudes.h"
+#include "rounding.h"
+
 #include <math.h>
 #include <string.h>
-
-/* States that change by less than this part of the largest have not jumped; less than it is 0. */
-static const double rounding = 1e-14;
-
-/* A micro-step's limit and the jump are the same when they differ by less than this part of it: else
- * the micro-step has also seen a transient that is faster than itself. */
-static const double agreement = 1e-3;
 
 static void command(struct dalcs_jump_part *part, const uint64_t *mode) {
     for (int d = 0; d < part->osnsp.system->n_pairs; d++) {
@@ -46,11 +42,12 @@ static void read_answer(const struct dalcs_jump_part *part, const double *inputs
         }
     }
     for (int x = 0; x < s->n_x; x++) {
-        bool moves = fabs(part->y[x] - part->u[x]) > rounding * largest;
+        /* what is rounding of the largest has not jumped, or is 0 */
+        bool moves = fabs(part->y[x] - part->u[x]) > dalcs_sum_rounded * largest;
         /* what reads the voltage of a coil that is cut off reads what is left of its current over no time */
         if (is_its_own(part, x) && (moves || answer->is_first)) {
             answer->after[part->state[x]] =
-                fabs(part->y[x]) > rounding * largest ? part->y[x] : 0.0;
+                fabs(part->y[x]) > dalcs_sum_rounded * largest ? part->y[x] : 0.0;
             answer->moves = answer->moves || moves;
         }
     }
@@ -110,6 +107,8 @@ enum dalcs_status dalcs_jumps_solve(const struct dalcs_jumps *j, int k, const ui
     return DALCS_OK;
 }
 
+/* A micro-step's limit and the jump are the same but for a small part of it: else the micro-step has also seen a transient
+ * that is faster than itself. */
 bool dalcs_jumps_agree(const struct dalcs_system *s, const double *x, const double *limit,
                        const double *last, const double *after) {
     double largest[2] = {0.0, 0.0};
@@ -120,7 +119,7 @@ bool dalcs_jumps_agree(const struct dalcs_system *s, const double *x, const doub
     bool agree = true;
     for (int i = 0; i < s->n_x && agree; i++) {
         agree = fabs(after[i] - limit[i]) <=
-                agreement * largest[s->column_is_current[i]] + fabs(limit[i] - last[i]);
+                dalcs_small * largest[s->column_is_current[i]] + fabs(limit[i] - last[i]);
     }
     return agree;
 }

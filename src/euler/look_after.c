@@ -1,6 +1,9 @@
 /* look_after.c - micro-steps of implicit Euler that tell what happens at a discontinuity. */
 #include "euler_internal.h"
 
+#include "magnitudes.h"
+#include "rounding.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -25,8 +28,9 @@ static double largest_state(const struct dalcs_system *s, const double *y, bool 
     return largest;
 }
 
-/* The step from x is one of impulses of higher order than implicit Euler can follow: y1 and y2 are answers of steps one of
- * which is shorter. */
+/* Refuses a jump that two steps from x with the answers y1 and y2, one half as long as the other, do not agree about: what
+ * moves the farther the shorter the step is, the derivative of an impulse moves, which implicit Euler cannot follow. Those
+ * states are to blame. */
 static enum dalcs_status refuse_derivative(struct dalcs_euler *e, int k, const double *x,
                                            const double *y1, const double *y2) {
     dalcs_osnsp_blame_states(&e->component[k].osnsp, x, y1, y2);
@@ -38,8 +42,9 @@ static enum dalcs_status refuse_derivative(struct dalcs_euler *e, int k, const d
     return DALCS_INFEASIBLE;
 }
 
-/* What certificates may leave of the states' own sizes, or rounding of the largest of their unit so far and of what the
- * other unit vouches for. */
+/* Into e->noise: the change of each state that is rounding and no jump. A certificate leaves a state as much of its own size,
+ * and a sum as much of the largest of its unit so far, or of what the other unit drives through the circuit's
+ * conductances. */
 static void find_noise(struct dalcs_euler *e, int k, const double *before) {
     const struct dalcs_component *c = &e->component[k];
     const struct dalcs_system *s = c->system;
@@ -54,7 +59,7 @@ static void find_noise(struct dalcs_euler *e, int k, const double *before) {
     for (int x = 0; x < s->n_x; x++) {
         double own = fmax(c->largest[x], fmax(fabs(before[x]), fabs(e->jump.after[x])));
         e->noise[x] =
-            fmax(dalcs_jump_remainder * own, dalcs_jump_rounding * scale[s->column_is_current[x]]);
+            fmax(dalcs_answer_rounded * own, dalcs_sum_rounded * scale[s->column_is_current[x]]);
     }
 }
 
@@ -148,8 +153,7 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
     memcpy(e->after, u, (size_t)s->n_x * sizeof(double));
     double limit[2];
     for (int unit = 0; unit < 2; unit++) {
-        limit[unit] =
-            dalcs_smallest_jump * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
+        limit[unit] = dalcs_alike * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
     }
     if (!has_moved(s, u, y, limit)) {
         return DALCS_OK;

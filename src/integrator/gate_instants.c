@@ -1,11 +1,10 @@
 /* gate_instants.c - how late instants of gates are, and what that makes of outputs. */
 #include "gate_variation.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 #include <string.h>
-
-/* Two that bring about one instant are late by the same, to this part. */
-static const double alike = 1e-6;
 
 /* Of what has a number, into row: 0 of what is not late. */
 static void find_late(const struct dalcs_gate_variation *g, long number, double *row) {
@@ -46,6 +45,7 @@ static enum dalcs_status keep_late(struct dalcs_gate_variation *g, long number, 
     return DALCS_OK;
 }
 
+/* Two that bring about one instant: are they late by the same? */
 static bool differ(const struct dalcs_gate_variation *g, const double *a, const double *b) {
     double off = 0.0;
     double size = 0.0;
@@ -54,7 +54,7 @@ static bool differ(const struct dalcs_gate_variation *g, const double *a, const 
         off = hypot(off, (a[c] - b[c]) / unit);
         size = hypot(size, hypot(a[c], b[c]) / unit);
     }
-    return off > alike * size;
+    return off > dalcs_nothing * size;
 }
 
 /* g->due: how late the instant is. Where an event of the circuit and one of gates coincide, there is no

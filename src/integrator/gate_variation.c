@@ -1,11 +1,10 @@
 /* gate_variation.c - what outputs of gates are off by in segments, and what samples read where these end. */
 #include "gate_variation.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 #include <string.h>
-
-/* A control that differs by more than this part of its terms on the two sides of a time jumps there. */
-static const double jumps = 1e-9;
 
 static int pin_of(const struct dalcs_gate_variation *g, int input) {
     return dalcs_logic_pin_of(g->memory, g->part->component->system->stimulus[input]);
@@ -173,8 +172,8 @@ static bool find_command(struct dalcs_gate_variation *g, int pair, double t) {
             moves = moves || g->due[c] != 0.0;
         }
     }
-    if (fabs(left - right) > jumps * size || slope == 0.0) {
-        return false;
+    if (fabs(left - right) > dalcs_alike * size || slope == 0.0) {
+        return false; /* it jumps there */
     }
     for (int c = 0; c < g->n_columns; c++) {
         g->due[c] /= slope;

@@ -9,7 +9,7 @@ enum { COUNT_BITS = 30, DUE_BITS = 12, FLAGS = 6, BITS = FLAGS + COUNT_BITS + DU
 
 /* Changes on their way, of a gate that has a delay: there and back in each period that the delay lasts, and in the one
  * at hand; more than so many periods of delay nobody draws. */
-static const double most_periods = 64.0;
+enum { MOST_PERIODS = 64 };
 
 enum dalcs_logic_number dalcs_logic_number_kind(const struct dalcs_logic_memory *m, int number,
                                                 int *gate) {
@@ -45,7 +45,7 @@ static int count_due(const struct dalcs_logic_gate *g, double period) {
     const double longest =
         fmax(fmax(g->delay[0], g->delay[1]), fmax(g->forced_delay[0], g->forced_delay[1]));
     const double periods = period > 0.0 ? ceil(longest / period) : 1.0;
-    return longest > 0.0 ? OTHERS + 2 * (int)fmin(periods, most_periods) : 0;
+    return longest > 0.0 ? OTHERS + 2 * (int)fmin(periods, MOST_PERIODS) : 0;
 }
 
 enum dalcs_status dalcs_logic_memory_setup(struct dalcs_logic_memory *m, struct dalcs_arena *arena,

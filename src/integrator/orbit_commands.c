@@ -1,13 +1,10 @@
 /* orbit_commands.c - how far small signals of sources move the commands at which spans end. */
 #include "orbit_commands.h"
 
+#include "magnitudes.h"
 #include "orbit_rates.h"
 
 #include <math.h>
-
-/* Two commands at one time move alike if they do to this part, and a control that differs by more than that of its terms
- * on the two sides of a time jumps there. */
-static const double alike = 1e-9;
 
 /* dt of the command of a pair that moves at t > 0, of the small signals of its sources; by[n_pins] of the outputs of gates, or
  * NULL. */
@@ -34,7 +31,7 @@ static void find_command(const struct dalcs_orbit_log *log, const struct dalcs_r
     }
     const double steep =
         slope * t * dalcs_orbit_before; /* a ramp of no time goes as far from there to here */
-    bool is_edge = fabs(left + steep - right) > alike * size || slope == 0.0;
+    bool is_edge = fabs(left + steep - right) > dalcs_alike * size || slope == 0.0;
     dt[0] = is_edge ? 0.0 : -moved[0] / slope;
     dt[1] = is_edge ? 0.0 : -moved[1] / slope;
     for (int k = a->p[pair]; k < a->p[pair + 1] && by != NULL; k++) {
@@ -57,7 +54,7 @@ void dalcs_orbit_take_command(struct dalcs_orbit_part *p, struct dalcs_orbit_spa
         return;
     }
     double off = hypot(dt[0] - span->moved[0], dt[1] - span->moved[1]);
-    if (off > alike * hypot(dt[0], dt[1])) {
+    if (off > dalcs_alike * hypot(dt[0], dt[1])) {
         p->log->is_exact = false;
     }
 }

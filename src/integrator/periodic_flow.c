@@ -1,6 +1,7 @@
 /* periodic_flow.c - a period cut into pieces with a map each. */
 #include "periodic_flow.h"
 
+#include "magnitudes.h"
 #include "periodic_smooth.h"
 
 #include <lapacke.h>
@@ -12,9 +13,6 @@
 static const double briefer = 0x1p-8;
 
 enum { MOST_BRIEFER = 5 };
-
-/* Two projections are the same, or one leaves what it is of, to this part. */
-static const double same_projection = 1e-9;
 
 /* ---- Maps ---------------------------------------------------------------------------------------- */
 
@@ -165,12 +163,12 @@ static enum dalcs_status make_start(struct dalcs_periodic_flow *flow,
         struct dalcs_flow_map *map;
         DALCS_TRY(dalcs_periodic_flow_map(flow, span, span->from, h, &map));
         extrapolate(flow, map, start);
-        if (k > 0 && differ(flow, start->P, before) <= same_projection) {
+        if (k > 0 && differ(flow, start->P, before) <= dalcs_alike) {
             break;
         }
         memcpy(before, start->P, n_P * sizeof(double));
     }
-    start->changes_nothing = differ(flow, start->P, NULL) <= same_projection;
+    start->changes_nothing = differ(flow, start->P, NULL) <= dalcs_alike;
     return DALCS_OK;
 }
 

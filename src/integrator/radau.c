@@ -2,6 +2,7 @@
 #include "radau.h"
 #include "cycle.h"
 #include "guards.h"
+#include "magnitudes.h"
 #include "periodic.h"
 #include "present.h"
 #include "recurrence.h"
@@ -100,13 +101,10 @@ double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
     return next;
 }
 
-/* Events closer upon each other than this part of the stop time are a flurry. */
-static const double close = 0x1p-30;
-
-/* One event upon the other: an accumulation, a mode that cannot be told, or rounding of what is 0 that goes to and fro.
+/* Events at times that are alike, one upon the other: an accumulation, a mode that cannot be told, or rounding of what is 0 that goes to and fro.
  * Steps of implicit Euler leave them behind, with no event at their ends. */
 static void count_flurry(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    part->memory.flurry = part->segment.t - part->memory.last_event > close * r->options.stop
+    part->memory.flurry = part->segment.t - part->memory.last_event > dalcs_alike * r->options.stop
                               ? 0
                               : part->memory.flurry;
     if (part->guards.n_crossed > 0) {

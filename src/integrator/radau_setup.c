@@ -3,6 +3,7 @@
 #include "cycle.h"
 #include "dense_map.h"
 #include "guards.h"
+#include "magnitudes.h"
 #include "periodic.h"
 #include "quads.h"
 #include "radau.h"
@@ -29,9 +30,6 @@ static const double unseen_part = 1e-5;
 static const double paced_part = 0.65;
 
 enum { FIRST_STEPS = 64 };
-
-/* There is a power of 2 from a length up to twice that. */
-static const double below_twice = 2.0 * (1.0 - 1e-9);
 
 static double inner_tolerance_of(double tolerance) {
     return fmax(smallest_inner, fmin(largest_inner, inner_part * tolerance));
@@ -117,12 +115,10 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
 }
 
 /* Where a circuit carries no current, rounding must not be taken for one: its voltages could drive a
- * current through the least of its conductances, and a millionth of that counts as nothing. */
-static const double nothing = 1e-6;
-
+ * current through the least of its conductances. */
 static void find_cross_scales(const struct dalcs_conductances *g, double *cross) {
-    cross[0] = g->most > 0.0 ? nothing / g->most : nothing;
-    cross[1] = g->most > 0.0 ? nothing * g->least : nothing;
+    cross[0] = g->most > 0.0 ? dalcs_nothing / g->most : dalcs_nothing;
+    cross[1] = g->most > 0.0 ? dalcs_nothing * g->least : dalcs_nothing;
 }
 
 /* One of the rungs is a step that follows the fastest source, which sets the pace where nothing else
@@ -175,7 +171,8 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     }
     list_used_inputs(part, r->base->network, used);
     part->length.longest = dalcs_length_longest(r, part);
-    part->length.longest_needed = below_twice * dalcs_length_of_spans(part);
+    /* there is a power of 2 from a length up to twice that */
+    part->length.longest_needed = 2.0 * (1.0 - dalcs_alike) * dalcs_length_of_spans(part);
     double first = fmin(part->length.longest_needed,
                         fmin(part->length.longest, r->options.stop / FIRST_STEPS));
     double promising = dalcs_length_promising(part);

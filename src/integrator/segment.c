@@ -12,6 +12,7 @@
 #include "extremes.h"
 #include "front.h"
 #include "guards.h"
+#include "magnitudes.h"
 #include "present.h"
 #include "projection.h"
 #include "recurrence.h"
@@ -23,22 +24,20 @@
 
 #include <math.h>
 
-/* Signals so many times as large as any before. A coil's current may have no path in this mode. In a step that short it makes signals so
- * large that any error is small beside them. */
-static const double outsized = 1e6;
-
 enum {
     MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
     FLURRY = 4096,
     MOST_FRONTS_REFUSED = 16
 };
 
+/* Are all signals before nothing beside these? A coil's current may have no path in this mode. In a step that short it makes
+ * signals so large that any error is small beside them. */
 static bool is_outsized(const struct dalcs_radau_part *part,
                         const struct dalcs_step_quality *quality) {
     bool is = false;
     for (int unit = 0; unit < 2; unit++) {
         double before = part->scales.unit[unit];
-        is = is || (before > 0.0 && quality->here[unit] > outsized * before);
+        is = is || (before > 0.0 && dalcs_nothing * quality->here[unit] > before);
     }
     return is;
 }
@@ -92,7 +91,7 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
     struct dalcs_stage_entry *entry = trial->entry;
     search->states_free = status == DALCS_OK && dalcs_stage_frees_states(entry);
     bool is_first = part->guards.fresh && search->restarts == 0;
-    if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= dalcs_largest_residual)) {
+    if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= dalcs_nothing)) {
         return recover_residual(r, part, search, is_first, &trial->done);
     }
     bool means_something = status == DALCS_OK;
@@ -119,12 +118,13 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
 static bool is_worth_projecting(struct dalcs_radau_part *part, const struct dalcs_search *search,
                                 const struct dalcs_step_quality *q) {
     return part->guards.fresh && !search->projected && !search->states_free &&
-           q->drift > (search->fixed ? 0.0 : dalcs_worth_projecting) &&
+           q->drift > (search->fixed ? 0.0 : dalcs_slight) &&
            dalcs_projection_sees(part, search->fixed);
 }
 
 /* The signs of an accurate step. trial->holds: the mode is right up to trial->next, where something crosses or the
- * step ends. */
+ * step ends. Else what is found is answered in this order: a guess that went wrong, a wrong mode, a tie, a polynomial that
+ * is not to be believed. */
 static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                               struct dalcs_search *search,
                                               struct dalcs_trial *trial) {
@@ -137,30 +137,34 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     bool at_once;
     double theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
     const double next = trial->next = dalcs_smaller(theta, end);
-    if (part->guards.slips && search->guessed && !search->front) {
+    bool is_remembered = search->guessed && !search->front;
+    if (is_remembered && (part->guards.slips || dalcs_guards_overreach(part, q->unit))) {
         return dalcs_search_refuse(part, search);
     }
-    if (search->guessed && !search->front && dalcs_guards_overreach(part, q->unit)) {
-        return dalcs_search_refuse(part, search);
-    }
+    /* A guard falls where the step begins. */
     if (at_once && part->guards.fresh) {
         return dalcs_search_change_mode(r, part, search, q->unit, &trial->done);
     }
+    /* Of the tied pairs that are closed to try, some have no current. */
     if (search->opened && dalcs_tied_open_idle(part, part->work.mode_tied, next, q->unit)) {
         return dalcs_search_go_on_trying(part, search);
     }
+    /* A switch has closed whose control only touches its threshold: it is open in the next try. */
     if (part->guards.fresh && part->guards.flipped && dalcs_guards_open_resting(part, q->unit)) {
         return DALCS_OK;
     }
+    /* A guard is below 0 from the start on and does not come back, as an error of the state would. */
     if (part->guards.fresh && search->restarts == 0 &&
         dalcs_guards_stay_negative(part, next, q->unit)) {
         return search->guessed ? dalcs_search_refuse(part, search)
                                : dalcs_search_ask(r, part, search, true);
     }
+    /* Diodes have neither current nor voltage, and nobody has looked yet on which side they are. */
     if (part->guards.fresh && !search->guessed && !search->untied &&
         dalcs_tied_stay(part, dalcs_stage_n_clashes(part->segment.entry) == 0, q->unit)) {
         return dalcs_search_untie(r, part, search, next, q);
     }
+    /* What dies away within the step may have swung below 0, or not: a shorter step tells. */
     bool may_dip = part->guards.fresh && part->guards.may_dip;
     if (dalcs_search_may_refine(search) && (may_dip || dalcs_guards_swing(part))) {
         return dalcs_search_refine(r, part, search);

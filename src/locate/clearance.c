@@ -4,11 +4,9 @@
 #include "crossing.h"
 #include "doubt.h"
 #include "guard_scale.h"
+#include "magnitudes.h"
 
 #include <math.h>
-
-/* A guard above so many bands is beyond doubt, though the scales grow. */
-static const double clear = 8.0;
 
 /* The smallest of the coefficients, which a polynomial is an average of everywhere, times `sign`. */
 static double lowest(const struct dalcs_radau_part *part, const double *coefficient, double sign) {
@@ -34,12 +32,13 @@ static double threshold(const struct dalcs_radau_part *part, int guard, double *
 
 /* What a guard has to be above so that it is beyond doubt, but for rounding. */
 static double doubtless(const struct dalcs_radau_part *part, int guard) {
-    return clear * dalcs_doubt_band(part) * dalcs_guard_scale(part, guard, part->scales.unit);
+    return dalcs_beyond * dalcs_doubt_band(part) *
+           dalcs_guard_scale(part, guard, part->scales.unit);
 }
 
 static bool is_beyond_rounding(const struct dalcs_radau_part *part, int guard, double value) {
-    return value > clear * dalcs_guard_most_rounding(part, guard, part->scales.unit) ||
-           value > clear * dalcs_guard_rounding(part, guard, part->scales.unit);
+    return value > dalcs_beyond * dalcs_guard_most_rounding(part, guard, part->scales.unit) ||
+           value > dalcs_beyond * dalcs_guard_rounding(part, guard, part->scales.unit);
 }
 
 /* Of one guard. */
@@ -53,7 +52,7 @@ static bool is_clear(const struct dalcs_radau_part *part, int guard, const doubl
 bool dalcs_guards_clearance(const struct dalcs_radau_part *part, int guard, double *sign,
                             double *bound) {
     *bound = threshold(part, guard, sign) + doubtless(part, guard) +
-             clear * dalcs_guard_most_rounding(part, guard, part->scales.unit);
+             dalcs_beyond * dalcs_guard_most_rounding(part, guard, part->scales.unit);
     return dalcs_guard_is_one(part, guard);
 }
 

@@ -2,6 +2,7 @@
 #include "crossing.h"
 
 #include "extremes.h"
+#include "magnitudes.h"
 #include "quads.h"
 #include "rounding.h"
 #include "wide_vectors.h"
@@ -12,12 +13,6 @@
 
 /* Halvings of the step before a cluster of roots counts as one. */
 enum { MAX_DEPTH = 48, ROOT_ROUNDS = 60 };
-
-/* Where Newton's method no longer gains and moves by no more than this, rounding moves it. */
-static const double rounded = 1e-9;
-
-/* Of what falls as early as this it matters how far it was above 0 before. */
-static const double early = 1e-3;
 
 /* The polynomial on [0, split] and on [split, 1] (de Casteljau). left may be coefficient itself. */
 static void subdivide(int n, const double *coefficient, double split, double *left, double *right) {
@@ -113,7 +108,7 @@ static double only_root(const struct dalcs_collocation *c, const double *coeffic
         double size = fabs(value);
         double move = value / slope;
         bool gains = 2.0 * size < least;
-        if (size == 0.0 || fabs(move) <= DBL_EPSILON || (!gains && fabs(move) < rounded)) {
+        if (size == 0.0 || fabs(move) <= DBL_EPSILON || (!gains && fabs(move) < dalcs_alike)) {
             break;
         }
         least = size < least ? size : least;
@@ -243,7 +238,7 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     }
     if (b[n - 1] < -depth && b[0] > 0.0 && sign_changes(n, b) == 1) {
         double theta = only_root(c, b, guess / end) * end;
-        if (theta > early) {
+        if (theta > dalcs_small) { /* else it matters how far it was above 0 before */
             return (struct dalcs_crossing){.falls = true, .theta = theta, .peak = peak_of(n, b)};
         }
     }
@@ -275,7 +270,7 @@ double dalcs_crossing_only(const struct dalcs_collocation *c, const double *coef
         return INFINITY;
     }
     double theta = only_root(c, coefficient, 0.0);
-    if (!(theta > early && theta < end)) {
+    if (!(theta > dalcs_small && theta < end)) {
         return INFINITY;
     }
     if (end < 1.0) {

@@ -2,6 +2,7 @@
 #include "doubt.h"
 
 #include "guard_scale.h"
+#include "magnitudes.h"
 
 #include <math.h>
 #include <string.h>
@@ -128,7 +129,7 @@ double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, d
 
 /* What errors of all that a guard is made of come to, with noise that is a part of `of_noise`. */
 static double of_all(const struct dalcs_radau_part *part, double size, double of_noise) {
-    return dalcs_doubts_over_tolerance * part->inner_tolerance * size +
+    return dalcs_beyond * part->inner_tolerance * size +
            dalcs_beyond_noise * dalcs_doubt_noise(part) * of_noise;
 }
 

@@ -8,17 +8,16 @@
 #define DALCS_DOUBT_H
 
 #include "extremes.h"
+#include "magnitudes.h"
+#include "rounding.h"
 #include "step_error.h"
-
-/* Errors up to this many times the inner tolerance in a pair that has just changed sides are no event. */
-static const double dalcs_doubts_over_tolerance = 10.0;
 
 /* So many times what rounding leaves of a zero is beyond it. */
 static const double dalcs_beyond_noise = 4.0;
 
-/* What rounding leaves of a zero, over its unit's scale: of one on dense maps 2e-13. */
+/* What rounding leaves of a zero, over its unit's scale: of one on dense maps what it leaves of an answer. */
 static inline double dalcs_doubt_noise(const struct dalcs_radau_part *part) {
-    return 2e-13 * part->segment.rounding;
+    return dalcs_answer_rounded * part->segment.rounding;
 }
 
 /* Finds the capacitors of a part that may step on factors: part->charging_row. */
@@ -29,9 +28,10 @@ enum dalcs_status dalcs_doubt_setup(struct dalcs_radau_part *part) DALCS_MUST_CH
 double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, double scale,
                                const double *unit);
 
-/* The band of errors, over the unit's scale: no guard is in doubt beyond it. */
+/* The band of errors, over the unit's scale: no guard is in doubt beyond it, and no error up to it in a pair that has just
+ * changed sides is an event. */
 static inline double dalcs_doubt_band(const struct dalcs_radau_part *part) {
-    return dalcs_larger(dalcs_doubts_over_tolerance * part->inner_tolerance,
+    return dalcs_larger(dalcs_beyond * part->inner_tolerance,
                         dalcs_beyond_noise * dalcs_doubt_noise(part));
 }
 

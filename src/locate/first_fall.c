@@ -6,28 +6,12 @@
 #include "extremes.h"
 #include "guard_scale.h"
 #include "guard_values.h"
+#include "magnitudes.h"
 #include "quads.h"
+#include "rounding.h"
 #include "tied.h"
 
 #include <math.h>
-
-/* A guard that begins a mode next to 0 is off by so many times that, as far as its beginning tells. */
-static const double began = 10.0;
-
-/* The voltage of a diode that has just opened, and rises, may begin so far below 0, over the largest: what a sum of
- * siemens and microsiemens rounds of the latter, where only these lead on, is no event. */
-static const double blocking = 1e-9;
-
-/* Falls this near to each other, in steps, are one event. */
-static const double same_on_maps = 1e-13;
-static const double same_on_factors = 1e-9;
-
-/* And those that are so near and no more than their doubt above 0 at the first of them. */
-static const double same_by_value = 1e-10;
-
-/* So early a fall may be one from the start where no pair has changed sides and it was above 0 by no more than its
- * doubt: from rest a circuit may begin to move as a power of time. */
-static const double from_rest = 1.0 / 64.0;
 
 /* A guard that is looked at, up to `end`, in steps. */
 struct look {
@@ -36,7 +20,8 @@ struct look {
     int stride;
     double work[DALCS_MAX_NODES];
     double end;
-    double scale, rounding, zero; /* the last: what noise leaves of 0 */
+    double scale;
+    double nothing; /* what rounding leaves of a guard that is 0 */
     const double *unit;
 };
 
@@ -47,8 +32,7 @@ static void look_at(struct look *a, const struct dalcs_radau_part *part, int gua
     a->unit = unit;
     a->value = dalcs_guard_values(part, guard, a->work, &a->stride);
     a->scale = dalcs_guard_scale(part, guard, unit);
-    a->rounding = dalcs_guard_rounding(part, guard, unit);
-    a->zero = dalcs_doubt_noise_about(part, guard, a->scale, unit);
+    a->nothing = dalcs_tied_nothing(part, guard, unit);
 }
 
 static void bound_controls(const struct dalcs_radau_part *part) {
@@ -98,7 +82,7 @@ static double end_of_events(const struct dalcs_radau *r, const struct dalcs_rada
 static double doubt_at_first(struct dalcs_radau_part *part, const struct look *a, double doubt) {
     const struct dalcs_collocation *m = part->stages.method;
     const double *value = a->value;
-    double least = dalcs_larger(began * fabs(value[0]), dalcs_part_of_doubt * doubt);
+    double least = dalcs_larger(dalcs_beyond * fabs(value[0]), dalcs_small * doubt);
     double depth = dalcs_smaller(doubt, dalcs_larger(least, part->segment.ratio * doubt));
     for (int k = 1; k <= m->s && m->node[k] <= a->end && !part->guards.may_dip; k++) {
         part->guards.may_dip = value[k * a->stride] < -least && value[k * a->stride] >= -depth;
@@ -106,37 +90,44 @@ static double doubt_at_first(struct dalcs_radau_part *part, const struct look *a
     return depth;
 }
 
-/* How far a guard may fall and is no event: where it is armed by noise, or as far as it may be touching 0. */
+/* How far a guard may fall beyond rounding and is no event: where it is armed not at all, or as far as it may be touching 0.
+ *
+ * A small part of its doubt counts in later steps where such a pair goes on falling, or stays where it is: a diode that waits
+ * for the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. One that comes down to 0
+ * from above and goes up again, as that of a peak detector without a load at each peak, may be on the other side by as
+ * much. */
 static double doubt_of(struct dalcs_radau_part *part, const struct look *a) {
     const int guard = a->guard;
     const double *value = a->value;
     const double last = value[(part->stages.layout.n_nodes - 1) * a->stride];
     const bool is_armed = part->guards.armed[guard];
-    if (is_armed &&
-        (a->end < 1.0 ? dalcs_guard_value_at(part, value, a->stride, a->end) : last) <= a->zero) {
-        return a->zero; /* it does not come back */
+    if (is_armed && (a->end < 1.0 ? dalcs_guard_value_at(part, value, a->stride, a->end) : last) <=
+                        a->nothing) {
+        return 0.0; /* it does not come back */
     }
     double doubt = dalcs_doubt_about(part, guard, a->scale, a->unit);
     if (is_armed) {
-        return dalcs_larger(a->zero, dalcs_part_of_doubt * doubt);
+        return dalcs_small * doubt;
     }
     if (part->guards.fresh && guard < part->component->system->n_pairs &&
         dalcs_guard_has_crossed(part, guard, value, a->stride, a->unit)) {
+        /* Below 0 by what a sum of siemens and microsiemens rounds of the latter, where only these lead on, a voltage
+         * that rises is no event. */
         return dalcs_osnsp_is_on(&part->component->osnsp, guard)
                    ? dalcs_doubt_of_closed(part, guard, a->scale)
-                   : dalcs_larger(dalcs_doubt_band(part), blocking) * a->scale;
+                   : dalcs_larger(dalcs_doubt_band(part), dalcs_alike) * a->scale;
     }
     if (part->guards.fresh) {
         return doubt_at_first(part, a, doubt);
     }
-    return last < (1.0 - dalcs_guard_agreeing) * value[0] ? dalcs_part_of_doubt * doubt : doubt;
+    return last < (1.0 - dalcs_slight) * value[0] ? dalcs_small * doubt : doubt;
 }
 
 /* Does a guard that falls at `theta` or later do so at an event that is no farther before than errors move it? Diodes
  * in series open together, whichever has a rounding more: leaks alone would take that down, late. */
 static bool falls_with(const struct dalcs_radau_part *part, int guard, double event, double theta,
                        const double *unit) {
-    if (!part->guards.armed[guard] || theta - event > same_by_value) {
+    if (!part->guards.armed[guard] || theta - event > dalcs_alike) {
         return false;
     }
     double work[DALCS_MAX_NODES];
@@ -160,8 +151,8 @@ static bool all_fall_with(const struct dalcs_radau_part *part, double event, dou
 /* What has died away has no sign any more. */
 static void disarm(const struct dalcs_radau_part *part, const struct look *a, double band) {
     const double last = a->value[(part->stages.layout.n_nodes - 1) * a->stride];
-    if (!part->guards.fresh && a->value[0] <= dalcs_part_of_doubt * band * a->scale &&
-        fabs(last) <= a->zero + a->rounding) {
+    if (!part->guards.fresh && a->value[0] <= dalcs_small * band * a->scale &&
+        fabs(last) <= a->nothing) {
         part->guards.armed[a->guard] = false;
     }
 }
@@ -181,13 +172,13 @@ static void note_fall(struct dalcs_radau_part *part, const struct look *a,
     /* On factors a guard that is above what rounding leaves of it falls at a time of its own, however soon: of diodes beside
      * closed switches, which take over one after the other, the band of kilovolts would be all of their nanovolts. */
     const double near =
-        part->segment.rounding > 1.0 ? a->zero + a->rounding : dalcs_doubt_band(part) * a->scale;
-    const bool slips = guards->fresh && c->theta <= from_rest && c->peak <= depth;
+        part->segment.rounding > 1.0 ? a->nothing : dalcs_doubt_band(part) * a->scale;
+    const bool slips = guards->fresh && c->theta <= dalcs_early_in_step && c->peak <= depth;
     guards->slips = guards->slips || slips;
     const bool soon =
         c->at_once ||
         (slips && (!guards->flipped || dalcs_tied_was_at_rest(part, a->guard, a->unit))) ||
-        (c->theta <= dalcs_soon_after && c->peak <= near);
+        (c->theta <= dalcs_nothing && c->peak <= near); /* this early is from the start */
     *at_once = *at_once || (!guards->armed[a->guard] && soon);
     guards->crossed[guards->n_crossed++] = a->guard;
 }
@@ -196,7 +187,7 @@ static void note_fall(struct dalcs_radau_part *part, const struct look *a,
 static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
                          const double *unit, bool *at_once) {
     double first = INFINITY;
-    double same = part->segment.rounding > 1.0 ? same_on_factors : same_on_maps;
+    double same = part->segment.rounding > 1.0 ? dalcs_alike : dalcs_answer_rounded;
     double together = dalcs_larger(same, 2.0 * r->resolution / part->segment.h);
     double band = dalcs_doubt_band(part);
     double too_late = end_of_events(r, part, end, band);
@@ -205,10 +196,10 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         look_at(&a, part, part->guards.doubtful[k], end, unit);
         disarm(part, &a, band);
         const double bound = part->guards.bound[a.guard];
-        if (bound >= -a.zero - a.rounding) {
+        if (bound >= -a.nothing) {
             continue;
         }
-        double depth = doubt_of(part, &a) + a.rounding;
+        double depth = dalcs_larger(a.nothing, doubt_of(part, &a));
         if (bound >= -depth) {
             continue;
         }

@@ -3,6 +3,7 @@
 
 #include "extremes.h"
 #include "pair_laws.h"
+#include "rounding.h"
 #include "step_error.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ static double rounding_by_map(const struct dalcs_radau_part *part, int place, do
     if (part->segment.entry == NULL || !dalcs_stage_has_map(part->segment.entry)) {
         return most;
     }
-    return dalcs_smaller(most, dalcs_guard_rounded *
+    return dalcs_smaller(most, dalcs_sum_rounded *
                                    dalcs_stage_spread(&part->stages, part->segment.entry, place,
                                                       part->segment.in, part->scales.column));
 }
@@ -50,7 +51,7 @@ static double rounding_of_pair(const struct dalcs_radau_part *part, int guard, c
     if (!has_map && !is_on) {
         most = dalcs_smaller(most, dalcs_pair_flux(part, guard) / part->segment.h);
     }
-    return rounding_by_map(part, dalcs_system_n_equations(s) + guard, dalcs_guard_rounded * most);
+    return rounding_by_map(part, dalcs_system_n_equations(s) + guard, dalcs_sum_rounded * most);
 }
 
 double dalcs_guard_rounding(const struct dalcs_radau_part *part, int guard, const double *unit) {

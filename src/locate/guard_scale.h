@@ -4,12 +4,9 @@
 
 #include "radau_state.h"
 
-#include <float.h>
+#include "rounding.h"
 
-/* Digits of a voltage over what the capacitors at a diode make of them in a step: a current that only
- * rounds their voltages is none, however small the others are. So for coils and their currents. A dense map
- * tells what rounding of states and sources makes of a guard itself, which is often far less. */
-static const double dalcs_guard_rounded = 16.0 * DBL_EPSILON;
+#include <float.h>
 
 /* Where the voltage or current that moves a switch is small beside others, the answer that it is a part of is still
  * right to so many digits of those. A dense map tells what they make of it. */
@@ -50,7 +47,9 @@ static inline double dalcs_guard_scale(const struct dalcs_radau_part *part, int 
                : dalcs_guard_control_scale(part, guard, unit);
 }
 
-/* What rounding makes of a guard that is 0 at most, in V or A: as far as what is held beside it tells. */
+/* What rounding makes of a guard that is 0 at most, in V or A: as far as what is held beside it tells. The capacitors at a
+ * diode make of the digits of a voltage in a step a current, which is none however small the others are; so for coils and
+ * their currents. A dense map tells what rounding of states and sources makes of a guard itself, which is often far less. */
 static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *part, int guard,
                                                const double *unit) {
     const struct dalcs_system *s = part->component->system;
@@ -59,7 +58,7 @@ static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *pa
                unit[dalcs_system_control_is_current(s, dalcs_guard_pair(part, guard))];
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    return dalcs_guard_rounded / part->segment.h *
+    return dalcs_sum_rounded / part->segment.h *
            (is_on ? part->laws.held_charge[guard] * unit[0]
                   : part->laws.held_flux[guard] * unit[1]);
 }

@@ -4,10 +4,6 @@
 
 #include "guard_scale.h"
 
-/* The value of a pair at the end of a segment and that at the start of the next, whose errors have nothing
- * to do with each other, agree to this part of it: then it is known, however small it is. */
-static const double dalcs_guard_agreeing = 0.01;
-
 /* A voltage that moves a switch, less its threshold, at a node. */
 static inline double dalcs_guard_control_at(const struct dalcs_radau_part *part, int guard,
                                             int node) {

@@ -4,8 +4,10 @@
 #include "doubt.h"
 #include "guard_scale.h"
 #include "guard_values.h"
+#include "magnitudes.h"
 #include "pair_laws.h"
 #include "quads.h"
+#include "tied.h"
 
 #include <math.h>
 
@@ -53,7 +55,8 @@ bool dalcs_guard_goes_on(const struct dalcs_radau_part *part, int pair, double v
     }
     double last =
         dalcs_guard_value_at(part, before, part->stages.layout.stride, part->segment.end_before);
-    return fabs(value - last) <= dalcs_guard_agreeing * value;
+    /* The errors of both have nothing to do with each other: where they agree it is known, however small it is. */
+    return fabs(value - last) <= dalcs_slight * value;
 }
 
 void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *unit) {
@@ -61,7 +64,6 @@ void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_pairs = p->system->n_pairs;
     double band = dalcs_doubt_band(part);
-    double known = dalcs_doubt_noise(part);
     const double *value = part->segment.out + (at_end ? (l->n_nodes - 1) * l->stride : 0) +
                           dalcs_system_n_equations(p->system);
     bool *armed = part->guards.armed;
@@ -69,9 +71,9 @@ void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *
         if (p->lists.is_diode[d] && !(at_end && armed[d])) {
             double scale = unit[dalcs_osnsp_is_on(p, d)];
             armed[d] =
-                value[d] > band * scale ||
-                (value[d] > known * scale && ((!at_end && dalcs_guard_goes_on(part, d, value[d])) ||
-                                              value[d] > dalcs_doubt_about(part, d, scale, unit)));
+                value[d] > band * scale || (value[d] > dalcs_tied_nothing(part, d, unit) &&
+                                            ((!at_end && dalcs_guard_goes_on(part, d, value[d])) ||
+                                             value[d] > dalcs_doubt_about(part, d, scale, unit)));
         }
     }
     if (part->stages.n_watched > 0) {

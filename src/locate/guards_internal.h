@@ -4,15 +4,6 @@
 
 #include "guards.h"
 
-/* The part of its doubt that counts in later steps where such a pair goes on falling, or stays where it is: a diode
- * that waits for the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. One that
- * comes down to 0 from above and goes up again, as that of a peak detector without a load at each peak, may be on the
- * other side by as much. */
-static const double dalcs_part_of_doubt = 1e-3;
-
-/* A fall this early in a step is one from the start. */
-static const double dalcs_soon_after = 1e-6;
-
 /* Is a pair on the side that it was on in the segment before, with the same value? */
 bool dalcs_guard_goes_on(const struct dalcs_radau_part *part, int pair, double value);
 

@@ -4,6 +4,7 @@
 #include "doubt.h"
 #include "extremes.h"
 #include "guard_values.h"
+#include "magnitudes.h"
 
 #include <math.h>
 
@@ -84,7 +85,7 @@ static bool leaves(const struct dalcs_radau_part *part, int pair, double sign) {
         part->segment.out + dalcs_system_n_equations(part->component->system) + pair;
     double last = sign * value[(l->n_nodes - 1) * l->stride];
     bool does = part->segment.rounding == 1.0 && last > 0.0 &&
-                fabs(value[0]) <= dalcs_guard_agreeing * dalcs_guard_agreeing * last;
+                fabs(value[0]) <= dalcs_slight * dalcs_slight * last;
     for (int k = 1; k < l->n_nodes && does; k++) {
         does = sign * value[k * l->stride] > sign * value[(k - 1) * l->stride];
     }

@@ -6,19 +6,14 @@
 #include "extremes.h"
 #include "guard_scale.h"
 #include "guard_values.h"
+#include "magnitudes.h"
 #include "step_length.h"
+#include "tied.h"
 
 #include <math.h>
 
-/* An error of the polynomial may be so many bands at its start. */
-static const double shallow = 100.0;
-
-/* And so much is let be in any case, over the unit's scale, where time does not tell it from nothing. */
+/* So much is let be in any case, over the unit's scale, where time does not tell it from nothing. */
 static const double unresolved = 1e-5;
-
-/* What dies away between two nodes leaves so much of itself, of either sign, at those behind: in the first step
- * of a mode, and in later ones, which have got longer meanwhile. */
-static const double swing = 0.1, late_swing = 0.01;
 
 /* Is a guard above 0 before times can be told apart? */
 static bool is_over_at_once(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
@@ -29,9 +24,10 @@ static bool is_over_at_once(const struct dalcs_radau *r, const struct dalcs_rada
 
 bool dalcs_guard_is_over_soon(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                               const double *value, int stride, double scale) {
-    double little = shallow * dalcs_doubt_band(part) * scale;
+    /* an error of the polynomial may be so many bands at its start */
+    double little = 1.0 / dalcs_slight * dalcs_doubt_band(part) * scale;
     return (value[0] >= -little &&
-            dalcs_guard_value_at(part, value, stride, dalcs_soon_after) > 0.0) ||
+            dalcs_guard_value_at(part, value, stride, dalcs_nothing) > 0.0) ||
            (value[0] >= -unresolved * scale && is_over_at_once(r, part, value, stride));
 }
 
@@ -44,7 +40,7 @@ bool dalcs_guards_recover(const struct dalcs_radau_part *part, const double *uni
         const double *value = dalcs_guard_values(part, part->guards.crossed[k], work, &stride);
         double band =
             dalcs_doubt_band(part) * dalcs_guard_scale(part, part->guards.crossed[k], unit);
-        all = value[0] >= -shallow * band && value[last * stride] > 0.0;
+        all = value[0] >= -1.0 / dalcs_slight * band && value[last * stride] > 0.0;
     }
     return all;
 }
@@ -74,7 +70,9 @@ double dalcs_guards_recovery(const struct dalcs_radau_part *part) {
 bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
     int last = part->stages.layout.n_nodes - 1;
     bool all = part->guards.n_crossed > 0;
-    double part_left = part->guards.fresh ? swing : late_swing;
+    /* What dies away between two nodes leaves so much of itself, of either sign, at those behind: in the first step of a
+     * mode, and in later ones, which have got longer meanwhile. */
+    double part_left = part->guards.fresh ? 1.0 / dalcs_beyond : dalcs_slight;
     for (int k = 0; k < part->guards.n_crossed && all; k++) {
         double work[DALCS_MAX_NODES];
         int stride;
@@ -103,15 +101,14 @@ static bool stays_below(const struct dalcs_radau_part *part, int pair, double en
 bool dalcs_guards_stay_negative(const struct dalcs_radau_part *part, double end,
                                 const double *unit) {
     int n_pairs = part->component->system->n_pairs;
-    double noise = dalcs_beyond_noise * dalcs_doubt_noise(part);
-    double least = fmax(dalcs_part_of_doubt * dalcs_doubt_band(part), noise);
+    double least = dalcs_small * dalcs_doubt_band(part);
     bool negative = false;
     for (int k = 0; k < part->guards.n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {
         int d = part->guards.doubtful[k];
         if (d < n_pairs) {
             negative = stays_below(part, d, end,
-                                   least * dalcs_guard_scale(part, d, unit) +
-                                       dalcs_guard_rounding(part, d, unit));
+                                   dalcs_larger(dalcs_tied_nothing(part, d, unit),
+                                                least * dalcs_guard_scale(part, d, unit)));
         }
     }
     return negative;

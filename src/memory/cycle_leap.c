@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* Fewer periods are not worth the look at the conditions. */
-static const double fewest_periods = 2.0;
+enum { FEWEST_PERIODS = 2 };
 
 /* Segments until it is tried again, after it was in vain, at most. */
 enum { MOST_PATIENCE = 64 };
@@ -209,7 +209,7 @@ static enum dalcs_status pass_periods(const struct dalcs_radau *r, double until,
         return DALCS_OK;
     }
     most = dalcs_smaller(most, periods_until(r, part, until));
-    if (!(most >= fewest_periods)) {
+    if (!(most >= FEWEST_PERIODS)) {
         return DALCS_OK;
     }
     bool done = true;

@@ -2,6 +2,7 @@
 #include "periodic.h"
 
 #include "extremes.h"
+#include "magnitudes.h"
 #include "pi.h"
 #include "present.h"
 #include "recurrence.h"
@@ -12,22 +13,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Shorter runs have nothing to repeat. */
-static const double fewest_periods = 3.0;
-
-/* Over what they may miss: farther off they will hardly have come back a period later, and its segments
- * are not kept. */
-static const double far = 1e6;
-
-/* An event that comes a period after another, but for this part of the period, may be the same. */
-static const double same_event = 1e-3;
-
 /* What crosses so shortly before the stop time, in inner tolerances of it, may be left to a longer run
  * (guards.c). */
 static const double near_stop = 64.0;
 
-/* Doubles that are kept at most. */
-static const size_t most_kept = (size_t)1 << 18;
+/* Shorter runs have nothing to repeat; doubles that are kept at most. */
+enum { FEWEST_PERIODS = 3, MOST_KEPT = 1 << 18 };
 
 struct periodic_segment {
     double h, end; /* s, and steps */
@@ -70,7 +61,7 @@ enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs
     double period;
     DALCS_TRY(dalcs_source_period(part, &period));
     bool is_commanded = part->commands.n > 0 && !part->excitation.is_curved;
-    bool is_sinusoidal = period > 0.0 && fewest_periods * period < r->options.stop;
+    bool is_sinusoidal = period > 0.0 && FEWEST_PERIODS * period < r->options.stop;
     bool may_come_back = (is_sinusoidal || is_commanded) && part->component->system->monotone &&
                          r->options.fixed_step == 0.0;
     if (!may_come_back) {
@@ -114,8 +105,9 @@ static double distance(const struct dalcs_radau *r, const struct dalcs_radau_par
     double to_come = (r->options.stop - part->segment.t) / periodic->period;
     /* In all periods to come together states may miss what a step may. */
     double share = dalcs_larger(part->inner_tolerance / to_come, dalcs_rounded);
+    /* An event that comes a period after another, but for a small part of the period, may be the same. */
     double late = fabs(part->segment.t - periodic->since - periodic->period);
-    if (late > same_event * periodic->period ||
+    if (late > dalcs_small * periodic->period ||
         !dalcs_mode_is(periodic->mode, p->mode, p->n_words)) {
         return INFINITY;
     }
@@ -143,7 +135,7 @@ static bool has_edges_to_come(const struct dalcs_radau_part *part) {
 void dalcs_periodic_look_ahead(struct dalcs_radau_part *part) {
     if (!part->memory.periodic->by_commands) {
         dalcs_commands_look(&part->commands,
-                            part->segment.t + (1.0 + same_event) * part->memory.periodic->period);
+                            part->segment.t + (1.0 + dalcs_small) * part->memory.periodic->period);
     }
 }
 
@@ -158,13 +150,13 @@ void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *
         periodic->period = periodic->period > 0.0 ? periodic->period : INFINITY;
     }
     bool is_first = !periodic->has_event;
-    if (!is_first && part->segment.t < periodic->since + periodic->period * (1.0 - same_event)) {
+    if (!is_first && part->segment.t < periodic->since + periodic->period * (1.0 - dalcs_small)) {
         return;
     }
     double off = is_first ? INFINITY : distance(r, part);
     periodic->repeats = periodic->keeps && off <= 1.0;
-    /* The period of a converter is short, and what happens in it moves about for many: that is not worth a copy. */
-    periodic->keeps = off < far || (isinf(off) && !periodic->by_commands);
+    /* Farther off than any error they will hardly have come back a period later. The period of a converter is short, and what happens in it moves about for many: that is not worth a copy. */
+    periodic->keeps = dalcs_nothing * off < 1.0 || (isinf(off) && !periodic->by_commands);
     if (periodic->repeats) {
         periodic->start = part->segment.t;
         return;
@@ -197,9 +189,9 @@ enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) {
     if (!periodic->keeps) {
         return DALCS_OK;
     }
-    bool is_over = part->segment.t > periodic->since + periodic->period * (1.0 + same_event);
+    bool is_over = part->segment.t > periodic->since + periodic->period * (1.0 + dalcs_small);
     periodic->keeps = !part->segment.by_euler && !part->segment.jumped && !is_over &&
-                      (periodic->n + 1) * periodic->n_values <= most_kept;
+                      (periodic->n + 1) * periodic->n_values <= MOST_KEPT;
     if (!periodic->keeps) {
         return DALCS_OK;
     }

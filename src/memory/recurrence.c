@@ -8,6 +8,7 @@
 #include "clearance.h"
 #include "current_error.h"
 #include "extremes.h"
+#include "magnitudes.h"
 #include "present.h"
 #include "step_length.h"
 #include "transition.h"
@@ -64,7 +65,7 @@ static enum dalcs_status find_map(struct dalcs_radau_part *part, double h, bool 
         dalcs_stages_get(&part->stages, part->component->osnsp.mode, h, &entry);
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
     if (status == DALCS_OK && dalcs_stage_has_map(entry) && dalcs_stage_n_clashes(entry) == 0 &&
-        dalcs_stage_residual(entry) <= dalcs_largest_residual) {
+        dalcs_stage_residual(entry) <= dalcs_nothing) {
         return dalcs_stage_brief_create(&part->stages, entry, with_nodes, step);
     }
     return DALCS_OK;
@@ -75,7 +76,7 @@ void dalcs_recurrence_limits(const struct dalcs_radau_part *part,
                              const struct dalcs_stage_brief *step, int x, double *most_last,
                              double *most_drift) {
     bool states_free = dalcs_stage_frees_states(step->entry);
-    double allowed = (states_free ? 1.0 : dalcs_worth_projecting) * part->inner_tolerance;
+    double allowed = (states_free ? 1.0 : dalcs_slight) * part->inner_tolerance;
     double of_unit = part->scales.unit[part->component->system->column_is_current[x] ? 1 : 0];
     *most_last = dalcs_larger(most_growth * part->scales.column[x], of_unit);
     *most_drift = allowed * part->scales.column[x];

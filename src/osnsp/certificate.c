@@ -4,7 +4,9 @@
  * (x_k, s) and (x+, z+, lambda+), and each residual and each wrong sign is measured on a scale of its own (scales.h). */
 #include "scales.h"
 
-#include <float.h>
+#include "magnitudes.h"
+#include "rounding.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -135,10 +137,6 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
     }
 }
 
-/* A current that is this part of what drives the circuit, and this many roundings, is no rounding. */
-static const double clash_part = 1e-6;
-static const double clash_roundings = 32.0 * DBL_EPSILON;
-
 /* The reference of a floating island would have to carry what its current sources do not balance. It
  * is the sum of the island's KCL, known as well as the largest of them. */
 static void check_references(struct dalcs_osnsp *p, const double *y, struct dalcs_scales scale,
@@ -152,8 +150,9 @@ static void check_references(struct dalcs_osnsp *p, const double *y, struct dalc
         size =
             s->row_is_current[r] ? fmax(size, dalcs_scales_norm(p->cache.form[0], scale, r)) : size;
     }
+    /* a current that is something beside what drives the circuit, and beyond rounding, is none that is balanced */
     double limit = fmin(p->options.certificate_tolerance * size,
-                        fmax(clash_part * drive.ampere, clash_roundings * size));
+                        fmax(dalcs_nothing * drive.ampere, dalcs_sum_rounded * size));
     for (int k = 0; k < p->lists.n_references; k++) {
         double residual = fabs(y[p->lists.reference[k]]);
         *sources_clash = *sources_clash || residual > limit;
@@ -175,7 +174,8 @@ bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, 
     return hold;
 }
 
-/* V, A: rows of larger ones may overflow, and infinite rows would vouch for any residual. */
+/* V, A: rows of larger ones may overflow, and infinite rows would vouch for any residual. Above what a state may grow to
+ * (component.c), which is told as growth. */
 static const double largest_scale = 1e250;
 
 void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *y,

@@ -4,6 +4,8 @@
  * proves the last. */
 #include "osnsp_internal.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -49,10 +51,8 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
     return DALCS_INFEASIBLE;
 }
 
-/* Answers nearer to each other than this part of the largest voltage or current are one, as are those that are no
- * farther apart than the certificate lets each be off: beside amperes 1e-17 V is no other answer than 0 V. */
-static const double same_answer = 1e-9;
-
+/* Answers are one, too, where they are no farther apart than the certificate lets each be off: beside amperes 1e-17 V is
+ * no other answer than 0 V. */
 static bool are_same(const struct dalcs_osnsp *p, const double *a, const double *b) {
     const struct dalcs_system *s = p->system;
     double tolerance = p->options.certificate_tolerance;
@@ -64,8 +64,8 @@ static bool are_same(const struct dalcs_osnsp *p, const double *a, const double 
         largest[of] = fmax(largest[of], fmax(fabs(a[c]), fabs(b[c])));
     }
     double off[2] = {tolerance * p->certificate.volt, tolerance * p->certificate.ampere};
-    return apart[0] <= fmax(same_answer * largest[0], off[0]) &&
-           apart[1] <= fmax(same_answer * largest[1], off[1]);
+    return apart[0] <= fmax(dalcs_alike * largest[0], off[0]) &&
+           apart[1] <= fmax(dalcs_alike * largest[1], off[1]);
 }
 
 static enum dalcs_status list_answers(struct dalcs_osnsp *p, const double *u, int most,

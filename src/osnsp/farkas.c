@@ -9,10 +9,6 @@
 /* What a combination may come to beside 0 is no more than this part of the contradiction. */
 static const double most_missed = 0.5;
 
-/* A sum is 0 where its terms cancel but for this part of them, 2^-36: refute.c gives weights so many digits. A coefficient
- * that nothing cancels is left whole, be it as small as it may, and so is what it could carry. */
-static const double cancelled = 0x1p-36;
-
 static void visit_row(const struct dalcs_csr *m, int row, double factor,
                       void (*add)(void *user, int column, double value), void *user) {
     for (int k = m->p[row]; k < m->p[row + 1]; k++) {
@@ -141,7 +137,8 @@ bool dalcs_claim_is_refuted(const struct dalcs_claim *claim, double *v, double *
         double off = dalcs_claim_is_void(claim, c) ? 0.0
                      : has_sign                    ? at_least_0(total)
                                                    : fabs(total);
-        if (!(off <= cancelled * sum[3 * c + 2])) {
+        /* A coefficient that nothing cancels is left whole, be it as small as it may, and so is what it could carry. */
+        if (!(off <= dalcs_weight_rounded * sum[3 * c + 2])) {
             return false;
         }
         missed += off * claim->reach[s->column_is_current[c]];

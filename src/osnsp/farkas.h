@@ -27,6 +27,12 @@ struct dalcs_claim {
     double reach[2];             /* V, A: no answer is farther away */
 };
 
+/* Digits that weights are given: those that are the same are then the same to the last one, and cancel. */
+enum { DALCS_WEIGHT_BITS = 36 };
+
+/* A weight, or a sum of products of weights, over the largest of its terms, that is 0: the last of those digits. */
+static const double dalcs_weight_rounded = 0x1p-36;
+
 static inline int dalcs_claim_n_rows(const struct dalcs_system *s) {
     return dalcs_system_n_equations(s) + 2 * s->n_pairs;
 }

@@ -8,6 +8,8 @@
  * pivots one by one may be as many as modes. In a Newton step each diode is a resistor. */
 #include "osnsp_internal.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,10 +18,6 @@
 enum { MOST_STEPS = 100, STUCK = 3 };
 
 static const double hardly_smaller = 0.9;
-
-/* A pair has decided when one of s1 and s2 is this much smaller than the other, and no more than that is left of the
- * equations, over their terms. */
-static const double decided = 1e-8;
 
 /* Part of the way to the boundary that a step goes. */
 static const double boundary_part = 0.995;
@@ -290,11 +288,12 @@ static enum dalcs_status find_start(struct interior *m) {
     return DALCS_OK;
 }
 
+/* A pair has decided when one of s1 and s2 is nothing beside the other. */
 static bool all_decided(const struct interior *m) {
     bool all = true;
     for (int d = 0; d < m->n_pairs && all; d++) {
         all = !is_diode(m, d) ||
-              fmin(m->of.s1[d], m->of.s2[d]) < decided * fmax(m->of.s1[d], m->of.s2[d]);
+              fmin(m->of.s1[d], m->of.s2[d]) < dalcs_alike * fmax(m->of.s1[d], m->of.s2[d]);
     }
     return all;
 }
@@ -306,7 +305,7 @@ static enum dalcs_status follow_path(struct interior *m) {
     double mu = mean_product(m, 0.0);
     int stuck = 0;
     for (int step = 0; step < MOST_STEPS && mu > 0.0 && stuck < STUCK; step++) {
-        if (find_rests(m) <= decided && all_decided(m)) {
+        if (find_rests(m) <= dalcs_alike && all_decided(m)) {
             break;
         }
         set_rows(m);

@@ -2,6 +2,7 @@
  *
  * Each mode has its own compressed matrix and its own analysis: diodes that block have no unknown,
  * and a pattern shared by all modes would cost several times the fill. */
+#include "magnitudes.h"
 #include "null_space.h"
 #include "osnsp_internal.h"
 
@@ -159,7 +160,7 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
     if (a->n >= LARGE_MODE) {
         return factor_large(p, e, a);
     }
-    enum dalcs_status status = dalcs_modes_factor_small(p, &e->lu, a, dalcs_far_apart);
+    enum dalcs_status status = dalcs_modes_factor_small(p, &e->lu, a, dalcs_nothing);
     return status > DALCS_OK ? dalcs_lu_factor_again(&e->lu, &p->cache.patterns, &p->cache.klu,
                                                      a->n, a->p, a->i, a->x, least_rcond(p))
                              : status;

@@ -58,9 +58,6 @@ void dalcs_modes_finish(struct dalcs_osnsp *p);
 enum dalcs_status dalcs_modes_factor_plain(struct dalcs_osnsp *p,
                                            struct dalcs_mode_entry *entry) DALCS_MUST_CHECK;
 
-/* Pivots of a mode that is not clearly regular. */
-static const double dalcs_far_apart = 1e-6;
-
 /* A square matrix by columns. All is in the block that starts at x. */
 struct dalcs_columns {
     int n;

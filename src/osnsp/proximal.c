@@ -10,25 +10,11 @@
  * converge to a ray that says why (Pazy 1971): see witness.c. */
 #include "osnsp_internal.h"
 
+#include "magnitudes.h"
+#include "rounding.h"
+
 #include <math.h>
 #include <string.h>
-
-/* Unknowns are held far more weakly than pairs, so that diodes decide what is not determined. */
-static const double node_weight = 1e-3;
-
-/* A sign is wrong when it is so by more than this of the largest unknown (balanced units). */
-static const double sign_tolerance = 1e-13;
-
-/* What moves a centre by so many times that is seen to do so. */
-static const double beyond_tolerance = 10.0;
-
-/* How far the local conductance of a pair may pull its weight from the common one. */
-static const double weight_spread = 1e3;
-
-/* Displacements that differ by less than this, relatively, count as a ray, if they are also a part of
- * the way gone so far that only running away can be. */
-static const double ray_tolerance = 1e-3;
-static const double ray_part = 1e-2;
 
 /* Mode changes allowed from a regularised answer to a regular mode's. */
 enum { REGULAR_ATTEMPTS = 8 };
@@ -39,7 +25,7 @@ static double ratio_of(const struct dalcs_osnsp *p, int pair, enum dalcs_weights
     const struct dalcs_step_form *f = p->cache.form[0];
     double g = f->scale[f->n + pair] * f->row_scale[f->n + pair]; /* A over V, balanced */
     return weights == DALCS_EQUAL_WEIGHTS
-               ? fmin(fmax(g / f->pair_conductance, 1.0 / weight_spread), weight_spread)
+               ? fmin(fmax(g / f->pair_conductance, dalcs_small), 1.0 / dalcs_small)
                : 1.0;
 }
 
@@ -57,8 +43,9 @@ void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, enum dalcs_we
     *off = off_weight(p, pair, weights);
 }
 
+/* Unknowns are held far more weakly than pairs, so that diodes decide what is not determined. */
 double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p) {
-    return node_weight * p->options.proximal_weight;
+    return dalcs_small * p->options.proximal_weight;
 }
 
 double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair,
@@ -84,7 +71,7 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
     DALCS_TRY(dalcs_columns_alloc(&a, n, (size_t)f->K.p[n] + (size_t)n));
     int out = 0;
     for (int c = 0; c < n; c++) {
-        double diagonal = node_weight * p->options.proximal_weight;
+        double diagonal = dalcs_proximal_unknown_weight(p);
         if (c >= f->n) {
             int d = c - f->n;
             diagonal = dalcs_osnsp_is_on(p, d) ? on_weight(p, d, weights) : 1.0;
@@ -123,8 +110,7 @@ static void step_in_mode(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e
                          enum dalcs_weights weights) {
     const struct dalcs_step_form *f = p->cache.form[0];
     for (int i = 0; i < f->n; i++) {
-        p->work.scaled[i] =
-            p->work.right[i] + node_weight * p->options.proximal_weight * p->work.centre[i];
+        p->work.scaled[i] = p->work.right[i] + dalcs_proximal_unknown_weight(p) * p->work.centre[i];
     }
     for (int d = 0; d < f->n_pairs; d++) {
         double right = p->work.right[f->n + d];
@@ -144,8 +130,9 @@ static double largest_unknown(const struct dalcs_osnsp *p) {
     return largest;
 }
 
+/* What moves a centre is seen to do so beyond the tolerance of signs. */
 double dalcs_proximal_least_push(const struct dalcs_osnsp *p) {
-    return beyond_tolerance * sign_tolerance * largest_unknown(p) / p->options.proximal_weight;
+    return dalcs_beyond * dalcs_answer_rounded * largest_unknown(p) / p->options.proximal_weight;
 }
 
 /* The pairs whose regularised sign is wrong: closed with lambda + eps G (w - w') < 0, open with
@@ -163,7 +150,7 @@ static void find_violations(struct dalcs_osnsp *p, enum dalcs_weights weights) {
         double sign = dalcs_osnsp_is_on(p, d)
                           ? lambda + off_weight(p, d, weights) * (w - p->work.centre_w[d])
                           : w + on_weight(p, d, weights) * (lambda - p->work.centre[f->n + d]);
-        if (sign < -sign_tolerance * largest) {
+        if (sign < -dalcs_answer_rounded * largest) {
             p->signs.violating[p->signs.n_violating++] = d;
         }
     }
@@ -311,11 +298,13 @@ enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, d
         double way;
         double size = move_centre(p, &change, &way);
         p->least_norm = true;
-        if (is_certified(p, u, y, &sources_clash) && (is_open || size <= ray_part * way)) {
+        if (is_certified(p, u, y, &sources_clash) && (is_open || size <= dalcs_slight * way)) {
             return DALCS_OK;
         }
-        if (outer >= 2 && !mode_changed && size > ray_part * way &&
-            change <= ray_tolerance * size && dalcs_witness_from_ray(p)) {
+        /* Displacements that hardly differ are a ray, if they are also a part of the way gone so far that only running
+         * away can be. */
+        if (outer >= 2 && !mode_changed && size > dalcs_slight * way &&
+            change <= dalcs_small * size && dalcs_witness_from_ray(p)) {
             return DALCS_INFEASIBLE;
         }
         if (sources_clash && outer >= 2) {

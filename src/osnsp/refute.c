@@ -5,19 +5,15 @@
  * no answer. A passive problem has one unless the first case is contradictory (Cottle, Pang and Stone 1992). */
 #include "refute.h"
 
+#include "magnitudes.h"
 #include "osnsp_internal.h"
 #include "refute_case.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Rows and columns together up to which there is a tree, and the work that it may take, in flops. */
-enum { MOST_SIZE = 600 };
-
-static const double most_work = 4e9;
-
-/* An answer is no farther away than this many times what sources and states could raise. */
-static const double farthest = 1e3;
+/* Rows and columns together up to which there is a tree, and the work that it may take. */
+enum { MOST_SIZE = 600, MOST_MEGAFLOPS = 4000 };
 
 /* Weights from a direction of all columns: what is 0 along it is so to its other side, too. */
 static void weigh_by_ray(struct dalcs_refutation *r, double sign) {
@@ -97,8 +93,9 @@ static enum dalcs_status find_reach(struct dalcs_osnsp *p, double sigma, const d
         const struct dalcs_drive *d = &p->lists.drive[k];
         drive[d->is_current] = fmax(drive[d->is_current], d->coefficient * fabs(u[d->input]));
     }
-    reach[0] = farthest * (drive[0] + drive[1] / p->cache.form[0]->least_conductance);
-    reach[1] = farthest * (drive[1] + drive[0] * p->cache.form[0]->most_conductance);
+    /* An answer is no farther away than a thousand times what sources and states could raise. */
+    reach[0] = 1.0 / dalcs_small * (drive[0] + drive[1] / p->cache.form[0]->least_conductance);
+    reach[1] = 1.0 / dalcs_small * (drive[1] + drive[0] * p->cache.form[0]->most_conductance);
     return DALCS_OK;
 }
 
@@ -136,7 +133,7 @@ static enum dalcs_status refute(struct dalcs_refutation *r, bool *is_certain) {
         return DALCS_OK;
     }
     double size = 1.0 + r->n_rows + r->n_columns; /* a part may have no equation */
-    r->most_cases = 1 + (long)(most_work / (size * size * size));
+    r->most_cases = 1 + (long)(1e6 * MOST_MEGAFLOPS / (size * size * size));
     DALCS_TRY(dalcs_refutation_make_dense(r));
     int *split = dalcs_arena_alloc(&r->work, (size_t)r->n_rows, sizeof(int));
     if (split == NULL) {
@@ -146,10 +143,8 @@ static enum dalcs_status refute(struct dalcs_refutation *r, bool *is_certain) {
     return DALCS_OK;
 }
 
-/* Lengths of steps, each a quarter of the one before, and how nearly 4 times as far each must lead. */
+/* Lengths of steps, each a quarter of the one before, of which each must lead 4 times as far. */
 enum { LENGTHS = 6 };
-
-static const double nearly = 0.01;
 
 /* Do states run away from x as 1/h, in certified answers? */
 static enum dalcs_status runs_away(struct dalcs_osnsp *p, double sigma, const double *u,
@@ -165,8 +160,8 @@ static enum dalcs_status runs_away(struct dalcs_osnsp *p, double sigma, const do
         status = dalcs_osnsp_solve(p, ldexp(sigma, 2 * k), u, y);
         for (int x = 0; status == DALCS_OK && x < s->n_x; x++) {
             double now = fabs(y[x] - u[x]);
-            stays[x] =
-                stays[x] || !(now > 0.0) || (k > 0 && fabs(now - 4.0 * far[x]) > nearly * now);
+            stays[x] = stays[x] || !(now > 0.0) ||
+                       (k > 0 && fabs(now - 4.0 * far[x]) > dalcs_slight * now);
             far[x] = now;
         }
     }

@@ -6,13 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Passes of scaling by powers of 2; weights below this part of the largest, in scaled units, are rounding. */
+/* Passes of scaling by powers of 2. */
 enum { SCALING_PASSES = 6 };
-
-static const double zero_weight = 1e-11;
-
-/* Digits that weights are rounded to: the same ones are then the same to the last digit, and cancel. */
-enum { ROUND_BITS = 36 };
 
 static void add_dense(void *user, int column, double value) {
     double *row = user;
@@ -167,7 +162,7 @@ static bool is_refuted(struct dalcs_refutation *r) {
         most = fmax(most, fabs(r->least.rest[row]));
     }
     for (int row = 0; row < r->n_rows; row++) {
-        bool is_zero = !(fabs(r->least.rest[row]) > zero_weight * most);
+        bool is_zero = !(fabs(r->least.rest[row]) > dalcs_weight_rounded * most);
         r->v[row] = r->row_scale[row] * r->least.rest[row];
         r->clean[row] = is_zero ? 0.0 : r->v[row];
         largest = fmax(largest, fabs(r->clean[row]));
@@ -183,7 +178,7 @@ static bool is_refuted(struct dalcs_refutation *r) {
     for (int row = 0; row < r->n_rows && largest > 0.0; row++) {
         int exponent;
         double digits = frexp(r->clean[row] / largest, &exponent);
-        r->clean[row] = ldexp(rint(ldexp(digits, ROUND_BITS)), exponent - ROUND_BITS);
+        r->clean[row] = ldexp(rint(ldexp(digits, DALCS_WEIGHT_BITS)), exponent - DALCS_WEIGHT_BITS);
     }
     return dalcs_claim_is_refuted(&r->claim, r->clean, r->sum);
 }

@@ -1,6 +1,8 @@
 /* scales.c - what residuals and wrong signs of an answer are measured against. */
 #include "scales.h"
 
+#include "magnitudes.h"
+
 #include <float.h>
 #include <math.h>
 
@@ -39,12 +41,9 @@ struct dalcs_scales dalcs_scales_driving(const struct dalcs_osnsp *p, const doub
     return (struct dalcs_scales){largest[0], largest[1]};
 }
 
-/* An answer this many times what drives the circuit could raise is one that runs away. */
-static const double runaway = 1e9;
-
 /* Scales reach into the other unit no further than what drives the circuit could raise there, and not
  * far beyond it in their own: a false answer, with 1e12 A around a loop of sources that clash, must
- * not vouch for its own residual. */
+ * not vouch for its own residual. An answer beside which what drives the circuit could raise nothing runs away. */
 struct dalcs_scales dalcs_scales_physical(const struct dalcs_osnsp *p, struct dalcs_scales drive,
                                           const double *y) {
     const struct dalcs_step_form *f = p->cache.form[0];
@@ -56,8 +55,9 @@ struct dalcs_scales dalcs_scales_physical(const struct dalcs_osnsp *p, struct da
     }
     double raised_volt = drive.volt + drive.ampere / f->least_conductance;
     double raised_ampere = drive.ampere + drive.volt * f->most_conductance;
-    largest[0] = largest[0] < runaway * raised_volt ? largest[0] : runaway * raised_volt;
-    largest[1] = largest[1] < runaway * raised_ampere ? largest[1] : runaway * raised_ampere;
+    const double most[2] = {1.0 / dalcs_alike * raised_volt, 1.0 / dalcs_alike * raised_ampere};
+    largest[0] = largest[0] < most[0] ? largest[0] : most[0];
+    largest[1] = largest[1] < most[1] ? largest[1] : most[1];
     raised_volt = raised_volt < largest[0] ? raised_volt : largest[0];
     raised_ampere = raised_ampere < largest[1] ? raised_ampere : largest[1];
     double volt = f->ampere_in_volts * raised_ampere;

@@ -4,6 +4,7 @@
  * the mode in which it was solved (a semismooth Newton method; Qi and Sun 1993). A refusal of such a problem says nothing
  * of the whole. */
 #include "in_order.h"
+#include "magnitudes.h"
 #include "osnsp_internal.h"
 #include "smooth_newton.h"
 
@@ -16,8 +17,6 @@ enum { MOST_STEPS = 1000 };
 /* Lines that are much steeper make a mode regular that holds a node by next to nothing: eight times a thousand span all
  * digits. */
 enum { MOST_STEEPER = 8 };
-
-static const double a_thousand = 1e3;
 
 enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     if (p->system->n_smooth == 0) {
@@ -96,7 +95,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
         put_sources(p, p->smooth.given);
         enum dalcs_status status = solve(p, sigma, p->smooth.given, y);
         if (status > DALCS_OK && p->smooth.n_tangents > 0 && n_steeper++ < MOST_STEEPER) {
-            dalcs_smooth_scale_tangents(s, a_thousand, n->x, n->phi);
+            dalcs_smooth_scale_tangents(s, 1.0 / dalcs_small, n->x, n->phi);
             forget(p);
             dalcs_smooth_newton_begin(n, n->x);
             continue;

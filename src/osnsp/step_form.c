@@ -3,14 +3,10 @@
 
 #include "elimination.h"
 #include "extremes.h"
+#include "magnitudes.h"
 
 #include <math.h>
 #include <string.h>
-
-/* How far a scale of one unit reaches into the other, as a part of the typical conductance: a voltage
- * next to a large one is known no better than to its own rounding, whose current may spread where
- * conductances are small. */
-static const double cross_floor = 1e-3;
 
 /* By half the powers of 2 in the largest entry. False: there are none. */
 static bool lower_scale(double *scale, double largest) {
@@ -115,8 +111,10 @@ static void measure_rows(struct dalcs_step_form *f, const struct dalcs_system *s
     double typical = g.n > 0 ? exp(g.log_sum / g.n) : 1.0;
     f->least_conductance = g.n > 0 ? g.least : 1.0;
     f->most_conductance = g.n > 0 ? g.most : 1.0;
-    f->volt_in_amperes = cross_floor * typical;
-    f->ampere_in_volts = cross_floor / typical;
+    /* A voltage next to a large one is known no better than to its own rounding, whose current may spread where
+     * conductances are much smaller than the typical one. */
+    f->volt_in_amperes = dalcs_small * typical;
+    f->ampere_in_volts = dalcs_small / typical;
 }
 
 /* What was collected becomes *a, and t is empty again. */

@@ -7,17 +7,10 @@
  * holds for every right-hand side, so it is asked once. */
 #include "osnsp_internal.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 #include <string.h>
-
-/* A tied pair moves by this part of the push when there is a choice; of rounding and of the
- * regularisation, less. */
-static const double moved_part = 1e-2;
-
-/* The push over the largest current or voltage of a pair: small, for a choice may end soon; and where
- * all are 0, nothing is smaller. But currents are small beside voltages, and a sign would not tell that one has been
- * pushed: in micro-steps it is by as much as that takes. */
-static const double push_part = 1e-3;
 
 static enum dalcs_status is_singular(struct dalcs_osnsp *p, int byte, bool *singular) {
     struct dalcs_mode_entry *e;
@@ -72,6 +65,10 @@ uint64_t dalcs_ties_name(const struct dalcs_osnsp *p) {
     return name != 0 ? name : 1;
 }
 
+/* Tied pairs are pushed by a small part of the largest current or voltage of a pair, for a choice may end soon; and where
+ * all are 0, nothing is smaller. But currents are small beside voltages, and a sign would not tell that one has been
+ * pushed: in micro-steps it is by as much as that takes. One moves by a part of the push when there is a choice; of rounding
+ * and of the regularisation, less. */
 static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u, const double *y,
                                          bool *has_choice) {
     const struct dalcs_step_form *f = p->cache.form[0];
@@ -82,9 +79,9 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
     memcpy(p->work.centre, p->work.scaled, (size_t)(f->n + f->n_pairs) * sizeof(double));
     for (int d = 0; d < f->n_pairs; d++) {
         p->work.centre_w[d] = f->row_scale[f->n + d] * p->w[d];
-        push = fmax(push, push_part * fabs(p->work.scaled[f->n + d]));
+        push = fmax(push, dalcs_small * fabs(p->work.scaled[f->n + d]));
         double v = p->work.centre_w[d] - f->row_scale[f->n + d] * dalcs_system_knee(p->system, d);
-        push_w = fmax(push_w, push_part * fmax(fabs(p->work.centre_w[d]), fabs(v)));
+        push_w = fmax(push_w, dalcs_small * fmax(fabs(p->work.centre_w[d]), fabs(v)));
     }
     if (p->asks.is_passing && push > 0.0) {
         push = fmax(push, dalcs_proximal_least_push(p));
@@ -97,8 +94,8 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
     enum dalcs_status status = dalcs_proximal_pivot(p, u, DALCS_BALANCED_WEIGHTS, &mode_changed);
     *has_choice = false;
     for (int d = 0; status == DALCS_OK && d < f->n_pairs && !*has_choice; d++) {
-        bool moves = (push > 0.0 && p->work.scaled[f->n + d] > moved_part * push) ||
-                     (push_w > 0.0 && dalcs_proximal_scaled_w(p, d) > moved_part * push_w);
+        bool moves = (push > 0.0 && p->work.scaled[f->n + d] > dalcs_slight * push) ||
+                     (push_w > 0.0 && dalcs_proximal_scaled_w(p, d) > dalcs_slight * push_w);
         *has_choice = p->signs.tied[d] && moves;
     }
     return status;

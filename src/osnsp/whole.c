@@ -1,6 +1,7 @@
 /* whole.c - the matrix of a mode with the states kept, its factors and its refinement. */
 #include "whole.h"
 
+#include "magnitudes.h"
 #include "null_space.h"
 #include "osnsp_internal.h"
 
@@ -91,7 +92,7 @@ static enum dalcs_status factor(struct dalcs_whole *whole, const struct dalcs_tr
     struct dalcs_csr columns = {0};
     DALCS_TRY(put_columns(whole, t, &columns));
     const struct dalcs_columns a = {whole->n, columns.p, columns.j, columns.x};
-    enum dalcs_status status = dalcs_modes_factor_small(whole->p, &whole->lu, &a, dalcs_far_apart);
+    enum dalcs_status status = dalcs_modes_factor_small(whole->p, &whole->lu, &a, dalcs_nothing);
     if (status > DALCS_OK) {
         klu_common common;
         dalcs_lu_common_init(&common);

@@ -6,15 +6,11 @@
  * carry current without resistance, or a cutset of elements that block. */
 #include "osnsp_internal.h"
 
+#include "magnitudes.h"
+#include "rounding.h"
+
 #include <math.h>
 #include <string.h>
-
-/* Entries of a ray below this part of the largest are rounding. */
-static const double zero_part = 1e-6;
-
-/* K d is 0 when it is below this part of its terms. An ill-conditioned but solvable problem drifts
- * along a direction in which K d is small, not zero. */
-static const double ray_residual = 1e-12;
 
 static void add_element(struct dalcs_witness *w, const char *name) {
     for (int k = 0; k < w->n_elements; k++) {
@@ -53,14 +49,14 @@ static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) 
                 }
             }
         }
-        if (fabs(work) > zero_part * largest * size) {
+        if (fabs(work) > dalcs_nothing * largest * size) {
             add_element(&p->witness, s->input_element[input]);
         }
     }
 }
 
 static double but_rounding(double entry, double largest) {
-    return fabs(entry) > zero_part * largest ? entry : 0.0;
+    return fabs(entry) > dalcs_nothing * largest ? entry : 0.0;
 }
 
 /* The direction in volts and amperes, of the states as well. */
@@ -107,13 +103,14 @@ static bool is_ray(struct dalcs_osnsp *p, const double *d, double *largest) {
     }
     for (int i = 0; i < n; i++) {
         bool must_vanish = i < f->n || dalcs_osnsp_is_on(p, i - f->n);
-        if (must_vanish && fabs(residual[i]) > ray_residual * fmax(size[i], *largest)) {
+        if (must_vanish && fabs(residual[i]) > dalcs_answer_rounded * fmax(size[i], *largest)) {
             return false;
         }
     }
     for (int k = 0; k < f->n_pairs; k++) {
         bool is_diode = s->pair[k].kind == DALCS_PAIR_DIODE;
-        if (is_diode && (d[f->n + k] < -zero_part * *largest || d_w[k] < -zero_part * *largest)) {
+        if (is_diode &&
+            (d[f->n + k] < -dalcs_nothing * *largest || d_w[k] < -dalcs_nothing * *largest)) {
             return false;
         }
     }
@@ -154,13 +151,13 @@ bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
     for (int i = 0; i < f->n; i++) {
         int c = f->column_of[i];
         enum dalcs_label_kind kind = s->column[c].kind;
-        if (s->column_is_current[c] && fabs(d[i]) > zero_part * largest &&
+        if (s->column_is_current[c] && fabs(d[i]) > dalcs_nothing * largest &&
             kind != DALCS_LABEL_REFERENCE) {
             add_element(&p->witness, s->column[c].element);
         }
     }
     for (int k = 0; k < f->n_pairs; k++) {
-        if (fmax(fabs(d[f->n + k]), fabs(d_w[k])) > zero_part * largest) {
+        if (fmax(fabs(d[f->n + k]), fabs(d_w[k])) > dalcs_nothing * largest) {
             add_element(&p->witness, s->pair[k].element);
         }
     }
@@ -302,7 +299,7 @@ static bool is_weighed(const struct dalcs_system *s, const double *v, int pair, 
     double size;
     double sum = current_of_pair(s, v, pair, &size);
     double side = fmax(fabs(v[n_equations + pair]), fabs(v[n_equations + s->n_pairs + pair]));
-    return side > zero_part * largest || fabs(sum) > zero_part * size;
+    return side > dalcs_nothing * largest || fabs(sum) > dalcs_nothing * size;
 }
 
 void dalcs_witness_from_weights(struct dalcs_osnsp *p, const double *v) {
@@ -313,7 +310,7 @@ void dalcs_witness_from_weights(struct dalcs_osnsp *p, const double *v) {
     p->weighed.n_elements = 0;
     p->weighed.kind = DALCS_WITNESS_EQUATIONS;
     for (int r = 0; r < n_equations; r++) {
-        if (!(fabs(v[r]) > zero_part * largest[s->row_is_current[r]])) {
+        if (!(fabs(v[r]) > dalcs_nothing * largest[s->row_is_current[r]])) {
             continue;
         }
         add_inputs(p, r);

@@ -8,6 +8,7 @@
 #include "failed_steps_json.h"
 #include "json.h"
 #include "losses_json.h"
+#include "measurements_json.h"
 #include "method_text.h"
 
 #include <math.h>
@@ -279,66 +280,6 @@ static void write_infeasible(struct dalcs_json *json, const struct dalcs_report 
     dalcs_json_close(json, '}');
 }
 
-static void write_step(struct dalcs_json *json, const char *step) {
-    if (step != NULL) {
-        dalcs_json_string(json, "step", step);
-    }
-}
-
-static void write_measurements(struct dalcs_json *json, const struct dalcs_report *report) {
-    dalcs_json_open(json, "measurements", '[', false);
-    for (size_t i = 0; i < report->n_measurements; i++) {
-        const struct dalcs_measurement *m = &report->measurement[i];
-        dalcs_json_open(json, NULL, '{', true);
-        dalcs_json_string(json, "name", m->name);
-        write_step(json, m->step);
-        if (m->found) {
-            dalcs_json_number(json, "value", m->value);
-        } else {
-            dalcs_json_string(json, "value", NULL);
-            dalcs_json_string(json, "failure", m->failure);
-        }
-        for (int k = 0; k < m->n_details; k++) {
-            dalcs_json_number(json, m->detail[k].name, m->detail[k].value);
-        }
-        dalcs_json_close(json, '}');
-    }
-    dalcs_json_close(json, ']');
-}
-
-static void write_fourier(struct dalcs_json *json, const struct dalcs_report *report) {
-    if (report->n_fourier == 0) {
-        return;
-    }
-    dalcs_json_open(json, "fourier", '[', false);
-    for (size_t i = 0; i < report->n_fourier; i++) {
-        const struct dalcs_fourier *f = &report->fourier[i];
-        dalcs_json_open(json, NULL, '{', false);
-        dalcs_json_string(json, "signal", f->signal);
-        write_step(json, f->step);
-        dalcs_json_number(json, "frequency", f->frequency);
-        dalcs_json_number(json, "from", f->from);
-        dalcs_json_number(json, "to", f->to);
-        if (isfinite(f->thd)) {
-            dalcs_json_number(json, "thd", f->thd);
-        } else {
-            dalcs_json_string(json, "thd", NULL);
-        }
-        dalcs_json_open(json, "magnitude", '[', true);
-        for (size_t k = 0; k < f->n_harmonics; k++) {
-            dalcs_json_number(json, NULL, f->magnitude[k]);
-        }
-        dalcs_json_close(json, ']');
-        dalcs_json_open(json, "phase", '[', true);
-        for (size_t k = 0; k < f->n_harmonics; k++) {
-            dalcs_json_number(json, NULL, f->phase[k]);
-        }
-        dalcs_json_close(json, ']');
-        dalcs_json_close(json, '}');
-    }
-    dalcs_json_close(json, ']');
-}
-
 static void write_envelope(struct dalcs_json *json, const struct dalcs_report *report) {
     if (!report->envelope.present) {
         return;
@@ -385,8 +326,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_events(&json, report);
     write_jumps(&json, report);
     write_nonunique(&json, report);
-    write_measurements(&json, report);
-    write_fourier(&json, report);
+    dalcs_measurements_json_write(&json, report);
     write_envelope(&json, report);
     write_losses(&json, report);
     write_energy(&json, report);

@@ -2,6 +2,7 @@
 #include "row_gaps_internal.h"
 
 #include "extremes.h"
+#include "magnitudes.h"
 #include "radau_state.h"
 #include "wide_vectors.h"
 
@@ -10,9 +11,6 @@
 
 /* Of the bound, what a curve may take: the largest derivative may lie between the places. */
 static const double share = 0.5;
-
-/* An output smaller than this beside the largest of its unit counts as that large. */
-static const double least_size = 1e-6;
 
 /* Polynomials of fewer stages have no fourth derivative: they bend where they meet. */
 enum { ENOUGH_STAGES = 5 };
@@ -195,11 +193,11 @@ static void raise_largest(struct dalcs_row_gaps *gaps, double *of_unit) {
     }
 }
 
-/* What it is measured by. */
+/* What it is measured by: no less than what is nothing beside the largest of its unit. */
 static double scale_of(const struct dalcs_row_gaps *gaps, int output, const double *of_unit) {
     int unit = dalcs_row_is_current(gaps, output) ? 1 : 0;
     double least =
-        dalcs_larger(least_size * of_unit[unit], gaps->cross[output] * of_unit[1 - unit]);
+        dalcs_larger(dalcs_nothing * of_unit[unit], gaps->cross[output] * of_unit[1 - unit]);
     return dalcs_larger(gaps->largest[output], least);
 }
 

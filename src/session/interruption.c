@@ -35,13 +35,13 @@ struct cut {
 
 /* Was the pair closed until this instant? At the start nothing was yet. */
 static bool was_closed(const struct dalcs_run *r, const struct dalcs_euler_jump *j, int pair) {
-    const struct dalcs_recorder *rec = &r->s->recorder;
-    if (!rec->keep || !rec->have_before || dalcs_mode_has(rec->seen[j->system], pair)) {
+    const struct dalcs_event_log *log = &r->s->recorder.log;
+    if (!log->keep || !r->s->recorder.have_before || dalcs_mode_has(log->seen[j->system], pair)) {
         return true;
     }
     const char *name = r->s->network.system[j->system].pair[pair].element;
-    for (size_t k = rec->n_events; k > 0 && rec->event[k - 1].time >= j->time; k--) {
-        if (!rec->event[k - 1].on && strcmp(rec->event[k - 1].element, name) == 0) {
+    for (size_t k = log->n_events; k > 0 && log->event[k - 1].time >= j->time; k--) {
+        if (!log->event[k - 1].on && strcmp(log->event[k - 1].element, name) == 0) {
             return true;
         }
     }
@@ -249,5 +249,5 @@ enum dalcs_status dalcs_note_jump(void *user, const struct dalcs_euler_jump *j) 
     if (r->losses != NULL) {
         DALCS_TRY(dalcs_losses_run_jump(r->losses, j));
     }
-    return dalcs_recorder_jump(&r->s->recorder, j);
+    return dalcs_event_log_jump(&r->s->recorder.log, j);
 }

@@ -4,6 +4,8 @@
  * from. */
 #include "session_internal.h"
 
+#include "rounding.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +18,7 @@ static const double USUAL_TOLERANCE = 1e-6;
 static const double LEAST_FILL = 1e-6;
 
 struct dalcs_run_options dalcs_run_options_default(void) {
-    return (struct dalcs_run_options){.certificate_tolerance = 2e-13,
+    return (struct dalcs_run_options){.certificate_tolerance = dalcs_answer_rounded,
                                       .proximal_weight = 1e-8,
                                       .rcond_min = 1e-14,
                                       .max_outer = 40,

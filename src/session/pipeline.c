@@ -267,12 +267,12 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
     struct dalcs_report *report = &session->report;
     report->n_nonunique = session->n_nonunique;
     report->nonunique = session->nonunique;
-    report->n_events = session->recorder.n_events;
-    report->n_events_dropped = session->recorder.n_events_dropped;
-    report->event = session->recorder.event;
-    report->n_jumps = session->recorder.n_jumps;
-    report->n_jumps_dropped = session->recorder.n_jumps_dropped;
-    report->jump = session->recorder.jump;
+    report->n_events = session->recorder.log.n_events;
+    report->n_events_dropped = session->recorder.log.n_events_dropped;
+    report->event = session->recorder.log.event;
+    report->n_jumps = session->recorder.log.n_jumps;
+    report->n_jumps_dropped = session->recorder.log.n_jumps_dropped;
+    report->jump = session->recorder.log.jump;
     report->work.cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
     report->work.wall_s = seconds(CLOCK_MONOTONIC) - wall;
     return status;

@@ -249,7 +249,7 @@ size_t dalcs_session_n_messages(const struct dalcs_session *session) {
 }
 
 size_t dalcs_session_n_events(const struct dalcs_session *session) {
-    return session->recorder.n_events + session->recorder.n_events_dropped;
+    return session->recorder.log.n_events + session->recorder.log.n_events_dropped;
 }
 
 const char *dalcs_session_message(const struct dalcs_session *session, size_t index,

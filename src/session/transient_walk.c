@@ -127,7 +127,7 @@ static enum dalcs_status leap(struct transient *c) {
     dalcs_audit_run_end_leap(c->audit);
     c->t = c->radau->cycling->segment.t;
     dalcs_measures_skip(c->measures, c->t);
-    DALCS_TRY(dalcs_recorder_leap(c->recorder, leap));
+    DALCS_TRY(dalcs_event_log_leap(&c->recorder->log, leap));
     dalcs_audit_run_tell(c->audit, c->t);
     return tell_progress(c, leap->n_steps);
 }
@@ -223,7 +223,7 @@ static enum dalcs_status pass(struct transient *c, double t) {
     DALCS_TRY(pass_gates(c, t));
     dalcs_audit_run_enter(c->audit);
     radau->base->t = t;
-    DALCS_TRY(dalcs_recorder_events(c->recorder, radau->base));
+    DALCS_TRY(dalcs_event_log_note(&c->recorder->log, radau->base, true));
     dalcs_audit_run_told(c->audit, t);
     return DALCS_OK;
 }

@@ -1,12 +1,12 @@
 /* stage_build.c - the factors of a mode and step length: made, tried out on a step, dropped. */
 #include "stage_update.h"
 
+#include "magnitudes.h"
+#include "rounding.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* And one that pivots next to 0 spoke against has not, if it is no worse than this: rounding. */
-static const double largest_of_doubtful = 1e-13;
 
 /* mu / h of a system. */
 static void find_eigenvalue(const struct dalcs_stages *stages, double h, int system, double *re,
@@ -242,7 +242,7 @@ static enum dalcs_status factor_doubtful(struct dalcs_stages *stages,
         }
         drop_systems(f);
     }
-    *largest = largest_of_doubtful;
+    *largest = dalcs_answer_rounded;
     return factor_all(stages, entry, f, m, stages->rcond_min * stages->rcond_min);
 }
 
@@ -271,7 +271,7 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
     memcpy(f->column_scale, m->column_scale, (size_t)m->n * sizeof(double));
     memcpy(entry->natural, f->column_scale, (size_t)dalcs_system_n_equations(s) * sizeof(double));
     enum dalcs_status status = factor_all(stages, entry, f, m, stages->rcond_min);
-    double largest = dalcs_largest_residual;
+    double largest = dalcs_nothing;
     if (status == DALCS_OK) {
         remember_pivots(plan, m, f);
     } else if (status == DALCS_SINGULAR && s->n_pairs > 0) {

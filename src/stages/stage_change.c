@@ -2,14 +2,12 @@
 #include "stage_change.h"
 
 #include "extremes.h"
+#include "magnitudes.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* An element of G this large lets so many digits cancel, where none can be spared. */
-static const double largest_response = 10.0;
 
 /* Elements of G this small beside the largest are nothing. */
 static const double nothing = 1e-30;
@@ -158,7 +156,8 @@ static enum dalcs_status keep_response(struct dalcs_stage_change *c, int system,
 static enum dalcs_status solve_change(const struct dalcs_stage_plan *plan,
                                       const struct dalcs_stage_factors *f, bool closes,
                                       struct dalcs_stage_change *c) {
-    double allowed = fmax(largest_response, plan->stages->unseen / DBL_EPSILON);
+    /* An element of G beyond this lets so many digits cancel, where none can be spared. */
+    double allowed = fmax(dalcs_beyond, plan->stages->unseen / DBL_EPSILON);
     for (int q = 0; q < f->n_systems; q++) {
         load_change(plan, f, q, closes, c);
         if (q > 0) {

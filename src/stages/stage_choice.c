@@ -2,16 +2,13 @@
  * them. */
 #include "stage_choice.h"
 
+#include "magnitudes.h"
 #include "null_space.h"
 #include "partition.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* What a null vector does to a diode, beside its largest entry, is rounding up to this: currents around a
- * loop of sources are nothing to diodes. */
-static const double null_rounding = 1e-10;
 
 static int column_of(const struct dalcs_stage_workshop *b, int unknown) {
     int n_equations = dalcs_system_n_equations(b->system);
@@ -86,7 +83,7 @@ static void find_other_sides(const struct dalcs_stage_workshop *b, const double 
             int c = b->place[C->j[k]];
             side += c >= 0 ? C->x[k] * vector[c] * b->eq.column_scale[c] : 0.0;
         }
-        of_pair[d] = fabs(side) > null_rounding * largest ? side : 0.0;
+        of_pair[d] = fabs(side) > dalcs_alike * largest ? side : 0.0;
     }
     dalcs_partition_keep_first(b->stages->block_of, b->system, of_pair);
 }
@@ -154,7 +151,7 @@ static enum dalcs_status make_orthogonal(const struct dalcs_stage_workshop *b, d
                                                 n_pairs, length, NULL, 1, left, n, work) == 0;
     *rank = 0;
     for (int k = 0; is_done && k < n && k < n_pairs; k++) {
-        *rank += length[k] > null_rounding * length[0] ? 1 : 0;
+        *rank += length[k] > dalcs_alike * length[0] ? 1 : 0;
     }
     for (int k = 0; is_done && k < n; k++) {
         for (int i = 0; i < n; i++) {

@@ -7,19 +7,15 @@
  * first: what later blocks read of them (partition.h) follows. */
 #include "stage_singular.h"
 
+#include "magnitudes.h"
 #include "null_space.h"
 #include "partition.h"
+#include "rounding.h"
 #include "stages_internal.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* Beside what it was, a vector this small is what rounding left of it. */
-static const double independent = 1e-9;
-
-/* A sum this small beside its terms is rounding. */
-static const double rounding = 1e-14;
 
 /* What a solution that is 0 on every right-hand side has in diodes. */
 struct trace {
@@ -106,7 +102,7 @@ static double other_side(const struct search *s, int pair, const double *vector)
         sum += term;
         size += fabs(term);
     }
-    return fabs(sum) > rounding * size ? sum : 0.0;
+    return fabs(sum) > dalcs_sum_rounded * size ? sum : 0.0;
 }
 
 static enum dalcs_status keep_trace(struct search *s, struct trace *trace) {
@@ -180,11 +176,11 @@ static enum dalcs_status find_traces(struct search *s) {
             }
         }
         double norm = norm_of(s->of_pair, n_pairs);
-        if (!(norm > independent * before)) {
-            continue;
+        if (!(norm > dalcs_alike * before)) {
+            continue; /* what rounding left of it */
         }
         for (int d = 0; d < n_pairs; d++) {
-            s->of_pair[d] = fabs(s->of_pair[d]) > independent * norm ? s->of_pair[d] / norm : 0.0;
+            s->of_pair[d] = fabs(s->of_pair[d]) > dalcs_alike * norm ? s->of_pair[d] / norm : 0.0;
         }
         for (int c = 0; c < s->n_columns; c++) {
             vector[c] /= norm;

@@ -16,19 +16,15 @@
 #include "stage_update.h"
 
 #include "extended.h"
+#include "magnitudes.h"
+#include "rounding.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A pivot of S this small beside the elements it comes from may be rounding: then the mode may be
- * singular, which its own factors tell. */
-static const double least_pivot = 1e-9;
-
 /* The residual may be so many times the base's, or rounding in any case, or what nobody sees. */
 static const double residual_growth = 4.0;
-static const double residual_of_rounding = 5e-15;
-static const double largest_residual = 1e-13; /* as it is reported: to be no more than rounding */
 
 /* So many bases are looked at, the latest first. */
 enum { MOST_BASES = 64 };
@@ -54,8 +50,9 @@ bool dalcs_stage_update_is_doubtful(const struct dalcs_stages *stages,
         return false;
     }
     double of_base = residual_growth * entry->factors->update->base->residual;
-    double let_be = fmin(stages->unseen, largest_residual);
-    return !(entry->residual <= fmax(of_base, fmax(residual_of_rounding, let_be)));
+    /* half of what an answer may be off by: it is reported as rounding, and the base has the other half */
+    double let_be = fmin(stages->unseen, 0.5 * dalcs_answer_rounded);
+    return !(entry->residual <= fmax(of_base, fmax(dalcs_sum_rounded, let_be)));
 }
 
 void dalcs_stage_update_check(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
@@ -186,7 +183,7 @@ static enum dalcs_status prepare(struct dalcs_stages *stages, const struct dalcs
     for (int q = 0; q < f->n_systems && *good; q++) {
         double pivot;
         DALCS_TRY(invert(stages->system, u, q, &pivot));
-        *good = pivot >= least_pivot;
+        *good = pivot >= dalcs_alike; /* over what it comes from; else the mode may be singular */
     }
     return DALCS_OK;
 }

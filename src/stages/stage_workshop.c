@@ -2,14 +2,12 @@
 #include "stage_workshop.h"
 
 #include "extended.h"
+#include "magnitudes.h"
 #include "stage_choice.h"
 #include "stage_shift.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* With a pivot smaller than this (balanced) the mode may be singular. */
-static const double doubtful_pivot = 1e-9;
 
 /* Below this pivot (balanced) an elimination in long double leaves of a solution that is 1 more than 32 roundings of a
  * double, which is what current_error.c takes for rounding: 2^-63 over it is 2^-47. */
@@ -268,7 +266,7 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b, bool *is_los
         dalcs_workshop_eliminate(b);
     }
     long double pivot = solve_kept(b);
-    if (pivot < doubtful_pivot && b->open.nullity == 0) {
+    if (pivot < dalcs_alike && b->open.nullity == 0) { /* balanced: the mode may be singular */
         b->is_known = false;
         DALCS_TRY(dalcs_stage_choice_find(b));
         if (b->open.nullity > 0) {

@@ -17,10 +17,6 @@
 #include <stdint.h>
 #include <suitesparse/klu.h>
 
-/* Equations without derivatives hold to rounding, even if it is rounding of large conductances, unless
- * a mode is singular and the states contradict it, which takes a circuit that is not passive. */
-static const double dalcs_largest_residual = 1e-6;
-
 struct dalcs_stage_entry;
 struct dalcs_stage_plan;
 struct dalcs_stage_workshop;
@@ -158,7 +154,9 @@ static inline bool dalcs_stages_have_maps(const struct dalcs_stages *stages) {
 double dalcs_stage_spread(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                           int row, const double *in, const double *scale);
 
-/* Largest residual of the stage equations over the size of their terms. */
+/* Largest residual of the stage equations over the size of their terms. Equations without derivatives hold to rounding, even if
+ * it is rounding of large conductances, unless a mode is singular and the states contradict it, which takes a circuit that
+ * is not passive. */
 double dalcs_stage_residual(const struct dalcs_stage_entry *entry);
 
 #endif

@@ -3,11 +3,9 @@
 #include "stage_workshop.h"
 
 #include "extended.h"
+#include "magnitudes.h"
 
 #include <string.h>
-
-/* The smallest pivot (balanced) that makes an unknown a follower. */
-static const long double least_follower = 1e-2L;
 
 /* What the conditions of a singular mode add to S, and to its right-hand sides: stage_choice.h. */
 static double border(const struct dalcs_stage_workshop *b, int i, const double *of_choice, int n,
@@ -67,8 +65,8 @@ void dalcs_workshop_eliminate(struct dalcs_stage_workshop *b) {
     fill_whole(b);
     b->kept.n_kept = b->n_x;
     b->kept.n_followers = 0;
-    dalcs_extended_eliminate(b->n_x, n, n + b->n_rhs, least_follower, b->kept.whole,
-                             b->kept.row_of);
+    /* a pivot (balanced) that is slight makes no follower */
+    dalcs_extended_eliminate(b->n_x, n, n + b->n_rhs, dalcs_slight, b->kept.whole, b->kept.row_of);
     for (int r = 0; r < n; r++) {
         b->kept.owner[r] = -1;
     }

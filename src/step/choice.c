@@ -1,6 +1,8 @@
 /* choice.c - stages, tolerance and maps of a part, as measured: doc/integrator.md says why. */
 #include "choice.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 
 /* What a small part aims at where less is asked for. A run takes hardly longer for it, and an event is where it should
@@ -15,7 +17,7 @@ static const double loose = 1e-4;
  * conductances spread by so much: random converters lose digits on factors from 1e7 on. With few stages
  * steps are short, and there are enough of them for each map. */
 static const double maps_when_tight = 1.5, maps_when_not = 0.5;
-static const double tight = 1e-7, spread_of_mild = 1e6;
+static const double tight = 1e-7;
 
 enum { MANY_STAGES = 7 };
 
@@ -125,7 +127,7 @@ static int choose_stages(double tolerance, bool does_better, const struct dalcs_
 
 static int choose_map_limit(double tolerance, const struct dalcs_conductances *g, int stages,
                             int dense_limit) {
-    bool is_worth_it = g->most > spread_of_mild * g->least || stages < MANY_STAGES;
+    bool is_worth_it = g->least < dalcs_nothing * g->most || stages < MANY_STAGES;
     bool more = tolerance < tight && is_worth_it;
     return (int)((more ? maps_when_tight : maps_when_not) * dense_limit);
 }

@@ -10,14 +10,11 @@
 #include "current_error.h"
 
 #include "extremes.h"
+#include "magnitudes.h"
 #include "step_error.h"
 
 #include <float.h>
 #include <math.h>
-
-/* What is left of the drift after its filter once more is this many times what currents are off by between
- * the nodes, while something dies away within the step to a third or less. */
-static const double pessimism = 10.0;
 
 /* No step gets longer for an error below this part of what is allowed. */
 static const double noticed = 1.0 / 512.0;
@@ -45,9 +42,6 @@ enum { STEPS_BETWEEN = 256, STEPS_WITH = 32 };
 
 static const double growth = 2.0;
 
-/* Voltages that errors of states move by no more than this, over what is allowed, are well known if states are. */
-static const double least_lever = 8.0;
-
 static double allowed_of(const struct dalcs_radau_part *part, int k, const double unit[2],
                          const double besides[2]) {
     int column = part->stages.levered[k];
@@ -73,8 +67,8 @@ static double spread_of_states(const struct dalcs_radau_part *part,
     return largest;
 }
 
-/* Could states as large as they have been make an error that is noticed? In a voltage one that is much larger than
- * in states: most voltages follow them. */
+/* Could states as large as they have been make an error that is noticed? In a voltage one that is beyond that of states:
+ * most voltages follow them. */
 static bool has_lever(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
                       const double unit[2], const double besides[2]) {
     const struct dalcs_stages *stages = &part->stages;
@@ -83,10 +77,10 @@ static bool has_lever(const struct dalcs_radau_part *part, const struct dalcs_st
     for (int k = 0; k < stages->n_levered; k++) {
         double spread =
             dalcs_stage_spread_of_current(stages, entry, k, part->segment.in, part->scales.column);
-        double least = pessimism * allowed_of(part, k, unit, besides);
+        double least = dalcs_beyond * allowed_of(part, k, unit, besides);
         if (growth * spread > noticed * least && !is_current[stages->levered[k]]) {
             of_states = of_states < 0.0 ? spread_of_states(part, entry, unit, besides) : of_states;
-            least *= dalcs_larger(1.0, least_lever * growth * of_states / noticed);
+            least *= dalcs_larger(1.0, dalcs_beyond * growth * of_states / noticed);
         }
         if (growth * spread > noticed * least) {
             return true;
@@ -151,13 +145,15 @@ void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry
     }
     for (int k = 0; k < n; k++) {
         double *worst = k < stages->n_currents ? &e->of_currents : &e->of_voltages;
-        double error = fabs(part->scales.current_drift[k]) / pessimism;
+        /* What is left of the drift after its filter once more is so many times what currents are off by between the nodes,
+         * while something dies away within the step to a third or less. */
+        double error = fabs(part->scales.current_drift[k]) / dalcs_beyond;
         double allowed = allowed_of(part, k, unit, besides);
         double least = dalcs_larger(noticed, dalcs_smaller(*worst, 1.0));
         if (!(error > least * allowed)) {
             continue;
         }
-        if (!(error * pessimism > rounding_of(part, entry, k))) {
+        if (!(error * dalcs_beyond > rounding_of(part, entry, k))) {
             continue;
         }
         *worst = dalcs_larger(*worst, error / allowed);

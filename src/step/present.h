@@ -27,10 +27,6 @@ void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, 
 /* The state becomes part->work.after. */
 void dalcs_radau_go_after(const struct dalcs_radau *r, struct dalcs_radau_part *part);
 
-/* Defects of a state, over what is allowed, that need no projection; of larger ones currents across
- * capacitors are the derivatives. */
-static const double dalcs_worth_projecting = 1e-2;
-
 /* Where t is in the present segment, which may end a rounding earlier. */
 static inline double dalcs_radau_theta(const struct dalcs_radau_part *part, double t) {
     double theta = (t - part->segment.t) / part->segment.h;

@@ -2,14 +2,12 @@
 #include "smooth_step.h"
 
 #include "extremes.h"
+#include "magnitudes.h"
 #include "present.h"
 #include "rounding.h"
 #include "smooth_newton.h"
 
 #include <math.h>
-
-/* The part of what a step's error may be that is left to Newton's method (kappa of Hairer and Wanner, section IV.8). */
-static const double newton_part = 1e-2;
 
 /* A step in which so many are not enough is too long: near the solution each doubles the digits. */
 enum { MOST_STEPS = 12 };
@@ -172,7 +170,7 @@ static enum dalcs_status add_missed(struct dalcs_radau_part *part,
 static enum dalcs_status iterate(struct dalcs_radau_part *part, struct dalcs_stage_entry **entry) {
     struct dalcs_smooth_newton *n = &part->smooth->newton;
     const double tolerance = dalcs_larger(part->component->osnsp.options.certificate_tolerance,
-                                          newton_part * part->inner_tolerance);
+                                          dalcs_slight * part->inner_tolerance);
     for (int step = 0; step < MOST_STEPS; step++) {
         bool repeats;
         bool is_done;

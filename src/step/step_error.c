@@ -9,21 +9,18 @@
 
 #include "current_error.h"
 #include "extremes.h"
+#include "magnitudes.h"
 #include "quads.h"
 #include "wide_vectors.h"
 
 #include <math.h>
 
 /* Signals smaller than this part of the largest of their unit are held to that one's scale; the
- * current of a pair likewise. */
+ * current of a pair where it is slight beside it. */
 static const double smallest_scale = 1e-5;
-static const double smallest_pair = 1e-2;
 
 /* No column is known better than this part of what would balance the largest of the others. */
 static const double rounding_part = 2e-14;
-
-/* Sources that disagree by more than this part of the largest signal. */
-static const double clash_part = 1e-9;
 
 static bool is_on(const struct dalcs_radau_part *part, int pair) {
     return dalcs_osnsp_is_on(&part->component->osnsp, pair);
@@ -70,7 +67,7 @@ static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau
     a->tolerance = part->inner_tolerance;
     a->least[0] = smallest_scale * q->unit[0];
     a->least[1] = smallest_scale * q->unit[1];
-    a->least[2] = smallest_pair * q->unit[1];
+    a->least[2] = dalcs_slight * q->unit[1];
     a->besides[0] = r->besides[0] + dalcs_step_crossed(part, 0, q->here);
     a->besides[1] = r->besides[1] + dalcs_step_crossed(part, 1, q->here);
     a->besides[2] = rounding_part * part->segment.rounding * q->unit[1] + a->besides[1];
@@ -82,7 +79,7 @@ double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const d
     if (pair >= 0 && !is_on(part, pair)) {
         return 0.0;
     }
-    double least = pair >= 0 ? smallest_pair * unit[1]
+    double least = pair >= 0 ? dalcs_slight * unit[1]
                              : part->scales.kinds->leans[column] * smallest_scale *
                                    unit[s->column_is_current[column] ? 1 : 0];
     return dalcs_larger(least,
@@ -204,7 +201,7 @@ bool dalcs_step_clashes(const struct dalcs_radau_part *part, const struct dalcs_
     const struct dalcs_collocation *m = part->stages.method;
     const double *clash = part->segment.out + part->stages.layout.n_fixed;
     const double *last = clash + dalcs_stage_n_clashes(entry);
-    double limit = clash_part * dalcs_larger(unit[0], unit[1]);
+    double limit = dalcs_alike * dalcs_larger(unit[0], unit[1]);
     for (; clash < last; clash += m->s) { /* those of one null vector, at the stages */
         for (int i = 0; i < m->s && (i == 0 || m->node[i + 1] <= end); i++) {
             if (fabs(clash[i]) > limit) {

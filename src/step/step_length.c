@@ -19,7 +19,7 @@ static const double rungs_unseen = 3.0;
 enum { MOST_PATIENCE = 4096 };
 
 /* A PULSE that begins so many periods late is not looked at. */
-static const double most_delay = 4.0;
+enum { MOST_DELAY = 4 };
 
 /* The longest step over the shortest period of a source, by stages: fewer nodes see less. */
 static double most_periods(int stages) {
@@ -38,7 +38,7 @@ double dalcs_length_longest(const struct dalcs_radau *r, const struct dalcs_rada
  * after many periods. */
 static double longest_span(const struct dalcs_stimulus *s) {
     if (s->kind != DALCS_STIMULUS_PULSE || s->u.pulse.n_periods > 0.0 ||
-        !(s->u.pulse.delay < most_delay * s->u.pulse.period)) {
+        !(s->u.pulse.delay < MOST_DELAY * s->u.pulse.period)) {
         return INFINITY;
     }
     double ramps = s->u.pulse.rise + s->u.pulse.fall;

@@ -1,9 +1,7 @@
-/* recorder.c - scheduling rows, and keeping events and jumps in bounded memory. */
+/* recorder.c - scheduling rows. */
 #include "recorder.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Output times this close to a step's end, over the step, are at its end. */
 static const double same_time = 1e-9;
@@ -13,27 +11,15 @@ enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
                                        const struct dalcs_sink *sink,
                                        const struct dalcs_schedule *schedule, bool keep,
                                        size_t limit) {
-    *r = (struct dalcs_recorder){
-        .network = network, .sink = sink, .schedule = *schedule, .keep = keep, .limit = limit};
+    *r = (struct dalcs_recorder){.network = network, .sink = sink, .schedule = *schedule};
     size_t n = (size_t)network->n_outputs;
     r->n_shown = network->n_outputs;
     r->now = dalcs_arena_alloc(&r->arena, n, sizeof(double));
     r->before = dalcs_arena_alloc(&r->arena, n, sizeof(double));
     r->row = dalcs_arena_alloc(&r->arena, n, DALCS_MOST_ROWS * sizeof(double));
-    r->seen = dalcs_arena_alloc(&r->arena, (size_t)network->n_systems, sizeof(*r->seen));
-    r->jump_state = dalcs_arena_alloc(&r->arena, (size_t)network->n_states, sizeof(*r->jump_state));
-    bool complete = r->now != NULL && r->before != NULL && r->row != NULL && r->seen != NULL &&
-                    r->jump_state != NULL;
-    size_t most_pairs = 0;
-    for (int k = 0; complete && k < network->n_systems; k++) {
-        size_t n_pairs = (size_t)network->system[k].n_pairs;
-        most_pairs = n_pairs > most_pairs ? n_pairs : most_pairs;
-        r->seen[k] = dalcs_arena_alloc(&r->arena, (n_pairs + 63) / 64, sizeof(uint64_t));
-        complete = r->seen[k] != NULL;
-    }
-    r->impulse = dalcs_arena_alloc(&r->arena, 2 * most_pairs, sizeof(*r->impulse));
-    complete = complete && r->impulse != NULL;
-    if (!complete) {
+    const bool complete = r->now != NULL && r->before != NULL && r->row != NULL;
+    const enum dalcs_status status = dalcs_event_log_setup(&r->log, network, keep, limit);
+    if (!complete || status != DALCS_OK) {
         dalcs_recorder_finish(r);
         return DALCS_E_NOMEM;
     }
@@ -41,8 +27,7 @@ enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
 }
 
 void dalcs_recorder_finish(struct dalcs_recorder *r) {
-    free(r->event);
-    free(r->jump);
+    dalcs_event_log_finish(&r->log);
     dalcs_arena_finish(&r->arena);
     *r = (struct dalcs_recorder){0};
 }
@@ -106,61 +91,16 @@ static enum dalcs_status emit(struct dalcs_recorder *r, double time, const doubl
     return r->sink->row(r->sink->user, time, value);
 }
 
-/* Modes that changed since last time become events. */
-/* A source whose formula has several pairs crosses them all at once where it jumps: one event. */
-static bool is_told(const struct dalcs_recorder *r, const struct dalcs_pair *pair, double t,
-                    bool on) {
-    const struct dalcs_event *last = r->n_events > 0 ? &r->event[r->n_events - 1] : NULL;
-    return pair->is_formula && last != NULL && strcmp(last->element, pair->element) == 0 &&
-           last->time == t && last->on == on;
-}
-
-static enum dalcs_status note_events(struct dalcs_recorder *r, const struct dalcs_euler *e,
-                                     bool record) {
-    for (int k = 0; k < e->n_components; k++) {
-        const struct dalcs_osnsp *p = &e->component[k].osnsp;
-        for (int word = 0; word < p->n_words; word++) {
-            uint64_t changed = r->seen[k][word] ^ p->mode[word];
-            if (changed == 0) {
-                continue;
-            }
-            r->seen[k][word] = p->mode[word];
-            for (int bit = 0; record && bit < 64; bit++) {
-                int d = 64 * word + bit;
-                if ((changed >> bit & 1) == 0 ||
-                    is_told(r, &p->system->pair[d], e->t, dalcs_osnsp_is_on(p, d))) {
-                    continue;
-                }
-                if (r->n_events == r->limit) {
-                    r->n_events_dropped++;
-                    continue;
-                }
-                DALCS_TRY(
-                    dalcs_grow(&r->event, &r->event_capacity, r->n_events + 1, sizeof(*r->event)));
-                r->event[r->n_events++] =
-                    (struct dalcs_event){.time = e->t,
-                                         .element = p->system->pair[d].element,
-                                         .on = dalcs_osnsp_is_on(p, d)};
-            }
-        }
-    }
-    return DALCS_OK;
-}
-
 enum dalcs_status dalcs_recorder_before_start(struct dalcs_recorder *r,
                                               const struct dalcs_euler *e) {
-    if (r->keep) {
-        DALCS_TRY(note_events(r, e, false));
-    }
+    DALCS_TRY(dalcs_event_log_note(&r->log, e, false));
     dalcs_recorder_evaluate(r->network, e, r->before);
     r->starts_on_edge = true;
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_recorder_start(struct dalcs_recorder *r, const struct dalcs_euler *e) {
-    if (r->keep) {
-        DALCS_TRY(note_events(r, e, r->starts_on_edge));
-    }
+    DALCS_TRY(dalcs_event_log_note(&r->log, e, r->starts_on_edge));
     dalcs_recorder_evaluate(r->network, e, r->now);
     r->have_before = true;
     if (next_output(&r->schedule) <= 0.0) {
@@ -173,9 +113,7 @@ enum dalcs_status dalcs_recorder_start(struct dalcs_recorder *r, const struct da
 }
 
 enum dalcs_status dalcs_recorder_step(struct dalcs_recorder *r, const struct dalcs_euler *e) {
-    if (r->keep) {
-        DALCS_TRY(note_events(r, e, true));
-    }
+    DALCS_TRY(dalcs_event_log_note(&r->log, e, true));
     struct dalcs_schedule *s = &r->schedule;
     double due = next_output(s);
     double near = same_time * e->h;
@@ -214,9 +152,7 @@ enum dalcs_status dalcs_recorder_step(struct dalcs_recorder *r, const struct dal
 }
 
 enum dalcs_status dalcs_recorder_cross(struct dalcs_recorder *r, const struct dalcs_euler *e) {
-    if (r->keep) {
-        DALCS_TRY(note_events(r, e, true));
-    }
+    DALCS_TRY(dalcs_event_log_note(&r->log, e, true));
     struct dalcs_schedule *s = &r->schedule;
     double near = same_time * e->h;
     bool wanted = s->kind != DALCS_AT_TIMES && e->t >= s->start - near;
@@ -324,108 +260,5 @@ enum dalcs_status dalcs_recorder_rows(struct dalcs_recorder *r, const struct dal
     for (int k = 0; k < n; k++) {
         DALCS_TRY(sink->row(sink->user, time[k], r->row + (size_t)k * n_shown));
     }
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r, const struct dalcs_euler *e) {
-    return r->keep ? note_events(r, e, true) : DALCS_OK;
-}
-
-enum dalcs_status dalcs_recorder_leap(struct dalcs_recorder *r, const struct dalcs_leap *leap) {
-    if (!r->keep) {
-        return DALCS_OK;
-    }
-    size_t n = (size_t)leap->n_periods * (size_t)leap->n_events;
-    size_t kept = n < r->limit - r->n_events ? n : r->limit - r->n_events;
-    DALCS_TRY(dalcs_grow(&r->event, &r->event_capacity, r->n_events + kept, sizeof(*r->event)));
-    struct dalcs_event *to = r->event + r->n_events;
-    const struct dalcs_event *end = to + kept;
-    for (long k = 0; to < end; k++) {
-        double time = 0.0;
-        for (int i = 0; i < leap->n_events && to < end; i++, to++) {
-            const struct dalcs_leap_event *e = &leap->event[i];
-            bool is_same = i > 0 && e->moment == leap->event[i - 1].moment;
-            time = is_same ? time : dalcs_leap_time(e->moment, k);
-            *to = (struct dalcs_event){
-                .time = time, .element = leap->system->pair[e->pair].element, .on = e->is_on};
-        }
-    }
-    r->n_events += kept;
-    r->n_events_dropped += n - kept;
-    return DALCS_OK;
-}
-
-/* Which states and pairs of a jump are worth a line: those that changed by more than rounding. */
-static bool is_noticeable(double change, double largest) {
-    return fabs(change) > 1e-9 * largest;
-}
-
-static size_t list_jump_states(const struct dalcs_recorder *r, const struct dalcs_euler_jump *j) {
-    static const double no_inputs[1] = {1.0}; /* states are columns only */
-    size_t n = 0;
-    for (int i = 0; i < r->network->n_states; i++) {
-        const struct dalcs_state *x = &r->network->state[i];
-        if (x->probe.system != j->system || !dalcs_probe_is_known(&x->probe, j->n_known)) {
-            continue;
-        }
-        double before = dalcs_probe_value(&x->probe, j->before, no_inputs);
-        double after = dalcs_probe_value(&x->probe, j->after, no_inputs);
-        double change = after - before;
-        if (is_noticeable(change, fmax(fabs(before), fabs(after)))) {
-            r->jump_state[n++] =
-                (struct dalcs_jump_state){.element = x->element, .before = before, .after = after};
-        }
-    }
-    return n;
-}
-
-static size_t list_impulses(const struct dalcs_recorder *r, const struct dalcs_euler_jump *j) {
-    const struct dalcs_system *s = &r->network->system[j->system];
-    double largest[2] = {0.0, 0.0};
-    for (int d = 0; d < s->n_pairs; d++) {
-        largest[0] = fmax(largest[0], fabs(j->charge[d]));
-        largest[1] = fmax(largest[1], fabs(j->flux[d]));
-    }
-    size_t n = 0;
-    for (int d = 0; d < s->n_pairs; d++) {
-        /* w is the reverse voltage of a diode; a person reads a switch forward */
-        bool is_switch = s->pair[d].kind == DALCS_PAIR_SWITCH;
-        const double value[2] = {j->charge[d], is_switch ? -j->flux[d] : j->flux[d]};
-        for (int i = 0; i < 2; i++) {
-            if (!s->pair[d].is_formula && value[i] != 0.0 && is_noticeable(value[i], largest[i])) {
-                r->impulse[n++] = (struct dalcs_impulse){
-                    .element = s->pair[d].element, .is_flux = i == 1, .value = value[i]};
-            }
-        }
-    }
-    return n;
-}
-
-enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump *j) {
-    struct dalcs_recorder *r = user;
-    if (!r->keep) {
-        return DALCS_OK;
-    }
-    size_t n_states = list_jump_states(r, j);
-    size_t n_impulses = list_impulses(r, j);
-    if (n_states + n_impulses == 0 || r->n_jumps == r->limit) {
-        r->n_jumps_dropped += n_states + n_impulses > 0 ? 1 : 0;
-        return DALCS_OK;
-    }
-    struct dalcs_jump_state *state = dalcs_arena_alloc(&r->arena, n_states, sizeof(*state));
-    struct dalcs_impulse *impulse = dalcs_arena_alloc(&r->arena, n_impulses, sizeof(*impulse));
-    DALCS_TRY(dalcs_grow(&r->jump, &r->jump_capacity, r->n_jumps + 1, sizeof(*r->jump)));
-    if (state == NULL || impulse == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    memcpy(state, r->jump_state, n_states * sizeof(*state));
-    memcpy(impulse, r->impulse, n_impulses * sizeof(*impulse));
-    r->jump[r->n_jumps++] = (struct dalcs_jump){.time = j->time,
-                                                .n_states = n_states,
-                                                .state = state,
-                                                .n_impulses = n_impulses,
-                                                .impulse = impulse,
-                                                .energy_lost = j->energy_lost,
-                                                .source_work = j->source_work};
     return DALCS_OK;
 }

@@ -1,10 +1,10 @@
-/* recorder.h - from the engine's answers to rows of signals, events and jumps.
+/* recorder.h - from the engine's answers to rows of signals; events and jumps are in its log.
  *
  * Rows appear on a schedule of output times; between steps a signal is interpolated linearly. */
 #ifndef DALCS_RECORDER_H
 #define DALCS_RECORDER_H
 
-#include "cycle.h"
+#include "event_log.h"
 #include "rows.h"
 
 struct dalcs_schedule {
@@ -37,16 +37,8 @@ struct dalcs_recorder {
         double largest, at; /* not below 0; s */
     } * watched;            /* borrowed */
 
-    bool keep; /* events and jumps */
-    size_t limit;
-    uint64_t **seen; /* [n_systems] modes last seen */
-    struct dalcs_event *event;
-    size_t n_events, event_capacity, n_events_dropped;
-    struct dalcs_jump *jump;
-    size_t n_jumps, jump_capacity, n_jumps_dropped;
-    struct dalcs_arena arena; /* what jumps point to, and what has the same size during the run */
-    struct dalcs_jump_state *jump_state; /* work [n_states]: what a jump is made of */
-    struct dalcs_impulse *impulse;       /* work [2 * pairs of the largest system] */
+    struct dalcs_event_log log;
+    struct dalcs_arena arena;
 };
 
 enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
@@ -92,17 +84,6 @@ enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalc
 /* Rows at these times: the first n of `rows`; n_due of them are the next that are due. */
 enum dalcs_status dalcs_recorder_rows(struct dalcs_recorder *r, const struct dalcs_rows *rows,
                                       const double *time, int n, int n_due) DALCS_MUST_CHECK;
-
-/* Modes that changed at e->t become events. */
-enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r,
-                                        const struct dalcs_euler *e) DALCS_MUST_CHECK;
-
-/* The events of the periods that were leapt over. */
-enum dalcs_status dalcs_recorder_leap(struct dalcs_recorder *r,
-                                      const struct dalcs_leap *leap) DALCS_MUST_CHECK;
-
-/* dalcs_euler's on_jump; user is the recorder. */
-enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump *jump);
 
 /* Every output's present value. */
 void dalcs_recorder_evaluate(const struct dalcs_network *network, const struct dalcs_euler *e,

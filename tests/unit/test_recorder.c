@@ -31,8 +31,8 @@ static enum dalcs_status run(const char *text, double h, double stop,
     ck_assert_int_eq(dalcs_euler_setup(&e, &t.circuit, &t.network, &options, h, stop), DALCS_OK);
     ck_assert_int_eq(dalcs_recorder_setup(&r, &t.network, &sink, schedule, limit > 0, limit),
                      DALCS_OK);
-    e.on_jump = dalcs_recorder_jump;
-    e.jump_user = &r;
+    e.on_jump = dalcs_event_log_jump;
+    e.jump_user = &r.log;
     n_rows = 0;
     enum dalcs_status status = dalcs_euler_start(&e, t.network.initial);
     status = status == DALCS_OK ? dalcs_recorder_start(&r, &e) : status;
@@ -149,29 +149,29 @@ START_TEST(test_events) {
     const struct dalcs_schedule every = {.kind = DALCS_EVERY_STEP};
     ck_assert_int_eq(run(rectifier, 0.7e-3, 0.1, &every, 1000), DALCS_OK);
     size_t n_expected = 0;
-    bool was_on = r.n_events > 0 && !r.event[0].on;
+    bool was_on = r.log.n_events > 0 && !r.log.event[0].on;
     for (int k = 1; k < n_rows; k++) {
         double v = sin(2.0 * acos(-1.0) * 50.0 * row_time[k]);
         if ((v > 0.0) != was_on) {
             was_on = !was_on;
-            ck_assert_uint_lt(n_expected, r.n_events);
-            ck_assert_str_eq(r.event[n_expected].element, "d1");
-            ck_assert(r.event[n_expected].on == was_on);
-            ck_assert(r.event[n_expected].time == row_time[k]);
+            ck_assert_uint_lt(n_expected, r.log.n_events);
+            ck_assert_str_eq(r.log.event[n_expected].element, "d1");
+            ck_assert(r.log.event[n_expected].on == was_on);
+            ck_assert(r.log.event[n_expected].time == row_time[k]);
             n_expected++;
         }
     }
-    ck_assert_uint_eq(r.n_events, n_expected);
+    ck_assert_uint_eq(r.log.n_events, n_expected);
     ck_assert_uint_ge(n_expected, 9);
-    ck_assert_uint_eq(r.n_events_dropped, 0);
+    ck_assert_uint_eq(r.log.n_events_dropped, 0);
     finish();
     /* In bounded memory, and none when nobody asked. */
     ck_assert_int_eq(run(rectifier, 0.7e-3, 0.1, &every, 4), DALCS_OK);
-    ck_assert_uint_eq(r.n_events, 4);
-    ck_assert_uint_eq(r.n_events_dropped, n_expected - 4);
+    ck_assert_uint_eq(r.log.n_events, 4);
+    ck_assert_uint_eq(r.log.n_events_dropped, n_expected - 4);
     finish();
     ck_assert_int_eq(run(rectifier, 0.7e-3, 0.1, &every, 0), DALCS_OK);
-    ck_assert_uint_eq(r.n_events + r.n_events_dropped, 0);
+    ck_assert_uint_eq(r.log.n_events + r.log.n_events_dropped, 0);
     finish();
 }
 
@@ -183,8 +183,8 @@ START_TEST(test_jumps) {
                                "C3 3 0 1u IC=7\n.tran 10u 1m uic\n.save v(1)\n";
     const struct dalcs_schedule every = {.kind = DALCS_EVERY_STEP};
     ck_assert_int_eq(run(text, 1e-5, 1e-4, &every, 10), DALCS_OK);
-    ck_assert_uint_eq(r.n_jumps, 1);
-    const struct dalcs_jump *j = &r.jump[0];
+    ck_assert_uint_eq(r.log.n_jumps, 1);
+    const struct dalcs_jump *j = &r.log.jump[0];
     ck_assert_double_eq(j->time, 0.0);
     ck_assert_uint_eq(j->n_states, 2);
     ck_assert_str_eq(j->state[0].element, "c1");
