@@ -192,7 +192,6 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->count.stretches++;
-    part->watch->repeat.screen = NULL;
     part->at.past = part->at.length;
     part->at.length = stretch->to - stretch->from;
     part->at.past_coarse = part->at.was_coarse;
@@ -213,8 +212,8 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     const bool passes = !asks && !part->at.is_drawn && !part->watch->has_turned;
     if (passes) {
         leave_behind(part);
-        audit_repeat_from(audit, part, stretch);
     }
+    audit_batch_from(audit, part, passes ? stretch : NULL);
     return passes;
 }
 
@@ -225,7 +224,6 @@ bool dalcs_audit_begins(struct dalcs_audit *audit, int index) {
 
 void dalcs_audit_put_off(struct dalcs_audit *audit, int index) {
     audit->part[index].watch->is_put_off = true;
-    audit->part[index].watch->repeat.screen = NULL;
 }
 
 /* past: s, the length of the stretch before. */
@@ -286,6 +284,13 @@ static bool is_settled(struct dalcs_audit *audit, const struct dalcs_audit_stret
     return !audit_watch_begins(audit, stretch) && !part->at.is_drawn && !stretch->is_last;
 }
 
+/* How it begins is all that is to be looked at. */
+static bool has_only_jumped(const struct audit_part *part,
+                            const struct dalcs_audit_stretch *stretch) {
+    const struct audit_watch *watch = part->watch;
+    return watch->asked >= 0.0 && watch->has_jumped && !part->at.is_drawn && !stretch->is_last;
+}
+
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     take_up(part, stretch);
@@ -297,6 +302,14 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     const bool is_seen = part->watch->has_turned && !part->watch->makes;
     if ((is_seen && part->watch->asked < 0.0 && !part->at.is_drawn && !stretch->is_last) ||
         (part->watch->makes && is_settled(audit, stretch))) {
+        leave_behind(part);
+        return;
+    }
+    if (has_only_jumped(part, stretch)) {
+        audit->count.audited++;
+        if (!part->watch->saw_beginning) {
+            look_back(audit, stretch);
+        }
         leave_behind(part);
         return;
     }
@@ -323,6 +336,14 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
         if (!part->has_smooth) {
             audit_watch_learn(audit, stretch);
         }
+    }
+}
+
+void audit_look_again(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_part *part = &audit->part[stretch->part];
+    if (!dalcs_audit_passes_over(audit, stretch, 0.0)) {
+        dalcs_audit_leave(audit, stretch);
+        leave_behind(part);
     }
 }
 

@@ -197,6 +197,7 @@ void audit_screen_finish(struct audit_part *part) {
     drop_all(&watch->screens);
     free(watch->screens.slot);
     free(watch->place);
+    free(watch->batch.gathered.input);
     free(watch->fill.sign);
     free(watch->fill.guard);
     for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {

@@ -84,6 +84,7 @@ struct audit_screen {
     bool is_made;
     double limit;     /* that a sum or a sign may be beyond */
     int alarms;       /* that were false */
+    bool has_jumped;  /* states did where a stretch of it began */
     long rests;       /* stretches that it is not asked of after one */
     double *row;      /* [AUDIT_N_ROWS][n_columns in whole quads], constants behind them */
     double *constant; /* [n_places], and of guards */
@@ -148,13 +149,13 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
                       struct audit_screen *screen, const struct audit_question *q,
                       struct audit_answer *answer);
 
-/* quick.c: the stretch has been passed over; so may be those that repeat it. */
-void audit_repeat_from(struct dalcs_audit *audit, struct audit_part *part,
-                       const struct dalcs_audit_stretch *stretch);
+/* batch.c: the stretch has been passed over; so may be those that repeat it. */
+void audit_batch_from(struct dalcs_audit *audit, struct audit_part *part,
+                      const struct dalcs_audit_stretch *stretch);
 
 /* A node beside each of the times, as they are drawn at the same chance. */
-static inline int audit_node_of(const struct dalcs_audit_polynomials *p, int m) {
-    return 1 + m * (p->n_nodes - 1) / AUDIT_SCREEN_TIMES;
+static inline int audit_node_at(int n_nodes, int m) {
+    return 1 + m * (n_nodes - 1) / AUDIT_SCREEN_TIMES;
 }
 
 /* What the rows make of n_nodes values of each column, without constants and stimuli, at the m-th time. */

@@ -136,7 +136,7 @@ void audit_screen_place(const struct audit_watch *watch, const struct audit_scre
                         double *place) {
     double end[AUDIT_MOST_NODES];
     weights_at(p, watch->barycentric, p->end, end);
-    const struct weights w = {watch->now[m], watch->flow[m], end, audit_node_of(p, m)};
+    const struct weights w = {watch->now[m], watch->flow[m], end, audit_node_at(p->n_nodes, m)};
     add_places(watch, screen, p, &w, value, place);
 }
 
@@ -158,7 +158,7 @@ DALCS_TWICE(double, multiply,
         const int n = dalcs_quads_of(p->n_columns);
         *off = fabs(place[AUDIT_PLACE_NODE] -
                     audit_product(n, screen->row + AUDIT_ROW_NOW * n,
-                                  p->value + audit_node_of(p, m) * p->stride));
+                                  p->value + audit_node_at(p->n_nodes, m) * p->stride));
     }
     return far <= at->slack ? at->slack - far - 1.0 : audit_image_signs(screen, p, at, place);
 }

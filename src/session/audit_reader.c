@@ -158,30 +158,13 @@ static uint64_t key_of(const struct dalcs_radau_part *part) {
     return hash;
 }
 
-static inline const struct dalcs_stage_entry *entry_of(const struct dalcs_radau_part *part) {
-    return part->segment.late != NULL    ? part->segment.late
-           : part->segment.brief != NULL ? part->segment.brief->entry
-                                         : part->segment.entry;
-}
-
-/* Does the segment begin with its input? One of those kept of a period has another start. */
-static inline bool begins_with_input(const struct dalcs_radau_part *part) {
-    const int n_x = part->component->system->n_x;
-    const double *in = part->segment.in;
-    const double *out = part->segment.out;
-    bool is = true;
-    for (int x = 0; x < n_x; x++) {
-        is &= in[x] == out[x];
-    }
-    return is;
-}
-
 /* The map whose image of part->in the segment is; NULL: none. */
-static const struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *part) {
-    const struct dalcs_stage_entry *entry = entry_of(part);
+static struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *part) {
+    struct dalcs_stage_entry *entry = dalcs_audit_entry_of(&part->segment);
     const bool has_map =
         entry != NULL && dalcs_stages_have_maps(&part->stages) && dalcs_stage_has_map(entry);
-    return part->segment.late != NULL || (has_map && begins_with_input(part)) ? entry : NULL;
+    return part->segment.late != NULL || (has_map && dalcs_audit_begins_with_input(part)) ? entry
+                                                                                          : NULL;
 }
 
 static const struct dalcs_audit_polynomials *store(struct audit_members *m,
@@ -212,24 +195,6 @@ struct dalcs_audit_stretch *dalcs_audit_reader_stretch(struct dalcs_audit_run *a
     stretch->rule = dalcs_segment_is_coarse(part) ? DALCS_AUDIT_COARSE : DALCS_AUDIT_SMOOTH;
     stretch->stored = store(m, part);
     return stretch;
-}
-
-bool dalcs_audit_reader_repeats(const struct dalcs_radau_part *part, struct audit_members *m) {
-    const struct dalcs_osnsp *osnsp = &part->component->osnsp;
-    if (m->map == NULL || entry_of(part) != m->map || part->segment.h != m->stored.step ||
-        part->segment.end != m->last_end || part->segment.by_euler ||
-        part->component->positions.joined) {
-        return false;
-    }
-    bool is_same = part->segment.late != NULL || begins_with_input(part);
-    for (int k = 0; k < osnsp->n_words; k++) {
-        is_same &= osnsp->mode[k] == m->last_mode[k];
-    }
-    m->stretch.from = part->segment.t;
-    m->stretch.to = part->segment.t_end;
-    m->stored.input = part->segment.in;
-    m->stored.value = part->segment.late != NULL ? NULL : part->segment.out;
-    return is_same;
 }
 
 static void complete(void *user, int index) {
@@ -309,6 +274,8 @@ struct dalcs_audit_reader dalcs_audit_reader_of(struct dalcs_audit_run *a) {
                                        .add_lambda = add_lambda,
                                        .is_closed = is_closed,
                                        .read_before = read_before,
+                                       .revisit = dalcs_audit_revisit,
+                                       .go_back = dalcs_audit_go_back,
                                        .read = read_state,
                                        .raise = raise_scales};
 }

@@ -98,6 +98,7 @@ static enum dalcs_status list_stepped(struct dalcs_audit_run *a) {
         if (a->radau->part[k].kind == DALCS_PART_STEPPED) {
             a->stepped[a->n_stepped++] = k;
             start_part(&a->part[k], &a->radau->part[k]);
+            DALCS_TRY(dalcs_audit_present_make(a, k));
         }
     }
     return a->stepped != NULL ? DALCS_OK : DALCS_E_NOMEM;
@@ -126,6 +127,9 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
             dalcs_audit_gates_start(&a->gates, &run->s->circuit, radau, run->s->network.readout);
     }
     status = status == DALCS_OK ? create(a) : status;
+    for (int i = 0; i < a->n_stepped && status == DALCS_OK; i++) {
+        a->part[a->stepped[i]].batch = dalcs_audit_batch_of(a->audit, a->stepped[i]);
+    }
     if (status != DALCS_OK) {
         dalcs_audit_run_finish(a);
     }
@@ -137,7 +141,19 @@ double dalcs_audit_run_chance(struct dalcs_audit_run *a) {
     return (double)(a->seed >> 11) * 0x1p-53;
 }
 
+void dalcs_audit_run_settle(struct dalcs_audit_run *a, int k) {
+    struct audit_members *m = &a->part[k];
+    if (m->held != NULL) {
+        dalcs_audit_settle(a->audit, k);
+        dalcs_stages_release(&a->radau->part[k].stages, m->held);
+        m->held = NULL;
+    }
+}
+
 void dalcs_audit_run_finish(struct dalcs_audit_run *a) {
+    for (int i = 0; a->audit != NULL && i < a->n_stepped; i++) {
+        dalcs_audit_run_settle(a, a->stepped[i]);
+    }
     dalcs_audit_destroy(a->audit);
     dalcs_audit_gates_finish(&a->gates);
     dalcs_arena_finish(&a->arena);
@@ -174,16 +190,26 @@ static double work_of(const struct dalcs_audit_run *a, const struct audit_member
     return work;
 }
 
-/* It repeats the one before, and need not be looked at. */
-static inline bool repeats(struct dalcs_audit_run *a, int k) {
+/* It repeats the one before, and is asked together with others. The map that gave them stays. */
+static inline bool gathers(struct dalcs_audit_run *a, int k) {
     const struct dalcs_radau_part *part = &a->radau->part[k];
+    const struct dalcs_part_segment *s = &part->segment;
     struct audit_members *m = &a->part[k];
-    if (!dalcs_audit_reader_repeats(part, m) ||
-        !dalcs_audit_repeats(a->audit, &m->stretch, work_of(a, m, &part->segment))) {
+    struct dalcs_audit_batch *batch = m->batch;
+    if (!batch->is_on || s->t_end > batch->last || !dalcs_audit_reader_repeats(part, m) ||
+        (s->late == NULL && !dalcs_audit_is_image(a->audit, k, s->in, s->out))) {
         return false;
     }
-    m->last_out = part->segment.out;
-    m->last_time = part->segment.t_end;
+    if (m->held == NULL) {
+        m->held = m->map;
+        dalcs_stages_hold(m->held);
+    }
+    dalcs_audit_put(batch, s->t, s->t_end, s->in, work_of(a, m, s));
+    m->last_out = s->out;
+    m->last_time = s->t_end;
+    if (batch->n == DALCS_AUDIT_BATCH) {
+        dalcs_audit_ask_batch(a->audit, k);
+    }
     return true;
 }
 
@@ -191,9 +217,10 @@ static void leave(struct dalcs_audit_run *a, int k, double to) {
     const struct dalcs_part_segment *segment = &a->radau->part[k].segment;
     const struct audit_members *m = &a->part[k];
     const bool is_last = to >= a->radau->options.stop;
-    if (to == segment->t_end && !is_last && repeats(a, k)) {
+    if (to == segment->t_end && !is_last && gathers(a, k)) {
         return;
     }
+    dalcs_audit_run_settle(a, k);
     const double work = work_of(a, m, segment);
     struct dalcs_audit_stretch *stretch = dalcs_audit_reader_stretch(a, k, to);
     if (!dalcs_audit_passes_over(a->audit, stretch, work) || is_last) {
