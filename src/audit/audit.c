@@ -192,6 +192,7 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->count.stretches++;
+    part->watch->batch.gathered.is_on = false;
     part->at.past = part->at.length;
     part->at.length = stretch->to - stretch->from;
     part->at.past_coarse = part->at.was_coarse;
@@ -212,8 +213,10 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     const bool passes = !asks && !part->at.is_drawn && !part->watch->has_turned;
     if (passes) {
         leave_behind(part);
+        audit_batch_from(audit, part, stretch);
+    } else {
+        part->watch->batch.image = NULL;
     }
-    audit_batch_from(audit, part, passes ? stretch : NULL);
     return passes;
 }
 
@@ -224,6 +227,7 @@ bool dalcs_audit_begins(struct dalcs_audit *audit, int index) {
 
 void dalcs_audit_put_off(struct dalcs_audit *audit, int index) {
     audit->part[index].watch->is_put_off = true;
+    audit->part[index].watch->batch.gathered.is_on = false;
 }
 
 /* past: s, the length of the stretch before. */

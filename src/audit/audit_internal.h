@@ -61,16 +61,19 @@ struct audit_watch {
     bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there */
     double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
 
+    struct audit_image *image; /* that the present one was asked by; NULL: by its values, or not */
+
     struct audit_batch { /* of stretches that repeat one another (batch.c) */
         struct dalcs_audit_batch gathered;
-        const struct audit_screen *screen; /* that asks them */
-        struct audit_image *image;         /* that passed the stretch before over; NULL: none */
-        int n_times;                       /* of the watch's times, those before its end */
-        int n_columns, n_nodes, stride;    /* of polynomials, columns in whole quads */
-        const double *place;               /* of the image at the time that was drawn */
-        double past;                       /* s: that time */
-        int node;                          /* where values beside it are */
-        double length, near;               /* s */
+        struct audit_screen *screen;    /* that asks them */
+        struct audit_image *image;      /* that passed the stretch before over; NULL: none */
+        int n_times;                    /* of the watch's times, those before its end */
+        int n_columns, n_nodes, stride; /* of polynomials, columns in whole quads */
+        const double *place;            /* of the image at the time that was drawn */
+        double past;                    /* s: that time */
+        double end;                     /* of the stretch before, in steps */
+        int node;                       /* where values beside it are */
+        double length, near;            /* s */
         size_t room;
         bool is_busy; /* some are looked at once more */
     } batch;
@@ -214,17 +217,19 @@ struct dalcs_audit {
 /* courses.c: the value of a stimulus where its course is not known. */
 double audit_course_begin(struct dalcs_audit *audit, int stimulus, double t);
 
-/* At a time that is no edge. */
-static inline double audit_stimulus_at(struct dalcs_audit *audit, int stimulus, double t) {
-    const struct audit_course *c = &audit->course[stimulus];
-    if (!(c->from <= t && t <= c->to)) {
-        return audit_course_begin(audit, stimulus, t);
-    }
+static inline double audit_course_value(const struct audit_course *c, double t) {
     double value = c->term[c->n - 1];
     for (int k = c->n - 2; k >= 0; k--) {
         value = value * (t - c->origin) + c->term[k];
     }
     return value;
+}
+
+/* At a time that is no edge. */
+static inline double audit_stimulus_at(struct dalcs_audit *audit, int stimulus, double t) {
+    const struct audit_course *c = &audit->course[stimulus];
+    return c->from <= t && t <= c->to ? audit_course_value(c, t)
+                                      : audit_course_begin(audit, stimulus, t);
 }
 
 /* audit.c: a stretch that was put off is asked, and looked at where it has to be. */

@@ -18,18 +18,11 @@ static double *input_of(const struct audit_batch *b, int j) {
     return b->gathered.input + (size_t)j * DALCS_AUDIT_BATCH;
 }
 
-/* The image that the stretch was passed over by; NULL: none. Sources in signs and in integrals are asked elsewhere. */
-static struct audit_image *image_of(const struct audit_watch *watch,
-                                    const struct dalcs_audit_stretch *stretch) {
-    const struct dalcs_audit_polynomials *p = stretch->stored;
-    struct audit_screen *screen = watch->screens.latest;
-    if (p == NULL || p->input == NULL || stretch->is_cut || screen == NULL ||
-        screen->key != p->key || screen->rests > 0 || screen->n_terms[AUDIT_TERM_SIGN] > 0 ||
-        screen->n_terms[AUDIT_TERM_FLOW] > 0) {
-        return NULL;
-    }
-    struct audit_image *image = &screen->image[screen->image_at];
-    return image->step == p->step && audit_is_same_end(image->end, p->end) ? image : NULL;
+/* Sources in signs and in integrals are asked elsewhere. */
+static bool can_gather(const struct audit_watch *watch, const struct dalcs_audit_stretch *stretch) {
+    const struct audit_screen *screen = watch->screens.latest;
+    return !stretch->is_cut && screen->n_terms[AUDIT_TERM_SIGN] == 0 &&
+           screen->n_terms[AUDIT_TERM_FLOW] == 0;
 }
 
 /* One of the times before the end, the same for all of a batch; nothing is gathered where its image is not made yet. */
@@ -37,7 +30,9 @@ static void draw_time(struct dalcs_audit *audit, const struct audit_watch *watch
                       struct audit_batch *b) {
     const int m = b->n_times > 0 ? (int)(b->n_times * audit_draw(audit)) : 0;
     b->past = watch->theta[m] * b->image->step;
-    b->place = b->n_times > 0 ? b->image->at[m].place : NULL;
+    b->place = b->n_times > 0 && audit_is_same_end(b->image->at[m].end, b->image->end)
+                   ? b->image->at[m].place
+                   : NULL;
     b->node = audit_node_at(b->n_nodes, m) * b->stride;
     b->gathered.is_on = b->place != NULL;
 }
@@ -46,14 +41,16 @@ void audit_batch_from(struct dalcs_audit *audit, struct audit_part *part,
                       const struct dalcs_audit_stretch *stretch) {
     struct audit_watch *watch = part->watch;
     struct audit_batch *b = &watch->batch;
-    struct audit_image *image = b->is_busy || stretch == NULL ? NULL : image_of(watch, stretch);
-    const bool is_second = image != NULL && image == b->image;
+    struct audit_image *image = watch->image;
+    const bool is_second =
+        image != NULL && image == b->image && audit_is_same_end(image->end, b->end);
     b->image = image;
-    if (!is_second) {
+    b->end = image != NULL ? image->end : 0.0;
+    if (!is_second || b->is_busy || !can_gather(watch, stretch)) {
         return;
     }
     const struct dalcs_audit_polynomials *p = stretch->stored;
-    const struct audit_screen *screen = watch->screens.latest;
+    struct audit_screen *screen = watch->screens.latest;
     const struct audit_window *window = &screen->window[screen->window_at];
     const double length = stretch->to - stretch->from;
     b->near = part->tolerance * length + 4.0 * audit->options.resolution;
@@ -213,16 +210,6 @@ DALCS_TWICE(void, ask_signs, (const struct audit_batch *b, double *below), (b, b
     }
 }
 
-static void add_stimuli(struct dalcs_audit *audit, const struct audit_batch *b, double *law) {
-    const struct audit_term *term = b->screen->term[AUDIT_TERM_LAW];
-    for (int i = 0; i < b->screen->n_terms[AUDIT_TERM_LAW]; i++) {
-        for (int k = FIRST; k < b->gathered.n; k++) {
-            law[k] += term[i].factor *
-                      audit_stimulus_at(audit, term[i].index, b->gathered.from[k] + b->past);
-        }
-    }
-}
-
 /* ---- What is beyond ------------------------------------------------------------------------------ */
 
 /* A quarter of what is allowed of laws is left to the values at a node. */
@@ -289,7 +276,9 @@ static int find_first(struct dalcs_audit *audit, struct audit_batch *b, struct s
         enclose(b);
         ask_signs(b, s->below);
     }
-    add_stimuli(audit, b, s->law);
+    for (int k = FIRST; k < n && b->screen->n_terms[AUDIT_TERM_LAW] > 0; k++) {
+        s->law[k] += audit_laws_stimuli(audit, b->screen, b->gathered.from[k] + b->past);
+    }
     s->law[0] = s->below[0] = 0.0; /* of what was asked before */
     s->end[0] = s->start[0];
     repeat_last(b, s);

@@ -269,6 +269,7 @@ struct audit_screen *audit_screen_make(struct dalcs_audit *audit, struct audit_p
         return NULL;
     }
     screen->rests = 0;
+    screen->course.from = INFINITY;
     audit_images_forget(screen);
     screen->is_made =
         audit_screen_fill(audit, part, p->step, s) && put(watch, screen, p->n_columns);

@@ -29,10 +29,11 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
     if (!watch->is_weighed[q.m]) {
         audit_screen_weigh(watch, p, q.m);
     }
-    q.image = audit_image_again(screen, p, q.m);
-    if (q.image == NULL && n_times > 0) {
-        q.image = audit_image_of(audit, part, screen, p, q.m);
+    if (n_times > 0) {
+        q.image = audit_image_again(screen, p, q.m);
+        q.image = q.image == NULL ? audit_image_of(audit, part, screen, p, q.m) : q.image;
     }
+    watch->image = q.image;
     if (q.image == NULL && p->value == NULL) {
         audit->reader.complete(audit->reader.user, stretch->part);
     }
@@ -43,7 +44,7 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
     }
     audit->budget.spent +=
         AUDIT_SCREEN_WORK + (q.image != NULL ? element_work * p->n_inputs * screen->n_places
-                                       : value_work * p->n_nodes * p->n_columns);
+                                             : value_work * p->n_nodes * p->n_columns);
 }
 
 /* Is the stretch to be looked at, for what the screen says, or because states are not what they were at the end of the one
@@ -72,6 +73,7 @@ bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretc
     struct audit_part *part = &audit->part[stretch->part];
     struct audit_watch *watch = part->watch;
     watch->asked = -1.0;
+    watch->image = NULL;
     const bool can_ask = can_look && stretch->stored != NULL;
     struct audit_screen *screen = can_ask ? audit_screen_of(part, stretch->stored) : NULL;
     watch->makes = can_ask && screen == NULL;

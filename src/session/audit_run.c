@@ -12,6 +12,9 @@
  * row; an element of a map. */
 static const double value_work = 15.0, source_work = 1000.0, row_work = 30.0, element_work = 0.6;
 
+/* Likewise of what is compared in a row: a signal, and of each device its scales. */
+static const double signal_work = 200.0, device_work = 100.0;
+
 /* Likewise of a segment that does not recur, with what the search for its length and its events takes for each of its
  * values; of rows in it; of an event that ends it. */
 static const double search_work = 3000.0, search_value_work = 15.0, read_work = 2500.0,
@@ -101,6 +104,7 @@ static enum dalcs_status list_stepped(struct dalcs_audit_run *a) {
             DALCS_TRY(dalcs_audit_present_make(a, k));
         }
     }
+    a->has_algebraic = a->n_stepped < a->radau->n_parts;
     return a->stepped != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -113,6 +117,7 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         return DALCS_OK;
     }
     a->row_work = row_work * run->s->network.n_outputs;
+    a->row_share = share * a->row_work;
     enum dalcs_status status = dalcs_audit_members_make(a);
     status = status == DALCS_OK ? list_stepped(a) : status;
     if (status == DALCS_OK && radau->cycling != NULL) {
@@ -233,6 +238,13 @@ static void leave(struct dalcs_audit_run *a, int k, double to) {
     dalcs_audit_reader_keep(a, k);
 }
 
+static void earn_rows(struct dalcs_audit_run *a) {
+    if (a->rows_work > 0.0) {
+        dalcs_audit_earn(a->audit, a->rows_work);
+        a->rows_work = 0.0;
+    }
+}
+
 void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
     if (a->audit == NULL) {
         return;
@@ -247,6 +259,7 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
             leave(a, k, part->segment.t_end < stop ? part->segment.t_end : stop);
         }
     }
+    earn_rows(a);
     a->has_rows = false;
 }
 
@@ -273,7 +286,8 @@ void dalcs_audit_run_enter_now(struct dalcs_audit_run *a) {
 
 /* Instructions of a comparison of all parts and outputs. */
 static double checking_work(const struct dalcs_audit_run *a) {
-    double work = a->row_work;
+    double work =
+        signal_work * a->run->s->network.n_outputs + device_work * a->run->s->circuit.n_devices;
     for (int k = 0; k < a->radau->n_parts; k++) {
         work += state_work(a, k);
     }
@@ -301,14 +315,9 @@ static void check_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *r
                        const double *time, enum dalcs_side side, int n) {
     const bool is_full = a->run->options->audit == DALCS_AUDIT_FULL;
     struct audit_rows *rows = &a->rows[side];
-    rows->credit += share * a->row_work * n;
-    if (!is_full && rows->has_checked && rows->credit < rows->threshold) {
-        return;
-    }
     const double work = checking_work(a);
     rows->credit -= work;
-    rows->threshold = 2.0 * work * dalcs_audit_run_chance(a);
-    rows->has_checked = true;
+    rows->threshold = is_full ? -INFINITY : 2.0 * work * dalcs_audit_run_chance(a);
     const int first = is_full ? 0 : (int)(dalcs_audit_run_chance(a) * n);
     for (int i = first; i < n && (is_full || i == first); i++) {
         dalcs_audit_row(a->audit, time[i], side, recorder->row + (size_t)i * recorder->n_shown,
@@ -316,17 +325,20 @@ static void check_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *r
     }
 }
 
-void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
-                          const double *time, enum dalcs_side side, int n) {
-    if (a->audit == NULL) {
-        return;
+void dalcs_audit_run_rows_now(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
+                              const double *time, enum dalcs_side side, int n) {
+    struct audit_rows *rows = &a->rows[side];
+    if (rows->credit >= rows->threshold) {
+        if (is_coarse(a)) {
+            rows->credit = rows->threshold; /* the next one may be */
+        } else {
+            check_rows(a, recorder, time, side, n);
+        }
     }
-    if (!is_coarse(a)) {
-        check_rows(a, recorder, time, side, n);
+    if (a->has_algebraic) {
+        earn_rows(a);
     }
-    dalcs_audit_earn(a->audit, a->row_work * (double)n);
-    a->has_rows = true;
-    for (int k = 0; a->n_stepped < a->radau->n_parts && k < a->radau->n_parts; k++) {
+    for (int k = 0; a->has_algebraic && k < a->radau->n_parts; k++) {
         if (a->radau->part[k].kind == DALCS_PART_ALGEBRAIC) {
             dalcs_audit_instant(a->audit, k, time[n - 1], side, dalcs_audit_segment_work);
         }
