@@ -88,11 +88,11 @@ struct audit_window {
 struct audit_screen {
     uint64_t key;
     bool is_made;
-    double limit;     /* that a sum or a sign may be beyond */
-    int alarms;       /* that were false */
-    bool has_jumped;  /* states did where a stretch of it began */
-    long rests;       /* stretches that it is not asked of after one */
-    double *row;      /* [AUDIT_N_ROWS][n_columns in whole quads], constants behind them */
+    double limit;  /* that a sum or a sign may be beyond */
+    int alarms;    /* that were false */
+    double jumped; /* the largest jump of states that led into it, of those that were looked at */
+    long rests;    /* stretches that it is not asked of after one */
+    double *row;   /* [AUDIT_N_ROWS][n_columns in whole quads], constants behind them */
     double *constant; /* [n_places], and of guards */
     double rate;      /* 1/s, of what is integrated */
     int n_places;     /* in whole quads */

@@ -41,11 +41,20 @@ static void flow_weights(const struct dalcs_audit_polynomials *p, const double *
 
 /* ---- Places -------------------------------------------------------------------------------------- */
 
-/* Of a time in the stretch and its end. Beside them a node. */
+/* Of a time in the stretch and its end, which most have at a node. Beside them a node. */
 struct weights {
     const double *now, *flow, *end;
-    int node;
+    int node, last; /* < 0: it ends at none */
 };
+
+static struct weights weights_of(const double *now, const double *flow, const double *end, int n,
+                                 int node) {
+    struct weights w = {now, flow, end, node, -1};
+    for (int k = 0; k < n; k++) {
+        w.last = end[k] == 1.0 ? k : w.last;
+    }
+    return w;
+}
 
 /* Sums of a quad of columns over the nodes: at the time, over the time before it, and at the end. */
 struct audit_quads {
@@ -58,6 +67,16 @@ combine(const struct dalcs_audit_polynomials *p, const struct weights *w, const 
     const double *now = w->now;
     const double *flow = w->flow;
     const double *end = w->end;
+    if (w->last >= 0) {
+        dalcs_quad_load(&sum.end, value + w->last * p->stride);
+        for (int k = 0; k < p->n_nodes; k++, value += p->stride) {
+            dalcs_quad of;
+            dalcs_quad_load(&of, value);
+            sum.now += of * now[k];
+            sum.flow += of * flow[k];
+        }
+        return sum;
+    }
     for (int k = 0; k < p->n_nodes; k++, value += p->stride) {
         dalcs_quad of;
         dalcs_quad_load(&of, value);
@@ -136,7 +155,8 @@ void audit_screen_place(const struct audit_watch *watch, const struct audit_scre
                         double *place) {
     double end[AUDIT_MOST_NODES];
     weights_at(p, watch->barycentric, p->end, end);
-    const struct weights w = {watch->now[m], watch->flow[m], end, audit_node_at(p->n_nodes, m)};
+    const struct weights w =
+        weights_of(watch->now[m], watch->flow[m], end, p->n_nodes, audit_node_at(p->n_nodes, m));
     add_places(watch, screen, p, &w, value, place);
 }
 
@@ -267,7 +287,7 @@ static double ask_values(struct dalcs_audit *audit, const struct audit_watch *wa
     weights_at(p, watch->barycentric, theta, now);
     flow_weights(p, watch->barycentric, theta, flow);
     weights_at(p, watch->barycentric, p->end, end);
-    const struct weights w = {now, flow, end, 0};
+    const struct weights w = weights_of(now, flow, end, p->n_nodes, 0);
     add_places(watch, screen, p, &w, p->value, watch->place);
     return theta;
 }

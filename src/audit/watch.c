@@ -4,9 +4,9 @@
 /* Stretches that a screen rests after an alarm that was false and stays: twice as many each time, up to 2 to this power. */
 enum { MOST_DOUBLINGS = 16 };
 
-/* So many alarms of a screen are looked at whatever they cost, and the first jump of states that leads into its mode. What
- * was found would have ended the run; more, which are false, and states that jump in each period, are looked at while the
- * run can afford it. */
+/* So many alarms of a screen are looked at whatever they cost, and a jump of states that leads into its mode and is more
+ * than twice as large as those that were looked at. What was found would have ended the run; more, which are false, and
+ * states that jump in each period, are looked at while the run can afford it. */
 enum { FEW_ALARMS = 4 };
 
 /* Instructions of a screen, about, of an element of its image, of a value in its polynomials. */
@@ -57,12 +57,12 @@ static bool alarms(struct dalcs_audit *audit, struct audit_watch *watch,
     watch->knows_states = true;
     audit->count.screened++;
     const bool holds = answer->worst <= screen->limit;
-    const bool is_known = holds ? screen->has_jumped : screen->alarms >= FEW_ALARMS;
+    const bool is_known = holds ? jump <= 2.0 * screen->jumped : screen->alarms >= FEW_ALARMS;
     if ((holds && jump <= screen->limit) || (is_known && audit->budget.credit < 0.0)) {
         return false;
     }
     screen->alarms += holds ? 0 : 1;
-    screen->has_jumped |= holds;
+    screen->jumped = holds ? fmax(screen->jumped, jump) : screen->jumped;
     watch->has_jumped = holds;
     watch->asked = answer->t;
     return true;

@@ -215,27 +215,26 @@ static const double *column(void *user, int index, int j) {
 }
 
 /* In the place of the lambda of an open pair is another number, and sources alone decide bystanders. */
-static void add_column(const struct dalcs_radau_part *part, int column, double factor,
+static void add_column(const struct dalcs_audit_run *a, int index, int column, double factor,
                        struct dalcs_audit_row *row) {
+    const struct dalcs_radau_part *part = &a->radau->part[index];
     const struct dalcs_system *s = part->component->system;
-    const struct dalcs_bystanders *b = &part->excitation.bystanders;
     const int pair = column - dalcs_system_n_equations(s);
     if (pair >= 0 && !dalcs_osnsp_is_on(&part->component->osnsp, pair)) {
         return;
     }
-    for (int i = 0; i < b->n; i++) {
-        if (b->column[i] == column) {
-            const double *gain = b->gain + i * s->n_inputs;
-            row->constant += factor * gain[0];
-            for (int k = 1; k < s->n_inputs; k++) {
-                if (gain[k] != 0.0) {
-                    dalcs_audit_row_add_stimulus(row, s->stimulus[k], factor * gain[k]);
-                }
-            }
-            return;
+    const int bystander = a->part[index].bystander[column];
+    if (bystander < 0) {
+        dalcs_audit_row_add_column(row, column, factor);
+        return;
+    }
+    const double *gain = part->excitation.bystanders.gain + bystander * s->n_inputs;
+    row->constant += factor * gain[0];
+    for (int k = 1; k < s->n_inputs; k++) {
+        if (gain[k] != 0.0) {
+            dalcs_audit_row_add_stimulus(row, s->stimulus[k], factor * gain[k]);
         }
     }
-    dalcs_audit_row_add_column(row, column, factor);
 }
 
 static void add_voltage(void *user, int index, int node, double factor,
@@ -243,7 +242,7 @@ static void add_voltage(void *user, int index, int node, double factor,
     const struct dalcs_audit_run *a = user;
     const int node_column = a->run->s->network.readout->node_column[node];
     if (node_column >= 0) {
-        add_column(&a->radau->part[index], node_column, factor, row);
+        add_column(a, index, node_column, factor, row);
     }
 }
 
@@ -252,8 +251,7 @@ static void add_current(void *user, int index, int device, double factor,
     const struct dalcs_audit_run *a = user;
     const struct dalcs_readout *readout = a->run->s->network.readout;
     for (int j = readout->start[device]; j < readout->start[device + 1]; j++) {
-        add_column(&a->radau->part[index], readout->term[j].column,
-                   factor * readout->term[j].coefficient, row);
+        add_column(a, index, readout->term[j].column, factor * readout->term[j].coefficient, row);
     }
 }
 
@@ -261,7 +259,8 @@ static void add_lambda(void *user, int index, int lambda, double factor,
                        struct dalcs_audit_row *row) {
     const struct dalcs_audit_run *a = user;
     const struct dalcs_radau_part *part = &a->radau->part[index];
-    add_column(part, dalcs_system_n_equations(part->component->system) + a->pair_of_lambda[lambda],
+    add_column(a, index,
+               dalcs_system_n_equations(part->component->system) + a->pair_of_lambda[lambda],
                factor, row);
 }
 

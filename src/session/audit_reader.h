@@ -10,6 +10,8 @@ struct audit_members {
     int *node, *node_column;
     int *device; /* [n_devices] with currents of their own; others are the auditor's matter */
     int *lambda, *lambda_pair;
+    int *
+        bystander; /* [n_columns] which of the bystanders it is, whom sources alone decide; -1: none */
     bool was_left;                         /* its segment ended at the present time */
     struct dalcs_audit_polynomials stored; /* the present segment */
     struct dalcs_audit_stretch stretch;    /* likewise */

@@ -95,12 +95,29 @@ static void start_part(struct audit_members *m, const struct dalcs_radau_part *p
     m->stretch = (struct dalcs_audit_stretch){.part = part->index, .degree = stages->method->s};
 }
 
+static enum dalcs_status list_bystanders(struct dalcs_audit_run *a, int part) {
+    const struct dalcs_bystanders *b = &a->radau->part[part].excitation.bystanders;
+    const int n = a->part[part].stored.n_columns;
+    int *of_column = a->part[part].bystander = dalcs_arena_alloc(&a->arena, (size_t)n, sizeof(int));
+    if (of_column == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int c = 0; c < n; c++) {
+        of_column[c] = -1;
+    }
+    for (int i = 0; i < b->n; i++) {
+        of_column[b->column[i]] = i;
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status list_stepped(struct dalcs_audit_run *a) {
     a->stepped = dalcs_arena_alloc(&a->arena, (size_t)a->radau->n_parts, sizeof(int));
     for (int k = 0; k < a->radau->n_parts && a->stepped != NULL; k++) {
         if (a->radau->part[k].kind == DALCS_PART_STEPPED) {
             a->stepped[a->n_stepped++] = k;
             start_part(&a->part[k], &a->radau->part[k]);
+            DALCS_TRY(list_bystanders(a, k));
             DALCS_TRY(dalcs_audit_present_make(a, k));
         }
     }
@@ -317,7 +334,10 @@ static void check_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *r
     struct audit_rows *rows = &a->rows[side];
     const double work = checking_work(a);
     rows->credit -= work;
-    rows->threshold = is_full ? -INFINITY : 2.0 * work * dalcs_audit_run_chance(a);
+    /* also in a run of a few rows: at the latest when as many have come as there were */
+    rows->threshold =
+        is_full ? -INFINITY
+                : fmin(2.0 * work * dalcs_audit_run_chance(a), rows->credit + rows->earned);
     const int first = is_full ? 0 : (int)(dalcs_audit_run_chance(a) * n);
     for (int i = first; i < n && (is_full || i == first); i++) {
         dalcs_audit_row(a->audit, time[i], side, recorder->row + (size_t)i * recorder->n_shown,

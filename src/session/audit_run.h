@@ -22,9 +22,8 @@ struct dalcs_audit_run {
     bool has_algebraic;         /* parts without memory, which are looked at beside rows */
 
     struct audit_rows {
-        double credit,
-            threshold; /* instructions that comparisons may cost; the first is made at once */
-    } rows[2];         /* from each side */
+        double earned, credit, threshold; /* instructions that comparisons may cost */
+    } rows[2];                            /* from each side */
 
     double rows_work; /* of rows since the last segment ended, in instructions */
 
@@ -112,6 +111,7 @@ static inline void dalcs_audit_run_rows(struct dalcs_audit_run *a,
     struct audit_rows *rows = &a->rows[side];
     a->has_rows = true;
     a->rows_work += a->row_work * n;
+    rows->earned += a->row_share * n;
     rows->credit += a->row_share * n;
     if (rows->credit >= rows->threshold || a->has_algebraic) {
         dalcs_audit_run_rows_now(a, recorder, time, side, n);
