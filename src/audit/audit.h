@@ -35,7 +35,7 @@ struct dalcs_audit_state {
 
 /* A stretch as it is stored: value[k stride + c] is column c at node k of its step. */
 struct dalcs_audit_polynomials {
-    uint64_t key; /* the same: the same mode and a step of about the same length */
+    uint64_t key; /* the same: the same mode */
     int n_columns, n_nodes, stride;
     const double *node;  /* [n_nodes] in steps, from 0 to 1 */
     double step, end;    /* s; in steps, where the stretch ends */

@@ -232,6 +232,12 @@ static inline double audit_stimulus_at(struct dalcs_audit *audit, int stimulus, 
                                       : audit_course_begin(audit, stimulus, t);
 }
 
+/* budget.c: instructions of an instant, about. */
+double audit_instant_work(const struct dalcs_circuit *circuit, const struct audit_part *part);
+
+/* Is it this stretch's turn? Which ones are is drawn, so that no period of the circuit hides any. */
+bool audit_is_drawn(struct dalcs_audit *audit, double cost);
+
 /* audit.c: a stretch that was put off is asked, and looked at where it has to be. */
 void audit_look_again(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 

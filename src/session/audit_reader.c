@@ -146,12 +146,9 @@ static uint64_t mix(uint64_t hash, uint64_t word) {
     return (hash ^ word) * 0x100000001b3u;
 }
 
-/* Steps within a factor of 16 are held to the same: their exponents are, but for the last two bits. */
 static uint64_t key_of(const struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *osnsp = &part->component->osnsp;
-    uint64_t length;
-    memcpy(&length, &part->segment.h, sizeof length);
-    uint64_t hash = mix(0xcbf29ce484222325u, length >> 54);
+    uint64_t hash = 0xcbf29ce484222325u;
     for (int k = 0; k < osnsp->n_words; k++) {
         hash = mix(hash, osnsp->mode[k]);
     }

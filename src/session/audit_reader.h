@@ -43,6 +43,15 @@ void dalcs_audit_go_back(void *user, int part);
 /* What the auditor has gathered of a part is asked. */
 void dalcs_audit_run_settle(struct dalcs_audit_run *a, int part);
 
+/* What a sample may cost of a run: with the counts above the netlists of the repository stay below 5 %. */
+static const double dalcs_audit_share = 0.03;
+
+/* Instructions, about, of a state of a part. */
+double dalcs_audit_state_work(const struct dalcs_audit_run *a, int part);
+
+/* audit_rows.c: what rows have taken since it was asked last is work of the run. */
+void dalcs_audit_earn_rows(struct dalcs_audit_run *a);
+
 /* The largest defect that ends no run. */
 double dalcs_audit_most_allowed(const struct dalcs_audit_run *a);
 

@@ -12,9 +12,6 @@
  * row; an element of a map. */
 static const double value_work = 15.0, source_work = 1000.0, row_work = 30.0, element_work = 0.6;
 
-/* Likewise of what is compared in a row: a signal, and of each device its scales. */
-static const double signal_work = 200.0, device_work = 100.0;
-
 /* Likewise of a segment that does not recur, with what the search for its length and its events takes for each of its
  * values; of rows in it; of an event that ends it. */
 static const double search_work = 3000.0, search_value_work = 15.0, read_work = 2500.0,
@@ -29,10 +26,7 @@ double dalcs_audit_most_allowed(const struct dalcs_audit_run *a) {
     return fmax(a->run->tolerance, least_failure);
 }
 
-/* What a sample may cost of a run: with the counts above the netlists of the repository stay below 5 %. */
-static const double share = 0.03;
-
-static double state_work(const struct dalcs_audit_run *a, int part) {
+double dalcs_audit_state_work(const struct dalcs_audit_run *a, int part) {
     const struct dalcs_component *c = &a->euler->component[part];
     return value_work * dalcs_system_n_columns(c->system) + source_work * c->n_varying;
 }
@@ -61,10 +55,10 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
     }
     for (int k = 0; k < n; k++) {
         tolerance[k] = a->radau->part[k].tolerance;
-        work[k] = state_work(a, k);
+        work[k] = dalcs_audit_state_work(a, k);
     }
     const struct dalcs_audit_options options = {.mode = run->options->audit,
-                                                .share = share,
+                                                .share = dalcs_audit_share,
                                                 .resolution = a->radau->resolution,
                                                 .vntol = run->vntol,
                                                 .is_start = run->s->network.held == NULL,
@@ -134,7 +128,7 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         return DALCS_OK;
     }
     a->row_work = row_work * run->s->network.n_outputs;
-    a->row_share = share * a->row_work;
+    a->row_share = dalcs_audit_share * a->row_work;
     enum dalcs_status status = dalcs_audit_members_make(a);
     status = status == DALCS_OK ? list_stepped(a) : status;
     if (status == DALCS_OK && radau->cycling != NULL) {
@@ -255,13 +249,6 @@ static void leave(struct dalcs_audit_run *a, int k, double to) {
     dalcs_audit_reader_keep(a, k);
 }
 
-static void earn_rows(struct dalcs_audit_run *a) {
-    if (a->rows_work > 0.0) {
-        dalcs_audit_earn(a->audit, a->rows_work);
-        a->rows_work = 0.0;
-    }
-}
-
 void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
     if (a->audit == NULL) {
         return;
@@ -276,7 +263,7 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
             leave(a, k, part->segment.t_end < stop ? part->segment.t_end : stop);
         }
     }
-    earn_rows(a);
+    dalcs_audit_earn_rows(a);
     a->has_rows = false;
 }
 
@@ -297,70 +284,6 @@ void dalcs_audit_run_enter_now(struct dalcs_audit_run *a) {
         const int k = a->stepped[i];
         if (a->part[k].was_left && a->radau->part[k].segment.t < a->radau->options.stop) {
             enter(a, k);
-        }
-    }
-}
-
-/* Instructions of a comparison of all parts and outputs. */
-static double checking_work(const struct dalcs_audit_run *a) {
-    double work =
-        signal_work * a->run->s->network.n_outputs + device_work * a->run->s->circuit.n_devices;
-    for (int k = 0; k < a->radau->n_parts; k++) {
-        work += state_work(a, k);
-    }
-    for (int i = 0; i < a->n_stepped; i++) {
-        const int k = a->stepped[i];
-        work += a->radau->part[k].segment.late != NULL ? a->part[k].elements : 0.0;
-    }
-    return work;
-}
-
-/* On a step of implicit Euler rows are lines. And a segment may be so
- * short that the resolution of its times is more of it than is allowed of a value. */
-static bool is_coarse(const struct dalcs_audit_run *a) {
-    const double shortest = 4.0 * a->radau->resolution / dalcs_audit_most_allowed(a);
-    bool is = false;
-    for (int i = 0; i < a->n_stepped && !is; i++) {
-        const struct dalcs_radau_part *part = &a->radau->part[a->stepped[i]];
-        is = dalcs_segment_is_coarse(part) || part->segment.t_end - part->segment.t < shortest;
-    }
-    return is;
-}
-
-/* Some of n rows that were handed on are compared with the waveform. */
-static void check_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
-                       const double *time, enum dalcs_side side, int n) {
-    const bool is_full = a->run->options->audit == DALCS_AUDIT_FULL;
-    struct audit_rows *rows = &a->rows[side];
-    const double work = checking_work(a);
-    rows->credit -= work;
-    /* also in a run of a few rows: at the latest when as many have come as there were */
-    rows->threshold =
-        is_full ? -INFINITY
-                : fmin(2.0 * work * dalcs_audit_run_chance(a), rows->credit + rows->earned);
-    const int first = is_full ? 0 : (int)(dalcs_audit_run_chance(a) * n);
-    for (int i = first; i < n && (is_full || i == first); i++) {
-        dalcs_audit_row(a->audit, time[i], side, recorder->row + (size_t)i * recorder->n_shown,
-                        recorder->n_shown);
-    }
-}
-
-void dalcs_audit_run_rows_now(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
-                              const double *time, enum dalcs_side side, int n) {
-    struct audit_rows *rows = &a->rows[side];
-    if (rows->credit >= rows->threshold) {
-        if (is_coarse(a)) {
-            rows->credit = rows->threshold; /* the next one may be */
-        } else {
-            check_rows(a, recorder, time, side, n);
-        }
-    }
-    if (a->has_algebraic) {
-        earn_rows(a);
-    }
-    for (int k = 0; a->has_algebraic && k < a->radau->n_parts; k++) {
-        if (a->radau->part[k].kind == DALCS_PART_ALGEBRAIC) {
-            dalcs_audit_instant(a->audit, k, time[n - 1], side, dalcs_audit_segment_work);
         }
     }
 }
