@@ -5,28 +5,6 @@
 
 #include <stdlib.h>
 
-/* Instructions of an instant and a device, a node: measured with callgrind on the netlists of the repository
- * (doc/testing.md). */
-static const double device_work = 300.0, node_work = 120.0;
-
-/* Of switches, whose controls are read, and sources, whose edges are looked for. */
-static const double moving_work = 1800.0;
-
-/* Of a coupling, for all coils of which fluxes are added up. */
-static const double coupling_work = 1200.0;
-
-static double instant_work(const struct dalcs_circuit *c, const struct audit_part *part) {
-    double work = node_work * part->n_nodes + coupling_work * part->n_couplings;
-    for (int k = 0; k < part->n_devices; k++) {
-        const struct dalcs_device *d = &c->device[part->device[k]];
-        const bool moves =
-            d->kind == DALCS_SWITCH ||
-            (d->kind == DALCS_VSOURCE && c->stimulus[d->stimulus].kind != DALCS_STIMULUS_DC);
-        work += moves ? moving_work : device_work;
-    }
-    return work;
-}
-
 static const uint64_t first_seed = 0x9e3779b97f4a7c15u;
 
 enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
@@ -41,7 +19,7 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
         .circuit = circuit, .options = *options, .reader = *reader, .seed = first_seed};
     enum dalcs_status status = options->n_parts > 0 ? audit_set_up(a) : DALCS_OK;
     for (int k = 0; k < options->n_parts && status == DALCS_OK; k++) {
-        a->part[k].cost = instant_work(circuit, &a->part[k]) + options->read_work[k];
+        a->part[k].cost = audit_instant_work(circuit, &a->part[k]) + options->read_work[k];
         a->budget.credit -=
             AUDIT_LOOK_INSTANTS * a->part[k].cost; /* of its end, which is looked at in any case */
     }
@@ -76,44 +54,6 @@ static void look(struct dalcs_audit *audit, int index, struct dalcs_audit_state 
     audit_note_scales(audit, part, s);
     audit_check_instant(audit, part, s);
     audit->budget.credit -= part->cost;
-}
-
-/* Is it this stretch's turn? Which ones are is drawn, so that no period of the circuit hides any. */
-static bool is_drawn(struct dalcs_audit *audit, double cost) {
-    if (audit->options.mode == DALCS_AUDIT_FULL) {
-        return true;
-    }
-    if (audit->budget.credit < audit->budget.threshold) {
-        return false;
-    }
-    audit->budget.threshold = 2.0 * cost * audit_draw(audit);
-    return true;
-}
-
-bool dalcs_audit_may(struct dalcs_audit *audit, double work) {
-    const bool may = is_drawn(audit, work);
-    audit->budget.credit -= may ? work : 0.0;
-    return may;
-}
-
-double dalcs_audit_chance(struct dalcs_audit *audit) {
-    return audit_draw(audit);
-}
-
-void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,
-                     double time) {
-    audit->part[index].at.is_coarse = false; /* what the last look was at is no matter here */
-    audit_find(audit, &audit->part[index], law, index, defect, 1.0, time);
-}
-
-void dalcs_audit_add_position(struct dalcs_audit *audit, int device, double defect, double time) {
-    audit->part[0].at.is_coarse = false;
-    audit_find(audit, &audit->part[0], DALCS_AUDIT_POSITION, device, defect, 1.0, time);
-}
-
-void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
-    audit->budget.credit += audit_earned(audit, work, audit->budget.spent);
-    audit->budget.spent = 0.0;
 }
 
 /* Instants in a stretch with --audit full, beside its ends, and pieces that integrals are taken over. */
@@ -192,7 +132,7 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->count.stretches++;
-    part->watch->repeat.screen = NULL;
+    part->watch->batch.gathered.is_on = false;
     part->at.past = part->at.length;
     part->at.length = stretch->to - stretch->from;
     part->at.past_coarse = part->at.was_coarse;
@@ -213,7 +153,9 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     const bool passes = !asks && !part->at.is_drawn && !part->watch->has_turned;
     if (passes) {
         leave_behind(part);
-        audit_repeat_from(audit, part, stretch);
+        audit_batch_from(audit, part, stretch);
+    } else {
+        part->watch->batch.image = NULL;
     }
     return passes;
 }
@@ -225,7 +167,7 @@ bool dalcs_audit_begins(struct dalcs_audit *audit, int index) {
 
 void dalcs_audit_put_off(struct dalcs_audit *audit, int index) {
     audit->part[index].watch->is_put_off = true;
-    audit->part[index].watch->repeat.screen = NULL;
+    audit->part[index].watch->batch.gathered.is_on = false;
 }
 
 /* past: s, the length of the stretch before. */
@@ -286,6 +228,13 @@ static bool is_settled(struct dalcs_audit *audit, const struct dalcs_audit_stret
     return !audit_watch_begins(audit, stretch) && !part->at.is_drawn && !stretch->is_last;
 }
 
+/* How it begins is all that is to be looked at. */
+static bool has_only_jumped(const struct audit_part *part,
+                            const struct dalcs_audit_stretch *stretch) {
+    const struct audit_watch *watch = part->watch;
+    return watch->asked >= 0.0 && watch->has_jumped && !part->at.is_drawn && !stretch->is_last;
+}
+
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     take_up(part, stretch);
@@ -297,6 +246,14 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     const bool is_seen = part->watch->has_turned && !part->watch->makes;
     if ((is_seen && part->watch->asked < 0.0 && !part->at.is_drawn && !stretch->is_last) ||
         (part->watch->makes && is_settled(audit, stretch))) {
+        leave_behind(part);
+        return;
+    }
+    if (has_only_jumped(part, stretch)) {
+        audit->count.audited++;
+        if (!part->watch->saw_beginning) {
+            look_back(audit, stretch);
+        }
         leave_behind(part);
         return;
     }
@@ -326,6 +283,14 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
 }
 
+void audit_look_again(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_part *part = &audit->part[stretch->part];
+    if (!dalcs_audit_passes_over(audit, stretch, 0.0)) {
+        dalcs_audit_leave(audit, stretch);
+        leave_behind(part);
+    }
+}
+
 void dalcs_audit_has_no_rest(struct dalcs_audit *audit, int part) {
     audit->part[part].is_restless = true;
 }
@@ -348,7 +313,7 @@ void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dal
     dalcs_audit_earn(audit, work);
     const bool is_first = !audit->part[part].has_entered;
     audit->part[part].has_entered = true;
-    if (is_first || is_drawn(audit, audit->part[part].cost)) {
+    if (is_first || audit_is_drawn(audit, audit->part[part].cost)) {
         audit->now.t = t;
         audit->now.side = side;
         look(audit, part, &audit->now);

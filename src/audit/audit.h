@@ -35,7 +35,7 @@ struct dalcs_audit_state {
 
 /* A stretch as it is stored: value[k stride + c] is column c at node k of its step. */
 struct dalcs_audit_polynomials {
-    uint64_t key; /* the same: the same mode and a step of about the same length */
+    uint64_t key; /* the same: the same mode */
     int n_columns, n_nodes, stride;
     const double *node;  /* [n_nodes] in steps, from 0 to 1 */
     double step, end;    /* s; in steps, where the stretch ends */
@@ -71,6 +71,12 @@ static inline void dalcs_audit_row_add_stimulus(struct dalcs_audit_row *row, int
     row->stimulus[stimulus] += factor;
 }
 
+/* A stretch that has gone by, as others keep it. */
+struct dalcs_audit_kept {
+    double from, to; /* s */
+    double *input;
+};
+
 /* How a waveform is read. */
 struct dalcs_audit_reader {
     void *user;
@@ -89,6 +95,12 @@ struct dalcs_audit_reader {
     bool (*is_closed)(void *user, int part, int device);
     /* The state where the stretch before the present one ended, or so many s earlier. */
     void (*read_before)(void *user, int part, double earlier, struct dalcs_audit_state *state);
+    /* Such a stretch takes the place of the present one, and what came before it of the one before; until go_back(). Both
+     * are of the mode, the step, the end and the map of the one handed on last. */
+    struct dalcs_audit_stretch *(*revisit)(void *user, int part,
+                                           const struct dalcs_audit_kept *before,
+                                           const struct dalcs_audit_kept *present);
+    void (*go_back)(void *user, int part);
     /* The state of the part at state->t, as the limit from state->side. */
     void (*read)(void *user, int part, struct dalcs_audit_state *state);
     /* Raises v[n_nodes] and i[n_devices] to the largest magnitudes of the part so far. */
@@ -170,11 +182,44 @@ void dalcs_audit_destroy(struct dalcs_audit *audit);
 /* Of a part that oscillates for ever, a switch that opens what closes it, there is no operating point: it begins somewhere. */
 void dalcs_audit_has_no_rest(struct dalcs_audit *audit, int part);
 
-/* A stretch has the mode, the step, the end and the map of the one before of that part: then, of what it is stored as, only
- * input and value are read. Is there nothing to look at? Then it has been passed over; else dalcs_audit_passes_over() is
- * asked. */
-bool dalcs_audit_repeats(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
-                         double work);
+/* Stretches that are asked together, with the one before them: a pass over all their signs is an eighth of what one takes by
+ * itself. */
+enum { DALCS_AUDIT_BATCH = 32 };
+
+/* What is gathered of a part. */
+struct dalcs_audit_batch {
+    bool
+        is_on; /* and a stretch may be gathered that has the mode, the step, the end and the map of the one before */
+    double last; /* s: where it ends by then */
+    double work; /* of the run, instructions, about */
+    int n, n_inputs;
+    double from[DALCS_AUDIT_BATCH], to[DALCS_AUDIT_BATCH];
+    double *input; /* [n_inputs][DALCS_AUDIT_BATCH], and room for two more numbers of each */
+};
+
+static inline void dalcs_audit_put(struct dalcs_audit_batch *batch, double from, double to,
+                                   const double *input, double work) {
+    const int k = batch->n++;
+    batch->from[k] = from;
+    batch->to[k] = to;
+    batch->work += work;
+    double *at = batch->input + k;
+    for (int j = 0; j < batch->n_inputs; j++, at += DALCS_AUDIT_BATCH) {
+        *at = input[j];
+    }
+}
+
+struct dalcs_audit_batch *dalcs_audit_batch_of(const struct dalcs_audit *audit, int part);
+
+/* Are values, where there are any, what the map makes of the input? Else it is not gathered. */
+bool dalcs_audit_is_image(const struct dalcs_audit *audit, int part, const double *input,
+                          const double *value);
+
+/* A batch is full. */
+void dalcs_audit_ask_batch(struct dalcs_audit *audit, int part);
+
+/* What was gathered of a part is asked now: before anything else is of it. */
+void dalcs_audit_settle(struct dalcs_audit *audit, int part);
 
 /* A stretch is complete, which took so much work, in instructions, about: need nobody look at it more closely? Where
  * somebody must, and at the last one in any case, dalcs_audit_leave() follows. */

@@ -13,6 +13,9 @@ enum { AUDIT_LOOK_INSTANTS = 3 };
 /* Nodes of a step, at most. */
 enum { AUDIT_MOST_NODES = 12 };
 
+/* Instructions of a screen, about, of what is handed over and asked; together with others half as many. */
+#define AUDIT_SCREEN_WORK 600.0
+
 /* Times in a step that it is asked at, one of them each time. */
 enum { AUDIT_SCREEN_TIMES = 4 };
 
@@ -58,17 +61,22 @@ struct audit_watch {
     bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there */
     double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
 
-    struct audit_repeat {
-        struct audit_screen
-            *screen; /* that passed the stretch before over, by an image; NULL: none */
-        struct audit_image_at *at;    /* [AUDIT_SCREEN_TIMES] */
-        int n_times;                  /* of the watch's, before its end */
-        int n_columns;                /* in whole quads */
-        int node[AUDIT_SCREEN_TIMES]; /* where the values at a node are */
-        double length, near;          /* s */
-        double from, to;              /* s: no guard is below 0 in between */
-        double work;                  /* instructions, about */
-    } repeat;
+    struct audit_image *image; /* that the present one was asked by; NULL: by its values, or not */
+
+    struct audit_batch { /* of stretches that repeat one another (batch.c) */
+        struct dalcs_audit_batch gathered;
+        struct audit_screen *screen;    /* that asks them */
+        struct audit_image *image;      /* that passed the stretch before over; NULL: none */
+        int n_times;                    /* of the watch's times, those before its end */
+        int n_columns, n_nodes, stride; /* of polynomials, columns in whole quads */
+        const double *place;            /* of the image at the time that was drawn */
+        double past;                    /* s: that time */
+        double end;                     /* of the stretch before, in steps */
+        int node;                       /* where values beside it are */
+        double length, near;            /* s */
+        size_t room;
+        bool is_busy; /* some are looked at once more */
+    } batch;
 
     double *column; /* [2][n_columns in whole quads] work */
     double *place;  /* work */
@@ -82,6 +90,7 @@ struct audit_watch {
     bool knows_sides;   /* that switches with hysteresis had in the stretch before */
     bool has_turned;    /* one of them is on the other now */
     double asked;       /* s: a time in it that asks for a look; < 0: none does */
+    bool has_jumped; /* ... where all laws hold, but not all states are what they were before it */
 };
 
 /* A part: its devices and the nodes that they hang on, shorts merged, without ground. */
@@ -208,18 +217,29 @@ struct dalcs_audit {
 /* courses.c: the value of a stimulus where its course is not known. */
 double audit_course_begin(struct dalcs_audit *audit, int stimulus, double t);
 
-/* At a time that is no edge. */
-static inline double audit_stimulus_at(struct dalcs_audit *audit, int stimulus, double t) {
-    const struct audit_course *c = &audit->course[stimulus];
-    if (!(c->from <= t && t <= c->to)) {
-        return audit_course_begin(audit, stimulus, t);
-    }
+static inline double audit_course_value(const struct audit_course *c, double t) {
     double value = c->term[c->n - 1];
     for (int k = c->n - 2; k >= 0; k--) {
         value = value * (t - c->origin) + c->term[k];
     }
     return value;
 }
+
+/* At a time that is no edge. */
+static inline double audit_stimulus_at(struct dalcs_audit *audit, int stimulus, double t) {
+    const struct audit_course *c = &audit->course[stimulus];
+    return c->from <= t && t <= c->to ? audit_course_value(c, t)
+                                      : audit_course_begin(audit, stimulus, t);
+}
+
+/* budget.c: instructions of an instant, about. */
+double audit_instant_work(const struct dalcs_circuit *circuit, const struct audit_part *part);
+
+/* Is it this stretch's turn? Which ones are is drawn, so that no period of the circuit hides any. */
+bool audit_is_drawn(struct dalcs_audit *audit, double cost);
+
+/* audit.c: a stretch that was put off is asked, and looked at where it has to be. */
+void audit_look_again(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 
 /* 0 <= draw < 1, the same in each run. */
 static inline double audit_draw(struct dalcs_audit *audit) {
@@ -256,9 +276,13 @@ static inline double audit_voltage(const struct dalcs_audit_state *s,
 }
 
 /* Times in a stretch are known to a rounding of t, over its length that is what a value in it may be off by where it
- * changes by its whole scale: it has to be less than the tolerance. */
+ * changes by its whole scale: it has to be less than the tolerance. Of a length they are up to a time, s. */
+static inline double audit_told_until(const struct audit_part *part, double length) {
+    return length * part->tolerance / (4.0 * 0x1p-52);
+}
+
 static inline bool audit_can_tell_times(const struct audit_part *part, double length, double to) {
-    return length * part->tolerance > 4.0 * 0x1p-52 * to;
+    return to < audit_told_until(part, length);
 }
 
 /* What a voltage between two nodes is held to. */

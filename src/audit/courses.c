@@ -1,5 +1,5 @@
 /* courses.c - stimuli, as the netlist gave them, at many times that are close together. */
-#include "audit_internal.h"
+#include "screen.h"
 
 /* A pulse: level by level, less what rounding of times may take for the next one. */
 static void follow_pulse(const struct dalcs_stimulus *s, double t, struct audit_course *c) {
@@ -138,4 +138,37 @@ double audit_course_begin(struct dalcs_audit *audit, int stimulus, double t) {
     follow(s, t, c);
     return c->from <= t && t <= c->to ? audit_stimulus_at(audit, stimulus, t)
                                       : dalcs_stimulus_value(s, t, DALCS_RIGHT);
+}
+
+/* term[] of a polynomial in t - origin become those in t - origin - by (D. E. Knuth, The Art of Computer Programming 2, sec. 4.6.4:
+ * Horner's rule again and again). */
+static void shift(int n, double by, double *term) {
+    for (int i = 0; i < n - 1; i++) {
+        for (int k = n - 2; k >= i; k--) {
+            term[k] += by * term[k + 1];
+        }
+    }
+}
+
+double audit_laws_begin(struct dalcs_audit *audit, struct audit_screen *screen, double t) {
+    struct audit_course *all = &screen->course;
+    *all = (struct audit_course){-INFINITY, INFINITY, t, 1, {0.0}};
+    double sum = 0.0;
+    for (int k = 0; k < screen->n_terms[AUDIT_TERM_LAW]; k++) {
+        const struct audit_term *of = &screen->term[AUDIT_TERM_LAW][k];
+        sum += of->factor * audit_stimulus_at(audit, of->index, t);
+        struct audit_course c = audit->course[of->index];
+        if (!(c.from <= t && t <= c.to)) {
+            all->from = INFINITY; /* it is asked each time */
+            continue;
+        }
+        shift(c.n, t - c.origin, c.term);
+        for (int i = 0; i < c.n; i++) {
+            all->term[i] += of->factor * c.term[i];
+        }
+        all->n = c.n > all->n ? c.n : all->n;
+        all->from = fmax(all->from, c.from);
+        all->to = fmin(all->to, c.to);
+    }
+    return sum;
 }

@@ -54,27 +54,45 @@ audit_image_laws(const double *constant, int n_places, const double *input, int 
     }
 }
 
-/* The least of the signs, of which this input is the one at which they were asked. */
-static inline __attribute__((always_inline)) double
-audit_image_signs(const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
-                  struct audit_image_at *at, double *place) {
+/* All signs. */
+static inline __attribute__((always_inline)) void
+audit_image_places(const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
+                   const struct audit_image_at *at, double *place) {
     const int n_places = screen->n_places;
-    const int n_inputs = p->n_inputs;
     for (int first = AUDIT_PLACE_SIGNS; first < n_places; first += DALCS_QUAD) {
         const double *from = at->place + first;
         dalcs_quad sum;
         dalcs_quad_load(&sum, screen->constant + first);
-        for (int j = 0; j < n_inputs; j++, from += n_places) {
+        for (int j = 0; j < p->n_inputs; j++, from += n_places) {
             dalcs_quad of;
             dalcs_quad_load(&of, from);
             sum += of * p->input[j];
         }
         dalcs_quad_store(place + first, &sum);
     }
-    memcpy(at->input, p->input, (size_t)n_inputs * sizeof(double));
-    const double least = audit_least_sign(n_places, place);
+}
+
+/* The least of the signs, of which this input is the one at which they were asked. */
+static inline __attribute__((always_inline)) double
+audit_image_signs(const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
+                  struct audit_image_at *at, double *place) {
+    audit_image_places(screen, p, at, place);
+    memcpy(at->input, p->input, (size_t)p->n_inputs * sizeof(double));
+    const double least = audit_least_sign(screen->n_places, place);
     at->slack = screen->n_terms[AUDIT_TERM_SIGN] == 0 ? least + 1.0 : -1.0;
     return least;
+}
+
+/* How far values at a node are from the image there, place[AUDIT_PLACE_NODE]. */
+static inline __attribute__((always_inline)) double
+audit_image_off(const struct audit_screen *screen, const struct dalcs_audit_polynomials *p, int m,
+                const double *place) {
+    const int n = dalcs_quads_of(p->n_columns);
+    return p->value != NULL
+               ? fabs(place[AUDIT_PLACE_NODE] -
+                      audit_product(n, screen->row + AUDIT_ROW_NOW * n,
+                                    p->value + audit_node_at(p->n_nodes, m) * p->stride))
+               : 0.0;
 }
 
 #endif

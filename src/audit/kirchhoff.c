@@ -31,16 +31,18 @@ static void round_storage(struct dalcs_audit *audit, const struct audit_part *pa
     }
 }
 
-/* What rounding of the voltages at a device makes of its current, of a charge over a step, or over a step of a flux. */
+/* What rounding of the voltages at a device makes of its current, of a charge over a step, or over a step of a flux. A value
+ * between the nodes of a step is a sum of those at the nodes: where it passes through 0 it has the rounding of these. */
 static double rounding_of(const struct dalcs_audit *audit, const struct audit_part *part,
                           const struct dalcs_audit_state *s, const struct dalcs_device *d,
                           double current) {
+    const double *v = audit->scale.v;
     const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
     if (d->kind == DALCS_CAPACITOR) {
         return STORED_ROUNDING * d->value * part->at.slope * volts;
     }
     if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
-        const double controls = fabs(s->v[d->node[2]]) + fabs(s->v[d->node[3]]);
+        const double controls = v[d->node[2]] + v[d->node[3]];
         return fabs(d->value) * (AUDIT_ROUNDING * controls + audit->sums.volts);
     }
     if (d->kind == DALCS_CCCS) {
@@ -52,7 +54,8 @@ static double rounding_of(const struct dalcs_audit *audit, const struct audit_pa
                STORED_ROUNDING * fmax(volts, part->floor.largest_volt) * part->at.step / d->value;
     }
     const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
-    return AUDIT_ROUNDING * (g * volts + fabs(current)) + 2.0 * g * audit->sums.volts;
+    const double at_nodes = v[d->node[0]] + v[d->node[1]];
+    return AUDIT_ROUNDING * (g * at_nodes + fabs(current)) + 2.0 * g * audit->sums.volts;
 }
 
 void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,

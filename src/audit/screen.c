@@ -9,23 +9,51 @@
 /* A multiplier whose product spreads keys (D. E. Knuth, The Art of Computer Programming 3, sec. 6.4). */
 static const uint64_t spread = 0x9e3779b97f4a7c15u;
 
-/* Where the key is, or may go (op. cit., algorithm L). */
-static struct audit_screen **slot_of(const struct audit_screens *screens, uint64_t key) {
+/* Steps whose lengths have the same exponent, but for its last two bits. */
+static int class_of(double length) {
+    int exponent;
+    (void)frexp(length, &exponent);
+    return (exponent + 1024 * 4) / 4;
+}
+
+/* Steps within a factor of 4 are held to the same, and all of one class. */
+static bool serves(const struct audit_screen *screen, uint64_t key, double length) {
+    return screen->key == key &&
+           (class_of(screen->length) == class_of(length) ||
+            (length <= 4.0 * screen->length && screen->length <= 4.0 * length));
+}
+
+/* Where the screen of a mode and a class is, or may go (op. cit., algorithm L). */
+static struct audit_screen **slot_of(const struct audit_screens *screens, uint64_t key, int class) {
     const uint64_t mask = ((uint64_t)1 << screens->log2_slots) - 1;
-    uint64_t at = (key * spread) >> (64 - screens->log2_slots);
-    while (screens->slot[at] != NULL && screens->slot[at]->key != key) {
+    uint64_t at = ((key ^ (uint64_t) class) * spread) >> (64 - screens->log2_slots);
+    while (screens->slot[at] != NULL &&
+           (screens->slot[at]->key != key || class_of(screens->slot[at]->length) != class)) {
         at = (at + 1) & mask;
     }
     return &screens->slot[at];
 }
 
+/* That of its own class, or else of one beside it. */
+static struct audit_screen *find(const struct audit_screens *screens,
+                                 const struct dalcs_audit_polynomials *p) {
+    static const int beside[] = {0, 1, -1};
+    struct audit_screen *found = NULL;
+    for (size_t k = 0; k < sizeof beside / sizeof *beside && found == NULL && screens->n > 0; k++) {
+        struct audit_screen *of = *slot_of(screens, p->key, class_of(p->step) + beside[k]);
+        found = of != NULL && of->is_made && serves(of, p->key, p->step) ? of : NULL;
+    }
+    return found;
+}
+
 struct audit_screen *audit_screen_of(const struct audit_part *part,
                                      const struct dalcs_audit_polynomials *p) {
     struct audit_screens *screens = &part->watch->screens;
-    if (screens->latest == NULL || screens->latest->key != p->key) {
-        screens->latest = screens->n > 0 ? *slot_of(screens, p->key) : NULL;
+    if (screens->latest == NULL || !screens->latest->is_made || screens->latest->key != p->key ||
+        (screens->latest->length != p->step && !serves(screens->latest, p->key, p->step))) {
+        screens->latest = find(screens, p);
     }
-    return screens->latest != NULL && screens->latest->is_made ? screens->latest : NULL;
+    return screens->latest;
 }
 
 /* At most half of the slots are taken. */
@@ -39,7 +67,8 @@ static bool grow(struct audit_screens *screens) {
     for (int k = 0; next.slot != NULL && screens->slot != NULL && k < 1 << screens->log2_slots;
          k++) {
         if (screens->slot[k] != NULL) {
-            *slot_of(&next, screens->slot[k]->key) = screens->slot[k];
+            *slot_of(&next, screens->slot[k]->key, class_of(screens->slot[k]->length)) =
+                screens->slot[k];
         }
     }
     if (next.slot == NULL) {
@@ -69,8 +98,9 @@ static void drop_all(struct audit_screens *screens) {
     screens->latest = NULL;
 }
 
-/* The screen with that key, which need not be made. Where there is no room for more all begin anew. */
-static struct audit_screen *take(struct audit_watch *watch, uint64_t key) {
+/* The screen of such steps, which need not be made. Where there is no room for more all begin anew. */
+static struct audit_screen *take(struct audit_watch *watch,
+                                 const struct dalcs_audit_polynomials *p) {
     struct audit_screens *screens = &watch->screens;
     if (screens->numbers > AUDIT_MOST_NUMBERS) {
         drop_all(screens);
@@ -78,12 +108,17 @@ static struct audit_screen *take(struct audit_watch *watch, uint64_t key) {
     if (!grow(screens)) {
         return NULL;
     }
-    struct audit_screen **slot = slot_of(screens, key);
+    struct audit_screen *other = find(screens, p);
+    if (other != NULL) {
+        return other;
+    }
+    struct audit_screen **slot = slot_of(screens, p->key, class_of(p->step));
     if (*slot == NULL) {
         *slot = dalcs_alloc(1, sizeof(**slot));
         if (*slot != NULL) {
             screens->n++;
-            (*slot)->key = key;
+            (*slot)->key = p->key;
+            (*slot)->length = p->step;
             (*slot)->limit = 1.0;
         }
     }
@@ -197,6 +232,7 @@ void audit_screen_finish(struct audit_part *part) {
     drop_all(&watch->screens);
     free(watch->screens.slot);
     free(watch->place);
+    free(watch->batch.gathered.input);
     free(watch->fill.sign);
     free(watch->fill.guard);
     for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
@@ -263,13 +299,14 @@ struct audit_screen *audit_screen_make(struct dalcs_audit *audit, struct audit_p
     if (watch->state_factor == NULL && !start(audit, part, p)) {
         return NULL;
     }
-    struct audit_screen *screen = take(watch, p->key);
+    struct audit_screen *screen = take(watch, p);
     if (screen == NULL) {
         return NULL;
     }
     screen->rests = 0;
+    screen->course.from = INFINITY;
     audit_images_forget(screen);
     screen->is_made =
-        audit_screen_fill(audit, part, p->step, s) && put(watch, screen, p->n_columns);
+        audit_screen_fill(audit, part, screen->length, s) && put(watch, screen, p->n_columns);
     return screen->is_made ? screen : NULL;
 }

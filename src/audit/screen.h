@@ -51,17 +51,23 @@ enum audit_term_kind {
     AUDIT_N_TERM_KINDS
 };
 
-/* What the rows make of steps of one length that end at one place, by what these are a linear image of. Signs change by no
- * more than the inputs do times what they reach: near an input at which they were asked they need not be asked again. */
+/* What the rows make of steps of one length, by what these are a linear image of. Signs change by no more than the inputs do
+ * times what they reach: near an input at which they were asked they need not be asked again. What is at the end of a
+ * stretch is a polynomial in that time: of its values at the nodes. */
 struct audit_image {
-    double step, end; /* s, in steps */
-    long n_asked;     /* by their values */
+    double step;  /* s */
+    double end;   /* of the stretch that was asked last, in steps */
+    long n_asked; /* by their values */
+    double *
+        at_node; /* [n_inputs][n_nodes][n_ends] of states and signs where they may end; NULL: not made yet */
+    int n_ends; /* in whole quads */
 
     struct audit_image_at { /* a time */
         double *place;      /* [n_inputs][n_places]; NULL: not made yet */
         double *reach;      /* [n_inputs] most that one of the signs changes by */
         double *input;      /* [n_inputs] at which signs were asked */
         double slack;       /* that the least of them had there, above -1 */
+        double end;         /* in steps, of stretches with these states and signs at their ends */
     } at[AUDIT_SCREEN_TIMES];
 };
 
@@ -81,11 +87,14 @@ struct audit_window {
 
 struct audit_screen {
     uint64_t key;
+    double
+        length; /* s, of the step that it was made of: charges and fluxes are held to what may be over that */
     bool is_made;
-    double limit;     /* that a sum or a sign may be beyond */
-    int alarms;       /* that were false */
-    long rests;       /* stretches that it is not asked of after one */
-    double *row;      /* [AUDIT_N_ROWS][n_columns in whole quads], constants behind them */
+    double limit;  /* that a sum or a sign may be beyond */
+    int alarms;    /* that were false */
+    double jumped; /* the largest jump of states that led into it, of those that were looked at */
+    long rests;    /* stretches that it is not asked of after one */
+    double *row;   /* [AUDIT_N_ROWS][n_columns in whole quads], constants behind them */
     double *constant; /* [n_places], and of guards */
     double rate;      /* 1/s, of what is integrated */
     int n_places;     /* in whole quads */
@@ -94,6 +103,7 @@ struct audit_screen {
     int window_at; /* the one that was found last */
     int n_terms[AUDIT_N_TERM_KINDS];
     struct audit_term *term[AUDIT_N_TERM_KINDS]; /* one behind the other */
+    struct audit_course course;                  /* of what sources add to the sum of laws */
     double step, end;                            /* of the stretch before that had no image */
     int image_at;                                /* the one that was of use last */
     struct audit_image image[AUDIT_IMAGES];
@@ -130,11 +140,21 @@ bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part, doubl
 /* A random factor and sign, for a sum. */
 double audit_screen_weight(struct dalcs_audit *audit);
 
+/* courses.c: what sources add to its sum of laws where the course of that is not known. */
+double audit_laws_begin(struct dalcs_audit *audit, struct audit_screen *screen, double t);
+
+static inline double audit_laws_stimuli(struct dalcs_audit *audit, struct audit_screen *screen,
+                                        double t) {
+    const struct audit_course *c = &screen->course;
+    return c->from <= t && t <= c->to ? audit_course_value(c, t)
+                                      : audit_laws_begin(audit, screen, t);
+}
+
 struct audit_question {
     const struct dalcs_audit_stretch *stretch;
-    double near;                  /* s, from its ends, where sources have no edge */
-    int m;                        /* of the watch's times */
-    struct audit_image_at *image; /* of that; NULL: values are asked */
+    double near;               /* s, from its ends, where sources have no edge */
+    int m;                     /* of the watch's times */
+    struct audit_image *image; /* NULL: values are asked */
 };
 
 struct audit_answer {
@@ -148,19 +168,27 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
                       struct audit_screen *screen, const struct audit_question *q,
                       struct audit_answer *answer);
 
-/* quick.c: the stretch has been passed over; so may be those that repeat it. */
-void audit_repeat_from(struct dalcs_audit *audit, struct audit_part *part,
-                       const struct dalcs_audit_stretch *stretch);
+/* batch.c: the stretch has been passed over; so may be those that repeat it. */
+void audit_batch_from(struct dalcs_audit *audit, struct audit_part *part,
+                      const struct dalcs_audit_stretch *stretch);
 
 /* A node beside each of the times, as they are drawn at the same chance. */
-static inline int audit_node_of(const struct dalcs_audit_polynomials *p, int m) {
-    return 1 + m * (p->n_nodes - 1) / AUDIT_SCREEN_TIMES;
+static inline int audit_node_at(int n_nodes, int m) {
+    return 1 + m * (n_nodes - 1) / AUDIT_SCREEN_TIMES;
 }
 
 /* What the rows make of n_nodes values of each column, without constants and stimuli, at the m-th time. */
 void audit_screen_place(const struct audit_watch *watch, const struct audit_screen *screen,
                         const struct dalcs_audit_polynomials *p, int m, const double *value,
                         double *place);
+
+/* ... and of what may be at their ends, n_ends numbers for each node. */
+void audit_screen_ends(const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
+                       const double *value, int n_ends, double *at_node);
+
+/* w[n_nodes] of values at the nodes in one at a time, in steps. */
+void audit_screen_weights(const struct audit_watch *watch, const struct dalcs_audit_polynomials *p,
+                          double theta, double *w);
 
 /* The weights of the m-th of the times that stretches are asked at. */
 void audit_screen_weigh(struct audit_watch *watch, const struct dalcs_audit_polynomials *p, int m);
@@ -210,18 +238,19 @@ static inline bool audit_is_same_end(double a, double b) {
     return fabs(a - b) <= 0x1p-32;
 }
 
-/* images.c: the image of such steps at the m-th time; NULL: there is none, or none yet. */
-struct audit_image_at *audit_image_of(const struct dalcs_audit *audit,
-                                      const struct audit_part *part, struct audit_screen *screen,
-                                      const struct dalcs_audit_polynomials *p, int m);
+/* images.c: the image of such steps, which is made at the m-th time; NULL: there is none, or none yet. */
+struct audit_image *audit_image_of(const struct dalcs_audit *audit, const struct audit_part *part,
+                                   struct audit_screen *screen,
+                                   const struct dalcs_audit_polynomials *p, int m);
 
-/* Likewise where it is that of the stretch asked last. */
-static inline struct audit_image_at *
+/* Likewise where it is that of the stretch asked last, with that end. */
+static inline struct audit_image *
 audit_image_again(struct audit_screen *screen, const struct dalcs_audit_polynomials *p, int m) {
     struct audit_image *image = &screen->image[screen->image_at];
-    return image->step == p->step && audit_is_same_end(image->end, p->end) &&
-                   image->at[m].place != NULL && p->input != NULL
-               ? &image->at[m]
+    return image->step == p->step && image->at[m].place != NULL && p->input != NULL &&
+                   audit_is_same_end(image->end, p->end) &&
+                   audit_is_same_end(image->at[m].end, p->end)
+               ? image
                : NULL;
 }
 

@@ -41,11 +41,20 @@ static void flow_weights(const struct dalcs_audit_polynomials *p, const double *
 
 /* ---- Places -------------------------------------------------------------------------------------- */
 
-/* Of a time in the stretch and its end. Beside them a node. */
+/* Of a time in the stretch and its end, which most have at a node. Beside them a node. */
 struct weights {
     const double *now, *flow, *end;
-    int node;
+    int node, last; /* < 0: it ends at none */
 };
+
+static struct weights weights_of(const double *now, const double *flow, const double *end, int n,
+                                 int node) {
+    struct weights w = {now, flow, end, node, -1};
+    for (int k = 0; k < n; k++) {
+        w.last = end[k] == 1.0 ? k : w.last;
+    }
+    return w;
+}
 
 /* Sums of a quad of columns over the nodes: at the time, over the time before it, and at the end. */
 struct audit_quads {
@@ -58,6 +67,16 @@ combine(const struct dalcs_audit_polynomials *p, const struct weights *w, const 
     const double *now = w->now;
     const double *flow = w->flow;
     const double *end = w->end;
+    if (w->last >= 0) {
+        dalcs_quad_load(&sum.end, value + w->last * p->stride);
+        for (int k = 0; k < p->n_nodes; k++, value += p->stride) {
+            dalcs_quad of;
+            dalcs_quad_load(&of, value);
+            sum.now += of * now[k];
+            sum.flow += of * flow[k];
+        }
+        return sum;
+    }
     for (int k = 0; k < p->n_nodes; k++, value += p->stride) {
         dalcs_quad of;
         dalcs_quad_load(&of, value);
@@ -136,12 +155,60 @@ void audit_screen_place(const struct audit_watch *watch, const struct audit_scre
                         double *place) {
     double end[AUDIT_MOST_NODES];
     weights_at(p, watch->barycentric, p->end, end);
-    const struct weights w = {watch->now[m], watch->flow[m], end, audit_node_of(p, m)};
+    const struct weights w =
+        weights_of(watch->now[m], watch->flow[m], end, p->n_nodes, audit_node_at(p->n_nodes, m));
     add_places(watch, screen, p, &w, value, place);
 }
 
 DALCS_TWICE(double, least_sign, (int n_places, const double *place), (n_places, place)) {
     return audit_least_sign(n_places, place);
+}
+
+void audit_screen_weights(const struct audit_watch *watch, const struct dalcs_audit_polynomials *p,
+                          double theta, double *w) {
+    weights_at(p, watch->barycentric, theta, w);
+}
+
+void audit_screen_ends(const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
+                       const double *value, int n_ends, double *at_node) {
+    const double *state = screen->row + AUDIT_ROW_STATES * dalcs_quads_of(p->n_columns);
+    for (int k = 0; k < p->n_nodes; k++, value += p->stride, at_node += n_ends) {
+        for (int c = 0; c < p->n_columns; c++) {
+            at_node[0] += state[c] * value[c];
+        }
+        const struct audit_term *term = screen->term[AUDIT_TERM_COLUMN];
+        for (int i = 0; i < screen->n_terms[AUDIT_TERM_COLUMN]; i++, term++) {
+            at_node[1 + (term->place - AUDIT_PLACE_SIGNS) / AUDIT_SIGN_TIMES] +=
+                term->factor * value[term->index];
+        }
+    }
+}
+
+/* What is at the end, where that of the image is another one. */
+static inline __attribute__((always_inline)) void
+add_ends(const struct audit_watch *watch, const struct audit_screen *screen,
+         const struct dalcs_audit_polynomials *p, const struct audit_image *image, double *place) {
+    double w[AUDIT_MOST_NODES];
+    weights_at(p, watch->barycentric, p->end, w);
+    const double *from = image->at_node;
+    const int n_signs = (screen->n_places - AUDIT_PLACE_SIGNS) / AUDIT_SIGN_TIMES;
+    for (int first = 0; first < image->n_ends; first += DALCS_QUAD) {
+        dalcs_quad sum = {0.0};
+        const double *at = from + first;
+        for (int j = 0; j < p->n_inputs; j++, at += p->n_nodes * image->n_ends) {
+            dalcs_quad of_input = {0.0};
+            for (int k = 0; k < p->n_nodes && p->input[j] != 0.0; k++) {
+                dalcs_quad of;
+                dalcs_quad_load(&of, at + k * image->n_ends);
+                of_input += of * w[k];
+            }
+            sum += of_input * p->input[j];
+        }
+        for (int e = first; e < first + DALCS_QUAD && e <= n_signs; e++) {
+            const int to = e == 0 ? AUDIT_PLACE_END : AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * e - 1;
+            place[to] = screen->constant[to] + sum[e - first];
+        }
+    }
 }
 
 /* Laws and states, and the least of the signs, or less, where the input is near one at which they were asked. Where there
@@ -154,13 +221,25 @@ DALCS_TWICE(double, multiply,
     double far;
     audit_image_laws(screen->constant, screen->n_places, p->input, p->n_inputs, at, &sum, &far);
     dalcs_quad_store(place, &sum);
-    if (p->value != NULL) {
-        const int n = dalcs_quads_of(p->n_columns);
-        *off = fabs(place[AUDIT_PLACE_NODE] -
-                    audit_product(n, screen->row + AUDIT_ROW_NOW * n,
-                                  p->value + audit_node_of(p, m) * p->stride));
-    }
+    *off = audit_image_off(screen, p, m, place);
     return far <= at->slack ? at->slack - far - 1.0 : audit_image_signs(screen, p, at, place);
+}
+
+/* The signs at the end are others. */
+DALCS_TWICE(double, multiply_to_end,
+            (const struct audit_watch *watch, const struct audit_screen *screen,
+             const struct dalcs_audit_polynomials *p, int m, const struct audit_image *image,
+             double *place, double *off),
+            (watch, screen, p, m, image, place, off)) {
+    const struct audit_image_at *at = &image->at[m];
+    dalcs_quad sum;
+    double far;
+    audit_image_laws(screen->constant, screen->n_places, p->input, p->n_inputs, at, &sum, &far);
+    dalcs_quad_store(place, &sum);
+    *off = audit_image_off(screen, p, m, place);
+    audit_image_places(screen, p, at, place);
+    add_ends(watch, screen, p, image, place);
+    return audit_least_sign(screen->n_places, place);
 }
 
 /* ---- Stimuli ------------------------------------------------------------------------------------- */
@@ -208,7 +287,7 @@ static double ask_values(struct dalcs_audit *audit, const struct audit_watch *wa
     weights_at(p, watch->barycentric, theta, now);
     flow_weights(p, watch->barycentric, theta, flow);
     weights_at(p, watch->barycentric, p->end, end);
-    const struct weights w = {now, flow, end, 0};
+    const struct weights w = weights_of(now, flow, end, p->n_nodes, 0);
     add_places(watch, screen, p, &w, p->value, watch->place);
     return theta;
 }
@@ -223,7 +302,10 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
     double laws = 0.0;
     double sign;
     if (q->image != NULL) {
-        sign = multiply(screen, p, q->m, q->image, place, &laws);
+        struct audit_image_at *at = &q->image->at[q->m];
+        sign = audit_is_same_end(at->end, p->end)
+                   ? multiply(screen, p, q->m, at, place, &laws)
+                   : multiply_to_end(watch, screen, p, q->m, q->image, place, &laws);
     } else {
         theta = ask_values(audit, watch, screen, q->m, p);
         sign = least_sign(screen->n_places, place);
@@ -234,9 +316,8 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
         sign = least_sign(screen->n_places, place);
     }
     double sum = place[AUDIT_PLACE_LAWS] + screen->rate * (t - stretch->from);
-    for (int k = 0; k < screen->n_terms[AUDIT_TERM_LAW]; k++) {
-        const struct audit_term *term = &screen->term[AUDIT_TERM_LAW][k];
-        sum += term->factor * audit_stimulus_at(audit, term->index, t);
+    if (screen->n_terms[AUDIT_TERM_LAW] > 0) {
+        sum += audit_laws_stimuli(audit, screen, t);
     }
     if (screen->n_terms[AUDIT_TERM_FLOW] > 0) {
         sum += flows(audit, screen, stretch->from, t - stretch->from);

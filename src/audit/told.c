@@ -104,6 +104,14 @@ static double moved_near(const struct dalcs_audit *audit, double t, bool is_befo
     return most;
 }
 
+/* A: as far as the voltage takes the current of a coil in that time. It hardly moves, but where a resistance beside it leaves
+ * it no time at all. */
+static double moved_in_coil(const struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_device *d) {
+    return audit_volts(audit, part, d->node[0], d->node[1]) * AUDIT_PROMISED *
+           audit->options.resolution / d->value;
+}
+
 void dalcs_audit_check_told_jump(struct dalcs_audit *audit, int index,
                                  const struct dalcs_audit_jump *jump, double t) {
     const struct dalcs_device *d = &audit->circuit->device[jump->device];
@@ -115,10 +123,10 @@ void dalcs_audit_check_told_jump(struct dalcs_audit *audit, int index,
     if (d->kind != DALCS_CAPACITOR && d->kind != DALCS_INDUCTOR) {
         return;
     }
-    /* a coil hardly moves in that time */
     const bool is_volt = d->kind == DALCS_CAPACITOR;
-    const double slack_before = is_volt ? moved_near(audit, t, true) : 0.0;
-    const double slack_after = is_volt ? moved_near(audit, t, false) : 0.0;
+    const double moved = is_volt ? 0.0 : moved_in_coil(audit, part, d);
+    const double slack_before = is_volt ? moved_near(audit, t, true) : moved;
+    const double slack_after = is_volt ? moved_near(audit, t, false) : moved;
     if (jump->knows_before) {
         off = fabs(jump->before - stored_in(&audit->later, d, jump->device)) - slack_before;
     }

@@ -4,12 +4,13 @@
 /* Stretches that a screen rests after an alarm that was false and stays: twice as many each time, up to 2 to this power. */
 enum { MOST_DOUBLINGS = 16 };
 
-/* So many alarms of a screen are looked at whatever they cost. What was found would have ended the run; more, which are
- * false, such as of states that jump in each period, are looked at while the run can afford it. */
+/* So many alarms of a screen are looked at whatever they cost, and a jump of states that leads into its mode and is more
+ * than twice as large as those that were looked at. What was found would have ended the run; more, which are false, and
+ * states that jump in each period, are looked at while the run can afford it. */
 enum { FEW_ALARMS = 4 };
 
-/* Instructions of a screen, about: of what is handed over and asked, of an element of its image, of a value in its polynomials. */
-static const double screen_work = 600.0, element_work = 0.5, value_work = 2.5;
+/* Instructions of a screen, about, of an element of its image, of a value in its polynomials. */
+static const double element_work = 0.5, value_work = 2.5;
 
 /* At one of the watch's times, by an image of such steps where there is one. The values have to reach from one end of the
  * stretch to the other. Times are known to their resolution, and events to what changes no value by more than the
@@ -28,10 +29,11 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
     if (!watch->is_weighed[q.m]) {
         audit_screen_weigh(watch, p, q.m);
     }
-    q.image = audit_image_again(screen, p, q.m);
-    if (q.image == NULL && n_times > 0) {
-        q.image = audit_image_of(audit, part, screen, p, q.m);
+    if (n_times > 0) {
+        q.image = audit_image_again(screen, p, q.m);
+        q.image = q.image == NULL ? audit_image_of(audit, part, screen, p, q.m) : q.image;
     }
+    watch->image = q.image;
     if (q.image == NULL && p->value == NULL) {
         audit->reader.complete(audit->reader.user, stretch->part);
     }
@@ -41,12 +43,12 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
         answer->worst = INFINITY;
     }
     audit->budget.spent +=
-        screen_work + (q.image != NULL ? element_work * p->n_inputs * screen->n_places
-                                       : value_work * p->n_nodes * p->n_columns);
+        AUDIT_SCREEN_WORK + (q.image != NULL ? element_work * p->n_inputs * screen->n_places
+                                             : value_work * p->n_nodes * p->n_columns);
 }
 
 /* Is the stretch to be looked at, for what the screen says, or because states are not what they were at the end of the one
- * before? */
+ * before? Then only how it begins is. */
 static bool alarms(struct dalcs_audit *audit, struct audit_watch *watch,
                    struct audit_screen *screen, const struct audit_answer *answer) {
     const double jump =
@@ -54,11 +56,14 @@ static bool alarms(struct dalcs_audit *audit, struct audit_watch *watch,
     watch->states = answer->end;
     watch->knows_states = true;
     audit->count.screened++;
-    if ((answer->worst <= screen->limit && jump <= screen->limit) ||
-        (screen->alarms >= FEW_ALARMS && audit->budget.credit < 0.0)) {
+    const bool holds = answer->worst <= screen->limit;
+    const bool is_known = holds ? jump <= 2.0 * screen->jumped : screen->alarms >= FEW_ALARMS;
+    if ((holds && jump <= screen->limit) || (is_known && audit->budget.credit < 0.0)) {
         return false;
     }
-    screen->alarms++;
+    screen->alarms += holds ? 0 : 1;
+    screen->jumped = holds ? fmax(screen->jumped, jump) : screen->jumped;
+    watch->has_jumped = holds;
     watch->asked = answer->t;
     return true;
 }
@@ -68,6 +73,7 @@ bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretc
     struct audit_part *part = &audit->part[stretch->part];
     struct audit_watch *watch = part->watch;
     watch->asked = -1.0;
+    watch->image = NULL;
     const bool can_ask = can_look && stretch->stored != NULL;
     struct audit_screen *screen = can_ask ? audit_screen_of(part, stretch->stored) : NULL;
     watch->makes = can_ask && screen == NULL;

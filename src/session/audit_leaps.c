@@ -53,6 +53,7 @@ static double distance(const struct dalcs_radau_part *part, const double *x) {
 void dalcs_audit_run_start_leap(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
     if (a->audit != NULL) {
+        dalcs_audit_run_settle(a, part->index);
         memcpy(a->tried, part->x, (size_t)part->component->system->n_x * sizeof(double));
         a->leap_time = part->segment.t;
         if (!a->has_passed) {

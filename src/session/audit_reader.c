@@ -146,42 +146,22 @@ static uint64_t mix(uint64_t hash, uint64_t word) {
     return (hash ^ word) * 0x100000001b3u;
 }
 
-/* Steps within a factor of 16 are held to the same: their exponents are, but for the last two bits. */
 static uint64_t key_of(const struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *osnsp = &part->component->osnsp;
-    uint64_t length;
-    memcpy(&length, &part->segment.h, sizeof length);
-    uint64_t hash = mix(0xcbf29ce484222325u, length >> 54);
+    uint64_t hash = 0xcbf29ce484222325u;
     for (int k = 0; k < osnsp->n_words; k++) {
         hash = mix(hash, osnsp->mode[k]);
     }
     return hash;
 }
 
-static inline const struct dalcs_stage_entry *entry_of(const struct dalcs_radau_part *part) {
-    return part->segment.late != NULL    ? part->segment.late
-           : part->segment.brief != NULL ? part->segment.brief->entry
-                                         : part->segment.entry;
-}
-
-/* Does the segment begin with its input? One of those kept of a period has another start. */
-static inline bool begins_with_input(const struct dalcs_radau_part *part) {
-    const int n_x = part->component->system->n_x;
-    const double *in = part->segment.in;
-    const double *out = part->segment.out;
-    bool is = true;
-    for (int x = 0; x < n_x; x++) {
-        is &= in[x] == out[x];
-    }
-    return is;
-}
-
 /* The map whose image of part->in the segment is; NULL: none. */
-static const struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *part) {
-    const struct dalcs_stage_entry *entry = entry_of(part);
+static struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *part) {
+    struct dalcs_stage_entry *entry = dalcs_audit_entry_of(&part->segment);
     const bool has_map =
         entry != NULL && dalcs_stages_have_maps(&part->stages) && dalcs_stage_has_map(entry);
-    return part->segment.late != NULL || (has_map && begins_with_input(part)) ? entry : NULL;
+    return part->segment.late != NULL || (has_map && dalcs_audit_begins_with_input(part)) ? entry
+                                                                                          : NULL;
 }
 
 static const struct dalcs_audit_polynomials *store(struct audit_members *m,
@@ -214,24 +194,6 @@ struct dalcs_audit_stretch *dalcs_audit_reader_stretch(struct dalcs_audit_run *a
     return stretch;
 }
 
-bool dalcs_audit_reader_repeats(const struct dalcs_radau_part *part, struct audit_members *m) {
-    const struct dalcs_osnsp *osnsp = &part->component->osnsp;
-    if (m->map == NULL || entry_of(part) != m->map || part->segment.h != m->stored.step ||
-        part->segment.end != m->last_end || part->segment.by_euler ||
-        part->component->positions.joined) {
-        return false;
-    }
-    bool is_same = part->segment.late != NULL || begins_with_input(part);
-    for (int k = 0; k < osnsp->n_words; k++) {
-        is_same &= osnsp->mode[k] == m->last_mode[k];
-    }
-    m->stretch.from = part->segment.t;
-    m->stretch.to = part->segment.t_end;
-    m->stored.input = part->segment.in;
-    m->stored.value = part->segment.late != NULL ? NULL : part->segment.out;
-    return is_same;
-}
-
 static void complete(void *user, int index) {
     const struct dalcs_audit_run *a = user;
     struct dalcs_radau_part *part = &a->radau->part[index];
@@ -250,27 +212,26 @@ static const double *column(void *user, int index, int j) {
 }
 
 /* In the place of the lambda of an open pair is another number, and sources alone decide bystanders. */
-static void add_column(const struct dalcs_radau_part *part, int column, double factor,
+static void add_column(const struct dalcs_audit_run *a, int index, int column, double factor,
                        struct dalcs_audit_row *row) {
+    const struct dalcs_radau_part *part = &a->radau->part[index];
     const struct dalcs_system *s = part->component->system;
-    const struct dalcs_bystanders *b = &part->excitation.bystanders;
     const int pair = column - dalcs_system_n_equations(s);
     if (pair >= 0 && !dalcs_osnsp_is_on(&part->component->osnsp, pair)) {
         return;
     }
-    for (int i = 0; i < b->n; i++) {
-        if (b->column[i] == column) {
-            const double *gain = b->gain + i * s->n_inputs;
-            row->constant += factor * gain[0];
-            for (int k = 1; k < s->n_inputs; k++) {
-                if (gain[k] != 0.0) {
-                    dalcs_audit_row_add_stimulus(row, s->stimulus[k], factor * gain[k]);
-                }
-            }
-            return;
+    const int bystander = a->part[index].bystander[column];
+    if (bystander < 0) {
+        dalcs_audit_row_add_column(row, column, factor);
+        return;
+    }
+    const double *gain = part->excitation.bystanders.gain + bystander * s->n_inputs;
+    row->constant += factor * gain[0];
+    for (int k = 1; k < s->n_inputs; k++) {
+        if (gain[k] != 0.0) {
+            dalcs_audit_row_add_stimulus(row, s->stimulus[k], factor * gain[k]);
         }
     }
-    dalcs_audit_row_add_column(row, column, factor);
 }
 
 static void add_voltage(void *user, int index, int node, double factor,
@@ -278,7 +239,7 @@ static void add_voltage(void *user, int index, int node, double factor,
     const struct dalcs_audit_run *a = user;
     const int node_column = a->run->s->network.readout->node_column[node];
     if (node_column >= 0) {
-        add_column(&a->radau->part[index], node_column, factor, row);
+        add_column(a, index, node_column, factor, row);
     }
 }
 
@@ -287,8 +248,7 @@ static void add_current(void *user, int index, int device, double factor,
     const struct dalcs_audit_run *a = user;
     const struct dalcs_readout *readout = a->run->s->network.readout;
     for (int j = readout->start[device]; j < readout->start[device + 1]; j++) {
-        add_column(&a->radau->part[index], readout->term[j].column,
-                   factor * readout->term[j].coefficient, row);
+        add_column(a, index, readout->term[j].column, factor * readout->term[j].coefficient, row);
     }
 }
 
@@ -296,7 +256,8 @@ static void add_lambda(void *user, int index, int lambda, double factor,
                        struct dalcs_audit_row *row) {
     const struct dalcs_audit_run *a = user;
     const struct dalcs_radau_part *part = &a->radau->part[index];
-    add_column(part, dalcs_system_n_equations(part->component->system) + a->pair_of_lambda[lambda],
+    add_column(a, index,
+               dalcs_system_n_equations(part->component->system) + a->pair_of_lambda[lambda],
                factor, row);
 }
 
@@ -309,6 +270,8 @@ struct dalcs_audit_reader dalcs_audit_reader_of(struct dalcs_audit_run *a) {
                                        .add_lambda = add_lambda,
                                        .is_closed = is_closed,
                                        .read_before = read_before,
+                                       .revisit = dalcs_audit_revisit,
+                                       .go_back = dalcs_audit_go_back,
                                        .read = read_state,
                                        .raise = raise_scales};
 }

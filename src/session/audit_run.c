@@ -26,10 +26,7 @@ double dalcs_audit_most_allowed(const struct dalcs_audit_run *a) {
     return fmax(a->run->tolerance, least_failure);
 }
 
-/* What a sample may cost of a run: with the counts above the netlists of the repository stay below 5 %. */
-static const double share = 0.03;
-
-static double state_work(const struct dalcs_audit_run *a, int part) {
+double dalcs_audit_state_work(const struct dalcs_audit_run *a, int part) {
     const struct dalcs_component *c = &a->euler->component[part];
     return value_work * dalcs_system_n_columns(c->system) + source_work * c->n_varying;
 }
@@ -58,10 +55,10 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
     }
     for (int k = 0; k < n; k++) {
         tolerance[k] = a->radau->part[k].tolerance;
-        work[k] = state_work(a, k);
+        work[k] = dalcs_audit_state_work(a, k);
     }
     const struct dalcs_audit_options options = {.mode = run->options->audit,
-                                                .share = share,
+                                                .share = dalcs_audit_share,
                                                 .resolution = a->radau->resolution,
                                                 .vntol = run->vntol,
                                                 .is_start = run->s->network.held == NULL,
@@ -92,14 +89,33 @@ static void start_part(struct audit_members *m, const struct dalcs_radau_part *p
     m->stretch = (struct dalcs_audit_stretch){.part = part->index, .degree = stages->method->s};
 }
 
+static enum dalcs_status list_bystanders(struct dalcs_audit_run *a, int part) {
+    const struct dalcs_bystanders *b = &a->radau->part[part].excitation.bystanders;
+    const int n = a->part[part].stored.n_columns;
+    int *of_column = a->part[part].bystander = dalcs_arena_alloc(&a->arena, (size_t)n, sizeof(int));
+    if (of_column == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int c = 0; c < n; c++) {
+        of_column[c] = -1;
+    }
+    for (int i = 0; i < b->n; i++) {
+        of_column[b->column[i]] = i;
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status list_stepped(struct dalcs_audit_run *a) {
     a->stepped = dalcs_arena_alloc(&a->arena, (size_t)a->radau->n_parts, sizeof(int));
     for (int k = 0; k < a->radau->n_parts && a->stepped != NULL; k++) {
         if (a->radau->part[k].kind == DALCS_PART_STEPPED) {
             a->stepped[a->n_stepped++] = k;
             start_part(&a->part[k], &a->radau->part[k]);
+            DALCS_TRY(list_bystanders(a, k));
+            DALCS_TRY(dalcs_audit_present_make(a, k));
         }
     }
+    a->has_algebraic = a->n_stepped < a->radau->n_parts;
     return a->stepped != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -112,6 +128,7 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         return DALCS_OK;
     }
     a->row_work = row_work * run->s->network.n_outputs;
+    a->row_share = dalcs_audit_share * a->row_work;
     enum dalcs_status status = dalcs_audit_members_make(a);
     status = status == DALCS_OK ? list_stepped(a) : status;
     if (status == DALCS_OK && radau->cycling != NULL) {
@@ -126,6 +143,9 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
             dalcs_audit_gates_start(&a->gates, &run->s->circuit, radau, run->s->network.readout);
     }
     status = status == DALCS_OK ? create(a) : status;
+    for (int i = 0; i < a->n_stepped && status == DALCS_OK; i++) {
+        a->part[a->stepped[i]].batch = dalcs_audit_batch_of(a->audit, a->stepped[i]);
+    }
     if (status != DALCS_OK) {
         dalcs_audit_run_finish(a);
     }
@@ -137,7 +157,19 @@ double dalcs_audit_run_chance(struct dalcs_audit_run *a) {
     return (double)(a->seed >> 11) * 0x1p-53;
 }
 
+void dalcs_audit_run_settle(struct dalcs_audit_run *a, int k) {
+    struct audit_members *m = &a->part[k];
+    if (m->held != NULL) {
+        dalcs_audit_settle(a->audit, k);
+        dalcs_stages_release(&a->radau->part[k].stages, m->held);
+        m->held = NULL;
+    }
+}
+
 void dalcs_audit_run_finish(struct dalcs_audit_run *a) {
+    for (int i = 0; a->audit != NULL && i < a->n_stepped; i++) {
+        dalcs_audit_run_settle(a, a->stepped[i]);
+    }
     dalcs_audit_destroy(a->audit);
     dalcs_audit_gates_finish(&a->gates);
     dalcs_arena_finish(&a->arena);
@@ -174,16 +206,26 @@ static double work_of(const struct dalcs_audit_run *a, const struct audit_member
     return work;
 }
 
-/* It repeats the one before, and need not be looked at. */
-static inline bool repeats(struct dalcs_audit_run *a, int k) {
+/* It repeats the one before, and is asked together with others. The map that gave them stays. */
+static inline bool gathers(struct dalcs_audit_run *a, int k) {
     const struct dalcs_radau_part *part = &a->radau->part[k];
+    const struct dalcs_part_segment *s = &part->segment;
     struct audit_members *m = &a->part[k];
-    if (!dalcs_audit_reader_repeats(part, m) ||
-        !dalcs_audit_repeats(a->audit, &m->stretch, work_of(a, m, &part->segment))) {
+    struct dalcs_audit_batch *batch = m->batch;
+    if (!batch->is_on || s->t_end > batch->last || !dalcs_audit_reader_repeats(part, m) ||
+        (s->late == NULL && !dalcs_audit_is_image(a->audit, k, s->in, s->out))) {
         return false;
     }
-    m->last_out = part->segment.out;
-    m->last_time = part->segment.t_end;
+    if (m->held == NULL) {
+        m->held = m->map;
+        dalcs_stages_hold(m->held);
+    }
+    dalcs_audit_put(batch, s->t, s->t_end, s->in, work_of(a, m, s));
+    m->last_out = s->out;
+    m->last_time = s->t_end;
+    if (batch->n == DALCS_AUDIT_BATCH) {
+        dalcs_audit_ask_batch(a->audit, k);
+    }
     return true;
 }
 
@@ -191,9 +233,10 @@ static void leave(struct dalcs_audit_run *a, int k, double to) {
     const struct dalcs_part_segment *segment = &a->radau->part[k].segment;
     const struct audit_members *m = &a->part[k];
     const bool is_last = to >= a->radau->options.stop;
-    if (to == segment->t_end && !is_last && repeats(a, k)) {
+    if (to == segment->t_end && !is_last && gathers(a, k)) {
         return;
     }
+    dalcs_audit_run_settle(a, k);
     const double work = work_of(a, m, segment);
     struct dalcs_audit_stretch *stretch = dalcs_audit_reader_stretch(a, k, to);
     if (!dalcs_audit_passes_over(a->audit, stretch, work) || is_last) {
@@ -220,6 +263,7 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
             leave(a, k, part->segment.t_end < stop ? part->segment.t_end : stop);
         }
     }
+    dalcs_audit_earn_rows(a);
     a->has_rows = false;
 }
 
@@ -240,68 +284,6 @@ void dalcs_audit_run_enter_now(struct dalcs_audit_run *a) {
         const int k = a->stepped[i];
         if (a->part[k].was_left && a->radau->part[k].segment.t < a->radau->options.stop) {
             enter(a, k);
-        }
-    }
-}
-
-/* Instructions of a comparison of all parts and outputs. */
-static double checking_work(const struct dalcs_audit_run *a) {
-    double work = a->row_work;
-    for (int k = 0; k < a->radau->n_parts; k++) {
-        work += state_work(a, k);
-    }
-    for (int i = 0; i < a->n_stepped; i++) {
-        const int k = a->stepped[i];
-        work += a->radau->part[k].segment.late != NULL ? a->part[k].elements : 0.0;
-    }
-    return work;
-}
-
-/* On a step of implicit Euler rows are lines. And a segment may be so
- * short that the resolution of its times is more of it than is allowed of a value. */
-static bool is_coarse(const struct dalcs_audit_run *a) {
-    const double shortest = 4.0 * a->radau->resolution / dalcs_audit_most_allowed(a);
-    bool is = false;
-    for (int i = 0; i < a->n_stepped && !is; i++) {
-        const struct dalcs_radau_part *part = &a->radau->part[a->stepped[i]];
-        is = dalcs_segment_is_coarse(part) || part->segment.t_end - part->segment.t < shortest;
-    }
-    return is;
-}
-
-/* Some of n rows that were handed on are compared with the waveform. */
-static void check_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
-                       const double *time, enum dalcs_side side, int n) {
-    const bool is_full = a->run->options->audit == DALCS_AUDIT_FULL;
-    struct audit_rows *rows = &a->rows[side];
-    rows->credit += share * a->row_work * n;
-    if (!is_full && rows->has_checked && rows->credit < rows->threshold) {
-        return;
-    }
-    const double work = checking_work(a);
-    rows->credit -= work;
-    rows->threshold = 2.0 * work * dalcs_audit_run_chance(a);
-    rows->has_checked = true;
-    const int first = is_full ? 0 : (int)(dalcs_audit_run_chance(a) * n);
-    for (int i = first; i < n && (is_full || i == first); i++) {
-        dalcs_audit_row(a->audit, time[i], side, recorder->row + (size_t)i * recorder->n_shown,
-                        recorder->n_shown);
-    }
-}
-
-void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
-                          const double *time, enum dalcs_side side, int n) {
-    if (a->audit == NULL) {
-        return;
-    }
-    if (!is_coarse(a)) {
-        check_rows(a, recorder, time, side, n);
-    }
-    dalcs_audit_earn(a->audit, a->row_work * (double)n);
-    a->has_rows = true;
-    for (int k = 0; a->n_stepped < a->radau->n_parts && k < a->radau->n_parts; k++) {
-        if (a->radau->part[k].kind == DALCS_PART_ALGEBRAIC) {
-            dalcs_audit_instant(a->audit, k, time[n - 1], side, dalcs_audit_segment_work);
         }
     }
 }

@@ -18,12 +18,14 @@ struct dalcs_audit_run {
     struct dalcs_audit *audit;  /* NULL: nothing is audited */
     struct audit_members *part; /* [n_systems] */
     int *stepped, n_stepped;    /* parts with segments */
-    double row_work;            /* of a row, in instructions */
+    double row_work, row_share; /* of a row, in instructions; of that, what comparisons may cost */
+    bool has_algebraic;         /* parts without memory, which are looked at beside rows */
 
     struct audit_rows {
-        double credit, threshold; /* instructions that comparisons may cost */
-        bool has_checked;         /* at least one */
-    } rows[2];                    /* from each side */
+        double earned, credit, threshold; /* instructions that comparisons may cost */
+    } rows[2];                            /* from each side */
+
+    double rows_work; /* of rows since the last segment ended, in instructions */
 
     struct audit_told {
         size_t n_events, n_jumps; /* of the report, up to the last instant */
@@ -97,8 +99,24 @@ void dalcs_audit_run_start_leap(struct dalcs_audit_run *a);
 void dalcs_audit_run_end_leap(struct dalcs_audit_run *a);
 
 /* The recorder has handed rows on, at time[n]. */
-void dalcs_audit_run_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
-                          const double *time, enum dalcs_side side, int n);
+void dalcs_audit_run_rows_now(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
+                              const double *time, enum dalcs_side side, int n);
+
+static inline void dalcs_audit_run_rows(struct dalcs_audit_run *a,
+                                        const struct dalcs_recorder *recorder, const double *time,
+                                        enum dalcs_side side, int n) {
+    if (a->audit == NULL) {
+        return;
+    }
+    struct audit_rows *rows = &a->rows[side];
+    a->has_rows = true;
+    a->rows_work += a->row_work * n;
+    rows->earned += a->row_share * n;
+    rows->credit += a->row_share * n;
+    if (rows->credit >= rows->threshold || a->has_algebraic) {
+        dalcs_audit_run_rows_now(a, recorder, time, side, n);
+    }
+}
 
 /* Into the report. A message where a defect is more than is allowed, and DALCS_REFUTED where that ends the
  * run. */

@@ -148,6 +148,9 @@ c2 z 0 1m
 """
 
 
+ALIKE = BUCK.replace("c1 out 0 100u\nr1 out 0 2\n", "c1 out 0 1u\nr1 out 0 40\n").replace(".tran 5m 5m uic", ".tran 1u 0.1m 0 20n uic")
+FED_BACK = ALIKE.replace("r1 out 0 40\n", "r1 out 0 40\nv2 y 0 SIN(0 1 50k)\nr2 y out 1k\n")
+
 LEAPS = BUCK.replace(".tran 5m 5m uic", ".tran 1m 20m uic")
 
 BEAT = BRIDGE.replace("v1 a b SIN(0 24 50)", "v1 a m SIN(0 24 50)\nv2 m b SIN(0 1 7.77)")
@@ -262,6 +265,20 @@ MUTATIONS = {
         "    part->segment.rounding = dalcs_stage_rounding(*entry);\n"
         + once(3210, "", "for (int k = part->stages.layout.stride; k < part->stages.layout.n_fixed; k++) "
                          "{ part->segment.out[k] *= 1.00001; }"), SLOW),
+    "a state is nudged by 1e-6 in one step of 5000 alike": (
+        "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
+        "    part->segment.in[s->n_x] = 1.0;\n" + once(3333, "", "part->segment.in[0] *= 1.0 + 1e-6;"), FED_BACK),
+    "the values of one step of 5000 alike are too large by 1e-5": (
+        "step/present.c", "    part->segment.rounding = dalcs_stage_rounding(*entry);\n",
+        "    part->segment.rounding = dalcs_stage_rounding(*entry);\n"
+        + once(3333, "", "for (int k = part->stages.layout.stride; k < part->stages.layout.n_fixed; k++) "
+                         "{ part->segment.out[k] *= 1.00001; }"), FED_BACK),
+    "a diode conducts on among steps alike": (
+        "locate/first_fall.c", "if (!(bound[g] >= 0.0) && ",
+        "if (!(bound[g] >= 0.0) && (part->segment.t < 60e-6 || part->segment.t > 80e-6) && ", ALIKE),
+    "a command among steps alike is lost": (
+        "excitation/commands.c", "            m->is_on = !m->is_on;\n",
+        "            " + once(13, "m->is_on = !m->is_on;", ""), FED_BACK),
     "one command of 4000 is lost": (
         "excitation/commands.c", "            m->is_on = !m->is_on;\n",
         "            " + once(3210, "m->is_on = !m->is_on;", ""), SLOW),

@@ -52,6 +52,13 @@ CIRCUITS = {
     "capacitors that a gate through E and B joins": (
         "vp p 0 PULSE(0 1 10u 0 0 40u 100u)\ne1 g 0 p 0 2\nv1 in 0 10\ns1 in x g 0 sw\nc1 x 0 1u\ns2 x y g2 0 sw\n"
         "c2 y 0 1u\nb1 g2 0 V=2-v(g)\nr1 y 0 1k\n.model sw SW(vt=1 vh=0.2 ron=0)\n.tran 1u 1m uic\n", [], {}),
+    "a coil that a resistance leaves less time than a run resolves": (
+        "v1 v1 0 SIN(0 1 1k)\nb1 int 0 V=(u(v(v1)*8-1)+u(v(v1)*8-2))/8\nc1 c 0 10p\nr1 n c 100g\nl1 int n .01u\n"
+        ".tran .25m\n", [], {}),
+    "an ohm before a teraohm, with voltages that pass through 0": (
+        "r1 o x 1k\nc1 x 0 2m ic=0\nr2 x 0 1k\nv1 p 0 PULSE(-1m 0.7m 0 8 6 0 18)\nv2 q 0 SFFM(0 1m 0.85 2 0.155)\n"
+        "e1 s w p 0 1\ne2 w 0 q 0 -1\nr8 s u 1\nr9 u 0 1e12\nb1 o 0 V=limit(v(u),-0.3m,0.5m)\n.tran 0.5 20 uic\n",
+        ["--method", "lobatto"], {}),
     "a spark gap on the voltage across it": (
         "v1 in 0 10\nr1 in a1 1k\nc1 a1 b1 1u\nr2 b1 0 1k\nr3 a1 a2 1k\nc2 a2 b2 1u\nr4 b1 b2 1k\ns1 a1 b2 a1 b1 sp\n"
         "s2 a2 o a2 b2 sp\nrl o 0 10k\n.model sp SW(vt=6 vh=3 ron=0.1)\n.tran 0.1m 60m uic\n", [], {}),

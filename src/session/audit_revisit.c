@@ -1,0 +1,78 @@
+/* audit_revisit.c - a segment that has gone by, from what the auditor kept of it, in the place of the present one. */
+#include "audit_reader.h"
+
+#include "radau.h"
+
+#include <string.h>
+
+/* Its values are computed once more, into room[0], and those of the one before it into room[1]. */
+struct audit_present {
+    struct dalcs_part_segment segment;
+    uint64_t *mode; /* [n_words] */
+    double *last_out, last_time;
+    double *room[2];
+};
+
+static size_t mode_bytes(const struct dalcs_radau_part *part) {
+    return (size_t)part->component->osnsp.n_words * sizeof(uint64_t);
+}
+
+enum dalcs_status dalcs_audit_present_make(struct dalcs_audit_run *a, int part) {
+    struct audit_present *p = dalcs_arena_alloc(&a->arena, 1, sizeof(*p));
+    const size_t n_words = (size_t)a->euler->component[part].osnsp.n_words;
+    const struct dalcs_stages *stages = &a->radau->part[part].stages;
+    const size_t n = dalcs_stages_room(stages);
+    uint64_t *mode = dalcs_arena_alloc(&a->arena, n_words, sizeof(*mode));
+    double *room = dalcs_arena_alloc(&a->arena, 2 * n, sizeof(*room));
+    if (p == NULL || mode == NULL || room == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    p->mode = mode;
+    p->room[0] = room;
+    p->room[1] = room + n;
+    a->part[part].present = p;
+    return DALCS_OK;
+}
+
+struct dalcs_audit_stretch *dalcs_audit_revisit(void *user, int index,
+                                                const struct dalcs_audit_kept *before,
+                                                const struct dalcs_audit_kept *present) {
+    struct dalcs_audit_run *a = user;
+    struct audit_members *m = &a->part[index];
+    struct dalcs_radau_part *part = &a->radau->part[index];
+    struct dalcs_part_segment *s = &part->segment;
+    m->present->segment = *s;
+    m->present->last_out = m->last_out;
+    m->present->last_time = m->last_time;
+    memcpy(m->present->mode, part->component->osnsp.mode, mode_bytes(part));
+    memcpy(part->component->osnsp.mode, m->last_mode, mode_bytes(part));
+    s->t = present->from;
+    s->t_end = present->to;
+    s->h = m->last_step;
+    s->end = s->end_before = m->last_end;
+    s->by_euler = s->is_coarse = false;
+    s->in = present->input;
+    s->out = m->present->room[0];
+    s->late = m->held;
+    s->brief = NULL;
+    s->entry = m->held;
+    s->in_before = before->input;
+    s->out_before = m->present->room[1];
+    s->late_before = m->held;
+    m->last_out = s->out_before;
+    m->last_time = before->to;
+    struct dalcs_audit_stretch *stretch = dalcs_audit_reader_stretch(a, index, s->t_end);
+    stretch->is_last = false;
+    stretch->first_look = m->elements;
+    return stretch;
+}
+
+void dalcs_audit_go_back(void *user, int index) {
+    struct dalcs_audit_run *a = user;
+    struct audit_members *m = &a->part[index];
+    struct dalcs_radau_part *part = &a->radau->part[index];
+    part->segment = m->present->segment;
+    memcpy(part->component->osnsp.mode, m->present->mode, mode_bytes(part));
+    m->last_out = m->present->last_out;
+    m->last_time = m->present->last_time;
+}
