@@ -290,7 +290,9 @@ static void take_pins(struct card *c) {
         of->node[k] = is_wired(c, pin) && !(is_sample && k == 1) ? c->node[pin] : -1;
     }
     of->common = common;
-    of->sampled = (struct dalcs_logic_sampled){c->node[0], c->node[1]};
+    if (is_sample) {
+        of->sampled = (struct dalcs_logic_sampled){c->node[0], c->node[1]};
+    }
 }
 
 void dalcs_logic_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {

@@ -83,17 +83,25 @@ enum dalcs_status dalcs_radau_solve(struct dalcs_radau *r, struct dalcs_radau_pa
     if (c->n_varying == 0 && t > 0.0) {
         return DALCS_OK;
     }
+    bool is_new = !part->is_answered;
     for (int i = 0; i < c->n_varying; i++) {
         int k = c->varying[i];
-        c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+        const double u = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+        is_new = is_new || u != c->u[k];
+        c->u[k] = u;
     }
     r->base->t = t;
+    if (!is_new) {
+        return DALCS_OK;
+    }
+    part->is_answered = false;
     enum dalcs_status status = dalcs_component_solve(c, 0.0, c->u, c->y);
     if (status > DALCS_OK) {
         note_failure(r, part, t, side);
     }
     DALCS_TRY(status);
     if (!dalcs_osnsp_is_open(&c->osnsp)) {
+        part->is_answered = true;
         return DALCS_OK;
     }
     evaluate_all_stepped(r, t, side); /* voltages between parts are told, too */

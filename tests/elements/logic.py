@@ -45,6 +45,8 @@ def ring(checker, program):
             for span in half:
                 checker.close(span, n * td, 1e-9 * n * td, f"{what}: half a period")
             checker.check("connection" not in done.stderr, f"{what}: {done.stderr}")
+            solved = done.report["work"]["osnsp"]
+            checker.check(solved <= 10 * n, f"{what}: {solved} problems, where 4.5 {n} edges move one gate each")
 
 
 def relaxation(checker, program):
