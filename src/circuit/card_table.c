@@ -259,6 +259,11 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_gate_inputs += DALCS_GATE_PINS;
             table->n_stimuli += 10; /* of a modulator with two outputs */
             table->n_inner += DALCS_GATE_DEVICES;
+            if (strcmp(card->token[DALCS_LOGIC_MODEL].text, "phasedet") == 0) { /* three gates */
+                table->n_gates += 2;
+                table->n_gate_inputs += DALCS_GATE_PINS;
+                table->n_inner += 2 * DALCS_GATE_DEVICES;
+            }
         } else {
             count_block(table, card);
         }

@@ -290,8 +290,7 @@ def counters(checker, program):
 
 def refused(checker, program):
     """Words for what is not there."""
-    cases = (("a1 a b 0 0 0 0 o 0 PHASEDET", "phasedet is not supported: it has three states"),
-             ("a1 a 0 b 0 0 0 o 0 SAMPLEHOLD td=1n", "samplehold has no parameter 'td'"),
+    cases = (("a1 a 0 b 0 0 0 o 0 SAMPLEHOLD td=1n", "samplehold has no parameter 'td'"),
              ("a1 a 0 0 0 0 0 o 0 COUNTER cycles=2.5", "a whole number of clocks"),
              ("a1 a 0 0 0 0 0 o 0 COUNTER duty=1", "duty= of a counter is above 0 and below 1"),
              ("a1 a 0 0 0 0 0 o 0 COUNTER vt=1", "counter has no parameter 'vt'"),
