@@ -243,6 +243,8 @@ bool dalcs_analog_function_parse(struct dalcs_builder *builder, const struct dal
         parse_varistor(builder, card);
     } else if (strcmp(function, "ota") == 0) {
         dalcs_transconductor_parse(builder, card);
+    } else if (strcmp(function, "phasedet") == 0) {
+        dalcs_phase_detector_parse(builder, card);
     } else if (is_modulator(card)) {
         parse_modulator(builder, card);
     } else {

@@ -216,6 +216,10 @@ int dalcs_noise_stimulus(struct dalcs_compiler *c, const struct dalcs_wave *wave
 
 const struct dalcs_form *dalcs_carrier(struct dalcs_compiler *c, const struct dalcs_formula *f);
 
+/* offset + height times the fraction of frequency t + phase, which may fall. */
+const struct dalcs_form *dalcs_carrier_ramp(struct dalcs_compiler *c, const struct dalcs_wave *saw,
+                                            double height, double offset);
+
 /* ---- wave.c: functions of time --------------------------------------------------------------------- */
 
 /* sin(2 pi (frequency t + phase)) exp(-decay t) as a value. */
@@ -298,6 +302,16 @@ int dalcs_compiler_new_node(struct dalcs_compiler *c, const char *what);
  * smooth functions are. */
 bool dalcs_memory_is(const struct dalcs_formula *f);
 const struct dalcs_form *dalcs_memory_form(struct dalcs_compiler *c, const struct dalcs_formula *f);
+
+/* A device of the compiler's element between two nodes; NULL after an error. */
+struct dalcs_device *dalcs_memory_add_device(struct dalcs_compiler *c, enum dalcs_device_kind kind,
+                                             const char *what, int from, int to);
+
+/* ---- wrapped_integral.c ---------------------------------------------------------------------------- */
+
+/* idtmod(x, first, modulus, offset), whose integral begins at `first`. */
+const struct dalcs_form *dalcs_wrapped_integral_form(struct dalcs_compiler *c,
+                                                     const struct dalcs_formula *f, double first);
 
 /* ---- formula_range.c ------------------------------------------------------------------------------- */
 

@@ -34,6 +34,49 @@ bool dalcs_block_add_constant(const struct dalcs_block_card *c, enum dalcs_devic
     return true;
 }
 
+/* LTspice's models of amplifiers write this for none. */
+static const double no_limit = 1e30;
+
+/* Its forward voltage is the level, or there is a source where that lies on the other side of 0. */
+bool dalcs_block_add_clamp(const struct dalcs_block_card *c, const int *node,
+                           const struct dalcs_block_clamp *clamp) {
+    struct dalcs_circuit *circuit = c->builder->circuit;
+    const char *what = clamp->is_upper ? "upper" : "lower";
+    const bool is_behind = clamp->is_upper ? clamp->level < 0 : clamp->level > 0;
+    if (fabs(clamp->level) > no_limit) {
+        return true;
+    }
+    const int end =
+        is_behind ? dalcs_builder_inner_node(c->builder, what, c->card->token) : node[1];
+    struct dalcs_device *d = dalcs_block_add(c, DALCS_DIODE, what, clamp->is_upper ? node[0] : end,
+                                             clamp->is_upper ? end : node[0]);
+    if (end < 0 || d == NULL) {
+        return false;
+    }
+    d->model = circuit->n_diode_models++;
+    circuit->diode_model[d->model] =
+        (struct dalcs_diode_model){.name = "clamp",
+                                   .ron = clamp->ohms,
+                                   .roff = (double)INFINITY,
+                                   .vfwd = is_behind ? 0 : fabs(clamp->level),
+                                   .vrev = (double)INFINITY};
+    return !is_behind ||
+           dalcs_block_add_constant(c, DALCS_VSOURCE, clamp->is_upper ? "at_upper" : "at_lower",
+                                    (int[]){end, node[1]}, clamp->level);
+}
+
+bool dalcs_block_add_across(const struct dalcs_block_card *c, const int *node,
+                            enum dalcs_device_kind kind, const struct dalcs_parameter *p) {
+    if (p->place == NULL || p->value == 0) {
+        return true;
+    }
+    struct dalcs_device *d = dalcs_block_add(c, kind, p->name, node[0], node[1]);
+    if (d != NULL) {
+        d->value = p->value;
+    }
+    return d != NULL;
+}
+
 void dalcs_block_control(struct dalcs_device *device, const struct dalcs_block_end *by,
                          double gain) {
     device->node[2] = by->node;

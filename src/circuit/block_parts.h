@@ -15,6 +15,20 @@ bool dalcs_block_add_constant(const struct dalcs_block_card *c, enum dalcs_devic
 /* Of a V or I source. */
 void dalcs_block_add_stimulus(const struct dalcs_block_card *c, struct dalcs_device *device,
                               const struct dalcs_stimulus *stimulus);
+
+/* What keeps an output on one side of a level. */
+struct dalcs_block_clamp {
+    bool is_upper;
+    double level; /* V */
+    double ohms;
+};
+
+/* An ideal diode that conducts where node[0] is beyond a level against node[1]; a level of 1e30 V and more is none. */
+bool dalcs_block_add_clamp(const struct dalcs_block_card *c, const int *node,
+                           const struct dalcs_block_clamp *clamp);
+/* A resistor or capacitor between two nodes, if its parameter is given and not 0. */
+bool dalcs_block_add_across(const struct dalcs_block_card *c, const int *node,
+                            enum dalcs_device_kind kind, const struct dalcs_parameter *p);
 /* An E or G source, a switch: the voltage of a port times a gain. */
 void dalcs_block_control(struct dalcs_device *device, const struct dalcs_block_end *by,
                          double gain);

@@ -429,6 +429,7 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
 /* LTspice's VARISTOR and MODULATE; false: another function. */
 /* LTspice's OTA. */
 void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_phase_detector_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* delay() in the formulas of a card: how many, and their sources when all formulas are compiled. */
 size_t dalcs_delay_count(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_delay_resolve(struct dalcs_builder *builder);

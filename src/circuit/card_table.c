@@ -6,6 +6,8 @@
 #include "card_table.h"
 
 #include "core.h"
+#include "number.h"
+#include "pi.h"
 #include "rational.h"
 #include "slips.h"
 
@@ -111,11 +113,39 @@ static const char *hint_of_element(char letter) {
     switch (letter) {
     case 'j':
         return "write an ideal switch S, with a diode D across it for a body diode";
-    case 't':
-        return "write sections of L and C";
     default:
         return NULL;
     }
+}
+
+/* The number behind a name=; 0: not there, or an expression. */
+static double number_behind(const struct dalcs_card *card, const char *name) {
+    struct dalcs_number number = {0};
+    for (int k = 1; k + 2 < card->n; k++) {
+        if (strcmp(card->token[k].text, name) == 0 &&
+            card->token[k + 1].kind == DALCS_TOKEN_EQUAL &&
+            dalcs_number_parse(card->token[k + 2].text, &number) != DALCS_NUMBER_OK) {
+            return 0;
+        }
+    }
+    return number.value;
+}
+
+/* A ladder carries what is well below n/(pi Td); ten sections, and numbers for them where the card has them. */
+static const char *hint_of_line(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    enum { SECTIONS = 10 };
+
+    const double ohms = number_behind(card, "z0");
+    const double delay = number_behind(card, "td");
+    if (!(ohms > 0 && delay > 0)) {
+        return "write n sections instead, each L = Z0*Td/n in series and C = Td/(n*Z0) behind it: "
+               "they carry what is well below the frequency n/(pi*Td)";
+    }
+    return dalcs_builder_hint(
+        builder,
+        "write ten sections instead, each L = %.4g in series and C = %.4g behind it: they carry "
+        "what is well below %.2g Hz, and more of them carry more",
+        ohms * delay / SECTIONS, delay / SECTIONS / ohms, SECTIONS / dalcs_pi / delay);
 }
 
 static const char CARDS[] =
@@ -259,6 +289,11 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_gate_inputs += DALCS_GATE_PINS;
             table->n_stimuli += 10; /* of a modulator with two outputs */
             table->n_inner += DALCS_GATE_DEVICES;
+            if (strcmp(card->token[DALCS_LOGIC_MODEL].text, "phasedet") == 0) { /* three gates */
+                table->n_gates += 2;
+                table->n_gate_inputs += DALCS_GATE_PINS;
+                table->n_inner += 2 * DALCS_GATE_DEVICES;
+            }
         } else {
             count_block(table, card);
         }
@@ -287,7 +322,8 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     const char *what = refused_element(letter);
     builder->hidden |= DALCS_HIDDEN_ELEMENTS;
     if (what != NULL) {
-        dalcs_builder_error(builder, name, hint_of_element(letter),
+        dalcs_builder_error(builder, name,
+                            letter == 't' ? hint_of_line(builder, card) : hint_of_element(letter),
                             "%s are not supported yet ('%s')", what, name->text);
     } else {
         dalcs_builder_error(builder, name, "'*' starts a comment line, '+' continues a card",

@@ -36,6 +36,14 @@ static const struct dalcs_form *fraction(struct dalcs_compiler *c, struct line x
     return falls ? dalcs_form_add(c, dalcs_form_number(c, 1), -1, rising) : rising;
 }
 
+const struct dalcs_form *dalcs_carrier_ramp(struct dalcs_compiler *c, const struct dalcs_wave *saw,
+                                            double height, double offset) {
+    const struct line x = {saw->frequency, saw->phase};
+    const struct dalcs_form *share =
+        x.rate != 0 ? fraction(c, x) : dalcs_form_number(c, x.offset - floor(x.offset));
+    return dalcs_form_add(c, dalcs_form_number(c, offset), height, share);
+}
+
 static const struct dalcs_form *line_form(struct dalcs_compiler *c, struct line x) {
     const struct dalcs_affine time = dalcs_affine_of(c, DALCS_QUANTITY_TIME, 0);
     return dalcs_form_add(c, dalcs_form_number(c, x.offset), x.rate, dalcs_form_affine(c, &time));

@@ -161,9 +161,10 @@ static void refuse_block(struct dalcs_builder *builder, const struct dalcs_card 
     } else {
         dalcs_builder_error(
             builder, card->token,
-            dalcs_builder_suggest_of(builder, functions, n, last->text,
-                                     "functions are and, or, xor, buf, inv, schmitt, dflop, "
-                                     "srflop, samplehold, counter and modulate"),
+            dalcs_builder_suggest_of(
+                builder, functions, n, last->text,
+                "functions are and, or, xor, buf, inv, schmitt, dflop, "
+                "srflop, samplehold, counter, modulate, ota, varistor and phasedet"),
             "'%s' has the function or model '%s', which neither dalcs nor the netlist has", name,
             last->text);
     }

@@ -4,7 +4,7 @@
  * families that differ in that alone one line each. They are the usual figures, checked against no single maker's sheet:
  * where the second digit matters, a card of one's own says what it is. Zeners have their nominal voltage, at the current
  * that the datasheets test it at. */
-#include "diode_parts.h"
+#include "diode_families.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -25,6 +25,7 @@ static const struct line LINES[] = {
      "1n914b 1n916 1n3064",
      DALCS_JUNCTION_SILICON, 1e-3, 0.60, 0.1, 0.92, 100},
     {"bas16 bav99 bav70 bav74 baw56 baw62 bas316 bal74 bal99 bas19 bav19 1ss355 1ss133 1s1588 "
+     "s1588 "
      "1ss400",
      DALCS_JUNCTION_SILICON, 1e-3, 0.62, 0.1, 0.95, 100},
     {"bas20 bav20", DALCS_JUNCTION_SILICON, 1e-3, 0.60, 0.1, 0.87, 200},
@@ -55,6 +56,9 @@ static const struct line LINES[] = {
     {"1n5406", DALCS_JUNCTION_SILICON, 0.1, 0.70, 3, 0.92, 600},
     {"1n5407", DALCS_JUNCTION_SILICON, 0.1, 0.70, 3, 0.92, 800},
     {"1n5408 s3m", DALCS_JUNCTION_SILICON, 0.1, 0.70, 3, 0.92, 1000},
+    {"mr750", DALCS_JUNCTION_SILICON, 0.6, 0.75, 6, 0.95, 50},
+    {"mr754", DALCS_JUNCTION_SILICON, 0.6, 0.75, 6, 0.95, 400},
+    {"mr760", DALCS_JUNCTION_SILICON, 0.6, 0.75, 6, 0.95, 1000},
     {"1n4933 fr101", DALCS_JUNCTION_SILICON, 0.01, 0.66, 1, 0.98, 50},
     {"1n4934 fr102", DALCS_JUNCTION_SILICON, 0.01, 0.66, 1, 0.98, 100},
     {"1n4935 fr103", DALCS_JUNCTION_SILICON, 0.01, 0.66, 1, 0.98, 200},
@@ -92,13 +96,13 @@ static const struct line LINES[] = {
     {"mur1560", DALCS_JUNCTION_SILICON, 0.1, 0.70, 15, 1.25, 600},
     {"mur3060", DALCS_JUNCTION_SILICON, 1, 0.80, 15, 1.25, 600},
     {"rhrp1560 isl9r1560", DALCS_JUNCTION_SILICON, 0.1, 0.80, 15, 1.80, 600},
-    {"1n5817 mbrs120 ss12 sr102", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.28, 1, 0.40, 20},
-    {"1n5818 mbrs130 ss13 10bq030", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.29, 1, 0.43, 30},
-    {"1n5819 mbrs140 ss14 10bq040 b140 dfls140 sr104 stps1l40", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.30,
-     1, 0.47, 40},
+    {"1n5817 b5817 mbrs120 ss12 sr102", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.28, 1, 0.40, 20},
+    {"1n5818 b5818 mbrs130 ss13 10bq030", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.29, 1, 0.43, 30},
+    {"1n5819 b5819 mbrs140 ss14 10bq040 b140 dfls140 sr104 stps1l40", DALCS_JUNCTION_SCHOTTKY, 0.1,
+     0.30, 1, 0.47, 40},
     {"10bq015", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.22, 1, 0.32, 15},
-    {"mbrs160 ss16 b160 dfls160 10bq060 sb160 sr106", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.36, 1, 0.55,
-     60},
+    {"mbrs160 ss16 b160 dfls160 10bq060 10mq060 10mq060n sb160 sr106", DALCS_JUNCTION_SCHOTTKY, 0.1,
+     0.36, 1, 0.55, 60},
     {"mbrs1100 ss110 10bq100 b1100 dfls1100 sr110", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.48, 1, 0.72,
      100},
     {"1n5820 mbrs320 ss32 sr302", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.24, 3, 0.42, 20},
@@ -243,7 +247,9 @@ static bool find_named(const char *name, size_t n, struct dalcs_diode_part *part
     } families[] = {{"bzx84", 0.12, 5e-3},  {"bzx79", 0.12, 5e-3},  {"bzx55", 0.12, 5e-3},
                     {"bzx384", 0.12, 5e-3}, {"bzx585", 0.12, 5e-3}, {"bzv55", 0.12, 5e-3},
                     {"bzt52", 0.12, 5e-3},  {"bzx85", 0.35, 1},     {"bzv85", 0.35, 1},
-                    {"bzg03", 0.5, 1}};
+                    {"bzg03", 0.5, 1},      {"mm3z", 0.12, 5e-3},   {"udzv", 0.12, 5e-3},
+                    {"ufzv", 0.12, 5e-3},   {"dflz", 0.35, 1},      {"p4ke", 1, 10e-3},
+                    {"p6ke", 1, 10e-3},     {"1.5ke", 1, 10e-3}};
 
     for (size_t k = 0; k < sizeof families / sizeof families[0]; k++) {
         const size_t prefix = strlen(families[k].prefix);
@@ -263,7 +269,7 @@ static bool find_named(const char *name, size_t n, struct dalcs_diode_part *part
             end += 2;
         }
         const double current = volts > 0 ? families[k].power / volts : 0;
-        if ((size_t)(end - name) == n && volts >= 1.8 && volts <= 200) {
+        if ((size_t)(end - name) == n && volts >= 1.8 && volts <= 600) {
             set_zener(volts, current < families[k].current ? current : families[k].current, part);
             return true;
         }
@@ -274,16 +280,17 @@ static bool find_named(const char *name, size_t n, struct dalcs_diode_part *part
 /* ---- Names ------------------------------------------------------------------------------------------- */
 
 static bool find(const char *name, size_t n, struct dalcs_diode_part *part) {
-    return find_line(name, n, part) || find_numbered(name, n, part) || find_named(name, n, part);
+    return find_line(name, n, part) || find_numbered(name, n, part) || find_named(name, n, part) ||
+           dalcs_diode_family_find(name, n, part);
 }
 
 bool dalcs_diode_part_find(const char *name, struct dalcs_diode_part *part) {
     /* Of PSpice's and of a maker's libraries; and what tells housings and tapes apart. */
     static const char *const prefixes[] = {"", "d", "di_", "d_", "diode_"};
-    static const char *const suffixes[] = {"",      "a",    "b",   "w",  "ws",   "wt",  "g",
-                                           "l",     "rl",   "rlg", "t1", "t1g",  "t3g", "lt1",
-                                           "lt1g",  "lt3g", "-t",  "tr", "-tp",  "s",   "-7-f",
-                                           "-13-f", "bg",   "-e3", "_f", "w-7-f"};
+    static const char *const suffixes[] = {
+        "",    "a",     "b",    "w",    "ws", "wt", "g",   "l",  "rl",   "rlg",   "t1", "t1g",
+        "t3g", "lt1",   "lt1g", "lt3g", "-t", "tr", "-tp", "s",  "-7-f", "-13-f", "bg", "-e3",
+        "_f",  "w-7-f", "vl",   "ct",   "wt", "pt", "g2",  "d1", "e",    "c",     "t"};
     const size_t n = strlen(name);
     for (size_t k = 0; k < sizeof prefixes / sizeof prefixes[0]; k++) {
         const size_t before = strlen(prefixes[k]);

@@ -71,28 +71,8 @@ static bool is_wired(const struct card *c, int pin) {
     return c->node[pin] != c->node[PIN_COMMON];
 }
 
-/* LTspice has blocks of analog functions, too. */
-static bool is_refused(struct dalcs_builder *builder, const struct dalcs_token *word) {
-    static const struct {
-        const char *name, *because, *hint;
-    } functions[] = {
-        {"phasedet", "it has three states", "write two DFLOP that an AND of both clears"}};
-
-    for (size_t k = 0; k < sizeof functions / sizeof functions[0]; k++) {
-        if (strcmp(word->text, functions[k].name) == 0) {
-            dalcs_builder_error(builder, word, functions[k].hint, "%s is not supported: %s",
-                                functions[k].name, functions[k].because);
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool find_kind(struct dalcs_builder *builder, struct card *c) {
     const struct dalcs_token *word = &c->card->token[DALCS_LOGIC_MODEL];
-    if (is_refused(builder, word)) {
-        return false;
-    }
     c->function = find_function(word->text);
     c->is_schmitt = strstr(word->text, "schm") != NULL;
     if (strstr(word->text, "inv") != NULL && is_wired(c, PIN_OUTPUT)) {
@@ -290,7 +270,9 @@ static void take_pins(struct card *c) {
         of->node[k] = is_wired(c, pin) && !(is_sample && k == 1) ? c->node[pin] : -1;
     }
     of->common = common;
-    of->sampled = (struct dalcs_logic_sampled){c->node[0], c->node[1]};
+    if (is_sample) {
+        of->sampled = (struct dalcs_logic_sampled){c->node[0], c->node[1]};
+    }
 }
 
 void dalcs_logic_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {

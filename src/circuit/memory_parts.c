@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-static struct dalcs_device *add_device(struct dalcs_compiler *c, enum dalcs_device_kind kind,
-                                       const char *what, int from, int to) {
+struct dalcs_device *dalcs_memory_add_device(struct dalcs_compiler *c, enum dalcs_device_kind kind,
+                                             const char *what, int from, int to) {
     struct dalcs_builder *builder = c->builder;
     const char *name = dalcs_arena_printf(&builder->scratch, "%s%d", what, c->n_nodes);
     struct dalcs_device *device =
@@ -24,7 +24,7 @@ static struct dalcs_device *add_device(struct dalcs_compiler *c, enum dalcs_devi
 }
 
 static int add_capacitor(struct dalcs_compiler *c, const char *what, int node) {
-    struct dalcs_device *device = add_device(c, DALCS_CAPACITOR, what, node, 0);
+    struct dalcs_device *device = dalcs_memory_add_device(c, DALCS_CAPACITOR, what, node, 0);
     if (device == NULL) {
         return -1;
     }
@@ -40,7 +40,7 @@ static int add_derivative(struct dalcs_compiler *c, const struct dalcs_formula *
     if (rate < 0 || add_capacitor(c, "copy", copy) < 0) {
         return -1;
     }
-    struct dalcs_device *h = add_device(c, DALCS_CCVS, "rate", rate, 0);
+    struct dalcs_device *h = dalcs_memory_add_device(c, DALCS_CCVS, "rate", rate, 0);
     if (h == NULL) {
         return -1;
     }
@@ -55,7 +55,8 @@ static bool add_reset(struct dalcs_compiler *c, const struct dalcs_formula *cond
         .name = "reset", .roff = (double)INFINITY, .vt = 0.5};
     int source;
     const int control = dalcs_compiler_node_at(c, "reset", condition, false, &source);
-    struct dalcs_device *s = control >= 0 ? add_device(c, DALCS_SWITCH, "reset", state, 0) : NULL;
+    struct dalcs_device *s =
+        control >= 0 ? dalcs_memory_add_device(c, DALCS_SWITCH, "reset", state, 0) : NULL;
     if (s == NULL) {
         return false;
     }
@@ -72,7 +73,7 @@ static int add_integral(struct dalcs_compiler *c, const struct dalcs_formula *f)
     if (state < 0 || add_capacitor(c, "integral", state) < 0) {
         return -1;
     }
-    struct dalcs_device *g = add_device(c, DALCS_VCCS, "charge", 0, state);
+    struct dalcs_device *g = dalcs_memory_add_device(c, DALCS_VCCS, "charge", 0, state);
     if (g == NULL) {
         return -1;
     }
@@ -101,6 +102,9 @@ const struct dalcs_form *dalcs_memory_form(struct dalcs_compiler *c,
                                "the initial value of '%s' must be a number", f->function);
         c->failed = true;
         return NULL;
+    }
+    if (strcmp(f->function, "idtmod") == 0 && f->n > 2) {
+        return dalcs_wrapped_integral_form(c, f, first->affine.constant);
     }
     int *node = &c->smooth_node[f->number_of];
     if (*node == 0) {

@@ -2,6 +2,8 @@
  * ground that reads nodes. An argument that is not the voltage of a node is put out at one by a source, too. */
 #include "behaviour.h"
 
+#include <string.h>
+
 int dalcs_compiler_new_node(struct dalcs_compiler *c, const char *what) {
     const char *name = dalcs_arena_printf(&c->builder->scratch, "%s%d", what, ++c->n_nodes);
     const int node = name != NULL ? dalcs_builder_inner_node(c->builder, name, c->element) : -1;
@@ -91,6 +93,17 @@ static struct dalcs_behaviour *make(struct dalcs_compiler *c, const struct dalcs
     return behaviour;
 }
 
+/* What is said of a function points at it, if it stands on the line where its element begins. */
+static void point_at(const struct dalcs_formula *f, struct dalcs_device *device) {
+    const bool is_there = f->where.line == device->where.line && f->where.file != NULL &&
+                          device->where.file != NULL &&
+                          strcmp(f->where.file, device->where.file) == 0;
+    if (is_there) {
+        device->where.column = f->where.column;
+        device->where.length = f->where.length;
+    }
+}
+
 static int add_smooth(struct dalcs_compiler *c, const struct dalcs_formula *f,
                       struct dalcs_smooth *smooth, const struct dalcs_form **argument) {
     for (int k = 0; k < smooth->n && !c->failed; k++) {
@@ -111,7 +124,9 @@ static int add_smooth(struct dalcs_compiler *c, const struct dalcs_formula *f,
     if (node < 0 || add_source(c, "function", node, behaviour) < 0) {
         return -1;
     }
-    c->builder->circuit->n_smooth++;
+    struct dalcs_circuit *circuit = c->builder->circuit;
+    point_at(f, &circuit->device[circuit->n_devices - 1]);
+    circuit->n_smooth++;
     return node;
 }
 

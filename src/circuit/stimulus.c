@@ -227,14 +227,26 @@ static double exponential_value(const struct dalcs_stimulus *s, double t, enum d
 
 /* ---- PWL ----------------------------------------------------------------------------------- */
 
-/* The first point with a time > limit, or with a time >= limit; n when there is none. */
+static bool is_past(const struct dalcs_stimulus *s, int point, double limit, bool or_equal) {
+    const double time = s->u.pwl.t[point];
+    return time > limit || (or_equal && time == limit);
+}
+
+/* The first point with a time > limit, or with a time >= limit; n when there is none. What gates write grows at its end,
+ * and is asked for there: the last jump, of two points, is looked at first. */
 static int pwl_search(const struct dalcs_stimulus *s, double limit, bool or_equal) {
     int low = 0;
     int high = s->u.pwl.n;
+    const int tail = high > 2 ? high - 3 : 0;
+    while (high > tail && is_past(s, high - 1, limit, or_equal)) {
+        high--;
+    }
+    if (high > tail) {
+        return high;
+    }
     while (low < high) {
         const int middle = low + (high - low) / 2;
-        const double time = s->u.pwl.t[middle];
-        if (time > limit || (or_equal && time == limit)) {
+        if (is_past(s, middle, limit, or_equal)) {
             high = middle;
         } else {
             low = middle + 1;

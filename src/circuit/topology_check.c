@@ -35,7 +35,8 @@ static void check_nodes(struct dalcs_builder *builder, const struct touch *touch
     for (int k = 1; k < circuit->n_nodes; k++) {
         const struct touch *t = &touch[k];
         if (t->n_terminals == 0) {
-            dalcs_builder_warn(builder, builder->node_token[k], NULL,
+            dalcs_builder_warn(builder, builder->node_token[k],
+                               "it is taken for 0 V: connect what drives it, or ground",
                                "node '%s' only controls '%s': nothing sets its voltage",
                                circuit->node_name[k], circuit->device[t->device].name);
         } else if (t->n_terminals + t->n_controls == 1 &&

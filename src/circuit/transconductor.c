@@ -17,9 +17,6 @@ static const char USAGE[] =
     "an OTA is: Aname minus plus 0 0 0 0 out com OTA [G=1 Ref=0 Iout=10u Isink= Vhigh=2 Vlow=0 "
     "Rout= Cout= linear]";
 
-/* LTspice's models of amplifiers write this for none. */
-static const double no_limit = 1e30;
-
 struct ota {
     struct dalcs_block_card card;
     int node[N_PINS];
@@ -171,48 +168,10 @@ static const struct dalcs_formula *current_of(struct dalcs_formula_writer *w,
                                    limited(w, ota, v));
 }
 
-/* A diode that conducts where the output is beyond a level: its forward voltage, or a source where that lies on the
- * other side of 0. */
 static bool add_clamp(const struct ota *ota, bool is_upper) {
-    const struct dalcs_block_card *c = &ota->card;
-    struct dalcs_circuit *circuit = c->builder->circuit;
-    const double level = ota->p[is_upper ? HIGH : LOW].value;
-    const char *what = is_upper ? "upper" : "lower";
-    const bool is_behind = is_upper ? level < 0 : level > 0;
-    if (fabs(level) > no_limit) {
-        return true;
-    }
-    const int common = ota->node[PIN_COMMON];
-    const int node =
-        is_behind ? dalcs_builder_inner_node(c->builder, what, c->card->token) : common;
-    const int output = ota->node[PIN_OUTPUT];
-    struct dalcs_device *d =
-        dalcs_block_add(c, DALCS_DIODE, what, is_upper ? output : node, is_upper ? node : output);
-    if (node < 0 || d == NULL) {
-        return false;
-    }
-    d->model = circuit->n_diode_models++;
-    circuit->diode_model[d->model] = (struct dalcs_diode_model){.name = "clamp",
-                                                                .ron = ota->p[RCLAMP].value,
-                                                                .roff = (double)INFINITY,
-                                                                .vfwd = is_behind ? 0 : fabs(level),
-                                                                .vrev = (double)INFINITY};
-    return !is_behind ||
-           dalcs_block_add_constant(c, DALCS_VSOURCE, is_upper ? "at_upper" : "at_lower",
-                                    (int[]){node, common}, level);
-}
-
-static bool add_across(const struct ota *ota, enum dalcs_device_kind kind, int k) {
-    const struct dalcs_parameter *p = &ota->p[k];
-    if (p->place == NULL || p->value == 0) {
-        return true;
-    }
-    struct dalcs_device *d =
-        dalcs_block_add(&ota->card, kind, p->name, ota->node[PIN_OUTPUT], ota->node[PIN_COMMON]);
-    if (d != NULL) {
-        d->value = p->value;
-    }
-    return d != NULL;
+    const struct dalcs_block_clamp clamp = {is_upper, ota->p[is_upper ? HIGH : LOW].value,
+                                            ota->p[RCLAMP].value};
+    return dalcs_block_add_clamp(&ota->card, &ota->node[PIN_OUTPUT], &clamp);
 }
 
 void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -228,6 +187,7 @@ void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalc
                             [COUT] = {"cout", DALCS_FARAD, false, 0, NULL},
                             [RCLAMP] = {"rclamp", DALCS_OHM, false, 0, NULL}}};
     struct dalcs_formula_writer w;
+    const int *output = &ota.node[PIN_OUTPUT];
     if (!dalcs_reader_nodes(&reader, N_PINS, ota.node)) {
         return;
     }
@@ -244,6 +204,7 @@ void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalc
         return;
     }
     dalcs_behavioural_add_formula(builder, g, dalcs_formula_token(&w, current_of(&w, &ota)));
-    (void)(add_across(&ota, DALCS_RESISTOR, ROUT) && add_across(&ota, DALCS_CAPACITOR, COUT) &&
+    (void)(dalcs_block_add_across(&ota.card, output, DALCS_RESISTOR, &ota.p[ROUT]) &&
+           dalcs_block_add_across(&ota.card, output, DALCS_CAPACITOR, &ota.p[COUT]) &&
            add_clamp(&ota, true) && add_clamp(&ota, false));
 }

@@ -146,8 +146,15 @@ static void warn_of_no_width(struct dalcs_builder *builder, const struct dalcs_t
     const double period = s->u.pulse.period;
     const double rise = s->u.pulse.rise;
     const double height = s->u.pulse.high - s->u.pulse.low;
-    if (s->u.pulse.width != 0 || height == 0 || rise >= period ||
-        builder->netlist->dialect.name > DALCS_DIALECT_NGSPICE) {
+    if (s->u.pulse.width != 0 || height == 0 || rise >= period) {
+        return;
+    }
+    if (builder->netlist->dialect.name > DALCS_DIALECT_NGSPICE) {
+        if (rise == 0 && s->u.pulse.fall == 0) {
+            dalcs_builder_warn(builder, place, "write the width, or leave it out for a step",
+                               "this pulse stays at %g: its rise, fall and width are 0",
+                               s->u.pulse.low);
+        }
         return;
     }
     static const char hint[] = "write a width of 1f, or .options dialect=ltspice";

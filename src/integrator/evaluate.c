@@ -23,11 +23,9 @@ double dalcs_radau_bystander(const struct dalcs_radau_part *part, int bystander,
     return sum;
 }
 
-/* A part without memory has no solution at t: then it has had none, but for single times, since its
- * sources had an edge, for in between they are analytic. */
-static void note_failure(const struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
-                         enum dalcs_side side) {
-    struct dalcs_component *c = part->component;
+/* The last time that a source had an edge: a part without memory that has no solution at t has had none, but for single
+ * times, since then, for in between sources are analytic. */
+static double last_edge(const struct dalcs_component *c, double t, enum dalcs_side side) {
     double since = 0.0;
     for (double next = 0.0; next < t || (next == t && side == DALCS_RIGHT);) {
         since = next;
@@ -38,10 +36,47 @@ static void note_failure(const struct dalcs_radau *r, struct dalcs_radau_part *p
             next = fmin(next, dalcs_stimulus_next_edge(s, since));
         }
     }
+    return since;
+}
+
+static void take_inputs(struct dalcs_component *c, double t, enum dalcs_side side) {
+    const struct dalcs_system *s = c->system;
+    for (int i = 0; i < c->n_varying; i++) {
+        int k = c->varying[i];
+        c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+    }
+}
+
+/* Where smooth functions end, no source need have an edge: between a time that has a solution, or an edge, and t. */
+static double first_without(struct dalcs_radau_part *part, double since, double t, double near) {
+    struct dalcs_component *c = part->component;
+    double last = fmax(since, part->answered_at);
+    while (t - last > near) {
+        const double middle = last + 0.5 * (t - last);
+        take_inputs(c, middle, DALCS_LEFT);
+        if (middle <= last || middle >= t) {
+            break;
+        }
+        if (dalcs_component_solve(c, 0.0, c->u, c->y) > DALCS_OK) {
+            t = middle;
+        } else {
+            last = middle;
+        }
+    }
+    take_inputs(c, t, DALCS_LEFT);
+    const bool has_none = dalcs_component_solve(c, 0.0, c->u, c->y) > DALCS_OK;
+    return has_none ? t : last; /* and what is told is of this time */
+}
+
+static void note_failure(const struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
+                         enum dalcs_side side) {
+    struct dalcs_component *c = part->component;
+    const double since = last_edge(c, t, side);
+    r->base->failed_time =
+        c->system->n_smooth > 0 ? first_without(part, since, t, r->resolution) : since;
     c->failed_sigma = 0.0;
     c->failed_u = c->u;
     r->base->failed_system = part->index;
-    r->base->failed_time = since;
 }
 
 static void evaluate_stepped(struct dalcs_radau_part *part, double t, enum dalcs_side side) {
@@ -83,17 +118,27 @@ enum dalcs_status dalcs_radau_solve(struct dalcs_radau *r, struct dalcs_radau_pa
     if (c->n_varying == 0 && t > 0.0) {
         return DALCS_OK;
     }
+    bool is_new = !part->is_answered;
     for (int i = 0; i < c->n_varying; i++) {
         int k = c->varying[i];
-        c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+        const double u = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+        is_new = is_new || u != c->u[k];
+        c->u[k] = u;
     }
     r->base->t = t;
+    if (!is_new) {
+        part->answered_at = t;
+        return DALCS_OK;
+    }
+    part->is_answered = false;
     enum dalcs_status status = dalcs_component_solve(c, 0.0, c->u, c->y);
     if (status > DALCS_OK) {
         note_failure(r, part, t, side);
     }
     DALCS_TRY(status);
     if (!dalcs_osnsp_is_open(&c->osnsp)) {
+        part->is_answered = true;
+        part->answered_at = t;
         return DALCS_OK;
     }
     evaluate_all_stepped(r, t, side); /* voltages between parts are told, too */

@@ -65,6 +65,8 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         if (r->base->observer != NULL) {
             r->base->observer->start(r->base->observer->user, k, x);
         }
+        part->is_answered = false;
+        part->answered_at = 0.0;
         if (part->kind == DALCS_PART_ALGEBRAIC) {
             part->segment.t_end = INFINITY;
             continue;

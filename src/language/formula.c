@@ -296,14 +296,16 @@ static void call_user(struct work *w, const struct frame *f, const struct dalcs_
     }
 }
 
-/* ddt, idt, sdt: of numbers, too, they are functions of time. */
+/* ddt, idt, sdt, idtmod: of numbers, too, they are functions of time. */
 static void call_memory(struct work *w, const struct frame *f, const struct dalcs_operation *o,
                         int least, int most) {
     if (w->variable != NULL) {
         fail(w, f, o, "derivatives and integrals are for B, E and G",
              "'%s(...)' is not for a formula of this kind", o->u.name);
     } else if (o->count < least || o->count > most) {
-        fail(w, f, o, "ddt(x), idt(x), idt(x, first), idt(x, first, reset)",
+        fail(w, f, o,
+             "ddt(x), idt(x), idt(x, first), idt(x, first, reset), idtmod(x, first, modulus, "
+             "offset)",
              "'%s' with another number of arguments", o->u.name);
     } else {
         push_over(w, f, o, DALCS_FORMULA_CALL, o->count);

@@ -248,14 +248,11 @@ const char *dalcs_function_nearest(const char *name) {
 
 const char *dalcs_function_refusal(const char *name) {
     static const char *const random[] = {"random", "rnd", "white"};
-    static const char *const signal[] = {"v", "i", "ddt", "idt", "sdt", "delay", "time"};
+    static const char *const signal[] = {"v", "i", "ddt", "idt", "sdt", "idtmod", "delay", "time"};
     for (size_t k = 0; k < sizeof random / sizeof random[0]; k++) {
         if (strcmp(name, random[k]) == 0) {
             return "flat(x) draws a value between -x and x, once a run";
         }
-    }
-    if (strcmp(name, "idtmod") == 0) {
-        return "V=idt(x, 0, v(ramp) > 1) of node ramp itself begins again where it reaches 1";
     }
     for (size_t k = 0; k < sizeof signal / sizeof signal[0]; k++) {
         if (strcmp(name, signal[k]) == 0) {
@@ -275,9 +272,10 @@ bool dalcs_function_is_noise(const char *name) {
 
 bool dalcs_function_remembers(const char *name, int *least, int *most) {
     const bool is_derivative = strcmp(name, "ddt") == 0;
+    const bool wraps = strcmp(name, "idtmod") == 0;
     *least = 1;
-    *most = is_derivative ? 1 : 3;
-    return is_derivative || strcmp(name, "idt") == 0 || strcmp(name, "sdt") == 0;
+    *most = is_derivative ? 1 : wraps ? 4 : 3;
+    return is_derivative || wraps || strcmp(name, "idt") == 0 || strcmp(name, "sdt") == 0;
 }
 
 bool dalcs_constant_find(const char *name, double *value) {

@@ -227,14 +227,27 @@ static struct verdict of_monostable(const struct dalcs_audit_gates *a,
     return v;
 }
 
-/* May a pulse of no width have set it? What has a delay shows none. */
+/* May there be pulses of no width? What has a delay shows none. */
+static bool is_instant(const struct dalcs_audit_gates *a, const struct dalcs_logic_input *input) {
+    return input->from == DALCS_GATE_GATE && !dalcs_gate_has_delay(&a->circuit->gate[input->index]);
+}
+
+/* May one have set it? */
 static bool may_have_missed(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g) {
     bool may = false;
     for (int i = 0; i < g->n_inputs; i++) {
-        may = may || (g->input[i].from == DALCS_GATE_GATE &&
-                      !dalcs_gate_has_delay(&a->circuit->gate[g->input[i].index]));
+        may = may || is_instant(a, &g->input[i]);
     }
     return may;
+}
+
+/* May one have undone what the clock of a flip-flop has just made of it? So it is in a phase detector, whose flip-flops
+ * clear each other. */
+static bool may_be_undone(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g,
+                          const struct verdict *v) {
+    const bool has_both = g->kind >= DALCS_GATE_FLIP_FLOP && g->kind <= DALCS_GATE_SR_LATCH;
+    return has_both && !v->is_held && !v->is_forced &&
+           is_instant(a, &g->input[v->q ? DALCS_GATE_CLEAR : DALCS_GATE_PRESET]);
 }
 
 static enum dalcs_status expect(struct audit_gate *s, bool q, double due) {
@@ -298,7 +311,8 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
     }
     const struct verdict v = decide(a, k, now, t);
     s->was_seen = true;
-    const bool is_open = !v.is_known || (v.is_held && may_have_missed(a, g));
+    const bool is_open =
+        !v.is_known || (v.is_held && may_have_missed(a, g)) || may_be_undone(a, g, &v);
     *is_wrong = false;
     if (s->is_lost && !has_memory && v.is_known) { /* what it showed stands until it decides else */
         s->is_lost = false;

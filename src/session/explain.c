@@ -202,14 +202,67 @@ static void explain_growth(struct dalcs_session *s, const struct dalcs_component
                    element, c->system->column_is_current[c->overgrown] ? "A" : "V");
 }
 
-/* "v(a)", "40" */
+/* Is it the name of an element or node that nobody has written? */
+static bool is_inner(const char *name) {
+    return strchr(name, '(') != NULL;
+}
+
+/* "v(a)", "40", and "..." for what stands in the formula alone. */
 static const char *name_argument(struct dalcs_session *s, const struct dalcs_system *system,
                                  const struct dalcs_smooth_input *of, int k) {
-    const char *name =
-        of->column[k] >= 0
-            ? dalcs_arena_printf(&s->arena, "v(%s)", system->column[of->column[k]].element)
-            : dalcs_arena_printf(&s->arena, "%.6g", of->number[k]);
+    const int column = of->column[k];
+    if (column >= 0 && is_inner(system->column[column].element)) {
+        return "...";
+    }
+    const char *name = column >= 0
+                           ? dalcs_arena_printf(&s->arena, "v(%s)", system->column[column].element)
+                           : dalcs_arena_printf(&s->arena, "%.6g", of->number[k]);
     return name == NULL ? "" : name;
+}
+
+/* "b1" of "function2(b1)" */
+static const char *name_owner(struct dalcs_session *s, const char *element) {
+    const char *open = strchr(element, '(');
+    const size_t n = strlen(element);
+    char *owner = open != NULL && element[n - 1] == ')'
+                      ? dalcs_arena_copy(&s->arena, open + 1, n - 2 - (size_t)(open - element))
+                      : NULL;
+    return owner != NULL ? owner : element;
+}
+
+/* Has the function no value there, over the real numbers? */
+static bool is_outside(enum dalcs_smooth_kind kind, double x, double exponent) {
+    switch (kind) {
+    case DALCS_SMOOTH_LOG:
+    case DALCS_SMOOTH_LOG10:
+        return !(x > 0);
+    case DALCS_SMOOTH_SQRT:
+        return x < 0;
+    case DALCS_SMOOTH_POWER:
+        return x < 0 && floor(exponent) != exponent;
+    case DALCS_SMOOTH_ASIN:
+    case DALCS_SMOOTH_ACOS:
+        return fabs(x) > 1;
+    case DALCS_SMOOTH_ATANH:
+        return !(fabs(x) < 1);
+    case DALCS_SMOOTH_ACOSH:
+        return x < 1;
+    default:
+        return false;
+    }
+}
+
+static const char *hint_of_smooth(enum dalcs_smooth_kind kind, double x, double exponent) {
+    if (is_outside(kind, x, exponent)) {
+        return "it has no value there: limit(x, low, high), or a condition around it, keeps the "
+               "argument where it has one";
+    }
+    if (kind == DALCS_SMOOTH_QUOTIENT) {
+        return "the divisor may pass 0, or the circuit cannot give such a power: max(x, least) or "
+               "a condition keeps the divisor away from 0";
+    }
+    return "there may be none, as of a power that the circuit cannot give; limit(x, low, high) "
+           "bounds an argument, and a resistance what a source can do";
 }
 
 /* Newton's method has found no values of smooth functions that agree with what they read. */
@@ -235,14 +288,13 @@ static void explain_smooth(struct dalcs_session *s, const struct dalcs_component
                        : of->n > 1
                            ? dalcs_arena_printf(&s->arena, "%s(%s, %s)", name, first, second)
                            : dalcs_arena_printf(&s->arena, "%s(%s)", name, first);
-    dalcs_diag_add(
-        &s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
-        "there may be none, as of a root of what is negative or a power that the circuit "
-        "cannot give; limit(x, low, high) keeps an argument where the function is one",
-        "%s no solution was found: Newton's method finds no value of %s in '%s' that "
-        "agrees with the circuit; the last one tried was %.6g, of %.6g",
-        when, text == NULL ? "" : text, of->element, newton->phi[newton->worst],
-        newton->x[newton->worst][of->column[0] >= 0 ? 0 : 1]);
+    const double x = newton->x[newton->worst][of->column[0] >= 0 ? 0 : 1] + 0.0; /* no -0 */
+    dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
+                   hint_of_smooth(of->kind, x, newton->x[newton->worst][1]),
+                   "%s no solution was found: Newton's method finds no value of %s in '%s' that "
+                   "agrees with the circuit; the last one tried was %.6g, for an argument of %.6g",
+                   when, text == NULL ? "" : text, name_owner(s, of->element),
+                   newton->phi[newton->worst], x);
 }
 
 enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,

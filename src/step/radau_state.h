@@ -153,6 +153,9 @@ struct dalcs_radau_part {
         DALCS_PART_STEPPED
     } kind;
 
+    bool is_answered;   /* without memory: y is the one answer for u */
+    double answered_at; /* s: for the last time that was asked for and has one */
+
     const char *because;    /* why this kind and number of stages; NULL: asked for */
     double tolerance;       /* that its waveforms are held to */
     double inner_tolerance; /* error that a step may have, over the scale of a signal */

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""ddt(), idt() and sdt() in formulas, currents by a table of their own voltage, and gt0() and its like: against closed
+"""ddt(), idt(), sdt() and idtmod() in formulas, currents by a table of their own voltage, and gt0() and its like: against closed
 forms, in circuits of unlike scales and topologies; what is refused, with its place.
 
 usage: derivatives.py PROGRAM
@@ -83,6 +83,40 @@ def resets(checker, program):
         checker.close(min(done.column("v(i)")), 3, 1e-9, "nothing is integrated")
 
 
+def wraps(checker, program):
+    """idtmod() of numbers, ramps and sines that turn back, over scales; what it wraps to is never beyond its ends."""
+    for rate, first, modulus, offset in ((500, 0.25, 1, 0), (-3e6, 0.1, 360, -180), (0.02, 5, 2, 7), (0, 1.5, 1, 0)):
+        end = 7.3 * modulus / max(abs(rate), 1)
+        wrapped_is(checker, program, f"a number, {rate}", [f"b1 o 0 v=idtmod({rate!r}, {first!r}, {modulus!r}, {offset!r})"],
+                   lambda t: first + rate * t, (modulus, offset), end)  # noqa: B023
+    for volts, hertz, first, modulus in ((1000, 100, 0.2, 0.7), (-1000, 100, 0.2, 0.7), (5, 0.01, 0, 3), (-2e9, 1e6, 1.5, 2), (300, 50, 0.9, 1)):
+        w = 2 * math.pi * hertz
+        wrapped_is(checker, program, f"a sine of {volts} at {hertz} Hz", [
+            f"v1 x 0 sin(0 {volts!r} {hertz!r})", f"b1 o 0 v=idtmod(v(x), {first!r}, {modulus!r})"],
+                   lambda t: first + volts / w * (1 - math.cos(w * t)), (modulus, 0), 2.2 / hertz)  # noqa: B023
+    wrapped_is(checker, program, "a frequency that rises, inside of a product", [
+        "v1 f 0 pwl(0 0 1m 1k)", "b1 p 0 v=2*idtmod(v(f)*100, 0, 1) - 0.5*0", "r2 p 0 1", "b2 o 0 v=v(p)/2"],
+               lambda t: 100 * 1e6 * t * t / 2, (1, 0), 1e-3)
+    for arguments, wanted in (("v(x)", lambda t: 4 * t), ("v(x), 3", lambda t: 3 + 4 * t)):
+        compare(checker, program, f"idtmod({arguments}) is idt", ["v1 x 0 4", f"b1 o 0 v=idtmod({arguments})", "r1 o 0 1", ".tran 0.1 1"],
+                {"v(o)": (wanted, 4)})
+    for arguments, text in (("v(x),0,0", "the modulus of 'idtmod' must be above 0"), ("v(x),0,v(x)", "the modulus of 'idtmod' must be a number"),
+                            ("v(x),0,1,v(x)", "the offset of 'idtmod' must be a number"), ("v(x),0,1,0,0", "another number of arguments")):
+        done = run_cards(program, arguments, ["v1 x 0 1", f"b1 o 0 v=idtmod({arguments})", "r1 o 0 1", ".tran 1 2"])
+        checker.check(done.status == 3 and text in done.stderr, f"{arguments}: {done.stderr}")
+
+
+def wrapped_is(checker, program, what, cards, integral, wrap, end):
+    """At 200 rows and at both sides of each jump; where it wraps either side is right."""
+    modulus, offset = wrap
+    done = run_cards(program, what, [*cards, "r1 o 0 1", f".tran {end / 200!r} {end!r}", ".save v(o)"])
+    if runs(checker, done, what):
+        for t, found in zip(done.time, done.column("v(o)")):
+            apart = (found - offset - integral(t) + modulus / 2) % modulus - modulus / 2
+            checker.close(apart, 0, 1e-8 * modulus, f"{what}: at {t}")
+            checker.check(-1e-8 * modulus <= found - offset <= modulus * (1 + 1e-8), f"{what}: {found} at {t} is beyond its ends")
+
+
 def tables(checker, program):
     """A current by a table of its own voltage, in both spellings, with units and m= around it; what gt0 and its like compare."""
     for scale, f in ((1, 50), (1e-3, 1e6), (1e3, 2)):
@@ -128,7 +162,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("derivatives")
-    for part in (of_sources, of_circuits, resets, tables, refused):
+    for part in (of_sources, of_circuits, resets, wraps, tables, refused):
         part(checker, program)
     return checker.finish()
 

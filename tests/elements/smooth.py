@@ -8,6 +8,7 @@ usage: smooth.py PROGRAM auto|lobatto [N]
 import math
 import pathlib
 import random
+import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -244,6 +245,31 @@ def check_refusals(checker, program, method):
     checker.check(result.status == 1, f"x' = x^2 beyond t = 1: exit {result.status}: {result.stderr}")
 
 
+def check_places(checker, program):
+    """Where a function ends: at its place in the formula, from that time on, with what would help."""
+    outside, power = "it has no value there", "the divisor may pass 0"
+    ramp = "v1 a 0 pwl(0 1 1m -1)"
+    cases = (  # cards; the formula, and what of it is pointed at; what is said; the time, None: the operating point; the hint
+        (ramp, "ln(v(a))", "ln", "ln(v(a))", 0.5e-3, outside), (ramp, "1+2*sqrt(v(a)+0.5)", "sqrt", "sqrt(...)", 0.75e-3, outside),
+        (ramp, "3+1/v(a)", "1/", "1 / v(a)", 0.5e-3, power), ("v1 a 0 pwl(0 0 1m 2)", "asin(v(a))", "asin", "asin(v(a))", 0.5e-3, outside),
+        ("v1 a 0 pwl(0 3 2 -1)", "pow(v(a),1.5)", "pow", "pow(v(a), 1.5)", 1.5, outside),
+        ("v1 a 0 sin(0 2u 50)", "acos(v(a)*1meg)", "acos", "acos(...)", 1e-2 / 6, outside),
+        ("v1 a 0 -5", "sqrt(v(a)-10)", "sqrt", "sqrt(...)", None, outside),
+        ("v1 a 0 1000", "exp(v(a))", "exp", "exp(v(a))", None, "limit(x, low, high) bounds"),
+        ("v1 a 0 1", "v(a)+v(x)**2", "v(x)", "pow(v(x), 2)", None, "limit(x, low, high) bounds"))
+    for cards, formula, there, said, time, hint in cases:
+        end = 2 if time is not None and time > 1 else 20e-3
+        result = run(program, f"ends\n{cards}\nb1 x 0 v={formula}\nrx x 0 1\n.tran {end / 200!r} {end!r}\n", method=None)
+        place = f"circuit.cir:3:{len('b1 x 0 v=') + 1 + formula.index(there)}: error:"
+        checker.check(result.status == 1 and f"no value of {said} in 'b1'" in result.stderr and hint in result.stderr and place in result.stderr,
+                      f"{formula}: exit {result.status}, not {place} {said}: {result.stderr}")
+        found = re.search(r"from t = (\S+)(?: s)? on no solution", result.stderr)
+        if time is None:
+            checker.check("at the operating point no solution" in result.stderr, f"{formula}: {result.stderr}")
+        elif checker.check(found is not None, f"{formula}: {result.stderr}"):
+            checker.close(float(found.group(1)), time, 1e-7 * end, f"{formula}: its end")
+
+
 def main():
     program, method = sys.argv[1:3]
     step = int(sys.argv[3]) if len(sys.argv) > 3 else 1
@@ -257,6 +283,7 @@ def main():
     check_switched(checker, program, method)
     check_polynomials(checker, program, method)
     check_refusals(checker, program, method)
+    check_places(checker, program)
     return checker.finish()
 
 
