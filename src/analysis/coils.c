@@ -29,6 +29,10 @@ struct program {
     int *index; /* work, from 1 */
     double *value;
     double unit; /* A: a power of 2 near the largest current */
+    int n_signals;
+    struct dalcs_open_signal *signal; /* whose intervals are wanted */
+    bool is_solved;                   /* and found */
+    bool *moves;                      /* or, where it is not NULL, which coils of part move */
     glp_prob *lp;
 };
 
@@ -169,9 +173,32 @@ static void leave(void *info) {
     longjmp(*(jmp_buf *)info, 1);
 }
 
+static void find_intervals(struct program *p) {
+    p->is_solved = true;
+    for (int i = 0; i < p->n_signals; i++) {
+        int device = p->view->u->circuit->signal[p->signal[i].output].device;
+        double rise = furthest(p, device, 1.0);
+        double fall = furthest(p, device, -1.0);
+        dalcs_view_bound(p->view, true, fall, rise, &p->signal[i]);
+        p->is_solved = p->is_solved && !isnan(fall) && !isnan(rise);
+    }
+}
+
+/* One whose current GLPK cannot bound moves as well. */
+static void find_moving(const struct program *p) {
+    for (int k = 0; k < p->n_part; k++) {
+        const struct dalcs_freedom *f = &p->view->freedom[p->part[k]];
+        struct dalcs_open_signal from_here = {0};
+        if (f->is_coil) {
+            dalcs_view_bound(p->view, true, furthest(p, f->device, -1.0),
+                             furthest(p, f->device, 1.0), &from_here);
+            p->moves[k] = !(from_here.lower == 0.0 && from_here.upper == 0.0);
+        }
+    }
+}
+
 /* GLPK ends a program that it finds no memory for. */
-static enum dalcs_status solve_all(struct program *p, int n, struct dalcs_open_signal *signal,
-                                   bool *is_solved) {
+static enum dalcs_status solve_all(struct program *p) {
     jmp_buf failed;
     if (setjmp(failed) != 0) {
         glp_free_env();
@@ -182,30 +209,24 @@ static enum dalcs_status solve_all(struct program *p, int n, struct dalcs_open_s
     write_columns(p);
     write_kcl(p);
     write_ratios(p);
-    *is_solved = true;
-    for (int i = 0; i < n; i++) {
-        int device = p->view->u->circuit->signal[signal[i].output].device;
-        double rise = furthest(p, device, 1.0);
-        double fall = furthest(p, device, -1.0);
-        dalcs_view_bound(p->view, true, fall, rise, &signal[i]);
-        *is_solved = *is_solved && !isnan(fall) && !isnan(rise);
+    if (p->moves != NULL) {
+        find_moving(p);
+    } else {
+        find_intervals(p);
     }
     glp_delete_prob(p->lp);
     glp_error_hook(NULL, NULL);
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_part, const int *part,
-                                        int n, struct dalcs_open_signal *signal, bool *is_solved) {
-    struct program p = {.view = view, .n_part = n_part, .part = part};
-    *is_solved = false;
-    DALCS_TRY(number(&p));
+static enum dalcs_status run_program(struct program *p) {
+    DALCS_TRY(number(p));
     int before = glp_init_env(); /* one for each thread; 1: somebody has one already */
     if (before > 1) {
         return DALCS_E_NOMEM;
     }
     int terminal = glp_term_out(GLP_OFF);
-    enum dalcs_status status = solve_all(&p, n, signal, is_solved);
+    enum dalcs_status status = solve_all(p);
     if (status == DALCS_OK) {
         glp_term_out(terminal);
     }
@@ -213,6 +234,21 @@ enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_par
         glp_free_env();
     }
     return status;
+}
+
+enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_part, const int *part,
+                                        int n, struct dalcs_open_signal *signal, bool *is_solved) {
+    struct program p = {
+        .view = view, .n_part = n_part, .part = part, .n_signals = n, .signal = signal};
+    enum dalcs_status status = run_program(&p);
+    *is_solved = p.is_solved;
+    return status;
+}
+
+enum dalcs_status dalcs_coils_moving(const struct dalcs_view *view, int n_part, const int *part,
+                                     bool *moves) {
+    struct program p = {.view = view, .n_part = n_part, .part = part, .moves = moves};
+    return run_program(&p);
 }
 
 const char *dalcs_coils_hint(void) {
@@ -233,6 +269,14 @@ enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_par
     (void)n;
     (void)signal;
     *is_solved = false;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_coils_moving(const struct dalcs_view *view, int n_part, const int *part,
+                                     bool *moves) {
+    for (int k = 0; k < n_part; k++) {
+        moves[k] = view->freedom[part[k]].is_coil;
+    }
     return DALCS_OK;
 }
 

@@ -106,4 +106,9 @@ enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_par
                                         int n, struct dalcs_open_signal *signal,
                                         bool *is_solved) DALCS_MUST_CHECK;
 
+/* moves[n_part]: of branches `part`, coils that may carry more or less than they do; false for what is no coil. Without
+ * GLPK all coils. */
+enum dalcs_status dalcs_coils_moving(const struct dalcs_view *view, int n_part, const int *part,
+                                     bool *moves) DALCS_MUST_CHECK;
+
 #endif

@@ -203,10 +203,53 @@ static enum dalcs_status tell_block(struct loops *l, int k) {
     return dalcs_view_tell(view, &finding);
 }
 
+/* Coupling alone puts a coil on no loop: one whose current is what it is carries no more. *left_out: there are such. */
+static enum dalcs_status leave_out_coils(struct loops *l, int k, bool *left_out) {
+    struct dalcs_view *view = l->view;
+    const int n = l->start[k + 1] - l->start[k];
+    int *part = dalcs_arena_alloc(view->work, (size_t)n, sizeof(*part));
+    bool *moves = dalcs_arena_alloc(view->work, (size_t)n, sizeof(*moves));
+    if (part == NULL || moves == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int e = 0; e < n; e++) {
+        part[e] = l->freedom[l->member[l->start[k] + e]];
+    }
+    DALCS_TRY(dalcs_coils_moving(view, n, part, moves));
+    for (int e = 0; e < n; e++) {
+        struct dalcs_freedom *f = &view->freedom[part[e]];
+        if (f->is_coil && !moves[e]) {
+            f->may_carry = false;
+            *left_out = true;
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status list_blocks(struct loops *l) {
+    for (int i = 0; i < l->view->n; i++) {
+        const int device = l->view->freedom[i].device;
+        if (device >= 0) {
+            l->view->u->branch_of[2 * device] = l->view->u->branch_of[2 * device + 1] = -1;
+        }
+    }
+    l->n = 0;
+    DALCS_TRY(list_branches(l));
+    return find_blocks(l);
+}
+
 enum dalcs_status dalcs_loops_find(struct dalcs_view *view) {
     struct loops l = {.view = view};
-    DALCS_TRY(list_branches(&l));
-    DALCS_TRY(find_blocks(&l));
+    bool left_out = false;
+    DALCS_TRY(list_blocks(&l));
+    for (int k = 0; k < l.n_blocks; k++) {
+        if (l.has_coils[k] && l.start[k + 1] > l.start[k]) {
+            DALCS_TRY(leave_out_coils(&l, k, &left_out));
+        }
+    }
+    if (left_out) {
+        DALCS_TRY(list_blocks(&l));
+    }
     DALCS_TRY(sort_signals(&l));
     for (int k = 0; k < l.n_blocks; k++) {
         if (l.start[k + 1] > l.start[k]) {

@@ -8,10 +8,9 @@
 #include "magnitudes.h"
 #include "micro_steps.h"
 #include "present.h"
-#include "recurrence.h"
-#include "rounding.h"
 #include "step_error.h"
 #include "step_length.h"
+#include "take_jump.h"
 
 #include <math.h>
 #include <string.h>
@@ -75,48 +74,6 @@ static enum dalcs_status find_jump(struct dalcs_radau *r, struct dalcs_radau_par
     memcpy(part->work.u, part->x, (size_t)s->n_x * sizeof(double));
     dalcs_excitation_inputs(&part->excitation, part->segment.t, 0.0, part->work.u + s->n_x);
     return dalcs_euler_find_jump(r->base, part->index, part->work.u);
-}
-
-/* The change of each state that is not worth a word: what is left of it where it falls to 0, over its own scale, or
- * rounding. */
-static void find_noise(const struct dalcs_radau_part *part, const double *after, double *noise) {
-    const struct dalcs_system *s = part->component->system;
-    double largest[2];
-    dalcs_micro_largest(part, largest);
-    dalcs_micro_raise_to_drives(part, largest);
-    for (int x = 0; x < s->n_x; x++) {
-        double own = fmax(dalcs_step_scale(part, x, part->scales.unit),
-                          fmax(fabs(part->x[x]), fabs(after[x])));
-        noise[x] = fmax(dalcs_answer_rounded * own,
-                        dalcs_micro_rounding(part, s->column_is_current[x], largest));
-    }
-}
-
-/* All columns at the end of the segment that ended at part->segment.t, into part->work.y2; NULL at the start. */
-static const double *columns_before(struct dalcs_radau_part *part) {
-    if (!(part->segment.t > 0.0)) {
-        return NULL;
-    }
-    dalcs_recurrence_complete_before(part);
-    dalcs_radau_swap_out(part, &part->segment.out_before);
-    dalcs_step_values(part, part->segment.end_before, part->work.y2);
-    dalcs_radau_swap_out(part, &part->segment.out_before);
-    return part->work.y2;
-}
-
-static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    struct dalcs_euler *e = r->base;
-    e->t = part->segment.t;
-    find_noise(part, e->jump.after, e->noise);
-    double *behind =
-        part->component->scratch; /* the second step's: the first one has the impulses */
-    memcpy(behind, part->work.y2,
-           (size_t)dalcs_system_n_columns(part->component->system) * sizeof(double));
-    DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->segment.t, part->x,
-                                      columns_before(part), behind));
-    memcpy(part->x, e->jump.after, (size_t)part->component->system->n_x * sizeof(double));
-    part->segment.jumped = true;
-    return DALCS_OK;
 }
 
 /* part->work.after becomes the limit of what micro-steps of length h and h/2 see, `whole` of the former. Returns what may be
@@ -229,7 +186,7 @@ static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_rada
     status = dalcs_micro_steps(r, part, h); /* for the mode */
     memcpy(part->x, part->work.before, bytes);
     DALCS_TRY(status);
-    return take_jump(r, part);
+    return dalcs_take_jump(r, part, h);
 }
 
 /* Are both micro-steps in one mode, and does it allow every state? Then none jumps, for a jump is the projection onto
@@ -278,7 +235,7 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
                                                              part->work.y1, e->jump.after)
                                          : is_last;
         if (is_whole || (e->jump.is_known && is_noticeable(r, part))) {
-            DALCS_TRY(take_jump(r, part));
+            DALCS_TRY(dalcs_take_jump(r, part, h));
         }
         if (is_whole) {
             return DALCS_OK;

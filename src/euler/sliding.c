@@ -67,7 +67,12 @@ bool dalcs_sliding_leave(struct dalcs_positions *p) {
     if (!p->joined) {
         return false;
     }
-    memcpy(p->osnsp->mode, p->mark, (size_t)p->osnsp->n_words * sizeof(uint64_t));
+    const struct dalcs_system *s = p->osnsp->system;
+    for (int d = 0; d < s->n_pairs; d++) {
+        if (!s->pair[d].is_direct) { /* what sources command stands: it may just have moved */
+            dalcs_osnsp_command(p->osnsp, d, dalcs_mode_has(p->mark, d));
+        }
+    }
     p->joined = false;
     return true;
 }

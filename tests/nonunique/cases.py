@@ -245,6 +245,31 @@ COILS_CASES = {
     "transformer 2:1": (TRANSFORMER.format(n=4), {
         "i(v1)": (-2, 2, COILS), "i(l1)": (-2, 2, COILS), "i(l2)": (-4, 0, COILS),
         "i(l3)": (0, 4, COILS), "i(d1)": (0, 4, COILS), "i(d2)": (0, 4, COILS)}),
+    "a transistor of a flyback converter": ("""Its diode is across it; the coils on its node carry what they do
+V1 a 0 0
+L1 a b 1m ic=2
+L2 0 s 0.25m
+K1 L1 L2 1
+S1 b 0 on 0 SW
+D1 0 b DI
+D2 s o DI
+R1 o 0 1k
+V2 on 0 1
+.tran 1u 10u uic
+""", {"i(s1)": (2, INF, "s1 parallel to d1"), "i(d1)": (0, INF, "s1 parallel to d1")}),
+    "a rectifier behind a transformer": ("""Its diodes share the current of a choke, and none of it goes through the winding
+I1 a 0 0
+R1 a 0 1
+L1 a 0 4m
+L2 x y 1m
+K1 L1 L2 1
+D1 x p DI
+D2 y p DI
+D3 0 x DI
+D4 0 y DI
+L3 p 0 1m ic=4
+.tran 1u 10u uic
+""", {f"i({d})": (0, 4, "loop d1-d2-d4-d3") for d in ("d1", "d2", "d3", "d4")}),
 }
 
 

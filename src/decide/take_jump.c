@@ -1,0 +1,90 @@
+/* take_jump.c - a jump that is known becomes the state of its part, and is told. */
+#include "take_jump.h"
+
+#include "micro_steps.h"
+#include "present.h"
+#include "recurrence.h"
+#include "restart.h"
+#include "rounding.h"
+#include "step_error.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The change of each state that is not worth a word: what is left of it where it falls to 0, over its own scale, or
+ * rounding. */
+static void find_noise(const struct dalcs_radau_part *part, const double *after, double *noise) {
+    const struct dalcs_system *s = part->component->system;
+    double largest[2];
+    dalcs_micro_largest(part, largest);
+    dalcs_micro_raise_to_drives(part, largest);
+    for (int x = 0; x < s->n_x; x++) {
+        double own = fmax(dalcs_step_scale(part, x, part->scales.unit),
+                          fmax(fabs(part->x[x]), fabs(after[x])));
+        noise[x] = fmax(dalcs_answer_rounded * own,
+                        dalcs_micro_rounding(part, s->column_is_current[x], largest));
+    }
+}
+
+/* All columns at the end of the segment that ended at part->segment.t, into part->work.y2. */
+static const double *columns_before(struct dalcs_radau_part *part) {
+    dalcs_recurrence_complete_before(part);
+    dalcs_radau_swap_out(part, &part->segment.out_before);
+    dalcs_step_values(part, part->segment.end_before, part->work.y2);
+    dalcs_radau_swap_out(part, &part->segment.out_before);
+    return part->work.y2;
+}
+
+/* Has a coil a current in this component that is no state of it? Its coils are coupled perfectly. */
+static bool has_tied_coils(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    const struct dalcs_network *n = r->base->network;
+    bool has = false;
+    for (int i = 0; i < n->n_states && !has; i++) {
+        has = n->state[i].probe.system == part->index &&
+              !dalcs_probe_is_known(&n->state[i].probe, part->component->system->n_x);
+    }
+    return has;
+}
+
+/* The columns just behind a jump, of micro-steps of length h: a second and a third one on a line back to the instant, for
+ * the first has the impulses. What does not survive that has not jumped. part->work.y2 is the second step and becomes
+ * what is before. NULL where nobody asks for them: at the start, and where all that is told is a state. */
+static enum dalcs_status columns_behind(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                        double h, const double **before, double *behind) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    const int n = dalcs_system_n_columns(p->system);
+    const bool slides = part->guards.slides;
+    *before = NULL;
+    if (!(part->segment.t > 0.0) || !has_tied_coils(r, part)) {
+        return DALCS_OK;
+    }
+    memcpy(part->work.mode_before, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+    enum dalcs_status status =
+        dalcs_radau_implicit_step(r, part, h, 3.0 * h, part->work.y2, part->work.y1);
+    DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+    const bool goes_on =
+        status == DALCS_OK && dalcs_mode_is(p->mode, part->work.mode_before, p->n_words);
+    memcpy(p->mode, part->work.mode_before, (size_t)p->n_words * sizeof(uint64_t));
+    part->guards.slides = slides;
+    memcpy(behind, part->work.y2, (size_t)n * sizeof(double));
+    *before = columns_before(part);
+    for (int c = 0; c < n && goes_on; c++) {
+        double from = part->work.y2[c];
+        double limit = 3.0 * behind[c] - 2.0 * part->work.y1[c];
+        behind[c] = fabs(limit - from) > 0.5 * fabs(behind[c] - from) ? limit : from;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_take_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
+    struct dalcs_euler *e = r->base;
+    const double *before;
+    double *behind = part->component->scratch;
+    e->t = part->segment.t;
+    find_noise(part, e->jump.after, e->noise);
+    DALCS_TRY(columns_behind(r, part, h, &before, behind));
+    DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->segment.t, part->x, before, behind));
+    memcpy(part->x, e->jump.after, (size_t)part->component->system->n_x * sizeof(double));
+    part->segment.jumped = true;
+    return DALCS_OK;
+}

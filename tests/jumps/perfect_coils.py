@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""What is told of coils that are coupled perfectly when something jumps: their currents are no states.
+
+usage: perfect_coils.py PROGRAM
+
+Where a capacitor jumps the currents of such coils are where they were, however steeply they go on. Where one is cut off
+the others take over its ampere-turns.
+"""
+
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "support"))
+from dalcs_program import Checker, run, some_of  # noqa: E402
+
+MODELS = [".model sw sw(vt=0.5)", ".model d d(ron=0)"]
+SIZES = (("a converter", 390.0, 54e-6, 1e-5), ("kilovolts", 1e4, 1.0, 1e-2), ("a chip", 1.0, 1e-9, 1e-7))
+
+
+def jumps_of(c, name, cards, tran):
+    outcome = run(sys.argv[1], "\n".join([name, *cards, *MODELS, f".tran {tran}", ".end", ""]), method=None,
+                  options=("--audit", "full"))
+    c.check(outcome.status == 0, f"{name}: {outcome.stderr}")
+    return outcome.report["jumps"] if outcome.status == 0 else []
+
+
+def half_bridge(c, name, volts, henry, period):
+    """A half bridge with a capacitor at its middle, behind it a resonant circuit with a transformer of three windings."""
+    farad = (period / 8) ** 2 / henry
+    gates = [f"vg{k} g{k} 0 pulse(0 1 {(k - 0.5) * period / 2!r} 0 0 {0.47 * period!r} {period!r})" for k in (1, 2)]
+    found = jumps_of(c, f"half bridge, {name}", [
+        f"v1 p 0 {volts!r}", *gates, "s1 p a g1 0 sw", "s2 a 0 g2 0 sw", f"ch a 0 {farad / 150!r}", f"cr a x {farad!r}",
+        f"lr x y {henry!r}", f"lp y 0 {6 * henry!r}", f"ls1 e 0 {0.01 * henry!r}", f"ls2 0 f {0.01 * henry!r}", "k1 lp ls1 ls2 1",
+        "d3 e o d", "d4 f o d", f"co o 0 {1e4 * farad!r}", f"ro o 0 {1e-2 * period / farad!r}"],
+        f"{period / 20!r} {5 * period!r}")
+    c.check(len(found) > 3, f"half bridge, {name}: {len(found)} jumps")
+    for jump in found:
+        c.check(list(jump["states"]) == ["ch"], f"half bridge, {name}: at {jump['time']} {jump['states']}")
+
+
+def flyback(c, name, volts, henry, period):
+    """The current of the primary goes over to a secondary with a quarter of its turns while its capacitor meets another."""
+    ampere = 0.25 * volts * period / henry
+    farad = period * period / henry
+    found = jumps_of(c, f"flyback, {name}", [
+        f"v1 in 0 {volts!r}", f"lp in a {henry!r}", f"ls 0 b {henry / 16!r}", "k1 lp ls 1",
+        f"vg g 0 pulse(1 0 {period / 4!r} 0 0 {period!r})", f"vh h 0 pulse(0 1 {period / 4!r} 0 0 {period!r})", "s1 a 0 g 0 sw",
+        "d1 b o d", f"co o 0 {farad!r} ic={volts!r}", "s2 o q h 0 sw", f"cq q 0 {3 * farad!r}"],
+        f"{period / 20!r} {0.6 * period!r} uic")
+    if not c.check(len(found) == 1 and set(found[0]["states"]) == {"lp", "ls", "co", "cq"}, f"flyback, {name}: {found}"):
+        return
+    for state, before, after, scale in (("lp", ampere, 0.0, ampere), ("ls", 0.0, 4 * ampere, ampere),
+                                        ("co", volts, volts / 4, volts), ("cq", 0.0, volts / 4, volts)):
+        c.close(found[0]["states"][state]["before"], before, 1e-9 * scale, f"flyback, {name}: {state} before")
+        c.close(found[0]["states"][state]["after"], after, 1e-9 * scale, f"flyback, {name}: {state} after")
+
+
+def main():
+    c = Checker("perfect_coils")
+    for size in some_of(SIZES):
+        half_bridge(c, *size)
+        flyback(c, *size)
+    return c.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
