@@ -1,4 +1,4 @@
-/* periodic_flow.c - a period cut into pieces with a map each. */
+/* periodic_flow.c - what takes a small perturbation through a period: set up, and how a mode begins. */
 #include "periodic_flow.h"
 
 #include "magnitudes.h"
@@ -14,100 +14,6 @@ static const double briefer = 0x1p-8;
 
 enum { MOST_BRIEFER = 5 };
 
-/* ---- Maps ---------------------------------------------------------------------------------------- */
-
-void dalcs_periodic_flow_drive(const struct dalcs_periodic_flow *flow, double kappa,
-                               double complex *coefficient) {
-    const int n = flow->stages.layout.n_nodes;
-    double complex value[DALCS_MAX_NODES];
-    for (int i = 0; i < n; i++) {
-        value[i] = cexp(I * kappa * flow->stages.method->node[i]);
-    }
-    for (int k = 0; k < n; k++) {
-        coefficient[k] = 0.0;
-        for (int i = 0; i < n; i++) {
-            coefficient[k] += flow->legendre[k][i] * value[i];
-        }
-    }
-}
-
-size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow) {
-    const struct dalcs_stage_layout *l = &flow->stages.layout;
-    return (size_t)l->n_nodes * (size_t)l->stride;
-}
-
-/* The answer to in[column] = 1 into flow->out. */
-static enum dalcs_status ask(struct dalcs_periodic_flow *flow, struct dalcs_stage_entry *entry,
-                             int column) {
-    memset(flow->in, 0, (size_t)flow->stages.n_in * sizeof(double));
-    flow->in[column] = 1.0;
-    DALCS_TRY(dalcs_stages_apply(&flow->stages, entry, flow->in, flow->out));
-    if (flow->smooth != NULL) {
-        dalcs_flow_smooth_vary(flow, flow->out);
-    }
-    return DALCS_OK;
-}
-
-static enum dalcs_status fill_map(struct dalcs_periodic_flow *flow,
-                                  const struct dalcs_orbit_span *span, struct dalcs_flow_map *map) {
-    const size_t size = dalcs_periodic_flow_size(flow);
-    struct dalcs_stage_entry *entry;
-    DALCS_TRY(dalcs_stages_get(&flow->stages, map->mode, map->h, &entry));
-    if (flow->smooth != NULL) {
-        DALCS_TRY(dalcs_flow_smooth_begin(flow, entry, span, map->t, map->h));
-    }
-    for (int x = 0; x < flow->n_x; x++) {
-        DALCS_TRY(ask(flow, entry, x));
-        memcpy(map->state + (size_t)x * size, flow->out, size * sizeof(double));
-    }
-    for (int k = flow->n_x; k < flow->n_columns; k++) {
-        if (flow->pin_function[k - flow->n_x] >= 0) {
-            DALCS_TRY(ask(flow, entry, flow->n_x + 1 + flow->pin_function[k - flow->n_x]));
-            memcpy(map->state + (size_t)k * size, flow->out, size * sizeof(double));
-        }
-    }
-    for (int f = 0; f < flow->n_driven; f++) {
-        const struct dalcs_excitation_function *function = &flow->excitation.function[f];
-        const double complex source = flow->source[function->input];
-        double complex *drive = map->drive + (size_t)function->degree * size;
-        DALCS_TRY(ask(flow, entry, flow->n_x + 1 + f));
-        for (size_t i = 0; i < size; i++) {
-            drive[i] += source * flow->out[i];
-        }
-    }
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
-                                          const struct dalcs_orbit_span *span, double t, double h,
-                                          struct dalcs_flow_map **found) {
-    const size_t size = dalcs_periodic_flow_size(flow);
-    const size_t n_columns = (size_t)flow->n_columns;
-    const size_t n_nodes = (size_t)flow->stages.layout.n_nodes;
-    for (struct dalcs_flow_map *m = flow->map; m != NULL; m = m->next) {
-        if (m->h == h && (flow->smooth == NULL || m->t == t) &&
-            dalcs_mode_is(m->mode, span->mode, flow->stages.n_words)) {
-            *found = m;
-            return DALCS_OK;
-        }
-    }
-    struct dalcs_flow_map *map = dalcs_arena_alloc(&flow->arena, 1, sizeof *map);
-    if (map == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    *map =
-        (struct dalcs_flow_map){.mode = span->mode, .h = h, .t = t, .next = flow->map, .stamp = -1};
-    map->state = dalcs_arena_alloc(&flow->arena, n_columns * size, sizeof(double));
-    map->drive = dalcs_arena_alloc(&flow->arena, n_nodes * size, sizeof(double complex));
-    map->driven = dalcs_arena_alloc(&flow->arena, size, sizeof(double complex));
-    if (map->state == NULL || map->drive == NULL || map->driven == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    DALCS_TRY(fill_map(flow, span, map));
-    flow->map = map;
-    *found = map;
-    return DALCS_OK;
-}
 
 /* ---- How a mode begins --------------------------------------------------------------------------- */
 
@@ -115,17 +21,21 @@ enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
 static void extrapolate(const struct dalcs_periodic_flow *flow, const struct dalcs_flow_map *map,
                         struct dalcs_flow_start *start) {
     const struct dalcs_collocation *c = flow->stages.method;
-    const int stride = flow->stages.layout.stride;
     const size_t size = dalcs_periodic_flow_size(flow);
     for (int x = 0; x < flow->n_x; x++) {
         start->by_source[x] = 0.0;
         for (int i = 0; i < c->s; i++) {
-            start->by_source[x] += c->back[i] * map->drive[(i + 1) * stride + x];
+            for (int q = 0; q < flow->n_turns; q++) {
+                const double *drive = map->drive + (size_t)(q * (c->s + 1)) * size;
+                start->by_source[x] +=
+                    flow->turn[q] * c->back[i] * drive[dalcs_periodic_flow_at(flow, i + 1, x)];
+            }
         }
         for (int k = 0; k < flow->n_columns; k++) {
             double sum = 0.0;
             for (int i = 0; i < c->s; i++) {
-                sum += c->back[i] * map->state[(size_t)k * size + (size_t)((i + 1) * stride + x)];
+                sum += c->back[i] *
+                       map->state[(size_t)k * size + dalcs_periodic_flow_at(flow, i + 1, x)];
             }
             start->P[k * flow->n_x + x] = sum;
         }
@@ -275,16 +185,33 @@ static enum dalcs_status legendre_setup(struct dalcs_periodic_flow *flow) {
     return DALCS_OK;
 }
 
-/* Stages of its own: those of the run have columns for the sources themselves. */
+/* Stages of its own: those of the run have columns for the sources themselves. A map is made once and has all that is
+ * asked of its factors, unless there are smooth sources, which have a map for each piece of one length. */
 static enum dalcs_status stages_setup(struct dalcs_periodic_flow *flow) {
     const struct dalcs_stages *of = &flow->orbit->rates.part->stages;
     const struct dalcs_collocation *method =
         dalcs_collocation_of(DALCS_RADAU_IIA, DALCS_MAX_STAGES);
     DALCS_TRY(drive_setup(flow, method->s + 1));
-    const struct dalcs_stage_limits limits = {of->dense_limit, of->rcond_min, of->cache.most_bytes};
+    const size_t most_bytes = flow->system->n_smooth > 0 ? of->cache.most_bytes : 0;
+    const struct dalcs_stage_limits limits = {of->dense_limit, of->rcond_min, most_bytes};
     DALCS_TRY(dalcs_stages_setup(&flow->stages, flow->system, &flow->excitation, method, &limits));
     flow->stages.block_of = of->block_of;
     return legendre_setup(flow);
+}
+
+/* flow->turn: small signals of one phase are real beside it. */
+static void find_turns(struct dalcs_periodic_flow *flow) {
+    double complex first = 1.0;
+    bool alike = true;
+    for (int k = flow->system->n_inputs - 1; k > 0; k--) {
+        first = flow->source[k] != 0.0 ? flow->source[k] / cabs(flow->source[k]) : first;
+    }
+    for (int k = 1; k < flow->system->n_inputs; k++) {
+        alike = alike && cimag(flow->source[k] * conj(first)) == 0.0;
+    }
+    flow->n_turns = alike ? 1 : 2;
+    flow->turn[0] = alike ? first : 1.0;
+    flow->turn[1] = I;
 }
 
 static enum dalcs_status setup(struct dalcs_periodic_flow *flow, const double complex *source) {
@@ -297,12 +224,15 @@ static enum dalcs_status setup(struct dalcs_periodic_flow *flow, const double co
         return DALCS_E_NOMEM;
     }
     memcpy(flow->source, source, n_inputs * sizeof *source);
+    find_turns(flow);
     DALCS_TRY(stages_setup(flow));
     const size_t n_out = dalcs_stages_room(&flow->stages);
     flow->M = dalcs_arena_alloc(&flow->arena, n_x * n_x, sizeof(double));
+    DALCS_TRY(dalcs_periodic_flow_rows(flow));
+    flow->rows = dalcs_arena_alloc(&flow->arena, dalcs_periodic_flow_size(flow), sizeof(double));
     flow->in = dalcs_arena_alloc(&flow->arena, (size_t)flow->stages.n_in, sizeof(double));
     flow->out = dalcs_arena_alloc(&flow->arena, n_out, sizeof(double));
-    if (flow->M == NULL || flow->in == NULL || flow->out == NULL) {
+    if (flow->M == NULL || flow->rows == NULL || flow->in == NULL || flow->out == NULL) {
         return DALCS_E_NOMEM;
     }
     if (flow->system->n_smooth > 0) {
@@ -341,6 +271,7 @@ void dalcs_periodic_flow_finish(struct dalcs_periodic_flow *flow) {
     if (flow->stages.system != NULL) {
         dalcs_stages_finish(&flow->stages);
     }
+    HASH_CLEAR(hh, flow->map);
     dalcs_arena_finish(&flow->excitation.arena);
     dalcs_arena_finish(&flow->arena);
     free(flow->piece);

@@ -12,22 +12,33 @@
 
 #include <complex.h>
 
+#define HASH_NONFATAL_OOM 1
+#include <uthash.h>
+
 struct dalcs_flow_smooth;
 
-/* A step of length h in one mode, where there are smooth sources from t on. Answers are laid out as those of the stages, their open pairs 0. */
+/* A step of length h in one mode; where there are smooth sources, from one time on. Of its answers it has the rows that
+ * something reads, node after node. */
 struct dalcs_flow_map {
-    const uint64_t *mode;
-    double h, t;
-    double *
-        state; /* [n_columns][n_nodes * stride] of unit states, and of outputs of gates that are off by 1 V */
-    double complex
-        *drive; /* [n_nodes][n_nodes * stride] of the sources along a Legendre polynomial each */
-    struct dalcs_flow_map *next;
+    UT_hash_handle hh;
+    double key[2]; /* h, and where there are smooth sources the time at which it begins */
+    struct dalcs_flow_map *alike; /* another one of this key, in another mode */
+    const uint64_t *mode;         /* NULL: not filled */
+    double h;
+    double
+        *state; /* [n_columns][size] of unit states, and of outputs of gates that are off by 1 V */
+    double *drive; /* [n_turns][n_nodes][size] of the sources along a Legendre polynomial each */
+    double *noise,
+        *rounding; /* [n_columns + 1], the last of the sources: what rounding leaves in the
+                                 states, in the units of energies; of the latter, through their derivatives */
     /* at one frequency, periodic_response.c: */
     long stamp;
-    double complex *driven; /* [n_nodes * stride] by the sources as they go, from 0 */
+    double complex *driven; /* [size] by the sources as they go, from 0 */
     double complex *mean;   /* [n_columns + 1][n_read] */
 };
+
+/* dalcs_periodic_flow_drive's. */
+enum { DALCS_MOST_DRIVES = 2 * DALCS_MAX_NODES };
 
 /* What a new mode makes of states as it begins: x+ = P x- + by_source. */
 struct dalcs_flow_start {
@@ -49,6 +60,7 @@ struct dalcs_flow_piece {
 struct dalcs_periodic_flow_asked {
     const double complex *source;           /* [n_inputs] of the small signals */
     bool is_still;                          /* they are not those of the log: no command moves */
+    const bool *is_read;                    /* [n_columns] what of the circuit is asked for */
     double fastest;                         /* rad/s, of them */
     double period;                          /* s */
     enum dalcs_status (*go_on)(void *user); /* asked for each span of a mode; else its status */
@@ -67,17 +79,21 @@ struct dalcs_periodic_flow {
     double legendre[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* coefficient k of the values at nodes */
     struct dalcs_excitation excitation;
     struct dalcs_stages stages;
+    int n_turns; /* 1 if all of them have one phase, turn[0]; else turn is 1 and j */
+    double complex turn[2];
     int n_driven;                     /* excitation functions of the small signals */
     int *pin_function;                /* [n_columns - n_x] of each output behind them; -1: none */
     struct dalcs_flow_smooth *smooth; /* NULL: no smooth sources */
-    struct dalcs_flow_map *map;       /* all of them */
-    struct dalcs_flow_start *start;   /* likewise */
+    int n_rows, *row, *place;   /* [n_rows] of answers that are kept, states first; where, or -1 */
+    struct dalcs_flow_map *map; /* those of pieces, by key */
+    struct dalcs_flow_map *spare;   /* the last one of no piece; NULL: none */
+    struct dalcs_flow_start *start; /* likewise */
     int n;
     size_t capacity;
     struct dalcs_flow_piece *piece; /* [n] */
     double *M;                      /* [n_x][n_x] of the period, column after column */
     double worst; /* last coefficients that were let through, over the size of what they are of */
-    double *in, *out; /* work */
+    double *in, *out, *rows; /* work */
     struct dalcs_arena arena;
 };
 
@@ -86,13 +102,28 @@ dalcs_periodic_flow_setup(struct dalcs_periodic_flow *flow, const struct dalcs_o
                           const struct dalcs_periodic_flow_asked *asked) DALCS_MUST_CHECK;
 void dalcs_periodic_flow_finish(struct dalcs_periodic_flow *flow);
 
-/* Elements of an answer at all nodes. */
-size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow);
+/* Which rows of answers are kept. */
+enum dalcs_status dalcs_periodic_flow_rows(struct dalcs_periodic_flow *flow) DALCS_MUST_CHECK;
 
-/* The map of the span's mode and h, from t on, made now if it is new. */
+/* Elements of an answer that are kept. */
+static inline size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow) {
+    return (size_t)flow->stages.layout.n_nodes * (size_t)flow->n_rows;
+}
+
+/* Where among them a row at a node is. */
+static inline size_t dalcs_periodic_flow_at(const struct dalcs_periodic_flow *flow, int node,
+                                            int row) {
+    return (size_t)node * (size_t)flow->n_rows + (size_t)flow->place[row];
+}
+
+/* The map of the span's mode and h, from t on, made now if it is new; valid until the next one is, unless a piece keeps
+ * it. */
 enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
                                           const struct dalcs_orbit_span *span, double t, double h,
                                           struct dalcs_flow_map **map) DALCS_MUST_CHECK;
+
+enum dalcs_status dalcs_periodic_flow_keep(struct dalcs_periodic_flow *flow,
+                                           struct dalcs_flow_map *map) DALCS_MUST_CHECK;
 
 /* s: how the command that ends a span moves with the small signals, at the phase 0. */
 static inline double complex dalcs_periodic_flow_moved(const struct dalcs_periodic_flow *flow,
@@ -108,7 +139,7 @@ enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
 /* flow->piece and flow->M. DALCS_NOT_CONVERGED: polynomials do not carry what starts in one of the modes. */
 enum dalcs_status dalcs_periodic_pieces_make(struct dalcs_periodic_flow *flow) DALCS_MUST_CHECK;
 
-/* coefficient[n_nodes] of exp(j kappa theta), as the values at the nodes have them. */
+/* coefficient[n_turns][n_nodes] of exp(j kappa theta), as the values at the nodes have them, times turn[]. */
 void dalcs_periodic_flow_drive(const struct dalcs_periodic_flow *flow, double kappa,
                                double complex *coefficient);
 

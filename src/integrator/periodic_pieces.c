@@ -21,7 +21,7 @@ struct probe {
     double *size;            /* [n] the largest so far, in the units of energies */
     double complex *dt;      /* [n] s */
     double complex *at_node; /* [n_nodes] of one state */
-    double complex drive[DALCS_MAX_NODES];
+    double complex drive[DALCS_MOST_DRIVES];
 };
 
 static double complex driven(const struct probe *p, const struct dalcs_flow_map *map, double t,
@@ -29,7 +29,7 @@ static double complex driven(const struct probe *p, const struct dalcs_flow_map 
     const struct dalcs_periodic_flow *flow = p->flow;
     const size_t size = dalcs_periodic_flow_size(flow);
     double complex sum = 0.0;
-    for (int k = 0; k < flow->stages.layout.n_nodes; k++) {
+    for (int k = 0; k < flow->n_turns * flow->stages.layout.n_nodes; k++) {
         sum += p->drive[k] * map->drive[(size_t)k * size + at];
     }
     return sum * cexp(I * flow->fastest * t);
@@ -40,7 +40,7 @@ static double complex row_at(const struct probe *p, const struct dalcs_flow_map 
                              int k, int node, int row) {
     const struct dalcs_periodic_flow *flow = p->flow;
     const size_t size = dalcs_periodic_flow_size(flow);
-    const size_t at = (size_t)node * (size_t)flow->stages.layout.stride + (size_t)row;
+    const size_t at = dalcs_periodic_flow_at(flow, node, row);
     double complex sum = k == flow->n_x  ? driven(p, map, t, at)
                          : k > flow->n_x ? map->state[(size_t)(k - 1) * size + at]
                                          : 0.0;
@@ -75,58 +75,40 @@ static double find_tail(struct probe *p, const struct dalcs_flow_map *map, doubl
     return tail;
 }
 
-/* What rounding leaves in states that sources drive, in the units of energies: of P x' = A y that of the sums over y,
- * which cancel where a voltage source holds a capacitor. */
-static double rounding_of(const struct probe *p, const struct dalcs_flow_map *map) {
+/* What rounding leaves in the last coefficients of probe k, in the units of energies. */
+static double noise_of(const struct probe *p, const struct dalcs_flow_map *map, int k) {
     const struct dalcs_periodic_flow *flow = p->flow;
-    const struct dalcs_csr *A = &flow->system->A;
-    const size_t size = dalcs_periodic_flow_size(flow);
-    const size_t stride = (size_t)flow->stages.layout.stride;
-    double most = 0.0;
+    const int n = flow->stages.layout.n_nodes;
+    double noise = k > flow->n_x ? map->noise[k - 1] : 0.0;
+    double sum[2] = {0.0, 0.0};
     for (int x = 0; x < flow->n_x; x++) {
-        for (size_t i = 0; i < size; i += stride) {
-            double terms = 0.0;
-            for (int m = A->p[x]; m < A->p[x + 1]; m++) {
-                terms += fabs(A->x[m]) * cabs(map->drive[i + (size_t)A->j[m]]);
-            }
-            most = fmax(most, terms / flow->unit[x]);
-        }
+        noise += cabs(p->column[k * flow->n_x + x]) * map->noise[x];
     }
-    return DBL_EPSILON * flow->stages.layout.n_nodes * map->h * most;
+    for (int i = 0; i < n; i++) {
+        sum[0] += fabs(flow->legendre[n - 1][i]);
+        sum[1] += fabs(flow->legendre[n - 2][i]);
+    }
+    return noise * fmax(sum[0], sum[1]);
 }
 
-/* The same of an output of a gate that is off by 1 V. */
-static double rounding_of_pin(const struct probe *p, const struct dalcs_flow_map *map, int k) {
-    const struct dalcs_periodic_flow *flow = p->flow;
-    const struct dalcs_csr *A = &flow->system->A;
-    const size_t size = dalcs_periodic_flow_size(flow);
-    const size_t stride = (size_t)flow->stages.layout.stride;
-    const double *state = map->state + (size_t)(k - 1) * size;
-    double most = 0.0;
-    for (int x = 0; x < flow->n_x; x++) {
-        for (size_t i = 0; i < size; i += stride) {
-            double terms = 0.0;
-            for (int m = A->p[x]; m < A->p[x + 1]; m++) {
-                terms += fabs(A->x[m] * state[i + (size_t)A->j[m]]);
-            }
-            most = fmax(most, terms / flow->unit[x]);
-        }
-    }
-    return DBL_EPSILON * flow->stages.layout.n_nodes * map->h * most;
-}
-
-/* Does the piece carry all of them? *tail: the worst, over their sizes. */
-static void try_piece(struct probe *p, const struct dalcs_flow_map *map, double t, double *tail) {
+/* Does the piece carry all of them? *tail: the worst, over their sizes; *seen: the same beyond rounding, which no shorter
+ * piece makes less. */
+static void try_piece(struct probe *p, const struct dalcs_flow_map *map, double t, double *tail,
+                      double *seen) {
     const struct dalcs_periodic_flow *flow = p->flow;
     const int n = flow->stages.layout.n_nodes;
     dalcs_periodic_flow_drive(flow, flow->fastest * map->h, p->drive);
-    *tail = fmax(cabs(p->drive[n - 1]), cabs(p->drive[n - 2]));
+    *tail = *seen = fmax(cabs(p->drive[n - 1]), cabs(p->drive[n - 2]));
     for (int k = 0; k < p->n; k++) {
         double size;
-        double of = find_tail(p, map, t, k, &size);
-        size = k == flow->n_x ? fmax(size, rounding_of(p, map) / resolved) : size;
-        size = k > flow->n_x ? fmax(size, rounding_of_pin(p, map, k) / resolved) : size;
+        const double of = find_tail(p, map, t, k, &size);
+        const double rounding = k < flow->n_x    ? 0.0
+                                : k == flow->n_x ? map->rounding[flow->n_columns]
+                                                 : map->rounding[k - 1];
+        size = fmax(size, rounding / resolved);
         *tail = of > 0.0 ? fmax(*tail, of / size) : *tail;
+        const bool is_rounding = of > resolved * size && of <= noise_of(p, map, k);
+        *seen = of > 0.0 && !is_rounding ? fmax(*seen, of / size) : *seen;
     }
 }
 
@@ -143,6 +125,7 @@ static void accept(struct probe *p) {
 
 static enum dalcs_status add_piece(struct dalcs_periodic_flow *flow, struct dalcs_flow_map *map,
                                    double t) {
+    DALCS_TRY(dalcs_periodic_flow_keep(flow, map));
     DALCS_TRY(dalcs_grow(&flow->piece, &flow->capacity, (size_t)flow->n + 1, sizeof *flow->piece));
     flow->piece[flow->n++] = (struct dalcs_flow_piece){.map = map, .t = t};
     return DALCS_OK;
@@ -182,13 +165,14 @@ static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span
         struct dalcs_flow_map *map;
         double t = span->from + ldexp((double)at, -MOST_HALVINGS) * length;
         double tail;
+        double seen;
         DALCS_TRY(dalcs_periodic_flow_map(flow, span, t, ldexp(length, -level), &map));
-        try_piece(p, map, t, &tail);
-        if (tail > resolved && level < MOST_HALVINGS) {
+        try_piece(p, map, t, &tail, &seen);
+        if (seen > resolved && level < MOST_HALVINGS) {
             level++;
             continue;
         }
-        n_rough += tail > resolved ? 1 : 0;
+        n_rough += seen > resolved ? 1 : 0;
         if (n_rough > MOST_ROUGH) {
             return DALCS_NOT_CONVERGED;
         }

@@ -14,13 +14,13 @@ static void find_driven(const struct dalcs_periodic_response *r, struct dalcs_fl
                         double w) {
     const struct dalcs_periodic_flow *flow = r->flow;
     const size_t size = dalcs_periodic_flow_size(flow);
-    double complex coefficient[DALCS_MAX_NODES];
+    double complex coefficient[DALCS_MOST_DRIVES];
     dalcs_periodic_flow_drive(flow, w * map->h, coefficient);
     for (size_t i = 0; i < size; i++) {
         map->driven[i] = 0.0;
     }
-    for (int k = 0; k < flow->stages.layout.n_nodes && flow->excitation.n_functions > 0; k++) {
-        const double complex *drive = map->drive + (size_t)k * size;
+    for (int k = 0; k < flow->n_turns * flow->stages.layout.n_nodes; k++) {
+        const double *drive = map->drive + (size_t)k * size;
         for (size_t i = 0; i < size; i++) {
             map->driven[i] += coefficient[k] * drive[i];
         }
@@ -37,7 +37,6 @@ static void find_means(const struct dalcs_periodic_response *r, struct dalcs_flo
                        double w) {
     const struct dalcs_periodic_flow *flow = r->flow;
     const int n = flow->stages.layout.n_nodes;
-    const int stride = flow->stages.layout.stride;
     double complex weight[DALCS_MAX_NODES];
     dalcs_mean_weights(flow, w * map->h, weight);
     const int n_columns = flow->n_columns;
@@ -47,7 +46,7 @@ static void find_means(const struct dalcs_periodic_response *r, struct dalcs_flo
         for (int m = 0; m < r->n_read; m++) {
             double complex sum = 0.0;
             for (int i = 0; i < n && !is_open(map, flow->system, r->read[m]); i++) {
-                const int at = i * stride + r->read[m];
+                const size_t at = dalcs_periodic_flow_at(flow, i, r->read[m]);
                 sum += weight[i] * (k < n_columns ? state[at] : map->driven[at]);
             }
             mean[m] = sum;
@@ -74,8 +73,7 @@ static void begin_piece(struct dalcs_periodic_response *r, const struct dalcs_fl
 static double complex at_end(const struct dalcs_periodic_response *r,
                              const struct dalcs_flow_map *map, double complex phase, int row) {
     const struct dalcs_periodic_flow *flow = r->flow;
-    const struct dalcs_stage_layout *l = &flow->stages.layout;
-    const size_t at = (size_t)(l->n_nodes - 1) * (size_t)l->stride + (size_t)row;
+    const size_t at = dalcs_periodic_flow_at(flow, flow->stages.layout.n_nodes - 1, row);
     double complex sum = phase * map->driven[at];
     for (int k = 0; k < flow->n_columns; k++) {
         sum += r->now[k] * map->state[(size_t)k * dalcs_periodic_flow_size(flow) + at];
@@ -261,10 +259,15 @@ enum dalcs_status dalcs_periodic_response_setup(struct dalcs_periodic_response *
             r->read[r->n_read++] = c;
         }
     }
-    for (struct dalcs_flow_map *map = flow->map; map != NULL && complete; map = map->next) {
-        map->mean =
-            dalcs_arena_alloc(&r->arena, (n_states + 1) * (size_t)r->n_read, sizeof *map->mean);
-        complete = map->mean != NULL;
+    for (int p = 0; p < flow->n && complete; p++) {
+        struct dalcs_flow_map *map = flow->piece[p].map;
+        if (map->mean == NULL) {
+            map->mean =
+                dalcs_arena_alloc(&r->arena, (n_states + 1) * (size_t)r->n_read, sizeof *map->mean);
+            map->driven =
+                dalcs_arena_alloc(&r->arena, dalcs_periodic_flow_size(flow), sizeof *map->driven);
+            complete = map->mean != NULL && map->driven != NULL;
+        }
     }
     complete = complete && (gates == NULL ||
                             dalcs_periodic_gates_setup(&r->gates, &r->arena, flow) == DALCS_OK);

@@ -3,8 +3,14 @@
 
 #include <string.h>
 
+/* Of an answer at all nodes. */
+static size_t answer_size(const struct dalcs_periodic_flow *flow) {
+    const struct dalcs_stage_layout *l = &flow->stages.layout;
+    return (size_t)l->n_nodes * (size_t)l->stride;
+}
+
 enum dalcs_status dalcs_flow_smooth_setup(struct dalcs_periodic_flow *flow, int first) {
-    const size_t size = dalcs_periodic_flow_size(flow);
+    const size_t size = answer_size(flow);
     struct dalcs_flow_smooth *p = dalcs_arena_alloc(&flow->arena, 1, sizeof *p);
     if (p == NULL) {
         return DALCS_E_NOMEM;
@@ -43,7 +49,7 @@ static void find_arguments(struct dalcs_periodic_flow *flow, const struct dalcs_
 static enum dalcs_status find_units(struct dalcs_periodic_flow *flow,
                                     struct dalcs_stage_entry *entry) {
     const struct dalcs_flow_smooth *p = flow->smooth;
-    const size_t size = dalcs_periodic_flow_size(flow);
+    const size_t size = answer_size(flow);
     const int n_smooth = flow->system->n_smooth;
     const int n_nodes = p->newton.n_points;
     memset(p->unit, 0, (size_t)p->newton.n * size * sizeof(double));
@@ -80,7 +86,7 @@ enum dalcs_status dalcs_flow_smooth_begin(struct dalcs_periodic_flow *flow,
                                           const struct dalcs_orbit_span *span, double t, double h) {
     struct dalcs_flow_smooth *p = flow->smooth;
     struct dalcs_smooth_newton *n = &p->newton;
-    const size_t size = dalcs_periodic_flow_size(flow);
+    const size_t size = answer_size(flow);
     find_arguments(flow, span, t, h);
     DALCS_TRY(find_units(flow, entry));
     for (int q = 0; q < n->n; q++) {
@@ -94,7 +100,7 @@ enum dalcs_status dalcs_flow_smooth_begin(struct dalcs_periodic_flow *flow,
 
 void dalcs_flow_smooth_vary(struct dalcs_periodic_flow *flow, double *out) {
     const struct dalcs_flow_smooth *p = flow->smooth;
-    const size_t size = dalcs_periodic_flow_size(flow);
+    const size_t size = answer_size(flow);
     double *change = p->newton.step;
     read(flow, out);
     dalcs_smooth_newton_vary(&p->newton, p->dx, change);

@@ -207,12 +207,13 @@ static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, struct dalcs_pe
     mark_read(a, k, is_read);
     const struct dalcs_periodic_flow_asked asked = {.source = p->source,
                                                     .is_still = of >= 0 && of != a->loop.device,
+                                                    .is_read = is_read,
                                                     .fastest = fastest,
                                                     .period = a->st->period,
                                                     .go_on = go_on,
                                                     .user = a};
     const enum dalcs_status status = dalcs_periodic_flow_setup(&p->flow, &a->log.part[k], &asked);
-    if (status == DALCS_NOT_CONVERGED) {
+    if (status == DALCS_NOT_CONVERGED || status == DALCS_SINGULAR) {
         return refuse_rough(a);
     }
     DALCS_TRY(status);

@@ -261,6 +261,7 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
         status =
             atomic_load(&session->is_cancelled) ? DALCS_E_CANCELLED : run_analysis(&r, analysis[k]);
     }
+    dalcs_steady_forget(&r);
     dalcs_names_finish(&r.interrupting);
     dalcs_undetermined_finish(&r.undetermined);
     dalcs_nonunique_count_rest(&r);

@@ -134,6 +134,7 @@ struct dalcs_run {
     const struct dalcs_orbit_point *orbit; /* where .tran starts; NULL: as the netlist says */
     struct dalcs_orbit_point *orbit_end;   /* becomes where such a run ends; NULL: nobody asks */
     bool leaves_orbit;                     /* that is a .tran of its own; else a period of .pss */
+    struct dalcs_steady_known *known; /* what .pss has found, for .ac behind it; NULL: nothing */
 
     struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */
     double *result;                        /* [n_measures] NAN: could not be measured */
@@ -263,6 +264,9 @@ dalcs_periodic_loop_prepare(struct dalcs_session *session,
 
 /* Runs .pss into r->sink. */
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* Frees r->known. */
+void dalcs_steady_forget(struct dalcs_run *r);
 
 /* DALCS_E_NETLIST and a message where a switch follows a clock, which .ac around an operating point would not see. */
 enum dalcs_status dalcs_commanded_ac_refuse(struct dalcs_run *r) DALCS_MUST_CHECK;

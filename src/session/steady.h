@@ -236,6 +236,12 @@ enum dalcs_status dalcs_steady_keep(struct dalcs_run *r,
 /* all: else the sources that repeat stay what they are behind their delays. */
 void dalcs_steady_put_back(struct dalcs_run *r, const struct dalcs_steady_kept *kept, bool all);
 
+/* The orbit of st, into its run, as long as that lasts. */
+enum dalcs_status dalcs_steady_remember(const struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* Is there one? Then st, which is set up, is as behind the search that has found it. */
+bool dalcs_steady_recall(struct dalcs_steady *st);
+
 /* ---- steady_failure.c -------------------------------------------------------------------------- */
 
 /* A message, and DALCS_E_OPTION. */

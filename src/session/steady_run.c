@@ -136,6 +136,10 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     const bool uic = c->transient.use_initial_conditions || c->periodic.use_initial_conditions;
     take_period(r, period, uic);
     DALCS_TRY(dalcs_steady_setup(st, r, period));
+    if (!leaves && r->s->near == NULL && dalcs_steady_recall(st)) {
+        take_period(r, st->period, uic);
+        return DALCS_OK;
+    }
     DALCS_TRY(is_free ? DALCS_OK : take_repeats(st, uic));
     if (r->s->near != NULL && r->s->near->asked != DALCS_NEAR_ORBIT) {
         DALCS_TRY(dalcs_steady_at_near(st, is_free, r->s->near));
@@ -150,6 +154,7 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
         take_period(r, st->period, uic);
     }
     DALCS_TRY(is_free && n_periods > 1.0 ? DALCS_OK : dalcs_steady_anchor_keep(st, leaves));
+    DALCS_TRY(leaves || r->s->near != NULL ? DALCS_OK : dalcs_steady_remember(st));
     if (r->s->anchor.is_sought ||
         r->s->report.steady.present) { /* nobody asks, or its .pss has told */
         return DALCS_OK;
