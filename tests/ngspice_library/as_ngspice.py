@@ -126,6 +126,16 @@ library.ngSpice_CurPlot.restype""")
                 self.assertEqual(shown, str(said))
             self.assertEqual("spiceinit" in shown, said is not None)
 
+    def test_command_lines(self):
+        """How programs start it: spicelib and PyLTSpice, xschem in three ways, Qucs-S, Oregano."""
+        for words, makes in (("-D ngbehavior=kiltpsa -b -o half.log -r half.raw half.cir", "half.raw half.log"),
+                             ("-b -r half.raw -o half.out half.cir", "half.raw half.out"), ("-i half.cir -a", ""),
+                             ("half.cir -a", ""), ("half.cir", ""), ("-b half.cir", "")):
+            self.as_ngspice(self.programs[0], "ngspice", *words.split())
+            for name in makes.split():
+                self.assertGreater((self.root / name).stat().st_size, 0, name)
+                (self.root / name).unlink()
+
     def test_refused(self):
         program = self.programs[0]
         for option in ["-p", "-s"]:
