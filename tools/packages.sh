@@ -14,7 +14,7 @@ packages_of() {
         latex) echo texlive-latex-base ;;
         browser) echo chromium chromium-driver firefox-esr python3-selenium ;;
         wasm) echo emscripten dpkg-dev ;;
-        crosscheck) echo libngspice0-dev ngspice python3 ;;
+        crosscheck) echo lepton-eda libngspice0-dev ngspice python3 ;;
         kicad) echo kicad kicad-demos openbox xdotool xvfb ;;
         ci) echo clang libclang-rt-14-dev llvm valgrind clang-format codespell cppcheck python3-proselint shellcheck fish zsh ;;
         *)

@@ -294,11 +294,12 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_logic_resolve(builder);
     dalcs_model_check(builder);
     check_presence(builder);
+    builder->names_signals =
+        builder->names_signals || builder->saves_currents; /* the defaults have some of them */
     if (builder->n_signals == 0) {
         dalcs_signals_add_default(builder);
     }
     if (builder->saves_currents) {
-        builder->names_signals = true; /* some of them are there already */
         dalcs_signals_add_currents(builder);
     }
     dalcs_losses_collect(builder);

@@ -353,6 +353,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
 void dalcs_arguments_finish(struct dalcs_arguments *arguments) {
     free(arguments->output);
     free(arguments->set);
+    free(arguments->variable);
     free(arguments->show);
     free(arguments->times);
     free(arguments->default_output);

@@ -45,6 +45,9 @@ struct dalcs_arguments {
     bool ascii; /* raw files as text */
     bool batch; /* as ngspice -b: outputs are raw files whatever their names, tables are printed
                         when there is none */
+    const char *
+        *variable; /* [n_variables] of -b: what is set before a .control block; owned array */
+    size_t n_variables;
     const char *log; /* of -b: where what is printed goes, or NULL */
     bool steady;     /* the verb is `steady` */
     double period;   /* s, of it; 0: it follows from the sources */

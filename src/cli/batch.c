@@ -10,6 +10,7 @@
 #include "memory.h"
 #include "paths.h"
 #include "run.h"
+#include "start_variables.h"
 #include "verb.h"
 
 #include <errno.h>
@@ -29,16 +30,18 @@ static const char help[] =
     "                      .plot are printed as tables\n"
     "  -o, --output LOG    write there what would be printed\n"
     "      --ascii         write the raw file as text; so does -D filetype=ascii\n"
+    "  -D VARIABLE=VALUE   as `set` in a .control block, before it\n"
     "      --dialect ngspice|ltspice|xyce\n"
     "                      for which simulator the netlist was written (default: what it shows)\n"
-    "  -a, -n, -i, -p, -q, -s, -t TERMINAL, -D VARIABLE=VALUE\n"
+    "  -n, --no-spiceinit  do not read .spiceinit\n"
+    "  -a, -i, -p, -q, -s, -t TERMINAL\n"
     "                      are ngspice's and have no meaning here\n"
     "  -h, --help          this text\n"
     "\n"
-    "Called by the name ngspice, the program needs no -b, -v prints what others look for, and -p "
-    "and -s\n"
-    "are refused: they would read commands. Programs that send commands load libngspice.so.0, see\n"
-    "dalcs as-ngspice --help.\n"
+    "Called by the name ngspice, the program needs no -b, -v prints what others look for, and the\n"
+    "variables are set that ./.spiceinit or ~/.spiceinit sets. -p and -s are refused: they would\n"
+    "read commands. Programs that send commands load libngspice.so.0, see dalcs as-ngspice "
+    "--help.\n"
     "\n"
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
@@ -60,6 +63,8 @@ struct batch {
     const char *log;
     bool help, version;
     bool is_ngspice; /* the program is called so */
+    bool no_start_file;
+    struct dalcs_start_variables variables;
 };
 
 bool dalcs_cli_is_batch(int argc, char **argv) {
@@ -88,17 +93,6 @@ static enum dalcs_status take_shell(const struct batch *b, const struct dalcs_cl
     return DALCS_OK;
 }
 
-/* -D VARIABLE=VALUE; what netlists it was written for shows by itself. */
-static void take_variable(struct batch *b, const struct dalcs_cli *cli, const char *text) {
-    if (strcmp(text, "filetype=ascii") == 0) {
-        b->arguments.ascii = true;
-    } else if (strncmp(text, "ngbehavior=", strlen("ngbehavior=")) != 0) {
-        fprintf(cli->err,
-                "dalcs: note: -D %s sets a variable of ngspice's shell and has no meaning here\n",
-                text);
-    }
-}
-
 static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int argc,
                                char **argv) {
     optind = 0; /* glibc: start afresh */
@@ -122,8 +116,10 @@ static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int
             b->help = true;
             return DALCS_OK;
         case 'b':
-        case 'a': /* a batch run runs by itself, */
-        case 'n': /* and no file but the netlist is read */
+        case 'a': /* a batch run runs by itself */
+            break;
+        case 'n':
+            b->no_start_file = true;
             break;
         case 'i':
         case 'p':
@@ -137,7 +133,7 @@ static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int
             b->version = true;
             return DALCS_OK;
         case 'D':
-            take_variable(b, cli, optarg);
+            DALCS_TRY(dalcs_start_variables_take(&b->variables, optarg));
             break;
         case ':':
             dalcs_cli_error(cli, "option '%s' needs a value; see '%s'", argv[optind - 1],
@@ -162,8 +158,16 @@ static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int
     return DALCS_OK;
 }
 
+static enum dalcs_status run(const struct dalcs_cli *cli, struct batch *b) {
+    b->variables.cli = cli;
+    if (b->is_ngspice && !b->no_start_file) {
+        DALCS_TRY(dalcs_start_variables_read(&b->variables));
+    }
+    return dalcs_cli_run_arguments(cli, &b->arguments);
+}
+
 /* The run, with what it prints in the log. */
-static enum dalcs_status run_into_log(const struct dalcs_cli *cli, const struct batch *b) {
+static enum dalcs_status run_into_log(const struct dalcs_cli *cli, struct batch *b) {
     struct dalcs_cli logged = *cli;
     FILE *log = fopen(b->log, "w");
     if (log == NULL) {
@@ -173,7 +177,7 @@ static enum dalcs_status run_into_log(const struct dalcs_cli *cli, const struct 
     logged.out = log;
     logged.err = log;
     logged.err_is_terminal = false;
-    enum dalcs_status status = dalcs_cli_run_arguments(&logged, &b->arguments);
+    enum dalcs_status status = run(&logged, b);
     bool failed = ferror(log) != 0;
     if (fclose(log) != 0 || failed) {
         dalcs_cli_error(cli, "cannot write '%s': %s", b->log, strerror(errno));
@@ -190,6 +194,7 @@ static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **ar
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_EXIT_RUN;
     }
+    b.variables = (struct dalcs_start_variables){.cli = cli, .arguments = &b.arguments};
     enum dalcs_status status = parse(&b, cli, argc, argv);
     if (status == DALCS_OK && b.help) {
         fputs(help, cli->out);
@@ -201,10 +206,11 @@ static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **ar
         b.arguments.log = b.log;
         status = dalcs_paths_check(cli, &b.arguments);
         if (status == DALCS_OK) {
-            status = b.log ? run_into_log(cli, &b) : dalcs_cli_run_arguments(cli, &b.arguments);
+            status = b.log ? run_into_log(cli, &b) : run(cli, &b);
         }
     }
     dalcs_arguments_finish(&b.arguments);
+    dalcs_start_variables_finish(&b.variables);
     return dalcs_cli_exit(status);
 }
 

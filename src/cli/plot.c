@@ -139,12 +139,12 @@ static enum dalcs_status read_report(struct drawing *drawing) {
     return DALCS_OK;
 }
 
-/* Without signals of the caller's choice, the gain of a loop with its margins, or of a run the response that it has
- * found. group: both NULL, neither of them. */
+/* Without signals of the caller's choice, the gain of a loop with its margins, or a response. group: both NULL, neither of them. */
 static enum dalcs_status choose_response(struct drawing *drawing, const char *group[2]) {
-    const bool of_run = drawing->run && drawing->run->response.present;
+    const bool is_response =
+        drawing->waveforms.complex_values || (drawing->run && drawing->run->response.present);
     group[0] = group[1] = NULL;
-    return drawing->arguments->n_groups == 0 && (drawing->lines.loop || of_run)
+    return drawing->arguments->n_groups == 0 && (drawing->lines.loop || is_response)
                ? dalcs_decibels_choose(&drawing->waveforms, drawing->lines.loop,
                                        &drawing->lines.arena, group)
                : DALCS_OK;

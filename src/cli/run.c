@@ -112,6 +112,8 @@ static enum dalcs_status run_session(struct dalcs_run *run, struct dalcs_session
                                            .sink = &sink,
                                            .out = run->cli->out,
                                            .user = run,
+                                           .set = arguments->variable,
+                                           .n_set = arguments->n_variables,
                                            .after_run = dalcs_run_tell_measured};
     enum dalcs_status status =
         run->has_script ? dalcs_script_run(&host) : dalcs_session_run(session, &options, &sink);

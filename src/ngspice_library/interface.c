@@ -3,6 +3,7 @@
 
 #include "diag.h"
 #include "lower_case.h"
+#include "start_file.h"
 #include "text_file.h"
 
 #include <limits.h>
@@ -29,6 +30,28 @@ __attribute__((destructor)) static void leave(void) {
     }
 }
 
+static void note_left_out(void *user, const struct dalcs_start_file *file, const char *command) {
+    (void)user;
+    ng_talk_say(&ng_the.talk,
+                "Note: %s:%d: '%.60s' is left out: of this file, set and unset are done",
+                file->path, file->line, command);
+}
+
+/* The variables that the user's .spiceinit sets. */
+static bool start_as_told(void) {
+    struct dalcs_start_file file = {0};
+    bool went_well = dalcs_start_file_read(&file) == DALCS_OK;
+    if (file.text != NULL) {
+        ng_talk_say(&ng_the.talk, "Note: %s was read, as ngspice does", file.path);
+    }
+    for (const char *command;
+         went_well && (command = dalcs_start_file_next(&file, note_left_out, NULL)) != NULL;) {
+        went_well = ng_execute(&ng_the, command);
+    }
+    dalcs_start_file_finish(&file);
+    return went_well;
+}
+
 int ngSpice_Init(ng_send_char *send_char, ng_send_status *send_status,
                  ng_controlled_exit *controlled_exit, ng_send_data *send_data,
                  ng_send_init_data *send_init_data, ng_thread_state *thread_state, void *user) {
@@ -45,7 +68,7 @@ int ngSpice_Init(ng_send_char *send_char, ng_send_status *send_status,
     ng_talk_say(&ng_the.talk, "** ngspice-39, for programs that look for it: this is dalcs %s",
                 dalcs_version());
     ng_talk_say(&ng_the.talk, "******");
-    return 0;
+    return ng_the.reads_no_start_file || start_as_told() ? 0 : 1;
 }
 
 int ngSpice_Init_Sync(void *voltage, void *current, void *step, int *id, void *user) {

@@ -47,12 +47,13 @@ struct ng_library {
     struct dalcs_script *script;
     struct ng_background background;
     struct ng_sent_row sent;
-    double told;        /* s; when progress was told last */
-    bool is_open;       /* all of the above is there */
-    bool control_waits; /* set controlswait: .control runs after the background */
-    bool has_waiting;   /* such a block is waiting */
-    bool is_busy;       /* a command is executed */
-    bool fails;         /* the command at hand, in what the script does not know */
+    double told;              /* s; when progress was told last */
+    bool is_open;             /* all of the above is there */
+    bool control_waits;       /* set controlswait: .control runs after the background */
+    bool has_waiting;         /* such a block is waiting */
+    bool is_busy;             /* a command is executed */
+    bool reads_no_start_file; /* before ngSpice_Init was called */
+    bool fails;               /* the command at hand, in what the script does not know */
 };
 
 /* ---- interface.c ---------------------------------------------------------------------------------- */

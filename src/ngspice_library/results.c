@@ -107,12 +107,13 @@ int ngSpice_UnlockRealloc(void) {
     return ng_is_ready() ? pthread_mutex_unlock(&ng_the.plots.lock) : 1;
 }
 
-/* No file is read but the netlists that are named. */
+/* spinit is ngspice's own: it loads what is no part of this. */
 int ngSpice_nospinit(void) {
     return 0;
 }
 
 int ngSpice_nospiceinit(void) {
+    ng_the.reads_no_start_file = true;
     return 0;
 }
 

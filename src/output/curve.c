@@ -21,10 +21,15 @@ void dalcs_turns_add(struct dalcs_turns *turns, double value, double swing) {
 }
 
 enum dalcs_status dalcs_curve_init(struct dalcs_curve *curve, double start, double stop) {
-    *curve = (struct dalcs_curve){
-        .start = start, .stop = stop, .lowest = INFINITY, .highest = -INFINITY};
+    *curve = (struct dalcs_curve){.start = start,
+                                  .stop = stop,
+                                  .lowest = INFINITY,
+                                  .highest = -INFINITY,
+                                  .time = NAN,
+                                  .value = NAN};
     curve->column = dalcs_alloc(DALCS_CURVE_COLUMNS, sizeof *curve->column);
-    return curve->column ? DALCS_OK : DALCS_E_NOMEM;
+    curve->integral_at = dalcs_alloc(DALCS_CURVE_PLACES + 1, sizeof *curve->integral_at);
+    return curve->column && curve->integral_at ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 int dalcs_curve_find_column(const struct dalcs_curve *curve, double time) {
@@ -34,8 +39,31 @@ int dalcs_curve_find_column(const struct dalcs_curve *curve, double time) {
     return position > 0.0 ? (int)fmin(position, DALCS_CURVE_COLUMNS - 1) : 0;
 }
 
+/* The straight line to the next point. */
+static void integrate(struct dalcs_curve *curve, double time, double value) {
+    const double step = (curve->stop - curve->start) / DALCS_CURVE_PLACES;
+    const double span = time - curve->time;
+    const bool is_joined = isfinite(curve->value) && isfinite(value) && span > 0.0;
+    for (; curve->n_integrals <= DALCS_CURVE_PLACES; curve->n_integrals++) {
+        const double part = curve->start + curve->n_integrals * step - curve->time;
+        if (!(part <= span)) { /* of the first point: span is not a number */
+            break;
+        }
+        double more = 0.0;
+        if (is_joined) {
+            const double there = curve->value + (value - curve->value) * part / span;
+            more = 0.5 * (curve->value + there) * fmax(part, 0.0);
+        }
+        curve->integral_at[curve->n_integrals] = curve->integral + more;
+    }
+    curve->integral += is_joined ? 0.5 * (curve->value + value) * span : 0.0;
+    curve->time = time;
+    curve->value = value;
+}
+
 void dalcs_curve_add(struct dalcs_curve *curve, double time, double value) {
     struct dalcs_curve_point point = {.row = curve->n_rows++, .time = time, .value = value};
+    integrate(curve, time, value);
     if (!isfinite(value)) {
         return;
     }
@@ -118,5 +146,6 @@ int dalcs_curve_column_points(const struct dalcs_curve_column *column,
 
 void dalcs_curve_finish(struct dalcs_curve *curve) {
     free(curve->column);
+    free(curve->integral_at);
     *curve = (struct dalcs_curve){0};
 }

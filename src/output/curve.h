@@ -4,7 +4,11 @@
 
 #include "dalcs.h"
 
-enum { DALCS_CURVE_COLUMNS = 1000 }; /* about the width of a figure in pixels */
+enum {
+    DALCS_CURVE_COLUMNS = 1000, /* about the width of a figure in pixels */
+    DALCS_CURVE_PLACES =
+        4 * DALCS_CURVE_COLUMNS /* where its integral is known: edges lie between them */
+};
 
 struct dalcs_curve_point {
     long row;
@@ -32,7 +36,11 @@ struct dalcs_curve {
     long n_rows;
     double lowest, highest; /* of the finite values; lowest > highest when there are none */
     struct dalcs_turns turns;
-    double turns_range;                /* of the values, when turns were first counted */
+    double turns_range; /* of the values, when turns were first counted */
+    double integral;    /* over time, of what came so far; gaps are 0 */
+    double time, value; /* of the point before; not a number where there is none */
+    int n_integrals;
+    double *integral_at; /* [DALCS_CURVE_PLACES + 1] the first n_integrals, on a linear axis */
     struct dalcs_curve_column *column; /* [DALCS_CURVE_COLUMNS] */
 };
 

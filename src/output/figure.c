@@ -193,6 +193,7 @@ static enum dalcs_status add_end(struct dalcs_figure *figure) {
     if (!(start < stop)) {
         return DALCS_OK;
     }
+    figure->period = 2.0 * (figure->view[0].stop - figure->view[0].start) / (double)n_turns;
     enum dalcs_status status = init_view(figure, start, stop);
     for (size_t i = first; status == DALCS_OK && i < n; i++) {
         const double *row = dalcs_tail_row(tail, i);

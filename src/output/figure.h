@@ -62,7 +62,8 @@ struct dalcs_figure {
     struct dalcs_figure_panel panel[DALCS_FIGURE_MAX_PANELS]; /* some may be empty */
     int n_views;
     struct dalcs_figure_view view[2]; /* the whole run, its end */
-    struct dalcs_tail tail;           /* of the chosen signals */
+    double period; /* about, of what is too dense for the first view where there are two; else 0 */
+    struct dalcs_tail tail; /* of the chosen signals */
     struct dalcs_atomic_file file;
     char message[256]; /* why drawing failed; "" when file.error says it */
 };

@@ -5,6 +5,7 @@
  * quoted: it cannot become a command. */
 #include "gnuplot.h"
 
+#include "band.h"
 #include "gnuplot_page.h"
 #include "quantity.h"
 
@@ -14,12 +15,33 @@
 
 #define COINCIDENT 1e-3 /* of a panel's range: less cannot be seen */
 #define OVERLAP    0.02 /* of a panel's width */
+#define BAND       0.3 /* opacity: two that lie on each other, and a line in either, can be told apart */
 
 enum { MAX_TITLE = 100, PIXELS_PER_INCH = 100, TITLE_CHARACTER = 10, LEFT_OUT = 220 };
 
 static const char *unit_prefix(double scale) {
     const char *prefix = dalcs_quantity_prefix(scale);
     return strcmp(prefix, "u") == 0 ? "\302\265" : prefix;
+}
+
+/* Of the whole of a run too dense to see its periods, the range that each signal moves in, and its mean, are drawn. Of
+ * other axes there are no means. */
+static bool has_bands(const struct dalcs_figure *figure, int v) {
+    return v == 0 && figure->period > 0.0 && !figure->axis.logarithmic &&
+           strcmp(figure->axis.unit, "s") == 0;
+}
+
+static void write_band(FILE *stream, const struct dalcs_figure *figure, int p, int i,
+                       double time_scale) {
+    struct dalcs_band_point point[DALCS_CURVE_COLUMNS];
+    const double scale = dalcs_gnuplot_panel_scale(figure, 0, p);
+    const int n = dalcs_band_find(&figure->view[0].curve[p][i], figure->period, point);
+    fprintf(stream, "$v0p%dc%d << end_of_data\n", p, i);
+    for (int k = 0; k < n; k++) {
+        fprintf(stream, "%.7g %.5g %.5g %.5g\n", point[k].time / time_scale, point[k].mean / scale,
+                point[k].low / scale, point[k].high / scale);
+    }
+    fputs(n > 0 ? "end_of_data\n" : "0 NaN NaN NaN\nend_of_data\n", stream);
 }
 
 static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, int p,
@@ -29,6 +51,10 @@ static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, i
     /* A hundredth of what the numbers of the axis tell apart. */
     const int digits = 2 + dalcs_gnuplot_count_digits(view->low[p] / scale, view->high[p] / scale);
     for (int i = 0; i < figure->panel[p].n; i++) {
+        if (has_bands(figure, v)) {
+            write_band(stream, figure, p, i, time_scale);
+            continue;
+        }
         fprintf(stream, "$v%dp%dc%d << end_of_data\n", v, p, i);
         for (int column = 0; column < DALCS_CURVE_COLUMNS; column++) {
             struct dalcs_curve_point point[4];
@@ -171,9 +197,17 @@ static void write_panel(FILE *stream, const struct dalcs_figure *figure,
                 figure->theme->quiet_text);
     }
     write_lines(stream, figure, page, p);
+    const bool bands = has_bands(figure, v);
+    for (int i = 0; bands && i < panel->n; i++) {
+        fprintf(
+            stream,
+            "%s $v%dp%dc%d using 1:3:4 with filledcurves fs transparent solid %.2g noborder fc rgb "
+            "'%s' notitle",
+            i == 0 ? "plot" : ",", v, p, i, BAND, figure->theme->curve[i]);
+    }
     for (int i = 0; i < panel->n; i++) {
         fprintf(stream, "%s $v%dp%dc%d using 1:2 with lines lw %.1f lc rgb '%s' ",
-                i == 0 ? "plot" : ",", v, p, i, choose_width(figure, view, p, i),
+                i == 0 && !bands ? "plot" : ",", v, p, i, choose_width(figure, view, p, i),
                 figure->theme->curve[i]);
         if (figure->theme->dash[i]) {
             fprintf(stream, "dt %s ", figure->theme->dash[i]);

@@ -4,7 +4,8 @@
  * The number of points is not known while streaming: its field is padded and filled in at the end. Points
  * are gathered into a block, for a point is written in no time and a call to write it is not.
  * ngspice runs a Command line when it loads the file; starting with '*' it is a comment there, and
- * spicelib still finds the word that it looks for. */
+ * spicelib still finds the word that it looks for. It stands where spyci, whose pattern of a header knows no such line,
+ * takes it for a part of the flags; ngspice wants it behind the plot's name. */
 #include "decimal.h"
 #include "memory.h"
 #include "table.h"
@@ -92,10 +93,10 @@ static void write_header(struct raw *raw, FILE *stream, const struct dalcs_plot 
     fprintf(stream, "Plotname: %s\n", name[plot->analysis]);
     fprintf(stream, "Flags: %s%s\n", raw->is_complex ? "complex" : "real",
             plot->n_steps > 1 ? " stepped" : "");
+    fprintf(stream, "Command: * ngspice-compatible, dalcs %s\n", dalcs_version());
     fprintf(stream, "No. Variables: %zu\nNo. Points: ", raw->n_columns);
     raw->points_at = ftello(stream);
-    fprintf(stream, POINTS_FIELD "\n", raw->n_points);
-    fprintf(stream, "Command: * ngspice-compatible, dalcs %s\nVariables:\n", dalcs_version());
+    fprintf(stream, POINTS_FIELD "\nVariables:\n", raw->n_points);
     size_t column = 0;
     if (raw->has_scale) {
         fprintf(stream, "\t%zu\t%s\t%s\n", column++, scale_name(plot), type_of(plot->scale_unit));

@@ -4,6 +4,7 @@
 #include "figure.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Of the largest of all, what some hundred roundings of it come to: a node that a source without a small signal holds. */
 static const double is_rounding = 1e-13;
@@ -21,9 +22,13 @@ enum dalcs_status dalcs_decibels_choose(const struct dalcs_waveforms *waveforms,
     int n = 0;
     double most = 0.0;
     group[0] = group[1] = NULL;
-    if (loop != NULL) {
-        group[0] = dalcs_arena_printf(arena, "db(loop(%s))", loop);
-        group[1] = dalcs_arena_printf(arena, "phase(loop(%s))", loop);
+    const char *gain = loop != NULL ? dalcs_arena_printf(arena, "loop(%s)", loop) : NULL;
+    for (size_t c = 1; c < waveforms->n_columns && gain == NULL; c += 2) {
+        gain = strncmp(waveforms->name[c], "loop(", 5) == 0 ? waveforms->name[c] : NULL;
+    }
+    if (gain != NULL) {
+        group[0] = dalcs_arena_printf(arena, "db(%s)", gain);
+        group[1] = dalcs_arena_printf(arena, "phase(%s)", gain);
         return group[0] != NULL && group[1] != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     for (size_t c = 1; c + 1 < waveforms->n_columns; c += 2) {

@@ -4,8 +4,8 @@
 
 #include "waveforms.h"
 
-/* group[0] = "db(v(out)),...", group[1] = "phase(v(out)),...": of the gain of the loop of this source, if there is one,
- * else of the first signals of a table of complex values that are more than rounding; both NULL where none is. In the
+/* group[0] = "db(v(out)),...", group[1] = "phase(v(out)),...": of the gain of the loop of this source, or of
+ * that in the table, if there is one, else of the first signals of a table of complex values that are more than rounding; both NULL where none is. In the
  * arena. */
 enum dalcs_status dalcs_decibels_choose(const struct dalcs_waveforms *waveforms, const char *loop,
                                         struct dalcs_arena *arena,

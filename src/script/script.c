@@ -3,6 +3,8 @@
  * dalcs_script_run at the end is the table of contents. */
 #include "script_internal.h"
 
+#include "lower_case.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -333,11 +335,28 @@ void dalcs_script_close(struct dalcs_script *script) {
     free(script);
 }
 
+static enum dalcs_status set_before(struct dalcs_script *script) {
+    for (size_t k = 0; k < script->host->n_set; k++) {
+        const char *text = script->host->set[k];
+        char *own = dalcs_arena_copy(&script->arena, text, strlen(text));
+        if (own == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        const struct dalcs_assignment given = dalcs_variables_split(own);
+        DALCS_TRY(
+            dalcs_variables_set(&script->variables, dalcs_lower_text(given.name), given.value));
+    }
+    dalcs_arena_finish(&script->arena);
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_script_run(const struct dalcs_script_host *host) {
     struct dalcs_script *script;
     DALCS_TRY(dalcs_script_open(&script, host));
-    enum dalcs_status status =
-        dalcs_script_read(script, 0, dalcs_session_n_script_lines(host->session));
+    enum dalcs_status status = set_before(script);
+    if (status == DALCS_OK) {
+        status = dalcs_script_read(script, 0, dalcs_session_n_script_lines(host->session));
+    }
     if (status == DALCS_OK && !asks(&script->statements)) {
         status = dalcs_script_run_cards(script);
     }

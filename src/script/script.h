@@ -21,6 +21,8 @@ struct dalcs_script_host {
     const struct dalcs_sink *sink; /* gets all results, besides the script */
     FILE *out;                     /* of print and echo */
     void *user;
+    const char *const *set; /* [n_set] what is set before: "name", "name=value" */
+    size_t n_set;
     bool is_strict; /* what cannot be said or shown is an error: somebody waits for the answer */
     bool lacks_circuit; /* nothing can be run or altered: the netlist stands for none */
     /* Does the host execute this word itself? NULL: none. */

@@ -20,41 +20,30 @@ enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dal
     if (status != DALCS_OK) {
         return status;
     }
-    const size_t length = strcspn(text, "=");
-    const char *left = dalcs_arena_copy(&script->arena, text, length);
-    const char *name = left != NULL ? dalcs_script_word(script, &left) : NULL;
-    if (name == NULL && text[length] == '\0') {
+    char *own = dalcs_arena_copy(&script->arena, text, strlen(text));
+    if (own == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    const struct dalcs_assignment given = dalcs_variables_split(own);
+    if (given.name[0] == '\0' && strchr(text, '=') == NULL) {
         list_variables(script);
         return DALCS_OK;
     }
-    if (name == NULL) {
+    if (given.name[0] == '\0') {
         return dalcs_script_refuse(script, s, "set name=value", "a name is missing");
     }
-    struct dalcs_statement lower = {.rest = name, .line = s->line, .column = s->column};
+    const char *name;
+    struct dalcs_statement lower = {.rest = given.name, .line = s->line, .column = s->column};
     status = dalcs_script_expand_low(script, &lower, &name);
     if (status != DALCS_OK) {
         return status;
     }
-    const char *value = text[length] == '=' ? text + length + 1 : "";
-    value += strspn(value, " \t");
-    size_t n = strlen(value);
-    while (n > 0 && (value[n - 1] == ' ' || value[n - 1] == '\t')) {
-        n--;
-    }
-    const char first = value[0];
-    const bool wrapped =
-        n >= 2 && ((first == '(' && value[n - 1] == ')') || (first == '"' && value[n - 1] == '"'));
-    const char *own = wrapped ? dalcs_arena_copy(&script->arena, value + 1, n - 2)
-                              : dalcs_arena_copy(&script->arena, value, n);
-    if (own == NULL) {
-        return DALCS_E_NOMEM;
-    }
     const struct dalcs_script_host *host = script->host;
     if (strcmp(name, "curplot") != 0) {
-        return dalcs_variables_set(&script->variables, name, own);
+        return dalcs_variables_set(&script->variables, name, given.value);
     }
     const bool is_of_host = host->knows != NULL && host->knows(host->user, "setplot");
-    return is_of_host ? DALCS_OK : dalcs_script_choose_plot(script, s, own);
+    return is_of_host ? DALCS_OK : dalcs_script_choose_plot(script, s, given.value);
 }
 
 enum dalcs_status dalcs_script_unset(struct dalcs_script *script, const struct dalcs_statement *s) {

@@ -46,6 +46,31 @@ enum dalcs_status dalcs_variables_set(struct dalcs_variables *v, const char *nam
     return DALCS_OK;
 }
 
+static char *trimmed(char *text) {
+    text += strspn(text, " \t");
+    size_t n = strlen(text);
+    while (n > 0 && strchr(" \t", text[n - 1]) != NULL) {
+        n--;
+    }
+    text[n] = '\0';
+    return text;
+}
+
+struct dalcs_assignment dalcs_variables_split(char *text) {
+    char *equal = text + strcspn(text, "=");
+    char *value = trimmed(*equal == '=' ? equal + 1 : equal);
+    *equal = '\0';
+    const size_t n = strlen(value);
+    if (n >= 2 &&
+        ((value[0] == '(' && value[n - 1] == ')') || (value[0] == '"' && value[n - 1] == '"'))) {
+        value[n - 1] = '\0';
+        value++;
+    }
+    char *name = trimmed(text);
+    name[strcspn(name, " \t")] = '\0';
+    return (struct dalcs_assignment){name, value};
+}
+
 void dalcs_variables_unset(struct dalcs_variables *v, const char *name) {
     struct dalcs_variable *known = find(v, name);
     if (known != NULL) {

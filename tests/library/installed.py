@@ -72,6 +72,13 @@ class Installed(unittest.TestCase):
         printed = output_of([program, self.root / "a.cir"], LD_LIBRARY_PATH=str(self.libraries))
         self.assertEqual(printed, "0 0.5\n")
 
+    def test_is_found(self):
+        """README's line for C sets no variable: below /usr/local pkg-config looks where the file is."""
+        searched = output_of(["pkg-config", "--variable", "pc_path", "pkg-config"]).strip().split(":")
+        folder = "/" + str(next(self.root.rglob("dalcs.pc")).parent.relative_to(self.root))
+        if folder.startswith("/usr/local/") and any(path.startswith("/usr/local/") for path in searched):
+            self.assertIn(folder, searched)
+
     def test_c(self):
         self.build_and_run(["gcc", "-std=c11", "-pedantic"], "a.c")
 

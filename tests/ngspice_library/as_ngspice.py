@@ -74,6 +74,68 @@ class AsNgspice(unittest.TestCase):
             self.assertIn("v(out)", raw)
             (self.root / "half.raw").unlink()
 
+    def test_start_file(self):
+        """.spiceinit of the folder, else of the user's home, where the program has ngspice's name; and -D."""
+        program = self.programs[0]
+        control = NETLIST.replace(".end\n", ".control\nop\nprint v(out)\necho [$?mine] $mine\nwrite c.raw\n.endc\n.end\n")
+        home, here, work = self.root / "home", self.root / "here", self.root / "empty"
+        for folder in (home, here, work):
+            folder.mkdir()
+            (folder / "half.cir").write_text(control, encoding="utf-8")
+        (home / ".spiceinit").write_text("* mine\n\n  set MINE = home ; a comment\nset filetype=ascii\nset numdgt=4\n",
+                                         encoding="utf-8")
+        (here / ".spiceinit").write_text("unset numdgt\nset mine=(a b) $ a list\nalias q quit\nset filetype=binary\n",
+                                         encoding="utf-8")
+
+        def ngspice(folder, *words, name="ngspice", text="half.cir"):
+            done = subprocess.run([program, "as-ngspice", name, *words, text], cwd=folder, capture_output=True, text=True,
+                                  check=True, env={**os.environ, "HOME": str(home)})
+            raw = (folder / "c.raw").read_bytes()
+            (folder / "c.raw").unlink()
+            return done.stdout.split("\n")[:2], done.stderr, b"Values:" in raw
+
+        out, err, is_text = ngspice(work)
+        self.assertEqual(out, ["v(out) = 5.0000e-01", "[1] home"])
+        self.assertIn(f"note: '{home}/.spiceinit' was read", err)
+        self.assertTrue(is_text)
+        out, err, is_text = ngspice(here, "-D", "numdgt=4", "-D", "mine=c")
+        self.assertEqual(out, ["v(out) = 5.000000e-01", "[1] a b"])
+        self.assertIn("note: './.spiceinit' was read", err)
+        self.assertIn("./.spiceinit:3: note: 'alias q quit' is left out", err)
+        self.assertFalse(is_text)
+        for words, name in ((["-n", "-D", "numdgt=4", "-D", "mine", "-D", "FileType = ascii"], "ngspice"),
+                            (["-b", "-D", "numdgt=4", "-D", "mine", "-D", "filetype=ascii"], str(program))):
+            out, err, is_text = ngspice(here, *words, name=name)
+            self.assertEqual((out, err, is_text), (["v(out) = 5.0000e-01", "[1] "], "", True))
+        script = LOADS.replace("library.ngSpice_CurPlot.restype", """
+said = []
+say = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_char_p, ctypes.c_int, ctypes.c_void_p)(
+    lambda text, number, user: said.append(text.decode()) or 0)
+SKIP
+library.ngSpice_Init(say, None, None, None, None, None, None)
+library.ngSpice_Command(b"echo $?mine $numdgt")
+print([line for line in said if "**" not in line])
+library.ngSpice_CurPlot.restype""")
+        for skip, said in (("", [f"stdout Note: {home}/.spiceinit was read, as ngspice does", "stdout 1 4"]),
+                           ("library.ngSpice_nospiceinit()", None)):
+            done = subprocess.run([program, "as-ngspice", sys.executable, "-c", script.replace("SKIP", skip)], cwd=work,
+                                  capture_output=True, text=True, check=True, env={**os.environ, "HOME": str(home)})
+            shown, result, _ = done.stdout.split("\n")
+            self.assertEqual(result, "0 0 op1")
+            if said is not None:
+                self.assertEqual(shown, str(said))
+            self.assertEqual("spiceinit" in shown, said is not None)
+
+    def test_command_lines(self):
+        """How programs start it: spicelib and PyLTSpice, xschem in three ways, Qucs-S, Oregano."""
+        for words, makes in (("-D ngbehavior=kiltpsa -b -o half.log -r half.raw half.cir", "half.raw half.log"),
+                             ("-b -r half.raw -o half.out half.cir", "half.raw half.out"), ("-i half.cir -a", ""),
+                             ("half.cir -a", ""), ("half.cir", ""), ("-b half.cir", "")):
+            self.as_ngspice(self.programs[0], "ngspice", *words.split())
+            for name in makes.split():
+                self.assertGreater((self.root / name).stat().st_size, 0, name)
+                (self.root / name).unlink()
+
     def test_refused(self):
         program = self.programs[0]
         for option in ["-p", "-s"]:

@@ -41,7 +41,7 @@ def answers(client, library, calls, *words):
 def main():
     client, library, path = [pathlib.Path(name).resolve() for name in sys.argv[1:4]]
     calls, _, wanted = path.read_text(encoding="utf-8").partition(BREAK)
-    words = ["nodata"] if path.stem == "kicad" else []
+    words = ["nodata"] if path.stem in ("fritzing", "kicad") else []
     printed = answers(client, library, calls, *words)
     if "--write" in sys.argv:
         path.write_text(calls + BREAK + printed, encoding="utf-8")

@@ -188,6 +188,23 @@ class Plot(unittest.TestCase):
         self.assertIn("has 2 runs: there is no run 3", self.refused("two.raw", "--run", "3"))
         self.assertIn("there is no plot 3", self.refused("two.raw", "--plot", "3"))
 
+    def test_a_response(self):
+        """Magnitudes in dB over phases in degrees, where nobody says what is drawn; of a loop its gain."""
+        (self.folder / "rc.cir").write_text("t\nV1 in 0 AC 1\nR1 in out 1k\nC1 out 0 1u\n.ac dec 10 1 100k\n.end\n")
+        self.run_program("run", "rc.cir", "-o", "rc.raw", "-q")
+        self.plot("rc.raw", "-o", "rc.svg", "-q")
+        texts = self.texts("rc.svg")
+        for text in "db(v(out))", "phase(v(out))", "magnitude (dB)", "phase (\u00b0)", "frequency (Hz)", "-60":
+            self.assertIn(text, texts)
+        self.assertNotIn("voltage (V)", texts)
+        self.plot("rc.raw", "-s", "v(out)", "-o", "rc.svg", "-q")
+        self.assertIn("voltage (mV)", self.texts("rc.svg"))
+        loop = (self.folder / "rc.raw").read_bytes().replace(b"v(out)", b"loop(v)")
+        (self.folder / "loop.raw").write_bytes(loop)
+        self.plot("loop.raw", "-o", "loop.svg", "-q")
+        self.assertIn("db(loop(v))", self.texts("loop.svg"))
+        self.assertNotIn("db(v(in))", self.texts("loop.svg"))
+
     def test_spectrum(self):
         self.plot("buck.raw", "-s", "v(sw)", "--from", "0.9m", "--spectrum", "1meg", "-o", "spectrum.svg", "-q")
         texts = self.texts("spectrum.svg")

@@ -205,6 +205,15 @@ class Rows(unittest.TestCase):
         self.assertEqual(result.units["i(d1)"], "A")
         with self.assertRaisesRegex(KeyError, r"v\(out\)"):
             result["v(ou)"]  # pylint: disable=pointless-statement
+        self.assertEqual(result.measures["VLOW"], result.measures["vlow"])
+        system, = dalcs.equations(NETLIST)
+        for there, name, told in ((result, "v(elsewhere)", r"no signal 'v\(elsewhere\)' among v\(in\), v\(out\)"),
+                                  (result.measures, "vlw", "no measurement 'vlw'; did you mean 'vlow'"),
+                                  (result.measures, "q", "no measurement 'q' among .*vlow"),
+                                  (dalcs.run(NETLIST.replace(".meas", "*")).measures, "q", "'q' at all"),
+                                  (system, "A_1", "no matrix 'A_1'; did you mean 'A_I'")):
+            with self.assertRaisesRegex(KeyError, told):
+                there[name]  # pylint: disable=pointless-statement
 
     @unittest.skipUnless(has("pandas"), "no pandas")
     def test_pandas(self):

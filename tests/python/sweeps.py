@@ -39,6 +39,9 @@ class Sweeps(unittest.TestCase):
         self.assertEqual(sweep["rload"].tobytes(), LOADS.tobytes())
         np.testing.assert_allclose(sweep["vlow"], [output(ohm, closes(ohm)) for ohm in LOADS], atol=1e-7)
         self.assertEqual((set(sweep["error"]), sweep.errors), ({""}, {}))
+        self.assertIs(sweep["VLow"], sweep["vlow"])
+        with self.assertRaisesRegex(KeyError, "no column 'vlov'; did you mean 'vlow'"):
+            sweep["vlov"]  # pylint: disable=pointless-statement
 
     def test_workers_change_no_byte(self):
         grid = {"rload": LOADS[::6], "c1": [5e-6, 20e-6, 80e-6]}

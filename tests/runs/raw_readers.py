@@ -6,6 +6,8 @@ usage: raw_readers.py PROGRAM
 
 import math
 import pathlib
+import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -114,6 +116,36 @@ def check_script(run, check):
         check(word in (run.folder / "w.raw").read_bytes(), f"{setting}: no {word}")
 
 
+def check_spyci(run, check):
+    """spyci reads text by one pattern, in which nothing stands between Title, Date, Plotname, Flags, No. Variables,
+    No. Points and Variables; a point is its number, blanks, and values in lines of their own."""
+    header = "".join(rf"{key}:\s*(\w.*?\w|\w)\s*" for key in ("^Date", "Plotname", "Flags", r"No\. Variables",
+                                                              r"No\. Points"))
+    pattern = re.compile(r"^Title:\s*(.*)\s*" + header + r"Variables:\s*$(.*)^Values:(.*)", re.M | re.S)
+    for card, plotname in ((".tran 0.5m 3m", "Transient Analysis"), (".ac dec 1 1 100", "AC Analysis")):
+        plot = run.read(CIRCUIT + f"{card}\n.end\n", "--ascii")[0]
+        found = pattern.search((run.folder / "c.raw").read_text())
+        if not check(found is not None, f"no header for spyci: {card}"):
+            continue
+        check(found[3] == plotname and found[5].isdigit() and found[6].isdigit(), f"spyci reads {found.groups()[:6]}")
+        points = re.findall(r"^\s*\d+\s+(\S+(?:\n\s*\S+)*)$", found[8], re.M)
+        check(len(points) == int(found[6]) == len(plot.columns[0]), f"spyci finds {len(points)} points")
+        check(all(len(point.split()) == int(found[5]) for point in points), "spyci finds other values")
+
+
+def check_ngspice(run, check):
+    """Debian's ngspice loads it, and has nothing to say."""
+    if shutil.which("ngspice") is None:
+        return
+    for option in "--quiet", "--ascii":
+        plot = run.read(CIRCUIT + ".tran 0.5m 3m\n.end\n", option)[0]
+        (run.folder / "load.cir").write_text("load\n.control\nload c.raw\nprint length(time)\nquit 0\n.endc\n.end\n")
+        done = subprocess.run(["ngspice", "-n", "-b", "load.cir"], cwd=run.folder, stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, check=False)
+        check(f"length(time) = {len(plot.columns[0]):e}" in done.stdout and "rror" not in done.stderr,
+              f"ngspice loads: {done.stdout}{done.stderr}")
+
+
 def check_rules(run, check):
     """That the rules refuse what the readers do, and read LTspice's own layout."""
     run.read(CIRCUIT + ".tran 0.5m 3m\n.end\n")
@@ -142,7 +174,7 @@ def main():
     checker = dalcs_program.Checker("raw readers")
     with tempfile.TemporaryDirectory() as folder:
         run = Runner(str(pathlib.Path(sys.argv[1]).resolve()), folder, checker)
-        for test in (check_plots, check_several, check_steps, check_script, check_rules):
+        for test in (check_plots, check_several, check_steps, check_script, check_spyci, check_ngspice, check_rules):
             test(run, checker.check)
     return checker.finish()
 

@@ -3,7 +3,7 @@
 import pathlib
 import struct
 
-HEADER = ["Title", "Date", "Plotname", "Flags", "No. Variables", "No. Points", "Command"]
+HEADER = ["Title", "Date", "Plotname", "Flags", "Command", "No. Variables", "No. Points"]
 TYPES = {"time", "frequency", "voltage", "current", "notype"}
 
 

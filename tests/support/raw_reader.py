@@ -4,7 +4,7 @@ that tells the dialect, variables that are counted, points that are complete."""
 import re
 import struct
 
-HEADER = ["Title", "Date", "Plotname", "Flags", "No. Variables", "No. Points", "Command"]
+HEADER = ["Title", "Date", "Plotname", "Flags", "Command", "No. Variables", "No. Points"]
 DIALECTS = ("ltspice", "qspice", "ngspice", "xyce")
 
 

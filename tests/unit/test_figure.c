@@ -1,4 +1,5 @@
 /* test_figure.c - which points and which signals a figure shows, and how gnuplot is told. */
+#include "band.h"
 #include "figure.h"
 #include "gnuplot.h"
 #include "sample_plot.h"
@@ -66,6 +67,42 @@ START_TEST(test_overlap_of_few_rows) {
     ck_assert_double_eq_tol(dalcs_curve_overlap(&a, &a, 1e-3), 1.0, 0.005);
     dalcs_curve_finish(&a);
     dalcs_curve_finish(&b);
+}
+
+END_TEST
+
+/* Of 100 periods the band is where the signal moves, and the mean that of a period, also where the period is known to
+ * 1 part in 100 only: of a swing of 5 that leaves 5e-4, and the places where the integral is known, 40 in a period, as much again. */
+START_TEST(test_band_of_dense_run) {
+    struct dalcs_band_point point[DALCS_CURVE_COLUMNS];
+    struct dalcs_curve curve;
+    ck_assert_int_eq(dalcs_curve_init(&curve, 0.0, 1.0), DALCS_OK);
+    for (int k = 0; k < 100; k++) {
+        const double time[4] = {0.0, 0.003, 0.003, 0.01};
+        const double value[4] = {3.0, 5.0, 0.0, 1.0};
+        for (int i = 0; i < 4; i++) {
+            dalcs_curve_add(&curve, 0.01 * k + time[i], value[i]);
+        }
+    }
+    for (double period = 0.0099; period < 0.0102; period += 0.0001) {
+        ck_assert_int_eq(dalcs_band_find(&curve, period, point), DALCS_CURVE_COLUMNS);
+        for (int i = 0; i < DALCS_CURVE_COLUMNS; i++) {
+            ck_assert_double_eq(point[i].low, 0.0);
+            ck_assert_double_eq(point[i].high, 5.0);
+            const bool is_inside = i > 20 && i < 980; /* a window at an end is not averaged again */
+            ck_assert_double_eq_tol(point[i].mean, 1.55, is_inside ? 2e-3 : 0.08);
+        }
+    }
+    dalcs_curve_finish(&curve);
+    ck_assert_int_eq(dalcs_curve_init(&curve, 0.0, 1.0),
+                     DALCS_OK); /* that ends early, with a gap */
+    dalcs_curve_add(&curve, 0.0, 2.0);
+    dalcs_curve_add(&curve, 0.2, NAN);
+    dalcs_curve_add(&curve, 0.4, 2.0);
+    dalcs_curve_add(&curve, 0.5, 2.0);
+    ck_assert_int_eq(dalcs_band_find(&curve, 0.01, point) > 0, 1);
+    ck_assert_double_eq_tol(curve.integral, 0.2, 1e-15);
+    dalcs_curve_finish(&curve);
 }
 
 END_TEST
@@ -254,5 +291,6 @@ START_TEST(test_units) {
 END_TEST
 
 RUN_SUITE("figure", test_curve_keeps_extremes, test_curve_keeps_order, test_overlap_of_few_rows,
-          test_choice_of_signals, test_end_of_dense_run, test_impulse_leaves_scale,
-          test_noise_is_constant, test_noise_before_a_step, test_quoting, test_units)
+          test_band_of_dense_run, test_choice_of_signals, test_end_of_dense_run,
+          test_impulse_leaves_scale, test_noise_is_constant, test_noise_before_a_step, test_quoting,
+          test_units)

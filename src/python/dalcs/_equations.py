@@ -7,6 +7,8 @@ from typing import Any, Dict, List, Mapping, Tuple
 
 import numpy as np
 
+from ._names import no_such
+
 _ROWS = {"P": "x", "A_I": "x", "B_I": "x", "Bbar_I": "x", "E_I": "x", "constant_I": "x",
          "A_II": "z", "B_II": "z", "Bbar_II": "z", "E_II": "z", "constant_II": "z",
          "C_I": "w", "C_II": "w", "D": "w", "F": "w", "constant_F": "w", "storage": "x"}
@@ -58,6 +60,8 @@ class System:
             for name, rows in _ROWS.items()}
 
     def __getitem__(self, name: str) -> Any:
+        if name not in self.matrices:
+            raise no_such("matrix", name, self.matrices)
         return self.matrices[name]
 
     def __repr__(self) -> str:

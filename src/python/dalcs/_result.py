@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 import json
 from typing import Any, Dict, Iterator, List, Optional, Tuple
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _library as c
+from ._names import Measures, no_such
 from ._sensitivities import Sensitivities
 from ._session import Session, Tables
 
@@ -97,9 +97,7 @@ class Table:
             return self.values[:, column]
         if name.lower() == self.scale:
             return self.t
-        near = difflib.get_close_matches(name.lower(), self.names, 1, 0.5)
-        raise KeyError(f"no signal {name!r}" + (f"; did you mean {near[0]!r}?" if near else
-                                                f" among {', '.join(self.names)}"))
+        raise no_such("signal", name, self.names)
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame, one column a signal; its index is the scale."""
@@ -198,7 +196,7 @@ class Result(Table):
         runs = [table for table in self.tables if table.analysis == self.analysis]
         by = next(iter(self.parameters), "") if by is None else by
         if by not in self.parameters:
-            raise KeyError(f"no parameter {by!r} among {', '.join(self.parameters) or 'none'}")
+            raise no_such("parameter", by, self.parameters)
         axes = plt.subplots()[1] if ax is None else ax
         values = [table.parameters[by] for table in runs]
         widest = max(max(values) - min(values), 1e-300)
@@ -239,14 +237,14 @@ class Result(Table):
 
     @functools.cached_property
     def measures(self) -> Dict[str, Any]:
-        """What each .meas gave, NaN where it found nothing; of .step an array with one for each step."""
+        """What each .meas gave, by its name in any case; NaN where it found nothing; of .step an array with one for each step."""
         found: Dict[str, List[float]] = {}
         entries = self._session.measurements()
         for name, _, value in entries:
             found.setdefault(name, []).append(value)
         if any(is_step for _, is_step, _ in entries) and not self._is_alone:
-            return {name: np.array(values) for name, values in found.items()}
-        return {name: values[-1] for name, values in found.items()}
+            return Measures((name, np.array(values)) for name, values in found.items())
+        return Measures((name, values[-1]) for name, values in found.items())
 
     @functools.cached_property
     def drawn(self) -> Dict[str, float]:

@@ -7,6 +7,8 @@ from typing import Any, Dict, Iterator, Mapping, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ._names import no_such
+
 
 def _label_of(result: Mapping[str, Any]) -> str:
     """"vout" of a measurement, "average v(out)", "magnitude 3 v(out)"."""
@@ -64,7 +66,7 @@ class Sensitivities:
 
     def __getitem__(self, result: str) -> Dict[str, float]:
         if result not in self.results:
-            raise KeyError(f"no result {result!r} among {', '.join(self.results)}")
+            raise no_such("result", result, self.results)
         return dict(zip(self.parameters, self.derivatives[self.results.index(result)].tolist()))
 
     def to_pandas(self, relative: bool = False) -> Any:

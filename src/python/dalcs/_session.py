@@ -14,6 +14,7 @@ import numpy as np
 
 from . import _library as c
 from ._errors import OptionError, error_of
+from ._names import no_such
 
 Netlist = Union[str, "os.PathLike[str]"]
 Window = Union[bool, Tuple[float, float]]
@@ -228,7 +229,7 @@ def _exchanging(exchange: Exchange, failure: list[BaseException]) -> Any:
             again = exchange(e.time, read, given)
             unknown = given.keys() - set(inputs)
             if unknown:
-                raise KeyError(f"no external source {min(unknown)!r} among {', '.join(inputs)}")
+                raise no_such("external source", min(unknown), inputs)
             for k, name in enumerate(inputs):
                 e.given[k] = given[name]
             e.next = math.inf if again is None else again

@@ -6,6 +6,7 @@ import queue
 import threading
 from typing import Any, Callable, Dict, Mapping, Optional, Tuple
 
+from ._names import no_such
 from ._result import Result
 from ._session import Exchange
 
@@ -78,7 +79,7 @@ class Simulation:
             raise ValueError(f"it stands at {self.time:g} s already and cannot go to {until:g} s")
         unknown = inputs.keys() - self.inputs.keys()
         if unknown:
-            raise KeyError(f"no external source {min(unknown)!r} among {', '.join(self.inputs)}")
+            raise no_such("external source", min(unknown), self.inputs)
         self._given.put((until, {**self.inputs, **inputs}))
         self._wait()
         return self.signals

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from . import _library as c
 from ._errors import Cancelled, Error
+from ._names import find
 from ._result import Result
 from ._session import OWN_OPTIONS, Number, number_of
 
@@ -70,7 +71,7 @@ class Sweep:
         return iter(self.columns)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        return self.columns[name]
+        return self.columns[name] if name in self.columns else find("column", name, self.columns)
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame, one row a run."""
