@@ -142,7 +142,7 @@ static void write_ratios(struct program *p) {
     }
 }
 
-/* The furthest that a device's current goes in a direction (1 or -1); NAN where GLPK does not tell. */
+/* The furthest that a device's current goes in a direction (1 or -1); NAN where GLPK fails. */
 static double furthest(const struct program *p, int device, double direction) {
     const struct dalcs_device *d = &p->view->u->circuit->device[device];
     for (int k = 0; k < p->n_part; k++) {
@@ -200,7 +200,7 @@ enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_par
     struct program p = {.view = view, .n_part = n_part, .part = part};
     *is_solved = false;
     DALCS_TRY(number(&p));
-    int before = glp_init_env(); /* one for each thread; 1: somebody has one already */
+    int before = glp_init_env(); /* one for each thread; 1: there is one already */
     if (before > 1) {
         return DALCS_E_NOMEM;
     }

@@ -154,7 +154,7 @@ static bool is_of_a_comparator(const struct dalcs_circuit *circuit, const struct
     return is;
 }
 
-/* What the command line wants instead. */
+/* The options of the command line replace the card. */
 static bool take_request(struct dalcs_builder *builder) {
     const struct dalcs_losses_request *request = &builder->netlist->losses;
     if (!request->is_asked || !has_waveform(builder)) {

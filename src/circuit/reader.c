@@ -1,6 +1,6 @@
 /* reader.c - walks over the tokens of one card: numbers, names, nodes, parameters.
  *
- * Every function that wants something says so when it is missing or wrong, at its place. Numbers
+ * Every function reports a missing or wrong token, at its place. Numbers
  * whose suffix is often meant otherwise (1M of resistance, 1F of capacitance) get a warning. */
 #include "builder.h"
 #include "number.h"

@@ -172,7 +172,7 @@ static int find_node(struct dalcs_builder *builder, const struct dalcs_token *to
 static int find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {
     const int device = dalcs_builder_look_up_device(builder, token->text);
     if (device >= builder->n_device_cards) {
-        return dalcs_builder_find_device(builder, token); /* a coupling, which it tells of */
+        return dalcs_builder_find_device(builder, token); /* a coupling, with a message */
     }
     if (device < 0) {
         leave_out_unknown(builder, token, &builder->devices, "elements",

@@ -114,7 +114,7 @@ static double high_level(struct dalcs_builder *builder, const struct dalcs_trans
     return high;
 }
 
-/* Not where nobody says what its gate is at. */
+/* Not where the voltage of its gate is unknown. */
 static void note_saturation(struct dalcs_builder *builder, const struct dalcs_transistor_use *use,
                             double over) {
     struct dalcs_circuit *c = builder->circuit;

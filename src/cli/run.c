@@ -31,7 +31,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Events and jumps kept where no report and no figure wants them; the summary shows a few. */
+/* Events and jumps that are kept without a report and a figure; the summary shows a few. */
 enum { SHOWN_EVENTS = 100 };
 
 /* The state behind the sink. */
@@ -322,7 +322,7 @@ static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
     return status;
 }
 
-/* Does nobody look at a row? Measurements do not: they have the solution itself. A script may write them. */
+/* Are rows not needed? Measurements use the solution itself. A script may write rows. */
 static bool needs_no_rows(const struct run *run, const struct dalcs_arguments *arguments) {
     return arguments->no_waveforms && arguments->quiet && run->outputs.n_tables == 0 &&
            run->outputs.report_path == NULL && arguments->plot == NULL &&

@@ -49,7 +49,7 @@ static bool is_chosen(const struct dalcs_report *report) {
     return report->method && strcmp(report->method, "auto") == 0;
 }
 
-/* "radau, 5 stages in 250 components (tolerance 1e-06)"; how many only where that says something. */
+/* "radau, 5 stages in 250 components (tolerance 1e-06)"; the number of components only where there are several. */
 static void write_group(FILE *out, const struct dalcs_report *report,
                         const struct dalcs_component_method *method) {
     char text[DALCS_METHOD_TEXT_SIZE];

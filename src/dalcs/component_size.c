@@ -1,4 +1,4 @@
-/* component_size.c - how many unknowns of each sort a component has, and where its nodes are among them. */
+/* component_size.c - the number of unknowns of each sort in a component, and the places of its nodes among them. */
 #include "component_size.h"
 
 #include "stamp_behaviour.h"

@@ -59,7 +59,7 @@ static bool has_ground(const struct dalcs_circuit *c) {
     return found;
 }
 
-/* Islands that nothing ties to ground have their voltages by convention, and a person should know. */
+/* The voltages of islands without a connection to ground are a convention: a message says so. */
 static void note_references(const struct dalcs_layout *l, struct dalcs_diag *diag) {
     const struct dalcs_circuit *c = l->circuit;
     const char *hint =

@@ -61,7 +61,7 @@ bool dalcs_include_is_card(const char *name);
 enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer,
                                      const struct dalcs_card *card) DALCS_MUST_CHECK;
 
-/* Of a library of which one section is wanted: is the line at p, whose first byte that is not blank
+/* Of a library of which one section is read: is the line at p, whose first byte that is not blank
  * is at p, outside it? */
 enum dalcs_status dalcs_include_skips(struct dalcs_lexer *lexer, size_t p,
                                       bool *skips) DALCS_MUST_CHECK;

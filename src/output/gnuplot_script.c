@@ -26,7 +26,7 @@ static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, i
                        double time_scale) {
     const struct dalcs_figure_view *view = &figure->view[v];
     double scale = dalcs_gnuplot_panel_scale(figure, v, p);
-    /* A hundredth of what the numbers of the axis tell apart. */
+    /* A hundredth of the resolution of the numbers at the axis. */
     const int digits = 2 + dalcs_gnuplot_count_digits(view->low[p] / scale, view->high[p] / scale);
     for (int i = 0; i < figure->panel[p].n; i++) {
         fprintf(stream, "$v%dp%dc%d << end_of_data\n", v, p, i);

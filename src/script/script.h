@@ -21,7 +21,8 @@ struct dalcs_script_host {
     const struct dalcs_sink *sink; /* gets all results, besides the script */
     FILE *out;                     /* of print and echo */
     void *user;
-    bool is_strict; /* what cannot be said or shown is an error: somebody waits for the answer */
+    bool
+        is_strict; /* a command that has no equivalent is an error: a program waits for its result */
     bool lacks_circuit; /* nothing can be run or altered: the netlist stands for none */
     /* Does the host execute this word itself? NULL: none. */
     bool (*knows)(void *user, const char *word);

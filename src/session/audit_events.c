@@ -1,4 +1,4 @@
-/* audit_events.c - what the report tells of events and jumps, against both sides of the instant. */
+/* audit_events.c - compares events and jumps of the report with both sides of the instant. */
 #include "audit_reader.h"
 
 #include "audit_told.h"

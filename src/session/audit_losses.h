@@ -9,7 +9,7 @@ struct dalcs_element_losses;
 
 /* Zero-initialise. */
 struct dalcs_audit_losses {
-    struct dalcs_audit_run *run; /* NULL: nobody looks on */
+    struct dalcs_audit_run *run; /* NULL: no audit */
     int n_looked;                /* devices that were looked at, one after the other at first */
     int device;                  /* that is looked at in this stretch; -1: none */
     struct dalcs_loss before;    /* of it */

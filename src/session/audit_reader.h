@@ -8,7 +8,7 @@
 struct audit_members {
     int n_nodes, n_devices, n_lambdas;
     int *node, *node_column;
-    int *device; /* [n_devices] with currents of their own; others are the auditor's matter */
+    int *device; /* [n_devices] with currents of their own; the auditor computes the others */
     int *lambda, *lambda_pair;
     bool was_left;                         /* its segment ended at the present time */
     struct dalcs_audit_polynomials stored; /* the present segment */
@@ -24,7 +24,7 @@ struct audit_members {
     uint64_t *last_mode;
 };
 
-/* Instructions of a segment beside its maps, at least, that recurs and that nobody reads. */
+/* Instructions of a segment beside its maps, at least, of one that recurs and has no rows. */
 static const double dalcs_audit_segment_work = 1200.0;
 
 /* The largest defect that ends no run. */

@@ -1,4 +1,4 @@
-/* losses_run.c - what the engine tells while it runs, for the sums of losses. */
+/* losses_run.c - passes segments and instants of a run on to the sums of losses. */
 #include "losses_run.h"
 
 #include <stdlib.h>

@@ -222,7 +222,7 @@ static enum dalcs_status choose_step(struct dalcs_run *r) {
         r->h = asked;
     } else if (t->max_step > 0.0 && (t->step == 0.0 || has_memory(&s->network))) {
         r->h = t->max_step;
-    } else { /* without memory only the times that are printed matter */
+    } else { /* without states, steps end at the printed times only */
         r->h = t->step > 0.0 ? t->step : t->stop / 1000.0;
     }
     r->fixed_step = r->method != DALCS_METHOD_AUTO && r->method != DALCS_METHOD_EULER ? asked : 0.0;

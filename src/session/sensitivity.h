@@ -44,7 +44,7 @@ enum dalcs_status dalcs_sensitivities_run(struct dalcs_steady *st) DALCS_MUST_CH
 
 /* ---- sensitivity_report.c ---------------------------------------------------------------------- */
 
-/* How many results a report of a steady state has, and each of them with its value. */
+/* The number of results of a report of a steady state, and each of them with its value. */
 size_t dalcs_sensitivity_count(const struct dalcs_report *report);
 struct dalcs_sensitivity_result dalcs_sensitivity_get(const struct dalcs_report *report, size_t k);
 

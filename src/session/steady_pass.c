@@ -256,7 +256,7 @@ static enum dalcs_status start(struct dalcs_steady *st, struct pass *p) {
 static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,
                                      enum dalcs_steady_asked asked) {
     const bool with_M = asked == DALCS_STEADY_M;
-    const bool with_modes = st->run->s->near != NULL && !with_M; /* they tell two runs apart */
+    const bool with_modes = st->run->s->near != NULL && !with_M; /* to compare two runs */
     struct dalcs_variation variation = {0};
     struct dalcs_observer observer;
     if (with_M || with_modes) {

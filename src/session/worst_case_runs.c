@@ -40,7 +40,7 @@ static enum dalcs_status end(void *user) {
     return DALCS_OK;
 }
 
-/* All runs together are one to whoever looks on. */
+/* Progress is reported for all runs together. */
 static enum dalcs_status progress(void *user, double time, double stop) {
     const struct worker *worker = user;
     const struct dalcs_worst_case *w = worker->w;

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An element of G this large lets so many digits cancel, where none can be spared. */
+/* An element of G this large cancels so many digits of the result, more than it can lose. */
 static const double largest_response = 10.0;
 
 /* Elements of G this small beside the largest are nothing. */

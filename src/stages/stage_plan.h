@@ -26,7 +26,7 @@ enum {
     DALCS_SHARE_DRIFT = DALCS_SHARE_PAIR + 2 * DALCS_MAX_CONJUGATES,
     DALCS_SHARE_NONE,        /* 0 */
     DALCS_SHARE_RIPPLE,      /* missed between the nodes */
-    DALCS_SHARE_RIPPLE_RATE, /* the same, as the error estimate sees it */
+    DALCS_SHARE_RIPPLE_RATE, /* the same, in the error estimate */
     DALCS_N_SHARES
 };
 

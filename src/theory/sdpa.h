@@ -4,7 +4,7 @@
  *
  * each F symmetric. The program sdpa (M. Yamashita and others, GPL) solves them: it is run on a file, so
  * that neither its licence nor its ways to end a program are this library's. Its answer is a number
- * among others: whoever asks must verify it. */
+ * among others: the caller must verify it. */
 #ifndef DALCS_SDPA_H
 #define DALCS_SDPA_H
 

@@ -94,7 +94,7 @@ enum dalcs_status dalcs_verdict_jumps(struct dalcs_facts *facts) {
 
 /* ---- Stability ------------------------------------------------------------------------------ */
 
-/* No diode, no switch that moves: the eigenvalues tell. */
+/* No diode, no switch that moves: the eigenvalues decide. */
 static enum dalcs_status judge_linear(struct dalcs_facts *facts) {
     double slowest = facts->modes.slowest;
     const char *source = "eigenvalues: the part is linear";

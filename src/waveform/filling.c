@@ -8,7 +8,7 @@
 /* Gaps on each side of what happens. */
 enum { BESIDE = 2 };
 
-/* Of the stop time: a gap in which nobody looks. */
+/* Of the stop time: shorter gaps between rows are not examined. */
 static const double least_gap = 0x1p-33;
 
 /* What rounding makes of equal gaps. */

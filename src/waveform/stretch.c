@@ -209,7 +209,7 @@ static double tail_of(const struct dalcs_span *span) {
     return tail;
 }
 
-/* What happens between the last node and an end no node sees: there the polynomial has to meet the formula. */
+/* The nodes do not reach to the ends, so the polynomial is compared with the formula there. */
 static bool meets_ends(const struct visit *v, double a, double b, const struct dalcs_span *span,
                        double noise) {
     const double apart = fmax(

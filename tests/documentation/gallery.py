@@ -16,7 +16,7 @@ sys.path += [str(SOURCE / "tools")]
 import layout  # noqa: E402  pylint: disable=wrong-import-position,import-error
 import schematics  # noqa: E402  pylint: disable=wrong-import-position,import-error
 
-# Of subcircuits nobody knows what is inside.
+# The elements inside of subcircuits are not drawn.
 NOT_DRAWN = {"boost_interleaved", "full_bridge_phase_shift", "inverter_three_phase", "twelve_pulse"}
 
 
