@@ -8,9 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Over the largest value of a signal: a tenth of the error that the waveforms of circuits with exact solutions have
- * by default (doc/accuracy.md). Currents of blocking diodes in a multiplier are 2e-12 of their largest. */
-#define INVISIBLE 1e-11
+/* What is rounding, over the largest value of a signal; of waveforms, what no part of a circuit is held to
+ * (doc/methods.md, "What the tolerance means"). */
+#define INVISIBLE              1e-12
+#define INVISIBLE_IN_WAVEFORMS 1e-9
 
 /* Over the rms. Straight lines through the thousand rows of a period miss a sine by up to (2 pi/1000)^2/8, 5e-6 of
  * its amplitude, so a fifth of that is no average. The average of a pulse over
@@ -193,14 +194,29 @@ static const char *unit_name(enum dalcs_unit unit) {
     return name[unit];
 }
 
-/* What is round-off beside the signal's own size is shown as 0. */
-static void write_cell(FILE *out, const struct dalcs_measure_signal *signal, double value,
-                       enum dalcs_unit unit) {
+static bool has_averages(const struct dalcs_plot *plot) {
+    return plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC;
+}
+
+static void write_value(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
     char text[DALCS_QUANTITY_SIZE];
-    if (fabs(value) <= INVISIBLE * fmax(fabs(signal->min), fabs(signal->max))) {
-        value = 0.0;
-    }
-    fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit_name(unit), DIGITS));
+    const char *unit = unit_name(measure->plot->unit[i]);
+    fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit, DIGITS));
+}
+
+/* A value of signal i; what is round-off beside its largest one is shown as 0. */
+static void write_cell(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
+    const struct dalcs_measure_signal *signal = &measure->signal[i];
+    const double invisible = has_averages(measure->plot) ? INVISIBLE_IN_WAVEFORMS : INVISIBLE;
+    const double largest = fmax(fabs(signal->min), fabs(signal->max));
+    write_value(out, measure, i, fabs(value) <= invisible * largest ? 0.0 : value);
+}
+
+static void write_averages(FILE *out, const struct dalcs_measure *measure, size_t i) {
+    const double average = dalcs_measure_average(measure, i);
+    const double rms = dalcs_measure_rms(measure, i);
+    write_value(out, measure, i, fabs(average) <= CANCELLED_AVERAGE * rms ? 0.0 : average);
+    write_value(out, measure, i, rms);
 }
 
 static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool ends) {
@@ -220,20 +236,15 @@ static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool
 }
 
 static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i, bool ends) {
-    const struct dalcs_plot *plot = measure->plot;
     const struct dalcs_measure_signal *signal = &measure->signal[i];
-    if (plot->analysis != DALCS_OPERATING_POINT && !ends) {
-        write_cell(out, signal, signal->min, plot->unit[i]);
-        write_cell(out, signal, signal->max, plot->unit[i]);
+    if (measure->plot->analysis != DALCS_OPERATING_POINT && !ends) {
+        write_cell(out, measure, i, signal->min);
+        write_cell(out, measure, i, signal->max);
     }
-    if ((plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC) && !ends) {
-        const double average = dalcs_measure_average(measure, i);
-        const double rms = dalcs_measure_rms(measure, i);
-        const bool is_cancelled = fabs(average) <= CANCELLED_AVERAGE * rms;
-        write_cell(out, signal, is_cancelled ? 0.0 : average, plot->unit[i]);
-        write_cell(out, signal, rms, plot->unit[i]);
+    if (has_averages(measure->plot) && !ends) {
+        write_averages(out, measure, i);
     }
-    write_cell(out, signal, signal->final, plot->unit[i]);
+    write_cell(out, measure, i, signal->final);
 }
 
 void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report) {
