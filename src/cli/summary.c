@@ -14,8 +14,8 @@
 #define INVISIBLE_IN_WAVEFORMS 1e-9
 
 /* Over the rms. Straight lines through the thousand rows of a period miss a sine by up to (2 pi/1000)^2/8, 5e-6 of
- * its amplitude, so a fifth of that is no average. The average of a pulse over
- * its rms is the square root of its duty cycle, so pulses keep theirs down to a duty cycle of 1e-12. */
+ * its amplitude, so a fifth of that is no average. The average of a pulse over its rms is the square root of its duty
+ * cycle, so pulses keep theirs down to a duty cycle of 1e-12. */
 #define CANCELLED_AVERAGE 1e-6
 
 enum { MAX_SIGNALS = 24, MAX_JUMPS = 5, MAX_PARTS = 6, MAX_METHODS = 4, DIGITS = 4 };
