@@ -604,12 +604,15 @@ class Summary(Case):
 
     def test_reader_that_left(self):
         """As head does: nobody is told off for it, but the status says that not all was read."""
-        reader, writer = os.pipe()
-        os.close(reader)
-        done = subprocess.run([DALCS, "run", self.write(RECTIFIER)], cwd=self.folder,
-                              stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
-        os.close(writer)
-        self.assertEqual((done.returncode, done.stderr), (INPUT_OUTPUT, ""))
+        self.write(RECTIFIER)
+        self.dalcs("run", "a.cir", "-o", "a.raw")
+        for command in (["run", "a.cir"], ["check", "a.cir"], ["audit", "a.cir", "a.raw"], ["equations", "a.cir"]):
+            reader, writer = os.pipe()
+            os.close(reader)
+            done = subprocess.run([DALCS, *command], cwd=self.folder, stdout=writer, stderr=subprocess.PIPE,
+                                  text=True, check=False)
+            os.close(writer)
+            self.assertEqual((done.returncode, done.stderr), (INPUT_OUTPUT, ""), command)
 
 
 class Failures(Case):
