@@ -332,6 +332,9 @@ void dalcs_reader_missing(struct dalcs_reader *reader, const char *what);
 
 /* Reports the next token as not understood. */
 void dalcs_reader_unexpected(struct dalcs_reader *reader);
+/* The hint for a unit that a blank parts from the number before it, as in "100 uF"; else `otherwise`. */
+const char *dalcs_reader_unit_hint(const struct dalcs_reader *reader,
+                                   const struct dalcs_token *token, const char *otherwise);
 
 /* ---- One file per family; each takes a whole card -------------------------------------------- */
 
