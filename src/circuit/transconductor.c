@@ -105,8 +105,7 @@ static bool check(struct ota *ota) {
     for (int pin = 4; pin < PIN_OUTPUT; pin++) {
         if (ota->node[pin] != ota->node[PIN_COMMON]) {
             dalcs_builder_error(builder, &name[1 + pin], "tie it to pin 8",
-                                "pin %d of '%s' means nothing for this function", pin + 1,
-                                name->text);
+                                "this function does not use pin %d of '%s'", pin + 1, name->text);
             return false;
         }
     }
