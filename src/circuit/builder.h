@@ -23,7 +23,7 @@ enum dalcs_model_kind {
     DALCS_MODEL_WRONG    /* had errors: a use of it is no second error */
 };
 
-/* What a diode's model says besides its lines. */
+/* The parameters of a diode's model besides its lines. */
 struct dalcs_diode_card {
     double ilimit, revilimit;                /* A, INFINITY: none */
     bool is_berkeley;                        /* an exponential diode: the rest is its own */
@@ -404,7 +404,7 @@ void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card
 int dalcs_coupling_count_coils(const struct dalcs_card *card);
 void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                         enum dalcs_device_kind kind);
-/* What needs .tran: a missing frequency, periods too short to resolve. */
+/* Checks that need .tran: a missing frequency, periods too short to resolve. */
 void dalcs_source_check(struct dalcs_builder *builder);
 void dalcs_stimulus_check(struct dalcs_builder *builder, const struct dalcs_token *name,
                           struct dalcs_stimulus *stimulus);

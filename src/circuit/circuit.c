@@ -140,7 +140,7 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
 
 enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES, MEASURES, NEVER };
 
-/* How cards are read, and in which pass. */
+/* The readers of cards, and their passes. */
 static const struct {
     enum pass pass;
     void (*parse)(struct dalcs_builder *builder, const struct dalcs_card *card);

@@ -6,7 +6,7 @@
 
 enum { DALCS_CORE_PARAMETERS = 8 };
 
-/* What a card says; zero-initialise. */
+/* The parameters of a card; zero-initialise. */
 struct dalcs_core {
     double value[DALCS_CORE_PARAMETERS];
     const struct dalcs_token *place[DALCS_CORE_PARAMETERS];

@@ -284,7 +284,7 @@ static bool read_interval(struct reading *r) {
     return read_instant(r, &instant[1]);
 }
 
-/* What is for optimizers, and how Xyce prints. */
+/* Parameters for optimizers, and for the printing of Xyce. */
 static bool take_ignored(struct reading *r) {
     static const char *const names[] = {"goal",      "minval",      "weight",
                                         "failvalue", "default_val", "precision"};

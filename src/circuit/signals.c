@@ -148,7 +148,7 @@ int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal sig
     return place;
 }
 
-/* What only reads cannot change a run: a signal that is not there is left out, as ngspice and LTspice do. */
+/* A signal that does not exist is left out, as in ngspice and LTspice: the run is the same without it. */
 static void leave_out_unknown(struct dalcs_builder *builder, const struct dalcs_token *token,
                               const struct dalcs_names *names, const char *what,
                               const char *message) {

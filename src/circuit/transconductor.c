@@ -136,7 +136,7 @@ static const struct dalcs_formula *soften(struct dalcs_formula_writer *w,
                                    dalcs_formula_call(w, "tanh", 1, &share));
 }
 
-/* What flows out of pin 7, of what would without limits. */
+/* The current out of pin 7, from the one without limits. */
 static const struct dalcs_formula *limited(struct dalcs_formula_writer *w, const struct ota *ota,
                                            const struct dalcs_formula *what) {
     const double up = ota->p[IOUT].value;

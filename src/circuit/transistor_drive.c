@@ -60,7 +60,7 @@ static const char *ohms(struct dalcs_builder *builder, double value) {
     return text != NULL ? text : "";
 }
 
-/* What the card means here, once for each resistance that it has. */
+/* A note on how the card is read, once for each resistance that it has. */
 static void note(struct dalcs_builder *builder, const struct dalcs_transistor_use *use, double ron,
                  const char *at) {
     struct dalcs_transistor *t = use->of;

@@ -137,7 +137,7 @@ static enum dalcs_status progress(void *user, double time, double stop) {
 
 /* ---- Before the run ------------------------------------------------------------------------- */
 
-/* What was asked for on the command line and cannot apply to this netlist. */
+/* Reports options of the command line that cannot apply to this netlist. */
 static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_arguments *arguments,
                         const struct dalcs_request *request, enum dalcs_analysis main) {
     const struct {

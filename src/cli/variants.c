@@ -96,7 +96,7 @@ static char *write_header(const struct variants *v) {
     return text;
 }
 
-/* The same for people. */
+/* The same for the terminal. */
 static void print_header(const struct variants *v) {
     const struct dalcs_session *session = v->pool.session;
     const char *name;

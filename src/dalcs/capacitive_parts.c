@@ -23,7 +23,7 @@ static void merge(const struct dalcs_circuit *c, int *whole) {
     }
 }
 
-/* What crosses the border of each part. */
+/* The devices between each part and the rest. */
 struct border {
     int capacitor; /* one of them + 1, 0 without */
     bool is_fed;   /* by a current source: the run handles it */

@@ -92,7 +92,7 @@ static enum dalcs_status check_initial_conditions(const struct dalcs_layout *l,
     return status;
 }
 
-/* What the graph says, before there are equations. */
+/* Checks of the graph, before there are equations. */
 static enum dalcs_status look_at_graph(struct dalcs_layout *layout, const bool *wants_current,
                                        struct dalcs_diag *diag) {
     const struct dalcs_circuit *circuit = layout->circuit;

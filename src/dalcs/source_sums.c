@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What a sum of constants leaves, over its size, that is certainly not 0. */
+/* A sum of constants above this, over its size, is not 0. */
 static const double surely = 1e-9;
 
 static bool same_points(const struct dalcs_stimulus *a, const struct dalcs_stimulus *b) {

@@ -13,7 +13,7 @@
 /* A balance of more than this part of what was moved is no rounding; it is 1e-10 at most. */
 static const double most_off = 1e-7;
 
-/* What radau misses is some 0.01 of its inner tolerance, over what was moved: a waveform is wrong where
+/* The error of radau is some 0.01 of its inner tolerance, over the energy that was moved: a waveform is wrong where
  * it is so much. */
 static const double most_missed = 1e5;
 

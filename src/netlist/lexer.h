@@ -5,7 +5,7 @@
 #include "names.h"
 #include "netlist.h"
 
-/* One file's text, line by line. `raw` is shown to people, `low` is what tokens point into: both
+/* One file's text, line by line. `raw` is shown in messages, tokens point into `low`: both
  * have the same length and the same offsets. */
 struct dalcs_lexer {
     struct dalcs_netlist *netlist;

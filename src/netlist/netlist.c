@@ -44,7 +44,7 @@ static size_t end_of_line(const struct dalcs_lexer *lexer, size_t begin) {
     return newline != NULL ? (size_t)(newline - lexer->raw) : lexer->length;
 }
 
-/* What of an expression in braces or quotes is still open where a line ends. */
+/* The braces and quotes of an expression that are still open at the end of a line. */
 struct open_expression {
     int depth;
     bool quoted;

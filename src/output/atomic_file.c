@@ -100,7 +100,7 @@ static int open_temporary(struct dalcs_atomic_file *file) {
     return descriptor;
 }
 
-/* What a symbolic link leads to; else the path as given, which is how messages should name it. */
+/* The target of a symbolic link; else the path as given, for messages. */
 static char *find_target(const char *path) {
     struct stat status;
     bool is_link = lstat(path, &status) == 0 && S_ISLNK(status.st_mode);

@@ -22,7 +22,7 @@ void dalcs_audit_losses_begin(struct dalcs_audit_losses *a, const struct dalcs_l
 void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
                             const struct dalcs_stretch *stretch);
 
-/* What is told of device k. */
+/* The values of device k. */
 void dalcs_audit_losses_told(const struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
                              int k, const struct dalcs_element_losses *told);
 

@@ -26,7 +26,7 @@ double dalcs_audit_most_allowed(const struct dalcs_audit_run *a) {
     return fmax(a->run->tolerance, least_failure);
 }
 
-/* What a sample may cost of a run: with the counts above the netlists of the repository stay below 5 %. */
+/* The share of a run that a sample may cost: with the counts above the netlists of the repository stay below 5 %. */
 static const double share = 0.03;
 
 static double state_work(const struct dalcs_audit_run *a, int part) {

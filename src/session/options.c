@@ -147,7 +147,7 @@ static enum dalcs_status choose_compression(struct dalcs_run *r) {
     return DALCS_OK;
 }
 
-/* What rows of a fixed step are for, orders and comparisons, added ones would only disturb. */
+/* Rows of a fixed step serve orders and comparisons, which added rows would disturb. */
 static enum dalcs_status choose_filling(struct dalcs_run *r) {
     const struct dalcs_run_options *o = r->options;
     const struct dalcs_circuit_options *netlist = &r->s->circuit.options;

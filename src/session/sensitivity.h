@@ -16,7 +16,7 @@ enum dalcs_near_asked {
     DALCS_NEAR_MEASURE /* what that measures, as if it were an orbit */
 };
 
-/* What is asked for of a circuit that differs by little, and what it is like. */
+/* A circuit with values that differ by little, and its results. */
 struct dalcs_steady_near {
     enum dalcs_near_asked asked;
     struct dalcs_orbit_point point; /* of the other's orbit, or beside it */

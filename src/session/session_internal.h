@@ -46,7 +46,7 @@ struct dalcs_steps {
     const char **drawn; /* [n_drawn] the values that are drawn, by name */
 };
 
-/* What a capacitor or coil starts with. */
+/* The initial value of a capacitor or coil. */
 struct dalcs_set_state {
     const char *element;
     double value; /* V or A */
@@ -162,7 +162,7 @@ enum dalcs_status dalcs_run_progress(const struct dalcs_run *r, double time,
 /* Settles what the options of the run and of the netlist leave open; checks them. */
 enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;
 
-/* Of the run, else of the netlist, else the usual one. */
+/* The option of the run, else that of the netlist, else the default. */
 double dalcs_run_tolerance(const struct dalcs_run_options *options,
                            const struct dalcs_circuit *circuit);
 
@@ -176,7 +176,7 @@ enum dalcs_status dalcs_operating_currents_keep(struct dalcs_circuit *to,
                                                 const struct dalcs_circuit *from,
                                                 bool *any) DALCS_MUST_CHECK;
 
-/* One analysis of the session's circuit as it is. */
+/* Runs one analysis of the session's circuit. */
 enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
                                              const struct dalcs_run_options *options,
                                              const struct dalcs_sink *sink,
@@ -190,7 +190,7 @@ enum dalcs_status dalcs_steps_find(struct dalcs_session *session) DALCS_MUST_CHE
 /* How often .step and .mc have everything run; 1 without. */
 size_t dalcs_steps_count(const struct dalcs_session *session);
 
-/* What was set becomes the initial values of the circuit's elements. */
+/* Makes the values that were set the initial values of the circuit's elements. */
 void dalcs_session_apply_states(const struct dalcs_session *session, struct dalcs_circuit *circuit);
 
 /* A circuit and its network from the session's netlist, with what alter says and the overrides behind
@@ -276,7 +276,7 @@ enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) DALCS_MUST_CHECK;
 /* Runs .env into r->sink. */
 enum dalcs_status dalcs_envelope_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
-/* What the run is asked for becomes the circuit's .env (envelope_asked.c). */
+/* Makes a .env of the options of the run (envelope_asked.c). */
 enum dalcs_status dalcs_envelope_ask(struct dalcs_run *r) DALCS_MUST_CHECK;
 
 /* Runs .tran into r->sink. */

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What a null vector does to a diode, beside its largest entry, is rounding up to this: currents around a
+/* Entries of a null vector for diodes are rounding up to this, beside its largest entry: currents around a
  * loop of sources are nothing to diodes. */
 static const double null_rounding = 1e-10;
 

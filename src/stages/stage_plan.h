@@ -38,7 +38,7 @@ struct dalcs_stage_analysis {
     klu_numeric *numeric[DALCS_STAGE_SYSTEMS]; /* of the last step length, or NULL */
 };
 
-/* What varies, of E and F. */
+/* The varying entries of E and F. */
 struct dalcs_plan_waves {
     int n_waves;             /* entries of wave, by rows */
     int *wave_row, *wave_of; /* [n_waves] */

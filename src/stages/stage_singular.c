@@ -15,7 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Beside what it was, a vector this small is what rounding left of it. */
+/* A vector that an orthogonalisation makes this small, relatively, is rounding. */
 static const double independent = 1e-9;
 
 /* A sum this small beside its terms is rounding. */

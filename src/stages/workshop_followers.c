@@ -9,7 +9,7 @@
 /* The smallest pivot (balanced) that makes an unknown a follower. */
 static const long double least_follower = 1e-2L;
 
-/* What the conditions of a singular mode add to S, and to its right-hand sides: stage_choice.h. */
+/* The conditions of a singular mode in S and in its right-hand sides: stage_choice.h. */
 static double border(const struct dalcs_stage_workshop *b, int i, const double *of_choice, int n,
                      int j) {
     double sum = 0.0;

@@ -31,7 +31,7 @@ struct dalcs_sdpa_answer {
     struct dalcs_matrix *dual; /* [n_blocks] Y >= 0 with tr(F_i Y) = c_i */
 };
 
-/* What hinders a program from being solved before it is written; NULL: nothing. */
+/* The reason why no program can be solved here, as a message; NULL: none. */
 const char *dalcs_sdpa_missing(void);
 
 /* size[n_blocks] and cost[n] are read at once. A file that cannot be written is no error: `solve` says

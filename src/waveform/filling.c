@@ -117,7 +117,7 @@ static void count(struct dalcs_filling *f, double t) {
     }
 }
 
-/* Those that are due and need nothing between. */
+/* Passes on rows that are due and need no rows between. */
 static int list_plain(struct dalcs_filling *f, const struct dalcs_recorder *r, int after,
                       double near, double *time, int most) {
     bool needs_a_look =

@@ -105,7 +105,7 @@ static void solve_fluxes(const struct dalcs_losses_sum *sum) {
     }
 }
 
-/* What sources take: charges at the voltage, fluxes at the current just after. */
+/* The energies of sources: charges at the voltage, fluxes at the current just after. */
 static void give_charges(const struct dalcs_losses_sum *sum) {
     const struct dalcs_circuit *c = sum->circuit;
     for (int k = 0; k < c->n_devices; k++) {

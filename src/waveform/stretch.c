@@ -104,7 +104,7 @@ double dalcs_stretch_spread(const double *coefficient) {
 
 /* ---- Formulas --------------------------------------------------------------------------------- */
 
-/* Where a formula is asked for: at a node of the stretch, or else at x. */
+/* The place where a formula is evaluated: a node of the stretch, or else x. */
 struct place {
     const struct dalcs_stretch *stretch;
     int node;
