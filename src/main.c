@@ -1,4 +1,4 @@
-/* main.c - the program: options in, status out. The only file that knows stdout, stderr, signals
+/* main.c - the program: options in, status out. The only file that uses stdout, stderr, signals
  * and the exit status; all the rest is told where to print. */
 #include "cli.h"
 
@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The signal that asks the run to stop; 0: none yet. */
+/* The signal that stops the run; 0: none yet. */
 static volatile sig_atomic_t interrupted;
 
 static void note_signal(int number) {
@@ -31,7 +31,7 @@ static void catch_signals(void) {
 }
 
 /* Where the caller closed a standard stream, the next file would take its number and what is meant
- * for a terminal would end up in a waveform. A stream that refuses to be written is put there. */
+ * for a terminal would end up in a waveform. A stream that cannot be written is opened in its place. */
 static bool keep_standard_streams(void) {
     for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
         if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) != stream) {

@@ -146,7 +146,7 @@ static void write_ratios(struct program *p) {
     }
 }
 
-/* The furthest that a device's current goes in a direction (1 or -1); NAN where GLPK does not tell. */
+/* The furthest that a device's current goes in a direction (1 or -1); NAN where GLPK fails. */
 static double furthest(const struct program *p, int device, double direction) {
     const struct dalcs_device *d = &p->view->u->circuit->device[device];
     for (int k = 0; k < p->n_part; k++) {
@@ -221,7 +221,7 @@ static enum dalcs_status solve_all(struct program *p) {
 
 static enum dalcs_status run_program(struct program *p) {
     DALCS_TRY(number(p));
-    int before = glp_init_env(); /* one for each thread; 1: somebody has one already */
+    int before = glp_init_env(); /* one for each thread; 1: there is one already */
     if (before > 1) {
         return DALCS_E_NOMEM;
     }

@@ -102,7 +102,7 @@ static enum dalcs_status find_blocks(struct loops *l) {
     return DALCS_OK;
 }
 
-/* How far the current of a device may rise and fall. Its own branches bound it, and what the others let
+/* The largest rise and fall of the current of a device. Its own branches bound it, and what the others let
  * flow back. */
 static void find_interval(const struct loops *l, int device, struct dalcs_open_signal *signal) {
     const int *own = &l->view->u->branch_of[2 * device];

@@ -95,7 +95,7 @@ enum dalcs_status dalcs_undetermined_prepare(struct dalcs_undetermined *u) {
     return DALCS_OK;
 }
 
-/* What there is to know about an instant: component, mode and ties. FNV-1a, never 0. */
+/* A hash of an instant: component, mode and ties. FNV-1a, never 0. */
 static uint64_t name_of(const struct dalcs_open_instant *at) {
     const struct dalcs_system *s = &at->engine->network->system[at->system];
     uint64_t name = 14695981039346656037u ^ (at->at_operating_point ? 1u : 0u);

@@ -54,7 +54,7 @@ struct dalcs_undetermined {
     struct dalcs_topology topology;
     int *device_start,
         *device;           /* of component k: device[device_start[k]..device_start[k + 1] - 1] */
-    int n_shorts, *shorts; /* those that no signal asks for */
+    int n_shorts, *shorts; /* those whose current is no signal */
     int *first_pair;       /* [n_devices] */
     int *vertex_of;        /* [n_nodes] work, -1 */
     int *branch_of;        /* [2 n_devices] work, -1 */

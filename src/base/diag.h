@@ -74,7 +74,7 @@ void dalcs_diag_add_text(struct dalcs_diag *diag, enum dalcs_severity severity, 
  * passes over a netlist find its errors in no order that a reader would expect. */
 void dalcs_diag_sort(struct dalcs_diag *diag);
 
-/* How many messages there are, to come back to. */
+/* The number of messages, as a mark to return to. */
 struct dalcs_diag_mark {
     size_t n, n_errors, n_other;
 };

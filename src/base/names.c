@@ -21,7 +21,7 @@ struct dalcs_names_slot {
 
 enum { FIRST_SLOTS = 32 };
 
-/* Longer names are not searched for a near one: nobody mistypes them by two letters and the search
+/* Longer names are not searched for a near one: two wrong letters in one are rare, and the search
  * keeps its rows on the stack. */
 enum { NEAREST_MAX_LENGTH = 63 };
 

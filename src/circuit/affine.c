@@ -53,7 +53,7 @@ struct dalcs_affine dalcs_affine_add(struct dalcs_compiler *c, const struct dalc
         const double x = side <= 0 ? t.coefficient : 0;
         const double y = side >= 0 ? factor * b->term[j].coefficient : 0;
         t.coefficient = x + y;
-        /* What is left of a difference of equals is rounding. */
+        /* A difference of equal terms is rounding. */
         if (fabs(t.coefficient) > dalcs_rounded * fmax(fabs(x), fabs(y))) {
             term[sum.n++] = t;
         }

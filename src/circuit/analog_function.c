@@ -31,8 +31,8 @@ static bool read_pins(struct dalcs_reader *reader, int *node) {
         const bool is_optional = has_two && (pin == PIN_QUADRATURE || is_other);
         if (is_wired && pin != PIN_OUTPUT && !is_optional) {
             dalcs_builder_warn(builder, &name[1 + pin], "tie it to pin 8",
-                               "pin %d of '%s' means nothing for this function and is ignored",
-                               pin + 1, name->text);
+                               "this function does not use pin %d of '%s': it is ignored", pin + 1,
+                               name->text);
         } else if (!is_wired && pin == PIN_OUTPUT && !is_optional) {
             dalcs_builder_error(builder, &name[1 + pin], NULL, "pin %d of '%s' is not wired",
                                 pin + 1, name->text);

@@ -201,7 +201,7 @@ bool dalcs_block_has_only(const struct dalcs_block_card *c, const char *const *l
 
 /* ---- Ports ------------------------------------------------------------------------------------------------ */
 
-/* What a list is being read by. */
+/* The state of reading a list. */
 struct port_reader {
     struct dalcs_reader *reader;
     bool is_difference; /* %vd */

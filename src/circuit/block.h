@@ -4,7 +4,7 @@
 
 #include "builder.h"
 
-/* What a .model card says: names and lists of numbers, which the type has a meaning for. */
+/* The contents of a .model card: names and lists of numbers. Their meaning depends on the type. */
 struct dalcs_block {
     const struct dalcs_token *name, *type;
     int n;

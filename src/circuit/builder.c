@@ -77,7 +77,7 @@ const char *dalcs_builder_hint(struct dalcs_builder *builder, const char *format
 
 const char *dalcs_builder_suggest(struct dalcs_builder *builder, const struct dalcs_names *names,
                                   const char *name, const char *plural) {
-    /* A thousand errors in a million names would take minutes to guess at. */
+    /* Suggestions for a thousand errors among a million names would take minutes. */
     if (builder->diag->n_errors > 20) {
         return NULL;
     }

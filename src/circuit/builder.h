@@ -23,7 +23,7 @@ enum dalcs_model_kind {
     DALCS_MODEL_WRONG    /* had errors: a use of it is no second error */
 };
 
-/* What a diode's model says besides its lines. */
+/* The parameters of a diode's model besides its lines. */
 struct dalcs_diode_card {
     double ilimit, revilimit;                /* A, INFINITY: none */
     bool is_berkeley;                        /* an exponential diode: the rest is its own */
@@ -62,7 +62,7 @@ struct dalcs_builder {
     const struct dalcs_netlist *netlist;
     const struct dalcs_deck *deck; /* its cards, flat */
     struct dalcs_diag *diag;
-    struct dalcs_arena scratch; /* hints and the like: dies with the builder */
+    struct dalcs_arena scratch; /* hints and the like: freed with the builder */
     bool failed;                /* an error was reported */
     unsigned hidden;            /* what refused cards may have defined (enum dalcs_hidden): when
                                    such a thing is missing, that is no further error */
@@ -205,7 +205,7 @@ bool dalcs_builder_is_label(const char *name);
 /* "bridge.cir:3:1", in scratch; never NULL. */
 const char *dalcs_builder_place(struct dalcs_builder *builder, const struct dalcs_token *token);
 
-/* A location that lives as long as the circuit. */
+/* A location that is valid as long as the circuit. */
 struct dalcs_location dalcs_builder_keep_location(struct dalcs_builder *builder,
                                                   const struct dalcs_token *token);
 
@@ -242,7 +242,7 @@ int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
 bool dalcs_builder_reserve_devices(struct dalcs_builder *builder, size_t n);
 
 /* Puts a short "terminal(c1)" before node[0] of a device, which becomes an inner one: the current of the element
- * is that of the short, which no unknown is spent on where no one asks. False when out of memory. */
+ * is that of the short, which has an unknown only where it is read. False when out of memory. */
 bool dalcs_builder_add_terminal(struct dalcs_builder *builder, const struct dalcs_token *element,
                                 struct dalcs_device *device);
 
@@ -332,6 +332,9 @@ void dalcs_reader_missing(struct dalcs_reader *reader, const char *what);
 
 /* Reports the next token as not understood. */
 void dalcs_reader_unexpected(struct dalcs_reader *reader);
+/* The hint for a unit that a blank parts from the number before it, as in "100 uF"; else `otherwise`. */
+const char *dalcs_reader_unit_hint(const struct dalcs_reader *reader,
+                                   const struct dalcs_token *token, const char *otherwise);
 
 /* ---- One file per family; each takes a whole card -------------------------------------------- */
 
@@ -350,11 +353,11 @@ bool dalcs_current_limit_read(struct dalcs_reader *reader, const struct dalcs_to
 void dalcs_current_limit_expand(struct dalcs_builder *builder, const struct dalcs_token *name,
                                 struct dalcs_device *device,
                                 const struct dalcs_current_limits *limits);
-/* Lets a current source take at most its current and never deliver: an ideal diode in series with it and
+/* Makes a current source that takes at most its current and never delivers: an ideal diode in series with it and
  * one across both, two devices. Its current is then that of the first. */
 void dalcs_current_limit_make_load(struct dalcs_builder *builder, const struct dalcs_token *name,
                                    struct dalcs_device *device);
-/* How many there may be of a card. */
+/* The largest number of devices of a card. */
 int dalcs_current_limit_count(const struct dalcs_card *card);
 
 /* Rser, Lser, Rpar, Cpar, RLshunt of a card; zero-initialise. */
@@ -401,7 +404,7 @@ void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card
 int dalcs_coupling_count_coils(const struct dalcs_card *card);
 void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                         enum dalcs_device_kind kind);
-/* What needs .tran: a missing frequency, periods too short to resolve. */
+/* Checks that need .tran: a missing frequency, periods too short to resolve. */
 void dalcs_source_check(struct dalcs_builder *builder);
 void dalcs_stimulus_check(struct dalcs_builder *builder, const struct dalcs_token *name,
                           struct dalcs_stimulus *stimulus);
@@ -554,7 +557,7 @@ bool dalcs_monte_carlo_read_seed(struct dalcs_reader *reader);
 /* What was drawn, into the circuit. */
 enum dalcs_status dalcs_monte_carlo_collect(struct dalcs_builder *builder) DALCS_MUST_CHECK;
 
-/* worst_case_card.c: .wcase, the tolerances that it varies, and what it asks of the rest of the netlist. */
+/* worst_case_card.c: .wcase, the tolerances that it varies, and checks of the rest of the netlist. */
 void dalcs_worst_case_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 enum dalcs_status dalcs_worst_case_collect(struct dalcs_builder *builder) DALCS_MUST_CHECK;
 void dalcs_worst_case_check(struct dalcs_builder *builder);
@@ -611,7 +614,7 @@ bool dalcs_signal_formula_has_power(const struct dalcs_builder *builder, int dev
 void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_losses_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_switchloss_count(struct dalcs_builder *builder, const struct dalcs_card *card);
-/* What .losses or the command line asks of all devices, once these are known. */
+/* Reads .losses, or the command line's, once all devices are known. */
 void dalcs_losses_collect(struct dalcs_builder *builder);
 void dalcs_switchloss_collect(struct dalcs_builder *builder);
 void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card *card);

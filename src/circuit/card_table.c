@@ -1,4 +1,4 @@
-/* card_table.c - which card is whose, and which are not for this simulator.
+/* card_table.c - the readers of the cards, and cards that are not supported.
  *
  * What other simulators know is named as such: "not supported yet", or not the business of a
  * simulator of ideal diodes. The cards inside a refused block are not looked at. Parameters, subcircuits,

@@ -1,4 +1,4 @@
-/* card_table.h - which card is whose, and which are not for this simulator. */
+/* card_table.h - the readers of the cards, and cards that are not supported. */
 #ifndef DALCS_CARD_TABLE_H
 #define DALCS_CARD_TABLE_H
 
@@ -41,7 +41,7 @@ struct dalcs_card_table {
     size_t n_gates, n_gate_inputs;
     size_t n_inner; /* devices that parts of cards may become */
     size_t n_diodes;
-    size_t n_scaled; /* diodes that may want a model of their own */
+    size_t n_scaled; /* diodes that may need a model of their own */
     size_t n_switches;
     bool has_limits; /* a model limits the current */
     bool has_series; /* a model puts Lser or Vser in series */

@@ -1,6 +1,6 @@
-/* circuit.c - from cards to a circuit: which card is whose, and in which order they are read.
+/* circuit.c - from cards to a circuit: finds the reader of each card, and the order in which cards are read.
  *
- *     classify   every card once: whose it is, how much room it needs, is it supported at all
+ *     classify   every card once: its reader, the memory that it needs, whether it is supported
  *     options    .options: what models may ask for
  *     models     .model, .tran, .op: what elements refer to
  *     elements   devices and nodes
@@ -8,7 +8,7 @@
  *     measures   .meas, .four: what refers to analyses
  *     checks     of the whole
  *
- * Every pass goes on after an error, so that a person sees all of them. */
+ * Every pass goes on after an error, so that all errors are reported. */
 #include "card_table.h"
 #include "oscillator.h"
 #include "slips.h"
@@ -140,7 +140,7 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
 
 enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES, MEASURES, NEVER };
 
-/* How cards are read, and in which pass. */
+/* The readers of cards, and their passes. */
 static const struct {
     enum pass pass;
     void (*parse)(struct dalcs_builder *builder, const struct dalcs_card *card);
@@ -347,7 +347,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
         status = build(&builder);
     }
     if (status == DALCS_OK && (builder.failed || has_errors(&builder))) {
-        /* Errors that nobody can read are no explanation. */
+        /* More errors would explain nothing. */
         status = diag->out_of_memory ? DALCS_E_NOMEM : DALCS_E_NETLIST;
     }
     dalcs_diag_sort(diag);

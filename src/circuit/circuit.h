@@ -149,17 +149,17 @@ struct dalcs_signal {
     int node[2]; /* voltage: node[0] - node[1] */
 };
 
-/* What .tran asks for; times in s. */
+/* The values of .tran; times in s. */
 struct dalcs_transient {
     bool present;
     double step, stop, start, max_step; /* step 0: rows every stop/1000; max_step 0: not given */
-    double first_step;                  /* Xyce's, which other simulators may want; else 0 */
+    double first_step;                  /* Xyce's; else 0 */
     bool use_initial_conditions;        /* uic */
     bool starts_steady;                 /* uic=steady */
     struct dalcs_location where;
 };
 
-/* What .env asks for; times in s. Beside it is a .tran of the same length. */
+/* The values of .env; times in s. Beside it is a .tran of the same length. */
 struct dalcs_envelope_card {
     bool present;
     double step;      /* of rows in periods that are written; 0: the period/100 */
@@ -168,14 +168,14 @@ struct dalcs_envelope_card {
     double *at; /* [n_at] times whose periods are written */
 };
 
-/* What .ac asks for around a periodic orbit. */
+/* The values of .ac around a periodic orbit. */
 struct dalcs_orbit_ac_card {
-    const char *loop; /* the V source in a loop whose gain is asked for; NULL: none */
+    const char *loop; /* the V source in the loop whose gain is computed; NULL: none */
     bool is_loaded;   /* by a current as well: what the loop goes on to takes one */
     int sideband;     /* rows are of the components so many frequencies of the orbit higher */
 };
 
-/* What .sens asks for. */
+/* The items of .sens. */
 struct dalcs_sensitivity_card {
     bool present;
     int n;
@@ -196,7 +196,7 @@ struct dalcs_worst_case_card {
     } * place;            /* [n] */
 };
 
-/* What .pss asks for; times in s. */
+/* The values of .pss; times in s. */
 struct dalcs_periodic_card {
     bool present;
     double period, step;         /* 0: it follows from the sources; rows every period/1000 */
@@ -329,7 +329,7 @@ static inline bool dalcs_circuit_has_waves(const struct dalcs_circuit *circuit) 
     return circuit->transient.present || circuit->periodic.present;
 }
 
-/* A resistor of 0 ohm: its two nodes are one, unless a signal asks for its current. */
+/* A resistor of 0 ohm: its two nodes are one, unless its current is a signal. */
 static inline bool dalcs_device_is_short(const struct dalcs_device *device) {
     return device->kind == DALCS_RESISTOR && device->value == 0.0;
 }
@@ -370,7 +370,7 @@ static inline void dalcs_mark_wanted_term(void *wanted, const struct dalcs_affin
     }
 }
 
-/* wanted[n_devices], zeroed by the caller: the devices whose current a signal or a formula asks for. */
+/* wanted[n_devices], zeroed by the caller: the devices whose current a signal or a formula reads. */
 static inline void dalcs_circuit_mark_wanted_currents(const struct dalcs_circuit *circuit,
                                                       bool *wanted) {
     for (int i = 0; i < circuit->n_devices; i++) {

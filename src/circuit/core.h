@@ -6,7 +6,7 @@
 
 enum { DALCS_CORE_PARAMETERS = 8 };
 
-/* What a card says; zero-initialise. */
+/* The parameters of a card; zero-initialise. */
 struct dalcs_core {
     double value[DALCS_CORE_PARAMETERS];
     const struct dalcs_token *place[DALCS_CORE_PARAMETERS];
@@ -33,7 +33,7 @@ bool dalcs_core_make(struct dalcs_builder *builder, const struct dalcs_card *car
 void dalcs_core_add_stop(struct dalcs_builder *builder, const struct dalcs_token *element,
                          const int *node, const struct dalcs_core_stop *stop);
 
-/* How many devices a card's core is, and half as many stimuli; 0: it has none. */
+/* The number of devices of the core of a card, and half as many stimuli; 0: no core. */
 size_t dalcs_core_count(const struct dalcs_card *card);
 
 #endif

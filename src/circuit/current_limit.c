@@ -1,6 +1,6 @@
 /* current_limit.c - Ilimit= and revIlimit= of a V, and what a diode's model limits.
  *
- * A current source with an ideal diode across it, in series, lets less pass, never more:
+ * A current source with an ideal diode across it, in series, carries at most its current:
  *     0 <= limit - i  _|_  v >= 0
  * with v the voltage that it takes. One for each direction, on nodes that no card can name, and an element
  * without a voltage of its own carries any current between the limits without a voltage, and at a limit any
@@ -23,7 +23,7 @@ int dalcs_diode_ideal_model(struct dalcs_builder *builder) {
     return builder->ideal_diode;
 }
 
-/* Lets at most `limit` pass from `from` to `to`. */
+/* Limits the current from `from` to `to` to `limit`. */
 static void add_limit(struct dalcs_builder *builder, const struct dalcs_token *name,
                       const char *const *what, double limit, int from, int to) {
     struct dalcs_circuit *circuit = builder->circuit;

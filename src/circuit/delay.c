@@ -77,7 +77,7 @@ static bool may_be_another(const struct dalcs_compiler *c, const struct dalcs_st
            (c->builder->ac != NULL && (s->ac_real != 0 || s->ac_imaginary != 0));
 }
 
-/* The same later; before, its first value. False: it is of a kind that this has no way for. */
+/* The same later; before, its first value. False: its kind cannot be delayed. */
 static bool shift(struct dalcs_compiler *c, struct dalcs_stimulus *s, double seconds) {
     double *t;
     switch (s->kind) {

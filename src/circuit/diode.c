@@ -9,7 +9,7 @@
 static const char USAGE[] =
     "a diode is: Dname anode cathode [model] [area] [m=parallel] [n=series]";
 
-/* What may follow the model's name. */
+/* The parameters that may follow the model's name. */
 struct scale {
     double area, parallel, series;
     const struct dalcs_token *place; /* of the last one, NULL: none */

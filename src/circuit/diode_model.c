@@ -364,7 +364,7 @@ static void note_mapping(struct dalcs_reader *reader, const struct dalcs_token *
         1e3 * above[2], ignored);
 }
 
-/* What the card calls by another name. */
+/* Other names of parameters. */
 static void take_synonym(struct dalcs_parameter *p, int ours, int other) {
     if (p[ours].place == NULL && p[other].place != NULL) {
         p[ours].value = p[other].value;

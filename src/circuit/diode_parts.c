@@ -285,7 +285,7 @@ static bool find(const char *name, size_t n, struct dalcs_diode_part *part) {
 }
 
 bool dalcs_diode_part_find(const char *name, struct dalcs_diode_part *part) {
-    /* Of PSpice's and of a maker's libraries; and what tells housings and tapes apart. */
+    /* Of PSpice's and of a maker's libraries; and suffixes for housings and tapes. */
     static const char *const prefixes[] = {"", "d", "di_", "d_", "diode_"};
     static const char *const suffixes[] = {
         "",    "a",     "b",    "w",    "ws", "wt", "g",   "l",  "rl",   "rlg",   "t1", "t1g",

@@ -1,4 +1,4 @@
-/* formula_writer.h - formulas that elements mean and nobody wrote. */
+/* formula_writer.h - writes the formulas of elements that are defined by formulas. */
 #ifndef DALCS_FORMULA_WRITER_H
 #define DALCS_FORMULA_WRITER_H
 

@@ -17,7 +17,7 @@ struct dalcs_gate {
     double value[MOST_VALUES];
 };
 
-/* Each step is on or off, whatever the others are: of some values a circuit may know no way. */
+/* Each step is on or off, whatever the others are: a circuit may never reach some of the values. */
 static bool list_values(const struct dalcs_levels *levels, struct dalcs_gate *gate) {
     if (levels == NULL || levels->n < 1 || levels->n > MOST_STEPS) {
         return false;

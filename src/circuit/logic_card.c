@@ -225,8 +225,8 @@ static bool check_pins(struct dalcs_builder *builder, const struct card *c) {
             pin < DALCS_GATE_PINS ? (may >> pin & 1U) != 0 : c->function->kind != DALCS_GATE_SAMPLE;
         if (is_wired(c, pin) && !means) {
             dalcs_builder_warn(builder, &name[1 + pin], "tie it to com",
-                               "pin %d of '%s' means nothing for this function and is ignored",
-                               pin + 1, name->text);
+                               "this function does not use pin %d of '%s': it is ignored", pin + 1,
+                               name->text);
             n -= pin < DALCS_GATE_PINS;
         }
     }

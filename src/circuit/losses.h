@@ -1,4 +1,4 @@
-/* losses.h - what .losses and .switchloss ask for. */
+/* losses.h - the contents of .losses and .switchloss. */
 #ifndef DALCS_LOSSES_CARD_H
 #define DALCS_LOSSES_CARD_H
 

@@ -145,7 +145,7 @@ void dalcs_losses_parse(struct dalcs_builder *builder, const struct dalcs_card *
 
 /* ---- When all elements are known ------------------------------------------------------------- */
 
-/* What a gate's input reads with: a switch and a resistor that nothing flows in, on a node of their own. */
+/* The devices that read a gate's input: a switch and a resistor without a current, on a node of their own. */
 static bool is_of_a_comparator(const struct dalcs_circuit *circuit, const struct dalcs_device *d) {
     bool is = false;
     for (int k = 0; k < circuit->n_comparators && !is; k++) {
@@ -154,7 +154,7 @@ static bool is_of_a_comparator(const struct dalcs_circuit *circuit, const struct
     return is;
 }
 
-/* What the command line wants instead. */
+/* The options of the command line replace the card. */
 static bool take_request(struct dalcs_builder *builder) {
     const struct dalcs_losses_request *request = &builder->netlist->losses;
     if (!request->is_asked || !has_waveform(builder)) {

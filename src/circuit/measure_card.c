@@ -284,7 +284,7 @@ static bool read_interval(struct reading *r) {
     return read_instant(r, &instant[1]);
 }
 
-/* What is for optimizers, and how Xyce prints. */
+/* Parameters for optimizers, and for the printing of Xyce. */
 static bool take_ignored(struct reading *r) {
     static const char *const names[] = {"goal",      "minval",      "weight",
                                         "failvalue", "default_val", "precision"};
@@ -312,7 +312,7 @@ static bool read_bounds(struct reading *r) {
         } else if (take_ignored(r)) {
             double unused;
             dalcs_builder_note(r->builder, token, NULL,
-                               "%s= of a measurement means nothing here and is ignored",
+                               "%s= of a measurement has no meaning here and is ignored",
                                token->text);
             if (!read_constant(r, "a value", &unused)) {
                 return false;

@@ -1,4 +1,4 @@
-/* measurement.h - what .meas and .four ask for. */
+/* measurement.h - the contents of .meas and .four. */
 #ifndef DALCS_MEASUREMENT_H
 #define DALCS_MEASUREMENT_H
 

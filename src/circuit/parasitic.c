@@ -1,4 +1,4 @@
-/* parasitic.c - what LTspice lets a card carry besides its element: Rser, Lser, Rpar, Cpar, RLshunt.
+/* parasitic.c - the parasitic parts that a card of LTspice may have: Rser, Lser, Rpar, Cpar, RLshunt.
  *
  *     a --+-- Rser -- Lser (RLshunt across) -- element --+-- b
  *         +-- Rpar ---------------------------------------+
@@ -6,7 +6,7 @@
  *
  * Each becomes a device of its own, on nodes that no card can name, and costs nothing where it is not
  * given. With Rpar or Cpar the current of the element is that of its terminal a: a short there
- * measures it, and is no unknown when no one asks. */
+ * measures it, and is an unknown only if it is read. */
 #include "builder.h"
 
 #include <string.h>

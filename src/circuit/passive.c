@@ -47,7 +47,7 @@ static bool is_value_name(const struct family *family, const char *name) {
     return false;
 }
 
-/* What a card says besides its nodes. */
+/* The values of a card. */
 struct values {
     bool has_value;
     bool is_of_model;  /* unless the card has another */

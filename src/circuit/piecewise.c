@@ -87,7 +87,7 @@ double dalcs_piecewise_on_line(const struct dalcs_piecewise *f, int k, double s)
     return slope == 0 ? value[from] : value[from] + slope * (s - at[from]);
 }
 
-/* Where the line before knot k, which is not flat, is y. */
+/* The argument at which the line before knot k, which is not flat, has the value y. */
 static double reaches(const struct dalcs_piecewise *f, int k, double y) {
     double at[3] = {0};
     double value[3] = {0};

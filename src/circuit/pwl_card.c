@@ -274,7 +274,7 @@ static bool read_group(struct points *p, int depth) {
     return p->is_closed;
 }
 
-/* Everything up to the end, or to what is somebody else's; depth counts parentheses and blocks. */
+/* Reads up to the end or to the next keyword of the card; depth counts parentheses and blocks. */
 static bool read_items(struct points *p, int depth) {
     struct dalcs_reader *reader = p->reader;
     const struct dalcs_token *token;

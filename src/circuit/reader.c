@@ -1,6 +1,6 @@
 /* reader.c - walks over the tokens of one card: numbers, names, nodes, parameters.
  *
- * Every function that wants something says so when it is missing or wrong, at its place. Numbers
+ * Every function reports a missing or wrong token, at its place. Numbers
  * whose suffix is often meant otherwise (1M of resistance, 1F of capacitance) get a warning. */
 #include "builder.h"
 #include "number.h"
@@ -75,6 +75,31 @@ static bool is_formula(const struct dalcs_token *token) {
     return token->kind == DALCS_TOKEN_WORD && strpbrk(token->text, "*/") != NULL;
 }
 
+/* Is it the suffix or the unit of the number before it, as in "100 uF"? Not F: a number with it would be femto. */
+static bool is_unit(const struct dalcs_reader *reader, const struct dalcs_token *token) {
+    static const char *const units[] = {"", "f", "h", "v", "a", "s", "hz", "ohm", "ohms"};
+
+    enum { N = sizeof units / sizeof units[0] };
+    const struct dalcs_token *number = dalcs_reader_previous(reader);
+    if (token->kind != DALCS_TOKEN_WORD || strcmp(token->text, "f") == 0 ||
+        number->kind != DALCS_TOKEN_WORD ||
+        number->text[strspn(number->text, "0123456789.")] != '\0') {
+        return false;
+    }
+    const bool is_mega = strncmp(token->text, "meg", 3) == 0;
+    const size_t prefix = is_mega ? 3 : strchr("fpnumkgt", token->text[0]) != NULL ? 1 : 0;
+    return dalcs_builder_is_one_of(token->text, units, N) ||
+           dalcs_builder_is_one_of(token->text + prefix, units, N);
+}
+
+const char *dalcs_reader_unit_hint(const struct dalcs_reader *reader,
+                                   const struct dalcs_token *token, const char *otherwise) {
+    return is_unit(reader, token)
+               ? dalcs_builder_hint(reader->builder, "a value is one word: write %s%s",
+                                    dalcs_reader_previous(reader)->text, token->text)
+               : otherwise;
+}
+
 /* A name of .param, or a formula, that stands where a number is wanted; else how the card is written. */
 static const char *hint_of_formula(const struct dalcs_reader *reader,
                                    const struct dalcs_token *token) {
@@ -90,8 +115,8 @@ void dalcs_reader_unexpected(struct dalcs_reader *reader) {
     if (token == NULL || token->kind == DALCS_TOKEN_BAD) {
         return;
     }
-    dalcs_builder_error(reader->builder, token, hint_of_formula(reader, token),
-                        "did not expect '%s' here", token->text);
+    const char *hint = dalcs_reader_unit_hint(reader, token, hint_of_formula(reader, token));
+    dalcs_builder_error(reader->builder, token, hint, "did not expect '%s' here", token->text);
 }
 
 bool dalcs_reader_end(struct dalcs_reader *reader) {

@@ -48,7 +48,7 @@ struct dalcs_signal_formula {
 
 enum { DALCS_SIGNAL_FORMULA_DEEPEST = 128 }; /* values on the stack */
 
-/* What a formula is asked about. */
+/* The values that a formula is evaluated with. */
 struct dalcs_signal_formula_point {
     double time;
     const void *user;

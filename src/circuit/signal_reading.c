@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* What only reads cannot change a run: a signal that is not there is left out, as ngspice and LTspice do. */
+/* A signal that does not exist is left out, as in ngspice and LTspice: the run is the same without it. */
 static void leave_out_unknown(struct dalcs_builder *builder, const struct dalcs_token *token,
                               const struct dalcs_names *names, const char *what,
                               const char *message) {
@@ -27,7 +27,7 @@ static int find_node(struct dalcs_builder *builder, const struct dalcs_token *to
 static int find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {
     const int device = dalcs_builder_look_up_device(builder, token->text);
     if (device >= builder->n_device_cards) {
-        return dalcs_builder_find_device(builder, token); /* a coupling, which it tells of */
+        return dalcs_builder_find_device(builder, token); /* a coupling, with a message */
     }
     if (device < 0) {
         leave_out_unknown(builder, token, &builder->devices, "elements",

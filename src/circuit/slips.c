@@ -7,7 +7,7 @@
 #include <strings.h>
 
 /* tran for .tran. Elements may be called as cards are, Dc and Env: it is a card if nothing follows its name, or if its name
- * is one that nobody gives an element. */
+ * is unusual for an element. */
 bool dalcs_slip_lacks_dot(const struct dalcs_card *card) {
     static const char *const cards[] = {"tran",  "param",   "params", "plot",    "print",
                                         "probe", "temp",    "model",  "include", "measure",
@@ -53,7 +53,7 @@ void dalcs_slip_check_title(struct dalcs_builder *builder) {
     }
     copy_word(line->text, 0, first, sizeof first);
     copy_word(line->text, 3, value, sizeof value);
-    /* A digit tells R1 from Rectifier. */
+    /* A digit distinguishes R1 from Rectifier. */
     const bool is_element =
         first[0] != '\0' && strchr("RLCVIrlcvi", first[0]) != NULL &&
         strpbrk(first, "0123456789") != NULL &&

@@ -57,7 +57,7 @@ int dalcs_compiler_node_at(struct dalcs_compiler *c, const char *what,
     return add_source(c, what, node, behaviour);
 }
 
-/* What the source reads, for whoever asks what formulas read. */
+/* The quantities that the source reads, as for other formulas. */
 static bool list_arguments(struct dalcs_compiler *c, struct dalcs_behaviour *behaviour) {
     const struct dalcs_smooth *smooth = behaviour->smooth;
     struct dalcs_affine_term *term =

@@ -81,9 +81,11 @@ static void report_word(struct dalcs_reader *reader, const struct dalcs_token *t
                             token->text);
         return;
     }
+    const char *hint = dalcs_builder_suggest_of(builder, known, sizeof known / sizeof known[0],
+                                                token->text, USAGE);
+    const bool has_value = reader->at > 3; /* behind the name and two nodes */
     dalcs_builder_error(builder, token,
-                        dalcs_builder_suggest_of(builder, known, sizeof known / sizeof known[0],
-                                                 token->text, USAGE),
+                        has_value ? dalcs_reader_unit_hint(reader, token, hint) : hint,
                         "'%s' is neither a value nor a source function", token->text);
 }
 

@@ -52,7 +52,7 @@ void dalcs_stimulus_check(struct dalcs_builder *builder, const struct dalcs_toke
     }
 }
 
-/* Seconds in which LTspice lets sources rise after .tran's `startup`. */
+/* Seconds in which sources rise with LTspice's `startup` on .tran. */
 static const double STARTUP_TIME = 20e-6;
 
 /* A source of a number rises from 0 in a straight line; its operating point for .op stays. */

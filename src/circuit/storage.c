@@ -25,7 +25,7 @@ struct dalcs_storage {
 
 /* ---- The parts --------------------------------------------------------------------------------------- */
 
-/* What the core is called: a jump tells of "linkage(l1)" in A. */
+/* The name of the core: a jump lists "linkage(l1)" in A. */
 static const char *core_what(enum dalcs_device_kind kind) {
     return kind == DALCS_INDUCTOR ? "linkage" : "charge";
 }
@@ -258,7 +258,7 @@ bool dalcs_storage_is(const struct dalcs_builder *builder, int device) {
     return builder->circuit->device[device].is_storage;
 }
 
-/* What .ic says of a node against ground, 0: nothing. */
+/* The voltage of a node against ground by .ic, 0: none. */
 static double initial_voltage(const struct dalcs_builder *builder, int node) {
     double v = 0;
     for (size_t k = 0; k < builder->n_initial_conditions; k++) {

@@ -120,7 +120,7 @@ bool dalcs_sweep_read_item(struct dalcs_reader *reader, const char *letters,
     int at;
     sweep->device = -1;
     if (token == NULL || token->kind != DALCS_TOKEN_WORD) {
-        dalcs_reader_missing(reader, "what is to be swept");
+        dalcs_reader_missing(reader, "the item of the sweep");
         return false;
     }
     sweep->where = dalcs_builder_keep_location(builder, token);

@@ -252,7 +252,7 @@ int dalcs_switch_add_model(struct dalcs_builder *builder, const struct dalcs_swi
 }
 
 /* Vt and Vh of SW and CSW. LTspice's negative Vh asks for a smooth change between Vt - |Vh| and
- * Vt + |Vh|; ngspice's for something that no one knows. */
+ * Vt + |Vh|; the meaning of ngspice's is not documented. */
 static void set_threshold(struct dalcs_builder *builder, const struct form *form,
                           const struct dalcs_parameter *p, struct dalcs_switch_model *model) {
     model->vt = p[THRESHOLD].value;

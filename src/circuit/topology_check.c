@@ -16,7 +16,7 @@ struct touch {
     int device; /* the last one */
 };
 
-/* What a formula reads is a control. */
+/* Counts the nodes that a formula reads as controls. */
 struct reading {
     struct touch *touch;
     int device;

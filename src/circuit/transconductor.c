@@ -102,8 +102,7 @@ static bool check(struct ota *ota) {
     for (int pin = 4; pin < PIN_OUTPUT; pin++) {
         if (ota->node[pin] != ota->node[PIN_COMMON]) {
             dalcs_builder_error(builder, &name[1 + pin], "tie it to pin 8",
-                                "pin %d of '%s' means nothing for this function", pin + 1,
-                                name->text);
+                                "this function does not use pin %d of '%s'", pin + 1, name->text);
             return false;
         }
     }
@@ -134,7 +133,7 @@ static const struct dalcs_formula *soften(struct dalcs_formula_writer *w,
                                    dalcs_formula_call(w, "tanh", 1, &share));
 }
 
-/* What flows out of pin 7, of what would without limits. */
+/* The current out of pin 7, from the one without limits. */
 static const struct dalcs_formula *limited(struct dalcs_formula_writer *w, const struct ota *ota,
                                            const struct dalcs_formula *what) {
     const double up = ota->p[IOUT].value;

@@ -65,7 +65,7 @@ struct dalcs_gate_drive dalcs_gate_drive_of(const struct dalcs_circuit *c,
                                             const struct dalcs_gate_links *links,
                                             const struct dalcs_transistor_use *use);
 
-/* A transistor by the name that people write, such as IRF540; false: the table does not know it. */
+/* A transistor by its part number, such as IRF540; false: it is not in the table. */
 bool dalcs_transistor_part_find(const char *name, struct dalcs_transistor *transistor);
 
 /* An n channel one of a name that is known nowhere. */

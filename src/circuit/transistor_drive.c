@@ -60,7 +60,7 @@ static const char *ohms(struct dalcs_builder *builder, double value) {
     return text != NULL ? text : "";
 }
 
-/* What the card means here, once for each resistance that it has. */
+/* A note on how the card is read, once for each resistance that it has. */
 static void note(struct dalcs_builder *builder, const struct dalcs_transistor_use *use, double ron,
                  const char *at) {
     struct dalcs_transistor *t = use->of;
@@ -114,7 +114,7 @@ static double high_level(struct dalcs_builder *builder, const struct dalcs_trans
     return high;
 }
 
-/* Not where nobody says what its gate is at. */
+/* Not where the voltage of its gate is unknown. */
 static void note_saturation(struct dalcs_builder *builder, const struct dalcs_transistor_use *use,
                             double over) {
     struct dalcs_circuit *c = builder->circuit;

@@ -50,7 +50,7 @@ void dalcs_worst_case_parse(struct dalcs_builder *builder, const struct dalcs_ca
         } else {
             if (!is_told) {
                 dalcs_builder_warn(builder, dalcs_reader_peek(&reader, 0),
-                                   "write .meas for what is to be known of the worst case",
+                                   "write a .meas for each quantity whose worst case you need",
                                    "what .wcase looks at in PSpice is ignored");
             }
             is_told = true;
@@ -98,7 +98,7 @@ void dalcs_worst_case_check(struct dalcs_builder *builder) {
                                                     : ".sens varies its values itself");
     } else if (builder->netlist->n_script_lines > 0) {
         dalcs_builder_error_at(builder, &worst->where, "leave one of them out",
-                               "a .control block says what is run, and .wcase does, too");
+                               "a .control block and .wcase both choose the runs");
     } else if (circuit->n_measures == 0) {
         dalcs_builder_error_at(builder, &worst->where,
                                "write a card such as .meas tran low min v(out)",

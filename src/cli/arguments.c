@@ -1,4 +1,4 @@
-/* arguments.c - getopt_long, then what is left open. */
+/* arguments.c - reads options with getopt_long, then sets the others to their defaults. */
 #include "argument_values.h"
 
 #include "memory.h"

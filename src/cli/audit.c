@@ -277,10 +277,6 @@ static enum dalcs_status audit_file(const struct dalcs_cli *cli, const struct ar
     if (status != DALCS_OK && n_written == 0 && diag.n == 0) {
         dalcs_cli_error(cli, "%s: %s", arguments->netlist, dalcs_status_text(status));
     }
-    if (fflush(cli->out) != 0) {
-        dalcs_cli_error(cli, "cannot write the results");
-        status = DALCS_E_IO;
-    }
     dalcs_waveforms_finish(&waveforms);
     dalcs_diag_finish(&diag);
     return status;

@@ -3,7 +3,7 @@
  *     dalcs -b -r out.raw -o log circuit.cir
  *     ngspice circuit.cir                         where the program is called so
  *
- * The order does not matter. What steers ngspice's shell has no meaning here. */
+ * The order does not matter. Options for ngspice's shell have no meaning here. */
 #include "batch.h"
 
 #include "arguments.h"

@@ -8,7 +8,7 @@
 
 extern const char dalcs_envelope_help[];
 
-/* How many periods were run; nothing without an envelope. */
+/* Writes the number of periods that were run; nothing without an envelope. */
 void dalcs_envelope_lines_write(FILE *out, const struct dalcs_report *report);
 
 #endif

@@ -73,7 +73,7 @@ enum dalcs_status dalcs_measures_file_plot(struct dalcs_measures_file *m,
 
 /* ---- Writing --------------------------------------------------------------------------------- */
 
-/* How many measurements from `at` on are of one step of one analysis: they share the step's text. */
+/* Counts the measurements from `at` on that belong to one step of one analysis and share its text. */
 static size_t block_at(const struct dalcs_report *report, size_t at) {
     size_t n = 1;
     while (at + n < report->n_measurements &&

@@ -7,7 +7,7 @@
 
 /* Zero-initialise. */
 struct dalcs_measures_file {
-    const char *path; /* NULL: none, and nothing else does anything */
+    const char *path; /* NULL: no file, and all functions return at once */
     struct dalcs_atomic_file file;
     size_t n_steps;
     size_t n_parameters, n_drawn; /* of .step; random values */

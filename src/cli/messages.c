@@ -62,7 +62,7 @@ static bool is_like(const char *a, const char *b) {
     return (*a == '\0' || *a == '\n') && (*b == '\0' || *b == '\n');
 }
 
-/* How many like message `index` are among those from `first` on, before it. */
+/* Counts the messages like number `index` between `first` and it. */
 static size_t count_like(const struct dalcs_session *session, size_t first, size_t index) {
     enum dalcs_level level = DALCS_LEVEL_NOTE;
     const char *text = dalcs_session_message(session, index, &level);
@@ -90,7 +90,7 @@ static void write_rest(const struct dalcs_cli *cli, const struct dalcs_session *
         const size_t before = count_like(session, 0, k);
         if (later > 0 || before < MOST_OF_A_KIND || level == DALCS_LEVEL_ERROR ||
             (quiet && level == DALCS_LEVEL_NOTE)) {
-            continue; /* the last one of its kind speaks for all */
+            continue; /* only the last one of its kind is shown */
         }
         const size_t here = count_like(session, first, k) + 1;
         const size_t printed = before + 1 - here;

@@ -27,7 +27,7 @@ struct dalcs_outputs {
 };
 
 /* Touches no file. Times of the transient plot run from start to stop; main: the main analysis;
- * ascii: the netlist wants raw files as text. */
+ * ascii: the netlist has the option that makes raw files text. */
 enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
                                      const struct dalcs_arguments *arguments, bool ascii,
                                      enum dalcs_analysis main, double start,

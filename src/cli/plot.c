@@ -281,7 +281,7 @@ static int terminal_width(FILE *stream) {
     return known ? size.ws_col : 80;
 }
 
-/* What the locale says that the terminal shows. */
+/* Does the terminal show Unicode, by the locale? */
 static bool shows_unicode(void) {
     static const char *const variable[] = {"LC_ALL", "LC_CTYPE", "LANG"};
     for (size_t i = 0; i < sizeof variable / sizeof variable[0]; i++) {

@@ -5,7 +5,7 @@
 #include "plot_arguments.h"
 #include "waveforms.h"
 
-/* What stands over a picture of the file. */
+/* The title of a picture of the file. */
 const char *dalcs_plot_title(const struct dalcs_waveforms *waveforms, const char *file);
 
 /* --tornado or --family. Messages about the file go to diag, about the picture to cli->err. */

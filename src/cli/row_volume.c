@@ -11,7 +11,8 @@
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 
-/* Bytes of which a person should know before: a machine of 8 GB that reads such a file, and copies it once or twice on
+/* Bytes from which a note comes before the run: a machine of 8 GB that reads such a file, and copies it once or twice
+ * on
  * the way, as NumPy and viewers do, is half full; a disk writes it in seconds. */
 static const double MANY_BYTES = 1e9;
 

@@ -51,7 +51,7 @@ static const char help[] =
 
 /* ---- Before the run ------------------------------------------------------------------------- */
 
-/* What was asked for on the command line and cannot apply to this netlist. */
+/* Reports options of the command line that cannot apply to this netlist. */
 static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_arguments *arguments,
                         const struct dalcs_request *request, enum dalcs_analysis main) {
     const struct {

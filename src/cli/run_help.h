@@ -1,4 +1,4 @@
-/* run_help.h - the options that `dalcs run` and `dalcs steady` share, as their help tells them. */
+/* run_help.h - the options that `dalcs run` and `dalcs steady` share, as text of their help. */
 #ifndef DALCS_RUN_HELP_H
 #define DALCS_RUN_HELP_H
 

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* Events and jumps kept where no report and no figure wants them; the summary shows a few. */
+/* Events and jumps that are kept without a report and a figure; the summary shows a few. */
 enum { SHOWN_EVENTS = 100 };
 
 /* Tables are on the grid, as ngspice's are. */
@@ -14,7 +14,7 @@ static double fill_of(const struct dalcs_arguments *arguments) {
     return prints_tables ? (double)INFINITY : arguments->fill;
 }
 
-/* Does nobody look at a row? Measurements do not: they have the solution itself. A script may write them. */
+/* Are rows not needed? Measurements use the solution itself. A script may write rows. */
 static bool needs_no_rows(const struct dalcs_run *run, const struct dalcs_arguments *arguments) {
     return arguments->no_waveforms && arguments->quiet && run->outputs.n_tables == 0 &&
            run->outputs.report_path == NULL && arguments->plot == NULL &&

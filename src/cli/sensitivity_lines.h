@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/* By how many per cent each result changes with one per cent of each value; nothing without .sens. */
+/* Writes the change of each result in per cent for one per cent of each value; nothing without .sens. */
 void dalcs_sensitivity_lines_write(FILE *out, const struct dalcs_report *report);
 
 #endif

@@ -11,10 +11,10 @@ enum dalcs_status dalcs_settings_check(const struct dalcs_cli *cli,
 /* What a checked one says; the name's length is how much of `text` it is. */
 double dalcs_settings_value(const char *text, size_t *name_length);
 
-/* How many threads to use: as --jobs says, else as many as there are processors. */
+/* The number of threads: that of --jobs, else the number of processors. */
 size_t dalcs_settings_threads(const struct dalcs_arguments *arguments);
 
-/* What a session has to know of the command line before it reads the netlist. */
+/* Passes options of the command line to a session that has not read a netlist. */
 enum dalcs_status dalcs_settings_prepare(struct dalcs_session *session,
                                          const struct dalcs_arguments *arguments) DALCS_MUST_CHECK;
 

@@ -8,7 +8,15 @@
 #include <math.h>
 #include <string.h>
 
-#define INVISIBLE 1e-12
+/* What is rounding, over the largest value of a signal; of waveforms, what no part of a circuit is held to
+ * (doc/methods.md, "What the tolerance means"). */
+#define INVISIBLE              1e-12
+#define INVISIBLE_IN_WAVEFORMS 1e-9
+
+/* Over the rms. Straight lines through the thousand rows of a period miss a sine by up to (2 pi/1000)^2/8, 5e-6 of
+ * its amplitude, so a fifth of that is no average. The average of a pulse over its rms is the square root of its duty
+ * cycle, so pulses keep theirs down to a duty cycle of 1e-12. */
+#define CANCELLED_AVERAGE 1e-6
 
 enum { MAX_SIGNALS = 24, MAX_JUMPS = 5, MAX_PARTS = 6, MAX_METHODS = 4, DIGITS = 4 };
 
@@ -42,7 +50,7 @@ static bool is_chosen(const struct dalcs_report *report) {
     return report->method && strcmp(report->method, "auto") == 0;
 }
 
-/* "radau, 5 stages in 250 components (tolerance 1e-06)"; how many only where that says something. */
+/* "radau, 5 stages in 250 components (tolerance 1e-06)"; the number of components only where there are several. */
 static void write_group(FILE *out, const struct dalcs_report *report,
                         const struct dalcs_component_method *method) {
     char text[DALCS_METHOD_TEXT_SIZE];
@@ -186,14 +194,29 @@ static const char *unit_name(enum dalcs_unit unit) {
     return name[unit];
 }
 
-/* What is round-off beside the signal's own size is shown as 0. */
-static void write_cell(FILE *out, const struct dalcs_measure_signal *signal, double value,
-                       enum dalcs_unit unit) {
+static bool has_averages(const struct dalcs_plot *plot) {
+    return plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC;
+}
+
+static void write_value(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
     char text[DALCS_QUANTITY_SIZE];
-    if (fabs(value) <= INVISIBLE * fmax(fabs(signal->min), fabs(signal->max))) {
-        value = 0.0;
-    }
-    fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit_name(unit), DIGITS));
+    const char *unit = unit_name(measure->plot->unit[i]);
+    fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit, DIGITS));
+}
+
+/* A value of signal i; what is round-off beside its largest one is shown as 0. */
+static void write_cell(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
+    const struct dalcs_measure_signal *signal = &measure->signal[i];
+    const double invisible = has_averages(measure->plot) ? INVISIBLE_IN_WAVEFORMS : INVISIBLE;
+    const double largest = fmax(fabs(signal->min), fabs(signal->max));
+    write_value(out, measure, i, fabs(value) <= invisible * largest ? 0.0 : value);
+}
+
+static void write_averages(FILE *out, const struct dalcs_measure *measure, size_t i) {
+    const double average = dalcs_measure_average(measure, i);
+    const double rms = dalcs_measure_rms(measure, i);
+    write_value(out, measure, i, fabs(average) <= CANCELLED_AVERAGE * rms ? 0.0 : average);
+    write_value(out, measure, i, rms);
 }
 
 static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool ends) {
@@ -213,17 +236,15 @@ static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool
 }
 
 static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i, bool ends) {
-    const struct dalcs_plot *plot = measure->plot;
     const struct dalcs_measure_signal *signal = &measure->signal[i];
-    if (plot->analysis != DALCS_OPERATING_POINT && !ends) {
-        write_cell(out, signal, signal->min, plot->unit[i]);
-        write_cell(out, signal, signal->max, plot->unit[i]);
+    if (measure->plot->analysis != DALCS_OPERATING_POINT && !ends) {
+        write_cell(out, measure, i, signal->min);
+        write_cell(out, measure, i, signal->max);
     }
-    if ((plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC) && !ends) {
-        write_cell(out, signal, dalcs_measure_average(measure, i), plot->unit[i]);
-        write_cell(out, signal, dalcs_measure_rms(measure, i), plot->unit[i]);
+    if (has_averages(measure->plot) && !ends) {
+        write_averages(out, measure, i);
     }
-    write_cell(out, signal, signal->final, plot->unit[i]);
+    write_cell(out, measure, i, signal->final);
 }
 
 void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report) {

@@ -51,7 +51,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                     : !can_read
                         ? "each thread reads the netlist, so give the name of a file in place of -"
                     : arguments->only > 0 ? "--only is one of them"
-                    : has_script ? "a .control block says what is run here, one run after the other"
+                    : has_script ? "here a .control block runs the analyses, one after the other"
                                  : "the netlist has no .step and no .mc");
     return DALCS_E_OPTION;
 }
@@ -96,7 +96,7 @@ static char *write_header(const struct variants *v) {
     return text;
 }
 
-/* The same for people. */
+/* The same for the terminal. */
 static void print_header(const struct variants *v) {
     const struct dalcs_session *session = v->pool.session;
     const char *name;

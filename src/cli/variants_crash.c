@@ -62,7 +62,7 @@ static void go_on(int signal_number, siginfo_t *info, void *context) {
     char line[64];
     (void)context;
     if (running < 0 || again.notes == NULL || info->si_code == SI_USER) {
-        die(signal_number); /* sent by somebody, or in no variant */
+        die(signal_number); /* sent from outside, or in no variant */
         return;
     }
     size_t n = write_digits(line, (unsigned long)running);
@@ -81,7 +81,7 @@ static void go_on(int signal_number, siginfo_t *info, void *context) {
 
 /* ---- Before the run --------------------------------------------------------------------------- */
 
-/* The process's arguments as the system knows them; NULL: it does not say. */
+/* The arguments of this process, from the system; NULL: not available. */
 static char **read_arguments(void) {
     char *text = dalcs_alloc(MOST_ARGUMENTS, 1);
     FILE *from = fopen("/proc/self/cmdline", "r");

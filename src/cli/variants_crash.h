@@ -1,4 +1,5 @@
-/* variants_crash.h - a variant that crashes is a row that says so: the program starts itself again, and goes on. */
+/* variants_crash.h - a variant that crashes becomes a row with an error. The program starts itself again and
+ * continues. */
 #ifndef DALCS_VARIANTS_CRASH_H
 #define DALCS_VARIANTS_CRASH_H
 
@@ -17,7 +18,7 @@ struct dalcs_crashes {
     } * crash; /* [n] heap */
 };
 
-/* Is this the program after a crash, and not as somebody has called it? */
+/* Was this program started by itself after a crash? */
 bool dalcs_crashes_go_on(void);
 
 /* Reads those of the partial table `partial` where it is gone on with, and forgets them where not; from now on crashes of
@@ -34,7 +35,7 @@ void dalcs_crashes_end(void);
 /* The signal that the step has crashed with; 0: it has not. */
 int dalcs_crashes_find(const struct dalcs_crashes *crashes, size_t step);
 
-/* `is_complete`: nobody will ask again. */
+/* `is_complete`: the note of crashes is not needed any more. */
 void dalcs_crashes_finish(struct dalcs_crashes *crashes, bool is_complete);
 
 #endif

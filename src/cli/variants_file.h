@@ -18,7 +18,7 @@ struct dalcs_variants_file {
     size_t n_failed;  /* of these: with a reason in the last column */
 };
 
-/* What the rows of the table begin with: of row `row`, counted from 0; heap, NULL: out of memory. */
+/* The first columns of row `row` of the table, counted from 0; heap, NULL: out of memory. */
 typedef char *dalcs_variant_begins(void *user, size_t row);
 
 /* Opens the partial table and writes the header, which ends with a newline; resume: keeps the rows that are there, which

@@ -35,7 +35,7 @@ enum dalcs_status dalcs_variants_pool_run(const struct dalcs_variants_pool *pool
 /* Cells of the values of --set and of step `step`; heap, NULL: out of memory. */
 char *dalcs_variant_begin(const struct dalcs_variants_pool *pool, size_t step);
 
-/* How wide a column for people is that has this name. */
+/* The width of the column with this name in the table on the terminal. */
 int dalcs_variant_width(const char *name);
 
 #endif

@@ -7,7 +7,7 @@
 
 #include <getopt.h>
 
-/* getopt_long stumbled with this code: says so and returns DALCS_E_OPTION. `option` ends with zeros. */
+/* Reports the error of getopt_long with this code and returns DALCS_E_OPTION. `option` ends with zeros. */
 enum dalcs_status dalcs_verb_refuse(const struct dalcs_cli *cli, const char *verb,
                                     const struct option *option, int code, char **argv);
 
@@ -41,7 +41,7 @@ enum dalcs_status dalcs_verb_split(char *list, const char **part, size_t most,
 enum dalcs_status dalcs_verb_take_dialect(const struct dalcs_cli *cli, const char *text,
                                           const char **dialect) DALCS_MUST_CHECK;
 
-/* Lets the session read the netlist, in this dialect; NULL: what it shows. */
+/* Reads the netlist into the session, in this dialect; NULL: the one that its cards show. */
 enum dalcs_status dalcs_verb_read(struct dalcs_session *session, const char *netlist,
                                   const char *dialect) DALCS_MUST_CHECK;
 

@@ -14,7 +14,7 @@ void dalcs_worst_case_write_header(struct dalcs_csv_cells *cells,
 void dalcs_worst_case_write_row(struct dalcs_csv_cells *cells, const struct dalcs_report *report,
                                 size_t run);
 
-/* Says how many runs failed, and why the first one did; DALCS_OK: none. */
+/* Writes the number of failed runs and the reason of the first; DALCS_OK: none. */
 enum dalcs_status dalcs_worst_case_tell_failed(const struct dalcs_cli *cli,
                                                const struct dalcs_report *report);
 

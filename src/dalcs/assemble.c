@@ -196,7 +196,7 @@ static enum dalcs_status stamp_all(struct stamps *b, const struct dalcs_members 
                                  : DALCS_OK;
 }
 
-/* What was said becomes matrices. */
+/* Makes matrices of the collected entries. */
 static enum dalcs_status compress(struct stamps *b) {
     struct dalcs_system *system = b->s;
     int n_equations = dalcs_system_n_equations(system);

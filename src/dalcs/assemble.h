@@ -53,7 +53,7 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout,
                                            struct dalcs_system *system,
                                            double **initial) DALCS_MUST_CHECK;
 
-/* A resistor of the part that is assembled whose current is an unknown. */
+/* A resistor of the assembled part; its current is an unknown. */
 bool dalcs_layout_is_branch(const struct dalcs_layout *layout, int device);
 
 /* The current of coil `device` as columns and coefficients (at most 1 + coils of its group). Returns

@@ -1,5 +1,5 @@
 /* capacitive_parts.c - parts whose voltage an operating point does not determine: at rest capacitors
- * carry no current, and nothing else ties them to the rest of the circuit. */
+ * carry no current, and no other element connects the part to the rest of the circuit. */
 #include "capacitive_parts.h"
 
 #include "union_find.h"
@@ -23,10 +23,10 @@ static void merge(const struct dalcs_circuit *c, int *whole) {
     }
 }
 
-/* What crosses the border of each part. */
+/* The devices between each part and the rest. */
 struct border {
     int capacitor; /* one of them + 1, 0 without */
-    bool is_fed;   /* by a current source: the run sees to it */
+    bool is_fed;   /* by a current source: the run handles it */
 };
 
 static void note_parts(const struct dalcs_circuit *c, int *whole, struct border *border,

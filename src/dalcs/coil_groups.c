@@ -82,7 +82,7 @@ static double factor_of(const struct coil_group *g, int i, int j) {
     return g->L[i * g->n + j] / sqrt(g->L[i * g->n + i] * g->L[j * g->n + j]);
 }
 
-/* What is missing on K cards: a chain of them leaves the factors in between at 0. NULL: nothing is. */
+/* The missing K cards, as a message: a chain of them leaves the factors in between at 0. NULL: none is missing. */
 static const char *name_uncoupled(const struct dalcs_circuit *c, const struct coil_group *g,
                                   struct dalcs_arena *arena) {
     int i = 0;

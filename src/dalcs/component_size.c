@@ -1,4 +1,4 @@
-/* component_size.c - how many unknowns of each sort a component has, and where its nodes are among them. */
+/* component_size.c - the number of unknowns of each sort in a component, and the places of its nodes among them. */
 #include "component_size.h"
 
 #include "stamp_behaviour.h"
@@ -40,7 +40,7 @@ bool dalcs_layout_is_branch(const struct dalcs_layout *l, int device) {
            conductance_of(l->circuit, d) > l->most_conductance;
 }
 
-/* What a device without a formula needs. */
+/* Counts the unknowns of a device without a formula. */
 static void count_device(struct stamps *b, int device) {
     const struct dalcs_layout *l = b->layout;
     const struct dalcs_device *d = &l->circuit->device[device];

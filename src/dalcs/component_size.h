@@ -1,4 +1,4 @@
-/* component_size.h - how many unknowns of each sort a component has. Private to src/dalcs. */
+/* component_size.h - the number of unknowns of each sort in a component. Private to src/dalcs. */
 #ifndef DALCS_COMPONENT_SIZE_H
 #define DALCS_COMPONENT_SIZE_H
 
@@ -6,7 +6,7 @@
 
 void dalcs_find_best_conductor(struct dalcs_layout *l, const struct dalcs_members *m);
 
-/* How many unknowns of each sort the component needs: everything else follows from the counts. */
+/* Counts the unknowns of each sort in the component. All offsets follow from the counts. */
 void dalcs_count_unknowns(struct stamps *b, const struct dalcs_members *m, int component);
 
 enum dalcs_status dalcs_allocate_system(struct stamps *b) DALCS_MUST_CHECK;

@@ -36,7 +36,7 @@ static enum dalcs_status coil_current(const struct dalcs_layout *l, int device,
     return DALCS_OK;
 }
 
-/* Of a diode or a switch, and of what leaks beside it. */
+/* The current of a diode or a switch, with its leakage. */
 static void pair_current(const struct dalcs_layout *l, const struct dalcs_system *s, int device,
                          struct dalcs_current *i) {
     const struct dalcs_circuit *c = l->circuit;

@@ -1,4 +1,4 @@
-/* impulse_network.h - what of a circuit takes part in a jump.
+/* impulse_network.h - the elements of a circuit that matter in a jump.
  *
  * A jump is the limit of a vanishing step (Heemels, Schumacher and Weiland 1999, thm 4.1): impulses
  * of current move charge between capacitors, impulses of voltage move flux between coils. A resistor

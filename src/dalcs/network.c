@@ -59,7 +59,7 @@ static bool has_ground(const struct dalcs_circuit *c) {
     return found;
 }
 
-/* Islands that nothing ties to ground have their voltages by convention, and a person should know. */
+/* The voltages of islands without a connection to ground are a convention: a message says so. */
 static void note_references(const struct dalcs_layout *l, struct dalcs_diag *diag) {
     const struct dalcs_circuit *c = l->circuit;
     const char *hint =
@@ -92,7 +92,7 @@ static enum dalcs_status check_initial_conditions(const struct dalcs_layout *l,
     return status;
 }
 
-/* What the graph says, before there are equations. */
+/* Checks of the graph, before there are equations. */
 static enum dalcs_status look_at_graph(struct dalcs_layout *layout, const bool *wants_current,
                                        struct dalcs_diag *diag) {
     const struct dalcs_circuit *circuit = layout->circuit;

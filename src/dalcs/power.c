@@ -85,7 +85,7 @@ static void put_current_source(const struct dalcs_layout *l, struct terms *t, in
     }
 }
 
-/* What V or I that something controls delivers. */
+/* The power of a controlled V or I. */
 static void put_controlled_source(const struct dalcs_layout *l, struct terms *t, int device) {
     const struct dalcs_device *d = &l->circuit->device[device];
     const bool is_voltage = d->kind == DALCS_VCVS || d->kind == DALCS_CCVS;

@@ -6,7 +6,8 @@
 
 #include <stdlib.h>
 
-/* Does an equation know its current by itself? That of others follows from voltages; of a capacitor only formulas ask. */
+/* Is its current a column of an equation? The currents of others follow from voltages; only formulas read that of a
+ * capacitor. */
 static bool has_own_current(const struct dalcs_layout *l, int device) {
     const struct dalcs_device *d = &l->circuit->device[device];
     switch (d->kind) {

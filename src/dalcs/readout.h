@@ -7,7 +7,7 @@
 struct dalcs_readout {
     int n_nodes, n_devices;
     int *node_column;   /* [n_nodes] in the system of the node; -1: 0 V */
-    int *device_system; /* [n_devices] -1: no equation knows it */
+    int *device_system; /* [n_devices] -1: in no equation */
     int *first_pair;    /* [n_devices] of a diode, a switch or a formula, -1: none */
     int *start; /* [n_devices + 1] the current of a device is the sum of term[start[d]] to before
                            term[start[d + 1]]; of V, L, D, S, E, H, B, and of C where it is an unknown */

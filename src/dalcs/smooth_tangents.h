@@ -14,7 +14,7 @@ void dalcs_smooth_finite_gradient(const struct dalcs_smooth_input *of, const dou
 void dalcs_smooth_gradient_of_rest(const struct dalcs_smooth_input *of, const double *x,
                                    double *gradient);
 
-/* Where it has a value at x. */
+/* Does it have a value at x? */
 void dalcs_smooth_take_rest(const struct dalcs_smooth_input *of, const double *x, double *phi);
 
 #endif

@@ -86,7 +86,7 @@ static enum dalcs_status check_parts(const struct dalcs_circuit *c, struct dalcs
     int n_parts = 0;
     if (status == DALCS_OK) {
         dalcs_union_reset(whole, c->n_nodes);
-        is_seen[0] = true; /* the rest of the circuit sees to ground */
+        is_seen[0] = true; /* the rest of the circuit determines ground */
     }
     for (int i = 0; i < c->n_devices && status == DALCS_OK; i++) {
         if (!is_current_source(&c->device[i])) {

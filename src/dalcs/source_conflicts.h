@@ -6,7 +6,7 @@
 
 /* Loops of V sources and shorts, and parts that only I sources reach. Where the sources contradict each
  * other at all times: DALCS_E_NETLIST and an error for each. Where they agree at all times, a warning
- * names the one that is idle. All else, as where a sine meets a battery, is left to the run. */
+ * names the one that is idle. Other conflicts, such as a sine in parallel with a battery, are found by the run. */
 enum dalcs_status dalcs_source_conflicts(const struct dalcs_circuit *circuit,
                                          struct dalcs_diag *diag) DALCS_MUST_CHECK;
 

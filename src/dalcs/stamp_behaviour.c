@@ -65,7 +65,7 @@ enum dalcs_status dalcs_stamp_behaviour_branch(struct stamps *b, int device) {
 struct target {
     struct dalcs_triplets *columns, *inputs;
     int row;
-    int device, reader; /* whose it is, and the same row in the system's `reads` */
+    int device, reader; /* its device, and the same row in the system's `reads` */
     double factor;
 };
 
@@ -115,7 +115,7 @@ static enum dalcs_status stamp_affine(struct stamps *b, int device, const struct
         default:
             input = b->next_input++;
             s->stimulus[input] = term->index;
-            l->input[device] = input; /* for one that is nothing else */
+            l->input[device] = input; /* of a device that is a source only */
             s->input_element[input] = l->circuit->device[device].name;
             DALCS_TRY(dalcs_triplets_add(t->inputs, t->row, input, coefficient));
             break;

@@ -164,7 +164,7 @@ static enum dalcs_status stamp_idle_branch(struct stamps *b, int device) {
     return dalcs_stamp_add(&b->A, row, column, -1.0);
 }
 
-/* V, E, H and shorts whose current is asked for: 0 = v(a) - v(b) - (what drives it). */
+/* V, E, H and shorts whose current is an unknown: 0 = v(a) - v(b) - (what drives it). */
 static enum dalcs_status stamp_voltage_branch(struct stamps *b, int device) {
     struct dalcs_layout *l = b->layout;
     const struct dalcs_device *d = &l->circuit->device[device];

@@ -4,7 +4,7 @@
 
 #include "stamp.h"
 
-/* What the device writes where nothing but its own nodes and columns is needed. next_forest counts the
+/* Stamps the entries of a device that need only its own nodes and columns. next_forest counts the
  * capacitors of the forest. */
 enum dalcs_status dalcs_stamp_device(struct stamps *b, int device,
                                      int *next_forest) DALCS_MUST_CHECK;

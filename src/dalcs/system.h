@@ -4,7 +4,7 @@
  *          0 = A_II x + B_II z + Bbar_II lambda + E_II(t)
  *          w = C_I  x + C_II z + D       lambda + F(t),     0 <= lambda _|_ w >= 0
  *
- * of Brogliato, SIAM J. Control Optim. 60(4), 2022, eq. (2.1). The engine sees only this; a netlist
+ * of Brogliato, SIAM J. Control Optim. 60(4), 2022, eq. (2.1). The engine has no other input; a netlist
  * is one way to make one.
  *
  * The columns are numbered x, then z, then lambda, and the blocks are kept side by side:
@@ -24,7 +24,7 @@
 
 enum dalcs_pair_kind { DALCS_PAIR_DIODE, DALCS_PAIR_SWITCH };
 
-/* A labelled column or row. `element` is the name a person knows: an element or, for voltages and
+/* A labelled column or row. `element` is a name of the netlist: an element or, for voltages and
  * KCL, a node. */
 struct dalcs_label {
     const char *element;
@@ -78,7 +78,7 @@ struct dalcs_smooth_input {
     int column[2];    /* of its arguments; -1: a number */
     double number[2]; /* that number */
     int row_of[2]; /* the equation that gives an argument which is not read elsewhere; -1: none */
-    bool starts_on_line; /* nothing else holds its argument */
+    bool starts_on_line; /* no other equation fixes its argument */
     double *entry
         [2]; /* in A, of -g: the equations have g x, the input is the rest of the function. 0 but while a problem
                          is being solved. NULL: none */

@@ -179,7 +179,7 @@ static enum dalcs_status read_header(struct dalcs_system_reader *r) {
     }
     r->at = line_end;
     DALCS_TRY(dalcs_system_end_line(r));
-    /* Everything counted here has a line to come: a damaged size asks for no more memory than its
+    /* Each entry counted here has a line that follows: a damaged size allocates no more memory than its
      * file deserves. */
     size_t left = (size_t)(r->end - r->at);
     int most = left < 1 << 28 ? (int)left : 1 << 28;

@@ -91,7 +91,7 @@ static void write_step(FILE *f, const struct dalcs_system *s,
 static bool is_replaceable(const char *path) {
     struct stat target;
     if (stat(path, &target) != 0) {
-        return true; /* opening and renaming will tell */
+        return true; /* opening or renaming it will fail with a message */
     }
     errno = S_ISDIR(target.st_mode) ? EISDIR : EINVAL;
     return S_ISREG(target.st_mode);

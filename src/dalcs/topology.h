@@ -13,8 +13,8 @@ struct dalcs_topology {
     bool *is_reference;    /* [n_nodes] the node whose voltage is 0 by convention in an island that
                             nothing ties to ground: its first node in the netlist */
     int *reference_of;     /* [n_nodes] that node, for representatives; ground where tied to it */
-    bool *in_forest;       /* [n_devices] capacitors whose current is eliminated */
-    bool *has_current;     /* [n_devices] shorts and capacitors whose current is an unknown */
+    bool *in_forest;       /* [n_devices] capacitors: their current is eliminated */
+    bool *has_current;     /* [n_devices] shorts and capacitors: their current is an unknown */
     bool *is_idle; /* [n_devices] V sources and shorts that close a loop of such elements whose
                               voltages agree: they carry no current by convention */
     int *

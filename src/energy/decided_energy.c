@@ -137,7 +137,7 @@ static void add_power(struct waves *w, const struct dalcs_power_term *term) {
     }
 }
 
-/* Leaves out the waves whose sources give nothing, such as those of gates: their edges are many. */
+/* Leaves out the waves of sources without power, such as those of gates, which have many edges. */
 static void drop_idle(struct waves *w) {
     int n = w->n;
     int kept = 0;

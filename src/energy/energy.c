@@ -14,7 +14,7 @@
 /* A balance of more than this part of what was moved is no rounding; it is 1e-10 at most. */
 static const double most_off = 1e-7;
 
-/* What radau misses is some 0.01 of its inner tolerance, over what was moved: a waveform is wrong where
+/* The error of radau is some 0.01 of its inner tolerance, over the energy that was moved: a waveform is wrong where
  * it is so much. */
 static const double most_missed = 1e5;
 
@@ -138,7 +138,7 @@ static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_r
             dalcs_euler_stored_energy(part->system, radau->x) - part->stored_at_start;
         largest[0] = dalcs_larger(radau->scales.unit[0], part->largest[0]);
         largest[1] = dalcs_larger(radau->scales.unit[1], part->largest[1]);
-        /* an answer next to 0 is known no better than what thresholds and sources drive lets it be */
+        /* an answer near 0 has the absolute error of the quantities that thresholds and sources drive */
         dalcs_excitation_inputs(&radau->excitation, stop, 0.0, radau->work.u + part->system->n_x);
         dalcs_micro_raise_to_drives(radau, largest);
     }

@@ -141,7 +141,7 @@ static void jump(void *user, const struct dalcs_euler_jump *told) {
     dalcs_energy_enter_swing(energy, part, told->before, told->after, told->after);
 }
 
-/* Not the scales, which only grow. */
+/* Keeps the sums, which may be taken back; not the scales, which only grow. */
 static void hold(void *user) {
     struct dalcs_energy *energy = user;
     energy->held = energy->sum;

@@ -8,7 +8,7 @@
 void dalcs_energy_enter(struct dalcs_energy *energy, enum dalcs_power_account account,
                         double joule);
 
-/* What goes back and forth in capacitors and coils, and how much rounding it may leave: a segment that
+/* The energy exchanged by capacitors and coils, and its rounding: a segment that
  * is cut is a small part of a step, whose other end may be far away. Returns 1/2 |after - x|^2 by the
  * diagonal of the storage. */
 double dalcs_energy_enter_swing(struct dalcs_energy *energy, const struct dalcs_energy_part *part,

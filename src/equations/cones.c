@@ -116,7 +116,7 @@ static const struct row_blocks ROWS_II = {DALCS_BLOCK_A_II, DALCS_BLOCK_B_II, DA
 static const struct row_blocks ROWS_W = {DALCS_BLOCK_C_I, DALCS_BLOCK_C_II, DALCS_BLOCK_D,
                                          DALCS_BLOCK_F, DALCS_BLOCK_CONSTANT_F};
 
-/* Where row i of these blocks goes. */
+/* The place of row i of these blocks. */
 struct target {
     struct dalcs_triplets *columns, *inputs;
     int row;

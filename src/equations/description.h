@@ -1,7 +1,7 @@
 /* description.h - a DALCS given by its matrices and source functions, as text: a system file.
  *
  * A file becomes what a netlist becomes, a circuit (of no devices: analyses, options, stimuli) and a
- * network (systems, outputs, states), so that nothing after it knows where they came from. The format
+ * network (systems, outputs, states), so that later stages are the same for both. The format
  * is in doc/system-file.md. */
 #ifndef DALCS_DESCRIPTION_H
 #define DALCS_DESCRIPTION_H

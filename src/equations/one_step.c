@@ -194,9 +194,6 @@ void dalcs_one_step_finish(struct dalcs_one_step *step) {
 
 /* ---- Writing ------------------------------------------------------------------------------- */
 
-static const char SINGULAR[] = "N(sigma) is singular: without complementarity the step is not "
-                               "determined, and lambda alone does not determine x and z";
-
 static void write_row(FILE *f, const double *row, int n) {
     for (int j = 0; j < n; j++) {
         fprintf(f, " %14.7g", row[j]);
@@ -209,7 +206,11 @@ void dalcs_one_step_write_text(FILE *f, const struct dalcs_one_step *step) {
             "one step of h = %.10g s, sigma = %.10g 1/s: 0 <= lambda _|_ w = M lambda + q >= 0\n",
             1.0 / step->sigma, step->sigma);
     if (step->is_singular) {
-        fprintf(f, "  %s\n", SINGULAR);
+        fputs("  N(sigma) is singular: without complementarity the step is not determined, and "
+              "lambda alone does not determine x and z\n"
+              "  hint: if a part floats while its diodes block, a resistor from it to ground, such "
+              "as 1Meg, makes N(sigma) regular\n",
+              f);
         return;
     }
     fputs("  M(sigma) = D + (C_I C_II) N(sigma)^-1 (Bbar_I; Bbar_II), rows and columns:\n", f);

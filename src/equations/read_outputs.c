@@ -66,7 +66,7 @@ static enum dalcs_status keep(struct dalcs_reading *r, struct dalcs_probe *probe
     return DALCS_OK;
 }
 
-/* ---- Multipliers as a person knows them ----------------------------------------------------- */
+/* ---- Multipliers by their names in the file ----------------------------------------------------- */
 
 /* lambda of multiplier j: as cones.c placed it. */
 struct place {

@@ -69,7 +69,7 @@ enum dalcs_block_name {
 /* Free, or between two bounds: an unknown of the engine, whose multipliers are pairs. */
 bool dalcs_multiplier_is_unknown(const struct dalcs_multiplier *multiplier);
 
-/* What a file says of its OSNSP. */
+/* The properties of the OSNSP that a file declares. */
 enum dalcs_claim { DALCS_CLAIM_NOTHING, DALCS_CLAIM_YES, DALCS_CLAIM_NO };
 
 /* A matrix of the file: its card, then, when all columns are known, its entries from 0 on. */

@@ -21,7 +21,7 @@ struct writer {
 
 void dalcs_write_number(FILE *f, double value) {
     char text[40];
-    for (int digits = 15; digits <= 17; digits++) { /* as few as tell it from its neighbours */
+    for (int digits = 15; digits <= 17; digits++) { /* the fewest that give the same number back */
         snprintf(text, sizeof text, "%.*g", digits, value);
         if (strtod(text, NULL) == value) {
             break;

@@ -81,7 +81,7 @@ static bool next_resistor(const struct writer *w, const struct dalcs_system *s, 
     return false;
 }
 
-/* What is left of a row's entry without its resistors. */
+/* A row's entry less its resistors. */
 static double without_resistors(const struct writer *w, const struct dalcs_system *s, int row,
                                 int column, double value) {
     double left = value;
@@ -293,7 +293,7 @@ static double width_of_left(const struct writer *w, const struct dalcs_system *s
     return measure.p.width;
 }
 
-/* What is left of a line for the right sides of a system. */
+/* The room in a line for the right sides of a system. */
 static double limit_of(const struct writer *w, const struct dalcs_system *s) {
     double widest = 40.0; /* 0 <= i(d) */
     for (int i = 0; w->p.latex && i < dalcs_system_n_equations(s) + s->n_pairs; i++) {

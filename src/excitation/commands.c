@@ -11,7 +11,7 @@
 /* Edges looked at in one search; a control that never crosses must not cost its whole future. */
 enum { EDGES_AT_A_TIME = 64 };
 
-/* Where the switch wants to be at this control, coming from where it is. */
+/* The side of the switch at this control, with its hysteresis. */
 static bool wants(const struct dalcs_pair *s, bool is_on, double control) {
     return is_on ? !(control < s->turn_off) : control > s->turn_on;
 }

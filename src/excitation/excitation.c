@@ -1,4 +1,4 @@
-/* excitation.c - which functions of time a system sees, and their coefficients. */
+/* excitation.c - the functions of time in a system's equations, and their coefficients. */
 #include "excitation.h"
 
 #include "pi.h"

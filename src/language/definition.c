@@ -1,6 +1,6 @@
 /* definition.c - the netlist's cards sorted into definitions: the netlist and its subcircuits.
  *
- * Nothing is evaluated here. What is wrong inside a subcircuit that nobody calls stays unsaid, as far
+ * Nothing is evaluated here. Errors inside a subcircuit that is never called are not reported, as far
  * as it can be read at all. */
 #include "language.h"
 

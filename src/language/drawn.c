@@ -72,7 +72,7 @@ static uint64_t key_of(const struct dalcs_draw_place *p) {
 
 static const char *name_of(struct dalcs_language *language, const struct dalcs_draw_place *p);
 
-/* Of value k of a place, as .wcase knows it. */
+/* Of value k of a place, by its name in .wcase. */
 static uint64_t key_of_value(uint64_t key, uint32_t k) {
     char text[16];
     snprintf(text, sizeof text, "%u", (unsigned)k);

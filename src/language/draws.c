@@ -1,4 +1,4 @@
-/* draws.c - the generator, and the distributions that netlists ask for.
+/* draws.c - the generator, and the distributions of the functions in netlists.
  *
  * gauss of one argument is LTspice's, of three ngspice's, HSPICE's and Xyce's. A value is made from one number in
  * (0, 1), by the inverse of its distribution. */

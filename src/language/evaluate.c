@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Functions that call functions: nobody nests them deeper, and the stack of this program has an end. */
+/* Functions that call functions: the depth is limited, for each level takes stack. */
 enum { DEEPEST_CALL = 100, MOST_OPERATIONS = 10000000 };
 
 /* One run: of an expression, or of a function's body with its arguments at stack[base]. */

@@ -281,7 +281,7 @@ static void next(struct parser *p) {
         p->symbol = WRONG;
         p->length = 1;
         report(p, DALCS_ERROR, p->begin, 1, *t == '=' ? "a comparison is written ==" : NULL,
-               "'%c' means nothing in an expression", *t);
+               "'%c' is not a character of expressions", *t);
     }
 }
 

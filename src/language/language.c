@@ -48,7 +48,7 @@ const char *dalcs_language_text(struct dalcs_language *language, const char *for
 
 const char *dalcs_language_suggest(struct dalcs_language *language, const struct dalcs_names *names,
                                    const char *name, const char *plural) {
-    /* A thousand errors in a million names would take minutes to guess at. */
+    /* Suggestions for a thousand errors among a million names would take minutes. */
     if (language->diag->n_errors > 20) {
         return NULL;
     }

@@ -1,6 +1,6 @@
 /* roles.c - which words of a card are names of nodes, elements or models.
  *
- * This is all that the expansion of subcircuits knows about elements: what to rename. What is wrong
+ * The expansion of subcircuits needs only this of an element: the tokens to rename. What is wrong
  * with a card is said later, by the reader of its family. */
 #include "language.h"
 

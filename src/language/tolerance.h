@@ -50,7 +50,7 @@ double dalcs_tolerance_draw_lot(struct dalcs_tolerant *all, const struct dalcs_t
 /* "power/rb" of x1.rb: what all instances of the subcircuit share. */
 const char *dalcs_tolerance_lot_of_model(struct dalcs_language *language, const char *flat);
 
-/* A value that a tolerance has a part in: of what random functions made of it nobody asks then. */
+/* A value with a tolerance: the values of random functions are not used then. */
 void dalcs_tolerance_keep(struct dalcs_tolerant *all, const char *name, double value);
 
 /* Takes all tolerances off a card: *found lists them in the order of the values that they follow, in the language's

@@ -11,7 +11,7 @@ static const double least_reciprocal_growth = 1e-3;
 void dalcs_lu_common_init(klu_common *common) {
     klu_defaults(common);
     common->halt_if_singular = 1;
-    common->scale = -1; /* the caller balances and knows its entries: neither scales nor a check */
+    common->scale = -1; /* the caller has balanced and checked the entries */
 }
 
 void dalcs_lu_pivot_carefully(klu_common *common) {

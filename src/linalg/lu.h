@@ -65,7 +65,7 @@ enum { DALCS_LU_SMALL = 16 };
 enum dalcs_status dalcs_lu_factor_small(struct dalcs_lu *lu, int n, const int *p, const int *i,
                                         const double *x, double apart) DALCS_MUST_CHECK;
 
-/* What depends on the pattern alone: good for all values, real or complex. DALCS_SINGULAR when no
+/* The analysis of the pattern alone, for all values, real or complex. DALCS_SINGULAR when no
  * values can make the matrix regular. Free it with klu_free_symbolic. */
 enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, int n, int *p,
                                    int *i) DALCS_MUST_CHECK;

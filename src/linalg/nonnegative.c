@@ -7,7 +7,7 @@
 /* A column of which the basis leaves no more than this depends on it. */
 static const double dependent = 1e-10;
 
-/* So much of what is left must lie along a column for it to be of use. */
+/* A column is used only if this part of the residual lies along it. */
 static const double useful = 1e-12;
 
 static double dot(const double *a, const double *b, int n) {
@@ -111,7 +111,7 @@ static void find_rest(struct dalcs_nonnegative *p) {
     project(p, p->rest, p->z);
 }
 
-/* The column that what is left leans to most; -1: none. */
+/* The column with the largest component of the residual; -1: none. */
 static int most_useful(const struct dalcs_nonnegative *p, int n) {
     int best = -1;
     double most = useful * sqrt(dot(p->b, p->b, p->m));

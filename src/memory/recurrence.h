@@ -33,7 +33,7 @@ void dalcs_recurrence_begin(struct dalcs_radau_part *part);
 /* The states of the present segment, which recurred, at its end; NULL: part->segment.out has them. */
 const double *dalcs_recurrence_end(const struct dalcs_radau_part *part);
 
-/* Fills part->segment.out, or part->segment.out_before, which nobody needed yet: few segments have rows. */
+/* Fills part->segment.out, or part->segment.out_before, which is computed on demand: few segments have rows. */
 void dalcs_recurrence_complete(struct dalcs_radau_part *part);
 void dalcs_recurrence_complete_before(struct dalcs_radau_part *part);
 

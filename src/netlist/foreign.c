@@ -9,7 +9,7 @@
 #define KICAD  "KiCad writes a netlist by File > Export > Netlist, Spice"
 #define SYSTEM "a system file begins with: dalcs-system 2 TITLE"
 
-/* What a file is, and how to get a netlist of it or run it. */
+/* The kind of a file, and how to make a netlist of it or run it. */
 struct kind {
     const char *what, *hint;
 };

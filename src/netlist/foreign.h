@@ -4,7 +4,8 @@
 
 #include "netlist.h"
 
-/* Says so when a text is of a kind that is known and no netlist, by how it begins or by the name of its file; else
+/* Reports a text of a known kind that is no netlist. The kind follows from its first bytes or the name of its file;
+ * else
  * false. */
 bool dalcs_foreign_is_reported(struct dalcs_netlist *netlist, const struct dalcs_source *source,
                                const char *text, size_t length, struct dalcs_diag *diag);

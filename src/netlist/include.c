@@ -4,7 +4,7 @@
  *     .lib "file" section   what stands there between .lib section and .endl
  *
  * library_path.c finds the file. `.lib name` with one word begins a section when an .endl follows before the next
- * .lib; a section that nobody asks for is skipped. */
+ * .lib; a section that no card names is skipped. */
 #include "lexer.h"
 #include "library_path.h"
 #include "lower_case.h"

@@ -339,7 +339,7 @@ static enum dalcs_status continue_card(struct dalcs_lexer *lexer, size_t plus, s
     return DALCS_OK;
 }
 
-/* A line of .control ... .endc, for whoever runs it. */
+/* A line of .control ... .endc, kept for the script. */
 static enum dalcs_status add_script_line(struct dalcs_lexer *lexer, size_t begin) {
     struct dalcs_netlist *netlist = lexer->netlist;
     DALCS_TRY(dalcs_grow(&netlist->script, &netlist->script_capacity, netlist->n_script_lines + 1,

@@ -5,7 +5,7 @@
 #include "names.h"
 #include "netlist.h"
 
-/* One file's text, line by line. `raw` is shown to people, `low` is what tokens point into: both
+/* One file's text, line by line. `raw` is shown in messages, tokens point into `low`: both
  * have the same length and the same offsets. */
 struct dalcs_lexer {
     struct dalcs_netlist *netlist;
@@ -61,7 +61,7 @@ bool dalcs_include_is_card(const char *name);
 enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer,
                                      const struct dalcs_card *card) DALCS_MUST_CHECK;
 
-/* Of a library of which one section is wanted: is the line at p, whose first byte that is not blank
+/* Of a library of which one section is read: is the line at p, whose first byte that is not blank
  * is at p, outside it? */
 enum dalcs_status dalcs_include_skips(struct dalcs_lexer *lexer, size_t p,
                                       bool *skips) DALCS_MUST_CHECK;

@@ -7,7 +7,7 @@
 #include <strings.h>
 #include <unistd.h>
 
-/* What files of models and subcircuits are called, and LTspice's own. */
+/* The names of files of models and subcircuits, and LTspice's own. */
 static const char *const ENDINGS[] = {".lib", ".sub", ".mod", ".mdl", ".lbr",  ".dio", ".bjt",
                                       ".mos", ".jft", ".cap", ".ind", ".bead", ".res"};
 

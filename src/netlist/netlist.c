@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Says so when the text is not one; else false. */
+/* Reports a text that is no netlist; false if it is one. */
 static bool is_no_text(struct dalcs_netlist *netlist, const struct dalcs_source *source,
                        const char *text, size_t length, struct dalcs_diag *diag) {
     const char *nul = length > 0 ? memchr(text, '\0', length) : NULL;
@@ -44,7 +44,7 @@ static size_t end_of_line(const struct dalcs_lexer *lexer, size_t begin) {
     return newline != NULL ? (size_t)(newline - lexer->raw) : lexer->length;
 }
 
-/* What of an expression in braces or quotes is still open where a line ends. */
+/* The braces and quotes of an expression that are still open at the end of a line. */
 struct open_expression {
     int depth;
     bool quoted;
@@ -94,7 +94,7 @@ static bool begins_expression(struct open_expression *open, const char *raw, siz
     return open->depth > 0 || open->quoted;
 }
 
-/* Where the text of the next line that is neither blank nor a comment begins; it is *n_lines on. */
+/* The begin of the next line that is neither blank nor a comment, *n_lines further on. */
 static size_t next_text(const struct dalcs_lexer *lexer, size_t end, int *n_lines) {
     for (;;) {
         size_t p = end + 1;

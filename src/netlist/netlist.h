@@ -1,6 +1,6 @@
-/* netlist.h - a netlist as text: a title and cards made of tokens, each of which knows its place.
+/* netlist.h - a netlist as text: a title and cards made of tokens, each with its line and column.
  *
- * Nothing here knows what a resistor is. Lexical rules (doc/netlist.md says them for users):
+ * The meaning of a card is not its matter (circuit/). Lexical rules (doc/netlist.md has them for users):
  * the first line is the title; '*' starts a comment line, ';' a trailing comment, and so does '$'
  * between blanks; a line that starts with '+' continues the last card, over blank and comment
  * lines; '.end' ends it all. Blanks and commas separate; '=', '(' and ')' are tokens of their own;
@@ -70,7 +70,7 @@ struct dalcs_card {
     double parallel; /* so many of them, by m= of subcircuit calls; 0: one */
 };
 
-/* The losses that a command line asks for, beside the netlist (circuit/losses.h). */
+/* The losses of the options of a command line, beside those of the netlist (circuit/losses.h). */
 struct dalcs_losses_request {
     bool is_asked, has_window;
     double from, to; /* s; INFINITY: the end of the run */
@@ -83,7 +83,7 @@ struct dalcs_netlist {
     struct dalcs_dialect dialect; /* once it is read: what it is written in */
     struct dalcs_losses_request losses;
     bool
-        asks_steady; /* a steady state is asked for beside the netlist, which need not ask for anything */
+        asks_steady; /* the caller computes a steady state, so the netlist needs no analysis of its own */
     bool asks_response;      /* and the response around it */
     bool asks_sensitivities; /* or how it depends on values */
     bool has_seed;           /* the next is told, whatever .options seed= says */

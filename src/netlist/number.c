@@ -1,7 +1,7 @@
 /* number.c - SPICE numbers to doubles, correctly rounded.
  *
  * The digits are copied without their decimal point and the suffix becomes part of the exponent, so
- * that strtod sees "4700e-1" for 4.7e2: one rounding, and no decimal point for a locale to mistake.
+ * that strtod reads "4700e-1" for 4.7e2: one rounding, and no decimal point for a locale to mistake.
  * `mil` (25.4e-6) is the one suffix that multiplies. */
 #include "number.h"
 
@@ -168,7 +168,7 @@ static double convert(const struct mantissa *m, long long power, bool negative) 
         return negative ? -value : value;
     }
     power = power > 1000000 ? 1000000 : power < -1000000 ? -1000000 : power;
-    /* One more digit stands for everything that was cut off: rounding only asks whether it is 0. */
+    /* One more digit replaces all digits that were cut off: rounding depends only on whether they are 0. */
     snprintf(buffer, sizeof buffer, "%s%.*s%se%lld", negative ? "-" : "", m->n, m->digit,
              m->sticky ? "1" : "", m->sticky ? power - 1 : power);
     return strtod(buffer, NULL);

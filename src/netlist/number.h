@@ -12,7 +12,7 @@ enum dalcs_number_status {
     DALCS_NUMBER_UNDERFLOW  /* smaller than any double, but not 0 */
 };
 
-/* What stood after the digits, for warnings about suffixes that are often meant otherwise. */
+/* The suffix after the digits, for warnings about suffixes that are often meant otherwise. */
 struct dalcs_number {
     double value;
     char suffix;     /* 't' 'g' 'x' (meg) 'k' 'i' (mil) 'm' 'u' 'n' 'p' 'f' 'a', or 0 */

@@ -1,7 +1,7 @@
 /* second_analyses.c - more than one .tran, .op, .dc or .ac.
  *
  * A circuit has one analysis of each kind. ngspice runs them all: so does the script's `run`, which has the others
- * as commands. Between .if and .endif nobody knows yet which of them there are: those stay cards. */
+ * as commands. The branch of an .if is chosen later, so analyses between .if and .endif stay cards. */
 #include "netlist.h"
 
 #include <string.h>

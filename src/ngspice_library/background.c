@@ -1,4 +1,4 @@
-/* background.c - starts, halts and ends the thread. A halted one waits where the solver asks whether to go on. */
+/* background.c - starts, halts and ends the thread. A halted one waits in the solver's progress call. */
 #define _GNU_SOURCE /* pthread_timedjoin_np */
 #include "background.h"
 
@@ -60,7 +60,7 @@ enum dalcs_status ng_background_start(struct ng_background *b,
                                       void *argument, const char *command) {
     join(b);
     if (b->has_thread) {
-        return DALCS_E_OPTION; /* its own last callback asks for another one */
+        return DALCS_E_OPTION; /* its own last callback starts another one */
     }
     b->work = work;
     b->argument = argument;
@@ -69,7 +69,7 @@ enum dalcs_status ng_background_start(struct ng_background *b,
         return DALCS_E_NOMEM;
     }
     strcpy(b->command, command);
-    b->state = NG_RUNNING; /* before it begins: who asks at once is told so */
+    b->state = NG_RUNNING; /* before it begins: a query right after this call must see it */
     /* signals are for the program's own threads */
     sigset_t all, before;
     sigfillset(&all);

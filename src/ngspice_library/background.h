@@ -10,7 +10,7 @@
 enum ng_state {
     NG_IDLE,
     NG_RUNNING,
-    NG_HALTING, /* it will stop where the solver next asks */
+    NG_HALTING, /* it stops at the solver's next progress call */
     NG_HALTED,
     NG_CANCELLING
 };
@@ -24,7 +24,7 @@ struct ng_background {
     pthread_cond_t changed;
     enum ng_state state; /* behind the lock */
     pthread_t thread;
-    bool has_thread; /* that nobody has waited for */
+    bool has_thread; /* that has not been joined */
     void (*work)(void *argument, const char *command);
     void *argument;
     char *command; /* heap */

@@ -101,7 +101,7 @@ enum dalcs_status ng_circuit_read(struct ng_circuit **circuit, const char *name,
     if (status == DALCS_OK && dalcs_session_input_name(c->session, 0) != NULL) {
         dalcs_session_script_message(c->session, 0, 1, 1, DALCS_LEVEL_ERROR, NULL,
                                      "'external' on a source is not supported here");
-        status = DALCS_E_NETLIST; /* nobody is asked for its values */
+        status = DALCS_E_NETLIST; /* without a callback for its values */
     }
     const size_t n = status == DALCS_OK ? dalcs_session_n_script_lines(c->session) : 0;
     c->n_control = n > 0 ? n - 1 : 0; /* the last one is ours */

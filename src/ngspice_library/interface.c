@@ -105,7 +105,7 @@ bool ng_is_free(const char *command) {
         ng_talk_say(&ng_the.talk, "Note: the run that was halted ends here");
     }
     ng_background_end(&ng_the.background);
-    if (ng_the.is_busy) { /* one of its own callbacks asks */
+    if (ng_the.is_busy) { /* called by one of its own callbacks */
         ng_talk_warn(&ng_the.talk, "cannot execute \"%.200s\" while another command runs", command);
         return false;
     }

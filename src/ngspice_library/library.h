@@ -19,7 +19,7 @@
 #include "script.h"
 #include "talk.h"
 
-/* What ngSpice_Init was given; any may be NULL. */
+/* The arguments of ngSpice_Init; any may be NULL. */
 struct ng_callbacks {
     ng_send_status *status;
     ng_controlled_exit *exit;

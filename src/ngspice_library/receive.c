@@ -1,4 +1,4 @@
-/* receive.c - a sink that fills plots and tells the program of them. */
+/* receive.c - a sink that fills plots and calls the callbacks of the program. */
 #include "library.h"
 
 #include <stdlib.h>
@@ -22,7 +22,7 @@ static void send_status(struct ng_library *l, const char *text) {
 }
 
 static enum dalcs_status progress(void *user, double time, double stop) {
-    static const double often = 0.15; /* s; ngspice tells as often */
+    static const double often = 0.15; /* s; as ngspice */
     struct ng_library *l = user;
     const double at = l->tell.status != NULL ? now() : 0.0;
     if (at > l->told + often && stop > 0.0) {

@@ -1,4 +1,4 @@
-/* results.c - what programs ask for. */
+/* results.c - gives programs the vectors of a plot. */
 #include "library.h"
 
 #include <stdlib.h>

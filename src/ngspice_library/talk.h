@@ -13,7 +13,7 @@
 
 /* Zero-initialise, set the first three. */
 struct ng_talk {
-    ng_send_char *send_char; /* NULL: nobody listens */
+    ng_send_char *send_char; /* NULL: no callback */
     int id;
     void *user;
     FILE *out;  /* of print and echo */

@@ -23,7 +23,7 @@ struct ng_vector {
 
 void ng_vector_destroy(struct ng_vector *vector);
 
-/* Room for so many values in all. `keeps`: whoever reads the present ones may go on. */
+/* Room for so many values in all. `keeps`: the present values stay valid for their readers. */
 enum dalcs_status ng_vector_reserve(struct ng_vector *vector, size_t need,
                                     bool keeps) DALCS_MUST_CHECK;
 

@@ -1,6 +1,6 @@
 /* atomic_file.c - write to a temporary name in the same folder, rename when complete.
  *
- * A run that fails leaves an earlier good file alone; what it had goes under a name that says so.
+ * A run that fails leaves an earlier good file alone; the rows that it had get the name .partial.
  * No fsync: results can be computed again, a power cut is not worth the wait. */
 #include "atomic_file.h"
 
@@ -61,7 +61,7 @@ static void name_temporary(char *text, size_t size, const char *path, unsigned a
     snprintf(text, size, "%s.partial-%s", path, suffix);
 }
 
-/* What goes to the standard output is kept where nobody else sees it, until it is complete. */
+/* The standard output is written to an unnamed file first, until it is complete. */
 static int open_unnamed(void) {
     FILE *unnamed = tmpfile();
     const int descriptor = unnamed ? fcntl(fileno(unnamed), F_DUPFD_CLOEXEC, 3) : -1;
@@ -100,7 +100,7 @@ static int open_temporary(struct dalcs_atomic_file *file) {
     return descriptor;
 }
 
-/* What a symbolic link leads to; else the path as given, which is how messages should name it. */
+/* The target of a symbolic link; else the path as given, for messages. */
 static char *find_target(const char *path) {
     struct stat status;
     bool is_link = lstat(path, &status) == 0 && S_ISLNK(status.st_mode);

@@ -80,7 +80,7 @@ void dalcs_curve_add(struct dalcs_curve *curve, double time, double value) {
     column->last = point;
     curve->lowest = fmin(curve->lowest, value);
     curve->highest = fmax(curve->highest, value);
-    /* What looked like a swing before the signal really moved may have been rounding. */
+    /* A swing before the signal moved may have been rounding. */
     double range = curve->highest - curve->lowest;
     if (range > 2.0 * curve->turns_range) {
         curve->turns.n = 0;

@@ -280,7 +280,7 @@ enum dalcs_status dalcs_figure_draw(struct dalcs_figure *figure, const struct da
     }
     struct dalcs_conduction conduction = {0};
     enum dalcs_status status = dalcs_figure_compose(figure, report);
-    /* Where events were dropped nobody knows who conducts at the end. */
+    /* Where events were dropped the conducting elements at the end are unknown. */
     if (status == DALCS_OK && report && !figure->conduction && report->n_events_dropped == 0) {
         status = dalcs_conduction_add_report(&conduction, report);
         dalcs_conduction_sort(&conduction);

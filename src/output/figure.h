@@ -90,7 +90,7 @@ enum dalcs_status dalcs_figure_begin_panels(struct dalcs_figure *figure, const c
 void dalcs_figure_choose(struct dalcs_figure_panel *panel, const char *const *name,
                          const int *group, size_t n, int wanted);
 
-/* Settles what is to be seen, once all rows are there. `report` knows the jumps; may be NULL. */
+/* Chooses what is drawn, once all rows are there. `report` has the jumps; may be NULL. */
 enum dalcs_status dalcs_figure_compose(struct dalcs_figure *figure,
                                        const struct dalcs_report *report) DALCS_MUST_CHECK;
 

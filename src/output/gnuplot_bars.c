@@ -1,7 +1,7 @@
 /* gnuplot_bars.c - what diodes and switches do: bars below the panels, lines at events.
  *
  * A bar is drawn column by column. Where an element changes sides within a column the bar's shade
- * there tells the part of the time in which it conducts. */
+ * there is the part of the time in which it conducts. */
 #include "gnuplot_page.h"
 
 #include <math.h>

@@ -63,7 +63,7 @@ static int longest_name(const struct dalcs_figure *figure) {
     return longest;
 }
 
-/* Decimals that tell the numbers of an axis apart. */
+/* Decimals with which the numbers of an axis differ. */
 static int count_decimals(double range) {
     return (int)fmax(0.0, -floor(log10(range / TICS)));
 }
@@ -197,7 +197,7 @@ void dalcs_gnuplot_write_margins(FILE *stream, const struct dalcs_gnuplot_page *
     fprintf(stream, "set bmargin at screen %.4f\nset tmargin at screen %.4f\n", bottom, top);
 }
 
-/* gnuplot does not ask whether the numbers of a narrow axis touch. */
+/* gnuplot lets the numbers of a narrow axis overlap. */
 static void write_distance(FILE *stream, const struct dalcs_gnuplot_page *page, int v, double start,
                            double stop) {
     const double room = (page->place[v].right - page->place[v].left) * page->width;

@@ -17,7 +17,7 @@
 #define OVERLAP    0.02 /* of a panel's width */
 #define BAND       0.3 /* opacity: two that lie on each other, and a line in either, can be told apart */
 
-enum { MAX_TITLE = 100, PIXELS_PER_INCH = 100, TITLE_CHARACTER = 10, LEFT_OUT = 220 };
+enum { MAX_TITLE = 100, PIXELS_PER_INCH = 100, LEFT_OUT = 220 };
 
 static const char *unit_prefix(double scale) {
     const char *prefix = dalcs_quantity_prefix(scale);
@@ -48,7 +48,7 @@ static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, i
                        double time_scale) {
     const struct dalcs_figure_view *view = &figure->view[v];
     double scale = dalcs_gnuplot_panel_scale(figure, v, p);
-    /* A hundredth of what the numbers of the axis tell apart. */
+    /* A hundredth of the resolution of the numbers at the axis. */
     const int digits = 2 + dalcs_gnuplot_count_digits(view->low[p] / scale, view->high[p] / scale);
     for (int i = 0; i < figure->panel[p].n; i++) {
         if (has_bands(figure, v)) {
@@ -71,11 +71,15 @@ static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, i
     }
 }
 
+static bool is_svg(const struct dalcs_figure *figure) {
+    return strcasecmp(strrchr(figure->path, '.'), ".svg") == 0;
+}
+
 static void write_terminal(FILE *stream, const struct dalcs_figure *figure,
                            const struct dalcs_gnuplot_page *page) {
     const char *dot = strrchr(figure->path, '.');
     const char *background = figure->theme->background;
-    if (strcasecmp(dot, ".svg") == 0) {
+    if (is_svg(figure)) {
         fprintf(stream, "set terminal svg size %d,%d", page->width, page->height);
     } else if (strcasecmp(dot, ".pdf") == 0) {
         fprintf(stream, "set terminal pdfcairo size %gin,%gin",
@@ -87,10 +91,11 @@ static void write_terminal(FILE *stream, const struct dalcs_figure *figure,
             background);
 }
 
-/* Of the title, in characters: what is on its right keeps its place. */
-static int title_length(const struct dalcs_gnuplot_page *page, bool has_left_out) {
+/* Of the title, in characters, so that it neither leaves the page nor reaches the note on its right. A character of
+ * a title has 0.5 to 0.54 em, in a font of 18 pixels in SVG and of 15 pt elsewhere, 21 pixels at most. */
+static int title_length(const struct dalcs_gnuplot_page *page, bool in_pixels, bool has_left_out) {
     const double room = (1.0 - page->place[0].left) * page->width - (has_left_out ? LEFT_OUT : 0);
-    return (int)fmin(MAX_TITLE, room / TITLE_CHARACTER);
+    return (int)fmin(MAX_TITLE, room / (in_pixels ? 10.0 : 11.3));
 }
 
 static void write_header(FILE *stream, const struct dalcs_figure *figure,
@@ -119,7 +124,7 @@ static void write_title(FILE *stream, const struct dalcs_figure *figure,
     }
     fputs("set label 1 ", stream);
     dalcs_gnuplot_write_quoted(stream, figure->title + strspn(figure->title, "* "),
-                               title_length(page, n_left_out > 0));
+                               title_length(page, is_svg(figure), n_left_out > 0));
     fprintf(stream, " at screen %.4f, screen %.4f left font ',%d' textcolor rgb '%s'\n",
             page->place[0].left, page->title_at, page->font + 4, figure->theme->text);
     if (n_left_out > 0) {

@@ -1,4 +1,4 @@
-/* multipliers_chart.c - what is inside the unit circle dies away; what is outside has the name of its state. */
+/* multipliers_chart.c - the multipliers and the unit circle. Those outside have the name of their state. */
 #include "multipliers_chart.h"
 
 #include "chart_file.h"

@@ -49,7 +49,7 @@ enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
     return dalcs_table_init_as(table, path, dalcs_table_find_format(path), main);
 }
 
-/* What a stream that failed means; the first errno stays. */
+/* The status for a stream that failed; the first errno is kept. */
 static enum dalcs_status note_error(struct dalcs_table *table) {
     if (table->file.error == 0) {
         table->file.error = errno != 0 ? errno : EIO;

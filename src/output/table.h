@@ -47,7 +47,7 @@ const struct dalcs_table_format *dalcs_table_find_format(const char *path);
 enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
                                    enum dalcs_analysis main) DALCS_MUST_CHECK;
 
-/* The same in a format that the name does not tell; NULL is DALCS_E_OPTION. */
+/* The same in a given format; NULL is DALCS_E_OPTION. */
 enum dalcs_status dalcs_table_init_as(struct dalcs_table *table, const char *path,
                                       const struct dalcs_table_format *format,
                                       enum dalcs_analysis main) DALCS_MUST_CHECK;

@@ -32,7 +32,7 @@ const struct dalcs_theme dalcs_theme_dark = {
               "#bdc1c6"},
 };
 
-/* For a printer without colours: two greys, and patterns that tell the curves apart. */
+/* For a printer without colours: two greys, and a pattern for each curve. */
 const struct dalcs_theme dalcs_theme_print = {
     .name = "print",
     .background = "#ffffff",

@@ -1,4 +1,4 @@
-/* decibels.c - which signals a Bode plot shows, where nobody says. */
+/* decibels.c - the default signals of a Bode plot. */
 #include "decibels.h"
 
 #include "figure.h"

@@ -84,7 +84,7 @@ static enum dalcs_status refuse_name(struct parser *parser, const char *name) {
         }
     }
     all = dalcs_names_join(&names, MAX_NAMES, parser->arena);
-    const char *hint = all ? dalcs_arena_printf(parser->arena, "it has %s", all) : NULL;
+    const char *hint = all ? dalcs_arena_printf(parser->arena, "the file has %s", all) : NULL;
     dalcs_names_finish(&names);
     dalcs_diag_add(parser->diag, DALCS_ERROR, NULL, hint, "there is no signal '%s'%s%s%s", name,
                    nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");

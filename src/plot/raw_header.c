@@ -50,7 +50,7 @@ static bool has_word(const char *text, size_t length, const char *word) {
     return false;
 }
 
-/* What the header says of how numbers are written. */
+/* The number format, from the header. */
 static void read_flags(struct dalcs_raw_plot *plot, const char *value, const char *end) {
     const size_t length = (size_t)(end - value);
     plot->complex_values = strncasecmp(value, "complex", 7) == 0;

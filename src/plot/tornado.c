@@ -59,7 +59,7 @@ static bool is_alone(const struct dalcs_waveforms *w, size_t p, size_t n) {
     return true;
 }
 
-/* How many values .wcase has varied; 0: the table is another one. */
+/* The number of values that .wcase has varied; 0: it is another table. */
 static size_t count_alone(const struct dalcs_waveforms *w) {
     size_t n = w->n_columns;
     for (; n > 0; n--) {

@@ -117,7 +117,7 @@ static enum rounding round_to(uint64_t unit, const struct scaled *s, uint64_t *d
     return is_tie || distance + 4 > half ? UNDECIDED : KEEPS;
 }
 
-/* value = digits * 10^(power - 16) rounded; false when the product cannot tell. value > 0. */
+/* value = digits * 10^(power - 16) rounded; false when the product has too few digits to decide. value > 0. */
 static bool find_digits_fast(const struct dalcs_decimal *decimal, double value, uint64_t *digits,
                              int *power) {
     int binary = 0;

@@ -65,7 +65,7 @@ static void write_certificate(struct dalcs_json *json, const struct dalcs_report
     dalcs_json_close(json, '}');
 }
 
-/* Of every law that was checked the worst defect. */
+/* The worst defect of every law that was checked. */
 static void write_audit(struct dalcs_json *json, const struct dalcs_report *report) {
     if (report->audit.mode == NULL) {
         return;

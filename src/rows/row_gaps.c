@@ -162,7 +162,8 @@ static enum dalcs_status look_at_stepped(struct dalcs_row_gaps *gaps,
     return DALCS_OK;
 }
 
-/* What such a part makes of sources is a fixed sum of them: it bends as the one does that bends most for its size. */
+/* The outputs of such a part are fixed sums of sources: they bend no more than the source that bends most for its
+ * size. */
 static void look_at_algebraic(struct dalcs_row_gaps *gaps, const struct dalcs_radau_part *part) {
     const struct dalcs_component *c = part->component;
     for (int i = 0; i < c->n_varying && gaps->rows->part[part->index].n_signals > 0; i++) {

@@ -42,7 +42,7 @@ static bool give_basis(struct dalcs_row_gaps *gaps, int k) {
     return true;
 }
 
-/* Where all of a unit is rounding of the other one nothing bends. */
+/* If all signals of a unit are rounding beside the other unit, none of them bends. */
 static void find_crosses(struct dalcs_row_gaps *gaps, const struct dalcs_radau_part *part) {
     const struct dalcs_rows_part *p = &gaps->rows->part[part->index];
     for (int i = 0; i < p->n_signals; i++) {

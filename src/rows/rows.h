@@ -33,7 +33,7 @@ struct dalcs_rows_part {
     int map_rows;                /* the rows of a map of it */
     int offset[DALCS_MAX_NODES]; /* [s + 1] of the nodes in an answer, in Newton's order */
 
-    /* Of a step that recurs the polynomials are one map of its inputs, from the second time on that it has rows. */
+    /* The polynomials of a step that recurs are one map of its inputs, from its second time with rows on. */
     struct dalcs_row_map {
         long number;       /* of the step; 0: none yet (stage_brief.h) */
         double *map;       /* [rows][columns] by columns; NULL: asked for once */

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Tells the host what is about to happen. */
+/* Announces the next command to the host. */
 static enum dalcs_status tell(struct dalcs_script *script, const struct dalcs_statement *s) {
     const char *rest;
     if (script->host->heard == NULL) {

@@ -22,7 +22,7 @@ struct meaning {
     const char *name;
     const char *text;  /* NULL: it cannot be measured, */
     const char *cause; /* for this */
-    bool is_result;    /* of a measurement: cards know it by its name */
+    bool is_result;    /* of a measurement: cards refer to it by its name */
 };
 
 struct meanings {

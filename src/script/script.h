@@ -23,7 +23,8 @@ struct dalcs_script_host {
     void *user;
     const char *const *set; /* [n_set] what is set before: "name", "name=value" */
     size_t n_set;
-    bool is_strict; /* what cannot be said or shown is an error: somebody waits for the answer */
+    bool
+        is_strict; /* a command that has no equivalent is an error: a program waits for its result */
     bool lacks_circuit; /* nothing can be run or altered: the netlist stands for none */
     /* Does the host execute this word itself? NULL: none. */
     bool (*knows)(void *user, const char *word);

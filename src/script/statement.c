@@ -80,7 +80,7 @@ static const struct {
 
 enum { N_WORDS = sizeof WORDS / sizeof WORDS[0] };
 
-/* Of ngspice; they show, ask or compute what dalcs does elsewhere or not at all. */
+/* Commands of ngspice whose job is done elsewhere in dalcs, or not at all. */
 static const char *const SKIPPED[] = {
     "gnuplot",    "asciiplot",  "iplot",    "remcirc",   "listing",   "noise",         "pz",
     "sens",       "tf",         "disto",    "sp",        "pss",       "status",        "show",

@@ -118,7 +118,7 @@ static enum dalcs_status append_formula(struct growing *g, const struct dalcs_st
     return status;
 }
 
-/* {formula}: what a measurement's card cannot know before the run, it finds itself. */
+/* {formula}: a value that is not known before the run is computed by the measurement. */
 static enum dalcs_status append_braces(struct growing *g, const struct dalcs_statement *s,
                                        const char *formula) {
     struct dalcs_script *script = g->script;

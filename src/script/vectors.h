@@ -62,7 +62,7 @@ enum dalcs_status dalcs_vectors_begin(struct dalcs_vectors *vectors, const struc
 enum dalcs_status dalcs_vectors_row(struct dalcs_vectors *vectors, double scale,
                                     const double *value);
 
-/* May the script ask for this signal? */
+/* May the script read this signal? */
 bool dalcs_vectors_is_used(const struct dalcs_vectors *vectors, const char *name);
 
 /* By any of its names: v(out), out, i(l1), l1#branch, @l1[i], time; of the plot, else of "const". NULL: there is

@@ -1,4 +1,4 @@
-/* audit_events.c - what the report tells of events and jumps, against both sides of the instant. */
+/* audit_events.c - compares events and jumps of the report with both sides of the instant. */
 #include "audit_reader.h"
 
 #include "audit_told.h"
@@ -27,7 +27,7 @@ static int part_of(const struct dalcs_audit_run *a, int device) {
     return k >= 0 && a->radau->part[k].kind == DALCS_PART_STEPPED ? k : -1;
 }
 
-/* What was, where the part's segment ended at t, and what is. */
+/* The values before t, if the part's segment ended at t, and after. */
 static void read_both(const struct dalcs_audit_run *a, int part, double t) {
     dalcs_audit_look_before(a->audit, part, !a->part[part].was_left);
     dalcs_audit_look_behind(a->audit, part, t);

@@ -181,7 +181,7 @@ static struct verdict of_memory(const struct dalcs_audit_gates *a, const struct 
     return v;
 }
 
-/* Where it lost count, q that rises with the clock is the first of a cycle. */
+/* After a lost count, q that rises with the clock is the first of a cycle. */
 static struct verdict of_counter(const struct dalcs_audit_gates *a,
                                  const struct dalcs_logic_gate *g, struct audit_gate *s, bool now) {
     struct verdict v = {.is_known = true};

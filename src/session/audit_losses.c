@@ -95,7 +95,7 @@ void dalcs_audit_losses_begin(struct dalcs_audit_losses *a, const struct dalcs_l
     }
 }
 
-/* What a signal is held to: its largest value so far, where the auditor knows that, else in the stretch. */
+/* The scale of a signal: its largest value so far, if the auditor has it, else in the stretch. */
 static double scale_of(const struct dalcs_audit_losses *a, const struct dalcs_stretch *s,
                        int signal) {
     const double *coefficient = s->coefficient[signal];

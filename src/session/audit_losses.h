@@ -9,7 +9,7 @@ struct dalcs_element_losses;
 
 /* Zero-initialise. */
 struct dalcs_audit_losses {
-    struct dalcs_audit_run *run; /* NULL: nobody looks on */
+    struct dalcs_audit_run *run; /* NULL: no audit */
     int n_looked;                /* devices that were looked at, one after the other at first */
     int device;                  /* that is looked at in this stretch; -1: none */
     struct dalcs_loss before;    /* of it */
@@ -22,7 +22,7 @@ void dalcs_audit_losses_begin(struct dalcs_audit_losses *a, const struct dalcs_l
 void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
                             const struct dalcs_stretch *stretch);
 
-/* What is told of device k. */
+/* The values of device k. */
 void dalcs_audit_losses_told(const struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
                              int k, const struct dalcs_element_losses *told);
 

@@ -17,7 +17,7 @@
 static const double item_work = 800.0, signal_work = 500.0, state_work = 2500.0,
                     stretch_work = 300.0;
 
-/* What checks may cost of that. */
+/* The share of that which checks may cost. */
 static const double share = 0.03;
 
 /* Stretches in which each measurement is asked at one time; later one of them is, which is drawn. */
@@ -94,7 +94,7 @@ static struct dalcs_audit_number number_of(int k, double scale) {
 
 /* ---- Windows ------------------------------------------------------------------------------------- */
 
-/* What of the stretch the card is about, by the card; false: nothing. */
+/* The window of the card within the stretch; false: empty. */
 static bool find_window(const struct dalcs_measuring *m, const struct dalcs_measured *item,
                         double *from, double *to) {
     const struct dalcs_instant *trig = &item->instant[0];

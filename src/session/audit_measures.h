@@ -7,7 +7,7 @@
 
 /* Zero-initialise. */
 struct dalcs_audit_measures {
-    struct dalcs_audit_run *run; /* NULL: nobody looks on */
+    struct dalcs_audit_run *run; /* NULL: no audit */
     struct dalcs_measuring_watch watch;
 
     struct audit_item {

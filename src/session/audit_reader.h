@@ -8,7 +8,7 @@
 struct audit_members {
     int n_nodes, n_devices, n_lambdas;
     int *node, *node_column;
-    int *device; /* [n_devices] with currents of their own; others are the auditor's matter */
+    int *device; /* [n_devices] with currents of their own; the auditor computes the others */
     int *lambda, *lambda_pair;
     int *
         bystander; /* [n_columns] which of the bystanders it is, whom sources alone decide; -1: none */
@@ -29,7 +29,7 @@ struct audit_members {
     struct dalcs_audit_batch *batch;
 };
 
-/* Instructions of a segment beside its maps, at least, that recurs and that nobody reads. */
+/* Instructions of a segment beside its maps, at least, of one that recurs and has no rows. */
 static const double dalcs_audit_segment_work = 1200.0;
 
 /* audit_revisit.c: the present segment, while one that has gone by is in its place. */
@@ -43,7 +43,7 @@ void dalcs_audit_go_back(void *user, int part);
 /* What the auditor has gathered of a part is asked. */
 void dalcs_audit_run_settle(struct dalcs_audit_run *a, int part);
 
-/* What a sample may cost of a run: with the counts above the netlists of the repository stay below 5 %. */
+/* The share of a run that a sample may cost: with the counts above the netlists of the repository stay below 5 %. */
 static const double dalcs_audit_share = 0.03;
 
 /* Instructions, about, of a state of a part. */

@@ -73,7 +73,7 @@ static inline void dalcs_audit_run_enter(struct dalcs_audit_run *a) {
     }
 }
 
-/* Segments have been passed at t: what the report tells of it by now, if that is anything. */
+/* Segments have been passed at t: compares the entries of the report up to t, if there are any. */
 void dalcs_audit_run_told_now(struct dalcs_audit_run *a, double t);
 
 static inline void dalcs_audit_run_told(struct dalcs_audit_run *a, double t) {

@@ -51,7 +51,7 @@ static enum dalcs_status report_laws(const struct dalcs_audit_run *a) {
     return list_laws(a, list, &report->audit.n_laws);
 }
 
-/* Where the netlist asks for the number that is wrong; NULL: it is a law of the waveform. */
+/* The card of the netlist whose result is wrong; NULL: it is a law of the waveform. */
 static const struct dalcs_location *place_of(const struct dalcs_audit_run *a,
                                              const struct dalcs_audit_summary *found) {
     const struct dalcs_circuit *c = &a->run->s->circuit;
@@ -126,7 +126,7 @@ static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
     return DALCS_REFUTED;
 }
 
-/* Where the run fell back to implicit Euler, nobody controls the error: it is told. */
+/* Where the run fell back to implicit Euler the error is not controlled: a note says so. */
 static void tell_coarse(const struct dalcs_audit_run *a) {
     const struct dalcs_audit_summary coarse = dalcs_audit_summarise_coarse(a->audit);
     if (coarse.index < 0 || coarse.defect <= dalcs_audit_most_allowed(a)) {

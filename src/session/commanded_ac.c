@@ -1,4 +1,4 @@
-/* commanded_ac.c - .ac of a circuit whose switches follow a clock: around an operating point they stand still, and what
+/* commanded_ac.c - .ac of a circuit whose switches follow a clock: around an operating point they do not move, and what
  * they do to a small signal is not there. */
 #include "steady.h"
 

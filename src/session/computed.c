@@ -6,7 +6,7 @@
 
 /* ---- One value --------------------------------------------------------------------------------------- */
 
-/* What a formula asks of a row. */
+/* The columns of a row that a formula reads. */
 struct asked {
     const struct dalcs_computing *c;
     const double *row;

@@ -17,11 +17,11 @@ struct dalcs_cosimulation {
     double *value, *given;
 };
 
-/* DALCS_E_OPTION and a message where an analysis meets external sources and nobody gives them values. */
+/* DALCS_E_OPTION and a message where an analysis has external sources and no exchange gives them values. */
 enum dalcs_status dalcs_cosimulation_check(const struct dalcs_run *r,
                                            enum dalcs_analysis analysis) DALCS_MUST_CHECK;
 
-/* Asks for the values at 0, before the operating point. */
+/* Calls the exchange at 0, before the operating point. */
 enum dalcs_status dalcs_cosimulation_start(struct dalcs_cosimulation *c, struct dalcs_run *r,
                                            struct dalcs_logic_run *logic) DALCS_MUST_CHECK;
 

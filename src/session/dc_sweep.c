@@ -211,7 +211,7 @@ static enum dalcs_status keep_modes(struct sweep *s, const struct dalcs_euler *e
     return DALCS_OK;
 }
 
-/* A guess, no more: the answer is proved anew. Switches remember by it where they were. */
+/* A first guess: the answer is verified again. Switches with hysteresis keep their sides by it. */
 static void hand_modes_on(const struct sweep *s, struct dalcs_euler *e) {
     bool same = s->n_systems == e->n_components;
     for (int i = 0; i < e->n_components && same; i++) {

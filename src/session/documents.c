@@ -1,4 +1,4 @@
-/* documents.c - what a session knows, as JSON in memory. */
+/* documents.c - results of a session as JSON in memory. */
 #include "check_json.h"
 #include "report.h"
 #include "session_internal.h"

@@ -1,7 +1,7 @@
 /* driven_loop.c - the loop around which sources drive a current that nothing limits.
  *
  * The elements that a witness names carry current without resistance: sources add their voltage in
- * one direction and take it in the other, diodes let it pass in one, for their threshold. The loop is a
+ * one direction and take it in the other, diodes conduct in one, at their threshold. The loop is a
  * cycle of positive gain, found by the paths of Bellman and Ford. */
 #include "refusal.h"
 

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Is that one whose rows are asked for? *next: the first such behind it. */
+/* Is that a period with rows? *next: the first such behind it. */
 static bool is_written(const struct dalcs_envelope *e, long n, long *next) {
     const struct dalcs_envelope_card *card = &e->run->s->circuit.envelope;
     bool is = false;

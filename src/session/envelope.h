@@ -94,7 +94,7 @@ struct dalcs_envelope {
 
 /* ---- envelope_asked.c --------------------------------------------------------------------------- */
 
-/* Where a message is about: the card, or NULL. */
+/* The card that a message is about, or NULL. */
 const struct dalcs_location *dalcs_envelope_place(const struct dalcs_run *r);
 
 /* ---- envelope_rows.c ---------------------------------------------------------------------------- */

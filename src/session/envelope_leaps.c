@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of the error allowed, what one leap may have: those of several add up before they die away. */
+/* The share of the allowed error for one leap: the errors of several add up before they die away. */
 static const double share = 0.1;
 
 /* What F is off by goes with the square of the length, and so x with the third power: twice the length is eight times

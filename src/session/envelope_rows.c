@@ -1,7 +1,7 @@
 /* envelope_rows.c - rows of one period after the other are one waveform. */
 #include "envelope.h"
 
-/* Rows in a period that is written, where nobody asks for another distance. */
+/* Default number of rows in a period that is written. */
 static const double rows_in_a_period = 100.0;
 
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {

@@ -25,7 +25,7 @@ static bool is_level(const struct dalcs_stimulus *s) {
 /* Of pulses that are written out as straight lines: four of each. */
 static const double most_pulses = 1e4;
 
-/* What dies away has done so after so many time constants, to the last bit: ln(2^53). */
+/* An exponential has died away after so many time constants, to the last bit: ln(2^53). */
 static const double time_constants = 36.8;
 
 static enum dalcs_status refuse(struct dalcs_run *r, int stimulus) {

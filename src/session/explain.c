@@ -57,7 +57,7 @@ static void add_coupled_coils(const struct dalcs_circuit *c, bool *is_named) {
 }
 
 /* The names of a witness in the session's arena; NULL, and 0 of them, without memory. To a loop belongs
- * also what no equation of its own tells: the partners of a coil, and shorts. */
+ * also devices without an equation of their own: the partners of a coil, and shorts. */
 static const char **whole_witness(struct dalcs_session *s, const struct dalcs_witness *w,
                                   size_t *n_elements) {
     const struct dalcs_circuit *c = &s->circuit;
@@ -307,7 +307,7 @@ enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_
         explain_growth(s, &e->component[e->failed_system], e->failed_time);
         return status;
     }
-    /* Radau sees what comes right behind a time; a step of Euler sees its end. */
+    /* Radau fails just after a time, a step of Euler at its end. */
     bool is_from = !e->at_operating_point && (e->looks_behind || r->method != DALCS_METHOD_EULER);
     const char *when = e->at_operating_point              ? "at the operating point"
                        : is_from && e->failed_time == 0.0 ? "from t = 0 on"

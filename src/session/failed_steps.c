@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Steps whose messages are kept: of a sweep in which thousands fail nobody reads more, and the report has all. */
+/* Steps whose messages are kept, of a sweep in which thousands fail. The report has all of them. */
 enum { MOST_TOLD = 10 };
 
 bool dalcs_step_lets_go_on(enum dalcs_status status) {

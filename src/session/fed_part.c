@@ -1,4 +1,4 @@
-/* fed_part.c - the part of a circuit into which current sources force a current that nothing lets out.
+/* fed_part.c - the part of a circuit into which current sources force a current that cannot leave it.
  *
  * What conducts both ways makes its two nodes one. Of what is left, diodes that the witness names let
  * current pass one way. A part that no diode leaves, and that the sources fill, is the reason; or one
@@ -50,7 +50,7 @@ static void merge(struct search *g) {
     }
 }
 
-/* Adds what diodes let the current go on to, or come from. */
+/* Adds the nodes that the current reaches through diodes, or comes from. */
 static void close_part(struct search *g) {
     const struct dalcs_circuit *c = g->r->circuit;
     for (bool more = true; more;) {

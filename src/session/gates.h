@@ -15,7 +15,7 @@ enum dalcs_status dalcs_refuse_gates(struct dalcs_run *r, const struct dalcs_log
 enum dalcs_status dalcs_gates_operating_point(struct dalcs_euler *e, struct dalcs_logic_run *logic,
                                               bool sources_at_start) DALCS_MUST_CHECK;
 
-/* Says so where they have found none. */
+/* Reports gates that have found no state of rest. */
 void dalcs_warn_of_restless_gates(struct dalcs_run *r, struct dalcs_logic_run *logic);
 
 /* What samples may take at the end of a step of implicit Euler. */

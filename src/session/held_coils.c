@@ -44,7 +44,7 @@ static void tie_nodes(struct graph *g, const struct dalcs_circuit *c) {
     }
 }
 
-/* Those whose current is a state of its own: perfect coupling makes some follow from others. */
+/* Coils whose current is a state. With perfect coupling the currents of some follow from others. */
 static void list_coils(struct graph *g, const struct dalcs_circuit *c, struct dalcs_euler *held) {
     const struct dalcs_state *state = held->network->state;
     for (int i = 0; i < c->n_devices; i++) {

@@ -2,7 +2,7 @@
  *
  * The current stops at once, and the voltage is an impulse: a jump like any other, but hardly ever what
  * was meant. A real switch would burn. The circuit's graph shows which switch it was: what conducts
- * after the jump makes its two nodes one, and between what is left run coils. One that jumps is cut off
+ * after the jump makes its two nodes one. The coils connect the nodes that remain. One that jumps is cut off
  * by a switch that has just opened and lies with it on a loop of coils and of what has just opened: around any other
  * loop its flux could not go. */
 #include "losses_run.h"
@@ -199,7 +199,7 @@ static enum dalcs_status find_cuts(struct dalcs_run *r, const struct dalcs_euler
     return status;
 }
 
-/* A system file has no graph: the impulses tell. */
+/* A system file has no graph: the impulses are read. */
 static enum dalcs_status judge_by_flux(struct dalcs_run *r, const struct dalcs_euler_jump *j,
                                        int farthest) {
     const struct dalcs_system *s = &r->s->network.system[j->system];

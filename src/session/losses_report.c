@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What a run's losses are made into. */
+/* The losses of a run, while they are written into the report. */
 struct account {
     struct dalcs_run *r;
     const struct dalcs_losses_sum *sum;

@@ -1,4 +1,4 @@
-/* losses_run.c - what the engine tells while it runs, for the sums of losses. */
+/* losses_run.c - passes segments and instants of a run on to the sums of losses. */
 #include "losses_run.h"
 
 #include <stdlib.h>
@@ -87,7 +87,7 @@ void dalcs_losses_run_before_start(struct dalcs_losses_run *losses) {
     losses->sum.knows_sides = true;
 }
 
-/* What was stored before a jump at the start. */
+/* The energy stored before a jump at the start. */
 static void note_first(struct dalcs_losses_run *losses, const struct dalcs_euler_jump *j) {
     static const double no_inputs[1] = {1.0}; /* states are columns only */
     for (int i = 0; i < losses->network->n_states; i++) {

@@ -229,7 +229,7 @@ void dalcs_measures_skip(struct dalcs_measures *measures, double t) {
 
 /* ---- Implicit Euler and rows ------------------------------------------------------------------- */
 
-/* What a step of implicit Euler gives and takes is by its end: so its energies add up to the ledger's. */
+/* The powers of a step of implicit Euler are those at its end: so its energies add up to the ledger's. */
 static void add_constant_stretch(struct dalcs_measures *measures) {
     struct dalcs_measuring *m = &measures->measuring;
     for (int k = 0; k < m->stretch.n_signals; k++) {

@@ -174,7 +174,7 @@ static enum dalcs_status list_signals(struct dalcs_arena *arena, struct dalcs_ci
     return DALCS_OK;
 }
 
-/* A session of the same circuit that records the diodes' currents and nothing else. */
+/* A session of the same circuit that records only the currents of diodes. */
 static enum dalcs_status make_shadow(struct dalcs_session *s, int n, struct dalcs_session *shadow) {
     struct dalcs_circuit *c = &shadow->circuit;
     *c = s->circuit;

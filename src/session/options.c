@@ -149,7 +149,7 @@ static enum dalcs_status choose_compression(struct dalcs_run *r) {
     return DALCS_OK;
 }
 
-/* What rows of a fixed step are for, orders and comparisons, added ones would only disturb. */
+/* Rows of a fixed step serve orders and comparisons, which added rows would disturb. */
 static enum dalcs_status choose_filling(struct dalcs_run *r) {
     const struct dalcs_run_options *o = r->options;
     const struct dalcs_circuit_options *netlist = &r->s->circuit.options;
@@ -224,7 +224,7 @@ static enum dalcs_status choose_step(struct dalcs_run *r) {
         r->h = asked;
     } else if (t->max_step > 0.0 && (t->step == 0.0 || has_memory(&s->network))) {
         r->h = t->max_step;
-    } else { /* without memory only the times that are printed matter */
+    } else { /* without states, steps end at the printed times only */
         r->h = t->step > 0.0 ? t->step : t->stop / 1000.0;
     }
     r->fixed_step = r->method != DALCS_METHOD_AUTO && r->method != DALCS_METHOD_EULER ? asked : 0.0;

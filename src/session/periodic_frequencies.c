@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Frequencies where nobody asks for any, over that of the orbit: half of it, without the point itself, is as far as
+/* Default frequencies, over that of the orbit: half of it, without the point itself, is as far as
  * a controller sees. */
 static const double usual_from = 1e-4, usual_to = 0.5;
 

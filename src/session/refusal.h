@@ -35,14 +35,14 @@ struct dalcs_loop_arc {
 enum dalcs_status dalcs_driven_loop_find(const struct dalcs_refusal *refusal,
                                          struct dalcs_loop_arc *arc, int *n_arcs) DALCS_MUST_CHECK;
 
-/* A part of the circuit that current sources fill or drain and nothing else can empty or fill. */
+/* A part of the circuit that current sources charge or discharge, with no other way for this current. */
 struct dalcs_fed_part {
     bool found;
     bool is_filled; /* else drained */
     bool *contains; /* [n_nodes] */
     double net;     /* A, into it */
     double *into;   /* [n_devices] A, of the current sources that cross into it */
-    bool *blocks;   /* [n_devices] what crosses and lets no such current pass */
+    bool *blocks;   /* [n_devices] between the part and the rest, and blocks such a current */
     int n_sources, n_blockers;
 };
 

@@ -7,7 +7,7 @@
 /* Elements of a kind that a sentence lists, and nodes. */
 enum { DALCS_REFUSAL_MOST_LISTED = 12 };
 
-/* What is left over, as a part of the sources, when they have only just stopped to agree. */
+/* The sum of the sources over their size, just after they have stopped to agree. */
 #define DALCS_TURNING_PART 1e-6
 
 /* Items of a sentence. */

@@ -16,7 +16,7 @@ enum dalcs_near_asked {
     DALCS_NEAR_MEASURE /* what that measures, as if it were an orbit */
 };
 
-/* What is asked for of a circuit that differs by little, and what it is like. */
+/* A circuit with values that differ by little, and its results. */
 struct dalcs_steady_near {
     enum dalcs_near_asked asked;
     struct dalcs_orbit_point point; /* of the other's orbit, or beside it */
@@ -44,7 +44,7 @@ enum dalcs_status dalcs_sensitivities_run(struct dalcs_steady *st) DALCS_MUST_CH
 
 /* ---- sensitivity_report.c ---------------------------------------------------------------------- */
 
-/* How many results a report of a steady state has, and each of them with its value. */
+/* The number of results of a report of a steady state, and each of them with its value. */
 size_t dalcs_sensitivity_count(const struct dalcs_report *report);
 struct dalcs_sensitivity_result dalcs_sensitivity_get(const struct dalcs_report *report, size_t k);
 

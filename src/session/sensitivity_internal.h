@@ -46,7 +46,7 @@ enum dalcs_status dalcs_sensitivity_along_tangent(struct dalcs_sensitivities *s,
                                                   const struct dalcs_sweep *item, double by,
                                                   bool *same) DALCS_MUST_CHECK;
 
-/* How many h above the value the circuit is. */
+/* The distance of the circuit from the value, in units of h. */
 double dalcs_sensitivity_place(int which);
 
 #endif

@@ -28,7 +28,7 @@ struct dalcs_steady_anchor {
     bool is_known;  /* that of `step`; where that has none, it does not serve */
     bool serves;    /* stable, and the only one nearby */
     bool leaves;    /* of a .tran that starts on it */
-    bool is_sought; /* by a run of which nobody is to see anything */
+    bool is_sought; /* by a run without output */
     size_t step;
     int n_x, n_pairs;
     double period; /* s */
@@ -46,7 +46,7 @@ struct dalcs_steps {
     const char **drawn; /* [n_drawn] the values that are drawn, by name */
 };
 
-/* What a capacitor or coil starts with. */
+/* The initial value of a capacitor or coil. */
 struct dalcs_set_state {
     const char *element;
     double value; /* V or A */
@@ -91,7 +91,7 @@ struct dalcs_session {
     bool has_report;
     enum dalcs_status ended; /* how the last run did */
     atomic_bool
-        is_cancelled; /* by another thread or a signal handler, which may do nothing else here */
+        is_cancelled; /* written by other threads and signal handlers, which may write nothing else */
     char *document;   /* the last one handed out as text; heap */
     double *start, *final;
     struct dalcs_steady_anchor anchor;
@@ -132,7 +132,7 @@ struct dalcs_run {
     double max_step;   /* s; of radau with error control; 0: no bound */
 
     const struct dalcs_orbit_point *orbit; /* where .tran starts; NULL: as the netlist says */
-    struct dalcs_orbit_point *orbit_end;   /* becomes where such a run ends; NULL: nobody asks */
+    struct dalcs_orbit_point *orbit_end;   /* receives the end of such a run; may be NULL */
     bool leaves_orbit;                     /* that is a .tran of its own; else a period of .pss */
     struct dalcs_steady_known *known; /* what .pss has found, for .ac behind it; NULL: nothing */
 
@@ -156,14 +156,14 @@ static inline bool dalcs_run_keeps_ledger(const struct dalcs_run *r) {
     return r->options->energy && r->s->circuit.n_devices > 0;
 }
 
-/* Asks the sink, and dalcs_session_cancel, whether to go on. */
+/* Reports the progress to the sink. An error ends the run: of the sink, or after dalcs_session_cancel. */
 enum dalcs_status dalcs_run_progress(const struct dalcs_run *r, double time,
                                      double stop) DALCS_MUST_CHECK;
 
 /* Settles what the options of the run and of the netlist leave open; checks them. */
 enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;
 
-/* Of the run, else of the netlist, else the usual one. */
+/* The option of the run, else that of the netlist, else the default. */
 double dalcs_run_tolerance(const struct dalcs_run_options *options,
                            const struct dalcs_circuit *circuit);
 
@@ -177,7 +177,7 @@ enum dalcs_status dalcs_operating_currents_keep(struct dalcs_circuit *to,
                                                 const struct dalcs_circuit *from,
                                                 bool *any) DALCS_MUST_CHECK;
 
-/* One analysis of the session's circuit as it is. */
+/* Runs one analysis of the session's circuit. */
 enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
                                              const struct dalcs_run_options *options,
                                              const struct dalcs_sink *sink,
@@ -191,7 +191,7 @@ enum dalcs_status dalcs_steps_find(struct dalcs_session *session) DALCS_MUST_CHE
 /* How often .step and .mc have everything run; 1 without. */
 size_t dalcs_steps_count(const struct dalcs_session *session);
 
-/* What was set becomes the initial values of the circuit's elements. */
+/* Makes the values that were set the initial values of the circuit's elements. */
 void dalcs_session_apply_states(const struct dalcs_session *session, struct dalcs_circuit *circuit);
 
 /* A circuit and its network from the session's netlist, with what alter says and the overrides behind
@@ -235,7 +235,7 @@ void dalcs_session_forget_run(struct dalcs_session *session);
 void dalcs_session_finish_other(struct dalcs_session *other);
 
 /* Starts a .tran; radau is NULL with implicit Euler. logic: its gates, if there are any. has_rows: else it is a period of
- * a search for a steady state, of which the recorder is to know nothing. */
+ * a search for a steady state: the recorder gets nothing of it. */
 enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,
                                         struct dalcs_radau *radau, struct dalcs_logic_run *logic,
                                         bool has_rows) DALCS_MUST_CHECK;
@@ -246,7 +246,7 @@ struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, do
 /* For a netlist that has asked for no waveforms: its network with what an audit reads. */
 enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) DALCS_MUST_CHECK;
 
-/* Before step `step` of .step is built: the orbit of its anchor, if the analysis asks for one that is not there yet. */
+/* Before step `step` of .step is built: the orbit of its anchor, if the analysis needs it and it is not known yet. */
 enum dalcs_status dalcs_steady_anchor_prepare(struct dalcs_session *s,
                                               const struct dalcs_run_options *options,
                                               const struct dalcs_sink *sink,
@@ -257,7 +257,7 @@ void dalcs_steady_anchor_forget(struct dalcs_session *s);
 /* Before a run with these options: an anchor of other ones is none. */
 void dalcs_steady_anchor_enter(struct dalcs_session *s, const struct dalcs_run_options *options);
 
-/* Before a run that asks for the gain of a loop by a current as well: the circuit gets the source of it. */
+/* Before a run that measures the gain of a loop by a current as well: adds the source of the current to the circuit. */
 enum dalcs_status
 dalcs_periodic_loop_prepare(struct dalcs_session *session,
                             const struct dalcs_run_options *options) DALCS_MUST_CHECK;
@@ -280,7 +280,7 @@ enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) DALCS_MUST_CHECK;
 /* Runs .env into r->sink. */
 enum dalcs_status dalcs_envelope_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
-/* What the run is asked for becomes the circuit's .env (envelope_asked.c). */
+/* Makes a .env of the options of the run (envelope_asked.c). */
 enum dalcs_status dalcs_envelope_ask(struct dalcs_run *r) DALCS_MUST_CHECK;
 
 /* Runs .tran into r->sink. */

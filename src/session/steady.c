@@ -22,7 +22,7 @@ static const double converged = 1e-11, good = 1e-10;
 /* Farther away than at first by this factor, twice, and a burst is over. */
 static const double far = 10.0;
 
-/* Has every switch that remembers come back to where it was, and every gate? */
+/* Is every switch with hysteresis, and every gate, in its old state again? */
 static bool switches_return(const struct dalcs_steady *st) {
     bool do_ = true;
     for (int k = st->layout.n_switches; k < st->layout.n_pairs; k++) {

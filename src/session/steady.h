@@ -106,7 +106,7 @@ enum dalcs_status dalcs_steady_settle(struct dalcs_run *r, struct dalcs_stimulus
 
 /* ---- steady_pass.c ----------------------------------------------------------------------------- */
 
-/* What a pass is asked for besides. */
+/* Further outputs of a pass. */
 enum dalcs_steady_asked {
     DALCS_STEADY_PLAIN,
     DALCS_STEADY_M,    /* of all its periods */
@@ -134,7 +134,7 @@ enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, stru
                                      struct dalcs_radau *radau,
                                      struct dalcs_logic_run *logic) DALCS_MUST_CHECK;
 
-/* One period from st->at, which the log is told of. */
+/* Runs one period from st->at and logs it. */
 enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *e,
                                    struct dalcs_radau *radau,
                                    struct dalcs_orbit_log *log) DALCS_MUST_CHECK;

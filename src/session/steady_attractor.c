@@ -28,7 +28,7 @@ static const double good = 1e-10;
 /* As in steady_report.c. */
 static const double near_one = 1e-9;
 
-/* Steps of the run times unknowns: seconds. More are for the user to ask for, with .tran. */
+/* Steps of the run times unknowns: seconds. A longer search is a .tran of the user. */
 static const double most_work = 1e7;
 
 /* The growth of a difference is a mean of logarithms, of so many sums of so many periods; before it, it turns to where it

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* What is said of a run that fails beside an orbit is not the orbit's. */
+/* Messages about a run that fails beside an orbit do not concern the orbit. */
 static struct dalcs_diag keep_silent(struct dalcs_steady *st) {
     const struct dalcs_diag diag = st->run->s->diag;
     st->run->s->diag = (struct dalcs_diag){0};

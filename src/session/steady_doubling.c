@@ -41,7 +41,7 @@ void dalcs_steady_step_aside(struct dalcs_steady *st) {
     }
 }
 
-/* From st->at on, which is beside the old one. */
+/* Searches from st->at, which is beside the old orbit. */
 static enum dalcs_status look_for(struct dalcs_steady *st, double one, int n, bool *found) {
     struct dalcs_orbit_point run;
     if (!dalcs_steady_make_point(st, &run)) {

@@ -15,7 +15,7 @@ static double edge_after(const struct dalcs_steady_means *m, double t) {
     return edge;
 }
 
-/* What sources drive has their shape where it has no memory, however long the steps are. */
+/* Signals that sources drive without memory have the shape of these, however long the steps are. */
 static enum dalcs_status find_longest(struct dalcs_steady_means *m) {
     int most = 1;
     for (int i = 0; i < m->circuit->n_stimuli; i++) {

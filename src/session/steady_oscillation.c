@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* s: the first span, where nobody says how long one is. */
+/* s: the first span, if no period is given. */
 static const double first_span = 1e-9;
 
 enum {

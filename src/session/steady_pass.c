@@ -71,7 +71,7 @@ enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
     return read_gates(logic, t, point);
 }
 
-/* What a pass is made of. */
+/* The state of a pass. */
 struct pass {
     struct dalcs_run *run;
     struct dalcs_euler *euler;
@@ -143,7 +143,7 @@ static enum dalcs_status go(struct pass *p) {
     return DALCS_OK;
 }
 
-/* What numbers of gates are measured by: voltages by the largest in the circuit, times by the run. */
+/* The scales of numbers of gates: the largest voltage of the circuit, the length of the run. */
 static void scale_numbers(struct dalcs_steady *st, const struct dalcs_radau *radau, double volts) {
     const struct dalcs_steady_layout *l = &st->layout;
     for (int k = 0; k < l->memory.n_numbers; k++) {
@@ -256,7 +256,7 @@ static enum dalcs_status start(struct dalcs_steady *st, struct pass *p) {
 static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,
                                      enum dalcs_steady_asked asked) {
     const bool with_M = asked == DALCS_STEADY_M;
-    const bool with_modes = st->run->s->near != NULL && !with_M; /* they tell two runs apart */
+    const bool with_modes = st->run->s->near != NULL && !with_M; /* to compare two runs */
     struct dalcs_variation variation = {0};
     struct dalcs_observer observer;
     if (with_M || with_modes) {

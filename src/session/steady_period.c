@@ -165,7 +165,7 @@ static enum dalcs_status look_into(struct clocks *c, struct dalcs_stimulus *s, c
 static enum dalcs_status look_at(struct clocks *c, struct dalcs_stimulus *s, const char *name,
                                  bool is_part) {
     if (is_level(s) || s->is_written) {
-        return DALCS_OK; /* what gates write, the run knows */
+        return DALCS_OK; /* the run evaluates the outputs of gates */
     }
     if (s->kind == DALCS_STIMULUS_FORMULA) {
         return look_into(c, s, name);

@@ -31,7 +31,7 @@ enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) {
     return DALCS_OK;
 }
 
-/* One period is short: every segment of it is audited, unless none is to be. is_silent: nobody asks for its losses. */
+/* One period is short: every segment of it is audited, unless the audit is off. is_silent: without losses. */
 static enum dalcs_status run_period(struct dalcs_steady *st, bool is_silent) {
     struct dalcs_run *r = st->run;
     const struct dalcs_run_options *options = r->options;
@@ -155,8 +155,7 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     }
     DALCS_TRY(is_free && n_periods > 1.0 ? DALCS_OK : dalcs_steady_anchor_keep(st, leaves));
     DALCS_TRY(leaves || r->s->near != NULL ? DALCS_OK : dalcs_steady_remember(st));
-    if (r->s->anchor.is_sought ||
-        r->s->report.steady.present) { /* nobody asks, or its .pss has told */
+    if (r->s->anchor.is_sought || r->s->report.steady.present) { /* no .pss, or it has reported */
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_steady_next_step(st)); /* how far it may be off, and what is conserved */
@@ -246,7 +245,7 @@ static enum dalcs_status no_end(void *user) {
     return DALCS_OK;
 }
 
-/* A period whose rows nobody has asked for is checked as any other. */
+/* A period without rows is checked as any other. */
 static enum dalcs_status check_period(struct dalcs_steady *st) {
     struct dalcs_run *r = st->run;
     const struct dalcs_sink *sink = r->sink;

@@ -1,4 +1,4 @@
-/* steady_setup.c - where states, switches and what gates remember lie side by side, and room for the search. */
+/* steady_setup.c - the order of states, switches and the memory of gates in one vector, and memory for the search. */
 #include "steady.h"
 
 static bool make_point(struct dalcs_arena *arena, const struct dalcs_steady_layout *l,

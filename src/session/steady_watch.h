@@ -43,7 +43,7 @@ bool dalcs_steady_watch_is_full(const struct dalcs_steady_watch *watch);
 
 void dalcs_steady_watch_finish(struct dalcs_steady_watch *watch);
 
-/* If the circuit has gates and nothing else that turns over they are watched. */
+/* Gates are watched if nothing else in the circuit changes its side. */
 void dalcs_steady_watch_gates(struct dalcs_steady_watch *watch, struct dalcs_logic_run *logic);
 
 /* For radau->base->observer; user is the watch. */

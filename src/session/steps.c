@@ -106,7 +106,7 @@ static void take_messages(struct dalcs_session *s, const struct dalcs_diag *diag
     s->diag.out_of_memory = s->diag.out_of_memory || diag->out_of_memory;
 }
 
-/* What alter said, what the present step is, and `more`; heap, NULL: out of memory. */
+/* The changes of alter, of the present step and `more`; heap, NULL: out of memory. */
 static struct dalcs_override *all_overrides(const struct dalcs_session *session,
                                             const struct dalcs_override *more, size_t n_more,
                                             size_t *n_all) {

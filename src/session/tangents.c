@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* A tangent is off by this part of the voltage: enough to say so. */
+/* A tangent that is off by this part of the voltage gets a note. */
 static const double notable = 0.1;
 
 static const struct dalcs_exponential *exponential_of(const struct dalcs_circuit *c, int output) {

@@ -50,7 +50,7 @@ struct transient {
     long to_go;       /* of them, until the next */
 };
 
-/* Of any source; before the first row nobody asks. */
+/* Of any source; it is not called before the first row. */
 static double edge_after(const struct transient *c, double t) {
     const struct dalcs_circuit *circuit = &c->run->s->circuit;
     double edge = dalcs_logic_run_next(c->logic);
@@ -109,7 +109,7 @@ static bool cycles(const struct transient *c) {
            !dalcs_filling_is_on(&c->filling, c->t);
 }
 
-/* Over periods of which nobody asks anything. */
+/* Over periods without rows and measurements. */
 static enum dalcs_status leap(struct transient *c) {
     const struct dalcs_leap *leap;
     double until = dalcs_smaller(dalcs_smaller(c->next_row, c->next_edge), c->measures->begin);

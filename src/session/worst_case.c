@@ -96,7 +96,7 @@ static enum dalcs_status fill_alone(struct dalcs_worst_case *w) {
 static enum dalcs_status report(struct dalcs_worst_case *w, bool has_corners) {
     struct dalcs_session *s = w->session;
     struct dalcs_worst_case_run *run =
-        dalcs_arena_alloc(&s->arena, w->n_runs, sizeof *run); /* lives as long as the report */
+        dalcs_arena_alloc(&s->arena, w->n_runs, sizeof *run); /* valid as long as the report */
     if (run == NULL) {
         return DALCS_E_NOMEM;
     }

@@ -36,7 +36,7 @@ static size_t find_best(const struct dalcs_worst_case *w, size_t result, bool la
     return best;
 }
 
-/* A corner that is worse than what the single tolerances tell. */
+/* A corner that is worse than the single tolerances predict. */
 static void tell_corner(const struct dalcs_worst_case *w, size_t result, bool largest) {
     const size_t told = dalcs_worst_case_told(w, result, largest);
     const size_t found = largest ? w->result[result].largest : w->result[result].smallest;

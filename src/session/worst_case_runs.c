@@ -40,7 +40,7 @@ static enum dalcs_status end(void *user) {
     return DALCS_OK;
 }
 
-/* All runs together are one to whoever looks on. */
+/* Progress is reported for all runs together. */
 static enum dalcs_status progress(void *user, double time, double stop) {
     const struct worker *worker = user;
     const struct dalcs_worst_case *w = worker->w;
@@ -139,7 +139,7 @@ static enum dalcs_status run_other(struct worker *worker, const signed char *pla
     return status != DALCS_OK ? status : dalcs_run_asked(other, w->options, &sink);
 }
 
-/* One that fails is told of and lost, no other. */
+/* A run that fails is reported; the others go on. */
 static enum dalcs_status run_one(struct worker *worker, size_t k) {
     struct dalcs_worst_case *w = worker->w;
     struct dalcs_worst_case_run *run = &w->run[k];

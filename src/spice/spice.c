@@ -151,7 +151,7 @@ static void write_diode(const struct writer *w, int i) {
     }
 }
 
-/* A switch that closes below its threshold sees its control turned around; a current is turned around
+/* The control of a switch that closes below its threshold is negated; a current is turned around
  * by a source that makes a voltage of it. */
 static void write_switch(const struct writer *w, int i) {
     const struct dalcs_device *device = &w->circuit->device[i];

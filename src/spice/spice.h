@@ -1,6 +1,6 @@
 /* spice.h - a circuit as a netlist that ngspice can take.
  *
- * ngspice knows no ideal device, so that each is replaced by a near one. What it cannot say of a
+ * ngspice has no ideal devices: each is replaced by a near-ideal one. What it cannot express of a
  * current is measured by a source of 0 V in series. */
 #ifndef DALCS_SPICE_H
 #define DALCS_SPICE_H
@@ -38,7 +38,7 @@ void dalcs_spice_write_number(FILE *stream, double value);
 bool dalcs_spice_needs_expression(const struct dalcs_stimulus *stimulus);
 
 /* What follows the nodes of a V or I card: "PULSE(...)", or of a B card: an expression. NULL, or why
- * ngspice cannot be told. Nothing after `stop` matters. */
+ * ngspice cannot express. Values after `stop` are not used. */
 const char *dalcs_spice_write_source(FILE *stream, const struct dalcs_stimulus *stimulus,
                                      double edge, double stop);
 void dalcs_spice_write_expression(FILE *stream, const struct dalcs_stimulus *stimulus);
@@ -48,7 +48,7 @@ void dalcs_spice_write_formula(const struct dalcs_spice_names *names,
                                const struct dalcs_spice_options *options, FILE *stream, int i,
                                const char *first_node);
 
-/* Does the formula of device i ask for stimulus k? No two formulas share one. The source that gives it:
+/* Does the formula of device i read stimulus k? No two formulas share one. The source that gives it:
  * NULL, or why ngspice cannot be told. */
 bool dalcs_spice_takes_stimulus(const struct dalcs_circuit *circuit, int i, int k);
 const char *dalcs_spice_write_stimulus(const struct dalcs_circuit *circuit, FILE *stream, int k,

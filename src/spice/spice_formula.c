@@ -36,7 +36,7 @@ static bool has_second(const struct formula *f, int k) {
     return k + 1 < f->behaviour->n_pairs && is_second(f, k + 1);
 }
 
-/* Do other pairs than its own two ask for lambda k? */
+/* Do other pairs than its own two read lambda k? */
 static bool has_node(const struct formula *f, int k) {
     const int first = is_second(f, k) ? k - 1 : k;
     bool asked = false;

@@ -58,7 +58,7 @@ static enum dalcs_status list_order(const struct dalcs_stage_plan *plan,
     return DALCS_OK;
 }
 
-/* What a function of unit size makes of the shares of its wave. */
+/* The shares of the wave of a function of unit size. */
 static void find_function_shares(const struct dalcs_stages *stages, double h,
                                  const struct dalcs_excitation_function *function, double *share) {
     const struct dalcs_collocation *m = stages->method;

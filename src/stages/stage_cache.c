@@ -102,7 +102,7 @@ static struct dalcs_stage_entry *entry_alloc(const struct dalcs_stages *stages) 
     return e;
 }
 
-/* What stages->cache.key asks for. */
+/* Builds the entry for stages->cache.key. */
 static enum dalcs_status entry_create(struct dalcs_stages *stages, double h, bool of_its_own,
                                       struct dalcs_stage_entry **entry) {
     struct dalcs_stage_entry *e = entry_alloc(stages);

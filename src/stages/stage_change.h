@@ -14,7 +14,7 @@ struct dalcs_stage_response {
 /* One pair of the base changes: an open one closes, a closed one opens. */
 struct dalcs_stage_change {
     int pair;
-    bool refused;                   /* digits would cancel: nothing else is known */
+    bool refused;                   /* digits would cancel: the other fields are not set */
     double row_scale, column_scale; /* of one that closes */
     int n_terms;                    /* of its w in unknowns of the base, balanced */
     int *unknown;

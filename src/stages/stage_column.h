@@ -4,7 +4,7 @@
 
 #include "stage_workshop.h"
 
-/* What drives a column of the map: a source's values at the nodes and what they miss in between, 0 for a state, and,
+/* The input of a column of the map: a source's values at the nodes and their error in between, 0 for a state, and,
  * as in stage_functions.h, the stages' share of it and what they take of each part of a solution. */
 struct dalcs_stage_drive {
     const double *share;

@@ -213,7 +213,7 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     put_states(plan, f, 1.0, out + l->drift);
     add_real(plan, entry, out);
     if (n_x > 0) {
-        /* What was added goes with states that are off by the drift: take that back as well. */
+        /* The correction belongs to states that are off by the drift: undo that as well. */
         put_states(plan, f, -1.0, plan->work.missed);
         dalcs_stage_find_drive(plan, f, &plan->drive_of_states, plan->work.missed, 0.0);
         dalcs_stage_solve_loaded(plan, f, 0, DALCS_SHARE_NONE);

@@ -5,7 +5,7 @@
 #include "stage_matrix.h"
 #include "stages_internal.h"
 
-/* Where a system's LU, which has its own order, takes what it solves from and leaves it. */
+/* The places of unknowns in a system's LU, which has its own order. */
 struct dalcs_stage_order {
     int n;          /* positions */
     int *row_of;    /* [n] row of M at position i; n_rows + k: choice k */

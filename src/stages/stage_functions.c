@@ -10,7 +10,7 @@ void dalcs_stage_functions_finish(struct dalcs_stage_functions *functions) {
     }
 }
 
-/* Each coordinate sees the constant 1 as 1, and a function of time as its values at the stages say. */
+/* In each coordinate the constant 1 is 1, and a function of time is the combination of its values at the stages. */
 static void find_factors(const struct dalcs_collocation *m, struct dalcs_stage_function *of) {
     int n_parts = 1 + 2 * m->n_pairs;
     struct dalcs_extended_row weight;

@@ -26,7 +26,7 @@ enum {
     DALCS_SHARE_DRIFT = DALCS_SHARE_PAIR + 2 * DALCS_MAX_CONJUGATES,
     DALCS_SHARE_NONE,        /* 0 */
     DALCS_SHARE_RIPPLE,      /* missed between the nodes */
-    DALCS_SHARE_RIPPLE_RATE, /* the same, as the error estimate sees it */
+    DALCS_SHARE_RIPPLE_RATE, /* the same, in the error estimate */
     DALCS_N_SHARES
 };
 
@@ -38,7 +38,7 @@ struct dalcs_stage_analysis {
     klu_numeric *numeric[DALCS_STAGE_SYSTEMS]; /* of the last step length, or NULL */
 };
 
-/* What varies, of E and F. */
+/* The varying entries of E and F. */
 struct dalcs_plan_waves {
     int n_waves;             /* entries of wave, by rows */
     int *wave_row, *wave_of; /* [n_waves] */

@@ -29,7 +29,7 @@ static const double residual_growth = 4.0;
 /* So many bases are looked at, the latest first. */
 enum { MOST_BASES = 64 };
 
-/* Where refusals outweigh, in a system whose digits do not stand it, no more is tried. */
+/* No more updates are tried in a system where most of them were refused for lack of digits. */
 enum { SERVED = 1, REFUSED = -2, MOST_TRUST = 2 * DALCS_STAGE_FIRST_TRUST };
 
 /* What a factorisation costs, in changes worked into a step. */
@@ -114,7 +114,7 @@ static double product(const struct dalcs_stage_update *u, int i, int j, int syst
     return sum;
 }
 
-/* What pair j does to w of pair i at once, balanced; both close. */
+/* The derivative of w of pair i by lambda of pair j, balanced; both close. */
 static double direct(const struct dalcs_system *s, const struct dalcs_stage_change *i,
                      const struct dalcs_stage_change *j) {
     int column = dalcs_system_n_equations(s) + j->pair;

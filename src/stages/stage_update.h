@@ -32,7 +32,7 @@ bool dalcs_stage_update_is_doubtful(const struct dalcs_stages *stages,
 bool dalcs_stage_update_is_spent(const struct dalcs_stages *stages,
                                  struct dalcs_stage_entry *entry);
 
-/* entry->factors as an update of a base that is near, if there is one and its digits promise to serve as
+/* entry->factors as an update of a base that is near, if there is one and it has enough digits to serve as
  * well as factors of the entry's own would; else they stay NULL. */
 enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
                                            struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
@@ -44,7 +44,7 @@ void dalcs_stage_update_solve(const struct dalcs_stage_plan *plan,
 /* Bytes of the factors of an update, without its base. */
 size_t dalcs_stage_update_bytes(const struct dalcs_stage_factors *f);
 
-/* Frees what is an update's own and lets its base go. */
+/* Frees the memory of an update and releases its base. */
 void dalcs_stage_update_destroy(struct dalcs_stages *stages, struct dalcs_stage_factors *f);
 
 #endif

@@ -143,7 +143,7 @@ static void fill_real(const struct dalcs_stage_workshop *b) {
     }
 }
 
-/* What is the same in all. */
+/* Puts a value that is the same in all four. */
 static void put_four(long double re, struct dalcs_extended_four *to) {
     struct dalcs_extended value = dalcs_extended_of(re);
     for (int p = 0; p < DALCS_QUAD; p++) {

@@ -24,7 +24,7 @@ struct dalcs_workshop_equations {
     double *size; /* of the nonzeros of the real S, before they were balanced */
 };
 
-/* Unknowns that are solved for once (workshop_followers.c), and those that each eigenvalue asks for. */
+/* Unknowns that are solved for once (workshop_followers.c), and those that are solved for each eigenvalue. */
 struct dalcs_workshop_kept {
     long double *whole; /* [n][n + n_rhs] S without P by rows, then followers as pivots */
     int n_kept, n_followers;

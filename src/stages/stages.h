@@ -21,7 +21,7 @@ struct dalcs_stage_entry;
 struct dalcs_stage_plan;
 struct dalcs_stage_workshop;
 
-/* Where things are in an answer. Node k of the step starts at k * stride: the columns, then the
+/* The layout of an answer. Node k of the step starts at k * stride: the columns, then the
  * watched voltages. Behind the nodes is a stage at the start, if the method has one. In the place of lambda_d an open pair has its w_d. */
 struct dalcs_stage_layout {
     int stride;
@@ -110,7 +110,7 @@ double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
                                      const struct dalcs_stage_entry *entry, int k, const double *in,
                                      const double *scale);
 
-/* How far the mode moves state x at once, by an entry with a map; NAN: not known. */
+/* The jump of state x on entry to the mode, from an entry with a map; NAN: not known. */
 double dalcs_stage_shift(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                          int x, const double *in);
 
@@ -133,7 +133,7 @@ static inline size_t dalcs_stages_room(const struct dalcs_stages *stages) {
     return (size_t)stages->layout.n_fixed + (size_t)stages->method->s * n_columns + 8;
 }
 
-/* How much more of the answer is rounding than in one from a dense map: 1 for those. */
+/* The rounding of the answer over that of an answer from a dense map. */
 double dalcs_stage_rounding(const struct dalcs_stage_entry *entry);
 
 /* Is every state free in this mode? false: no, or not known, as on factors. */

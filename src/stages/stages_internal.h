@@ -30,7 +30,7 @@ struct dalcs_stage_entry {
     double *shift_map;   /* [n_x][n_in] how far the mode moves states at once, behind that */
     int note;
     struct dalcs_stage_factors *factors;
-    /* Entries with factors of their own, whose changes others may be. */
+    /* Entries with factors of their own. Other entries may be stored as low-rank changes of them. */
     struct dalcs_stage_entry *newer_base, *older_base;
     int n_holders; /* the store and the entries that are updates of this one */
     int spent;     /* changes worked in so far, of an update */

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* What the conditions of a singular mode add to S, and to its right-hand sides: stage_choice.h. */
+/* The conditions of a singular mode in S and in its right-hand sides: stage_choice.h. */
 static double border(const struct dalcs_stage_workshop *b, int i, const double *of_choice, int n,
                      int j) {
     double sum = 0.0;

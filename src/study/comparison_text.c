@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#define ROUNDING 1e-13 /* over the scale; nobody is nearer than that */
+#define ROUNDING 1e-13 /* over the scale; smaller differences are rounding */
 
 enum { MAX_GIVEN_UP = 3, MAX_NAMED = 6, SETTING_SIZE = 128 };
 

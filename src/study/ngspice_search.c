@@ -195,7 +195,7 @@ static enum dalcs_status try_devices(struct dalcs_ngspice_search *search) {
     return DALCS_OK;
 }
 
-/* The trials of least error that got to the end, best first; returns how many. */
+/* The complete trials of least error, best first; returns their number. */
 static int find_best(const struct dalcs_ngspice_search *search, int best[N_REFINED]) {
     int n = 0;
     for (int k = 0; k < search->n_trials; k++) {

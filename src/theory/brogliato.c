@@ -397,7 +397,7 @@ enum dalcs_status dalcs_brogliato_check(struct dalcs_findings *f, const struct d
     c.model = dalcs_model_quadruple(b);
     enum dalcs_status status = dalcs_step_quadruple(&c.step, b, h, f->work);
     if (status == DALCS_SINGULAR) {
-        return DALCS_OK; /* A1 says so */
+        return DALCS_OK; /* by A1 */
     }
     DALCS_TRY(status);
     DALCS_TRY(dalcs_quadruple_passive(&c.model, &c.passive_model, f->work));

@@ -4,7 +4,7 @@
 
 #include "findings.h"
 
-/* What the verdicts take from them. */
+/* The results that the verdicts use. */
 struct dalcs_brogliato {
     double h_defined; /* s, assumption 1: below it P_I - h A_I is regular; may be INFINITY */
     bool step_unique; /* corollary 4.6 item 3, or propositions 4.4, 4.8 item 3, for this h */

@@ -280,7 +280,7 @@ enum dalcs_status dalcs_cones_find(struct dalcs_cones *cones, struct dalcs_arena
     if (p.index == NULL || p.value == NULL) {
         return DALCS_E_NOMEM;
     }
-    int before = glp_init_env(); /* one for each thread; 1: somebody has one already */
+    int before = glp_init_env(); /* one for each thread; 1: there is one already */
     if (before > 1) {
         return DALCS_E_NOMEM;
     }

@@ -1,4 +1,4 @@
-/* cones.h - which sources a circuit must ask for leave: linear programs in the equations themselves.
+/* cones.h - the sources for which a circuit has a solution: linear programs in the equations themselves.
  *
  * At an instant the algebraic rows and the signs of the diodes are
  *     0 = A_II x + B_II z + L_II lambda + E_II s,   lambda >= 0,   C_I x + C_II z + D lambda + F s >= 0.

@@ -8,7 +8,7 @@
 
 /* Is there a P = P' > 0 with P B = C'? Exactly when C B is symmetric and positive semidefinite and
  * has the rank of B and of C; then P = C' (C B)^+ C + a projector on the null space of B'. *P is that
- * one, [rows of B][rows of B], when *holds. *why tells what fails, NULL otherwise. */
+ * one, [rows of B][rows of B], when *holds. *why: the condition that fails, NULL otherwise. */
 enum dalcs_status dalcs_coupling_find(struct dalcs_matrix *P, bool *holds, const char **why,
                                       const struct dalcs_matrix *B, const struct dalcs_matrix *C,
                                       struct dalcs_arena *arena) DALCS_MUST_CHECK;

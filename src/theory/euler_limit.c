@@ -1,4 +1,4 @@
-/* euler_limit.c - k15, and the propositions that ask for it.
+/* euler_limit.c - k15, and the propositions that use it.
  *
  * The proof of proposition 5.6 takes two steps of (5.25) apart,
  *     |x_{k+1} - x_{p+1}| <= (|S P_I| + h k15) |x_k - x_p| + h k16 |t_k - t_p| + h k17,   S = (P_I - h A_I)^-1,

@@ -5,7 +5,7 @@
 
 #include "brogliato.h"
 
-/* What the other assumptions gave, of the step h where they depend on one. */
+/* The results of the other assumptions, at the step h where they depend on one. */
 struct dalcs_limit_given {
     enum dalcs_answer uniform; /* A10 */
     bool contracts;            /* A11 */

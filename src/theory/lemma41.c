@@ -1,6 +1,6 @@
 /* lemma41.c - with D + D' = 0 the passivity inequality forces X Bbar_II = C_II', and condition c) is another
  * equation X A_II S Bbar_I = (C_I S B_I)', S = (P_I - h A_I)^-1: both are one P B = C'. In item 3 a) the
- * paper prints Bbar_I where the dimensions and the proof, from -X At - At'X >= 0, want B_I. */
+ * paper prints Bbar_I where the dimensions and the proof, from -X At - At'X >= 0, need B_I. */
 #include "lemma41.h"
 
 #include "coupling.h"

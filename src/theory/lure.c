@@ -209,7 +209,7 @@ static enum dalcs_status check_semidefinite(struct check *c) {
 }
 
 /* Sources beside C x can be moved into x when they are C times something: then y does not depend on
- * time but through x, as the theorems on Lur'e systems want it. Constants do no harm. */
+ * time but through x, as the theorems on Lur'e systems require. Constants do not matter. */
 static enum dalcs_status find_shift(struct check *c) {
     const struct dalcs_lcs *l = c->l;
     const struct dalcs_system *s = l->blocks->system;
@@ -344,7 +344,7 @@ static enum dalcs_status try_metric(struct check *c, const struct dalcs_matrix *
         dalcs_answer_of(found->is_dissipative), "largest eigenvalue (scaled): %.3g", excess);
 }
 
-/* All P, where the stored energy and P B = C' tell nothing. */
+/* All P, where the stored energy and P B = C' decide nothing. */
 static enum dalcs_status try_all(struct check *c) {
     struct dalcs_lure *found = c->found;
     const struct dalcs_lcs *l = c->l;

@@ -1,4 +1,4 @@
-/* lure.h - what the papers on multivalued Lur'e systems and sweeping processes ask of the LCS, with
+/* lure.h - the conditions of the papers on multivalued Lur'e systems and sweeping processes on the LCS, with
  * their misprints put right (doc/check.md lists them). */
 #ifndef DALCS_LURE_H
 #define DALCS_LURE_H

@@ -1,4 +1,4 @@
-/* matrix.h - dense matrices by columns, in an arena, and what LAPACK knows of them.
+/* matrix.h - dense matrices by columns, in an arena, and their factorisations by LAPACK.
  *
  * Every function that makes a matrix takes its memory from the arena given; nothing is freed alone.
  * Dimensions may be 0. */

@@ -49,7 +49,7 @@ static double part(const double *y, const int *column, int q) {
            (column[1] >= 0 ? y[2 * column[1] + q] : 0.0);
 }
 
-/* What a term gives, on the average of a period of the motion, twice. */
+/* Twice the average of a term over a period of the motion. */
 static double gives(const struct dalcs_power_term *t, const double *y) {
     double first[2] = {part(y, t->first, 0), part(y, t->first, 1)};
     double second[2] = {part(y, t->second, 0), part(y, t->second, 1)};

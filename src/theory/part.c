@@ -117,7 +117,7 @@ static enum dalcs_status check(struct dalcs_facts *facts) {
     return dalcs_verdict_motion(facts);
 }
 
-/* What was collected, into the arena that stays. */
+/* Copies the results into the arena of the result. */
 static enum dalcs_status hand_over(struct dalcs_checked_part *part,
                                    const struct dalcs_facts *facts) {
     const struct dalcs_findings *f = facts->f;

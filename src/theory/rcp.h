@@ -1,4 +1,4 @@
-/* rcp.h - what Heemels, Schumacher and Weiland 1999 ask of M(s) = D + C (s I - A)^-1 B. */
+/* rcp.h - conditions of Heemels, Schumacher and Weiland 1999 on M(s) = D + C (s I - A)^-1 B. */
 #ifndef DALCS_RCP_H
 #define DALCS_RCP_H
 

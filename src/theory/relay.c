@@ -1,4 +1,4 @@
-/* relay.c - finds boxes among the pairs, and asks of G what the theorems on relays ask. */
+/* relay.c - finds boxes among the pairs, and checks the conditions on G of the theorems on relays. */
 #include "relay.h"
 
 #include "coupling.h"

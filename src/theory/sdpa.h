@@ -4,7 +4,7 @@
  *
  * each F symmetric. The program sdpa (M. Yamashita and others, GPL) solves them: it is run on a file, so
  * that neither its licence nor its ways to end a program are this library's. Its answer is a number
- * among others: whoever asks must verify it. */
+ * among others: the caller must verify it. */
 #ifndef DALCS_SDPA_H
 #define DALCS_SDPA_H
 
@@ -31,7 +31,7 @@ struct dalcs_sdpa_answer {
     struct dalcs_matrix *dual; /* [n_blocks] Y >= 0 with tr(F_i Y) = c_i */
 };
 
-/* What hinders a program from being solved before it is written; NULL: nothing. */
+/* The reason why no program can be solved here, as a message; NULL: none. */
 const char *dalcs_sdpa_missing(void);
 
 /* size[n_blocks] and cost[n] are read at once. A file that cannot be written is no error: `solve` says

@@ -104,7 +104,7 @@ static enum dalcs_status add_point(struct dalcs_facts *facts) {
     return dalcs_findings_witness(facts->f, true, &w);
 }
 
-/* Inputs that a member without states may ask something of: -1 when none. */
+/* Inputs that a member without states may restrict: -1 when none. */
 static int asked_input(const struct dalcs_facts *facts, const double **member) {
     for (int j = 0; j < facts->system->n_inputs; j++) {
         const struct dalcs_cone_range *range = &facts->cones.range[DALCS_CONE_SOURCES][j];

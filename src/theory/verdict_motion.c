@@ -94,7 +94,7 @@ enum dalcs_status dalcs_verdict_jumps(struct dalcs_facts *facts) {
 
 /* ---- Stability ------------------------------------------------------------------------------ */
 
-/* No diode, no switch that moves: the eigenvalues tell. */
+/* No diode, no switch that moves: the eigenvalues decide. */
 static enum dalcs_status judge_linear(struct dalcs_facts *facts) {
     double slowest = facts->modes.slowest;
     const char *source = "eigenvalues: the part is linear";
@@ -161,7 +161,8 @@ static enum dalcs_status judge_contraction(struct dalcs_facts *facts) {
             facts->f, "contracting", facts->has_lcs ? DALCS_UNDECIDED : DALCS_NOT_CHECKED,
             BG09 "definition 2",
             !facts->has_lcs ? "not checked: no reduced system"
-            : !applies      ? "not shown: no P was found in whose norm trajectories stay together"
+            : !applies
+                ? "not shown: no P was found in whose norm distances of trajectories do not grow"
             : lure->lossless == 0
                 ? "trajectories meet, at a rate that is not known: %s"
                 : "not shown: motions lose nothing in the norm of the P found; %s",

@@ -8,7 +8,7 @@
 /* Gaps on each side of what happens. */
 enum { BESIDE = 2 };
 
-/* Of the stop time: a gap in which nobody looks. */
+/* Of the stop time: shorter gaps between rows are not examined. */
 static const double least_gap = 0x1p-33;
 
 /* What rounding makes of equal gaps. */
@@ -117,7 +117,7 @@ static void count(struct dalcs_filling *f, double t) {
     }
 }
 
-/* Those that are due and need nothing between. */
+/* Passes on rows that are due and need no rows between. */
 static int list_plain(struct dalcs_filling *f, const struct dalcs_recorder *r, int after,
                       double near, double *time, int most) {
     bool needs_a_look =

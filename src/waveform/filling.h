@@ -13,7 +13,7 @@ struct dalcs_filling {
     bool is_on, by_lines;
     struct dalcs_row_gaps gaps;
     double start, stop;  /* s, of the rows and of the run */
-    double least;        /* s, in shorter gaps nobody looks */
+    double least;        /* s, shorter gaps are not examined */
     double last, before; /* s, of the last row and of the one before */
     int beside;          /* gaps to come that lie beside what happened at one of them */
     double begin, until; /* s, of the stretch at hand */

@@ -121,7 +121,7 @@ static void walk(struct look *l, const struct dalcs_span *span, int depth) {
     double slope[DALCS_STRETCH_NODES];
     dalcs_stretch_derive(span->coefficient, slope);
     bool one_way = fabs(slope[0]) >= dalcs_stretch_spread(slope) ||
-                   spread <= flat * i->scale; /* what way, only rounding tells */
+                   spread <= flat * i->scale; /* the direction is rounding */
     double least = 8.0 * DBL_EPSILON * fmax(fabs(span->from), fabs(span->to));
     if (one_way || depth == MOST_CUTS || span->to - span->from <= least) {
         pass(l, span);

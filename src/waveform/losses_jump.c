@@ -22,7 +22,7 @@ static bool holds_current(const struct dalcs_device *d) {
 
 /* impulse[], the charges, so far of switches and diodes: those of capacitors, and by KCL those of what
  * holds a voltage, again and again where one of them alone is left at a node. Their graph is a forest, apart
- * from wires in loops, whose charges nothing reads. */
+ * from wires in loops, whose charges have no effect. */
 static void solve_charges(const struct dalcs_losses_sum *sum) {
     const struct dalcs_circuit *c = sum->circuit;
     bool moves = true;
@@ -77,7 +77,7 @@ static double coil_flux(const struct dalcs_losses_sum *sum, int k) {
 }
 
 /* impulse[], the fluxes, so far of switches and diodes: those of coils; and node[], the impulse of voltage
- * at each node against ground, NAN where nothing tells. */
+ * at each node against ground, NAN where it is not determined. */
 static void solve_fluxes(const struct dalcs_losses_sum *sum) {
     const struct dalcs_circuit *c = sum->circuit;
     bool moves = true;
@@ -105,7 +105,7 @@ static void solve_fluxes(const struct dalcs_losses_sum *sum) {
     }
 }
 
-/* What sources take: charges at the voltage, fluxes at the current just after. */
+/* The energies of sources: charges at the voltage, fluxes at the current just after. */
 static void give_charges(const struct dalcs_losses_sum *sum) {
     const struct dalcs_circuit *c = sum->circuit;
     for (int k = 0; k < c->n_devices; k++) {

@@ -127,8 +127,8 @@ static void pass(struct dalcs_losses_sum *sum, double t, const bool *on) {
     sum->n_jumps = 0;
 }
 
-/* Where no instant before the start was told: what is stored has jumped, what else there was nobody
- * knows. */
+/* Without an instant before the start: the stored energy has jumped, and the other entries are
+ * unknown. */
 static void take_first(struct dalcs_losses_sum *sum) {
     for (int k = 0; k < sum->circuit->n_devices; k++) {
         struct dalcs_loss *d = &sum->device[k];

@@ -54,7 +54,7 @@ enum dalcs_status dalcs_losses_sum_setup(struct dalcs_losses_sum *sum,
                                          double near) DALCS_MUST_CHECK;
 void dalcs_losses_sum_finish(struct dalcs_losses_sum *sum);
 
-/* What was before the first stretch: value[n_measured]. */
+/* The values before the first stretch: value[n_measured]. */
 void dalcs_losses_sum_before_start(struct dalcs_losses_sum *sum, const double *value);
 
 /* Room for one more jump with n impulses; NULL: out of memory. */

@@ -482,7 +482,7 @@ static bool take_time(const struct dalcs_signal_formula *formula, const double *
     return !isnan(*time);
 }
 
-/* One that is late, with somebody who looks on. */
+/* A late measurement, with a watch. */
 static void measure_watched(struct dalcs_measuring *m, int k) {
     if (m->watch != NULL) {
         m->watch->begin(m->watch->user, m, k);

@@ -47,10 +47,10 @@ struct dalcs_measuring {
     struct dalcs_kept_stretches *kept; /* all of the run; NULL: no measurement is late */
     bool has_row;
     double row_at;
-    const struct dalcs_measuring_watch *watch; /* borrowed; NULL: nobody */
+    const struct dalcs_measuring_watch *watch; /* borrowed; may be NULL */
 };
 
-/* Does the circuit ask for anything in such an analysis? */
+/* Does the circuit have measurements in such an analysis? */
 bool dalcs_measuring_is_wanted(const struct dalcs_circuit *circuit,
                                enum dalcs_measured_analysis analysis);
 

@@ -29,7 +29,7 @@ struct dalcs_recorder {
     int n_shown;          /* the first outputs, which rows have: all, unless set after the setup */
     bool have_before;
     bool starts_on_edge; /* `before` is what was before an edge at t = 0 */
-    int n_watched;       /* outputs whose largest value in all rows is wanted */
+    int n_watched;       /* outputs whose largest value in all rows is recorded */
 
     struct dalcs_watched {
         int output;

@@ -104,7 +104,7 @@ double dalcs_stretch_spread(const double *coefficient) {
 
 /* ---- Formulas --------------------------------------------------------------------------------- */
 
-/* Where a formula is asked for: at a node of the stretch, or else at x. */
+/* The place where a formula is evaluated: a node of the stretch, or else x. */
 struct place {
     const struct dalcs_stretch *stretch;
     int node;
@@ -209,7 +209,7 @@ static double tail_of(const struct dalcs_span *span) {
     return tail;
 }
 
-/* What happens between the last node and an end no node sees: there the polynomial has to meet the formula. */
+/* The nodes do not reach to the ends, so the polynomial is compared with the formula there. */
 static bool meets_ends(const struct visit *v, double a, double b, const struct dalcs_span *span,
                        double noise) {
     const double apart = fmax(

@@ -23,7 +23,7 @@ struct dalcs_thinning {
     double *scale;      /* the largest |value| so far */
 };
 
-/* `to` has all callbacks but may want no row. */
+/* `to` has all callbacks but may refuse rows. */
 enum dalcs_status dalcs_thinning_setup(struct dalcs_thinning *t, const struct dalcs_sink *to,
                                        size_t n_signals, double bound) DALCS_MUST_CHECK;
 

@@ -64,7 +64,7 @@ MADE = {
                 ".tran 1m 1 uic\n.end\n", {"exists": ("depends", [])}),
     "leaking": ("leaking\nI1 0 a 2\nS1 a b 0 0 si\nR1 b 0 1k\nD1 0 b di\nR2 a 0 1meg\n.model si SW(vt=1)\n" + DI +
                 ".tran 1m 1 uic\n.end\n", {"exists": ("yes", [])}),
-    # of matrices: nobody is blamed, and the second system grows
+    # of matrices: no element is named, and the second system grows
     "two_systems": ("dalcs-system 2 two\nstate x 1\npair d\nmatrix A\n+ -1\nmatrix B\n+ 1\n"
                     "matrix C\n+ 1\nsystem\nstate y 2\npair e\nmatrix A\n+ 3\nmatrix B\n+ 1\n"
                     "matrix C\n+ 2\n.tran 10m 1\n.end\n", {"passive": ("yes", []),

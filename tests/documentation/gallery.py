@@ -16,7 +16,7 @@ sys.path += [str(SOURCE / "tools")]
 import layout  # noqa: E402  pylint: disable=wrong-import-position,import-error
 import schematics  # noqa: E402  pylint: disable=wrong-import-position,import-error
 
-# Of subcircuits nobody knows what is inside.
+# The elements inside of subcircuits are not drawn.
 NOT_DRAWN = {"boost_interleaved", "full_bridge_phase_shift", "inverter_three_phase", "twelve_pulse"}
 
 
@@ -99,6 +99,8 @@ class Page(unittest.TestCase):
                 self.skipTest("python3-markdown is not installed")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn('href="gallery/index.html"', (place / "site/gallery.html").read_text(encoding="utf-8"))
+            self.assertRegex((place / "site/index.html").read_text(encoding="utf-8"),
+                             r'<a href="(pictures/full_bridge\.png)"><img [^>]*src="\1"')
             self.assertIn("[ON|OFF]", (place / "site/netlist.html").read_text(encoding="utf-8"))
             (place / "gallery/rectifiers_full_bridge_r.svg").unlink()
             self.assertIn("leads nowhere", run(*site).stderr)

@@ -230,7 +230,7 @@ def parasitics(checker, program):
             if one.result.rows and several.result.rows:
                 for t in times:
                     one.is_at(found, t, several.result.at(wanted, t), 1e-8)
-    # Nothing is recorded that no card names, and nothing is paid for what nobody asks.
+    # Only signals that a card names are recorded, and others cost nothing.
     case = Case(checker, program, AROUND.format(card=PARASITICS[3][0], current="all"))
     checker.check(case.result.names == ["time", "v(b)", "v(a)", "i(v1)"],
                   f"recorded: {case.result.names}")

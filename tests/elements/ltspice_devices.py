@@ -209,8 +209,8 @@ def refused(checker, program):
     for card, text in cases:
         done = run_cards(program, card, ["v1 a 0 1", "v2 b 0 1", card, "r1 o 0 1", ".tran 1 2"])
         checker.check(done.status != 0 and text in done.stderr, f"{card}: {done.stderr}")
-    for card, text in (("a1 a b a 0 0 0 o 0 VARISTOR", "pin 3 of 'a1' means nothing for this function and is ignored"),
-                       ("a1 a b 0 0 a 0 o 0 MODULATE mark=1k space=1k", "pin 5 of 'a1' means nothing")):
+    for card, text in (("a1 a b a 0 0 0 o 0 VARISTOR", "this function does not use pin 3 of 'a1': it is ignored"),
+                       ("a1 a b 0 0 a 0 o 0 MODULATE mark=1k space=1k", "this function does not use pin 5 of 'a1'")):
         done = run_cards(program, card, ["v1 a 0 1", "v2 b 0 1", card, "r1 o 0 1", ".tran 1u 2u"])
         checker.check(done.status == 0 and text in done.stderr, f"{card}: {done.stderr}")
     done = run(program, "\n".join(["x", "v1 a 0 1", ".subckt s i o", "a1 i 0 0 0 0 0 o 0 BUF Tau={t}", ".ends", ".param t=1u", "x1 a o s",

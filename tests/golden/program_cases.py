@@ -509,6 +509,18 @@ class Summary(Case):
         self.assertRegex(done.stdout, r"v\(a\) +-10\.00  V +10\.00  V +0\.000  V +7\.071  V "
                                       r"+0\.000  V\n")
 
+    def test_what_is_rounding(self):
+        """Averages of 4.2e-7 and 4.2e-6 of the rms, last values of 3e-10 and 3e-9 of the largest."""
+        self.write("small\nV1 a 0 SIN(3u 10 50)\nV2 b 0 SIN(30u 10 50)\nR1 a 0 5\nR2 b 0 5\n"
+                   "V3 c 0 PWL(0 0 10m 1 20m 300p)\nV4 d 0 PWL(0 0 10m 1 20m 3n)\nR3 c 0 5\nR4 d 0 5\n"
+                   ".tran 10u 20m\n.end\n")
+        lines = self.dalcs("run", "a.cir", "--fill", "none").stdout.split("\n")
+        table = {line.split()[0]: line for line in lines if line.startswith("  v(")}
+        self.assertRegex(table["v(a)"], r"10\.00  V +0\.000  V +7\.071  V")
+        self.assertRegex(table["v(b)"], r"10\.00  V +30\.00 uV +7\.071  V")
+        self.assertRegex(table["v(c)"], r" 0\.000  V$")
+        self.assertRegex(table["v(d)"], r" 3\.000 nV$")
+
     def test_quiet(self):
         done = self.dalcs("run", self.write(RECTIFIER), "--quiet")
         self.assertEqual(done.stdout, "")
@@ -592,12 +604,15 @@ class Summary(Case):
 
     def test_reader_that_left(self):
         """As head does: nobody is told off for it, but the status says that not all was read."""
-        reader, writer = os.pipe()
-        os.close(reader)
-        done = subprocess.run([DALCS, "run", self.write(RECTIFIER)], cwd=self.folder,
-                              stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
-        os.close(writer)
-        self.assertEqual((done.returncode, done.stderr), (INPUT_OUTPUT, ""))
+        self.write(RECTIFIER)
+        self.dalcs("run", "a.cir", "-o", "a.raw")
+        for command in (["run", "a.cir"], ["check", "a.cir"], ["audit", "a.cir", "a.raw"], ["equations", "a.cir"]):
+            reader, writer = os.pipe()
+            os.close(reader)
+            done = subprocess.run([DALCS, *command], cwd=self.folder, stdout=writer, stderr=subprocess.PIPE,
+                                  text=True, check=False)
+            os.close(writer)
+            self.assertEqual((done.returncode, done.stderr), (INPUT_OUTPUT, ""), command)
 
 
 class Failures(Case):

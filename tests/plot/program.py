@@ -35,9 +35,9 @@ class Plot(unittest.TestCase):
         cls.holder.cleanup()
 
     @classmethod
-    def run_program(cls, *arguments, **environment):
+    def run_program(cls, *arguments, netlist="", **environment):
         return subprocess.run([DALCS, *map(str, arguments)], cwd=cls.folder, capture_output=True,
-                              text=True, check=False, stdin=subprocess.DEVNULL,
+                              text=True, check=False, input=netlist,
                               env={**os.environ, "LC_ALL": "C.UTF-8", **environment})
 
     def plot(self, *arguments, status=OK, **environment):
@@ -101,6 +101,21 @@ class Plot(unittest.TestCase):
         texts = self.texts("d.svg")
         self.assertTrue(any(text.endswith("events: too many to mark") for text in texts), texts)
         self.assertNotIn("conducts", texts)
+
+    def test_a_long_title_stays_on_the_page(self):
+        """At 0.54 em for a character, in pixels of SVG, of PNG at 96 and of PDF at 100 in an inch."""
+        program = self.folder / "bin" / "gnuplot"
+        program.parent.mkdir()
+        program.write_text("#!/bin/sh\ncat >script.txt\n", encoding="utf-8")
+        program.chmod(0o755)
+        self.run_program("run", "-", "-o", "long.raw", "-q", netlist="a " * 60 + "\nR1 a 0 1\nV1 a 0 1\n.tran 1u 1m\n")
+        for name, em in [("t.svg", 18.0), ("t.png", 20.0), ("t.pdf", 20.9)]:
+            self.run_program("plot", "long.raw", "--width", "800", "-o", name, PATH=f"{program.parent}:/usr/bin:/bin")
+            text, left = re.search(r"^set label 1 '(.*)' at screen ([\d.]+),",
+                                   (self.folder / "script.txt").read_text(encoding="utf-8"), re.MULTILINE).groups()
+            self.assertTrue(text.endswith("\u2026"), text)
+            self.assertLess(float(left) * 800 + 0.54 * em * len(text), 810, name)
+            self.assertGreater(float(left) * 800 + 0.6 * em * len(text), 790, name)
 
     def test_formats(self):
         self.need_gnuplot()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The notebooks of doc/notebooks run and print what they show; without Jupyter.
+"""The notebooks of doc/notebooks and of the lessons run and print what they show; without Jupyter.
 
 usage: notebooks.py SOURCE_FOLDER, with PYTHONPATH=build/src/python
 
@@ -16,7 +16,7 @@ import pathlib
 import sys
 import unittest
 
-FOLDER = pathlib.Path(sys.argv[1]).resolve() / "doc" / "notebooks"
+DOC = pathlib.Path(sys.argv[1]).resolve() / "doc"
 NEEDED = ("matplotlib", "scipy")
 
 
@@ -26,12 +26,13 @@ def printed(cell):
 
 @unittest.skipUnless(all(importlib.util.find_spec(name) for name in NEEDED), f"needs {', '.join(NEEDED)}")
 class Notebooks(unittest.TestCase):
-    def run_notebook(self, name):
+    def run_notebook(self, path):
         import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
-        notebook = json.loads((FOLDER / name).read_text(encoding="utf-8"))
+        folder, name = path.parent, path.name
+        notebook = json.loads(path.read_text(encoding="utf-8"))
         self.assertEqual((notebook["nbformat"], notebook["nbformat_minor"]), (4, 5))
-        os.chdir(FOLDER)
-        session, count, before = {"__name__": "__main__"}, 0, sorted(os.listdir(FOLDER))
+        os.chdir(folder)
+        session, count, before = {"__name__": "__main__"}, 0, sorted(os.listdir(folder))
         for number, cell in enumerate(notebook["cells"], 1):
             if cell["cell_type"] != "code":
                 continue
@@ -43,15 +44,21 @@ class Notebooks(unittest.TestCase):
                 exec(compile("".join(cell["source"]), f"{name}, cell {number}", "exec"), session)
             self.assertEqual(out.getvalue(), printed(cell), f"{name}, cell {number}")
         plt.close("all")
-        self.assertEqual(sorted(os.listdir(FOLDER)), before)
+        self.assertEqual(sorted(os.listdir(folder)), before)
         return count
 
-    def test_all(self):
-        names = sorted(path.name for path in FOLDER.glob("*.ipynb"))
-        self.assertEqual(len(names), 5)
-        for name in names:
-            with self.subTest(name):
-                self.assertGreaterEqual(self.run_notebook(name), 3)
+    def run_all(self, folder, count):
+        paths = sorted((DOC / folder).glob("*.ipynb"))
+        self.assertEqual(len(paths), count)
+        for path in paths:
+            with self.subTest(path.name):
+                self.assertGreaterEqual(self.run_notebook(path), 3)
+
+    def test_examples(self):
+        self.run_all("notebooks", 5)
+
+    def test_lessons(self):
+        self.run_all("lessons", 20)
 
 
 if __name__ == "__main__":

@@ -53,7 +53,7 @@ START_TEST(test_nothing_unused) {
     ck_assert_int_eq(s->n_x, 0);
     ck_assert_int_eq(s->n_z, 3);
     text_network_finish(&t);
-    /* The current of a capacitor or of a short is there when somebody asks. */
+    /* The current of a capacitor or of a short is an unknown if it is read. */
     s = system_of("asked for\nV1 a 0 1\nR1 a b 1\nR2 b c 0\nC1 c 0 1u\n.tran 1u 1m\n.save i(c1) "
                   "i(r2)\n");
     ck_assert_int_ge(find_column(s, DALCS_LABEL_BRANCH, "c1"), 0);

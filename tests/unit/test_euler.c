@@ -187,7 +187,7 @@ START_TEST(test_edge) {
 
 END_TEST
 
-/* The values just after an edge know nothing of the next one, however near it is. */
+/* The values just after an edge do not depend on the next one, however near it is. */
 START_TEST(test_next_edge_near) {
     start(
         "edges\nV1 a 0 PULSE(0 1 10u 0 0 3u 50u)\nV2 b 0 PULSE(0 2 10.0000000000001u 0 0 3u 50u)\n"

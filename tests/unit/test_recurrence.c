@@ -156,7 +156,7 @@ START_TEST(test_jumps) {
 
 END_TEST
 
-/* Nobody asks for most spans' waveforms; those of one are there all the same. */
+/* Most spans have no rows; the waveforms of one can be computed all the same. */
 START_TEST(test_inside) {
     bool happens;
     int n_asked = 0;

@@ -37,7 +37,7 @@ static const char STEPPED[] =
     ".save v(a) v(b) v(b,c) v(q) v(h) v(b,z) v(z) v(a,q) i(d1) i(v1) i(v2) "
     "i(s1) i(l1) i(c1) i(i5)\n";
 
-/* Beside it a part that has to be solved whenever somebody asks. */
+/* Beside it a part that is solved for each row. */
 static const char SOLVED[] = "two parts\n"
                              "V1 a 0 SIN(0 10 50)\n"
                              "R1 a b 10\n"
@@ -153,7 +153,7 @@ START_TEST(test_some_outputs) {
 
 END_TEST
 
-/* Rows of all outputs solve such a part though nobody reads it; those of some do not. */
+/* Rows of all outputs solve such a part, rows of the other outputs do not. */
 START_TEST(test_solved_part) {
     static const int OUTPUT[] = {0};
     start(SOLVED, 7, NULL, 3);

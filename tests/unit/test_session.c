@@ -237,7 +237,7 @@ static enum dalcs_status cancel(void *user, double time, double stop) {
     return ++*n_calls == 3 ? DALCS_E_CANCELLED : DALCS_OK;
 }
 
-/* A large circuit is asked more often: nobody waits for thousands of its steps. */
+/* A large circuit calls progress more often, for its steps take longer. */
 START_TEST(test_cancel) {
     char text[1 << 17];
     int length = sprintf(text, "ladder\nV1 n0 0 SIN(0 1 50)\n");
@@ -288,7 +288,7 @@ START_TEST(test_memory_given_back) {
 
 END_TEST
 
-/* A jump is kept with the states that take part, however many there are. */
+/* A jump is kept with the states that jump, however many there are. */
 START_TEST(test_memory_of_jumps) {
     static char text[1 << 17];
     int length = sprintf(text, "one of many\nV1 a 0 PULSE(0 1 1u 0 0 1u 2u)\nD1 a b\nC0 b 0 1u\n"

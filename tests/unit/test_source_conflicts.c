@@ -67,7 +67,7 @@ START_TEST(test_functions) {
 
 END_TEST
 
-/* A short whose current nobody asks for is no source of trouble. */
+/* A short whose current is not read makes no conflict. */
 START_TEST(test_shorts) {
     check_messages("two shorts\nV1 a 0 1\nR1 a b 0\nR2 a b 0\nR3 b 0 1\n.op\n.save v(b)\n", "");
     check_messages("one is asked for\nV1 a 0 1\nR1 a b 0\nR2 a b 0\nR3 b 0 1\n.op\n.save i(r1)\n",

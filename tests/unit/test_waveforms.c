@@ -273,7 +273,7 @@ static void refuse_signal(const char *text, const char *why) {
 START_TEST(test_wrong_expressions) {
     refuse_signal("i(rr1)", "there is no signal 'i(rr1)'; did you mean 'i(r1)'?");
     refuse_signal("v(a,x)", "there is no signal 'v(x)'");
-    refuse_signal("i(q9)", "it has time, v(a), v(b), V(Out), i(r1), @d1[id], v1#branch");
+    refuse_signal("i(q9)", "the file has time, v(a), v(b), V(Out), i(r1), @d1[id], v1#branch");
     refuse_signal("", "expected a signal at the end");
     refuse_signal("v(a)*", "expected a signal at the end");
     refuse_signal("v(a", "')' is missing at the end");

@@ -25,10 +25,10 @@ Arrays of rows are views of the run's memory. All units are SI.
 from __future__ import annotations
 
 import inspect
-from typing import Any, Callable, Dict, List, Mapping, Optional
+from typing import Any, Callable, List, Mapping, Optional
 
 from . import _library
-from ._circuit import Circuit
+from ._circuit import Check, Circuit
 from ._equations import System
 from ._errors import Cancelled, Error, NetlistError, NoSolution, OptionError, WrongWaveform
 from ._response import Response
@@ -39,7 +39,7 @@ from ._simulation import Simulation
 from ._sweep import Grid, Sweep
 
 __version__: str = _library.lib.dalcs_version().decode()
-__all__ = ["Cancelled", "Circuit", "Error", "NetlistError", "NoSolution", "OptionError", "Response",
+__all__ = ["Cancelled", "Check", "Circuit", "Error", "NetlistError", "NoSolution", "OptionError", "Response",
            "Result", "Sensitivities", "Simulation", "Sweep", "System", "Table", "WrongWaveform", "bode", "check",
            "envelope", "equations", "run", "steady", "sweep", "variants"]
 
@@ -83,7 +83,7 @@ def variants(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
 
 
 def check(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *, step: float = 0.0,
-          dialect: Optional[str] = None) -> Dict[str, Any]:
+          dialect: Optional[str] = None) -> Check:
     """Circuit(netlist, dialect).check(values, step=step)"""
     return Circuit(netlist, dialect).check(values, step=step)
 

@@ -30,6 +30,13 @@ def _asks_of(options: Mapping[str, Any], sensitivities: bool) -> List[Callable[[
     return asks
 
 
+class Check(Dict[str, Any]):
+    """What theory says: a dict (doc/check.schema.json) that shows its summary."""
+
+    def __repr__(self) -> str:
+        return f"<check of {self['title']!r}: {' '.join(part['summary'] for part in self['parts'])}>"
+
+
 class Circuit:
     """A netlist: a path, or its text, which has a newline in it. `dialect`: "ngspice", "ltspice", "xyce"."""
 
@@ -177,13 +184,13 @@ class Circuit:
         return variants_of(self.run, points, workers, each, done, {**options, "values": values, "seed": seed})
 
     def check(self, values: Optional[Mapping[str, Number]] = None, *,
-              step: float = 0.0) -> Dict[str, Any]:
-        """What theory says without a run, as `dalcs check --format json` (doc/check.schema.json).
+              step: float = 0.0) -> Check:
+        """What theory says without a run, as `dalcs check --json` (doc/check.schema.json).
 
         step    s, of the conditions on one step; 0: the netlist's
         """
         session = self._read(values=values)
-        return dict(json.loads(session.document(c.lib.dalcs_session_check_json, float(step))))
+        return Check(json.loads(session.document(c.lib.dalcs_session_check_json, float(step))))
 
     def equations(self, values: Optional[Mapping[str, Number]] = None, *,
                   form: str = "dalcs") -> List[System]:
