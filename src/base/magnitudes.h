@@ -1,28 +1,27 @@
 /* magnitudes.h - the orders of magnitude that rules of the engine tell apart.
  *
- * Most rules ask whether a quantity is much smaller than another, is nothing beside it, or is the same. The cases lie far
- * apart, so that an order of magnitude answers, and these are the ones. A rule that needs a number of its own says where
- * that comes from. What rounding alone makes of a value is in rounding.h. */
+ * Most rules ask whether a quantity is much smaller than another, is nothing beside it, or is the same. These cases lie
+ * far apart, so that an order of magnitude tells them apart. Each question has one number here. A rule that needs a number
+ * of its own says where that comes from. What rounding alone makes of a value is in rounding.h. */
 #ifndef DALCS_MAGNITUDES_H
 #define DALCS_MAGNITUDES_H
 
-/* What an estimate of an error or of rounding may be short by: what is beyond so many times it is none. An estimate that
- * is one digit is one (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.8). */
+/* Beyond an estimate of an error or of rounding: no estimate that is made here is short by more (E. Hairer, G. Wanner,
+ * Solving Ordinary Differential Equations II, section IV.8, have no more of theirs). */
 static const double dalcs_beyond = 10.0;
 
-/* A part of what is allowed that may be spent besides and is not seen in it, and two values that agree: two digits. It is
- * also kappa of Hairer and Wanner, section IV.8. */
+/* A slight part of what is allowed, which may be spent besides and is not seen in it: kappa of Hairer and Wanner, section
+ * IV.8. So two values agree that share two digits. */
 static const double dalcs_slight = 1e-2;
 
-/* Much smaller: what is beside it changes none of its leading digits, and has three of its own before rounding of a
- * default tolerance of 1e-6 is reached. */
+/* Much smaller: it changes no more than the fourth digit of what is beside it. */
 static const double dalcs_small = 1e-3;
 
-/* Nothing beside another of its kind: nobody who asks for six digits, which is the default, sees it. */
+/* Nothing beside another of its kind: who asks for six digits, which is the default, does not see it. */
 static const double dalcs_nothing = 1e-6;
 
-/* Answers nearer to each other, over the largest of their unit, are one: a one-step problem is right to this, with seven
- * digits of it lost to conductances that far apart. */
+/* Alike: the difference, over the largest of the unit, is what a one-step problem may be off by. Of sixteen digits,
+ * conductances that are seven orders of magnitude apart cost seven. */
 static const double dalcs_alike = 1e-9;
 
 #endif

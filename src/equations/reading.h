@@ -118,6 +118,26 @@ struct dalcs_reading {
 bool dalcs_reading_take_column(struct dalcs_reading *r, struct dalcs_described_system *s,
                                const struct dalcs_card *card);
 
+/* An `input` card. */
+void dalcs_reading_take_input(struct dalcs_reading *r, const struct dalcs_card *card);
+
+/* One more system, which begins at this card; NULL: out of memory. The system that a card belongs to: the last one, or the
+ * first. */
+struct dalcs_described_system *dalcs_reading_new_system(struct dalcs_reading *r,
+                                                        const struct dalcs_card *card);
+struct dalcs_described_system *dalcs_reading_present_system(struct dalcs_reading *r,
+                                                            const struct dalcs_card *card);
+void dalcs_reading_drop_system(struct dalcs_described_system *s);
+
+/* network main|charge|flux|held; false when an error was reported. Then everything between two of these cards. */
+bool dalcs_reading_begin_network(struct dalcs_reading *r, const struct dalcs_card *card);
+enum dalcs_status dalcs_reading_finish_network(struct dalcs_reading *r,
+                                               const struct dalcs_card *card,
+                                               size_t n_cards) DALCS_MUST_CHECK;
+
+/* An `output` or `element` card: read when its network is. */
+bool dalcs_reading_is_output(const struct dalcs_card *card);
+
 /* A name on a card: any word or string, kept. NULL when an error was reported. */
 const char *dalcs_reading_name(struct dalcs_reader *reader, const char *what);
 

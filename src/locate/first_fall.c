@@ -13,6 +13,9 @@
 
 #include <math.h>
 
+/* Falls this near to each other, in steps, are one event if the later one is no more than its doubt above 0 at the first. */
+static const double same_by_value = 1e-10;
+
 /* A guard that is looked at, up to `end`, in steps. */
 struct look {
     int guard;
@@ -127,7 +130,7 @@ static double doubt_of(struct dalcs_radau_part *part, const struct look *a) {
  * in series open together, whichever has a rounding more: leaks alone would take that down, late. */
 static bool falls_with(const struct dalcs_radau_part *part, int guard, double event, double theta,
                        const double *unit) {
-    if (!part->guards.armed[guard] || theta - event > dalcs_alike) {
+    if (!part->guards.armed[guard] || theta - event > same_by_value) {
         return false;
     }
     double work[DALCS_MAX_NODES];
