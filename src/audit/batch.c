@@ -81,7 +81,7 @@ static struct dalcs_audit_kept kept(const struct audit_batch *b, int k, double *
 }
 
 /* As if it had not been gathered. */
-static void revisit(struct dalcs_audit *audit, int index, int k, double states) {
+static void revisit(struct dalcs_audit *audit, int index, int k) {
     struct audit_part *part = &audit->part[index];
     const struct audit_batch *b = &part->watch->batch;
     const struct dalcs_audit_reader *r = &audit->reader;
@@ -89,7 +89,6 @@ static void revisit(struct dalcs_audit *audit, int index, int k, double states) 
     const struct dalcs_audit_kept before = kept(b, k - 1, room);
     const struct dalcs_audit_kept present = kept(b, k, room + b->gathered.n_inputs);
     part->at.length = before.to - before.from;
-    part->watch->states = states;
     audit_look_again(audit, r->revisit(r->user, index, &before, &present));
     r->go_back(r->user, index);
 }
@@ -114,8 +113,9 @@ static void ask(struct dalcs_audit *audit, int index) {
     part->watch->states = sums.end[last + 1];
     if (first <= last) {
         b->is_busy = true;
+        part->watch->states = sums.end[first];
         for (int k = first; k <= last; k++) {
-            revisit(audit, index, k, sums.end[k]);
+            revisit(audit, index, k);
         }
         b->is_busy = false;
         g->is_on = false;

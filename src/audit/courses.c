@@ -150,25 +150,33 @@ static void shift(int n, double by, double *term) {
     }
 }
 
+/* Their sum is one polynomial as long as all of them are. It is worth it where that is longer than since the time asked
+ * before. */
 double audit_laws_begin(struct dalcs_audit *audit, struct audit_screen *screen, double t) {
+    const struct audit_term *term = screen->term[AUDIT_TERM_LAW];
+    const int n = screen->n_terms[AUDIT_TERM_LAW];
     struct audit_course *all = &screen->course;
-    *all = (struct audit_course){-INFINITY, INFINITY, t, 1, {0.0}};
+    const double before = all->origin;
     double sum = 0.0;
-    for (int k = 0; k < screen->n_terms[AUDIT_TERM_LAW]; k++) {
-        const struct audit_term *of = &screen->term[AUDIT_TERM_LAW][k];
-        sum += of->factor * audit_stimulus_at(audit, of->index, t);
-        struct audit_course c = audit->course[of->index];
-        if (!(c.from <= t && t <= c.to)) {
-            all->from = INFINITY; /* it is asked each time */
-            continue;
-        }
+    double from = -INFINITY;
+    double to = INFINITY;
+    for (int k = 0; k < n; k++) {
+        sum += term[k].factor * audit_stimulus_at(audit, term[k].index, t);
+        from = fmax(from, audit->course[term[k].index].from);
+        to = fmin(to, audit->course[term[k].index].to);
+    }
+    *all = (struct audit_course){INFINITY, to, t, 1, {0.0}};
+    if (!(from <= t && t <= to && fabs(t - before) <= to - t)) {
+        return sum;
+    }
+    for (int k = 0; k < n; k++) {
+        struct audit_course c = audit->course[term[k].index];
         shift(c.n, t - c.origin, c.term);
         for (int i = 0; i < c.n; i++) {
-            all->term[i] += of->factor * c.term[i];
+            all->term[i] += term[k].factor * c.term[i];
         }
         all->n = c.n > all->n ? c.n : all->n;
-        all->from = fmax(all->from, c.from);
-        all->to = fmin(all->to, c.to);
     }
+    all->from = from;
     return sum;
 }

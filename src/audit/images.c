@@ -50,10 +50,12 @@ static struct audit_image *find(struct audit_screen *screen,
     return image;
 }
 
-/* To make an image takes as much as to ask as many stretches as it has inputs, whose values are there: it is made when so
- * much was spent without it (A. Karlin et al., Competitive snoopy caching, Algorithmica 3 (1988)). */
-static bool is_due(const struct audit_image *image, const struct dalcs_audit_polynomials *p) {
-    int n_made = 1;
+/* To make an image takes as much as to ask as many stretches as it has inputs, whose values are there, and what is at its
+ * ends as much again: it is made when so much was spent without it (A. Karlin et al., Competitive snoopy caching,
+ * Algorithmica 3 (1988)). */
+static bool is_due(const struct audit_image *image, const struct dalcs_audit_polynomials *p,
+                   bool is_same_end) {
+    int n_made = 1 + (image->at_node != NULL || !is_same_end ? 1 : 0);
     for (int m = 0; m < AUDIT_SCREEN_TIMES; m++) {
         n_made += image->at[m].place != NULL ? 1 : 0;
     }
@@ -144,7 +146,7 @@ struct audit_image *audit_image_of(const struct dalcs_audit *audit, const struct
     const bool is_same = audit_is_same_end(image->end, p->end);
     image->end = p->end;
     image->n_asked++;
-    if (at->place == NULL && is_due(image, p)) {
+    if (at->place == NULL && is_due(image, p, is_same)) {
         at->place = take_room(&part->watch->screens, n_inputs * ((size_t)screen->n_places + 2));
         if (at->place != NULL) {
             at->reach = at->place + n_inputs * (size_t)screen->n_places;

@@ -9,17 +9,17 @@
 /* A multiplier whose product spreads keys (D. E. Knuth, The Art of Computer Programming 3, sec. 6.4). */
 static const uint64_t spread = 0x9e3779b97f4a7c15u;
 
-/* Steps whose lengths have the same exponent, but for its last two bits. */
+/* The same for steps within a factor of 16: it is their exponent, but for the last two bits. */
 static int class_of(double length) {
-    int exponent;
-    (void)frexp(length, &exponent);
-    return (exponent + 1024 * 4) / 4;
+    uint64_t bits;
+    memcpy(&bits, &length, sizeof bits);
+    return (int)(bits >> 54);
 }
 
 /* Steps within a factor of 4 are held to the same, and all of one class. */
 static bool serves(const struct audit_screen *screen, uint64_t key, double length) {
     return screen->key == key &&
-           (class_of(screen->length) == class_of(length) ||
+           (screen->class == class_of(length) ||
             (length <= 4.0 * screen->length && screen->length <= 4.0 * length));
 }
 
@@ -28,7 +28,7 @@ static struct audit_screen **slot_of(const struct audit_screens *screens, uint64
     const uint64_t mask = ((uint64_t)1 << screens->log2_slots) - 1;
     uint64_t at = ((key ^ (uint64_t) class) * spread) >> (64 - screens->log2_slots);
     while (screens->slot[at] != NULL &&
-           (screens->slot[at]->key != key || class_of(screens->slot[at]->length) != class)) {
+           (screens->slot[at]->key != key || screens->slot[at]->class != class)) {
         at = (at + 1) & mask;
     }
     return &screens->slot[at];
@@ -67,8 +67,7 @@ static bool grow(struct audit_screens *screens) {
     for (int k = 0; next.slot != NULL && screens->slot != NULL && k < 1 << screens->log2_slots;
          k++) {
         if (screens->slot[k] != NULL) {
-            *slot_of(&next, screens->slot[k]->key, class_of(screens->slot[k]->length)) =
-                screens->slot[k];
+            *slot_of(&next, screens->slot[k]->key, screens->slot[k]->class) = screens->slot[k];
         }
     }
     if (next.slot == NULL) {
@@ -119,6 +118,7 @@ static struct audit_screen *take(struct audit_watch *watch,
             screens->n++;
             (*slot)->key = p->key;
             (*slot)->length = p->step;
+            (*slot)->class = class_of(p->step);
             (*slot)->limit = 1.0;
         }
     }

@@ -87,6 +87,7 @@ struct audit_window {
 
 struct audit_screen {
     uint64_t key;
+    int class; /* of the length, screen.c */
     double
         length; /* s, of the step that it was made of: charges and fluxes are held to what may be over that */
     bool is_made;

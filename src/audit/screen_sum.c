@@ -171,11 +171,9 @@ void audit_screen_weights(const struct audit_watch *watch, const struct dalcs_au
 
 void audit_screen_ends(const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
                        const double *value, int n_ends, double *at_node) {
-    const double *state = screen->row + AUDIT_ROW_STATES * dalcs_quads_of(p->n_columns);
+    const int n = dalcs_quads_of(p->n_columns);
     for (int k = 0; k < p->n_nodes; k++, value += p->stride, at_node += n_ends) {
-        for (int c = 0; c < p->n_columns; c++) {
-            at_node[0] += state[c] * value[c];
-        }
+        at_node[0] = audit_product(n, screen->row + AUDIT_ROW_STATES * n, value);
         const struct audit_term *term = screen->term[AUDIT_TERM_COLUMN];
         for (int i = 0; i < screen->n_terms[AUDIT_TERM_COLUMN]; i++, term++) {
             at_node[1 + (term->place - AUDIT_PLACE_SIGNS) / AUDIT_SIGN_TIMES] +=

@@ -3,8 +3,6 @@
 
 #include "radau.h"
 
-#include <string.h>
-
 /* Its values are computed once more, into room[0], and those of the one before it into room[1]. */
 struct audit_present {
     struct dalcs_part_segment segment;
@@ -13,8 +11,11 @@ struct audit_present {
     double *room[2];
 };
 
-static size_t mode_bytes(const struct dalcs_radau_part *part) {
-    return (size_t)part->component->osnsp.n_words * sizeof(uint64_t);
+/* of[n_words], which may be none. */
+static void take_mode(struct dalcs_radau_part *part, const uint64_t *of) {
+    for (int k = 0; k < part->component->osnsp.n_words; k++) {
+        part->component->osnsp.mode[k] = of[k];
+    }
 }
 
 enum dalcs_status dalcs_audit_present_make(struct dalcs_audit_run *a, int part) {
@@ -44,8 +45,10 @@ struct dalcs_audit_stretch *dalcs_audit_revisit(void *user, int index,
     m->present->segment = *s;
     m->present->last_out = m->last_out;
     m->present->last_time = m->last_time;
-    memcpy(m->present->mode, part->component->osnsp.mode, mode_bytes(part));
-    memcpy(part->component->osnsp.mode, m->last_mode, mode_bytes(part));
+    for (int k = 0; k < part->component->osnsp.n_words; k++) {
+        m->present->mode[k] = part->component->osnsp.mode[k];
+    }
+    take_mode(part, m->last_mode);
     s->t = present->from;
     s->t_end = present->to;
     s->h = m->last_step;
@@ -72,7 +75,7 @@ void dalcs_audit_go_back(void *user, int index) {
     struct audit_members *m = &a->part[index];
     struct dalcs_radau_part *part = &a->radau->part[index];
     part->segment = m->present->segment;
-    memcpy(part->component->osnsp.mode, m->present->mode, mode_bytes(part));
+    take_mode(part, m->present->mode);
     m->last_out = m->present->last_out;
     m->last_time = m->present->last_time;
 }
