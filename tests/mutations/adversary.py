@@ -156,7 +156,7 @@ MUTATIONS = {
     "a diode is kept open in one leg of twelve": (
         "locate/first_fall.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 7 && ", STRINGS),
     "a jump is shared out wrongly among coils": (
-        "decide/restart.c", "    memcpy(part->x, e->jump.after, ",
+        "decide/take_jump.c", "    memcpy(part->x, e->jump.after, ",
         "    e->jump.after[0] *= 1.01;\n    e->jump.after[1] *= 1.01;\n    memcpy(part->x, e->jump.after, ", SHARED),
     "a coil's current jumps where a switch with hysteresis closes": (
         "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
