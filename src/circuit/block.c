@@ -40,6 +40,7 @@ static const struct {
     {"slew", NULL, NULL},
     {"pwl", NULL, NULL},
     {"aswitch", NULL, NULL},
+    {"pswitch", NULL, NULL},
     {"transformer", NULL, NULL},
     {"d_dt", NULL, NULL},
     {"mult", NULL, NULL},

@@ -345,7 +345,7 @@ bool dalcs_block_parse_analog(struct dalcs_block_card *c) {
         parse_limit(c);
     } else if (strcmp(type, "pwl") == 0) {
         parse_pwl(c);
-    } else if (strcmp(type, "aswitch") == 0) {
+    } else if (strcmp(type, "aswitch") == 0 || strcmp(type, "pswitch") == 0) {
         parse_switch(c);
     } else if (strcmp(type, "int") == 0) {
         parse_integrator(c);

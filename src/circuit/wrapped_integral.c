@@ -64,17 +64,21 @@ static bool add_charge(struct dalcs_compiler *c, const char *what, int share, in
     return g != NULL;
 }
 
-/* A node of 1 V. */
-static bool add_one(struct dalcs_compiler *c, int node) {
-    const struct dalcs_stimulus constant = {.kind = DALCS_STIMULUS_DC, .has_dc = true, .dc = 1};
-    struct dalcs_device *v = dalcs_memory_add_device(c, DALCS_VSOURCE, "one", node, 0);
+static bool add_source(struct dalcs_compiler *c, const char *what, int node,
+                       const struct dalcs_stimulus *stimulus) {
+    struct dalcs_device *v = dalcs_memory_add_device(c, DALCS_VSOURCE, what, node, 0);
     if (v != NULL) {
-        v->stimulus = dalcs_compiler_add_stimulus(c, &constant);
+        v->stimulus = dalcs_compiler_add_stimulus(c, stimulus);
     }
     return v != NULL && v->stimulus >= 0;
 }
 
-enum { SHARE, ONE, LIFT, MIRROR, TURNED, FALLS, BACK, OTHER, RAMP, N_NODES };
+static bool add_constant(struct dalcs_compiler *c, const char *what, int node, double volts) {
+    const struct dalcs_stimulus constant = {.kind = DALCS_STIMULUS_DC, .has_dc = true, .dc = volts};
+    return add_source(c, what, node, &constant);
+}
+
+enum { SHARE, FIRST, HOLD, ONE, LIFT, MIRROR, TURNED, FALLS, BACK, OTHER, RAMP, N_NODES };
 
 /* Which way round the share is read: it changes where the share arrives at an end. While x is below 0 the control is
  * 1 - share, so that the lower end is the one that turns it on. */
@@ -83,7 +87,7 @@ static bool add_direction(struct dalcs_compiler *c, const int *node, int x) {
                                                        .roff = (double)INFINITY};
     static const struct dalcs_switch_model turns = {
         .name = "turns", .roff = (double)INFINITY, .vt = 0.5, .vh = 0.5};
-    return add_one(c, node[ONE]) &&
+    return add_constant(c, "one", node[ONE], 1) &&
            add_gain(c, "lift", (int[]){node[LIFT], 0}, -1, (int[]){node[ONE], 0}) &&
            add_gain(c, "mirror", (int[]){node[MIRROR], node[LIFT]}, 2, (int[]){node[SHARE], 0}) &&
            add_gate(c, "turned", (int[]){node[MIRROR], node[TURNED]}, (int[]){0, x}, &negative) &&
@@ -91,11 +95,39 @@ static bool add_direction(struct dalcs_compiler *c, const int *node, int x) {
                     &turns);
 }
 
+/* The share, at `first` until t = 0: an operating point, and small signals around it, see it there. */
+static bool add_share(struct dalcs_compiler *c, const int *node, double first) {
+    static const struct dalcs_switch_model holds = {
+        .name = "hold", .roff = (double)INFINITY, .vt = 0.5};
+    struct dalcs_stimulus until_start = {.kind = DALCS_STIMULUS_PULSE};
+    until_start.u.pulse.low = 1;
+    until_start.u.pulse.width = until_start.u.pulse.period = (double)INFINITY;
+    struct dalcs_device *store =
+        dalcs_memory_add_device(c, DALCS_CAPACITOR, "share", node[SHARE], 0);
+    if (store == NULL) {
+        return false;
+    }
+    store->value = dalcs_charging;
+    store->initial = first;
+    store->has_initial = true;
+    if (!add_constant(c, "first", node[FIRST], first) ||
+        !add_source(c, "hold", node[HOLD], &until_start)) {
+        return false;
+    }
+    struct dalcs_device *s =
+        dalcs_memory_add_device(c, DALCS_SWITCH, "hold", node[SHARE], node[FIRST]);
+    if (s != NULL) {
+        s->node[2] = node[HOLD];
+        s->model = dalcs_switch_add_model(c->builder, &holds);
+    }
+    return s != NULL && s->model >= 0;
+}
+
 /* A node of the wrapped integral, less its offset; -1 after an error. */
 static int add_wrapped(struct dalcs_compiler *c, const struct dalcs_formula *f, double modulus,
                        double first) {
-    static const char *const names[N_NODES] = {"share", "one",  "lift",  "mirror", "turned",
-                                               "falls", "back", "other", "ramp"};
+    static const char *const names[N_NODES] = {"share",  "first", "hold", "one",   "lift", "mirror",
+                                               "turned", "falls", "back", "other", "ramp"};
     static const struct dalcs_switch_model follows = {
         .name = "follows", .roff = (double)INFINITY, .vt = 0.5};
     int node[N_NODES];
@@ -105,16 +137,12 @@ static int add_wrapped(struct dalcs_compiler *c, const struct dalcs_formula *f, 
         node[k] = dalcs_compiler_new_node(c, names[k]);
         c->failed = c->failed || node[k] < 0;
     }
-    struct dalcs_device *store =
-        x >= 0 && !c->failed ? dalcs_memory_add_device(c, DALCS_CAPACITOR, "share", node[SHARE], 0)
-                             : NULL;
-    if (store == NULL) {
+    if (x < 0 || c->failed) {
         return -1;
     }
-    store->value = dalcs_charging;
-    dalcs_initial_hold(c->builder, c->element, node[SHARE], first - floor(first));
     const bool ok =
-        add_direction(c, node, x) && add_charge(c, "up", node[SHARE], x, 1 / modulus) &&
+        add_share(c, node, first - floor(first)) && add_direction(c, node, x) &&
+        add_charge(c, "up", node[SHARE], x, 1 / modulus) &&
         add_gate(c, "back", (int[]){x, node[BACK]}, (int[]){node[FALLS], 0}, &follows) &&
         add_charge(c, "down", node[SHARE], node[BACK], -2 / modulus) &&
         add_gate(c, "other", (int[]){node[MIRROR], node[OTHER]}, (int[]){node[FALLS], 0},

@@ -203,6 +203,8 @@ a3 c q sq
 a4 q c null p one
 .model one oneshot(cntl_array=[0 1] pw_array=[1u 2u])
 a5 t h hys
+a13 q s 0 0 0 0 k 0 PHASEDET Iout=1u Cout=1n
+b9 w2 0 V=idtmod(1meg*v(c),0,1)
 .model hys hyst(in_low=-0.5 in_high=0.5)
 a6 s d rate
 .model rate d_dt(gain=1u out_upper_limit=1)

@@ -195,7 +195,7 @@ def states(checker, program):
                 checker.close(v, wanted, 1e-7 * height, f"{what} at {t}")
     cards = ["v1 c 0 sin(0 1 50)", "v2 p 0 10", "a1 c %gd(p o) m", "a2 c (p q) n", "r1 o 0 1k", "r2 q 0 1k",
              ".model m aswitch(cntl_off=0.2 cntl_on=0.6 r_on=1k r_off=1e12 log=true)",
-             ".model n aswitch(cntl_off=0.6 cntl_on=0.2 r_on=3k)", ".tran 1m 20m"]
+             ".model n pswitch(cntl_off=0.6 cntl_on=0.2 r_on=3k)", ".tran 1m 20m"]
     done = run_cards(program, "a switch", cards)
     if runs(checker, done, "a switch"):
         on = math.asin(0.4) / (2 * math.pi * 50)

@@ -100,6 +100,9 @@ def wraps(checker, program):
     for arguments, wanted in (("v(x)", lambda t: 4 * t), ("v(x), 3", lambda t: 3 + 4 * t)):
         compare(checker, program, f"idtmod({arguments}) is idt", ["v1 x 0 4", f"b1 o 0 v=idtmod({arguments})", "r1 o 0 1", ".tran 0.1 1"],
                 {"v(o)": (wanted, 4)})
+    done = run_cards(program, "at an operating point", ["v1 x 0 1", "b1 o 0 v=idtmod(v(x), 5.25, 2, 1)", "r1 o 0 1", ".op"])
+    if runs(checker, done, "at an operating point"):
+        checker.close(done.column("v(o)")[-1], 2.25, 1e-12, "at an operating point it is where it begins")
     for arguments, text in (("v(x),0,0", "the modulus of 'idtmod' must be above 0"), ("v(x),0,v(x)", "the modulus of 'idtmod' must be a number"),
                             ("v(x),0,1,v(x)", "the offset of 'idtmod' must be a number"), ("v(x),0,1,0,0", "another number of arguments")):
         done = run_cards(program, arguments, ["v1 x 0 1", f"b1 o 0 v=idtmod({arguments})", "r1 o 0 1", ".tran 1 2"])

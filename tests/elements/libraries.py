@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Subcircuits that are installed with dalcs: control.lib and UniversalOpamps2.sub, against closed forms.
+"""Subcircuits that are installed with dalcs: control.lib, UniversalOpamps2.sub and NE555.sub, against closed forms.
 
 usage: libraries.py PROGRAM
 
@@ -125,6 +125,42 @@ def amplifiers(checker, program):
             checker.close(o, min(max(v, -2), 2), 5e-3, what)  # what is inside winds up to the rails
 
 
+def timers(checker, program):
+    """A 555 that runs free, that makes one pulse for each trigger, as a Schmitt trigger, and held by its reset."""
+    own = 10  # ohms of its switches
+    for volts, ra, rb, farad in ((9, 1e4, 47e3, 1e-8), (5, 1e3, 1e6, 1e-6), (15, 1e5, 1e5, 1e-10)):
+        what = f"a timer of {ra} and {rb} ohm"
+        up = math.log(2) * (ra + rb) * farad
+        low, r = volts * own / (ra + own), rb + ra * own / (ra + own)
+        down = r * farad * math.log((2 * volts / 3 - low) / (volts / 3 - low))
+        first = math.log(3) * (ra + rb) * farad
+        done = run(program, what, [".lib NE555.sub", f"v1 p 0 {volts}", "x1 0 c o p k c d p NE555", f"ra p d {ra!r}", f"rb d c {rb!r}",
+                                   f"c1 c 0 {farad!r} ic=0", "rl o 0 1k", f".tran {up / 10!r} {first + 3.5 * (up + down)!r} uic"])
+        if runs(checker, done, what):
+            falls = [first + k * (up + down) for k in range(4)]
+            wanted = sorted(falls + [t + down for t in falls])
+            found = [t for t in edges(done, "v(o)", volts / 2) if t > 0]
+            times(checker, found, wanted[:len(found)], what)
+            checker.check(len(found) >= 6, f"{what}: {len(found)} edges")
+            checker.close(max(done.column("v(o)")), volts * 1000 / 1010, 1e-9, f"{what}: its output")
+    for volts, r, farad in ((5, 1e5, 1e-8), (12, 1e4, 1e-6)):
+        what = f"a pulse of {r} ohm"
+        low = volts * own / (r + own)
+        width = r * farad * math.log((volts - low) / (volts / 3))
+        done = run(program, what, [".lib NE555.sub", f"v1 p 0 {volts}", f"vt t 0 pulse({volts} 0 {width!r} 0 0 {width / 20!r} {3 * width!r})",
+                                   "x1 0 t o p k c c p NE555", f"r1 p c {r!r}", f"c1 c 0 {farad!r}", "rl o 0 1k",
+                                   f".tran {width / 10!r} {6.5 * width!r}"])
+        if runs(checker, done, what):
+            times(checker, edges(done, "v(o)", volts / 2), [width, 2 * width, 4 * width, 5 * width], what, 1e-8)
+    cards = [".lib NE555.sub", "v1 p 0 9", "v2 i 0 sin(4.5 4.5 50)", "v3 r 0 pulse(9 0 15m 0 0 1 2)", "x1 0 i o r k i d p NE555", "rl o 0 1k",
+             ".tran 1m 60m"]
+    done = run(program, "a Schmitt trigger", cards)
+    if runs(checker, done, "a Schmitt trigger"):
+        third = math.asin(1 / 3) / (2 * math.pi * 50)
+        found = [t for t in edges(done, "v(o)", 4.5) if t > 0]
+        times(checker, found, [10e-3 + third, 15e-3], "a Schmitt trigger that a reset ends", 1e-9)
+
+
 def places(checker, program):
     """A file that is nowhere is an error where it is needed. The folder that DALCS_LIBRARIES names comes before those of dalcs, which have
     what it has not."""
@@ -144,7 +180,7 @@ def places(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("libraries")
-    for part in (modulators, controllers, amplifiers, places):
+    for part in (modulators, controllers, amplifiers, timers, places):
         part(checker, program)
     return checker.finish()
 
