@@ -71,6 +71,15 @@ def run(program, folder, verb, netlist):
     return done, report, (folder / "c.csv").read_text() if done.returncode == 0 else ""
 
 
+def tolerance(checker, program, folder):
+    """It is that of the search, too."""
+    netlist = "boost\n" + CASES["boost in discontinuous conduction"] + ".ac list 1k\n.end\n"
+    (folder / "c.cir").write_text(netlist)
+    done = subprocess.run([program, "run", "c.cir", "-q", "-o", "none", "--tol", "1e-11"], cwd=folder, capture_output=True,
+                          text=True, check=False)
+    checker.check(done.returncode == 0 and done.stderr == "", f"--tol: {done.stderr}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("behind a steady state")
@@ -89,6 +98,7 @@ def main():
             for key in ("steps", "factorizations"):
                 checker.check(together["work"][key] == steady["work"][key],
                               f"{case}: {together['work'][key]} {key}, and {steady['work'][key]} for .pss alone")
+        tolerance(checker, program, folder)
     return checker.finish()
 
 
