@@ -201,7 +201,8 @@ static double multiply(struct follow *f) {
     return log(size);
 }
 
-/* Over the run on from st->at, in sums of n periods: the mean logarithm for a period, and its standard deviation; *known: M was exact. */
+/* Over the run on from st->at, in sums of n periods: the mean logarithm for a period, and its standard deviation; *known: M
+ * was exact. */
 static enum dalcs_status find_growth(struct follow *f, int n, double *mean, double *deviation,
                                      bool *known) {
     struct dalcs_steady *st = f->st;
