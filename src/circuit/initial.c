@@ -168,7 +168,8 @@ void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dal
 
 void dalcs_initial_check(struct dalcs_builder *builder) {
     const struct dalcs_transient *transient = &builder->circuit->transient;
-    if (transient->present && transient->use_initial_conditions) {
+    if ((transient->present && transient->use_initial_conditions) ||
+        builder->circuit->periodic.use_initial_conditions) {
         return;
     }
     if (builder->initial_state != NULL) {

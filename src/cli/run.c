@@ -76,7 +76,7 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
         } else if (option[i].given && arguments->bode && !is_of_steps) {
             fprintf(cli->err, "dalcs: warning: %s applies to waveforms: it has no effect\n",
                     option[i].name);
-        } else if (option[i].given && !arguments->bode &&
+        } else if (option[i].given && !arguments->bode && !(is_of_steps && request->periodic) &&
                    (is_plot ? !request->transient
                             : main != DALCS_TRANSIENT && main != DALCS_PERIODIC)) {
             fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",

@@ -56,29 +56,57 @@ static double differ(const struct dalcs_periodic_flow *flow, const double *a, co
     return most;
 }
 
+/* What rounding leaves in P, likewise. */
+static double noise_of(const struct dalcs_periodic_flow *flow, const struct dalcs_flow_map *map) {
+    const struct dalcs_collocation *c = flow->stages.method;
+    double sum = 0.0;
+    double most = 0.0;
+    for (int i = 0; i < c->s; i++) {
+        sum += fabs(c->back[i]);
+    }
+    for (int k = 0; k < flow->n_columns; k++) {
+        most = fmax(most, map->noise[k] / (k < flow->n_x ? flow->unit[k] : 1.0));
+    }
+    return sum * most;
+}
+
+static bool start_setup(struct dalcs_periodic_flow *flow, struct dalcs_flow_start *start) {
+    const size_t n_x = (size_t)flow->n_x;
+    start->P = dalcs_arena_alloc(&flow->arena, (size_t)flow->n_columns * n_x, sizeof(double));
+    start->by_source = dalcs_arena_alloc(&flow->arena, n_x, sizeof(double complex));
+    return start->P != NULL && start->by_source != NULL;
+}
+
+/* From ever briefer steps, until two of them agree. Voltages that take a current away go with 1 / h, and rounding with
+ * them: where they agree to rounding the longer one is better. */
 static enum dalcs_status make_start(struct dalcs_periodic_flow *flow,
                                     const struct dalcs_orbit_span *span,
                                     struct dalcs_flow_start *start) {
-    const size_t n = (size_t)flow->n_x;
-    const size_t n_P = (size_t)flow->n_columns * n;
-    double *before = dalcs_arena_alloc(&flow->arena, n_P, sizeof(double));
-    start->mode = span->mode;
-    start->P = dalcs_arena_alloc(&flow->arena, n_P, sizeof(double));
-    start->by_source = dalcs_arena_alloc(&flow->arena, n, sizeof(double complex));
-    if (before == NULL || start->P == NULL || start->by_source == NULL) {
+    struct dalcs_flow_start before = {.mode = span->mode};
+    struct dalcs_flow_start now = before;
+    if (!start_setup(flow, &before) || !start_setup(flow, &now)) {
         return DALCS_E_NOMEM;
     }
     double h = (span->to - span->from) * briefer;
+    double noise = 0.0;
     for (int k = 0; k < MOST_BRIEFER; k++, h *= briefer) {
         struct dalcs_flow_map *map;
         DALCS_TRY(dalcs_periodic_flow_map(flow, span, span->from, h, &map));
-        extrapolate(flow, map, start);
-        if (k > 0 && differ(flow, start->P, before) <= dalcs_alike) {
+        extrapolate(flow, map, &now);
+        const double off = k > 0 ? differ(flow, now.P, before.P) : INFINITY;
+        if (off > dalcs_alike && off <= noise_of(flow, map)) {
             break;
         }
-        memcpy(before, start->P, n_P * sizeof(double));
+        noise = noise_of(flow, map);
+        const struct dalcs_flow_start other = before;
+        before = now;
+        now = other;
+        if (off <= dalcs_alike) {
+            break;
+        }
     }
-    start->changes_nothing = differ(flow, start->P, NULL) <= dalcs_alike;
+    *start = before;
+    start->changes_nothing = differ(flow, start->P, NULL) <= fmax(dalcs_alike, noise);
     return DALCS_OK;
 }
 

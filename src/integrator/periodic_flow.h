@@ -25,12 +25,11 @@ struct dalcs_flow_map {
     struct dalcs_flow_map *alike; /* another one of this key, in another mode */
     const uint64_t *mode;         /* NULL: not filled */
     double h;
-    double
-        *state; /* [n_columns][size] of unit states, and of outputs of gates that are off by 1 V */
+    double *state; /* [n_columns][size] of unit states, and of outputs of gates off by 1 V */
     double *drive; /* [n_turns][n_nodes][size] of the sources along a Legendre polynomial each */
-    double *noise,
-        *rounding; /* [n_columns + 1], the last of the sources: what rounding leaves in the
-                                 states, in the units of energies; of the latter, through their derivatives */
+    /* [n_columns + 1], the last of the sources: what rounding leaves in the states, in the units of energies, as the
+     * equations tell; and through their derivatives, of the sources and outputs of gates */
+    double *noise, *rounding;
     /* at one frequency, periodic_response.c: */
     long stamp;
     double complex *driven; /* [size] by the sources as they go, from 0 */
@@ -122,6 +121,7 @@ enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
                                           const struct dalcs_orbit_span *span, double t, double h,
                                           struct dalcs_flow_map **map) DALCS_MUST_CHECK;
 
+/* For a piece: the map stays. */
 enum dalcs_status dalcs_periodic_flow_keep(struct dalcs_periodic_flow *flow,
                                            struct dalcs_flow_map *map) DALCS_MUST_CHECK;
 

@@ -154,6 +154,36 @@ static void end_span(struct probe *p, const struct dalcs_orbit_span *span) {
     }
 }
 
+/* One of length h that is tried from t on. */
+struct piece {
+    struct dalcs_flow_map *map;
+    double t;
+    double tail; /* of the worst probe, over its size */
+    double seen; /* the same beyond rounding */
+};
+
+static enum dalcs_status look_at(struct probe *p, const struct dalcs_orbit_span *span, double t,
+                                 double h, struct piece *piece) {
+    piece->t = t;
+    DALCS_TRY(dalcs_periodic_flow_map(p->flow, span, t, h, &piece->map));
+    try_piece(p, piece->map, t, &piece->tail, &piece->seen);
+    return DALCS_OK;
+}
+
+/* Is the piece as good as any from there on? What is too much of it may be rounding: half the length takes 2^-(s - 1) of
+ * the last coefficients, and makes more of what rounding has left in them. Half of these digits tell one from the other. */
+static enum dalcs_status is_good(struct probe *p, const struct dalcs_orbit_span *span, double h,
+                                 struct piece *piece, bool *is) {
+    *is = piece->tail <= resolved;
+    if (*is || piece->seen > resolved) {
+        return DALCS_OK;
+    }
+    struct piece half;
+    DALCS_TRY(look_at(p, span, piece->t, 0.5 * h, &half));
+    *is = half.tail >= ldexp(piece->tail, -(p->flow->stages.method->s - 1) / 2);
+    return *is ? look_at(p, span, piece->t, h, piece) : DALCS_OK;
+}
+
 /* Halves and doubles of the span, each at a multiple of its own length. */
 static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span *span) {
     struct dalcs_periodic_flow *flow = p->flow;
@@ -162,28 +192,28 @@ static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span
     int n_rough = 0;
     uint64_t at = 0; /* of 2^MOST_HALVINGS */
     while (at < (uint64_t)1 << MOST_HALVINGS) {
-        struct dalcs_flow_map *map;
-        double t = span->from + ldexp((double)at, -MOST_HALVINGS) * length;
-        double tail;
-        double seen;
-        DALCS_TRY(dalcs_periodic_flow_map(flow, span, t, ldexp(length, -level), &map));
-        try_piece(p, map, t, &tail, &seen);
-        if (seen > resolved && level < MOST_HALVINGS) {
+        const double t = span->from + ldexp((double)at, -MOST_HALVINGS) * length;
+        const double h = ldexp(length, -level);
+        struct piece piece;
+        bool is;
+        DALCS_TRY(look_at(p, span, t, h, &piece));
+        DALCS_TRY(is_good(p, span, h, &piece, &is));
+        if (!is && level < MOST_HALVINGS) {
             level++;
             continue;
         }
-        n_rough += seen > resolved ? 1 : 0;
+        n_rough += piece.tail > resolved ? 1 : 0;
         if (n_rough > MOST_ROUGH) {
             return DALCS_NOT_CONVERGED;
         }
-        flow->worst = fmax(flow->worst, tail);
-        DALCS_TRY(add_piece(flow, map, t));
-        find_dt(p, span, map, t);
+        flow->worst = fmax(flow->worst, piece.tail);
+        DALCS_TRY(add_piece(flow, piece.map, t));
+        find_dt(p, span, piece.map, t);
         accept(p);
         at += (uint64_t)1 << (MOST_HALVINGS - level);
         /* twice the length takes 2^s times the coefficients, and is tried where it can begin */
         bool aligned = level > 0 && (at & ((uint64_t)1 << (MOST_HALVINGS - level))) == 0;
-        level -= aligned && ldexp(tail, flow->stages.method->s - 1) <= resolved ? 1 : 0;
+        level -= aligned && ldexp(piece.seen, flow->stages.method->s - 1) <= resolved ? 1 : 0;
     }
     return DALCS_OK;
 }

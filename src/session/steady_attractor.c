@@ -31,9 +31,9 @@ static const double near_one = 1e-9;
 /* Steps of the run times unknowns: seconds. A longer search is a .tran of the user. */
 static const double most_work = 1e7;
 
-/* The growth of a difference is a mean of logarithms, of so many sums of so many periods; before it, it turns to where it
- * grows most. */
-enum { SUMS = 16, PERIODS_OF_A_SUM = 64, TURNING = 64 };
+/* The growth of a difference is a mean of logarithms, of so many sums of so many periods; in one more before them it turns
+ * to where it grows most. */
+enum { SUMS = 16, PERIODS_OF_A_SUM = 64, PERIODS_OF_A_FREE_SUM = 8 };
 
 /* It is not 0 where it is this many times its standard deviation. */
 static const double certain = 4.0;
@@ -70,8 +70,10 @@ static bool make_room(struct follow *f) {
 
 static void begin(struct follow *f, struct dalcs_steady *st) {
     const struct dalcs_network *network = &st->run->s->network;
-    *f = (struct follow){
-        .st = st, .one = st->period, .before = (double)st->run->s->report.work.steps};
+    *f = (struct follow){.is_bounded = true,
+                         .st = st,
+                         .one = st->period,
+                         .before = (double)st->run->s->report.work.steps};
     for (int k = 0; k < network->n_systems; k++) {
         f->work_of_a_step += network->system[k].n_x + network->system[k].n_z;
     }
@@ -199,8 +201,9 @@ static double multiply(struct follow *f) {
     return log(size);
 }
 
-/* Over the run on from st->at: the mean logarithm for a period, and its standard deviation; *known: M was exact. */
-static enum dalcs_status find_growth(struct follow *f, double *mean, double *deviation,
+/* Over the run on from st->at, in sums of n periods: the mean logarithm for a period, and its standard deviation; *known: M
+ * was exact. */
+static enum dalcs_status find_growth(struct follow *f, int n, double *mean, double *deviation,
                                      bool *known) {
     struct dalcs_steady *st = f->st;
     double square = 0.0;
@@ -209,13 +212,13 @@ static enum dalcs_status find_growth(struct follow *f, double *mean, double *dev
     for (int x = 0; x < st->layout.n_x; x++) {
         f->vector[x] = f->scale[x] * (0.5 + fmod(0.6180339887498949 * (x + 1), 1.0));
     }
-    for (int k = -TURNING; k < SUMS * PERIODS_OF_A_SUM; k += PERIODS_OF_A_SUM) {
+    for (int k = -1; k < SUMS; k++) {
         double sum = 0.0;
-        for (int i = 0; i < PERIODS_OF_A_SUM; i++) {
+        for (int i = 0; i < n; i++) {
             DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
             dalcs_steady_take(st);
             *known = *known && st->is_exact;
-            sum += multiply(f) / PERIODS_OF_A_SUM;
+            sum += multiply(f) / n;
         }
         *mean += k >= 0 ? sum / SUMS : 0.0;
         square += k >= 0 ? sum * sum / SUMS : 0.0;
@@ -225,11 +228,11 @@ static enum dalcs_status find_growth(struct follow *f, double *mean, double *dev
     return DALCS_OK;
 }
 
-static enum dalcs_status tell_apart(struct follow *f, struct dalcs_steady_attractor *a) {
+static enum dalcs_status tell_apart(struct follow *f, int n, struct dalcs_steady_attractor *a) {
     double mean;
     double deviation;
     bool known;
-    DALCS_TRY(find_growth(f, &mean, &deviation, &known));
+    DALCS_TRY(find_growth(f, n, &mean, &deviation, &known));
     const bool is_zero = fabs(mean) <= certain * deviation;
     if (known && mean > 0.0 && !is_zero) {
         a->kind = DALCS_STEADY_CHAOS;
@@ -244,6 +247,27 @@ static enum dalcs_status tell_apart(struct follow *f, struct dalcs_steady_attrac
 
 /* ---- All of it ----------------------------------------------------------------------------------- */
 
+/* Without a clock nothing says when to look at points. Whether differences grow is the same at any time, and the orbit
+ * beside which they do so in each period takes fewer of them. */
+static enum dalcs_status follow_free(struct follow *f, double wait, double steps,
+                                     struct dalcs_steady_attractor *a) {
+    struct dalcs_steady *st = f->st;
+    const size_t n_x = (size_t)st->layout.n_x;
+    if (!may_go_on(f, steps, wait + (SUMS + 1) * PERIODS_OF_A_FREE_SUM)) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_steady_pass(st, (long)wait, DALCS_STEADY_PLAIN));
+    dalcs_steady_take(st);
+    memcpy(f->scale, st->scale, n_x * sizeof(double));
+    DALCS_TRY(tell_apart(f, PERIODS_OF_A_FREE_SUM, a));
+    for (size_t x = 0; x < n_x; x++) {
+        f->is_bounded = f->is_bounded && st->scale[x] <= bounded * f->scale[x];
+    }
+    const bool is_chaos = a->kind == DALCS_STEADY_CHAOS && f->is_bounded;
+    a->kind = is_chaos ? DALCS_STEADY_CHAOS : DALCS_STEADY_UNKNOWN;
+    return DALCS_OK;
+}
+
 static enum dalcs_status follow(struct follow *f, double growth, struct dalcs_steady_attractor *a) {
     struct dalcs_steady *st = f->st;
     const double leaving = growth > 1.0 ? ceil(log(grown) / log(growth)) : 0.0;
@@ -251,6 +275,9 @@ static enum dalcs_status follow(struct follow *f, double growth, struct dalcs_st
     bool found = false;
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN));
     steps = (double)st->run->s->report.work.steps - steps;
+    if (st->is_free) {
+        return follow_free(f, fmax((double)waits[0], leaving), steps, a);
+    }
     for (size_t k = 0; k < sizeof waits / sizeof waits[0]; k++) {
         const double wait = fmax((double)waits[k], leaving);
         if (!may_go_on(f, steps, wait + KEPT)) {
@@ -263,8 +290,9 @@ static enum dalcs_status follow(struct follow *f, double growth, struct dalcs_st
             return dalcs_steady_refine(st, &f->kept[0]);
         }
     }
-    return f->is_bounded && may_go_on(f, steps, 2.0 * SUMS * PERIODS_OF_A_SUM) ? tell_apart(f, a)
-                                                                               : DALCS_OK;
+    return f->is_bounded && may_go_on(f, steps, 2.0 * SUMS * PERIODS_OF_A_SUM)
+               ? tell_apart(f, PERIODS_OF_A_SUM, a)
+               : DALCS_OK;
 }
 
 enum dalcs_status dalcs_steady_find_attractor(struct dalcs_steady *st, double growth,

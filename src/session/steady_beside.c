@@ -33,7 +33,7 @@ static enum dalcs_status look(struct dalcs_steady *st) {
     }
     const bool is_one_of_many =
         st->run->step != NULL && st->run->step->n_steps > 1; /* takes long */
-    if (report->steady.doubled.stable || st->is_free || is_one_of_many) {
+    if (report->steady.doubled.stable || is_one_of_many) {
         return DALCS_OK;
     }
     st->period = one;

@@ -281,19 +281,21 @@ enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one
     size_t n;
     char text[DALCS_QUANTITY_SIZE];
     DALCS_TRY(find_multipliers(st, &m, &n));
+    if (st->is_free) {
+        (void)take_out_flow(m, &n);
+    }
     n = count_lasting(m, n);
     const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
-    report->steady.doubled.period = 2.0 * one;
+    report->steady.doubled.period = st->period;
     report->steady.doubled.stable = outside(m, n) < 0.0;
     report->steady.doubled.n_multipliers = n;
     report->steady.doubled.multiplier = m;
     report->steady.verdict = dalcs_arena_printf(
-        arena,
-        "%s; an orbit of two periods, %s, was found: %s, with a largest factor of %.6g; .pss "
-        "periods=2 gives it",
+        arena, "%s; an orbit of two periods, %s, was found: %s, with a largest factor of %.6g%s",
         growth_text(arena, report->steady.multiplier, one),
-        dalcs_quantity_write(text, 2.0 * one, "s", 12),
-        report->steady.doubled.stable ? "stable" : "unstable too", size);
+        dalcs_quantity_write(text, st->period, "s", 12),
+        report->steady.doubled.stable ? "stable" : "unstable too", size,
+        st->is_free ? "" : "; .pss periods=2 gives it");
     return report->steady.verdict != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 

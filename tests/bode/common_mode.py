@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""Small signals beside a voltage that a whole part of a circuit has in common.
+
+usage: common_mode.py PROGRAM
+
+A bridge feeds a load whose only way to ground is a resistor: a little current of the filter through it is a large
+voltage of all nodes, and rounding of that is large beside other currents. A short step takes currents that have nowhere
+to go away with voltages that grow as it gets shorter, and rounding grows with them. With a sparse matrix of stages this
+once left a span without end, and the answer was 'singular matrix'. The response is that of a small sine.
+"""
+
+import cmath
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import dalcs_program  # pylint: disable=wrong-import-position,import-error
+
+PERIOD = 40e-6
+NEAR = 1e-6
+AMPLITUDE = 1e-3
+SIGNALS = ("v(star)", "i(lla)", "v(fa,fb)")
+
+
+def bridge(common, n_dividers, control):
+    """n_dividers: pairs of resistors beside the load, so that there are enough unknowns."""
+    lines = ["A bridge with an isolated load", "Vdc dc0 0 400", "Rdc dc0 dc1 20m", "Ldc dc1 dc 20u", "Cdc dc e 500u",
+             "Re e 0 5m", "Vtri tri 0 PULSE(-1 1 0 20u 20u 1f 40u)", "Vm m0 0 0.3", f"Vin m m0 {control}",
+             f"Rmid mid star {common}", "Vmid mid 0 200", ".model sm SW(Ron=10m Vt=0.02)"]
+    for leg, high, low in (("a", "m tri", "tri m"), ("b", "tri m", "m tri")):
+        lines += [f"E{leg}u gu{leg} 0 {high} 1", f"S{leg}u dc s{leg} gu{leg} 0 sm", f"D{leg}u s{leg} dc",
+                  f"E{leg}l gl{leg} 0 {low} 1", f"S{leg}l s{leg} 0 gl{leg} 0 sm", f"D{leg}l 0 s{leg}",
+                  f"L{leg}0 s{leg} x{leg} 0.5m", f"R{leg}0 x{leg} f{leg} 50m", f"C{leg}0 f{leg} y{leg} 4.7u",
+                  f"Rc{leg} y{leg} star 0.5", f"Ll{leg} f{leg} l{leg} 1m", f"Rl{leg} l{leg} n 10"]
+        lines += [f"Rx{leg}{k} l{leg} q{leg}{k} 1k\nRy{leg}{k} q{leg}{k} n 1k" for k in range(n_dividers)]
+    return "\n".join(lines) + "\n"
+
+
+def run(program, folder, verb, netlist):
+    path = folder / "c.cir"
+    path.write_text(netlist + ".end\n")
+    done = subprocess.run([program, verb, path.name, "-q", "-o", "c.csv", "--report", "c.json", "--tol", "1e-12"],
+                          cwd=folder, capture_output=True, text=True, check=False)
+    return done, json.loads((folder / "c.json").read_text())
+
+
+def injected(program, folder, case, frequency, amplitude):
+    netlist = bridge(*case, f"SIN(0 {amplitude!r} {frequency!r})")
+    done, report = run(program, folder, "steady",
+                       netlist + f".pss {4 * PERIOD!r} uic\n.four {frequency!r} 1 {' '.join(SIGNALS)}\n")
+    if done.returncode != 0:
+        raise RuntimeError(done.stderr)
+    return [part["magnitude"][1] * cmath.exp(1j * math.radians(part["phase"][1])) / amplitude
+            for part in report["fourier"]]
+
+
+def look_at(checker, program, folder, case, fraction):
+    frequency = fraction / PERIOD
+    done, report = run(program, folder, "bode", bridge(*case, "DC 0 AC 1") + f".save {' '.join(SIGNALS)}\n.pss uic\n"
+                       f".ac list {frequency!r}\n")
+    if not checker.check(done.returncode == 0, f"{case}: {done.stderr}"):
+        return
+    checker.check(report["response"]["exact"], f"{case}: not exact")
+    row = [float(v) for v in (folder / "c.csv").read_text().splitlines()[1].split(",")]
+    whole, half = (injected(program, folder, case, frequency, AMPLITUDE / k) for k in (1, 2))
+    largest = max(abs(w) for w in whole)
+    for k, signal in enumerate(SIGNALS):
+        found, expected = complex(row[2 * k + 1], row[2 * k + 2]), (4 * half[k] - whole[k]) / 3
+        away = abs(found - expected) / max(abs(expected), 1e-3 * largest)
+        checker.check(away <= NEAR, f"{case}: {signal} is {found}, not {expected}, off by {away:.2g}")
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    checker = dalcs_program.Checker("a voltage in common")
+    with tempfile.TemporaryDirectory() as folder:
+        for case in (("1", 4), ("10k", 4), ("10k", 0), ("100k", 4)):
+            look_at(checker, program, pathlib.Path(folder), case, 0.25)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
