@@ -8,6 +8,7 @@
 #include "plot_arguments.h"
 #include "plot_charts.h"
 #include "report_reader.h"
+#include "runs.h"
 #include "spectrum.h"
 #include "text_plot.h"
 
@@ -71,8 +72,10 @@ struct drawing {
     size_t n_written;                       /* messages */
     struct dalcs_waveforms waveforms, made; /* the latter of --spectrum and --histogram */
     struct dalcs_selection selection;
+    struct dalcs_runs runs; /* of a page: all of them are in it */
     struct dalcs_conduction conduction;
     struct dalcs_margin_lines lines;
+    const char *response[2];        /* the signals of a Bode plot; NULL: none is chosen */
     const struct dalcs_report *run; /* that has just written the file; NULL: none has */
     const char *title;
 };
@@ -99,7 +102,11 @@ static enum dalcs_status choose_run(struct drawing *drawing) {
                        n == 1 ? "" : "s", run);
         return DALCS_E_OPTION;
     }
-    if (n > 1 && drawing->arguments->run == 0) {
+    if (drawing->arguments->is_page && drawing->arguments->run == 0 &&
+        !drawing->arguments->report && !(drawing->arguments->spectrum > 0.0)) {
+        DALCS_TRY(dalcs_runs_find(&drawing->runs, waveforms));
+    }
+    if (n > 1 && drawing->arguments->run == 0 && drawing->runs.n == 0) {
         dalcs_diag_add(&drawing->diag, DALCS_NOTE, NULL, NULL,
                        "%s starts again: this is the first of %zu runs; --run N draws another",
                        waveforms->name[0], n);
@@ -150,18 +157,25 @@ static enum dalcs_status choose_response(struct drawing *drawing, const char *gr
                : DALCS_OK;
 }
 
-static enum dalcs_status select_signals(struct drawing *drawing) {
+/* Of one run. */
+static enum dalcs_status select_of(struct drawing *drawing, const struct dalcs_waveforms *waveforms,
+                                   struct dalcs_selection *selection) {
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
-    const char *group[2];
-    DALCS_TRY(choose_response(drawing, group));
-    const bool is_chosen = group[0] != NULL;
+    const bool is_chosen = drawing->response[0] != NULL;
+    DALCS_TRY(dalcs_selection_make(
+        selection, waveforms, is_chosen ? drawing->response : arguments->group,
+        is_chosen ? 2 : arguments->n_groups, arguments->from, arguments->to, &drawing->diag));
+    selection->continues = is_chosen;
+    return DALCS_OK;
+}
+
+static enum dalcs_status select_signals(struct drawing *drawing) {
+    DALCS_TRY(choose_response(drawing, drawing->response));
+    const bool is_chosen = drawing->response[0] != NULL;
     if (!is_chosen || !drawing->lines.loop) {
         drawing->lines.n = 0;
     }
-    DALCS_TRY(dalcs_selection_make(
-        &drawing->selection, &drawing->waveforms, is_chosen ? group : arguments->group,
-        is_chosen ? 2 : arguments->n_groups, arguments->from, arguments->to, &drawing->diag));
-    drawing->selection.continues = is_chosen;
+    DALCS_TRY(select_of(drawing, &drawing->waveforms, &drawing->selection));
     if (drawing->waveforms
             .complex_values) { /* events are of the orbit, and the axis of frequencies */
         dalcs_conduction_finish(&drawing->conduction);
@@ -237,6 +251,36 @@ static enum dalcs_status draw_picture(struct drawing *drawing) {
     return status;
 }
 
+static void finish_runs(const struct drawing *drawing, struct dalcs_page_run *run) {
+    for (size_t k = 0; run != NULL && k + 1 < drawing->runs.n; k++) {
+        dalcs_selection_finish(&run[k].selection);
+        dalcs_conduction_finish(&run[k].conduction);
+    }
+    free(run);
+}
+
+/* The same signals of the other runs; *run is the caller's to finish, whatever the status. */
+static enum dalcs_status select_runs(struct drawing *drawing, struct dalcs_page_run **run) {
+    const struct dalcs_plot_arguments *arguments = drawing->arguments;
+    const struct dalcs_runs *runs = &drawing->runs;
+    enum dalcs_status status = DALCS_OK;
+    if (runs->n == 0) {
+        return DALCS_OK;
+    }
+    *run = dalcs_alloc(runs->n - 1, sizeof(**run));
+    if (*run == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k + 1 < runs->n && status == DALCS_OK; k++) {
+        struct dalcs_page_run *r = &(*run)[k];
+        status = select_of(drawing, &runs->waveforms[k + 1], &r->selection);
+        if (status == DALCS_OK && !arguments->no_bars) {
+            status = dalcs_selection_add_conduction(&r->selection, &r->conduction);
+        }
+    }
+    return status;
+}
+
 static enum dalcs_status draw_page(struct drawing *drawing) {
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
     static const struct dalcs_conduction none;
@@ -248,10 +292,15 @@ static enum dalcs_status draw_page(struct drawing *drawing) {
                        arguments->output);
         return DALCS_E_OPTION;
     }
-    enum dalcs_status status = dalcs_atomic_file_open(&file, arguments->output);
+    struct dalcs_page_run *run = NULL;
+    enum dalcs_status status = select_runs(drawing, &run);
+    const struct dalcs_page_runs runs = {drawing->runs.n, run, drawing->runs.label};
+    if (status == DALCS_OK) {
+        status = dalcs_atomic_file_open(&file, arguments->output);
+    }
     if (status == DALCS_OK) {
         status = dalcs_page_write(file.stream, &drawing->selection,
-                                  arguments->no_bars ? &none : &drawing->conduction,
+                                  arguments->no_bars ? &none : &drawing->conduction, &runs,
                                   &drawing->lines, drawing->title + strspn(drawing->title, "* "),
                                   arguments->theme, arguments->marks, &drawing->diag);
     }
@@ -268,6 +317,7 @@ static enum dalcs_status draw_page(struct drawing *drawing) {
         status = refuse_output(drawing, file.error);
     }
     dalcs_atomic_file_discard(&file);
+    finish_runs(drawing, run);
     return status;
 }
 
@@ -352,6 +402,7 @@ static enum dalcs_status draw(const struct dalcs_cli *cli,
     dalcs_margin_lines_finish(&drawing.lines);
     dalcs_conduction_finish(&drawing.conduction);
     dalcs_selection_finish(&drawing.selection);
+    dalcs_runs_finish(&drawing.runs);
     dalcs_waveforms_finish(&drawing.made);
     dalcs_waveforms_finish(&drawing.waveforms);
     dalcs_diag_finish(&drawing.diag);
