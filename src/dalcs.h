@@ -577,7 +577,8 @@ enum dalcs_status dalcs_session_set_state(struct dalcs_session *session, const c
 enum dalcs_status dalcs_session_apply_values(struct dalcs_session *session) DALCS_MUST_CHECK;
 
 /* The names that may be set: the parameters outside of subcircuits of a netlist with a script, or that is
- * kept; the elements, those of subcircuits too. NULL when index is too large. */
+ * kept; the elements, those of subcircuits too, and parts of elements, "rser(l1)", which have no value of their own.
+ * NULL when index is too large. */
 const char *dalcs_session_parameter_name(const struct dalcs_session *session, size_t index);
 const char *dalcs_session_element_name(const struct dalcs_session *session, size_t index);
 

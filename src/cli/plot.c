@@ -3,10 +3,8 @@
 
 #include "decibels.h"
 #include "histogram.h"
-#include "margin_lines.h"
-#include "page.h"
-#include "plot_arguments.h"
 #include "plot_charts.h"
+#include "plot_drawing.h"
 #include "report_reader.h"
 #include "spectrum.h"
 #include "text_plot.h"
@@ -63,21 +61,7 @@ static const char help[] =
     "\n"
     "exit status: 0 ok, 2 usage, or the file holds no such waveforms, 4 input/output\n";
 
-/* What a drawing is made of. */
-struct drawing {
-    const struct dalcs_cli *cli;
-    const struct dalcs_plot_arguments *arguments;
-    struct dalcs_diag diag;
-    size_t n_written;                       /* messages */
-    struct dalcs_waveforms waveforms, made; /* the latter of --spectrum and --histogram */
-    struct dalcs_selection selection;
-    struct dalcs_conduction conduction;
-    struct dalcs_margin_lines lines;
-    const struct dalcs_report *run; /* that has just written the file; NULL: none has */
-    const char *title;
-};
-
-static void write_messages(struct drawing *drawing) {
+static void write_messages(struct dalcs_drawing *drawing) {
     for (; drawing->n_written < drawing->diag.n; drawing->n_written++) {
         const struct dalcs_diagnostic *item = &drawing->diag.item[drawing->n_written];
         if (item->severity != DALCS_NOTE || !drawing->arguments->quiet) {
@@ -89,7 +73,7 @@ static void write_messages(struct drawing *drawing) {
 /* ---- The file ------------------------------------------------------------------------------- */
 
 /* Where a sweep or several starts follow one another, one of them. */
-static enum dalcs_status choose_run(struct drawing *drawing) {
+static enum dalcs_status choose_run(struct dalcs_drawing *drawing) {
     struct dalcs_waveforms *waveforms = &drawing->waveforms;
     size_t first = 0, end = 0, run = drawing->arguments->run > 0 ? drawing->arguments->run : 1;
     size_t n = dalcs_waveforms_find_run(waveforms, run, &first, &end);
@@ -99,7 +83,11 @@ static enum dalcs_status choose_run(struct drawing *drawing) {
                        n == 1 ? "" : "s", run);
         return DALCS_E_OPTION;
     }
-    if (n > 1 && drawing->arguments->run == 0) {
+    if (drawing->arguments->is_page && drawing->arguments->run == 0 &&
+        !drawing->arguments->report && !(drawing->arguments->spectrum > 0.0)) {
+        DALCS_TRY(dalcs_runs_find(&drawing->runs, waveforms));
+    }
+    if (n > 1 && drawing->arguments->run == 0 && drawing->runs.n == 0) {
         dalcs_diag_add(&drawing->diag, DALCS_NOTE, NULL, NULL,
                        "%s starts again: this is the first of %zu runs; --run N draws another",
                        waveforms->name[0], n);
@@ -109,7 +97,7 @@ static enum dalcs_status choose_run(struct drawing *drawing) {
 }
 
 /* The selection becomes one of the table that is made of it. */
-static enum dalcs_status remake(struct drawing *drawing) {
+static enum dalcs_status remake(struct dalcs_drawing *drawing) {
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
     struct dalcs_selection of_made;
     DALCS_TRY(arguments->histogram
@@ -126,7 +114,7 @@ static enum dalcs_status remake(struct drawing *drawing) {
 }
 
 /* What is known beside the file. */
-static enum dalcs_status read_report(struct drawing *drawing) {
+static enum dalcs_status read_report(struct dalcs_drawing *drawing) {
     const char *report = drawing->arguments->report;
     if (drawing->run) {
         DALCS_TRY(dalcs_conduction_add_report(&drawing->conduction, drawing->run));
@@ -140,7 +128,7 @@ static enum dalcs_status read_report(struct drawing *drawing) {
 }
 
 /* Without signals of the caller's choice, the gain of a loop with its margins, or a response. group: both NULL, neither of them. */
-static enum dalcs_status choose_response(struct drawing *drawing, const char *group[2]) {
+static enum dalcs_status choose_response(struct dalcs_drawing *drawing, const char *group[2]) {
     const bool is_response =
         drawing->waveforms.complex_values || (drawing->run && drawing->run->response.present);
     group[0] = group[1] = NULL;
@@ -150,18 +138,13 @@ static enum dalcs_status choose_response(struct drawing *drawing, const char *gr
                : DALCS_OK;
 }
 
-static enum dalcs_status select_signals(struct drawing *drawing) {
-    const struct dalcs_plot_arguments *arguments = drawing->arguments;
-    const char *group[2];
-    DALCS_TRY(choose_response(drawing, group));
-    const bool is_chosen = group[0] != NULL;
+static enum dalcs_status select_signals(struct dalcs_drawing *drawing) {
+    DALCS_TRY(choose_response(drawing, drawing->response));
+    const bool is_chosen = drawing->response[0] != NULL;
     if (!is_chosen || !drawing->lines.loop) {
         drawing->lines.n = 0;
     }
-    DALCS_TRY(dalcs_selection_make(
-        &drawing->selection, &drawing->waveforms, is_chosen ? group : arguments->group,
-        is_chosen ? 2 : arguments->n_groups, arguments->from, arguments->to, &drawing->diag));
-    drawing->selection.continues = is_chosen;
+    DALCS_TRY(dalcs_drawing_select(drawing, &drawing->waveforms, &drawing->selection));
     if (drawing->waveforms
             .complex_values) { /* events are of the orbit, and the axis of frequencies */
         dalcs_conduction_finish(&drawing->conduction);
@@ -169,7 +152,7 @@ static enum dalcs_status select_signals(struct drawing *drawing) {
     return DALCS_OK;
 }
 
-static enum dalcs_status read_file(struct drawing *drawing) {
+static enum dalcs_status read_file(struct dalcs_drawing *drawing) {
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
     struct dalcs_waveforms *waveforms = &drawing->waveforms;
     DALCS_TRY(
@@ -199,7 +182,7 @@ static enum dalcs_status add_row(void *user, double at, const double *value) {
     return DALCS_OK;
 }
 
-static enum dalcs_status compose(struct drawing *drawing, struct dalcs_figure *figure) {
+static enum dalcs_status compose(struct dalcs_drawing *drawing, struct dalcs_figure *figure) {
     const struct dalcs_selection *selection = &drawing->selection;
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
     dalcs_figure_init(figure, arguments->output, selection->start, selection->stop);
@@ -216,13 +199,7 @@ static enum dalcs_status compose(struct drawing *drawing, struct dalcs_figure *f
     return dalcs_selection_each_row(selection, add_row, figure);
 }
 
-static enum dalcs_status refuse_output(const struct drawing *drawing, int error) {
-    dalcs_cli_error(drawing->cli, "cannot write '%s': %s", drawing->arguments->output,
-                    strerror(error));
-    return DALCS_E_IO;
-}
-
-static enum dalcs_status draw_picture(struct drawing *drawing) {
+static enum dalcs_status draw_picture(struct dalcs_drawing *drawing) {
     struct dalcs_figure figure;
     enum dalcs_status status = compose(drawing, &figure);
     if (status == DALCS_OK) {
@@ -231,43 +208,9 @@ static enum dalcs_status draw_picture(struct drawing *drawing) {
     if (figure.message[0]) {
         dalcs_cli_error(drawing->cli, "cannot draw '%s': %s", figure.path, figure.message);
     } else if (figure.file.error != 0) {
-        status = refuse_output(drawing, figure.file.error);
+        status = dalcs_drawing_refuse_output(drawing, figure.file.error);
     }
     dalcs_figure_finish(&figure);
-    return status;
-}
-
-static enum dalcs_status draw_page(struct drawing *drawing) {
-    const struct dalcs_plot_arguments *arguments = drawing->arguments;
-    static const struct dalcs_conduction none;
-    struct dalcs_atomic_file file = {0};
-    if (!dalcs_page_is_available()) {
-        dalcs_diag_add(&drawing->diag, DALCS_ERROR, NULL,
-                       "install it (on Debian: apt-get install libjs-dygraphs) and build again",
-                       "cannot write '%s': this dalcs was built without the library dygraphs",
-                       arguments->output);
-        return DALCS_E_OPTION;
-    }
-    enum dalcs_status status = dalcs_atomic_file_open(&file, arguments->output);
-    if (status == DALCS_OK) {
-        status = dalcs_page_write(file.stream, &drawing->selection,
-                                  arguments->no_bars ? &none : &drawing->conduction,
-                                  &drawing->lines, drawing->title + strspn(drawing->title, "* "),
-                                  arguments->theme, arguments->marks, &drawing->diag);
-    }
-    if (status == DALCS_OK && ferror(file.stream)) {
-        int error = errno != 0 ? errno : EIO;
-        dalcs_atomic_file_discard(&file);
-        file.error = error;
-        status = DALCS_E_IO;
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_atomic_file_commit(&file);
-    }
-    if (file.error != 0) {
-        status = refuse_output(drawing, file.error);
-    }
-    dalcs_atomic_file_discard(&file);
     return status;
 }
 
@@ -293,7 +236,7 @@ static bool shows_unicode(void) {
     return false;
 }
 
-static enum dalcs_status draw_text(struct drawing *drawing) {
+static enum dalcs_status draw_text(struct dalcs_drawing *drawing) {
     FILE *out = drawing->cli->out;
     bool colors = isatty(fileno(out)) == 1 && !getenv("NO_COLOR");
     const struct dalcs_text_plot_options options = {terminal_width(out), shows_unicode(), colors};
@@ -321,7 +264,7 @@ static enum dalcs_status check_paths(const struct dalcs_cli *cli,
     return DALCS_OK;
 }
 
-static enum dalcs_status draw_checked(struct drawing *drawing) {
+static enum dalcs_status draw_checked(struct dalcs_drawing *drawing) {
     const struct dalcs_plot_arguments *arguments = drawing->arguments;
     if (arguments->tornado != NULL || arguments->family != NULL) {
         return dalcs_plot_chart_draw(drawing->cli, arguments, terminal_width(drawing->cli->out),
@@ -330,14 +273,14 @@ static enum dalcs_status draw_checked(struct drawing *drawing) {
     DALCS_TRY(read_file(drawing));
     write_messages(drawing);
     return !arguments->output   ? draw_text(drawing)
-           : arguments->is_page ? draw_page(drawing)
+           : arguments->is_page ? dalcs_drawing_write_page(drawing)
                                 : draw_picture(drawing);
 }
 
 static enum dalcs_status draw(const struct dalcs_cli *cli,
                               const struct dalcs_plot_arguments *arguments,
                               const struct dalcs_report *run) {
-    struct drawing drawing = {.cli = cli, .arguments = arguments, .run = run};
+    struct dalcs_drawing drawing = {.cli = cli, .arguments = arguments, .run = run};
     enum dalcs_status status = check_paths(cli, arguments);
     if (status == DALCS_OK) {
         status = draw_checked(&drawing);
@@ -352,6 +295,7 @@ static enum dalcs_status draw(const struct dalcs_cli *cli,
     dalcs_margin_lines_finish(&drawing.lines);
     dalcs_conduction_finish(&drawing.conduction);
     dalcs_selection_finish(&drawing.selection);
+    dalcs_runs_finish(&drawing.runs);
     dalcs_waveforms_finish(&drawing.made);
     dalcs_waveforms_finish(&drawing.waveforms);
     dalcs_diag_finish(&drawing.diag);

@@ -55,7 +55,9 @@ enum dalcs_status dalcs_start_variables_read(struct dalcs_start_variables *v) {
          (command = dalcs_start_file_next(&v->file, note_left_out, v)) != NULL;) {
         const size_t n = strcspn(command, " \t");
         const char *rest = command + n + strspn(command + n, " \t");
-        if (n == strlen("unset")) {
+        if (*rest == '=') {
+            note_left_out(v, &v->file, command);
+        } else if (n == strlen("unset")) {
             forget(v->arguments, rest);
         } else if (*rest != '\0') {
             DALCS_TRY(dalcs_start_variables_take(v, rest));

@@ -37,19 +37,19 @@ static void note_left_out(void *user, const struct dalcs_start_file *file, const
                 file->path, file->line, command);
 }
 
-/* The variables that the user's .spiceinit sets. */
-static bool start_as_told(void) {
+/* The variables that the user's .spiceinit sets; a mistake there is told, and hinders nothing. */
+static void start_as_told(void) {
     struct dalcs_start_file file = {0};
-    bool went_well = dalcs_start_file_read(&file) == DALCS_OK;
-    if (file.text != NULL) {
+    if (dalcs_start_file_read(&file) != DALCS_OK) {
+        ng_talk_fail(&ng_the.talk, "%s", dalcs_status_text(DALCS_E_NOMEM));
+    } else if (file.text != NULL) {
         ng_talk_say(&ng_the.talk, "Note: %s was read, as ngspice does", file.path);
     }
     for (const char *command;
-         went_well && (command = dalcs_start_file_next(&file, note_left_out, NULL)) != NULL;) {
-        went_well = ng_execute(&ng_the, command);
+         (command = dalcs_start_file_next(&file, note_left_out, NULL)) != NULL;) {
+        (void)ng_execute(&ng_the, command);
     }
     dalcs_start_file_finish(&file);
-    return went_well;
 }
 
 int ngSpice_Init(ng_send_char *send_char, ng_send_status *send_status,
@@ -68,7 +68,10 @@ int ngSpice_Init(ng_send_char *send_char, ng_send_status *send_status,
     ng_talk_say(&ng_the.talk, "** ngspice-39, for programs that look for it: this is dalcs %s",
                 dalcs_version());
     ng_talk_say(&ng_the.talk, "******");
-    return ng_the.reads_no_start_file || start_as_told() ? 0 : 1;
+    if (!ng_the.reads_no_start_file) {
+        start_as_told();
+    }
+    return 0;
 }
 
 int ngSpice_Init_Sync(void *voltage, void *current, void *step, int *id, void *user) {

@@ -174,37 +174,14 @@ static void write_lines(FILE *stream, const struct dalcs_margin_lines *lines) {
     fputs("]", stream);
 }
 
-static void write_run(FILE *stream, const struct dalcs_selection *selection,
-                      const struct columns *columns, const struct dalcs_conduction *conduction,
-                      const struct dalcs_margin_lines *lines, bool marks) {
-    bool exact = columns->n_signals * columns->n_rows <= MAX_EXACT;
-    fputs("{\"axis\": {\"name\": ", stream);
-    write_string(stream, selection->axis.quantity);
-    fputs(", \"unit\": ", stream);
-    write_string(stream, selection->axis.unit);
-    fprintf(stream, ", \"log\": %s},\n\"marks\": %s, \"bits\": %d,\n\"at\": \"",
-            selection->axis.logarithmic ? "true" : "false", marks ? "true" : "false",
-            exact ? 64 : 32);
-    write_column(stream, columns->value, columns->n_rows, true);
-    fputs("\"", stream);
-    write_panels(stream, selection);
-    write_signals(stream, selection, columns, exact);
-    write_conduction(stream, conduction);
-    write_lines(stream, lines);
-    fputs("}", stream);
-}
-
-/* ---- The page ------------------------------------------------------------------------------- */
-
-static void write_text(FILE *stream, const char *text) {
-    for (const char *c = text; *c; c++) {
-        if (*c == '<' || *c == '&' || *c == '>' || *c == '"') {
-            fprintf(stream, "&#%d;", *c);
-        } else {
-            fputc((unsigned char)*c < 0x20 ? ' ' : *c, stream);
-        }
-    }
-}
+/* What is in the page. */
+struct pages {
+    const struct dalcs_selection *selection; /* of the first run */
+    const struct dalcs_conduction *conduction;
+    const struct dalcs_page_runs *runs;
+    const struct dalcs_margin_lines *lines;
+    bool marks, exact;
+};
 
 static enum dalcs_status add_row(void *user, double at, const double *value) {
     struct columns *columns = user;
@@ -219,28 +196,112 @@ static enum dalcs_status add_row(void *user, double at, const double *value) {
     return DALCS_OK;
 }
 
+/* columns->value is the caller's to free, whatever the status. */
+static enum dalcs_status take_columns(struct columns *columns,
+                                      const struct dalcs_selection *selection) {
+    *columns = (struct columns){.n_signals = selection->n,
+                                .room = dalcs_selection_count_rows(selection) + 2};
+    columns->value = dalcs_alloc((1 + columns->n_signals) * columns->room, sizeof *columns->value);
+    return columns->value != NULL ? dalcs_selection_each_row(selection, add_row, columns)
+                                  : DALCS_E_NOMEM;
+}
+
+/* Are they too many values for a page, or for their exact ones? */
+static enum dalcs_status measure(struct pages *pages, struct dalcs_diag *diag) {
+    const size_t n_signals = pages->selection->n;
+    size_t n_rows = dalcs_selection_count_rows(pages->selection) + 2;
+    for (size_t k = 0; k + 1 < pages->runs->n; k++) {
+        n_rows += dalcs_selection_count_rows(&pages->runs->run[k].selection) + 2;
+    }
+    pages->exact = n_signals * n_rows <= MAX_EXACT;
+    if (n_rows > MAX_VALUES / (n_signals + 1)) {
+        dalcs_diag_add(diag, DALCS_ERROR, NULL,
+                       "choose signals with -s, a range, or a run with --run",
+                       "%zu rows of %zu signals are too much for a page", n_rows, n_signals);
+        return DALCS_E_LIMIT;
+    }
+    return DALCS_OK;
+}
+
+/* Another run, with the same signals. */
+static enum dalcs_status write_other(FILE *stream, const struct dalcs_page_run *run, bool exact) {
+    struct columns columns;
+    const enum dalcs_status status = take_columns(&columns, &run->selection);
+    if (status == DALCS_OK) {
+        fputs("{\"at\": \"", stream);
+        write_column(stream, columns.value, columns.n_rows, true);
+        fputs("\"", stream);
+        write_signals(stream, &run->selection, &columns, exact);
+        write_conduction(stream, &run->conduction);
+        fputs("}", stream);
+    }
+    free(columns.value);
+    return status;
+}
+
+static enum dalcs_status write_others(FILE *stream, const struct pages *pages) {
+    const struct dalcs_page_runs *runs = pages->runs;
+    fputs(",\n\"labels\": [", stream);
+    for (size_t k = 0; k < runs->n; k++) {
+        fputs(k > 0 ? ", " : "", stream);
+        write_string(stream, runs->label[k]);
+    }
+    fputs("],\n\"others\": [", stream);
+    for (size_t k = 0; k + 1 < runs->n; k++) {
+        fputs(k > 0 ? ",\n" : "\n", stream);
+        DALCS_TRY(write_other(stream, &runs->run[k], pages->exact));
+    }
+    fputs("]", stream);
+    return DALCS_OK;
+}
+
+static enum dalcs_status write_run(FILE *stream, const struct pages *pages,
+                                   const struct columns *columns) {
+    const struct dalcs_selection *selection = pages->selection;
+    fputs("{\"axis\": {\"name\": ", stream);
+    write_string(stream, selection->axis.quantity);
+    fputs(", \"unit\": ", stream);
+    write_string(stream, selection->axis.unit);
+    fprintf(stream, ", \"log\": %s},\n\"marks\": %s, \"bits\": %d,\n\"at\": \"",
+            selection->axis.logarithmic ? "true" : "false", pages->marks ? "true" : "false",
+            pages->exact ? 64 : 32);
+    write_column(stream, columns->value, columns->n_rows, true);
+    fputs("\"", stream);
+    write_panels(stream, selection);
+    write_signals(stream, selection, columns, pages->exact);
+    write_conduction(stream, pages->conduction);
+    write_lines(stream, pages->lines);
+    const enum dalcs_status status = write_others(stream, pages);
+    fputs("}", stream);
+    return status;
+}
+
+/* ---- The page ------------------------------------------------------------------------------- */
+
+static void write_text(FILE *stream, const char *text) {
+    for (const char *c = text; *c; c++) {
+        if (*c == '<' || *c == '&' || *c == '>' || *c == '"') {
+            fprintf(stream, "&#%d;", *c);
+        } else {
+            fputc((unsigned char)*c < 0x20 ? ' ' : *c, stream);
+        }
+    }
+}
+
 bool dalcs_page_is_available(void) {
     return true;
 }
 
 enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
                                    const struct dalcs_conduction *conduction,
+                                   const struct dalcs_page_runs *runs,
                                    const struct dalcs_margin_lines *lines, const char *title,
                                    const struct dalcs_theme *theme, bool marks,
                                    struct dalcs_diag *diag) {
-    struct columns columns = {.n_signals = selection->n,
-                              .room = dalcs_selection_count_rows(selection) + 2};
-    if (columns.room > MAX_VALUES / (columns.n_signals + 1)) {
-        dalcs_diag_add(diag, DALCS_ERROR, NULL, "choose signals with -s, or a range",
-                       "%zu rows of %zu signals are too much for a page", columns.room,
-                       columns.n_signals);
-        return DALCS_E_LIMIT;
-    }
-    columns.value = dalcs_alloc((1 + columns.n_signals) * columns.room, sizeof *columns.value);
-    if (!columns.value) {
-        return DALCS_E_NOMEM;
-    }
-    enum dalcs_status status = dalcs_selection_each_row(selection, add_row, &columns);
+    struct pages pages = {selection, conduction, runs, lines, marks, .exact = false};
+    struct columns columns;
+    DALCS_TRY(measure(&pages, diag));
+    enum dalcs_status status = take_columns(&columns, selection);
     for (const char *c = dalcs_embedded_page_html; status == DALCS_OK && *c;) {
         const char *mark = strchr(c, '@');
         fwrite(c, 1, mark ? (size_t)(mark - c) : strlen(c), stream);
@@ -254,7 +315,7 @@ enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *s
         } else if (strncmp(name, "title", length) == 0) {
             write_text(stream, title);
         } else if (strncmp(name, "run", length) == 0) {
-            write_run(stream, selection, &columns, conduction, lines, marks);
+            status = write_run(stream, &pages, &columns);
         } else if (strncmp(name, "page.css", length) == 0) {
             fputs(dalcs_embedded_page_css, stream);
         } else if (strncmp(name, "page.js", length) == 0) {
@@ -278,12 +339,14 @@ bool dalcs_page_is_available(void) {
 
 enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
                                    const struct dalcs_conduction *conduction,
+                                   const struct dalcs_page_runs *runs,
                                    const struct dalcs_margin_lines *lines, const char *title,
                                    const struct dalcs_theme *theme, bool marks,
                                    struct dalcs_diag *diag) {
     (void)stream;
     (void)selection;
     (void)conduction;
+    (void)runs;
     (void)lines;
     (void)title;
     (void)theme;

@@ -55,13 +55,29 @@ function findExtremes(value) {
   return {low, high};
 }
 
-const at = decode(run.at, Float64Array);
-const start = at[0], stop = at[at.length - 1];
-for (const signal of run.signals) {
-  signal.value = decode(signal.values, run.bits === 64 ? Float64Array : Float32Array);
-  signal.extremes = findExtremes(signal.value);
-  signal.values = null;
+/* Of a sweep one run is shown; each is decoded when it is looked at first. */
+const runs = [{at: run.at, signals: run.signals, bars: run.bars, jumps: run.jumps}, ...run.others];
+let at, start, stop;
+function choose(index) {
+  const one = runs[index];
+  if (one.values === undefined) {
+    one.at = decode(one.at, Float64Array);
+    one.values = one.signals.map(({values}) => decode(values, run.bits === 64 ? Float64Array : Float32Array));
+    one.extremes = one.values.map(findExtremes);
+    sumUp(one.bars, one.at[0]);
+    for (const signal of one.signals) signal.values = null;
+  }
+  at = one.at;
+  start = at[0];
+  stop = at[at.length - 1];
+  run.bars = one.bars;
+  run.jumps = one.jumps;
+  run.signals.forEach((signal, k) => {
+    signal.value = one.values[k];
+    signal.extremes = one.extremes[k];
+  });
 }
+choose(0);
 
 /* The first of ascending times at or behind one. */
 function firstFrom(times, time) {
@@ -272,13 +288,15 @@ function drawUnderlay(context, area, graph, panel) {
 }
 
 /* The time that a bar's element conducts before each of its changes. */
-for (const bar of run.bars) {
-  let sum = 0, since = start;
-  bar.sums = bar.times.map((time, k) => {
-    if (bar.on === (k % 2 === 0)) sum += time - since;
-    since = time;
-    return sum;
-  });
+function sumUp(bars, from) {
+  for (const bar of bars) {
+    let sum = 0, since = from;
+    bar.sums = bar.times.map((time, k) => {
+      if (bar.on === (k % 2 === 0)) sum += time - since;
+      since = time;
+      return sum;
+    });
+  }
 }
 
 /* The same before any time. */
@@ -444,6 +462,22 @@ function makeList() {
   });
 }
 
+/* The slider of a sweep: another run in the same range, as far as it goes. */
+function setUpRuns() {
+  const slider = by("run");
+  by("runs").hidden = runs.length < 2;
+  slider.max = runs.length - 1;
+  const change = () => {
+    const whole = view.from === start && view.to === stop;
+    choose(Number(slider.value));
+    by("label").textContent = run.labels[slider.value];
+    if (whole || !(Math.max(view.from, start) < Math.min(view.to, stop))) [view.from, view.to] = [start, stop];
+    draw();
+  };
+  by("label").textContent = run.labels[0];
+  slider.addEventListener("input", change);
+}
+
 function setTheme(name) {
   document.documentElement.dataset.theme = name;
   for (const signal of run.signals) {
@@ -465,6 +499,7 @@ function setUp() {
     makeGraph(panel);
   }
   makeList();
+  if (runs.length > 1) setUpRuns();
   setTheme(theme());
   by("marks").checked = view.marks;
   by("marks").addEventListener("change", () => { view.marks = by("marks").checked; draw(); });

@@ -242,6 +242,34 @@ class Page(unittest.TestCase):
         finally:
             self.driver.set_window_size(1400, 900)
 
+    def test_runs_of_a_sweep(self):
+        """A slider shows one run after the other, with its label, its values and when its diode conducts."""
+        self.assertTrue(self.script("return document.getElementById('runs').hidden;"))
+        folder = pathlib.Path(self.folder.name)
+        (folder / "s.cir").write_text("t\n.options dialect=ltspice\n.param load=1k\nV1 in 0 SIN(0 10 50)\nD1 in out\n"
+                                      "C1 out 0 47u\nR1 out 0 {load}\n.tran 0.1m 60m uic\n.step param load list 200 1k 5k\n")
+        for step in ["run", "s.cir", "-o", "s.raw", "-q"], ["plot", "s.raw", "-s", "v(out),i(d1)", "-o", "s.html"]:
+            done = subprocess.run([DALCS, *step], cwd=folder, check=True, capture_output=True, text=True)
+            self.assertEqual(done.stderr, "")
+        old = self.driver.current_url
+        try:
+            self.driver.get((folder / "s.html").as_uri())
+            self.wait("document.body.dataset.ready === 'yes'")
+            self.assertFalse(self.script("return document.getElementById('runs').hidden;"))
+            seen = []
+            for run in 0, 2, 1, 0:
+                self.script("const s = document.getElementById('run'); s.value = arguments[0];"
+                            "s.dispatchEvent(new Event('input'));", run)
+                seen.append(self.script("const v = run.signals.find((s) => s.name === 'v(out)').value;"
+                                        "return [document.getElementById('label').textContent, v[v.length - 1],"
+                                        "conducted(run.bars[0], stop) / stop];"))
+            self.assertEqual([row[0] for row in seen], ["load = 200", "load = 5000", "load = 1000", "load = 200"])
+            self.assertEqual(seen[0], seen[3])
+            self.assertTrue(seen[0][1] < seen[2][1] < seen[1][1] < 10.0, seen)
+            self.assertTrue(0.9 > seen[0][2] > seen[2][2] > seen[1][2] > 0.05, seen)
+        finally:
+            self.driver.get(old)
+
     def test_bars_and_themes(self):
         self.assertEqual(self.script("return run.bars.map((bar) => bar.name);"), ["d1"])
         # The current conducts half of the time: half of the bar is dark.

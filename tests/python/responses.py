@@ -194,7 +194,7 @@ class Sensitivities(unittest.TestCase):
         row = found.results.index("peak")
         np.testing.assert_allclose(found.relative[row], [1.0, -1.0, 0.0, 0.0], atol=1e-7)
         self.assertEqual(found.derivatives.shape, (len(found), 4))
-        with self.assertRaisesRegex(KeyError, "no result 'vuot' among"):
+        with self.assertRaisesRegex(KeyError, "no result 'vuot'; did you mean 'vout'"):
             found["vuot"]
 
     def test_chosen_ones(self):

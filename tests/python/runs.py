@@ -291,6 +291,19 @@ class Errors(unittest.TestCase):
         error = self.failure(dalcs.NetlistError, NETLIST, c1=-1)
         self.assertEqual((error.element, error.line), ("c1", 5))
 
+    def test_elements_are_those_that_have_values(self):
+        text = "t\nV1 a 0 1\nL1 a net-(d1-pad1) 1m Rser=1\nR1 net-(d1-pad1) 0 {2}\n.op\n"
+        elements = dalcs.Circuit(text, dialect="ltspice").elements
+        self.assertEqual(sorted(elements), ["l1", "r1", "v1"])
+        for element in elements:
+            dalcs.run(text, {element: 2.0}, dialect="ltspice")
+
+    def test_a_list_for_a_value(self):
+        with self.assertRaisesRegex(TypeError, r"rload=\[1, 2\]: a run takes one value; sweep\(\) takes lists"):
+            dalcs.run(NETLIST, rload=[1, 2])
+        with self.assertRaisesRegex(TypeError, "rload=None is no number"):
+            dalcs.run(NETLIST, rload=None)
+
     def test_values_as_in_netlists(self):
         text, number = dalcs.run(NETLIST, rload="2k"), dalcs.run(NETLIST, rload=2000.0)
         self.assertEqual(text.values.tobytes(), number.values.tobytes())

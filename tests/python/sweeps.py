@@ -43,6 +43,12 @@ class Sweeps(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "no column 'vlov'; did you mean 'vlow'"):
             sweep["vlov"]  # pylint: disable=pointless-statement
 
+    def test_a_mistake_of_the_call_is_none_of_a_variant(self):
+        with self.assertRaisesRegex(dalcs.OptionError, "did you mean 'rload'"):
+            dalcs.sweep(NETLIST, rlaod=LOADS[:2])
+        with self.assertRaisesRegex(dalcs.OptionError, "no value of the option method"):
+            dalcs.sweep(NETLIST, rload=LOADS[:2], method="rk4")
+
     def test_workers_change_no_byte(self):
         grid = {"rload": LOADS[::6], "c1": [5e-6, 20e-6, 80e-6]}
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
 
 import ctypes
@@ -213,8 +214,9 @@ class Circuit:
 
     @property
     def elements(self) -> List[str]:
-        """The names of the elements, those in subcircuits as "x1.r1"."""
-        return self._read().names(c.lib.dalcs_session_element_name)
+        """The names of the elements, those in subcircuits as "x1.r1"; without parts of them, "rser(l1)"."""
+        names = self._read().names(c.lib.dalcs_session_element_name)
+        return [name for name in names if re.search(r"(^|[^-])\(", name) is None]
 
     def __repr__(self) -> str:
         text = str(self.netlist)

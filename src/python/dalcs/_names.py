@@ -9,7 +9,7 @@ from typing import Any, Dict, Iterable, Mapping
 def no_such(what: str, name: object, known: Iterable[str]) -> KeyError:
     """No `what` of this name: which one was meant, else all that there are."""
     lower = {each.lower(): each for each in known}
-    near = difflib.get_close_matches(str(name).lower(), lower, 1, 0.5)
+    near = difflib.get_close_matches(str(name).lower(), lower, 1)
     if near:
         return KeyError(f"no {what} {name!r}; did you mean {lower[near[0]]!r}?")
     return KeyError(f"no {what} {name!r} " + (f"among {', '.join(lower.values())}" if lower else "at all"))

@@ -24,10 +24,15 @@ OWN_OPTIONS = frozenset(("at", "exchange", "frequencies", "initial", "losses", "
                          "values"))  # of Circuit.run
 
 
-def number_of(value: Number) -> float:
-    """A number, or the one that a text such as "2.2u" is in a netlist."""
+def number_of(value: Number, name: str = "value") -> float:
+    """A number, or the one that a text such as "2.2u" is in a netlist; `name` is what gets it."""
+    if np.ndim(value) > 0:
+        raise TypeError(f"{name}={value!r}: a run takes one value; sweep() takes lists of them")
     if not isinstance(value, str):
-        return float(value)
+        try:
+            return float(value)
+        except TypeError:
+            raise TypeError(f"{name}={value!r} is no number") from None
     number = ctypes.c_double(math.nan)
     if c.lib.dalcs_parse_number(value.encode(), ctypes.byref(number)) != c.OK:
         raise ValueError(f"{value!r} is no number of a netlist, such as 4.7k or 2.2u")
@@ -114,7 +119,7 @@ class Session:
     def set_values(self, values: Mapping[str, Number]) -> None:
         for name, value in values.items():
             try:
-                self._check(c.lib.dalcs_session_set_value(self.handle, name.encode(), number_of(value)))
+                self._check(c.lib.dalcs_session_set_value(self.handle, name.encode(), number_of(value, name)))
             except OptionError as error:
                 meant = _options_like(name)
                 if "hint: " in str(error) or not meant:
@@ -124,7 +129,7 @@ class Session:
 
     def set_states(self, states: Mapping[str, Number]) -> None:
         for name, value in states.items():
-            self._check(c.lib.dalcs_session_set_state(self.handle, name.encode(), number_of(value)))
+            self._check(c.lib.dalcs_session_set_state(self.handle, name.encode(), number_of(value, name)))
 
     def _values(self, call: Callable[..., Optional[bytes]], *arguments: int) -> dict[str, float]:
         """All names and values that a call gives by index."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _library as c
-from ._errors import Cancelled, Error
+from ._errors import Cancelled, Error, OptionError
 from ._names import find
 from ._result import Result
 from ._session import OWN_OPTIONS, Number, number_of
@@ -25,7 +25,7 @@ def _points_of(grid: Grid) -> List[Dict[str, float]]:
         points = [dict(zip(names, values)) for values in itertools.product(*grid.values())]
     else:
         points = [dict(point) for point in grid]
-    return [{name: number_of(value) for name, value in point.items()} for point in points]
+    return [{name: number_of(value, name) for name, value in point.items()} for point in points]
 
 
 def _grid_of(grid: Optional[Grid], options: Dict[str, Any]) -> Grid:
@@ -71,7 +71,8 @@ class Sweep:
         return iter(self.columns)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        return self.columns[name] if name in self.columns else find("column", name, self.columns)
+        column: NDArray[Any] = self.columns[name] if name in self.columns else find("column", name, self.columns)
+        return column
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame, one row a run."""
@@ -255,7 +256,10 @@ def _table_of(run: Callable[..., Result], points: List[Dict[str, float]], worker
     except BaseException as end:
         setattr(end, "sweep", Sweep(points, crew.kept))  # what is there is not lost
         raise
-    return Sweep(points, crew.kept)
+    table = Sweep(points, crew.kept)
+    if points and all(isinstance(table.errors.get(k), OptionError) for k in range(len(points))):
+        raise table.errors[0]  # a name that there is not: a mistake of the call and not of a variant
+    return table
 
 
 def sweep_of(run: Callable[..., Result], grid: Optional[Grid], workers: Optional[int],
