@@ -2,6 +2,7 @@
  * jumps. */
 #include "summary.h"
 
+#include "figure.h"
 #include "method_text.h"
 #include "quantity.h"
 
@@ -198,17 +199,25 @@ static bool has_averages(const struct dalcs_plot *plot) {
     return plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC;
 }
 
+static double largest_of(const struct dalcs_measure_signal *signal) {
+    return fmax(fabs(signal->min), fabs(signal->max));
+}
+
 static void write_value(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
     char text[DALCS_QUANTITY_SIZE];
-    const char *unit = unit_name(measure->plot->unit[i]);
+    const enum dalcs_unit of = measure->plot->unit[i];
+    const char *unit = unit_name(of);
+    if (has_averages(measure->plot) && (of == DALCS_VOLT || of == DALCS_AMPERE) &&
+        largest_of(&measure->signal[i]) < DALCS_FIGURE_NOTHING) {
+        value = 0.0;
+    }
     fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit, DIGITS));
 }
 
 /* A value of signal i; what is round-off beside its largest one is shown as 0. */
 static void write_cell(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
-    const struct dalcs_measure_signal *signal = &measure->signal[i];
     const double invisible = has_averages(measure->plot) ? INVISIBLE_IN_WAVEFORMS : INVISIBLE;
-    const double largest = fmax(fabs(signal->min), fabs(signal->max));
+    const double largest = largest_of(&measure->signal[i]);
     write_value(out, measure, i, fabs(value) <= invisible * largest ? 0.0 : value);
 }
 
