@@ -14,11 +14,6 @@
 #define INVISIBLE              1e-12
 #define INVISIBLE_IN_WAVEFORMS 1e-9
 
-/* Over the rms. Straight lines through the thousand rows of a period miss a sine by up to (2 pi/1000)^2/8, 5e-6 of
- * its amplitude, so a fifth of that is no average. The average of a pulse over its rms is the square root of its duty
- * cycle, so pulses keep theirs down to a duty cycle of 1e-12. */
-#define CANCELLED_AVERAGE 1e-6
-
 enum { MAX_SIGNALS = 24, MAX_JUMPS = 5, MAX_PARTS = 6, MAX_METHODS = 4, DIGITS = 4 };
 
 static const char *plural(long n) {
@@ -221,13 +216,6 @@ static void write_cell(FILE *out, const struct dalcs_measure *measure, size_t i,
     write_value(out, measure, i, fabs(value) <= invisible * largest ? 0.0 : value);
 }
 
-static void write_averages(FILE *out, const struct dalcs_measure *measure, size_t i) {
-    const double average = dalcs_measure_average(measure, i);
-    const double rms = dalcs_measure_rms(measure, i);
-    write_value(out, measure, i, fabs(average) <= CANCELLED_AVERAGE * rms ? 0.0 : average);
-    write_value(out, measure, i, rms);
-}
-
 static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool ends) {
     static const char *const head[] = {
         [DALCS_OPERATING_POINT] = "         op",
@@ -251,7 +239,8 @@ static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i
         write_cell(out, measure, i, signal->max);
     }
     if (has_averages(measure->plot) && !ends) {
-        write_averages(out, measure, i);
+        write_value(out, measure, i, dalcs_measure_shown_average(measure, i));
+        write_value(out, measure, i, dalcs_measure_rms(measure, i));
     }
     write_cell(out, measure, i, signal->final);
 }

@@ -523,6 +523,10 @@ class Summary(Case):
         self.assertRegex(table["v(d)"], r" 3\.000 nV$")
         self.assertRegex(table["v(e)"], r"v\(e\)( +0\.000  V){5}$")
         self.assertRegex(table["v(f)"], r" 50\.00 fV .* 35\.36 fV ")
+        self.write("steps\nV1 a 0 SIN({3u*k} 10 50)\nR1 a 0 5\n.param k=1\n.step param k list 1 10\n"
+                   ".tran 10u 20m\n.end\n")
+        steps = self.dalcs("run", "a.cir", "--fill", "none").stdout
+        self.assertRegex(steps, r"\n +1 +0\.000  V .*\n +10 +30\.00 uV ")
 
     def test_quiet(self):
         done = self.dalcs("run", self.write(RECTIFIER), "--quiet")
