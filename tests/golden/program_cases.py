@@ -610,7 +610,7 @@ class Summary(Case):
         self.assertIn("standard output: No space left", done.stderr)
 
     def test_reader_that_left(self):
-        """As head does: nobody is told off for it, but the status says that not all was read."""
+        """As head does: there is no message, but the status says that not all was read."""
         self.write(RECTIFIER)
         self.dalcs("run", "a.cir", "-o", "a.raw")
         for command in (["run", "a.cir"], ["check", "a.cir"], ["audit", "a.cir", "a.raw"], ["equations", "a.cir"]):
