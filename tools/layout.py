@@ -1,4 +1,4 @@
-"""Places the elements of a netlist, for a schematic that nobody has drawn by hand: tools/schematics.py draws it.
+"""Places the elements of a netlist for a schematic: tools/schematics.py draws it.
 
 Nodes lie on a line, in the order in which the fewest elements pass over others; elements between neighbours lie on
 this line, others in lanes above it, and those at ground hang below it. A transistor is the switch that it is; what has

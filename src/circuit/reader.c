@@ -77,19 +77,21 @@ static bool is_formula(const struct dalcs_token *token) {
 
 /* Is it the suffix or the unit of the number before it, as in "100 uF"? Not F: a number with it would be femto. */
 static bool is_unit(const struct dalcs_reader *reader, const struct dalcs_token *token) {
-    static const char *const units[] = {"", "f", "h", "v", "a", "s", "hz", "ohm", "ohms"};
+    static const char *const units[] = {"f", "h", "v", "a", "s", "hz", "ohm", "ohms"};
 
     enum { N = sizeof units / sizeof units[0] };
-    const struct dalcs_token *number = dalcs_reader_previous(reader);
-    if (token->kind != DALCS_TOKEN_WORD || strcmp(token->text, "f") == 0 ||
-        number->kind != DALCS_TOKEN_WORD ||
+    const struct dalcs_token *number = reader->at > 0 ? dalcs_reader_previous(reader) : token;
+    const bool are_words =
+        token->kind == DALCS_TOKEN_WORD && number->kind == DALCS_TOKEN_WORD && number != token;
+    if (!are_words || strcmp(token->text, "f") == 0 ||
         number->text[strspn(number->text, "0123456789.")] != '\0') {
         return false;
     }
     const bool is_mega = strncmp(token->text, "meg", 3) == 0;
-    const size_t prefix = is_mega ? 3 : strchr("fpnumkgt", token->text[0]) != NULL ? 1 : 0;
+    const size_t prefix = is_mega ? 3 : strspn(token->text, "fpnumkgt") > 0 ? 1 : 0;
+    const char *unit = token->text + prefix;
     return dalcs_builder_is_one_of(token->text, units, N) ||
-           dalcs_builder_is_one_of(token->text + prefix, units, N);
+           (prefix > 0 && (*unit == '\0' || dalcs_builder_is_one_of(unit, units, N)));
 }
 
 const char *dalcs_reader_unit_hint(const struct dalcs_reader *reader,

@@ -32,7 +32,7 @@ const char dalcs_bode_help[] =
     "      --period T      the period in s, a multiple of that of each source (default: the\n"
     "                      smallest common one)\n" DALCS_RUN_OPTIONS DALCS_LAST_OPTIONS "\n"
     "examples:\n"
-    "  dalcs bode buck.cir -o response.csv\n"
+    "  dalcs bode buck.cir -o response.raw\n"
     "  dalcs bode buck.cir --loop vloop --report margins.json\n"
     "  dalcs bode buck.cir --from 10 --to 200k --points 50\n"
     "\n"

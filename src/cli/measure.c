@@ -7,6 +7,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Over the rms. Straight lines through the thousand rows of a period miss a sine by up to (2 pi/1000)^2/8, 5e-6 of
+ * its amplitude, so a fifth of that is no average. The average of a pulse over its rms is the square root of its duty
+ * cycle, so pulses keep theirs down to a duty cycle of 1e-12. */
+#define CANCELLED_AVERAGE 1e-6
+
 enum dalcs_status dalcs_measure_begin(struct dalcs_measure *measure,
                                       const struct dalcs_plot *plot) {
     dalcs_measure_finish(measure);
@@ -43,6 +48,11 @@ double dalcs_measure_average(const struct dalcs_measure *measure, size_t signal)
     double duration = measure->last_time - measure->first_time;
     const struct dalcs_measure_signal *s = &measure->signal[signal];
     return duration > 0.0 ? s->integral / duration : s->final;
+}
+
+double dalcs_measure_shown_average(const struct dalcs_measure *measure, size_t signal) {
+    const double average = dalcs_measure_average(measure, signal);
+    return fabs(average) > CANCELLED_AVERAGE * dalcs_measure_rms(measure, signal) ? average : 0.0;
 }
 
 double dalcs_measure_rms(const struct dalcs_measure *measure, size_t signal) {

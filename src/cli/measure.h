@@ -23,6 +23,8 @@ void dalcs_measure_row(struct dalcs_measure *measure, double time, const double 
 
 double dalcs_measure_average(const struct dalcs_measure *measure, size_t signal);
 double dalcs_measure_rms(const struct dalcs_measure *measure, size_t signal);
+/* The average for a person: 0 if it cancels to less than lines between rows are exact to. */
+double dalcs_measure_shown_average(const struct dalcs_measure *measure, size_t signal);
 
 /* Accepts a zeroed one. */
 void dalcs_measure_finish(struct dalcs_measure *measure);

@@ -162,6 +162,12 @@ static enum dalcs_status read_file(struct dalcs_drawing *drawing) {
                        "this is plot %zu of %zu, %s; --plot N draws another", waveforms->plot,
                        waveforms->n_plots, waveforms->plot_name);
     }
+    if (arguments->n_groups == 0 && waveforms->n_columns > 1 &&
+        strncmp(waveforms->name[1], "re(", 3) == 0) {
+        dalcs_diag_add(&drawing->diag, DALCS_NOTE, NULL, NULL,
+                       "these are real and imaginary parts; from a .raw file, levels in dB and "
+                       "phases are drawn");
+    }
     DALCS_TRY(choose_run(drawing));
     drawing->title = dalcs_plot_title(waveforms, arguments->file);
     if (arguments->spectrum > 0.0 || arguments->histogram) {

@@ -2,6 +2,7 @@
  * jumps. */
 #include "summary.h"
 
+#include "figure.h"
 #include "method_text.h"
 #include "quantity.h"
 
@@ -12,11 +13,6 @@
  * (doc/methods.md, "What the tolerance means"). */
 #define INVISIBLE              1e-12
 #define INVISIBLE_IN_WAVEFORMS 1e-9
-
-/* Over the rms. Straight lines through the thousand rows of a period miss a sine by up to (2 pi/1000)^2/8, 5e-6 of
- * its amplitude, so a fifth of that is no average. The average of a pulse over its rms is the square root of its duty
- * cycle, so pulses keep theirs down to a duty cycle of 1e-12. */
-#define CANCELLED_AVERAGE 1e-6
 
 enum { MAX_SIGNALS = 24, MAX_JUMPS = 5, MAX_PARTS = 6, MAX_METHODS = 4, DIGITS = 4 };
 
@@ -198,25 +194,26 @@ static bool has_averages(const struct dalcs_plot *plot) {
     return plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC;
 }
 
+static double largest_of(const struct dalcs_measure_signal *signal) {
+    return fmax(fabs(signal->min), fabs(signal->max));
+}
+
 static void write_value(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
     char text[DALCS_QUANTITY_SIZE];
-    const char *unit = unit_name(measure->plot->unit[i]);
+    const enum dalcs_unit of = measure->plot->unit[i];
+    const char *unit = unit_name(of);
+    if (has_averages(measure->plot) && (of == DALCS_VOLT || of == DALCS_AMPERE) &&
+        largest_of(&measure->signal[i]) < DALCS_FIGURE_NOTHING) {
+        value = 0.0;
+    }
     fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit, DIGITS));
 }
 
 /* A value of signal i; what is round-off beside its largest one is shown as 0. */
 static void write_cell(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
-    const struct dalcs_measure_signal *signal = &measure->signal[i];
     const double invisible = has_averages(measure->plot) ? INVISIBLE_IN_WAVEFORMS : INVISIBLE;
-    const double largest = fmax(fabs(signal->min), fabs(signal->max));
+    const double largest = largest_of(&measure->signal[i]);
     write_value(out, measure, i, fabs(value) <= invisible * largest ? 0.0 : value);
-}
-
-static void write_averages(FILE *out, const struct dalcs_measure *measure, size_t i) {
-    const double average = dalcs_measure_average(measure, i);
-    const double rms = dalcs_measure_rms(measure, i);
-    write_value(out, measure, i, fabs(average) <= CANCELLED_AVERAGE * rms ? 0.0 : average);
-    write_value(out, measure, i, rms);
 }
 
 static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool ends) {
@@ -242,7 +239,8 @@ static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i
         write_cell(out, measure, i, signal->max);
     }
     if (has_averages(measure->plot) && !ends) {
-        write_averages(out, measure, i);
+        write_value(out, measure, i, dalcs_measure_shown_average(measure, i));
+        write_value(out, measure, i, dalcs_measure_rms(measure, i));
     }
     write_cell(out, measure, i, signal->final);
 }

@@ -9,11 +9,10 @@
 #include <string.h>
 #include <strings.h>
 
-#define CLIP     3.0   /* an impulse that stretches a panel by less is left in */
-#define SWING    0.2   /* of a signal's range: smaller ripple is no turn */
-#define VISIBLE  0.01  /* of a panel's range */
-#define ROUNDING 1e-7  /* of a panel's largest value: all in so small a range is constant */
-#define NOTHING  1e-15 /* V, A: what rounding leaves of a 0 */
+#define CLIP     3.0  /* an impulse that stretches a panel by less is left in */
+#define SWING    0.2  /* of a signal's range: smaller ripple is no turn */
+#define VISIBLE  0.01 /* of a panel's range */
+#define ROUNDING 1e-7 /* of a panel's largest value: all in so small a range is constant */
 
 /* Turns of the densest signal: beyond the first number nobody sees a single period; the second is
  * what the end of the run then shows. */
@@ -247,7 +246,7 @@ static void find_ranges(const struct dalcs_figure *figure, struct dalcs_figure_v
         }
         widen_by_levels(figure, view, p);
         double largest = fmax(fabs(view->low[p]), fabs(view->high[p]));
-        if (largest < NOTHING) {
+        if (largest < DALCS_FIGURE_NOTHING) {
             largest = view->low[p] = view->high[p] = 0.0;
         }
         view->largest[p] = largest;

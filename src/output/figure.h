@@ -10,6 +10,9 @@
 #include "tail.h"
 #include "theme.h"
 
+/* V, A: a signal that stays below is the rounding of a 0, some 50 units in the last place of 1 V or 1 A. */
+#define DALCS_FIGURE_NOTHING 1e-14
+
 enum { DALCS_FIGURE_MAX_CURVES = 8 /* in a panel */, DALCS_FIGURE_MAX_PANELS = 8 };
 
 /* In pixels, or hundredths of an inch. A narrower picture has the same text in smaller panels. */

@@ -649,9 +649,9 @@ class Case:
             (self.folder / file).write_text(text)
         self.output = self.folder / "out.csv"
         self.command = [program, "run", "circuit.cir", "--method", method, "-o", "out.csv"]
-        if name != "leaps":  # the report has a ledger of energies, which wants every segment
+        if name != "leaps":  # the report has a ledger of energies, which needs every segment
             self.command += ["--report", "report.json"]
-        if name == "tolerances":  # of several threads nobody knows which one asks next
+        if name == "tolerances":  # the order of allocations of several threads is not fixed
             self.command += ["--jobs", "1"]
         if name == "equations":  # the method is a format
             self.command = [program, "equations", "circuit.cir", "--form", "lcs", "--format", method,

@@ -151,7 +151,7 @@ class Motion:
 
 
 def currents(circuit, part, motion):
-    """Each element's current from its law; None where the motion at s = infinity does not tell. Also
+    """Each element's current from its law; None where the motion at s = infinity does not determine it. Also
     what the numbers break: pairs (residual, scale)."""
     s = motion.s
     at_once = s.real == float("inf")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every element and source that dalcs can tell ngspice of: both give the same waveforms.
+"""Every element and source that dalcs writes for ngspice: both give the same waveforms.
 
 usage: elements.py PROGRAM NETLIST
 """

@@ -652,7 +652,7 @@ NOTED = [
     ("words of a diode", "V1 a 0 1\nD1 a b d1 PJ=0.5 w=1u thermal\n.model d1 D(IS=1n CJSW=1p rth0=3 "
      "fv_max=2)\nR1 b 0 1\n.op\n", "ignored"),
     ("words of .measure", "V1 a 0 1\nR1 a 0 1\n.tran 1m\n.measure tran m max v(a) failvalue=1u\n",
-     "means nothing here"),
+     "has no meaning here"),
     ("reltol", "V1 a 0 1\nR1 a 0 1\n.options reltol=0.2\n.op\n", "a tolerance of 0.2 is cut to 0.1"),
     ("reltol", "V1 a 0 1\nR1 a 0 1\n.options abstol=0.2 reltol=0.5\n.op\n", "is cut to 0.1"),
     ("a power", "V1 a 0 1\nE1 b 0 a 0 2\nR1 b 0 1\n.print op v(a) P(e1) W(e1)\n.op\n", "p(...) is left out"),

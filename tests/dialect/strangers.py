@@ -140,7 +140,7 @@ def others(checker):
     clock = "V1 c 0 PULSE(0 1 1m 0 0 1m 2m)\nV2 d 0 1\n.tran 10u 3.5m\n"
     for card in ("A1 d 0 c 0 0 0 q 0 DFLOP", "A1 d d c 0 0 0 q 0 DFLOP", "A1 d c c 0 0 0 q 0 DFLOP Td=1n", "A1 d 0 0 0 0 0 q 0 BUF",
                  "A1 d c 0 0 0 0 q 0 BUF"):
-        words = ["means nothing"] if card.split()[2] != "0" else []
+        words = ["does not use pin 2"] if card.split()[2] != "0" else []
         checker.ends(clock + card + "\nRq q 0 1k", {"v(q)": 1}, words)
     checker.ends(clock + "A1 d 0 c 0 0 0 0 0 DFLOP\nRd d 0 1k", {"v(d)": 1}, ["no output of 'a1' is wired"])
     checker.ends("L1 a b 1m Rser=\nV1 a 0 1\nR1 b 0 1k\n.op", {"v(b)": 1}, ["has no value"])

@@ -89,7 +89,7 @@ def controllers(checker, program):
 
 
 def amplifiers(checker, program):
-    """A follower's pole; rails; slew, up and down; a short of the output; offset; level 1 knows no limits."""
+    """A follower's pole; rails; slew, up and down; a short of the output; offset; level 1 has no limits."""
     for gbw, level in ((1e6, "level.1"), (10e6, "level.2"), (1e4, "level.3a")):
         what = f"a follower of {gbw} Hz, {level}"
         w = 2 * math.pi * gbw

@@ -169,7 +169,7 @@ def transconductors(checker, program):
 
 
 def parameters(checker, program):
-    """Each function with each parameter that LTspice knows: accepted, or refused with its name; never passed over in silence.
+    """Each function with each parameter of LTspice: accepted, or refused with its name; never passed over in silence.
     Those without effect are the accuracies of its own time steps."""
     gates = "AND OR XOR BUF INV SCHMITT SCHMTBUF SCHMTINV DIFFSCHMITT DIFFSCHMTBUF DIFFSCHMTINV SRFLOP DFLOP".split()
     levels = ["Vhigh=2", "Vlow=-1", "Ref=0.3", "Td=1u", "Trise=1u", "Tfall=2u", "Rout=10", "Rhigh=5", "Rlow=7", "Cout=1n", "Tau=1u", "IC=1",

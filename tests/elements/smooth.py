@@ -171,7 +171,7 @@ def check_many(checker, program, method):
 
 
 def check_switched(checker, program, method):
-    """Beside ideal diodes and switches: events where functions say so, and what power asks for."""
+    """Beside ideal diodes and switches: events at corners of functions, and loads of constant power."""
     netlist = ("rectified square\nv1 a 0 sin(0 3 1)\nb1 s 0 v=v(a)*abs(v(a))\nd1 s m di\ncm m 0 1m ic=0\n"
                "b2 t 0 v=v(a)*v(a)\nd2 t n di\ncn n 0 1m ic=0\nrn n 0 1g\n.model di d(ron=0)\n.tran 1m 2 uic\n")
     result = run(program, netlist, method=method, at=[0.1, 0.2, 0.5, 1.5], options=["--audit", "full"])

@@ -26,7 +26,7 @@ MODELS = {"ideal": ".model sp sw(vt=0 vh=0)\n.model di d",
           "with Ron": ".model sp sw(ron=1m roff=1meg vt=0 vh=0)\n.model di d(ron=1m roff=1meg)"}
 # What is allowed by default of a current, over its largest value, and what 1 mOhm beside 10 Ohm makes of it.
 TOLERANCES = {"ideal": 1e-9, "with Ron": 3e-4}
-# Factorizations for each mode of six switches with Ron: 3.8, and 4.7 where a map tells what the mode does to states.
+# Factorizations for each mode of six switches with Ron: 3.8, and 4.7 where a map gives the jump of the states.
 MOST_FACTORED = 4.2
 
 

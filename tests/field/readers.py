@@ -145,7 +145,7 @@ def compare(checker, what, plain, read, stop):
     events = [(e["element"], e["state"], e["time"]) for e in plain.report["events"]]
     names = {e[0] for e in events}
     others = [(e["element"], e["state"], e["time"]) for e in read.report["events"] if e["element"] in names]
-    # a pair of events more or less where a ringing ends: the waveforms below tell whether that matters
+    # a pair of events more or less where a ringing ends: the waveforms below show whether that matters
     if checker.check(abs(len(events) - len(others)) <= len(events) / 1000,
                      f"{what}: {len(others)} events, not {len(events)}") and len(events) == len(others):
         late = max((abs(a[2] - b[2]) for a, b in zip(events, others)), default=0.0)

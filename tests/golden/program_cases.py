@@ -510,9 +510,10 @@ class Summary(Case):
                                       r"+0\.000  V\n")
 
     def test_what_is_rounding(self):
-        """Averages of 4.2e-7 and 4.2e-6 of the rms, last values of 3e-10 and 3e-9 of the largest."""
+        """Averages of 4.2e-7 and 4.2e-6 of the rms, last values of 3e-10 and 3e-9 of the largest, 5 and 50 fV."""
         self.write("small\nV1 a 0 SIN(3u 10 50)\nV2 b 0 SIN(30u 10 50)\nR1 a 0 5\nR2 b 0 5\n"
                    "V3 c 0 PWL(0 0 10m 1 20m 300p)\nV4 d 0 PWL(0 0 10m 1 20m 3n)\nR3 c 0 5\nR4 d 0 5\n"
+                   "V5 e 0 SIN(0 5f 50)\nV6 f 0 SIN(0 50f 50)\nR5 e 0 5\nR6 f 0 5\n"
                    ".tran 10u 20m\n.end\n")
         lines = self.dalcs("run", "a.cir", "--fill", "none").stdout.split("\n")
         table = {line.split()[0]: line for line in lines if line.startswith("  v(")}
@@ -520,6 +521,12 @@ class Summary(Case):
         self.assertRegex(table["v(b)"], r"10\.00  V +30\.00 uV +7\.071  V")
         self.assertRegex(table["v(c)"], r" 0\.000  V$")
         self.assertRegex(table["v(d)"], r" 3\.000 nV$")
+        self.assertRegex(table["v(e)"], r"v\(e\)( +0\.000  V){5}$")
+        self.assertRegex(table["v(f)"], r" 50\.00 fV .* 35\.36 fV ")
+        self.write("steps\nV1 a 0 SIN({3u*k} 10 50)\nR1 a 0 5\n.param k=1\n.step param k list 1 10\n"
+                   ".tran 10u 20m\n.end\n")
+        steps = self.dalcs("run", "a.cir", "--fill", "none").stdout
+        self.assertRegex(steps, r"\n +1 +0\.000  V .*\n +10 +30\.00 uV ")
 
     def test_quiet(self):
         done = self.dalcs("run", self.write(RECTIFIER), "--quiet")
@@ -603,7 +610,7 @@ class Summary(Case):
         self.assertIn("standard output: No space left", done.stderr)
 
     def test_reader_that_left(self):
-        """As head does: nobody is told off for it, but the status says that not all was read."""
+        """As head does: there is no message, but the status says that not all was read."""
         self.write(RECTIFIER)
         self.dalcs("run", "a.cir", "-o", "a.raw")
         for command in (["run", "a.cir"], ["check", "a.cir"], ["audit", "a.cir", "a.raw"], ["equations", "a.cir"]):

@@ -46,7 +46,7 @@ def check(checker, program, folder, case, options):
     if not checker.check(done.returncode == FAILED and found, f"{name}: {done.stderr}"):
         return
     checker.check(element in (None, found.group(2)), f"{name}: names {found.group(2)}")
-    # Radau tells at the end of a step, and euler's growth is another one.
+    # Radau reports growth at the end of a step, and the growth of euler is another one.
     checker.close(float(found.group(1)), wanted, 0.1 * wanted, f"{name}: time")
     checker.check(all(math.isfinite(value) for row in rows_of(folder / "a.partial.csv") for value in row),
                   f"{name}: a row holds what is no number")

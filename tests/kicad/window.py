@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""KiCad's own simulator window over dalcs's libngspice.so.0, as a person uses it, in a screen that nobody sees.
+"""KiCad's own simulator window over dalcs's libngspice.so.0, as a person uses it, on a virtual screen.
 
 usage: window.py FORWARDER LIBRARY DALCS DEMOS
 
@@ -18,7 +18,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from dalcs_program import Checker, run  # noqa: E402
 
-# What KiCad 6 asks about when it starts for the first time.
+# The dialogs of KiCad 6 at its first start.
 SETTINGS = {"sym-lib-table": "(sym_lib_table)\n", "fp-lib-table": "(fp_lib_table)\n",
             "kicad_common.json": '{"meta": {"filename": "kicad_common.json", "version": 3}}\n',
             "eeschema.json": '{"meta": {"filename": "eeschema.json", "version": 1}}\n'}

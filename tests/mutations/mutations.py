@@ -156,7 +156,7 @@ LEAPS = BUCK.replace(".tran 5m 5m uic", ".tran 1m 20m uic")
 BEAT = BRIDGE.replace("v1 a b SIN(0 24 50)", "v1 a m SIN(0 24 50)\nv2 m b SIN(0 1 7.77)")
 
 
-GATES = """gates, a latch, a flip-flop, a delay, a counter and two samples, from sources that know nothing of each other
+GATES = """gates, a latch, a flip-flop, a delay, a counter and two samples, from sources that are independent of each other
 va a 0 PULSE(0 1 1u 0 0 3u 7u)
 vb b 0 PULSE(0 1 2u 0 0 5u 11u)
 vc c 0 SIN(0 1 61k)

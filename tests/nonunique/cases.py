@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What is not determined, in words and numbers, where an engineer would ask.
+"""Messages and numbers about what a circuit does not determine, in circuits of engineers.
 
 usage: cases.py PROGRAM glpk|no_glpk
 

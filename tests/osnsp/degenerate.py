@@ -69,7 +69,7 @@ class Circuit:
             self.add("i", a, b, self.chance.randrange(-2, 3))
 
     def observe(self):
-        """What looks on does not let the engine know that the circuit is passive, but changes nothing of the rest."""
+        """An observer hides from the engine that the circuit is passive, but changes nothing of the rest."""
         nodes = sorted(self.nodes)
         for k in range(self.chance.randrange(1, 4)):
             self.add("e", f"o{k}", 0, *self.chance.sample(nodes, 2), self.chance.randrange(1, 4))

@@ -117,6 +117,11 @@ class Plot(unittest.TestCase):
             self.assertLess(float(left) * 800 + 0.54 * em * len(text), 810, name)
             self.assertGreater(float(left) * 800 + 0.6 * em * len(text), 790, name)
 
+    def test_real_and_imaginary_parts(self):
+        (self.folder / "parts.csv").write_text("frequency,re(v(a)),im(v(a))\n1,1,0\n2,0.5,-0.5\n", encoding="utf-8")
+        self.assertIn("note: these are real and imaginary parts; from a .raw file", self.plot("parts.csv").stderr)
+        self.assertEqual(self.plot("parts.csv", "-s", "re(v(a))").stderr, "")
+
     def test_formats(self):
         self.need_gnuplot()
         for name, start in [("e.PNG", b"\x89PNG\r\n\x1a\n"), ("e.pdf", b"%PDF-")]:

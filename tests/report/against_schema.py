@@ -86,7 +86,7 @@ def open_objects(schema, where="report"):
 
 
 def kind_of(value):
-    """What the schema can tell of a value: all but which number it is, beside its sign and 1."""
+    """The properties of a value that the schema checks: its type, its sign and whether it is 1."""
     if isinstance(value, dict):
         return tuple((name, kind_of(part)) for name, part in value.items())
     if isinstance(value, list):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Raw files as the Python readers of others want them (support/spicelib_rules.py).
+"""Raw files by the rules of other Python readers (support/spicelib_rules.py).
 
 usage: raw_readers.py PROGRAM
 """

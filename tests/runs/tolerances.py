@@ -214,7 +214,7 @@ class Tolerances(unittest.TestCase):
                                                        (row["r2"] - 2e3) / 20, row["lot(rb)"]), delta=1e-9)
 
     def test_effects_that_do_not_add_up(self):
-        """A bridge in balance: moving one arm up or down tells nothing of moving two."""
+        """A bridge in balance: the effect of one arm says nothing about the effect of two."""
         text = ("t\nV1 in 0 10\nR1 in a 1k DEV=10%\nR2 a 0 1k\nR3 in b 1k DEV=10%\nR4 b 0 1k\n"
                 "B1 c 0 V=-abs(v(a)-v(b))\n.tran 1u 10u\n.meas tran off min v(c)\n")
         done = self.run_it(text + ".wcase\n", "--report", "r.json")
@@ -306,7 +306,7 @@ class Tolerances(unittest.TestCase):
         self.assertIn("3 of 11 runs of .wcase failed, the first where\n  x = -1\n", said)
 
     def test_threads_change_no_byte(self):
-        """A rectifier with 6 tolerances, whose table and report do not tell in how many threads they were made."""
+        """A rectifier with 6 tolerances, whose table and report do not depend on the number of threads."""
         text = ("t\nV1 in 0 SIN(0 10 50) \nD1 in out DM\n.model DM D(vfwd=0.7 DEV=10% Ron=10m DEV=20%)\n"
                 "C1 out 0 47u DEV=20%\nR1 out 0 1k DEV=5%\nR2 out m 10 LOT=5%\nC2 m 0 {x*1u} DEV=10%\n"
                 ".param x={aunif(1,0.5)}\n.tran 10u 60m uic\n.meas tran vlow min v(out) from=40m\n"

@@ -103,7 +103,7 @@ class Look:
         worst = self.off(steady["states"], final, steady)
         if worst <= NEAR:
             return f"settles, {worst:.1e}, {periods} periods, {steady['newton']} steps"
-        # there are transients that last longer than multipliers tell, and more orbits than one
+        # some transients last longer than their multipliers say, and there may be several orbits
         return f"the run is off by {worst:.1e}, but it " + self.lasts(steady, largest)
 
     def lasts(self, steady, largest):

@@ -1,4 +1,4 @@
-"""Curves through the rows of a run, as somebody draws them who has nothing but the rows."""
+"""Curves through the rows of a run, drawn from the rows alone."""
 
 import bisect
 

@@ -75,7 +75,7 @@ class Run:
         return self.column(name)[best]
 
     def scale(self, name):
-        """The largest voltage or current of the run, as the unit of `name` asks."""
+        """The largest voltage or current of the run, by the unit of `name`."""
         return self._largest["v(" if "v(" in name else "i("]
 
     @functools.cached_property

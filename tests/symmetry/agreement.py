@@ -1,4 +1,4 @@
-"""Whether two runs tell the same: exit status, waveforms at common times, events, measurements.
+"""Whether two runs have the same results: exit status, waveforms at common times, events, measurements.
 
 A waveform is promised to the tolerance over its largest value, or over 1e-5 of the largest of its unit; two
 runs may differ by twice that. An event is promised to the tolerance over the slope of what crosses: times

@@ -1,4 +1,4 @@
-"""Circuits drawn at random, each of a kind that asks something of the engine. A seed gives the same one for ever."""
+"""Circuits drawn at random, each of a kind that is hard for the engine. A seed always gives the same one."""
 
 import math
 import random as randoms

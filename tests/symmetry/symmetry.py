@@ -73,7 +73,7 @@ def known_failures():
 
 
 class Session:
-    """Counts and tells what was compared."""
+    """Counts the comparisons and prints them."""
 
     def __init__(self, arguments):
         self.arguments = arguments

@@ -5,7 +5,7 @@ import re
 
 
 class Unsupported(Exception):
-    """The netlist holds something that no transformation here knows."""
+    """The netlist holds something that no transformation here handles."""
 
 
 SUFFIX = {"t": 1e12, "g": 1e9, "meg": 1e6, "k": 1e3, "mil": 25.4e-6, "m": 1e-3, "u": 1e-6, "µ": 1e-6,
@@ -34,7 +34,7 @@ def plain_numbers(text):
 
 
 class Scope:
-    """Parameters, each evaluated when asked for; a scope knows the one that called it."""
+    """Parameters, each evaluated when it is used; a scope has a link to its caller."""
 
     def __init__(self, outer=None, texts=None):
         self.outer = outer

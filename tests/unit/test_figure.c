@@ -209,7 +209,7 @@ START_TEST(test_noise_is_constant) {
     dalcs_figure_init(&figure, "a.svg", 0.0, 1.0);
     ck_assert_int_eq(dalcs_figure_begin(&figure, &two_signals), DALCS_OK);
     for (int i = 0; i <= 1000; i++) {
-        const double value[] = {i % 2 == 0 ? 1.0 : 1.0 + 2e-16, 0.0};
+        const double value[] = {i % 2 == 0 ? 1.0 : 1.0 + 2e-16, i % 2 == 0 ? -1e-15 : 2e-15};
         dalcs_figure_row(&figure, 1e-3 * i, value);
     }
     ck_assert_int_eq(dalcs_figure_compose(&figure, NULL), DALCS_OK);

@@ -20,7 +20,7 @@ from ._sweep import Grid, Sweep, sweep_of, variants_of
 
 
 def _asks_of(options: Mapping[str, Any], sensitivities: bool) -> List[Callable[[Any], int]]:
-    """What a session has to know before it reads a netlist that does not ask for it itself."""
+    """Calls that a session needs before it reads a netlist without the matching cards."""
     asks: List[Callable[[Any], int]] = []
     if options.get("steady") or options.get("envelope"):
         asks.append(c.lib.dalcs_session_ask_steady)

@@ -40,7 +40,7 @@ def number_of(value: Number, name: str = "value") -> float:
 
 
 def _options_like(name: str) -> list[str]:
-    """Names of options that somebody may have meant who wrote this."""
+    """Names of options that are similar to this one."""
     known = sorted(c.OPTIONS | OWN_OPTIONS)
     return ([option for option in known if option.startswith(name) or name.startswith(option)]
             or difflib.get_close_matches(name, known, 1))

@@ -18,7 +18,7 @@ class _Closed(Exception):
 
 
 class Simulation:
-    """A run in a thread of its own, which waits while nobody calls step(). Circuit.start() makes it.
+    """A run in a thread of its own, which waits until step() is called. Circuit.start() makes it.
 
     time      s, where it stands
     signals   all signals there by name, V and A, just before `time`; empty at first
