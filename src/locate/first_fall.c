@@ -13,7 +13,8 @@
 
 #include <math.h>
 
-/* Falls this near to each other, in steps, are one event if the later one is no more than its doubt above 0 at the first. */
+/* Falls this near to each other, in steps, are one event if the later one is no more than its doubt above 0 at the first.
+ * Ten times as far apart, diodes in series and others that open a little later are taken for one (together.py). */
 static const double same_by_value = 1e-10;
 
 /* A guard that is looked at, up to `end`, in steps. */
