@@ -87,9 +87,8 @@ struct audit_window {
 
 struct audit_screen {
     uint64_t key;
-    int class; /* of the length, screen.c */
-    double
-        length; /* s, of the step that it was made of: charges and fluxes are held to what may be over that */
+    int class;     /* of the length, screen.c */
+    double length; /* s, of the step that it was made of */
     bool is_made;
     double limit;  /* that a sum or a sign may be beyond */
     int alarms;    /* that were false */
