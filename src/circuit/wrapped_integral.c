@@ -47,7 +47,9 @@ static bool add_gate(struct dalcs_compiler *c, const char *what, const int *node
     if (s->model < 0) {
         return false;
     }
-    struct dalcs_device *r = dalcs_memory_add_device(c, DALCS_RESISTOR, what, node[1], 0);
+    const char *load = dalcs_arena_printf(&c->builder->scratch, "%s_load", what);
+    struct dalcs_device *r =
+        load != NULL ? dalcs_memory_add_device(c, DALCS_RESISTOR, load, node[1], 0) : NULL;
     if (r != NULL) {
         r->value = 1;
     }
@@ -111,7 +113,7 @@ static bool add_share(struct dalcs_compiler *c, const int *node, double first) {
     store->initial = first;
     store->has_initial = true;
     if (!add_constant(c, "first", node[FIRST], first) ||
-        !add_source(c, "hold", node[HOLD], &until_start)) {
+        !add_source(c, "until_start", node[HOLD], &until_start)) {
         return false;
     }
     struct dalcs_device *s =

@@ -120,6 +120,14 @@ static void order_as_netlist(struct dalcs_refusal *r) {
     r->element = n == r->n_elements ? name : r->element;
 }
 
+static bool is_among(const char *const *list, size_t n, const char *name) {
+    size_t k = 0;
+    while (k < n && strcmp(list[k], name) != 0) {
+        k++;
+    }
+    return k < n;
+}
+
 /* Of a circuit that is not passive, where no loop and no part is found that explains it: the elements whose equations
  * have verified weights, or the pairs that each case of the proof is about, in the order of the netlist. Returns whether
  * there are any. */
@@ -135,7 +143,7 @@ static bool say_equations(struct dalcs_refusal *r) {
             bool is_device = dalcs_place_of(r->circuit, w->element[k]) != NULL;
             bool is_next = i < 0 ? !is_device /* a node, whose KCL cannot be met */
                                  : strcmp(w->element[k], r->circuit->device[i].name) == 0;
-            if (is_next) {
+            if (is_next && !is_among(name, n, w->element[k])) { /* parts may share a name */
                 name[n++] = w->element[k];
             }
         }
