@@ -1,7 +1,6 @@
 /* periodic_pieces.c - spans of one mode cut into pieces that polynomials of a step can carry. */
 #include "periodic_flow.h"
 
-#include <float.h>
 #include <math.h>
 
 /* Last Legendre coefficients, over the size of what they are of. Integrals of products of two such polynomials, which

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/* The orbit is known to rounding whatever the tolerance. How events move follows from what is on both sides of them,
- * which is as good as this. */
+/* Of the run whose log is taken: how events move follows from what is on both sides of them, which is as good as this. The
+ * orbit of a looser run is off by what that run is. */
 static const double tolerance_of_log = 1e-10;
 
 /* ---- One frequency ------------------------------------------------------------------------------- */
@@ -264,7 +264,8 @@ static double complex source_of(const void *user, int stimulus) {
     return dalcs_periodic_loop_source(a, a->loop.device, stimulus);
 }
 
-static enum dalcs_status look_around(struct dalcs_periodic_ac *a) {
+/* *is_off: the period of the log does not come back, and that of a run with its tolerance may. */
+static enum dalcs_status look_around(struct dalcs_periodic_ac *a, bool *is_off) {
     struct dalcs_run *r = a->run;
     struct dalcs_radau_options options = dalcs_transient_options(r, a->st->period);
     options.tolerance = fmin(options.tolerance, tolerance_of_log);
@@ -277,6 +278,10 @@ static enum dalcs_status look_around(struct dalcs_periodic_ac *a) {
     DALCS_TRY(dalcs_orbit_log_setup(&a->log, &a->radau, &sources));
     DALCS_TRY(dalcs_explain_failure(r, &a->euler,
                                     dalcs_steady_log(a->st, &a->euler, &a->radau, &a->log)));
+    *is_off = r->tolerance > options.tolerance && !dalcs_steady_returns(a->st);
+    if (*is_off) {
+        return DALCS_OK;
+    }
     DALCS_TRY(dalcs_steady_find_defect(a->st));
     DALCS_TRY(setup(a));
     report(a);
@@ -288,12 +293,12 @@ static void part_finish(struct dalcs_periodic_ac_part *p) {
     dalcs_periodic_flow_finish(&p->flow);
 }
 
-enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) {
+static enum dalcs_status walk_around(struct dalcs_steady *st, bool *is_off) {
     struct dalcs_run *r = st->run;
     struct dalcs_periodic_ac a = {.st = st, .run = r};
     DALCS_TRY(
         dalcs_euler_setup(&a.euler, &r->s->circuit, &r->s->network, &r->osnsp, r->h, st->period));
-    enum dalcs_status status = look_around(&a);
+    const enum dalcs_status status = look_around(&a, is_off);
     for (int k = 0; k < a.n_parts; k++) {
         part_finish(&a.part[k]);
     }
@@ -304,5 +309,20 @@ enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) {
     dalcs_radau_finish(&a.radau);
     dalcs_euler_finish(&a.euler);
     dalcs_arena_finish(&a.arena);
+    return status;
+}
+
+enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) {
+    struct dalcs_run *r = st->run;
+    const double tolerance = r->tolerance;
+    bool is_off = false;
+    bool found;
+    enum dalcs_status status = walk_around(st, &is_off);
+    if (status == DALCS_OK && is_off) {
+        r->tolerance = tolerance_of_log;
+        status = dalcs_steady_burst(st, &found);
+        status = status == DALCS_OK ? walk_around(st, &is_off) : status;
+        r->tolerance = tolerance;
+    }
     return status;
 }

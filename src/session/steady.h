@@ -260,7 +260,10 @@ enum dalcs_status dalcs_steady_find_oscillation(struct dalcs_steady *st,
 
 /* ---- steady_run.c ------------------------------------------------------------------------------ */
 
-/* Is a run of a period that has just ended, in st->then, where it began? Else DALCS_NOT_CONVERGED and a message. */
+/* Is a run of a period that has just ended, in st->then, where it began? */
+bool dalcs_steady_returns(struct dalcs_steady *st);
+
+/* The same; if not, DALCS_NOT_CONVERGED and a message. */
 enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
 /* ---- steady_report.c --------------------------------------------------------------------------- */

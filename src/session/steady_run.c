@@ -18,12 +18,17 @@ static const double most_defect = 1e-10;
 
 /* ---- The period ---------------------------------------------------------------------------------- */
 
+bool dalcs_steady_returns(struct dalcs_steady *st) {
+    dalcs_steady_find_residual(st);
+    return st->residual <= most_defect;
+}
+
 /* Is the run that has just ended, in st->then, where it began? */
 enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
-    dalcs_steady_find_residual(st);
+    const bool returns = dalcs_steady_returns(st);
     s->report.steady.defect = st->residual;
-    if (!(st->residual <= most_defect)) {
+    if (!returns) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "a smaller --tol",
                        "after one more period the states are off by %.3g", st->residual);
         return DALCS_NOT_CONVERGED;

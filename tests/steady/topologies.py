@@ -149,6 +149,20 @@ def at_the_mains():
                    "L1 o1 o2 5m\nR1 o2 0 10\nDf1 0 o f1\nDf2 o 0 f1\n.model f1 D(Vfwd=150)\n" + SW, 0.0, 1e-2, 0.02, "i(l1)")
 
 
+def floating():
+    """What a transformer or a common coil keeps apart from ground."""
+    t = 10e-6
+    yield Topology("tapped buck", "Vin in 0 {S}\n" + gate(1, t, 0, 0.3) + "S1 in a g1 0 sm\nL1 a c 90u\nL2 c out 10u\n"
+                   "K1 L1 L2 0.99\nD1 0 c\nRs a s 300\nCs s 0 470p\nC1 out 0 100u\nR1 out 0 0.5\n" + SW,
+                   48.0, 1e-2, t, "v(out)")
+    yield Topology("isolated sepic", "Vin in 0 {S}\n" + gate(1, t, 0, 0.4) + "L1 in a 100u\nS1 a 0 g1 0 sm\nCs a b 10u\n"
+                   "Rx b xd 10\nCx xd a 47u\nL2 b 0 100u\nL3 s q 25u\nK1 L2 L3 1\nD1 s out\nC1 out q 47u\nR1 out q 5\n"
+                   "Rg q 0 1k\n" + SW, 24.0, 1e-2, t, "v(out,q)")
+    yield Topology("half-controlled bridge", "Vl a b SIN(0 325 50)\nRb b 0 100k\nVg1 g1 0 PULSE(0 1 3m 0 0 2m 20m)\n"
+                   "Vg2 g2 0 PULSE(0 1 13m 0 0 2m 20m)\nA1 a p g1 0 scr\nA2 b p g2 0 scr\nD1 n a\nD2 n b\nLd p d 20m\n"
+                   "Rd d e 8\nVin e n {S}\n.model scr thyristor(Ron=1m Voff=1m)\n", 30.0, 1e-1, 0.02, "i(ld)")
+
+
 def inverters():
     t, f = 0.0025, 400.0
     text = "Vin dc 0 {S}\n" + f"Vtri tri 0 PULSE(-1 1 0 {t / 18 - 1e-9!r} {t / 18!r} 1n {t / 9!r})\n"
@@ -190,4 +204,4 @@ def free():
 
 GROUPS = {"two_coils": two_coils, "transformers": transformers, "dual_active": dual_active, "resonant": resonant,
           "phases": phases, "ladders": ladders, "controlled": controlled, "at_the_mains": at_the_mains,
-          "inverters": inverters, "free": free}
+          "floating": floating, "inverters": inverters, "free": free}
