@@ -47,7 +47,7 @@ def check_bode(checker, program, folder):
         text = (folder / name).read_text()
         checker.check(own in text and "phase(loop(vinj))" in text and "conducts" not in text, f"{name}: no '{own}'")
     for name in ("one.html", "two.html"):
-        found = re.search(r'"lines": (\[.*?\])\}', (folder / name).read_text())
+        found = re.search(r'"lines": (\[.*?\])', (folder / name).read_text())
         lines = json.loads(found.group(1)) if found else []
         checker.check([(x["panel"], x["level"]) for x in lines] == [(0, True), (1, True), (1, False)]
                       and lines[2]["text"] == own and abs(lines[2]["at"] - margin["frequency"]) < 1e-6,

@@ -105,16 +105,16 @@ MUTATIONS = {
     "power is energy": (
         "session/losses_report.c", ".power = energy / a->length", ".power = energy", TABLES),
     "events are told the other way": (
-        "waveform/recorder.c", ".on = dalcs_osnsp_is_on(p, d)};", ".on = !dalcs_osnsp_is_on(p, d)};", SHARED),
+        "waveform/event_log.c", ".on = dalcs_osnsp_is_on(p, d)};", ".on = !dalcs_osnsp_is_on(p, d)};", SHARED),
     "events are told late": (
-        "waveform/recorder.c", "(struct dalcs_event){.time = e->t,", "(struct dalcs_event){.time = e->t + 1e-6,", SHARED),
+        "waveform/event_log.c", "(struct dalcs_event){.time = e->t,", "(struct dalcs_event){.time = e->t + 1e-6,", SHARED),
     "events of opening are not told": (
-        "waveform/recorder.c", "                if (r->n_events == r->limit) {\n",
-        "                if (!dalcs_osnsp_is_on(p, d)) continue;\n                if (r->n_events == r->limit) {\n", METER),
+        "waveform/event_log.c", "                if (log->n_events == log->limit) {\n",
+        "                if (!dalcs_osnsp_is_on(p, d)) continue;\n                if (log->n_events == log->limit) {\n", METER),
     "a jump is told backwards": (
-        "waveform/recorder.c", ".before = before, .after = after}", ".before = after, .after = before}", SHARED),
+        "waveform/event_log.c", ".before = before, .after = after}", ".before = after, .after = before}", SHARED),
     "a jump loses twice the energy": (
-        "waveform/recorder.c", ".energy_lost = j->energy_lost", ".energy_lost = 2.0 * j->energy_lost", SHARED),
+        "waveform/event_log.c", ".energy_lost = j->energy_lost", ".energy_lost = 2.0 * j->energy_lost", SHARED),
     "rows are those of the row before": (
         "waveform/recorder.c", "            *to = value[k];\n", "            *to = value[k > 0 ? k - 1 : 0];\n", METER),
     "columns of rows change places": (
