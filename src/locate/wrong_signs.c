@@ -8,7 +8,6 @@
 #include "guard_values.h"
 #include "magnitudes.h"
 #include "step_length.h"
-#include "tied.h"
 
 #include <math.h>
 
@@ -101,14 +100,15 @@ static bool stays_below(const struct dalcs_radau_part *part, int pair, double en
 bool dalcs_guards_stay_negative(const struct dalcs_radau_part *part, double end,
                                 const double *unit) {
     int n_pairs = part->component->system->n_pairs;
-    double least = dalcs_small * dalcs_doubt_band(part);
+    double noise = dalcs_beyond_noise * dalcs_doubt_noise(part);
+    double least = fmax(dalcs_small * dalcs_doubt_band(part), noise);
     bool negative = false;
     for (int k = 0; k < part->guards.n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {
         int d = part->guards.doubtful[k];
         if (d < n_pairs) {
             negative = stays_below(part, d, end,
-                                   dalcs_larger(dalcs_tied_nothing(part, d, unit),
-                                                least * dalcs_guard_scale(part, d, unit)));
+                                   least * dalcs_guard_scale(part, d, unit) +
+                                       dalcs_guard_rounding(part, d, unit));
         }
     }
     return negative;
