@@ -77,6 +77,7 @@ static void look_inside(struct dalcs_audit *audit, const struct dalcs_audit_stre
         audit->now.t = asked;
         look(audit, stretch->part, &audit->now);
         audit_check_interval(audit, &audit->part[stretch->part], stretch->from, asked);
+        audit->part[stretch->part].was_integrated = true;
         return;
     }
     /* a polynomial may miss a smooth function anywhere in a stretch */
