@@ -333,6 +333,10 @@ enum { AUDIT_GAUSS = 5 };
 
 extern const double audit_gauss_node[AUDIT_GAUSS], audit_gauss_weight[AUDIT_GAUSS];
 
+/* How far the argument of a jump of a formula is from its knot, over its scale: of the nearest. INFINITY: it has none. */
+double audit_jump_beside(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device);
+
 /* formulas.c, laws.c */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device);

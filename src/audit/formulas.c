@@ -159,6 +159,24 @@ bool audit_behaviour_may_turn(const struct dalcs_audit *audit, const struct audi
     return may;
 }
 
+double audit_jump_beside(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
+    const bool as_is = audit->net.is_inner != NULL && audit->net.is_inner[device];
+    double least = INFINITY;
+    for (int k = 0; k + 1 < b->n_pairs; k++) {
+        double size;
+        double terms;
+        if (b->rest == NULL || isnan(b->rest[k])) {
+            continue;
+        }
+        const double w = affine_value(audit, part, s, device, as_is, &b->w[k], &size, &terms);
+        const double argument = s->lambda[audit->net.first_lambda[device] + k + 1] - w;
+        least = fmin(least, fmax(audit_ratio(fabs(argument), size) - AUDIT_ROUNDING, 0.0));
+    }
+    return least;
+}
+
 /* Signs and complementarity. In a part of a formula they are those of what the run has there: how near that is to what
  * the formula says is in the value of the whole. */
 static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,

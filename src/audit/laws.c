@@ -94,16 +94,23 @@ double audit_control_scale(const struct dalcs_audit *audit, const struct audit_p
     return fmax(signal, fabs(m->vt) + fabs(m->vh));
 }
 
-/* A switch that slides stands at its threshold; for a mean of two positions signs hold, and no law of either. */
+/* A switch that slides stands at its threshold, or what commands it is a formula that does; for a mean of two positions
+ * signs hold, and no law of either. */
 static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     if (d->kind == DALCS_SWITCH) {
         double half_width;
-        const double off = fabs(audit_control(audit, s, device, &half_width)) - half_width;
-        audit_find(audit, part, DALCS_AUDIT_POSITION, device,
-                   off - (off > 0.0 ? audit_control_slack(audit, part, s, device) : 0.0),
-                   audit_control_scale(audit, part, device), s->t);
+        const double scale = audit_control_scale(audit, part, device);
+        double off = fabs(audit_control(audit, s, device, &half_width)) - half_width;
+        off -= off > 0.0 ? audit_control_slack(audit, part, s, device) : 0.0;
+        for (int k = 0; k < part->n_devices && off > part->tolerance * scale; k++) {
+            const int of = part->device[k];
+            const bool may_command = s->is_mean[of] && audit->circuit->device[of].behaviour != NULL;
+            const double beside = may_command ? audit_jump_beside(audit, part, s, of) : INFINITY;
+            off = fmin(off, beside * scale);
+        }
+        audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, scale, s->t);
         audit->count.positions++;
     } else if (d->kind == DALCS_DIODE && d->behaviour == NULL) {
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];

@@ -9,6 +9,8 @@
 
 #include "current.h"
 
+#include <math.h>
+
 static bool is_input(const struct dalcs_behaviour *behaviour, int row, int term) {
     const struct dalcs_affine *a = row < 0 ? &behaviour->output : &behaviour->w[row];
     return a->term[term].kind == DALCS_QUANTITY_STIMULUS;
@@ -50,6 +52,7 @@ enum dalcs_status dalcs_stamp_behaviour_branch(struct stamps *b, int device) {
         int pair = b->next_pair++;
         s->pair[pair] =
             (struct dalcs_pair){.kind = DALCS_PAIR_DIODE, .element = d->name, .is_formula = true};
+        s->pair[pair].is_jump = rest != NULL && !isnan(rest[k]);
         s->pair[pair].is_left_out[0] = rest != NULL && k > 0 && rest[k - 1] == 0.0;
         s->pair[pair].is_left_out[1] = rest != NULL && rest[k] == 1.0;
         s->column_is_current[s->n_x + s->n_z + pair] = true;

@@ -43,9 +43,11 @@ const char *dalcs_label_equation(enum dalcs_label_kind kind);
 
 struct dalcs_pair {
     enum dalcs_pair_kind kind;
-    const char *element;      /* "d1", "s1" */
-    bool is_breakdown;        /* the reverse branch of a diode with Vrev */
-    bool is_formula;          /* a kink or a jump of a source: its lambda carries no charge */
+    const char *element; /* "d1", "s1" */
+    bool is_breakdown;   /* the reverse branch of a diode with Vrev */
+    bool is_formula;     /* a kink or a jump of a source: its lambda carries no charge */
+    bool
+        is_jump; /* the first of two of a jump, whose argument is lambda of the next one less w of this one */
     bool is_left_out[2];      /* while it is open, while it is closed: of a choice of least norm */
     bool initially_on;        /* switches */
     bool is_direct;           /* switches: use direct_control, known before the step is solved */

@@ -9,6 +9,7 @@
 #include "sliding.h"
 #include "step_error.h"
 #include "step_length.h"
+#include "tied.h"
 
 #include <math.h>
 
@@ -22,6 +23,9 @@ static void prepare_positions(struct dalcs_radau_part *part) {
     p->keeps = false;
     for (int i = 0; i < p->n; i++) {
         p->slack[i] = dalcs_guard_most_rounding(part, n_pairs + i, part->scales.unit);
+    }
+    for (int k = 0; k < p->n_jumps; k++) {
+        p->slack[p->n + k] = dalcs_tied_nothing(part, p->jump[k], part->scales.unit);
     }
 }
 
@@ -67,6 +71,7 @@ static enum dalcs_status put_on_threshold(struct dalcs_radau *r, struct dalcs_ra
         if (h > most) {
             return DALCS_OK;
         }
+        DALCS_TRY(dalcs_slide_find_leading(r, part, h));
         DALCS_TRY(dalcs_slide_micro_steps(r, part, h, slides));
     }
     for (int x = 0; x < part->component->system->n_x; x++) {

@@ -60,6 +60,11 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
     if (status != DALCS_OK || !c->positions.alternates) {
         return status < DALCS_OK ? status : DALCS_OK; /* without an answer it does not slide */
     }
+    bool is_complete;
+    DALCS_TRY(dalcs_sliding_complete(&c->positions, part->work.u, step->y, &is_complete));
+    if (!is_complete) {
+        return DALCS_OK;
+    }
     memcpy(c->scratch, step->y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
     double noise = 0.0;
     double weight = dalcs_sliding_mean(&c->positions, step->y, &noise);
@@ -230,6 +235,26 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
         of->pairs = error_of_pairs(r, part);
         of->is_coarse = of->pairs > 1.0 || part->stages.method->s == 1;
         of->pairs /= 1.0 + of->noise / part->inner_tolerance;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_slide_find_leading(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                           double h) {
+    struct dalcs_positions *p = &part->component->positions;
+    dalcs_sliding_begin(p);
+    for (int k = 1; k <= 2 && p->n_jumps > 0; k++) {
+        const double length = 0.5 * k * h;
+        enum dalcs_status status =
+            dalcs_radau_implicit_step(r, part, length, length, part->x, part->work.y1);
+        if (status != DALCS_OK || !p->alternates) {
+            return status < DALCS_OK ? status : DALCS_OK;
+        }
+        if (k == 1) {
+            dalcs_sliding_note_gaps(p, part->work.y1);
+        } else {
+            dalcs_sliding_compare_gaps(p, part->work.y1);
+        }
     }
     return DALCS_OK;
 }

@@ -29,6 +29,10 @@ struct dalcs_slide_try dalcs_slide_try_of(const struct dalcs_collocation *method
 enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                       struct dalcs_slide_try *of) DALCS_MUST_CHECK;
 
+/* Which of what turns decides where a slide is, from micro-steps of length h/2 and h (sliding.h). */
+enum dalcs_status dalcs_slide_find_leading(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                           double h) DALCS_MUST_CHECK;
+
 /* Two micro-steps of length h along the threshold, into part->work.y1 and y2. *slides: there are two. */
 enum dalcs_status dalcs_slide_micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                           double h, bool *slides) DALCS_MUST_CHECK;

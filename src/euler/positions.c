@@ -1,6 +1,8 @@
 /* positions.c - where switches stand whose control reads the circuit, at one instant. */
 #include "positions.h"
 
+#include "sliding.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,8 +20,16 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
     if (p->n == 0) {
         return DALCS_OK;
     }
+    for (int d = 0; d < s->n_pairs; d++) {
+        p->n_jumps += s->pair[d].is_jump ? 1 : 0;
+    }
+    const size_t n_turning = (size_t)p->n + (size_t)p->n_jumps;
+    p->jump = dalcs_arena_alloc(arena, (size_t)p->n_jumps, sizeof(int));
+    p->gap = dalcs_arena_alloc(arena, n_turning, sizeof(double));
+    p->follows = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
+    p->leads = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
     p->pair = dalcs_arena_alloc(arena, (size_t)p->n, sizeof(int));
-    p->slack = dalcs_arena_alloc(arena, (size_t)p->n, sizeof(double));
+    p->slack = dalcs_arena_alloc(arena, n_turning, sizeof(double));
     p->mask = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->first = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->present = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
@@ -29,10 +39,14 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
     p->other_w = dalcs_arena_alloc(arena, (size_t)s->n_pairs, sizeof(double));
     if (p->pair == NULL || p->slack == NULL || p->mask == NULL || p->first == NULL ||
         p->present == NULL || p->mark == NULL || p->other == NULL || p->other_y == NULL ||
-        p->other_w == NULL) {
+        p->other_w == NULL || p->jump == NULL || p->gap == NULL || p->follows == NULL ||
+        p->leads == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int d = 0, i = 0; d < s->n_pairs; d++) {
+    for (int d = 0, i = 0, k = 0; d < s->n_pairs; d++) {
+        if (s->pair[d].is_jump) {
+            p->jump[k++] = d;
+        }
         if (s->pair[d].kind == DALCS_PAIR_SWITCH && !s->pair[d].is_direct) {
             p->pair[i++] = d;
             p->mask[d / 64] |= (uint64_t)1 << (d % 64);
@@ -252,7 +266,8 @@ static enum dalcs_status look_for(struct dalcs_positions *p, double sigma, const
     enum dalcs_status first = dalcs_osnsp_solve(p->osnsp, sigma, u, y);
     *has_first = first == DALCS_OK;
     enum dalcs_status status = first == DALCS_OK ? move_all(p, sigma, u, y) : first;
-    bool has_all = p->alternates && differ_in_one(p, p->osnsp->mode, p->other);
+    bool has_all = p->alternates &&
+                   (differ_in_one(p, p->osnsp->mode, p->other) || dalcs_sliding_follows_one(p));
     if (status < DALCS_OK || (status == DALCS_OK && p->settled) || has_all) {
         return status;
     }

@@ -12,16 +12,22 @@
 struct dalcs_positions {
     struct dalcs_osnsp *osnsp;
     int n;
-    int *pair;     /* [n] switches whose control reads the circuit */
-    double *slack; /* [n] V or A: a control that is no farther beyond its threshold moves nothing */
-    bool keeps;    /* switches with hysteresis stand as they are */
-    bool moved;    /* the last call has moved one, if only for a while */
-    bool settled;  /* and all agree with the answer */
+    int *pair; /* [n] switches whose control reads the circuit */
+    int n_jumps;
+    int *jump; /* [n_jumps] first pairs of jumps of formulas, where there are such switches */
+    double *
+        slack; /* [n + n_jumps] V or A: a control that is no farther beyond its threshold moves nothing */
+    bool keeps;   /* switches with hysteresis stand as they are */
+    bool moved;   /* the last call has moved one, if only for a while */
+    bool settled; /* and all agree with the answer */
     bool
         alternates; /* if not: all that want to move go to and fro between two positions, each with an answer */
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
     uint64_t *other;           /* and its mode, [n_words] */
     bool joined;               /* sliding.h */
+    double *gap;               /* [n + n_jumps] between both sides, in a micro-step */
+    bool *follows;             /* [n + n_jumps] it turns since another one does */
+    bool *leads;               /* [n + n_jumps] a jump that others follow, at present */
     uint64_t *mask;            /* [n_words] bits of these switches */
     uint64_t *first, *present, *mark; /* [n_words] */
 

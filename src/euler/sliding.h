@@ -3,7 +3,10 @@
  * Where the flow on either side of a threshold leads to the other one there is no way but along the threshold, by the
  * mean of both flows that stays there (Filippov 1988, chapter 2). In a step of implicit Euler that is the mean of the
  * answers in both positions whose control is the threshold. What the elements carry is a mean over time, too: a switch
- * has current as well as voltage then, and so have the diodes that turn with it. */
+ * has current as well as voltage then, and so have the diodes that turn with it.
+ *
+ * Formulas that jump turn as switches do: a comparator that commands switches, or one that only reads what they do. On the
+ * threshold is what goes on through the event: the argument of the comparator, not its output. */
 #ifndef DALCS_SLIDING_H
 #define DALCS_SLIDING_H
 
@@ -12,6 +15,24 @@
 /* y[n_columns] and p->osnsp->w, the answer on one side, become the mean with that on the other side, whose weight is
  * returned, with what rounding may make of it. 0: there is no such mean, and nothing is changed. */
 double dalcs_sliding_mean(struct dalcs_positions *p, double *y, double *noise);
+
+/* Before a slide: nothing is known of what turns. */
+void dalcs_sliding_begin(struct dalcs_positions *p);
+
+/* In the answer y and that on the other side of half a micro-step, and then in those of a whole one: what jumps with
+ * another does not decide where the slide is. */
+void dalcs_sliding_note_gaps(struct dalcs_positions *p, const double *y);
+void dalcs_sliding_compare_gaps(struct dalcs_positions *p, const double *y);
+
+/* Behind an answer at the inputs u: where a formula leads, each of both answers has its output on the side that the
+ * switches are on, for what they are for a part of the time is what its output is for that part. An implicit step has it
+ * on the side that the switches go to. The argument is off by what it moves in the step. *is_complete: both have an
+ * answer, in which all that follows agrees. */
+enum dalcs_status dalcs_sliding_complete(struct dalcs_positions *p, const double *u, double *y,
+                                         bool *is_complete) DALCS_MUST_CHECK;
+
+/* Do all switches that turn follow one formula? Then there are no positions between both. */
+bool dalcs_sliding_follows_one(const struct dalcs_positions *p);
 
 /* While it lasts all that has conducted, on either side, is on. */
 void dalcs_sliding_join(struct dalcs_positions *p, const uint64_t *conducted);

@@ -14,7 +14,6 @@ static const double briefer = 0x1p-8;
 
 enum { MOST_BRIEFER = 5 };
 
-
 /* ---- How a mode begins --------------------------------------------------------------------------- */
 
 /* What the polynomial through the stages, which do not see what the mode does not allow, is at the start. */

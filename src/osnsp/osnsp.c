@@ -1,6 +1,7 @@
 /* osnsp.c - finding the mode: the last one first, then block principal pivoting, then that of a problem with small
  * weights, by Lemke's method where pivots get nowhere; and for small systems that are not passive every mode. */
 #include "in_order.h"
+#include "magnitudes.h"
 
 #include <string.h>
 
@@ -108,6 +109,16 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
         dalcs_certificate_evaluate(p, u, y, sources_clash);
     }
     return DALCS_OK;
+}
+
+enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u, double *y) {
+    bool sources_clash;
+    DALCS_TRY(dalcs_exact_try_mode(p, u, y, &sources_clash));
+    const bool is_sign = p->certificate.where >= dalcs_system_n_equations(p->system);
+    return !sources_clash && (is_sign || p->certificate.worst <=
+                                             dalcs_beyond * p->options.certificate_tolerance)
+               ? DALCS_OK
+               : DALCS_NOT_CONVERGED;
 }
 
 /* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR

@@ -189,6 +189,11 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) DALCS_MUST_CHECK;
 
+/* The answer in p->mode behind such a call, whatever the signs of pairs are; p->signs has those that are wrong. Not
+ * DALCS_OK: the mode has none. Not with smooth sources. */
+enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u,
+                                     double *y) DALCS_MUST_CHECK;
+
 /* The lines of smooth sources become those of their tangents at the arguments that newton->x holds, where one differs by
  * more than this factor from what it is: then all that was factored is forgotten. */
 bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, double factor);
