@@ -24,7 +24,7 @@ CERTIFIED = 2e-13
 STATE = 1e-12    # of the largest voltage
 CHARGE = 1e-9    # of the largest charge of the pool
 ENERGY = 1e-9
-LARGE = 40000      # from here on one seed of one shape
+LARGE = 20000      # from here on one seed of one shape
 MOST_SOLVES = 100  # mode changes and one-step problems of a whole run
 SHAPES = {
     "random": lambda values: values,
