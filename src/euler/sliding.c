@@ -53,7 +53,7 @@ void dalcs_sliding_note_gaps(struct dalcs_positions *p, const double *y) {
 static const double staying = 0.75;
 
 void dalcs_sliding_compare_gaps(struct dalcs_positions *p, const double *y) {
-    for (int i = 0; i < n_turning(p) && p->n_jumps > 0; i++) {
+    for (int i = 0; i < n_turning(p); i++) {
         p->follows[i] = turns(p, i) && p->gap[i] > staying * fabs(there(p, i) - here(p, i, y));
     }
 }
@@ -104,13 +104,7 @@ static bool all_agree(const struct dalcs_positions *p, const double *y) {
             return false;
         }
     }
-    bool agree = true;
-    for (int i = 0; i < p->n && agree; i++) {
-        const struct dalcs_pair *pair = &o->system->pair[p->pair[i]];
-        const bool is_on = dalcs_osnsp_is_on(o, p->pair[i]);
-        agree = dalcs_pair_closes(pair, is_on, here(p, i, y) + pair->turn_on, p->slack[i]) == is_on;
-    }
-    return agree;
+    return dalcs_positions_restless(p, y) == NULL;
 }
 
 /* The answer in `mode` with leading jumps as in `leading`. */
@@ -123,17 +117,17 @@ static enum dalcs_status answer_with(struct dalcs_positions *p, const uint64_t *
             put_jump(p, i, dalcs_mode_has(leading, pair_of(p, i)));
         }
     }
+    *is_complete = false;
     for (int round = 0; round <= p->n_jumps; round++) {
         enum dalcs_status status = dalcs_osnsp_answer(p->osnsp, u, y);
         if (status != DALCS_OK) {
-            *is_complete = false;
             return status < DALCS_OK ? status : DALCS_OK;
         }
         if (!put_followers(p, y)) {
+            *is_complete = all_agree(p, y);
             break;
         }
     }
-    *is_complete = all_agree(p, y);
     return DALCS_OK;
 }
 
@@ -163,7 +157,10 @@ bool dalcs_sliding_follows_one(const struct dalcs_positions *p) {
     int n_leading = 0;
     for (int i = 0; i < n_turning(p); i++) {
         if (turns(p, i) && !p->follows[i]) {
-            n_leading += i < p->n ? 2 : 1;
+            if (i < p->n) {
+                return false;
+            }
+            n_leading++;
         }
     }
     return n_leading == 1;
