@@ -90,9 +90,6 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
     }
 }
 
-/* Over an argument: what rounding makes of it and of the function of it, two units in the last place. */
-static const double rounded = 2.0 * DBL_EPSILON;
-
 double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x) {
     double gradient[2];
     double rounding = 0.0;
@@ -100,7 +97,7 @@ double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *
     for (int j = 0; j < of->n; j++) {
         const bool is_read = of->column[j] >= 0;
         const double slope = fabs(gradient[j]) + fabs(dalcs_smooth_line(of, j));
-        rounding += is_read ? rounded * slope * fabs(x[j]) : 0.0;
+        rounding += is_read ? dalcs_rounded * slope * fabs(x[j]) : 0.0;
     }
     return rounding;
 }
@@ -124,7 +121,7 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
         for (int j = 0; j < of->n; j++) {
             bool is_read = of->column[j] >= 0;
             double slope = fabs(gradient[j]) + fabs(dalcs_smooth_line(of, j));
-            least += is_read ? rounded * slope * fabs(newton->x[q][j]) : 0.0;
+            least += is_read ? dalcs_rounded * slope * fabs(newton->x[q][j]) : 0.0;
             most += is_read ? dalcs_answer_rounded * slope * newton->terms[q][j] : 0.0;
         }
         double off = fabs(dalcs_smooth_rest(of, newton->x[q]) - newton->phi[q]);

@@ -17,10 +17,6 @@ enum { MICRO = 20 };
 /* States that move in the first micro-step by more than this many times the second have jumped. */
 static const double jump_ratio = 4.0;
 
-/* A micro-step over one in which a small transient may hide its mode: in a much shorter one an event's error would weigh
- * more than what the circuit does. */
-static const double a_little_shorter = 1.0 / 32.0;
-
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u, enum dalcs_status status) {
     struct dalcs_euler *e = r->base;
@@ -142,7 +138,8 @@ bool dalcs_micro_extrapolate(const struct dalcs_radau_part *part, double *after,
         if (dies_away && first > smallest * scale) {
             *closer = dalcs_micro_shorter;
         } else if (dies_away && first > dalcs_beyond * part->inner_tolerance * scale) {
-            *closer = fmin(*closer, a_little_shorter);
+            /* in a much shorter one an event's error would weigh more than what the circuit does */
+            *closer = fmin(*closer, dalcs_slight);
         }
         after[x] = 2.0 * part->work.y1[x] - part->work.y2[x];
     }

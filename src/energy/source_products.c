@@ -4,9 +4,6 @@
 #include <complex.h>
 #include <math.h>
 
-/* Below this the integral of tau exp(-z tau) is summed as a series, whose terms then halve at least. */
-static const double small_exponent = 0.5;
-
 enum { SERIES = 24 };
 
 /* A term as Re(amplitude exp(-rate tau)). */
@@ -32,10 +29,10 @@ static double complex integral_of_exp(double complex rate, double T) {
     return (re + I * im) / rate;
 }
 
-/* Integral of tau exp(-rate tau) over 0..T. */
+/* Integral of tau exp(-rate tau) over 0..T. A series is exact up to an exponent of 1: its last term is 1/25!. */
 static double complex integral_of_ramp(double complex rate, double T) {
     double complex w = rate * T;
-    if (cabs(w) >= small_exponent) {
+    if (cabs(w) >= 1.0) {
         return (integral_of_exp(rate, T) - T * cexp(-w)) / rate;
     }
     double complex power = 1.0;

@@ -4,6 +4,8 @@
 
 #include "radau_state.h"
 
+#include "rounding.h"
+
 struct dalcs_orbit_rates {
     const struct dalcs_radau_part *part;
     int n_x;
@@ -38,7 +40,7 @@ double dalcs_orbit_probe_rate(const struct dalcs_radau_part *part, const struct 
                               bool at_begin, struct dalcs_stimulus_term *term);
 
 /* So far before a time, over it, a control is what it was, and a piece of a source is asked for that ends there. */
-static const double dalcs_orbit_before = 1e-12;
+static const double dalcs_orbit_before = dalcs_answer_rounded;
 
 /* V/s: the slope of a source just before t, and from t on; term: work, as many as it has. */
 double dalcs_slope_before(const struct dalcs_stimulus *s, double t,

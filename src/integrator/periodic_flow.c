@@ -9,9 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* So much of a span, again and again, until what a mode projects away no longer depends on it. */
-static const double briefer = 0x1p-8;
-
 enum { MOST_BRIEFER = 5 };
 
 /* ---- How a mode begins --------------------------------------------------------------------------- */
@@ -86,9 +83,9 @@ static enum dalcs_status make_start(struct dalcs_periodic_flow *flow,
     if (!start_setup(flow, &before) || !start_setup(flow, &now)) {
         return DALCS_E_NOMEM;
     }
-    double h = (span->to - span->from) * briefer;
+    double h = (span->to - span->from) * dalcs_slight;
     double noise = 0.0;
-    for (int k = 0; k < MOST_BRIEFER; k++, h *= briefer) {
+    for (int k = 0; k < MOST_BRIEFER; k++, h *= dalcs_slight) {
         struct dalcs_flow_map *map;
         DALCS_TRY(dalcs_periodic_flow_map(flow, span, span->from, h, &map));
         extrapolate(flow, map, &now);

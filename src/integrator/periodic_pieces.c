@@ -1,11 +1,13 @@
 /* periodic_pieces.c - spans of one mode cut into pieces that polynomials of a step can carry. */
 #include "periodic_flow.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 
 /* Last Legendre coefficients, over the size of what they are of. Integrals of products of two such polynomials, which
  * means over a period are, see the square of what is missing. */
-static const double resolved = 1e-10;
+static const double resolved = dalcs_alike;
 
 /* A piece is at least this part of its span: what is still rough there has died away behind it, for the steps are
  * L-stable. Where it has not after so many pieces the polynomials do not carry it, and a span would take 2^40 of them. */

@@ -18,12 +18,7 @@
 /* Errors are kept this much smaller than asked for: they add up over a run. */
 static const double inner_part = 0.03;
 
-static const double largest_inner = 3e-7;
-
 static const double smallest_inner = 1e-12;
-
-/* So much of them is lost among them, though rounding may be in currents that follow from voltages. */
-static const double unseen_part = 1e-5;
 
 /* A step that follows the fastest source, over the one that just would if nothing else were there:
  * measured, currents of capacitors are more demanding than the source. */
@@ -32,7 +27,7 @@ static const double paced_part = 0.65;
 enum { FIRST_STEPS = 64 };
 
 static double inner_tolerance_of(double tolerance) {
-    return fmax(smallest_inner, fmin(largest_inner, inner_part * tolerance));
+    return fmax(smallest_inner, fmin(dalcs_nothing, inner_part * tolerance));
 }
 
 static bool has_memory_or_sides(const struct dalcs_system *s) {
@@ -159,7 +154,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
                                               osnsp->cache_bytes / (size_t)r->n_parts};
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, method, &limits));
     part->stages.block_of = c->osnsp.partition.block_of;
-    part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : unseen_part * part->inner_tolerance;
+    part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : dalcs_nothing * part->inner_tolerance;
     DALCS_TRY(dalcs_arena_reserve(&part->arena, room_for_part(c->system)));
     DALCS_TRY(allocate(part));
     DALCS_TRY(dalcs_transition_setup(part));

@@ -124,18 +124,13 @@ double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, d
     }
     /* where nothing else flows, a current is still a difference of those that flow elsewhere */
     double local = dalcs_doubt_noise(part) * spread_about(part, guard, unit);
-    return dalcs_smaller(noise, dalcs_larger(local, dalcs_control_rounded * scale));
+    return dalcs_smaller(noise, dalcs_larger(local, dalcs_answer_rounded * scale));
 }
 
 /* What errors of all that a guard is made of come to, with noise that is a part of `of_noise`. */
 static double of_all(const struct dalcs_radau_part *part, double size, double of_noise) {
-    return dalcs_beyond * part->inner_tolerance * size +
-           dalcs_beyond_noise * dalcs_doubt_noise(part) * of_noise;
+    return dalcs_beyond * (part->inner_tolerance * size + dalcs_doubt_noise(part) * of_noise);
 }
-
-/* Of what the tolerance promises of a current, a guard may be off by this part: rounding and what the current falls by
- * besides have the rest. */
-static const double part_of_promise = 0.25;
 
 /* Which is no more than the band. */
 static double within_band(const struct dalcs_radau_part *part, double size, double of_noise,
@@ -161,9 +156,9 @@ double dalcs_doubt_about(const struct dalcs_radau_part *part, int guard, double 
     if (has_map || !dalcs_osnsp_is_on(&part->component->osnsp, guard)) {
         return within_band(part, size, scale, scale);
     }
-    /* The band is a part of the largest current of all, the promise one of this current's own scale. */
-    double promised = part->tolerance * dalcs_step_scale(part, place, unit);
-    return dalcs_smaller(within_band(part, size, size, scale), part_of_promise * promised);
+    /* The band is a part of the largest current of all, what the tolerance promises one of this current's own scale. */
+    double promised = dalcs_beyond * part->inner_tolerance * dalcs_step_scale(part, place, unit);
+    return dalcs_smaller(within_band(part, size, size, scale), promised);
 }
 
 double dalcs_doubt_of_closed(const struct dalcs_radau_part *part, int pair, double scale) {

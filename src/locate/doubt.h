@@ -12,9 +12,6 @@
 #include "rounding.h"
 #include "step_error.h"
 
-/* So many times what rounding leaves of a zero is beyond it. */
-static const double dalcs_beyond_noise = 4.0;
-
 /* What rounding leaves of a zero, over its unit's scale: of one on dense maps what it leaves of an answer. */
 static inline double dalcs_doubt_noise(const struct dalcs_radau_part *part) {
     return dalcs_answer_rounded * part->segment.rounding;
@@ -31,8 +28,7 @@ double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, d
 /* The band of errors, over the unit's scale: no guard is in doubt beyond it, and no error up to it in a pair that has just
  * changed sides is an event. */
 static inline double dalcs_doubt_band(const struct dalcs_radau_part *part) {
-    return dalcs_larger(dalcs_beyond * part->inner_tolerance,
-                        dalcs_beyond_noise * dalcs_doubt_noise(part));
+    return dalcs_beyond * dalcs_larger(part->inner_tolerance, dalcs_doubt_noise(part));
 }
 
 /* V or A that a guard may be off by in the present step, of part->segment.entry; scale: of its unit. */

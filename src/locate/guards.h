@@ -27,10 +27,6 @@ bool dalcs_guards_recover(const struct dalcs_radau_part *part, const double *uni
  * INFINITY if one is not. */
 double dalcs_guards_recovery(const struct dalcs_radau_part *part);
 
-/* In a step, so early: a mode may be over after no more of it. And a fall may be one from the start, where no pair has changed
- * sides and it was above 0 by no more than its doubt: from rest a circuit may begin to move as a power of time. */
-static const double dalcs_early_in_step = 1.0 / 64.0;
-
 /* Did what crossed only dip below 0, by a part of what it began with, and is it above at the end? That may be
  * two crossings, or the polynomial, which swings where something has died away between two nodes. */
 bool dalcs_guards_swing(const struct dalcs_radau_part *part);

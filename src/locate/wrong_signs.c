@@ -100,7 +100,7 @@ static bool stays_below(const struct dalcs_radau_part *part, int pair, double en
 bool dalcs_guards_stay_negative(const struct dalcs_radau_part *part, double end,
                                 const double *unit) {
     int n_pairs = part->component->system->n_pairs;
-    double noise = dalcs_beyond_noise * dalcs_doubt_noise(part);
+    double noise = dalcs_beyond * dalcs_doubt_noise(part);
     double least = fmax(dalcs_small * dalcs_doubt_band(part), noise);
     bool negative = false;
     for (int k = 0; k < part->guards.n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {

@@ -13,10 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What crosses so shortly before the stop time, in inner tolerances of it, may be left to a longer run
- * (guards.c). */
-static const double near_stop = 64.0;
-
 /* Shorter runs have nothing to repeat; doubles that are kept at most. */
 enum { FEWEST_PERIODS = 3, MOST_KEPT = 1 << 18 };
 
@@ -250,7 +246,8 @@ bool dalcs_periodic_repeats(const struct dalcs_radau *r, struct dalcs_radau_part
     if (!periodic->repeats) {
         return false;
     }
-    double last = r->options.stop * (1.0 - near_stop * part->inner_tolerance) - r->resolution;
+    /* what crosses just before the stop time may be left to a longer run (guards.c) */
+    double last = r->options.stop * (1.0 - dalcs_beyond * part->inner_tolerance) - r->resolution;
     bool goes_on = next_end(periodic) < last;
     if (!goes_on) {
         stop_repeating(part);

@@ -15,7 +15,7 @@ static void note(struct dalcs_certificate *c, double residual, double scale, int
         c->worst = scale > 0.0 ? residual / scale : INFINITY;
         c->where = where;
     }
-    if (!(residual <= 1e300)) { /* NaN or overflow: never certified */
+    if (!(residual < INFINITY)) { /* NaN or overflow: never certified */
         c->worst = INFINITY;
         c->where = where;
     }
@@ -64,9 +64,11 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
         }
         double norm = dalcs_scales_norm(f, scale, f->checked[i]);
         double size = dalcs_scales_own(p, dalcs_scales_row_terms(p, u, y, i), norm);
-        if (!(residual <= worst * size && residual < INFINITY)) {
-            /* A NaN must stay the worst: it compares with nothing that follows. */
-            worst = size > 0.0 && residual < INFINITY ? residual / size : INFINITY;
+        if (!(residual <= worst * size && size < INFINITY)) {
+            /* An infinite row would vouch for any residual. A NaN must stay the worst: it compares with nothing that
+             * follows. */
+            const bool is_measured = size > 0.0 && size < INFINITY && residual < INFINITY;
+            worst = is_measured ? residual / size : INFINITY;
             where = f->checked[i];
         }
     }
@@ -174,10 +176,6 @@ bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, 
     return hold;
 }
 
-/* V, A: rows of larger ones may overflow, and infinite rows would vouch for any residual. Above what a state may grow to
- * (component.c), which is told as growth. */
-static const double largest_scale = 1e250;
-
 void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *y,
                                 bool *sources_clash) {
     p->certificate.worst = 0.0;
@@ -189,9 +187,6 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
     struct dalcs_scales scale = dalcs_scales_physical(p, drive, y);
     p->certificate.volt = scale.volt;
     p->certificate.ampere = scale.ampere;
-    if (!(scale.volt <= largest_scale && scale.ampere <= largest_scale)) {
-        note(&p->certificate, INFINITY, 1.0, 0);
-    }
     check_equations(p, u, y, scale);
     check_pairs(p, u, y, scale);
     check_references(p, y, scale, drive, sources_clash);

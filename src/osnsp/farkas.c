@@ -6,9 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-/* What a combination may come to beside 0 is no more than this part of the contradiction. */
-static const double most_missed = 0.5;
-
 static void visit_row(const struct dalcs_csr *m, int row, double factor,
                       void (*add)(void *user, int column, double value), void *user) {
     for (int k = m->p[row]; k < m->p[row + 1]; k++) {
@@ -126,7 +123,8 @@ bool dalcs_claim_is_refuted(const struct dalcs_claim *claim, double *v, double *
             dalcs_claim_visit(claim, row, add_to, &to);
         }
     }
-    if (!(right > dalcs_sum_rounded * right_size)) {
+    const double contradiction = right - dalcs_sum_rounded * right_size;
+    if (!(contradiction > 0.0)) {
         return false;
     }
     double missed = 0.0; /* what the combination may come to beside 0, for answers within reach */
@@ -143,5 +141,5 @@ bool dalcs_claim_is_refuted(const struct dalcs_claim *claim, double *v, double *
         }
         missed += off * claim->reach[s->column_is_current[c]];
     }
-    return missed <= most_missed * right;
+    return missed < contradiction;
 }

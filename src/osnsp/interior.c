@@ -17,11 +17,6 @@
 /* Steps at most, and in a row with hardly a smaller mu: where s1 and s2 are both 0, rounding ends it. */
 enum { MOST_STEPS = 100, STUCK = 3 };
 
-static const double hardly_smaller = 0.9;
-
-/* Part of the way to the boundary that a step goes. */
-static const double boundary_part = 0.995;
-
 /* Of each pair. */
 struct of_pairs {
     double *on, *off;      /* [n_pairs] weights */
@@ -223,7 +218,7 @@ static void set_rows(struct interior *m) {
     }
 }
 
-/* The longest step, up to 1, that leaves all s1 and s2 positive. */
+/* The longest step, up to 1, that leaves all s1 and s2 positive: slightly less than to the boundary. */
 static double longest_step(const struct interior *m) {
     double longest = INFINITY;
     for (int d = 0; d < m->n_pairs; d++) {
@@ -232,7 +227,7 @@ static double longest_step(const struct interior *m) {
             longest = m->of.d2[d] < 0.0 ? fmin(longest, -m->of.s2[d] / m->of.d2[d]) : longest;
         }
     }
-    return fmin(1.0, boundary_part * longest);
+    return fmin(1.0, (1.0 - dalcs_slight) * longest);
 }
 
 /* The mean of s1 s2 after a part of the step at hand. */
@@ -325,7 +320,7 @@ static enum dalcs_status follow_path(struct interior *m) {
         }
         double before = mu;
         mu = mean_product(m, 0.0);
-        stuck = mu > hardly_smaller * before ? stuck + 1 : 0;
+        stuck = mu > (1.0 - dalcs_slight) * before ? stuck + 1 : 0;
     }
     return DALCS_OK;
 }

@@ -143,7 +143,7 @@ enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, 
         memset(p->smooth.newton->x, 0, (size_t)p->smooth.newton->n * sizeof(*p->smooth.newton->x));
         status = iterate(p, sigma, y, solve);
     }
-    if (status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_smooth_much_steeper)) {
+    if (status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_smooth_steeper)) {
         put_sources(p, p->smooth.given);
         return solve(p, sigma, p->smooth.given, y);
     }

@@ -3,14 +3,12 @@
 
 #include "extremes.h"
 #include "magnitudes.h"
+#include "rounding.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Elements of G this small beside the largest are nothing. */
-static const double nothing = 1e-30;
 
 /* Runs of G that are not this far apart are one. */
 enum { GAP = 8 };
@@ -127,7 +125,7 @@ static enum dalcs_status keep_response(struct dalcs_stage_change *c, int system,
                                        int n, double largest) {
     struct dalcs_stage_response *g = &c->response[system];
     int stride = system > 0 ? 2 : 1;
-    double least = nothing * largest;
+    double least = dalcs_sum_rounded * dalcs_sum_rounded * largest; /* rounding of rounding */
     g->n_runs = list_runs(v, n, stride, least, NULL, NULL);
     g->first = dalcs_alloc((size_t)g->n_runs, sizeof(int));
     g->end = dalcs_alloc((size_t)g->n_runs, sizeof(int));

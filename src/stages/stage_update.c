@@ -23,10 +23,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The residual may be so many times the base's, or rounding in any case, or what nobody sees. */
-static const double residual_growth = 4.0;
-static const double residual_of_rounding = 5e-15;
-
 /* So many bases are looked at, the latest first. */
 enum { MOST_BASES = 64 };
 
@@ -50,10 +46,11 @@ bool dalcs_stage_update_is_doubtful(const struct dalcs_stages *stages,
     if (!dalcs_stage_is_update(entry)) {
         return false;
     }
-    double of_base = residual_growth * entry->factors->update->base->residual;
+    /* An estimate of the base's, or rounding in any case, or what nobody sees. */
+    double of_base = dalcs_beyond * entry->factors->update->base->residual;
     /* half of what an answer may be off by: it is reported as rounding, and the base has the other half */
     double let_be = fmin(stages->unseen, 0.5 * dalcs_answer_rounded);
-    return !(entry->residual <= fmax(of_base, fmax(residual_of_rounding, let_be)));
+    return !(entry->residual <= fmax(of_base, fmax(dalcs_sum_rounded, let_be)));
 }
 
 void dalcs_stage_update_check(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,

@@ -3,15 +3,13 @@
 
 #include "extended.h"
 #include "magnitudes.h"
+#include "rounding.h"
 #include "stage_choice.h"
 #include "stage_shift.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Below this pivot (balanced) an elimination in long double leaves of a solution that is 1 more than 32 roundings of a
- * double, which is what current_error.c takes for rounding: 2^-63 over it is 2^-47. */
-static const long double lossy_pivot = 0x1p-16L;
 
 /* For as many unknowns as a map may have. Returns the bytes of it all. */
 static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
@@ -275,7 +273,9 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b, bool *is_los
         }
     }
     b->entry->frees_states = b->kept.n_kept == b->n_x && b->open.nullity == 0;
-    *is_lossy = pivot < lossy_pivot && b->stages->method->n_pairs > 0;
+    /* An elimination in long double leaves of a solution that is 1 its own rounding over the pivot, and no more than
+     * that of a sum in doubles is wanted. */
+    *is_lossy = pivot < LDBL_EPSILON / dalcs_sum_rounded && b->stages->method->n_pairs > 0;
     return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }
 

@@ -17,7 +17,6 @@ static const double loose = 1e-4;
  * conductances spread by so much: random converters lose digits on factors from 1e7 on. With few stages
  * steps are short, and there are enough of them for each map. */
 static const double maps_when_tight = 1.5, maps_when_not = 0.5;
-static const double tight = 1e-7;
 
 enum { MANY_STAGES = 7 };
 
@@ -117,8 +116,8 @@ static int choose_stages(double tolerance, bool does_better, const struct dalcs_
         *because = fewer ? "large, loose tolerance" : few ? "large" : "large, sine";
         return fewer ? 3 : few ? 5 : 7;
     }
-    bool many = tolerance < tight && n <= (int)(very_small * dense_limit) && c->system->monotone &&
-                !is_pulsed(c);
+    bool many = tolerance < dalcs_nothing && n <= (int)(very_small * dense_limit) &&
+                c->system->monotone && !is_pulsed(c);
     static const char *const why[2][2] = {{"small", "very small"},
                                           {"small, held to 1e-9", "very small, held to 1e-9"}};
     *because = why[does_better][many];
@@ -128,7 +127,7 @@ static int choose_stages(double tolerance, bool does_better, const struct dalcs_
 static int choose_map_limit(double tolerance, const struct dalcs_conductances *g, int stages,
                             int dense_limit) {
     bool is_worth_it = g->least < dalcs_nothing * g->most || stages < MANY_STAGES;
-    bool more = tolerance < tight && is_worth_it;
+    bool more = tolerance < dalcs_nothing && is_worth_it;
     return (int)((more ? maps_when_tight : maps_when_not) * dense_limit);
 }
 

@@ -11,44 +11,23 @@
 
 #include "extremes.h"
 #include "magnitudes.h"
+#include "rounding.h"
 #include "step_error.h"
 
-#include <float.h>
 #include <math.h>
 
-/* No step gets longer for an error below this part of what is allowed. */
-static const double noticed = 1.0 / 512.0;
-
-/* With a lever this is what is left above rounding; of a voltage that is what megohms make of amperes. */
-static const double least_tolerance = 1e-10, least_of_voltages = 1e-8;
-
-/* Roundings in an element of a map times its input, which has those of the steps before. */
-static const double roundings = 32.0 * DBL_EPSILON;
-
-/* What rounding of voltages makes of the current that is their difference over a resistance no step mends; a
- * part of that is in its drift, too, where nearly all of it cancels. */
-static const double roundings_apart = 0.25 * DBL_EPSILON;
-
-/* Likewise of currents of coils, whose difference a resistor makes a voltage of: each has its own, and keeps it. */
-static const double roundings_of_coils = 128.0 * DBL_EPSILON;
-
-/* Of what rounding of the largest column may make of a current, on factors: the drift is a solution by
- * itself, of small numbers. */
-static const double on_factors = 1.0 / 16.0;
-
-/* Steps with an entry until levers are looked up again, as scales grow, and by how much they may; steps with one, which
- * may be gone when scales have grown. */
+/* Steps with an entry until levers are looked up again, as scales grow; steps with one, which may be gone when scales have
+ * grown. */
 enum { STEPS_BETWEEN = 256, STEPS_WITH = 32 };
-
-static const double growth = 2.0;
 
 static double allowed_of(const struct dalcs_radau_part *part, int k, const double unit[2],
                          const double besides[2]) {
     int column = part->stages.levered[k];
     bool is_current = part->component->system->column_is_current[column];
-    double least = is_current ? least_tolerance : least_of_voltages;
-    return dalcs_larger(part->inner_tolerance, least) * dalcs_step_scale(part, column, unit) +
-           besides[is_current];
+    /* of a voltage more is what megohms make of the rounding of amperes */
+    double tolerance =
+        is_current ? part->inner_tolerance : dalcs_larger(part->inner_tolerance, dalcs_alike);
+    return tolerance * dalcs_step_scale(part, column, unit) + besides[is_current];
 }
 
 /* The largest drift of a state, over what is allowed, that states as large as they have been could make. */
@@ -78,11 +57,11 @@ static bool has_lever(const struct dalcs_radau_part *part, const struct dalcs_st
         double spread =
             dalcs_stage_spread_of_current(stages, entry, k, part->segment.in, part->scales.column);
         double least = dalcs_beyond * allowed_of(part, k, unit, besides);
-        if (growth * spread > noticed * least && !is_current[stages->levered[k]]) {
+        if (spread > dalcs_small * least && !is_current[stages->levered[k]]) {
             of_states = of_states < 0.0 ? spread_of_states(part, entry, unit, besides) : of_states;
-            least *= dalcs_larger(1.0, dalcs_beyond * growth * of_states / noticed);
+            least *= dalcs_larger(1.0, dalcs_beyond / dalcs_small * of_states);
         }
-        if (growth * spread > noticed * least) {
+        if (spread > dalcs_small * least) {
             return true;
         }
     }
@@ -120,18 +99,17 @@ static bool may_matter(struct dalcs_radau_part *part, struct dalcs_stage_entry *
     return has;
 }
 
-/* What rounding may make of the drift of a current. */
+/* What rounding may make of the drift of a current, or of a voltage: of what it is a difference of now, and of the most
+ * that it has been one of, whose rounding the states keep. */
 static double rounding_of(const struct dalcs_radau_part *part,
                           const struct dalcs_stage_entry *entry, int k) {
     const struct dalcs_stages *stages = &part->stages;
     if (dalcs_stage_has_map(entry)) {
-        bool is_current = part->component->system->column_is_current[stages->levered[k]];
-        return roundings * dalcs_stage_spread_of_current(stages, entry, k, part->segment.in,
-                                                         part->scales.column) +
-               (is_current ? roundings_apart : roundings_of_coils) * part->scales.current_parts[k];
+        double spread =
+            dalcs_stage_spread_of_current(stages, entry, k, part->segment.in, part->scales.column);
+        return dalcs_sum_rounded * (spread + part->scales.current_parts[k]);
     }
-    return on_factors * dalcs_step_rounding(part, entry) *
-           dalcs_stage_natural_units(entry)[stages->levered[k]];
+    return dalcs_step_rounding(part, entry) * dalcs_stage_natural_units(entry)[stages->levered[k]];
 }
 
 void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
@@ -149,7 +127,7 @@ void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry
          * while something dies away within the step to a third or less. */
         double error = fabs(part->scales.current_drift[k]) / dalcs_beyond;
         double allowed = allowed_of(part, k, unit, besides);
-        double least = dalcs_larger(noticed, dalcs_smaller(*worst, 1.0));
+        double least = dalcs_larger(dalcs_small, dalcs_smaller(*worst, 1.0));
         if (!(error > least * allowed)) {
             continue;
         }
