@@ -130,7 +130,7 @@ static enum dalcs_status tell(struct dalcs_undetermined *u, const struct dalcs_e
     struct dalcs_arena work = {0};
     struct dalcs_view view = {.u = u};
     struct dalcs_finding finding = {.time = h,
-                                    .at_operating_point = e->at_operating_point,
+                                    .at_operating_point = e->failure.at_operating_point,
                                     .device = -1,
                                     .n_answers = n,
                                     .has_intervals = true};

@@ -47,7 +47,7 @@ void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_pa
 void dalcs_radau_accept_implicit(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                  double h) {
     const struct dalcs_component *c = part->component;
-    const struct dalcs_observer *observer = r->base->observer;
+    const struct dalcs_observer *observer = r->base->listener.observer;
     if (observer != NULL) {
         observer->scale(observer->user, part->index, &c->osnsp.certificate);
         observer->step(observer->user, part->index, part->x, part->work.y1,
@@ -75,7 +75,7 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
         dalcs_micro_positions(part, true);
         DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
     }
-    c->delayed_commands += c->positions.settled ? 0 : 1; /* the present command stands */
+    c->commands.n_delayed += c->positions.settled ? 0 : 1; /* the present command stands */
     dalcs_radau_accept_implicit(r, part, h);
     r->euler_steps++;
     return DALCS_OK;

@@ -20,11 +20,11 @@ static const double jump_ratio = 4.0;
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u, enum dalcs_status status) {
     struct dalcs_euler *e = r->base;
-    part->component->failed_sigma = sigma;
-    part->component->failed_u = u;
-    e->failed_system = part->index;
-    e->failed_time = part->segment.t;
-    e->failed_h = 1.0 / sigma;
+    part->component->failure.sigma = sigma;
+    part->component->failure.u = u;
+    e->failure.system = part->index;
+    e->failure.time = part->segment.t;
+    e->failure.h = 1.0 / sigma;
     return status;
 }
 
@@ -58,10 +58,10 @@ enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_
         return dalcs_micro_fail(r, part, sigma, part->work.u, status);
     }
     part->guards.slides = part->guards.slides || !c->positions.settled;
-    if (c->osnsp.certificate.worst > r->base->worst.worst) {
-        r->base->worst = c->osnsp.certificate;
-        r->base->worst_time = part->segment.t;
-        r->base->worst_system = part->index;
+    if (c->osnsp.certificate.worst > r->base->worst.certificate.worst) {
+        r->base->worst.certificate = c->osnsp.certificate;
+        r->base->worst.time = part->segment.t;
+        r->base->worst.system = part->index;
     }
     return DALCS_OK;
 }

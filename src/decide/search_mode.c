@@ -170,7 +170,7 @@ static enum dalcs_status turn_switches(struct dalcs_radau *r, struct dalcs_radau
     const bool is_round = comes_round(part, search);
     if (search->jumps > MOST_JUMPS || (is_round && search->turning != DALCS_TURN_TOGETHER)) {
         part->guards.slides = true;
-        part->component->delayed_commands++;
+        part->component->commands.n_delayed++;
         return DALCS_OK;
     }
     if (is_round) {

@@ -30,16 +30,16 @@ static void prepare_positions(struct dalcs_radau_part *part) {
 }
 
 static void take_back(const struct dalcs_radau *r) {
-    if (r->base->observer != NULL) {
-        r->base->observer->take_back(r->base->observer->user);
+    if (r->base->listener.observer != NULL) {
+        r->base->listener.observer->take_back(r->base->listener.observer->user);
     }
 }
 
 static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
                    const struct dalcs_slide_try *of) {
-    const struct dalcs_observer *observer = r->base->observer;
+    const struct dalcs_observer *observer = r->base->listener.observer;
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    part->component->slid_steps++;
+    part->component->commands.n_slid++;
     dalcs_sliding_join(&part->component->positions, part->work.mode_first);
     if (observer != NULL) {
         observer->slide(observer->user, part->index, part->x,
@@ -111,7 +111,7 @@ static enum dalcs_status finish(struct dalcs_radau *r, struct dalcs_radau_part *
     *done = part->component->positions.settled;
     part->guards.slides = false;
     if (*done) {
-        part->component->slid_steps++;
+        part->component->commands.n_slid++;
         dalcs_radau_accept_implicit(r, part, h);
     }
     return DALCS_OK;

@@ -53,7 +53,7 @@ struct counted_step {
 static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    const struct counted_step *step, struct dalcs_slide_try *of) {
     struct dalcs_component *c = part->component;
-    const struct dalcs_observer *observer = r->base->observer;
+    const struct dalcs_observer *observer = r->base->listener.observer;
     of->slides = false;
     enum dalcs_status status =
         dalcs_radau_implicit_step(r, part, step->h, step->tau, step->state, step->y);
@@ -212,7 +212,7 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
                                       struct dalcs_slide_try *of) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const size_t bytes = (size_t)l->n_nodes * (size_t)l->stride * sizeof(double);
-    const struct dalcs_observer *observer = r->base->observer;
+    const struct dalcs_observer *observer = r->base->listener.observer;
     memset(part->segment.out, 0, bytes);
     memset(part->work.out_tried, 0, bytes);
     memset(part->work.node_w, 0,

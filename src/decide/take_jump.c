@@ -81,7 +81,7 @@ enum dalcs_status dalcs_take_jump(struct dalcs_radau *r, struct dalcs_radau_part
     const double *before;
     double *behind = part->component->scratch;
     e->t = part->segment.t;
-    find_noise(part, e->jump.after, e->noise);
+    find_noise(part, e->jump.after, e->telling.noise);
     DALCS_TRY(columns_behind(r, part, h, &before, behind));
     DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->segment.t, part->x, before, behind));
     memcpy(part->x, e->jump.after, (size_t)part->component->system->n_x * sizeof(double));

@@ -202,7 +202,7 @@ enum dalcs_status dalcs_energy_enter_decided(struct dalcs_energy *energy,
     if (part->n_terms == part->n_stepped) {
         return DALCS_OK;
     }
-    struct waves w = {.n = c->n_varying + 1};
+    struct waves w = {.n = c->varying.n + 1};
     size_t n = (size_t)w.n;
     w.stimulus = dalcs_alloc(n, sizeof(const struct dalcs_stimulus *));
     w.of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(*w.of_input));
@@ -216,9 +216,9 @@ enum dalcs_status dalcs_energy_enter_decided(struct dalcs_energy *energy,
     if (w.stimulus != NULL && w.of_input != NULL && w.gain != NULL && w.is_bound != NULL &&
         w.bond != NULL && w.first != NULL && w.second != NULL && w.power != NULL) {
         w.stimulus[0] = &ONE;
-        for (int i = 0; i < c->n_varying; i++) {
-            w.stimulus[i + 1] = stimulus_of(c, c->varying[i]);
-            w.of_input[c->varying[i]] = i + 1;
+        for (int i = 0; i < c->varying.n; i++) {
+            w.stimulus[i + 1] = stimulus_of(c, c->varying.input[i]);
+            w.of_input[c->varying.input[i]] = i + 1;
         }
         status = find_gains(c, b, &w);
     }

@@ -80,7 +80,7 @@ enum dalcs_status dalcs_energy_setup(struct dalcs_energy *energy, struct dalcs_e
                             radau != NULL ? &radau->part[k] : NULL);
     }
     if (status == DALCS_OK) {
-        e->observer = &energy->observer;
+        e->listener.observer = &energy->observer;
     } else {
         dalcs_energy_finish(energy);
     }

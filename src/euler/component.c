@@ -7,7 +7,7 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
                                         const struct dalcs_circuit *circuit,
                                         const struct dalcs_system *system,
                                         const struct dalcs_osnsp_options *options) {
-    *c = (struct dalcs_component){.system = system, .circuit = circuit, .overgrown = -1};
+    *c = (struct dalcs_component){.system = system, .circuit = circuit, .failure.overgrown = -1};
     DALCS_TRY(dalcs_osnsp_setup(&c->osnsp, system, options));
     size_t n_u = (size_t)(system->n_x + system->n_inputs);
     size_t n_columns = (size_t)dalcs_system_n_columns(system);
@@ -19,12 +19,13 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
     c->y_before = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
     c->scratch = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
     c->saved_mode = dalcs_arena_alloc(&c->arena, (size_t)c->osnsp.n_words, sizeof(*c->saved_mode));
-    c->varying = dalcs_arena_alloc(&c->arena, (size_t)system->n_inputs, sizeof(int));
-    c->piece = dalcs_arena_alloc(&c->arena, (size_t)system->n_inputs, sizeof(*c->piece));
-    c->switch_pair = dalcs_arena_alloc(&c->arena, (size_t)system->n_pairs, sizeof(int));
+    c->varying.input = dalcs_arena_alloc(&c->arena, (size_t)system->n_inputs, sizeof(int));
+    c->varying.piece =
+        dalcs_arena_alloc(&c->arena, (size_t)system->n_inputs, sizeof(*c->varying.piece));
+    c->switches.pair = dalcs_arena_alloc(&c->arena, (size_t)system->n_pairs, sizeof(int));
     if (c->u == NULL || c->probe_u == NULL || c->probe_y == NULL || c->y == NULL ||
         c->y_before == NULL || c->largest == NULL || c->scratch == NULL || c->saved_mode == NULL ||
-        c->varying == NULL || c->piece == NULL || c->switch_pair == NULL) {
+        c->varying.input == NULL || c->varying.piece == NULL || c->switches.pair == NULL) {
         dalcs_component_finish(c);
         return DALCS_E_NOMEM;
     }
@@ -32,18 +33,19 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
         if (circuit->stimulus[system->stimulus[k]].kind != DALCS_STIMULUS_DC) {
             enum dalcs_stimulus_kind kind = circuit->stimulus[system->stimulus[k]].kind;
             bool is_linear = kind == DALCS_STIMULUS_PULSE || kind == DALCS_STIMULUS_PWL;
-            c->piece[c->n_varying] = (struct dalcs_input_piece){.is_linear = is_linear, .to = -1.0};
-            c->varying[c->n_varying++] = k;
+            c->varying.piece[c->varying.n] =
+                (struct dalcs_input_piece){.is_linear = is_linear, .to = -1.0};
+            c->varying.input[c->varying.n++] = k;
         }
     }
     for (int d = 0; d < system->n_pairs; d++) {
         if (system->pair[d].kind == DALCS_PAIR_SWITCH) {
-            c->switch_pair[c->n_switches++] = d;
+            c->switches.pair[c->switches.n++] = d;
             dalcs_osnsp_command(&c->osnsp, d, system->pair[d].initially_on);
         }
     }
     DALCS_TRY(dalcs_positions_setup(&c->positions, &c->osnsp, &c->arena));
-    c->is_static = system->n_x == 0 && c->n_varying == 0;
+    c->is_static = system->n_x == 0 && c->varying.n == 0;
     dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
     dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->probe_u);
     return DALCS_OK;
@@ -85,19 +87,20 @@ void dalcs_component_sample(struct dalcs_component *c, double t, enum dalcs_side
         }
         return;
     }
-    for (int i = 0; i < c->n_varying; i++) {
-        int k = c->varying[i];
+    for (int i = 0; i < c->varying.n; i++) {
+        int k = c->varying.input[i];
         const struct dalcs_stimulus *stimulus = &c->circuit->stimulus[s->stimulus[k]];
-        inputs[k] = c->piece[i].is_linear ? sample_linear(stimulus, &c->piece[i], t, side)
-                                          : dalcs_stimulus_value(stimulus, t, side);
+        inputs[k] = c->varying.piece[i].is_linear
+                        ? sample_linear(stimulus, &c->varying.piece[i], t, side)
+                        : dalcs_stimulus_value(stimulus, t, side);
     }
 }
 
 void dalcs_component_disturb(struct dalcs_component *c, double t) {
-    for (int i = 0; i < c->n_varying && t > 0.0; i++) {
-        struct dalcs_input_piece *piece = &c->piece[i];
+    for (int i = 0; i < c->varying.n && t > 0.0; i++) {
+        struct dalcs_input_piece *piece = &c->varying.piece[i];
         if (piece->is_linear) { /* it ends at t, and is taken anew there */
-            const int k = c->system->stimulus[c->varying[i]];
+            const int k = c->system->stimulus[c->varying.input[i]];
             piece->last = dalcs_stimulus_value(&c->circuit->stimulus[k], t, DALCS_LEFT);
             piece->first = piece->last;
             piece->from = piece->to = t;
@@ -107,16 +110,16 @@ void dalcs_component_disturb(struct dalcs_component *c, double t) {
 
 void dalcs_component_look_ahead(const struct dalcs_component *c, double t, double *u) {
     const struct dalcs_system *s = c->system;
-    for (int i = 0; i < c->n_varying; i++) {
-        int k = c->varying[i];
+    for (int i = 0; i < c->varying.n; i++) {
+        int k = c->varying.input[i];
         u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, DALCS_RIGHT);
     }
 }
 
 bool dalcs_component_jumps_at_start(const struct dalcs_component *c) {
     bool jumps = false;
-    for (int i = 0; i < c->n_varying && !jumps; i++) {
-        int input = c->system->stimulus[c->varying[i]];
+    for (int i = 0; i < c->varying.n && !jumps; i++) {
+        int input = c->system->stimulus[c->varying.input[i]];
         jumps = dalcs_stimulus_jumps_at(&c->circuit->stimulus[input], 0.0);
     }
     return jumps;
@@ -136,8 +139,8 @@ void dalcs_component_sample_operating(const struct dalcs_component *c, bool tran
 /* Moves the switches that sources alone control. */
 static void obey_sources(struct dalcs_component *c, const double *inputs) {
     const struct dalcs_system *s = c->system;
-    for (int i = 0; i < c->n_switches; i++) {
-        int d = c->switch_pair[i];
+    for (int i = 0; i < c->switches.n; i++) {
+        int d = c->switches.pair[i];
         const struct dalcs_pair *pair = &s->pair[d];
         if (!pair->is_direct) {
             continue;
@@ -147,19 +150,19 @@ static void obey_sources(struct dalcs_component *c, const double *inputs) {
         bool wants = dalcs_pair_closes(pair, is_on, control, 0.0);
         if (wants != is_on) {
             dalcs_osnsp_command(&c->osnsp, d, wants);
-            c->commanded = true;
+            c->commands.moved = true;
         }
     }
 }
 
 enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma, const double *u,
                                         double *y) {
-    c->commanded = false;
+    c->commands.moved = false;
     obey_sources(c, u + c->system->n_x);
     DALCS_TRY(dalcs_positions_solve(&c->positions, sigma, u, y));
-    c->commanded = c->commanded || c->positions.moved;
-    if (!c->positions.settled && c->delayed_commands++ == 0) {
-        c->restless = dalcs_positions_restless(&c->positions, y);
+    c->commands.moved = c->commands.moved || c->positions.moved;
+    if (!c->positions.settled && c->commands.n_delayed++ == 0) {
+        c->commands.restless = dalcs_positions_restless(&c->positions, y);
     }
     return DALCS_OK;
 }
@@ -170,7 +173,7 @@ static const double largest_state = 1e240;
 bool dalcs_component_overgrows(struct dalcs_component *c, const double *x) {
     for (int k = 0; k < c->system->n_x; k++) {
         if (!(fabs(x[k]) <= largest_state)) {
-            c->overgrown = k;
+            c->failure.overgrown = k;
             return true;
         }
     }

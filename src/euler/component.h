@@ -20,25 +20,35 @@ struct dalcs_component {
     double scale[2];  /* V, A: the physical scales of their answers */
     uint64_t *saved_mode;
 
-    struct dalcs_input_piece {
-        bool is_linear;     /* PULSE and PWL between two edges */
-        double from, to;    /* s */
-        double first, last; /* right limit at from, left limit at to; equal when constant */
-    } * piece;              /* [n_varying] where each varying input is */
+    struct { /* inputs that are not constant in time */
+        int n, *input;
 
-    int n_varying; /* inputs that are not constant in time */
-    int *varying;
-    int n_switches;
-    int *switch_pair;
-    double failed_sigma; /* the problem of the last failed solve, for the dump */
-    const double *failed_u;
-    int overgrown;            /* the state that has become too large for numbers; -1 */
+        struct dalcs_input_piece {
+            bool is_linear;     /* PULSE and PWL between two edges */
+            double from, to;    /* s */
+            double first, last; /* right limit at from, left limit at to; equal when constant */
+        } * piece;              /* [n] where each is */
+    } varying;
+
+    struct {
+        int n, *pair;
+    } switches;
+
+    struct {                  /* of switches */
+        bool moved;           /* in the last solve */
+        long n_delayed;       /* whose control did not settle within a step */
+        const char *restless; /* the first of them at an operating point or in a step of Euler */
+        long n_slid;          /* steps in which one slides (sliding.h) */
+    } commands;
+
+    struct { /* for messages */
+        double sigma;
+        const double *u; /* the problem of the last failed solve, for the dump */
+        int overgrown;   /* the state that has become too large for numbers; -1 */
+    } failure;
+
     bool is_static;           /* nothing depends on time or history */
-    bool commanded;           /* the last solve changed a switch */
     bool was_open;            /* the last step's answer may be one of several */
-    long delayed_commands;    /* switches whose control did not settle within a step */
-    const char *restless;     /* the first of them at an operating point or in a step of Euler */
-    long slid_steps;          /* in which one slides (sliding.h) */
     struct dalcs_arena arena; /* what has the same size during the run */
 };
 
@@ -70,7 +80,7 @@ void dalcs_component_sample_operating(const struct dalcs_component *c, bool tran
 enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma, const double *u,
                                         double *y) DALCS_MUST_CHECK;
 
-/* Are the states x[n_x] too large to be reckoned with? Then c->overgrown is one that is. */
+/* Are the states x[n_x] too large to be reckoned with? Then c->failure.overgrown is one that is. */
 bool dalcs_component_overgrows(struct dalcs_component *c, const double *x);
 
 #endif

@@ -11,8 +11,8 @@ enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_ci
     *e = (struct dalcs_euler){.circuit = circuit,
                               .network = network,
                               .h = h,
-                              .failed_system = -1,
-                              .worst = {.where = -1}};
+                              .failure.system = -1,
+                              .worst.certificate.where = -1};
     size_t n = (size_t)network->n_systems;
     size_t columns = 1;
     size_t pairs = 1;
@@ -34,15 +34,15 @@ enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_ci
     e->after = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
     e->charge = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
     e->flux = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
-    e->told = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
-    e->told_from = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
-    e->noise = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
+    e->telling.to = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
+    e->telling.from = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
+    e->telling.noise = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
     e->jump.after = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
     e->jump.charge = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
     e->jump.flux = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
-    bool complete = e->after != NULL && e->charge != NULL && e->flux != NULL && e->told != NULL &&
-                    e->noise != NULL && e->jump.after != NULL && e->jump.charge != NULL &&
-                    e->jump.flux != NULL;
+    bool complete = e->after != NULL && e->charge != NULL && e->flux != NULL &&
+                    e->telling.to != NULL && e->telling.from != NULL && e->telling.noise != NULL &&
+                    e->jump.after != NULL && e->jump.charge != NULL && e->jump.flux != NULL;
     if (status == DALCS_OK && !complete) {
         status = DALCS_E_NOMEM;
     }
@@ -68,17 +68,17 @@ enum dalcs_status dalcs_euler_solve(struct dalcs_euler *e, int k, double sigma, 
     struct dalcs_component *c = &e->component[k];
     enum dalcs_status status = dalcs_component_solve(c, sigma, u, y);
     if (status != DALCS_OK) {
-        c->failed_sigma = sigma;
-        c->failed_u = u;
-        e->failed_system = k;
-        e->failed_time = e->t;
-        e->failed_h = sigma > 0.0 ? 1.0 / sigma : e->h;
+        c->failure.sigma = sigma;
+        c->failure.u = u;
+        e->failure.system = k;
+        e->failure.time = e->t;
+        e->failure.h = sigma > 0.0 ? 1.0 / sigma : e->h;
         return status;
     }
-    if (c->osnsp.certificate.worst > e->worst.worst) {
-        e->worst = c->osnsp.certificate;
-        e->worst_time = e->t;
-        e->worst_system = k;
+    if (c->osnsp.certificate.worst > e->worst.certificate.worst) {
+        e->worst.certificate = c->osnsp.certificate;
+        e->worst.time = e->t;
+        e->worst.system = k;
     }
     return DALCS_OK;
 }
@@ -86,44 +86,45 @@ enum dalcs_status dalcs_euler_solve(struct dalcs_euler *e, int k, double sigma, 
 enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) {
     struct dalcs_component *c = &e->component[k];
     struct dalcs_osnsp *p = &c->osnsp;
-    if (e->on_open == NULL || !dalcs_osnsp_is_open(p)) {
+    if (e->listener.on_open == NULL || !dalcs_osnsp_is_open(p)) {
         return DALCS_OK;
     }
     double scale[2];
     bool vanishes;
     dalcs_osnsp_find_ties(p, c->u, c->y, scale);
-    return e->on_open(e->open_user,
-                      &(struct dalcs_open_instant){.time = e->t,
-                                                   .engine = e,
-                                                   .system = k,
-                                                   .at_operating_point = e->at_operating_point,
-                                                   .mode = p->mode,
-                                                   .w = p->w,
-                                                   .tied = p->signs.tied,
-                                                   .scale = {scale[0], scale[1]}},
-                      &vanishes);
+    return e->listener.on_open(
+        e->listener.open_user,
+        &(struct dalcs_open_instant){.time = e->t,
+                                     .engine = e,
+                                     .system = k,
+                                     .at_operating_point = e->failure.at_operating_point,
+                                     .mode = p->mode,
+                                     .w = p->w,
+                                     .tied = p->signs.tied,
+                                     .scale = {scale[0], scale[1]}},
+        &vanishes);
 }
 
 enum dalcs_status dalcs_euler_operating_point(struct dalcs_euler *e, bool transient_follows) {
-    e->at_operating_point = true;
+    e->failure.at_operating_point = true;
     for (int k = 0; k < e->n_components; k++) {
         struct dalcs_component *c = &e->component[k];
         dalcs_component_sample_operating(c, transient_follows, c->u);
         DALCS_TRY(dalcs_euler_solve(e, k, 0.0, c->u, c->y));
         memcpy(c->u, c->y, (size_t)c->system->n_x * sizeof(double));
     }
-    if (e->on_operating_point != NULL) {
-        DALCS_TRY(e->on_operating_point(e->circuit, e));
+    if (e->listener.on_operating_point != NULL) {
+        DALCS_TRY(e->listener.on_operating_point(e->circuit, e));
     }
     for (int k = 0; k < e->n_components; k++) {
         DALCS_TRY(dalcs_euler_tell_open(e, k));
     }
-    e->at_operating_point = false;
+    e->failure.at_operating_point = false;
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initial) {
-    e->looks_behind = true;
+    e->failure.looks_behind = true;
     for (int k = 0; k < e->n_components; k++) {
         struct dalcs_component *c = &e->component[k];
         size_t n_x = (size_t)c->system->n_x;
@@ -136,8 +137,8 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
         } else {
             memcpy(c->y_before, c->y, n_columns * sizeof(double));
         }
-        if (e->observer != NULL) {
-            e->observer->start(e->observer->user, k, c->u);
+        if (e->listener.observer != NULL) {
+            e->listener.observer->start(e->listener.observer->user, k, c->u);
         }
         if (initial != NULL || dalcs_component_jumps_at_start(c)) {
             DALCS_TRY(dalcs_euler_settle_after(e, k, c->y_before, c->u, c->y));
@@ -150,7 +151,7 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
             DALCS_TRY(dalcs_euler_tell_open(e, k));
         }
     }
-    e->looks_behind = false;
+    e->failure.looks_behind = false;
     return DALCS_OK;
 }
 
@@ -196,14 +197,14 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
         DALCS_TRY(dalcs_euler_solve(e, k, n_x > 0 ? sigma : 0.0, c->u, c->y));
         note_scale(c);
         if (dalcs_component_overgrows(c, c->y)) {
-            e->failed_system = k;
-            e->failed_time = e->t;
+            e->failure.system = k;
+            e->failure.time = e->t;
             return DALCS_NOT_CONVERGED;
         }
-        if (e->observer != NULL) {
-            e->observer->scale(e->observer->user, k, &c->osnsp.certificate);
+        if (e->listener.observer != NULL) {
+            e->listener.observer->scale(e->listener.observer->user, k, &c->osnsp.certificate);
         }
-        if (e->detect_jumps && c->commanded && n_x > 0) {
+        if (e->listener.detects_jumps && c->commands.moved && n_x > 0) {
             size_t mode_bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
             memcpy(c->saved_mode, c->osnsp.mode, mode_bytes);
             double length;
@@ -214,23 +215,23 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
             }
             memcpy(c->osnsp.mode, c->saved_mode, mode_bytes);
         }
-        if (e->observer != NULL) {
-            e->observer->step(e->observer->user, k, c->u, c->y, c->u + n_x, h);
+        if (e->listener.observer != NULL) {
+            e->listener.observer->step(e->listener.observer->user, k, c->u, c->y, c->u + n_x, h);
         }
         memcpy(c->u, c->y, n_x * sizeof(double));
     }
     e->steps++;
-    return e->on_open != NULL ? tell_what_stays_open(e) : DALCS_OK;
+    return e->listener.on_open != NULL ? tell_what_stays_open(e) : DALCS_OK;
 }
 
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) {
-    e->looks_behind = true;
+    e->failure.looks_behind = true;
     for (int k = 0; k < e->n_components; k++) {
         struct dalcs_component *c = &e->component[k];
         dalcs_component_sample(c, e->t, DALCS_RIGHT, c->probe_u);
         bool changes = false;
-        for (int i = 0; i < c->n_varying; i++) {
-            int input = c->system->n_x + c->varying[i];
+        for (int i = 0; i < c->varying.n; i++) {
+            int input = c->system->n_x + c->varying.input[i];
             changes = changes || c->probe_u[input] != c->u[input];
         }
         if (changes) {
@@ -239,6 +240,6 @@ enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) {
             DALCS_TRY(dalcs_euler_settle_after(e, k, c->probe_y, c->u, c->y));
         }
     }
-    e->looks_behind = false;
+    e->failure.looks_behind = false;
     return DALCS_OK;
 }

@@ -39,6 +39,20 @@ struct dalcs_open_instant {
     double scale[2];  /* V, A: the largest so far, or 0; smaller than their rounding is nothing */
 };
 
+/* Who is told of what. Each may be NULL. */
+struct dalcs_euler_listener {
+    bool detects_jumps; /* also where a circuit's own voltage moves a switch */
+    void *jump_user;
+    enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump);
+    void *open_user; /* *vanishes: some signal is open, but has only one value just now */
+    enum dalcs_status (*on_open)(void *user, const struct dalcs_open_instant *instant,
+                                 bool *vanishes);
+    /* An operating point was found, before anything is said of it. */
+    enum dalcs_status (*on_operating_point)(const struct dalcs_circuit *circuit,
+                                            struct dalcs_euler *e);
+    const struct dalcs_observer *observer; /* borrowed */
+};
+
 struct dalcs_euler {
     const struct dalcs_circuit *circuit;
     const struct dalcs_network *network;
@@ -49,28 +63,28 @@ struct dalcs_euler {
     double h;           /* length of the last step */
     bool at_jump;       /* a source jumps at t: dalcs_euler_cross comes next */
     long steps;
-    struct dalcs_certificate worst;
-    double worst_time;
-    int worst_system;
-    int failed_system; /* after a failure: which component, at which time */
-    double failed_time, failed_h;
-    bool at_operating_point; /* the failure was there */
-    bool looks_behind;       /* or just behind failed_time, not in a step that ends there */
-    bool detect_jumps;       /* also where a circuit's own voltage moves a switch */
-    void *jump_user;
-    enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump); /* may be NULL */
 
-    /* *vanishes: some signal is open, but has only one value just now */
-    void *open_user;
-    enum dalcs_status (*on_open)(void *user, const struct dalcs_open_instant *instant,
-                                 bool *vanishes); /* may be NULL */
-    /* An operating point was found, before anything is said of it; may be NULL. */
-    enum dalcs_status (*on_operating_point)(const struct dalcs_circuit *circuit,
-                                            struct dalcs_euler *e);
-    const struct dalcs_observer *observer; /* borrowed; NULL: none */
-    double *after, *charge, *flux;         /* what micro-steps see, the largest component */
-    double *noise;            /* [n_x] of a jump, which the caller fills: what is rounding */
-    double *told_from, *told; /* work: the columns that a jump is told with */
+    struct { /* of all steps so far */
+        struct dalcs_certificate certificate;
+        double time;
+        int system;
+    } worst;
+
+    struct {                     /* where it was, after one */
+        int system;              /* which component */
+        double time, h;          /* s */
+        bool at_operating_point; /* there; set as long as one is looked for */
+        bool looks_behind;       /* or just behind the time, not in a step that ends there */
+    } failure;
+
+    struct dalcs_euler_listener listener;
+    double *after, *charge, *flux; /* what micro-steps see, the largest component */
+
+    struct {               /* of a jump: */
+        double *noise;     /* [n_x] what is rounding; the caller fills it */
+        double *from, *to; /* work: the columns that it is told with */
+    } telling;
+
     struct dalcs_jumps jumps;
     struct dalcs_jump_answer jump; /* the last one */
     struct dalcs_arena arena;      /* what has the same size during the run */
@@ -99,7 +113,7 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) DALCS_MUST_CHECK;
 
 /* Tells of a jump of component k from before[n_x] to e->jump.after: the ledger always, on_jump only if a state changes by
- * more than e->noise. If no voltage does, impulses of charge are rounding and become 0; if no current does, those of flux
+ * more than e->telling.noise. If no voltage does, impulses of charge are rounding and become 0; if no current does, those of flux
  * likewise. from and to[n_columns]: all columns just before and after; NULL: nobody knows. */
 enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
                                           const double *before, const double *from,

@@ -54,14 +54,14 @@ enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const doub
     return DALCS_OK;
 }
 
-/* e->told_from and e->told: the states before and after a jump, without what is rounding. Impulses of charge come with
+/* e->telling.from and e->telling.to: the states before and after a jump, without what is rounding. Impulses of charge come with
  * voltages that jump, those of flux with currents. */
 static bool tell_states(struct dalcs_euler *e, const struct dalcs_system *s, const double *before) {
     bool jumps[2] = {false, false};
     for (int x = 0; x < s->n_x; x++) {
-        bool is_told = fabs(e->jump.after[x] - before[x]) > e->noise[x];
-        e->told_from[x] = before[x];
-        e->told[x] = is_told ? e->jump.after[x] : before[x];
+        bool is_told = fabs(e->jump.after[x] - before[x]) > e->telling.noise[x];
+        e->telling.from[x] = before[x];
+        e->telling.to[x] = is_told ? e->jump.after[x] : before[x];
         jumps[s->column_is_current[x]] = jumps[s->column_is_current[x]] || is_told;
     }
     if (!jumps[0]) {
@@ -78,10 +78,10 @@ static void tell_columns(struct dalcs_euler *e, const struct dalcs_system *s, co
                          const double *to) {
     for (int c = s->n_x; c < dalcs_system_n_equations(s); c++) {
         double size = fmax(fabs(from[c]), fabs(to[c]));
-        e->told_from[c] = from[c];
-        e->told[c] = fabs(to[c] - from[c]) <= dalcs_nothing * size  ? from[c]
-                     : fabs(to[c]) <= dalcs_nothing * fabs(from[c]) ? 0.0
-                                                                    : to[c];
+        e->telling.from[c] = from[c];
+        e->telling.to[c] = fabs(to[c] - from[c]) <= dalcs_nothing * size  ? from[c]
+                           : fabs(to[c]) <= dalcs_nothing * fabs(from[c]) ? 0.0
+                                                                          : to[c];
     }
 }
 
@@ -101,18 +101,18 @@ enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double t
         .energy_lost = dalcs_euler_jump_energy(s, before, e->jump.after),
         .source_work = e->jump.source_work,
     };
-    if (e->observer != NULL) {
-        e->observer->jump(e->observer->user, &jump);
+    if (e->listener.observer != NULL) {
+        e->listener.observer->jump(e->listener.observer->user, &jump);
     }
-    if (e->on_jump == NULL || !tell_states(e, s, before)) {
+    if (e->listener.on_jump == NULL || !tell_states(e, s, before)) {
         return DALCS_OK;
     }
     if (from != NULL && to != NULL) {
         tell_columns(e, s, from, to);
         jump.n_known = dalcs_system_n_equations(s);
     }
-    jump.before = e->told_from;
-    jump.after = e->told;
-    jump.energy_lost = dalcs_euler_jump_energy(s, before, e->told);
-    return e->on_jump(e->jump_user, &jump);
+    jump.before = e->telling.from;
+    jump.after = e->telling.to;
+    jump.energy_lost = dalcs_euler_jump_energy(s, before, e->telling.to);
+    return e->listener.on_jump(e->listener.jump_user, &jump);
 }

@@ -34,15 +34,15 @@ static double largest_state(const struct dalcs_system *s, const double *y, bool 
 static enum dalcs_status refuse_derivative(struct dalcs_euler *e, int k, const double *x,
                                            const double *y1, const double *y2) {
     dalcs_osnsp_blame_states(&e->component[k].osnsp, x, y1, y2);
-    e->component[k].failed_sigma = 1.0 / e->h;
-    e->component[k].failed_u = e->component[k].u;
-    e->failed_system = k;
-    e->failed_time = e->t;
-    e->failed_h = e->h;
+    e->component[k].failure.sigma = 1.0 / e->h;
+    e->component[k].failure.u = e->component[k].u;
+    e->failure.system = k;
+    e->failure.time = e->t;
+    e->failure.h = e->h;
     return DALCS_INFEASIBLE;
 }
 
-/* Into e->noise: the change of each state that is rounding and no jump. A certificate leaves a state as much of its own size,
+/* Into e->telling.noise: the change of each state that is rounding and no jump. A certificate leaves a state as much of its own size,
  * and a sum as much of the largest of its unit so far, or of what the other unit drives through the circuit's
  * conductances. */
 static void find_noise(struct dalcs_euler *e, int k, const double *before) {
@@ -58,7 +58,7 @@ static void find_noise(struct dalcs_euler *e, int k, const double *before) {
                              fmax(unit[1], f->volt_in_amperes * unit[0])};
     for (int x = 0; x < s->n_x; x++) {
         double own = fmax(c->largest[x], fmax(fabs(before[x]), fabs(e->jump.after[x])));
-        e->noise[x] =
+        e->telling.noise[x] =
             fmax(dalcs_answer_rounded * own, dalcs_sum_rounded * scale[s->column_is_current[x]]);
     }
 }
@@ -163,7 +163,7 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
         e->flux[d] = h * c->osnsp.w[d];
     }
     DALCS_TRY(dalcs_euler_solve(e, k, 2.0 / h, u, c->scratch));
-    if (c->commanded) {
+    if (c->commands.moved) {
         return DALCS_OK; /* a switch moved in between: the two tell nothing together */
     }
     if (!dalcs_osnsp_is_monotone(&c->osnsp) && runs_away(c, u, y, limit)) {

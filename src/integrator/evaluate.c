@@ -30,9 +30,9 @@ static double last_edge(const struct dalcs_component *c, double t, enum dalcs_si
     for (double next = 0.0; next < t || (next == t && side == DALCS_RIGHT);) {
         since = next;
         next = INFINITY;
-        for (int i = 0; i < c->n_varying; i++) {
+        for (int i = 0; i < c->varying.n; i++) {
             const struct dalcs_stimulus *s =
-                &c->circuit->stimulus[c->system->stimulus[c->varying[i]]];
+                &c->circuit->stimulus[c->system->stimulus[c->varying.input[i]]];
             next = fmin(next, dalcs_stimulus_next_edge(s, since));
         }
     }
@@ -41,8 +41,8 @@ static double last_edge(const struct dalcs_component *c, double t, enum dalcs_si
 
 static void take_inputs(struct dalcs_component *c, double t, enum dalcs_side side) {
     const struct dalcs_system *s = c->system;
-    for (int i = 0; i < c->n_varying; i++) {
-        int k = c->varying[i];
+    for (int i = 0; i < c->varying.n; i++) {
+        int k = c->varying.input[i];
         c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
     }
 }
@@ -72,11 +72,11 @@ static void note_failure(const struct dalcs_radau *r, struct dalcs_radau_part *p
                          enum dalcs_side side) {
     struct dalcs_component *c = part->component;
     const double since = last_edge(c, t, side);
-    r->base->failed_time =
+    r->base->failure.time =
         c->system->n_smooth > 0 ? first_without(part, since, t, r->resolution) : since;
-    c->failed_sigma = 0.0;
-    c->failed_u = c->u;
-    r->base->failed_system = part->index;
+    c->failure.sigma = 0.0;
+    c->failure.u = c->u;
+    r->base->failure.system = part->index;
 }
 
 static void evaluate_stepped(struct dalcs_radau_part *part, double t, enum dalcs_side side) {
@@ -115,12 +115,12 @@ enum dalcs_status dalcs_radau_solve(struct dalcs_radau *r, struct dalcs_radau_pa
                                     enum dalcs_side side) {
     struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
-    if (c->n_varying == 0 && t > 0.0) {
+    if (c->varying.n == 0 && t > 0.0) {
         return DALCS_OK;
     }
     bool is_new = !part->is_answered;
-    for (int i = 0; i < c->n_varying; i++) {
-        int k = c->varying[i];
+    for (int i = 0; i < c->varying.n; i++) {
+        int k = c->varying.input[i];
         const double u = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
         is_new = is_new || u != c->u[k];
         c->u[k] = u;

@@ -298,8 +298,8 @@ static enum dalcs_status disturb(struct dalcs_logic_run *l, double t) {
         }
         if (part->kind == DALCS_PART_STEPPED && part->segment.t < t) {
             dalcs_radau_cut(part, t);
-            if (l->on_cut != NULL) {
-                l->on_cut(l->cut_user, k, t);
+            if (l->cut.tell != NULL) {
+                l->cut.tell(l->cut.user, k, t);
             }
         }
         DALCS_TRY(dalcs_radau_disturb(l->radau, part, t, l->changed));

@@ -63,9 +63,11 @@ struct dalcs_logic_run {
         long ends_since; /* its number */
     } * output;          /* [n gates] */
 
-    void *cut_user;
-    void (*on_cut)(void *user, int part,
-                   double t); /* a segment of a part ends at t, before its time; or NULL */
+    struct { /* a segment of a part ends at t, before its time */
+        void *user;
+        void (*tell)(void *user, int part, double t); /* or NULL */
+    } cut;
+
     int n_samples;
     int *sample; /* [n_samples] gates */
     double *

@@ -15,8 +15,8 @@ static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_
         part->work.w1[d] = dalcs_osnsp_is_on(p, d) ? 0.0 : other;
         part->guards.tied[d] = dalcs_tied_is(part, d, part->scales.unit);
     }
-    return e->on_open(
-        e->open_user,
+    return e->listener.on_open(
+        e->listener.open_user,
         &(struct dalcs_open_instant){.time = t,
                                      .engine = e,
                                      .system = part->index,
@@ -33,7 +33,7 @@ enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) {
     for (int k = 0; k < r->n_parts; k++) {
         struct dalcs_radau_part *part = &r->part[k];
         bool vanishes = false;
-        if (part->segment.open && r->base->on_open != NULL) {
+        if (part->segment.open && r->base->listener.on_open != NULL) {
             DALCS_TRY(tell_open_at(r, part, part->segment.t, DALCS_RIGHT, &vanishes));
         }
         if (vanishes) {

@@ -62,7 +62,7 @@ void dalcs_orbit_log_finish(struct dalcs_orbit_log *log);
 enum dalcs_status dalcs_orbit_log_watch(struct dalcs_orbit_log *log, struct dalcs_logic_run *logic,
                                         const struct dalcs_logic_memory *memory) DALCS_MUST_CHECK;
 
-/* For radau->base->observer. */
+/* For radau->base->listener.observer. */
 struct dalcs_observer dalcs_orbit_log_observer(struct dalcs_orbit_log *log);
 
 /* After the run of a period of length T: what happens at its end. */

@@ -21,10 +21,10 @@ static void extrapolate(const struct dalcs_periodic_flow *flow, const struct dal
     for (int x = 0; x < flow->n_x; x++) {
         start->by_source[x] = 0.0;
         for (int i = 0; i < c->s; i++) {
-            for (int q = 0; q < flow->n_turns; q++) {
+            for (int q = 0; q < flow->drive.n_turns; q++) {
                 const double *drive = map->drive + (size_t)(q * (c->s + 1)) * size;
-                start->by_source[x] +=
-                    flow->turn[q] * c->back[i] * drive[dalcs_periodic_flow_at(flow, i + 1, x)];
+                start->by_source[x] += flow->drive.turn[q] * c->back[i] *
+                                       drive[dalcs_periodic_flow_at(flow, i + 1, x)];
             }
         }
         for (int k = 0; k < flow->n_columns; k++) {
@@ -109,7 +109,7 @@ static enum dalcs_status make_start(struct dalcs_periodic_flow *flow,
 enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
                                             const struct dalcs_orbit_span *span,
                                             const struct dalcs_flow_start **found) {
-    struct dalcs_flow_start *start = flow->smooth == NULL ? flow->start : NULL;
+    struct dalcs_flow_start *start = flow->smooth == NULL ? flow->made.start : NULL;
     while (start != NULL && !dalcs_mode_is(start->mode, span->mode, flow->stages.n_words)) {
         start = start->next;
     }
@@ -119,8 +119,8 @@ enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
             return DALCS_E_NOMEM;
         }
         DALCS_TRY(make_start(flow, span, start));
-        start->next = flow->start;
-        flow->start = start;
+        start->next = flow->made.start;
+        flow->made.start = start;
     }
     *found = start->changes_nothing ? NULL : start;
     return DALCS_OK;
@@ -141,13 +141,13 @@ static void add_wave(struct dalcs_excitation *e, int input, int n_nodes) {
 static void add_pins(struct dalcs_periodic_flow *flow) {
     struct dalcs_excitation *e = &flow->excitation;
     for (int k = 0; k < flow->n_columns - flow->n_x; k++) {
-        flow->pin_function[k] = -1;
+        flow->drive.pin[k] = -1;
     }
     for (int i = 1; i < flow->system->n_inputs && flow->n_columns > flow->n_x; i++) {
         const int pin =
             dalcs_logic_pin_of(flow->orbit->log->gates->memory, flow->system->stimulus[i]);
         if (pin >= 0) {
-            flow->pin_function[pin] = e->n_functions;
+            flow->drive.pin[pin] = e->n_functions;
             e->wave[e->n_waves++] = (struct dalcs_excitation_wave){
                 .input = i, .first = e->n_functions, .n_functions = 1, .has_level = true};
             e->function[e->n_functions++] =
@@ -172,11 +172,11 @@ static enum dalcs_status drive_setup(struct dalcs_periodic_flow *flow, int n_nod
         return DALCS_E_NOMEM;
     }
     for (int k = 1; k < flow->system->n_inputs; k++) {
-        if (flow->source[k] != 0.0) {
+        if (flow->drive.source[k] != 0.0) {
             add_wave(e, k, n_nodes);
         }
     }
-    flow->n_driven = e->n_functions;
+    flow->drive.n = e->n_functions;
     add_pins(flow);
     for (int k = 0; k < flow->system->n_smooth; k++) {
         add_wave(e, flow->system->smooth[k].input, n_nodes);
@@ -223,47 +223,50 @@ static enum dalcs_status stages_setup(struct dalcs_periodic_flow *flow) {
     return legendre_setup(flow);
 }
 
-/* flow->turn: small signals of one phase are real beside it. */
+/* flow->drive.turn: small signals of one phase are real beside it. */
 static void find_turns(struct dalcs_periodic_flow *flow) {
     double complex first = 1.0;
     bool alike = true;
     for (int k = flow->system->n_inputs - 1; k > 0; k--) {
-        first = flow->source[k] != 0.0 ? flow->source[k] / cabs(flow->source[k]) : first;
+        first = flow->drive.source[k] != 0.0 ? flow->drive.source[k] / cabs(flow->drive.source[k])
+                                             : first;
     }
     for (int k = 1; k < flow->system->n_inputs; k++) {
-        alike = alike && cimag(flow->source[k] * conj(first)) == 0.0;
+        alike = alike && cimag(flow->drive.source[k] * conj(first)) == 0.0;
     }
-    flow->n_turns = alike ? 1 : 2;
-    flow->turn[0] = alike ? first : 1.0;
-    flow->turn[1] = I;
+    flow->drive.n_turns = alike ? 1 : 2;
+    flow->drive.turn[0] = alike ? first : 1.0;
+    flow->drive.turn[1] = I;
 }
 
 static enum dalcs_status setup(struct dalcs_periodic_flow *flow, const double complex *source) {
     const size_t n_x = (size_t)flow->n_x;
     const size_t n_inputs = (size_t)flow->system->n_inputs;
-    flow->source = dalcs_arena_alloc(&flow->arena, n_inputs, sizeof *flow->source);
-    flow->pin_function = dalcs_arena_alloc(&flow->arena, (size_t)(flow->n_columns - flow->n_x) + 1,
-                                           sizeof *flow->pin_function);
-    if (flow->source == NULL || flow->pin_function == NULL) {
+    flow->drive.source = dalcs_arena_alloc(&flow->arena, n_inputs, sizeof *flow->drive.source);
+    flow->drive.pin = dalcs_arena_alloc(&flow->arena, (size_t)(flow->n_columns - flow->n_x) + 1,
+                                        sizeof *flow->drive.pin);
+    if (flow->drive.source == NULL || flow->drive.pin == NULL) {
         return DALCS_E_NOMEM;
     }
-    memcpy(flow->source, source, n_inputs * sizeof *source);
+    memcpy(flow->drive.source, source, n_inputs * sizeof *source);
     find_turns(flow);
     DALCS_TRY(stages_setup(flow));
     const size_t n_out = dalcs_stages_room(&flow->stages);
     flow->M = dalcs_arena_alloc(&flow->arena, n_x * n_x, sizeof(double));
     DALCS_TRY(dalcs_periodic_flow_rows(flow));
-    flow->rows = dalcs_arena_alloc(&flow->arena, dalcs_periodic_flow_size(flow), sizeof(double));
-    flow->in = dalcs_arena_alloc(&flow->arena, (size_t)flow->stages.n_in, sizeof(double));
-    flow->out = dalcs_arena_alloc(&flow->arena, n_out, sizeof(double));
-    if (flow->M == NULL || flow->rows == NULL || flow->in == NULL || flow->out == NULL) {
+    flow->work.rows =
+        dalcs_arena_alloc(&flow->arena, dalcs_periodic_flow_size(flow), sizeof(double));
+    flow->work.in = dalcs_arena_alloc(&flow->arena, (size_t)flow->stages.n_in, sizeof(double));
+    flow->work.out = dalcs_arena_alloc(&flow->arena, n_out, sizeof(double));
+    if (flow->M == NULL || flow->work.rows == NULL || flow->work.in == NULL ||
+        flow->work.out == NULL) {
         return DALCS_E_NOMEM;
     }
     if (flow->system->n_smooth > 0) {
         const int n_pins = flow->n_columns - flow->n_x;
-        int first = flow->n_driven;
+        int first = flow->drive.n;
         for (int k = 0; k < n_pins; k++) {
-            first += flow->pin_function[k] >= 0 ? 1 : 0;
+            first += flow->drive.pin[k] >= 0 ? 1 : 0;
         }
         DALCS_TRY(dalcs_flow_smooth_setup(flow, first));
     }
@@ -295,9 +298,9 @@ void dalcs_periodic_flow_finish(struct dalcs_periodic_flow *flow) {
     if (flow->stages.system != NULL) {
         dalcs_stages_finish(&flow->stages);
     }
-    HASH_CLEAR(hh, flow->map);
+    HASH_CLEAR(hh, flow->made.map);
     dalcs_arena_finish(&flow->excitation.arena);
     dalcs_arena_finish(&flow->arena);
-    free(flow->piece);
+    free(flow->pieces.piece);
     *flow = (struct dalcs_periodic_flow){0};
 }

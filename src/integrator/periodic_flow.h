@@ -70,29 +70,47 @@ struct dalcs_periodic_flow {
     const struct dalcs_orbit_part *orbit;
     const struct dalcs_system *system;
     struct dalcs_periodic_flow_asked asked;
-    double fastest;         /* rad/s */
-    double period;          /* s */
-    int n_x, n_columns;     /* states; and outputs of gates behind them */
-    const double *unit;     /* [n_x] */
-    double complex *source; /* [n_inputs] AC values */
+    double fastest;     /* rad/s */
+    double period;      /* s */
+    int n_x, n_columns; /* states; and outputs of gates behind them */
+    const double *unit; /* [n_x] */
     double legendre[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* coefficient k of the values at nodes */
     struct dalcs_excitation excitation;
     struct dalcs_stages stages;
-    int n_turns; /* 1 if all of them have one phase, turn[0]; else turn is 1 and j */
-    double complex turn[2];
-    int n_driven;                     /* excitation functions of the small signals */
-    int *pin_function;                /* [n_columns - n_x] of each output behind them; -1: none */
+
+    struct {                    /* by small signals */
+        double complex *source; /* [n_inputs] AC values */
+        int n_turns;            /* 1 if all of them have one phase, turn[0]; else turn is 1 and j */
+        double complex turn[2];
+        int n;    /* their excitation functions */
+        int *pin; /* [n_columns - n_x] that of each output behind them; -1: none */
+    } drive;
+
     struct dalcs_flow_smooth *smooth; /* NULL: no smooth sources */
-    int n_rows, *row, *place;   /* [n_rows] of answers that are kept, states first; where, or -1 */
-    struct dalcs_flow_map *map; /* those of pieces, by key */
-    struct dalcs_flow_map *spare;   /* the last one of no piece; NULL: none */
-    struct dalcs_flow_start *start; /* likewise */
-    int n;
-    size_t capacity;
-    struct dalcs_flow_piece *piece; /* [n] */
-    double *M;                      /* [n_x][n_x] of the period, column after column */
+
+    struct {                 /* rows of answers, states first */
+        int n, *row, *place; /* [n]; where a row is, or -1 */
+    } kept;
+
+    struct {
+        struct dalcs_flow_map *map;     /* those of pieces, by key */
+        struct dalcs_flow_map *spare;   /* the last one of no piece; NULL: none */
+        struct dalcs_flow_start *start; /* likewise */
+    } made;
+
+    struct {
+        int n;
+        size_t capacity;
+        struct dalcs_flow_piece *piece; /* [n] */
+    } pieces;
+
+    double *M;    /* [n_x][n_x] of the period, column after column */
     double worst; /* last coefficients that were let through, over the size of what they are of */
-    double *in, *out, *rows; /* work */
+
+    struct {
+        double *in, *out, *rows;
+    } work;
+
     struct dalcs_arena arena;
 };
 
@@ -106,13 +124,13 @@ enum dalcs_status dalcs_periodic_flow_rows(struct dalcs_periodic_flow *flow) DAL
 
 /* Elements of an answer that are kept. */
 static inline size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow) {
-    return (size_t)flow->stages.layout.n_nodes * (size_t)flow->n_rows;
+    return (size_t)flow->stages.layout.n_nodes * (size_t)flow->kept.n;
 }
 
 /* Where among them a row at a node is. */
 static inline size_t dalcs_periodic_flow_at(const struct dalcs_periodic_flow *flow, int node,
                                             int row) {
-    return (size_t)node * (size_t)flow->n_rows + (size_t)flow->place[row];
+    return (size_t)node * (size_t)flow->kept.n + (size_t)flow->kept.place[row];
 }
 
 /* The map of the span's mode and h, from t on, made now if it is new; valid until the next one is, unless a piece keeps
@@ -136,7 +154,7 @@ enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
                                             const struct dalcs_orbit_span *span,
                                             const struct dalcs_flow_start **start) DALCS_MUST_CHECK;
 
-/* flow->piece and flow->M. DALCS_NOT_CONVERGED: polynomials do not carry what starts in one of the modes. */
+/* flow->pieces.piece and flow->M. DALCS_NOT_CONVERGED: polynomials do not carry what starts in one of the modes. */
 enum dalcs_status dalcs_periodic_pieces_make(struct dalcs_periodic_flow *flow) DALCS_MUST_CHECK;
 
 /* coefficient[n_turns][n_nodes] of exp(j kappa theta), as the values at the nodes have them, times turn[]. */

@@ -96,7 +96,7 @@ static double complex read_probe(const struct dalcs_periodic_gates *g,
             value = end->row(end->user, index);
         } else {
             const int at = dalcs_logic_pin_of(g->log->memory, flow->system->stimulus[index]);
-            value = at >= 0 ? pin[at] : flow->source[index] * end->phase;
+            value = at >= 0 ? pin[at] : flow->drive.source[index] * end->phase;
         }
         sum += probe->term[k].coefficient * value;
     }

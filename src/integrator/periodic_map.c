@@ -10,9 +10,9 @@
 /* ---- Rows ---------------------------------------------------------------------------------------- */
 
 static void take_row(struct dalcs_periodic_flow *flow, int row) {
-    if (flow->place[row] < 0) {
-        flow->place[row] = flow->n_rows;
-        flow->row[flow->n_rows++] = row;
+    if (flow->kept.place[row] < 0) {
+        flow->kept.place[row] = flow->kept.n;
+        flow->kept.row[flow->kept.n++] = row;
     }
 }
 
@@ -26,13 +26,13 @@ enum dalcs_status dalcs_periodic_flow_rows(struct dalcs_periodic_flow *flow) {
     const int n = flow->stages.layout.stride;
     const struct dalcs_orbit_part *orbit = flow->orbit;
     const struct dalcs_orbit_gates *gates = orbit->log->gates;
-    flow->place = dalcs_arena_alloc(&flow->arena, (size_t)n, sizeof(int));
-    flow->row = dalcs_arena_alloc(&flow->arena, (size_t)n, sizeof(int));
-    if (flow->place == NULL || flow->row == NULL) {
+    flow->kept.place = dalcs_arena_alloc(&flow->arena, (size_t)n, sizeof(int));
+    flow->kept.row = dalcs_arena_alloc(&flow->arena, (size_t)n, sizeof(int));
+    if (flow->kept.place == NULL || flow->kept.row == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int row = 0; row < n; row++) {
-        flow->place[row] = -1;
+        flow->kept.place[row] = -1;
     }
     for (int x = 0; x < flow->n_x; x++) {
         take_row(flow, x);
@@ -59,8 +59,8 @@ enum dalcs_status dalcs_periodic_flow_rows(struct dalcs_periodic_flow *flow) {
 static void put_rows(const struct dalcs_periodic_flow *flow, const double *out, double *to) {
     for (int node = 0; node < flow->stages.layout.n_nodes; node++) {
         const double *from = out + node * flow->stages.layout.stride;
-        for (int k = 0; k < flow->n_rows; k++) {
-            *to++ = from[flow->row[k]];
+        for (int k = 0; k < flow->kept.n; k++) {
+            *to++ = from[flow->kept.row[k]];
         }
     }
 }
@@ -138,20 +138,20 @@ void dalcs_periodic_flow_drive(const struct dalcs_periodic_flow *flow, double ka
         for (int i = 0; i < n; i++) {
             sum += flow->legendre[k][i] * value[i];
         }
-        for (int q = 0; q < flow->n_turns; q++) {
-            coefficient[q * n + k] = flow->turn[q] * sum;
+        for (int q = 0; q < flow->drive.n_turns; q++) {
+            coefficient[q * n + k] = flow->drive.turn[q] * sum;
         }
     }
 }
 
-/* The answer to in[column] = 1 into flow->out. */
+/* The answer to in[column] = 1 into flow->work.out. */
 static enum dalcs_status ask(struct dalcs_periodic_flow *flow, struct dalcs_stage_entry *entry,
                              int column) {
-    memset(flow->in, 0, (size_t)flow->stages.n_in * sizeof(double));
-    flow->in[column] = 1.0;
-    DALCS_TRY(dalcs_stages_apply(&flow->stages, entry, flow->in, flow->out));
+    memset(flow->work.in, 0, (size_t)flow->stages.n_in * sizeof(double));
+    flow->work.in[column] = 1.0;
+    DALCS_TRY(dalcs_stages_apply(&flow->stages, entry, flow->work.in, flow->work.out));
     if (flow->smooth != NULL) {
-        dalcs_flow_smooth_vary(flow, flow->out);
+        dalcs_flow_smooth_vary(flow, flow->work.out);
     }
     return DALCS_OK;
 }
@@ -162,14 +162,14 @@ static enum dalcs_status fill_states(struct dalcs_periodic_flow *flow,
     const size_t size = dalcs_periodic_flow_size(flow);
     const bool is_told = flow->smooth == NULL && dalcs_stage_n_clashes(entry) == 0;
     for (int k = 0; k < flow->n_columns; k++) {
-        const int function = k < flow->n_x ? -1 : flow->pin_function[k - flow->n_x];
+        const int function = k < flow->n_x ? -1 : flow->drive.pin[k - flow->n_x];
         if (k >= flow->n_x && function < 0) {
             continue;
         }
         DALCS_TRY(ask(flow, entry, k < flow->n_x ? k : flow->n_x + 1 + function));
-        put_rows(flow, flow->out, map->state + (size_t)k * size);
-        map->noise[k] = is_told ? noise_of(flow, map, flow->out) : 0.0;
-        map->rounding[k] = k < flow->n_x ? 0.0 : rounding_of(flow, flow->out, map->h);
+        put_rows(flow, flow->work.out, map->state + (size_t)k * size);
+        map->noise[k] = is_told ? noise_of(flow, map, flow->work.out) : 0.0;
+        map->rounding[k] = k < flow->n_x ? 0.0 : rounding_of(flow, flow->work.out, map->h);
     }
     return DALCS_OK;
 }
@@ -179,22 +179,22 @@ static enum dalcs_status fill_drive(struct dalcs_periodic_flow *flow,
     const size_t size = dalcs_periodic_flow_size(flow);
     const int n_nodes = flow->stages.layout.n_nodes;
     double *rounding = &map->rounding[flow->n_columns];
-    memset(map->drive, 0, (size_t)(flow->n_turns * n_nodes) * size * sizeof *map->drive);
+    memset(map->drive, 0, (size_t)(flow->drive.n_turns * n_nodes) * size * sizeof *map->drive);
     *rounding = 0.0;
-    for (int f = 0; f < flow->n_driven; f++) {
+    for (int f = 0; f < flow->drive.n; f++) {
         const struct dalcs_excitation_function *function = &flow->excitation.function[f];
-        const double complex source = flow->source[function->input];
+        const double complex source = flow->drive.source[function->input];
         DALCS_TRY(ask(flow, entry, flow->n_x + 1 + f));
-        put_rows(flow, flow->out, flow->rows);
-        for (int q = 0; q < flow->n_turns; q++) {
-            const double part = creal(source * conj(flow->turn[q]));
+        put_rows(flow, flow->work.out, flow->work.rows);
+        for (int q = 0; q < flow->drive.n_turns; q++) {
+            const double part = creal(source * conj(flow->drive.turn[q]));
             double *drive = map->drive + (size_t)(q * n_nodes + function->degree) * size;
             for (size_t i = 0; i < size; i++) {
-                drive[i] += part * flow->rows[i];
+                drive[i] += part * flow->work.rows[i];
             }
         }
         *rounding +=
-            function->degree == 0 ? cabs(source) * rounding_of(flow, flow->out, map->h) : 0.0;
+            function->degree == 0 ? cabs(source) * rounding_of(flow, flow->work.out, map->h) : 0.0;
     }
     return DALCS_OK;
 }
@@ -203,7 +203,7 @@ static struct dalcs_flow_map *find_map(const struct dalcs_periodic_flow *flow, c
                                        double t, double h) {
     const double key[2] = {h, flow->smooth != NULL ? t : 0.0};
     struct dalcs_flow_map *map;
-    HASH_FIND(hh, flow->map, key, sizeof key, map);
+    HASH_FIND(hh, flow->made.map, key, sizeof key, map);
     while (map != NULL && !dalcs_mode_is(map->mode, mode, flow->stages.n_words)) {
         map = map->alike;
     }
@@ -214,7 +214,7 @@ static struct dalcs_flow_map *find_map(const struct dalcs_periodic_flow *flow, c
 static struct dalcs_flow_map *spare_map(struct dalcs_periodic_flow *flow) {
     const size_t size = dalcs_periodic_flow_size(flow);
     const size_t n_columns = (size_t)flow->n_columns;
-    struct dalcs_flow_map *map = flow->spare;
+    struct dalcs_flow_map *map = flow->made.spare;
     if (map != NULL) {
         return map;
     }
@@ -224,13 +224,14 @@ static struct dalcs_flow_map *spare_map(struct dalcs_periodic_flow *flow) {
     }
     map->state = dalcs_arena_alloc(&flow->arena, n_columns * size, sizeof(double));
     map->drive = dalcs_arena_alloc(
-        &flow->arena, (size_t)(flow->n_turns * flow->stages.layout.n_nodes) * size, sizeof(double));
+        &flow->arena, (size_t)(flow->drive.n_turns * flow->stages.layout.n_nodes) * size,
+        sizeof(double));
     map->noise = dalcs_arena_alloc(&flow->arena, n_columns + 1, sizeof(double));
     map->rounding = dalcs_arena_alloc(&flow->arena, n_columns + 1, sizeof(double));
     const bool complete =
         map->state != NULL && map->drive != NULL && map->noise != NULL && map->rounding != NULL;
-    flow->spare = complete ? map : NULL;
-    return flow->spare;
+    flow->made.spare = complete ? map : NULL;
+    return flow->made.spare;
 }
 
 enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
@@ -266,18 +267,18 @@ enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow,
 
 enum dalcs_status dalcs_periodic_flow_keep(struct dalcs_periodic_flow *flow,
                                            struct dalcs_flow_map *map) {
-    if (map != flow->spare) {
+    if (map != flow->made.spare) {
         return DALCS_OK;
     }
-    flow->spare = NULL;
+    flow->made.spare = NULL;
     map->stamp = -1;
     struct dalcs_flow_map *first;
-    HASH_FIND(hh, flow->map, map->key, sizeof map->key, first);
+    HASH_FIND(hh, flow->made.map, map->key, sizeof map->key, first);
     if (first != NULL) {
         map->alike = first->alike;
         first->alike = map;
         return DALCS_OK;
     }
-    HASH_ADD(hh, flow->map, key, sizeof map->key, map);
+    HASH_ADD(hh, flow->made.map, key, sizeof map->key, map);
     return map->hh.tbl != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }

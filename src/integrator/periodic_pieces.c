@@ -30,7 +30,7 @@ static double complex driven(const struct probe *p, const struct dalcs_flow_map 
     const struct dalcs_periodic_flow *flow = p->flow;
     const size_t size = dalcs_periodic_flow_size(flow);
     double complex sum = 0.0;
-    for (int k = 0; k < flow->n_turns * flow->stages.layout.n_nodes; k++) {
+    for (int k = 0; k < flow->drive.n_turns * flow->stages.layout.n_nodes; k++) {
         sum += p->drive[k] * map->drive[(size_t)k * size + at];
     }
     return sum * cexp(I * flow->fastest * t);
@@ -127,8 +127,9 @@ static void accept(struct probe *p) {
 static enum dalcs_status add_piece(struct dalcs_periodic_flow *flow, struct dalcs_flow_map *map,
                                    double t) {
     DALCS_TRY(dalcs_periodic_flow_keep(flow, map));
-    DALCS_TRY(dalcs_grow(&flow->piece, &flow->capacity, (size_t)flow->n + 1, sizeof *flow->piece));
-    flow->piece[flow->n++] = (struct dalcs_flow_piece){.map = map, .t = t};
+    DALCS_TRY(dalcs_grow(&flow->pieces.piece, &flow->pieces.capacity, (size_t)flow->pieces.n + 1,
+                         sizeof *flow->pieces.piece));
+    flow->pieces.piece[flow->pieces.n++] = (struct dalcs_flow_piece){.map = map, .t = t};
     return DALCS_OK;
 }
 
@@ -255,11 +256,11 @@ static enum dalcs_status cut_period(struct probe *p) {
         }
         before = span;
         begin_span(p, start, span->from);
-        const int first = flow->n;
+        const int first = flow->pieces.n;
         DALCS_TRY(cut_span(p, span));
-        flow->piece[first].start = start;
+        flow->pieces.piece[first].start = start;
         if (span->df != NULL) {
-            flow->piece[flow->n - 1].end = span;
+            flow->pieces.piece[flow->pieces.n - 1].end = span;
             end_span(p, span);
         }
     }

@@ -19,7 +19,7 @@ static void find_driven(const struct dalcs_periodic_response *r, struct dalcs_fl
     for (size_t i = 0; i < size; i++) {
         map->driven[i] = 0.0;
     }
-    for (int k = 0; k < flow->n_turns * flow->stages.layout.n_nodes; k++) {
+    for (int k = 0; k < flow->drive.n_turns * flow->stages.layout.n_nodes; k++) {
         const double *drive = map->drive + (size_t)k * size;
         for (size_t i = 0; i < size; i++) {
             map->driven[i] += coefficient[k] * drive[i];
@@ -130,7 +130,7 @@ static double complex find_dt(struct dalcs_periodic_response *r,
 /* The numbers of gates at the end of the period. */
 static void end_gates(struct dalcs_periodic_response *r, double w) {
     const struct dalcs_periodic_flow *flow = r->flow;
-    const struct dalcs_flow_piece *last = &flow->piece[flow->n - 1];
+    const struct dalcs_flow_piece *last = &flow->pieces.piece[flow->pieces.n - 1];
     struct end of = {r, last->map, r->drive * turn(w, last->t)};
     const struct dalcs_piece_end there = {&of, row_at_end, r->drive * turn(w, flow->period)};
     dalcs_periodic_gates_end(&r->gates, &there, r->now + flow->n_x);
@@ -143,8 +143,8 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
     if (r->gates.log != NULL) {
         dalcs_periodic_gates_begin(&r->gates, r->now + n_x);
     }
-    for (int p = 0; p < flow->n; p++) {
-        const struct dalcs_flow_piece *piece = &flow->piece[p];
+    for (int p = 0; p < flow->pieces.n; p++) {
+        const struct dalcs_flow_piece *piece = &flow->pieces.piece[p];
         struct dalcs_flow_map *map = piece->map;
         const double complex phase = r->drive * turn(w, piece->t);
         if (map->stamp != r->stamp) {
@@ -160,7 +160,7 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
         }
         const struct dalcs_orbit_span *end = piece->end;
         const double complex dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;
-        if (p == flow->n - 1 && r->gates.log != NULL) {
+        if (p == flow->pieces.n - 1 && r->gates.log != NULL) {
             end_gates(r, w);
         }
         for (int x = 0; x < n_x; x++) {
@@ -259,8 +259,8 @@ enum dalcs_status dalcs_periodic_response_setup(struct dalcs_periodic_response *
             r->read[r->n_read++] = c;
         }
     }
-    for (int p = 0; p < flow->n && complete; p++) {
-        struct dalcs_flow_map *map = flow->piece[p].map;
+    for (int p = 0; p < flow->pieces.n && complete; p++) {
+        struct dalcs_flow_map *map = flow->pieces.piece[p].map;
         if (map->mean == NULL) {
             map->mean =
                 dalcs_arena_alloc(&r->arena, (n_states + 1) * (size_t)r->n_read, sizeof *map->mean);

@@ -54,14 +54,14 @@ static enum dalcs_status find_units(struct dalcs_periodic_flow *flow,
     const int n_nodes = p->newton.n_points;
     memset(p->unit, 0, (size_t)p->newton.n * size * sizeof(double));
     for (int f = 0; f < n_smooth * n_nodes; f++) {
-        memset(flow->in, 0, (size_t)flow->stages.n_in * sizeof(double));
-        flow->in[flow->n_x + 1 + p->first + f] = 1.0;
-        DALCS_TRY(dalcs_stages_apply(&flow->stages, entry, flow->in, flow->out));
+        memset(flow->work.in, 0, (size_t)flow->stages.n_in * sizeof(double));
+        flow->work.in[flow->n_x + 1 + p->first + f] = 1.0;
+        DALCS_TRY(dalcs_stages_apply(&flow->stages, entry, flow->work.in, flow->work.out));
         for (int node = 0; node < n_nodes; node++) {
             const double part = flow->legendre[f % n_nodes][node];
             double *unit = p->unit + (size_t)(node * n_smooth + f / n_nodes) * size;
             for (size_t i = 0; i < size; i++) {
-                unit[i] += part * flow->out[i];
+                unit[i] += part * flow->work.out[i];
             }
         }
     }

@@ -62,8 +62,8 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         const double *x = initial != NULL ? initial[k] : c->y;
         memcpy(part->x, x, (size_t)c->system->n_x * sizeof(double));
         dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
-        if (r->base->observer != NULL) {
-            r->base->observer->start(r->base->observer->user, k, x);
+        if (r->base->listener.observer != NULL) {
+            r->base->listener.observer->start(r->base->listener.observer->user, k, x);
         }
         part->is_answered = false;
         part->answered_at = 0.0;
@@ -192,15 +192,15 @@ static bool enter_changes(struct dalcs_radau *r, struct dalcs_radau_part *part, 
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->segment.jumped = false;
-    if (r->base->observer != NULL) {
+    if (r->base->listener.observer != NULL) {
         memcpy(part->work.after, part->x, state_bytes);
     }
     bool repeats = part->memory.periodic != NULL && dalcs_periodic_repeats(r, part);
-    if (!repeats || r->base->observer != NULL) {
+    if (!repeats || r->base->listener.observer != NULL) {
         go_to_end(part);
         if (dalcs_component_overgrows(part->component, part->x)) {
-            r->base->failed_system = part->index;
-            r->base->failed_time = part->segment.t_end;
+            r->base->failure.system = part->index;
+            r->base->failure.time = part->segment.t_end;
             return DALCS_NOT_CONVERGED;
         }
     }
@@ -208,8 +208,9 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     part->guards.bends = part->guards.leaps = false;
     part->guards.fresh =
         part->guards.fresh || part->segment.end != 1.0; /* the next step starts inside this one */
-    if (r->base->observer != NULL) {
-        r->base->observer->segment(r->base->observer->user, part, part->work.after);
+    if (r->base->listener.observer != NULL) {
+        r->base->listener.observer->segment(r->base->listener.observer->user, part,
+                                            part->work.after);
     }
     part->segment.t = part->segment.t_end;
     if (part->guards.n_crossed > 0) {

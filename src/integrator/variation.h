@@ -47,7 +47,7 @@ enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,
 
 void dalcs_variation_finish(struct dalcs_variation *variation);
 
-/* For radau->base->observer; user is the variation. */
+/* For radau->base->listener.observer; user is the variation. */
 struct dalcs_observer dalcs_variation_observer(struct dalcs_variation *variation);
 
 #endif

@@ -214,7 +214,7 @@ static enum dalcs_status take_rows(struct dalcs_radau_part *part) {
 enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     struct dalcs_cycle *cycle = part->memory.cycle;
     /* A ledger of energies needs every segment. */
-    bool recurred = r->base->observer == NULL && part->segment.brief != NULL &&
+    bool recurred = r->base->listener.observer == NULL && part->segment.brief != NULL &&
                     part->segment.brief == dalcs_transition_known(part)->span.brief;
     cycle->in_a_row = recurred ? cycle->in_a_row + 1 : 0;
     if (cycle->in_a_row < FEWEST_IN_A_ROW) {

@@ -30,20 +30,27 @@ struct dalcs_periodic {
         period; /* s, of all sources; 0: that of the commands, which is not known before the start */
     bool by_commands; /* it is that of PULSEs */
 
-    /* The event: mode and states there. */
-    bool has_event;
-    double since; /* s */
-    double *x;
-    uint64_t *mode;
+    struct { /* mode and states there */
+        bool is;
+        double since; /* s */
+        double *x;
+        uint64_t *mode;
+    } event;
 
     bool keeps; /* all segments since then */
     size_t n;
     struct periodic_segment *segment; /* [n] */
-    double *values;                   /* [n][n_values]: out, in and x */
-    uint64_t *modes;                  /* [n][n_words] */
+    double *values;                   /* [n][size.values]: out, in and x */
+    uint64_t *modes;                  /* [n][size.words] */
     int *crossed;
-    size_t n_out, n_in, n_x, n_values, n_words, n_crossed;
-    size_t segment_room, values_room, modes_room, crossed_room;
+
+    struct {
+        size_t out, in, x, values, words, crossed;
+    } size;
+
+    struct {
+        size_t segment, values, modes, crossed;
+    } room;
 
     bool repeats;
     double start;  /* s: it came back then */
@@ -71,14 +78,14 @@ enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs
     }
     periodic->period = period;
     periodic->by_commands = period == 0.0;
-    periodic->n_out = (size_t)l->drift;
-    periodic->n_in = (size_t)part->stages.n_in;
-    periodic->n_x = (size_t)p->system->n_x;
-    periodic->n_values = periodic->n_out + periodic->n_in + periodic->n_x;
-    periodic->n_words = (size_t)p->n_words;
-    periodic->x = dalcs_arena_alloc(&part->arena, (size_t)p->system->n_x, sizeof(double));
-    periodic->mode = dalcs_arena_alloc(&part->arena, (size_t)p->n_words, sizeof(uint64_t));
-    return periodic->x != NULL && periodic->mode != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    periodic->size.out = (size_t)l->drift;
+    periodic->size.in = (size_t)part->stages.n_in;
+    periodic->size.x = (size_t)p->system->n_x;
+    periodic->size.values = periodic->size.out + periodic->size.in + periodic->size.x;
+    periodic->size.words = (size_t)p->n_words;
+    periodic->event.x = dalcs_arena_alloc(&part->arena, (size_t)p->system->n_x, sizeof(double));
+    periodic->event.mode = dalcs_arena_alloc(&part->arena, (size_t)p->n_words, sizeof(uint64_t));
+    return periodic->event.x != NULL && periodic->event.mode != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 void dalcs_periodic_finish(struct dalcs_radau_part *part) {
@@ -102,15 +109,15 @@ static double distance(const struct dalcs_radau *r, const struct dalcs_radau_par
     /* In all periods to come together states may miss what a step may. */
     double share = dalcs_larger(part->inner_tolerance / to_come, dalcs_rounded);
     /* An event that comes a period after another, but for a small part of the period, may be the same. */
-    double late = fabs(part->segment.t - periodic->since - periodic->period);
+    double late = fabs(part->segment.t - periodic->event.since - periodic->period);
     if (late > dalcs_small * periodic->period ||
-        !dalcs_mode_is(periodic->mode, p->mode, p->n_words)) {
+        !dalcs_mode_is(periodic->event.mode, p->mode, p->n_words)) {
         return INFINITY;
     }
     double farthest = late / dalcs_larger(dalcs_rounded * part->segment.t,
                                           share / dalcs_two_pi * periodic->period);
     for (int x = 0; x < p->system->n_x; x++) {
-        double off = fabs(part->x[x] - periodic->x[x]);
+        double off = fabs(part->x[x] - periodic->event.x[x]);
         if (off > farthest * share * part->scales.column[x]) {
             farthest = off / (share * part->scales.column[x]);
         }
@@ -145,8 +152,9 @@ void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *
         periodic->period = dalcs_commands_period(&part->commands);
         periodic->period = periodic->period > 0.0 ? periodic->period : INFINITY;
     }
-    bool is_first = !periodic->has_event;
-    if (!is_first && part->segment.t < periodic->since + periodic->period * (1.0 - dalcs_small)) {
+    bool is_first = !periodic->event.is;
+    if (!is_first &&
+        part->segment.t < periodic->event.since + periodic->period * (1.0 - dalcs_small)) {
         return;
     }
     double off = is_first ? INFINITY : distance(r, part);
@@ -157,12 +165,13 @@ void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *
         periodic->start = part->segment.t;
         return;
     }
-    periodic->has_event = true;
-    periodic->since = part->segment.t;
-    memcpy(periodic->x, part->x, periodic->n_x * sizeof(double));
-    memcpy(periodic->mode, part->component->osnsp.mode, periodic->n_words * sizeof(uint64_t));
+    periodic->event.is = true;
+    periodic->event.since = part->segment.t;
+    memcpy(periodic->event.x, part->x, periodic->size.x * sizeof(double));
+    memcpy(periodic->event.mode, part->component->osnsp.mode,
+           periodic->size.words * sizeof(uint64_t));
     periodic->n = 0;
-    periodic->n_crossed = 0;
+    periodic->size.crossed = 0;
 }
 
 /* ---- Segments that are kept -------------------------------------------------------------------- */
@@ -171,13 +180,13 @@ void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *
 static enum dalcs_status make_room(struct dalcs_periodic *periodic, size_t n_crossed) {
     size_t n = periodic->n + 1;
     DALCS_TRY(
-        dalcs_grow(&periodic->segment, &periodic->segment_room, n, sizeof(*periodic->segment)));
-    DALCS_TRY(dalcs_grow(&periodic->values, &periodic->values_room, n * periodic->n_values,
+        dalcs_grow(&periodic->segment, &periodic->room.segment, n, sizeof(*periodic->segment)));
+    DALCS_TRY(dalcs_grow(&periodic->values, &periodic->room.values, n * periodic->size.values,
                          sizeof(double)));
-    DALCS_TRY(dalcs_grow(&periodic->modes, &periodic->modes_room, n * periodic->n_words,
+    DALCS_TRY(dalcs_grow(&periodic->modes, &periodic->room.modes, n * periodic->size.words,
                          sizeof(uint64_t)));
-    return dalcs_grow(&periodic->crossed, &periodic->crossed_room, periodic->n_crossed + n_crossed,
-                      sizeof(int));
+    return dalcs_grow(&periodic->crossed, &periodic->room.crossed,
+                      periodic->size.crossed + n_crossed, sizeof(int));
 }
 
 enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) {
@@ -185,35 +194,35 @@ enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) {
     if (!periodic->keeps) {
         return DALCS_OK;
     }
-    bool is_over = part->segment.t > periodic->since + periodic->period * (1.0 + dalcs_small);
+    bool is_over = part->segment.t > periodic->event.since + periodic->period * (1.0 + dalcs_small);
     periodic->keeps = !part->segment.by_euler && !part->segment.jumped && !is_over &&
-                      (periodic->n + 1) * periodic->n_values <= MOST_KEPT;
+                      (periodic->n + 1) * periodic->size.values <= MOST_KEPT;
     if (!periodic->keeps) {
         return DALCS_OK;
     }
     dalcs_recurrence_complete(part);
     size_t n_crossed = (size_t)part->guards.n_crossed;
     DALCS_TRY(make_room(periodic, n_crossed));
-    double *value = periodic->values + periodic->n * periodic->n_values;
-    memcpy(value, part->segment.out, periodic->n_out * sizeof(double));
-    value += periodic->n_out;
-    memcpy(value, part->segment.in, periodic->n_in * sizeof(double));
-    value += periodic->n_in;
-    memcpy(value, part->x, periodic->n_x * sizeof(double));
-    memcpy(periodic->modes + periodic->n * periodic->n_words, part->component->osnsp.mode,
-           periodic->n_words * sizeof(uint64_t));
+    double *value = periodic->values + periodic->n * periodic->size.values;
+    memcpy(value, part->segment.out, periodic->size.out * sizeof(double));
+    value += periodic->size.out;
+    memcpy(value, part->segment.in, periodic->size.in * sizeof(double));
+    value += periodic->size.in;
+    memcpy(value, part->x, periodic->size.x * sizeof(double));
+    memcpy(periodic->modes + periodic->n * periodic->size.words, part->component->osnsp.mode,
+           periodic->size.words * sizeof(uint64_t));
     for (size_t k = 0; k < n_crossed; k++) {
-        periodic->crossed[periodic->n_crossed + k] = part->guards.crossed[k];
+        periodic->crossed[periodic->size.crossed + k] = part->guards.crossed[k];
     }
     periodic->segment[periodic->n++] =
         (struct periodic_segment){.h = part->segment.h,
                                   .end = part->segment.end,
-                                  .t_end = part->segment.t_end - periodic->since,
+                                  .t_end = part->segment.t_end - periodic->event.since,
                                   .why = part->segment.why,
                                   .level = part->length.level,
                                   .n_crossed = part->guards.n_crossed,
-                                  .first_crossed = periodic->n_crossed};
-    periodic->n_crossed += n_crossed;
+                                  .first_crossed = periodic->size.crossed};
+    periodic->size.crossed += n_crossed;
     return DALCS_OK;
 }
 
@@ -233,7 +242,7 @@ static void stop_repeating(struct dalcs_radau_part *part) {
     periodic->repeats = false;
     periodic->keeps = false;
     if (periodic->own_out != NULL) {
-        memcpy(periodic->own_out, part->segment.out, periodic->n_out * sizeof(double));
+        memcpy(periodic->own_out, part->segment.out, periodic->size.out * sizeof(double));
         part->segment.out = periodic->own_out;
         periodic->own_out = NULL;
         part->guards.fresh = true;
@@ -258,15 +267,15 @@ bool dalcs_periodic_repeats(const struct dalcs_radau *r, struct dalcs_radau_part
 void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     struct dalcs_periodic *periodic = part->memory.periodic;
     const struct periodic_segment *segment = &periodic->segment[periodic->next];
-    double *value = periodic->values + periodic->next * periodic->n_values;
+    double *value = periodic->values + periodic->next * periodic->size.values;
     if (periodic->own_out == NULL) {
         periodic->own_out = part->segment.out;
     }
     part->segment.out = value;
-    if (r->base->observer != NULL) {
-        memcpy(part->segment.in, value + periodic->n_out, periodic->n_in * sizeof(double));
-        memcpy(part->work.after, value + periodic->n_out + periodic->n_in,
-               periodic->n_x * sizeof(double));
+    if (r->base->listener.observer != NULL) {
+        memcpy(part->segment.in, value + periodic->size.out, periodic->size.in * sizeof(double));
+        memcpy(part->work.after, value + periodic->size.out + periodic->size.in,
+               periodic->size.x * sizeof(double));
         dalcs_radau_go_after(r, part);
     }
     bool is_commanded = segment->why == DALCS_END_AT_EDGE;
@@ -282,8 +291,8 @@ void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     for (int k = 0; k < segment->n_crossed; k++) {
         part->guards.crossed[k] = periodic->crossed[segment->first_crossed + (size_t)k];
     }
-    for (size_t k = 0; k < periodic->n_words; k++) {
-        part->component->osnsp.mode[k] = periodic->modes[periodic->next * periodic->n_words + k];
+    for (size_t k = 0; k < periodic->size.words; k++) {
+        part->component->osnsp.mode[k] = periodic->modes[periodic->next * periodic->size.words + k];
     }
     periodic->next++;
     if (periodic->next == periodic->n) {

@@ -115,7 +115,7 @@ static void take(struct dalcs_radau *r, struct dalcs_radau_part *part,
                  struct dalcs_stage_brief *step, double theta) {
     part->segment.late = step->entry;
     part->segment.brief = step;
-    if (r->base->observer != NULL) {
+    if (r->base->listener.observer != NULL) {
         dalcs_recurrence_complete(part);
     }
     part->stages.cache.cache_hits++;

@@ -25,20 +25,20 @@ static void recover_states(const struct dalcs_osnsp *p, const double *u, double 
     const struct dalcs_step_form *f = p->cache.form[0];
     int n_x = p->system->n_x;
     for (int x = 0; x < n_x; x++) {
-        const int *ends = &f->x_ends[2 * x];
+        const int *ends = &f->state.ends[2 * x];
         if (ends[0] >= 0) {
             y[x] = y[ends[0]] - y[ends[1]];
             continue;
         }
-        if (p->asks.keeps_states && f->Xu.p[x] < f->Xu.p[x + 1]) {
+        if (p->asks.keeps_states && f->state.Xu.p[x] < f->state.Xu.p[x + 1]) {
             continue;
         }
         double sum = 0.0;
-        for (int k = f->X.p[x]; k < f->X.p[x + 1]; k++) {
-            sum += f->X.x[k] * y[f->X.j[k]];
+        for (int k = f->state.X.p[x]; k < f->state.X.p[x + 1]; k++) {
+            sum += f->state.X.x[k] * y[f->state.X.j[k]];
         }
-        for (int k = f->Xu.p[x]; k < f->Xu.p[x + 1]; k++) {
-            sum += f->Xu.x[k] * u[f->Xu.j[k]];
+        for (int k = f->state.Xu.p[x]; k < f->state.Xu.p[x + 1]; k++) {
+            sum += f->state.Xu.x[k] * u[f->state.Xu.j[k]];
         }
         y[x] = sum;
     }
@@ -51,7 +51,7 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
                             struct dalcs_scales scale) {
     const struct dalcs_system *s = p->system;
     const struct dalcs_step_form *f = p->cache.form[0];
-    const struct dalcs_csr check = f->check;
+    const struct dalcs_csr check = f->checks.form;
     double *v = p->work.difference; /* (sigma (x+ - x_k), y, s) */
     memcpy(v + s->n_x, y, (size_t)dalcs_system_n_columns(s) * sizeof(*v));
     memcpy(v + s->n_x + dalcs_system_n_columns(s), u + s->n_x, (size_t)s->n_inputs * sizeof(*v));
@@ -62,14 +62,14 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
         if (residual == 0.0) {
             continue;
         }
-        double norm = dalcs_scales_norm(f, scale, f->checked[i]);
+        double norm = dalcs_scales_norm(f, scale, f->checks.row[i]);
         double size = dalcs_scales_own(p, dalcs_scales_row_terms(p, u, y, i), norm);
         if (!(residual <= worst * size && size < INFINITY)) {
             /* An infinite row would vouch for any residual. A NaN must stay the worst: it compares with nothing that
              * follows. */
             const bool is_measured = size > 0.0 && size < INFINITY && residual < INFINITY;
             worst = is_measured ? residual / size : INFINITY;
-            where = f->checked[i];
+            where = f->checks.row[i];
         }
     }
     note(&p->certificate, worst, 1.0, where);

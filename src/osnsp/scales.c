@@ -69,26 +69,26 @@ struct dalcs_scales dalcs_scales_physical(const struct dalcs_osnsp *p, struct da
 /* V or A: a state that is recovered is known as well as what it is recovered from. */
 static double state_size(const struct dalcs_osnsp *p, const double *u, const double *y, int x) {
     const struct dalcs_step_form *f = p->cache.form[0];
-    const int *ends = &f->x_ends[2 * x];
+    const int *ends = &f->state.ends[2 * x];
     double sum = fabs(u[x]);
     if (ends[0] >= 0) {
         return sum + fabs(y[ends[0]]) + fabs(y[ends[1]]);
     }
-    if (p->asks.keeps_states && f->Xu.p[x] < f->Xu.p[x + 1]) {
+    if (p->asks.keeps_states && f->state.Xu.p[x] < f->state.Xu.p[x + 1]) {
         return sum + fabs(y[x]);
     }
-    for (int k = f->X.p[x]; k < f->X.p[x + 1]; k++) {
-        sum += fabs(f->X.x[k] * y[f->X.j[k]]);
+    for (int k = f->state.X.p[x]; k < f->state.X.p[x + 1]; k++) {
+        sum += fabs(f->state.X.x[k] * y[f->state.X.j[k]]);
     }
-    for (int k = f->Xu.p[x]; k < f->Xu.p[x + 1]; k++) {
-        sum += fabs(f->Xu.x[k] * u[f->Xu.j[k]]);
+    for (int k = f->state.Xu.p[x]; k < f->state.Xu.p[x + 1]; k++) {
+        sum += fabs(f->state.Xu.x[k] * u[f->state.Xu.j[k]]);
     }
     return sum;
 }
 
 double dalcs_scales_row_terms(const struct dalcs_osnsp *p, const double *u, const double *y,
                               int i) {
-    const struct dalcs_csr *a = &p->cache.form[0]->check;
+    const struct dalcs_csr *a = &p->cache.form[0]->checks.form;
     int n_x = p->system->n_x;
     int n_columns = dalcs_system_n_columns(p->system);
     double of_states = 0.0;

@@ -25,7 +25,7 @@ struct dalcs_scales dalcs_scales_physical(const struct dalcs_osnsp *p, struct da
 /* The magnitude that row r can have at these voltages and currents: its norm times theirs. */
 static inline double dalcs_scales_norm(const struct dalcs_step_form *f, struct dalcs_scales scale,
                                        int r) {
-    return f->row_volts[r] * scale.volt + f->row_amperes[r] * scale.ampere;
+    return f->checks.volts[r] * scale.volt + f->checks.amperes[r] * scale.ampere;
 }
 
 /* What the terms of row i of `check` add up to; y is the answer. */

@@ -93,7 +93,7 @@ static void measure_rows(struct dalcs_step_form *f, const struct dalcs_system *s
     int n_equations = dalcs_system_n_equations(s);
     struct conductances g = {0};
     for (int r = 0; r < n_equations; r++) {
-        double *norm[2] = {&f->row_volts[r], &f->row_amperes[r]};
+        double *norm[2] = {&f->checks.volts[r], &f->checks.amperes[r]};
         for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
             bool is_current = s->column_is_current[s->A.j[k]];
             *norm[is_current] += fabs(s->A.x[k]);
@@ -138,15 +138,15 @@ static enum dalcs_status gather_checked_rows(struct dalcs_step_form *f,
                                              const struct dalcs_system *s,
                                              struct dalcs_triplets *t) {
     int n_columns = dalcs_system_n_columns(s);
-    for (int i = 0; i < f->n_checked; i++) {
-        int r = f->checked[i];
+    for (int i = 0; i < f->checks.n; i++) {
+        int r = f->checks.row[i];
         if (r < s->n_x) {
             DALCS_TRY(copy_row(t, i, &s->P, r, 0, -1.0));
         }
         DALCS_TRY(copy_row(t, i, &s->A, r, s->n_x, 1.0));
         DALCS_TRY(copy_row(t, i, &s->E, r, s->n_x + n_columns, 1.0));
     }
-    return compress(&f->check, f->n_checked, s->n_x + n_columns + s->n_inputs, t);
+    return compress(&f->checks.form, f->checks.n, s->n_x + n_columns + s->n_inputs, t);
 }
 
 /* x = v(a) - v(b) with unit coefficients leaves nothing to check: evaluating the row again would repeat
@@ -167,15 +167,15 @@ static enum dalcs_status make_room_for_form(struct dalcs_step_form *f,
                                             const struct dalcs_elimination *e) {
     size_t n_equations = (size_t)dalcs_system_n_equations(e->s);
     f->column_of = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->column_of));
-    f->checked = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->checked));
+    f->checks.row = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->checks.row));
     f->scale = dalcs_arena_alloc(&f->arena, (size_t)e->n_rows, sizeof(*f->scale));
     f->row_scale = dalcs_arena_alloc(&f->arena, (size_t)e->n_rows, sizeof(*f->row_scale));
-    f->row_volts = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->row_volts));
-    f->row_amperes = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->row_amperes));
-    f->x_ends = dalcs_arena_alloc(&f->arena, 2 * (size_t)e->s->n_x, sizeof(*f->x_ends));
-    bool complete = f->column_of != NULL && f->checked != NULL && f->scale != NULL &&
-                    f->row_scale != NULL && f->row_volts != NULL && f->row_amperes != NULL &&
-                    f->x_ends != NULL;
+    f->checks.volts = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->checks.volts));
+    f->checks.amperes = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->checks.amperes));
+    f->state.ends = dalcs_arena_alloc(&f->arena, 2 * (size_t)e->s->n_x, sizeof(*f->state.ends));
+    bool complete = f->column_of != NULL && f->checks.row != NULL && f->scale != NULL &&
+                    f->row_scale != NULL && f->checks.volts != NULL && f->checks.amperes != NULL &&
+                    f->state.ends != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -271,18 +271,18 @@ static enum dalcs_status collect_all(struct dalcs_step_form *f, struct dalcs_eli
     DALCS_TRY(collect_rows(f, e, 0, n, NULL, t));
     DALCS_TRY(compress(&f->R, n, f->n_u, t));
     DALCS_TRY(collect_states(e, true, t));
-    DALCS_TRY(compress(&f->X, s->n_x, e->n_left, t));
+    DALCS_TRY(compress(&f->state.X, s->n_x, e->n_left, t));
     DALCS_TRY(collect_states(e, false, t));
-    DALCS_TRY(compress(&f->Xu, s->n_x, f->n_u, t));
+    DALCS_TRY(compress(&f->state.Xu, s->n_x, f->n_u, t));
     for (int x = 0; x < s->n_x; x++) {
-        dalcs_csr_row_difference(&f->X, x, &f->x_ends[2 * x]);
-        if (f->Xu.p[x] != f->Xu.p[x + 1]) {
-            f->x_ends[2 * x] = -1;
+        dalcs_csr_row_difference(&f->state.X, x, &f->state.ends[2 * x]);
+        if (f->state.Xu.p[x] != f->state.Xu.p[x + 1]) {
+            f->state.ends[2 * x] = -1;
         }
     }
     for (int i = 0; i < dalcs_system_n_equations(s); i++) {
         if (!is_definition(e, i)) {
-            f->checked[f->n_checked++] = i;
+            f->checks.row[f->checks.n++] = i;
         }
     }
     DALCS_TRY(gather_checked_rows(f, s, t));
@@ -316,10 +316,10 @@ enum dalcs_status dalcs_step_form_build(struct dalcs_step_form *form,
 void dalcs_step_form_finish(struct dalcs_step_form *form) {
     dalcs_arena_finish(&form->arena);
     dalcs_csr_finish(&form->K);
-    dalcs_csr_finish(&form->check);
+    dalcs_csr_finish(&form->checks.form);
     dalcs_csr_finish(&form->W);
     dalcs_csr_finish(&form->R);
-    dalcs_csr_finish(&form->X);
-    dalcs_csr_finish(&form->Xu);
+    dalcs_csr_finish(&form->state.X);
+    dalcs_csr_finish(&form->state.Xu);
     *form = (struct dalcs_step_form){0};
 }

@@ -37,14 +37,20 @@ struct dalcs_step_form {
         DALCS_MANY
     } answers; /* can there be more than one? ties.c */
 
-    struct dalcs_csr X; /* [n_x][n_columns] x+ = X (0, z+, lambda+) + Xu u; kept x: identity */
-    struct dalcs_csr Xu;
-    int *x_ends;   /* [n_x][2] columns whose difference is x+, -1 where it is more than that */
-    int n_checked; /* rows of the system that recovering x+ does not satisfy by definition */
-    int *checked;
-    struct dalcs_csr check; /* [n_checked] those rows over (sigma (x+ - x_k), y, s) side by side */
-    double *row_volts;      /* [n_equations] sum of |coefficients| on voltages, sigma P included */
-    double *row_amperes;    /* [n_equations] the same on currents */
+    struct {
+        struct dalcs_csr X; /* [n_x][n_columns] x+ = X (0, z+, lambda+) + Xu u; kept x: identity */
+        struct dalcs_csr Xu;
+        int *ends; /* [n_x][2] columns whose difference is x+, -1 where it is more than that */
+    } state;
+
+    struct {
+        int n; /* rows of the system that recovering x+ does not satisfy by definition */
+        int *row;
+        struct dalcs_csr form; /* [n] those rows over (sigma (x+ - x_k), y, s) side by side */
+        double *volts;   /* [n_equations] sum of |coefficients| on voltages, sigma P included */
+        double *amperes; /* [n_equations] the same on currents */
+    } checks;
+
     struct dalcs_arena arena; /* vectors */
 };
 

@@ -73,8 +73,8 @@ static void keep_ray(struct dalcs_osnsp *p, const double *d, double largest) {
     }
     for (int x = 0; x < s->n_x; x++) {
         double sum = 0.0;
-        for (int k = f->X.p[x]; k < f->X.p[x + 1]; k++) {
-            sum += f->X.x[k] * ray[f->X.j[k]];
+        for (int k = f->state.X.p[x]; k < f->state.X.p[x + 1]; k++) {
+            sum += f->state.X.x[k] * ray[f->state.X.j[k]];
         }
         ray[x] = sum;
     }

@@ -166,8 +166,8 @@ static enum dalcs_status look_at_stepped(struct dalcs_row_gaps *gaps,
  * size. */
 static void look_at_algebraic(struct dalcs_row_gaps *gaps, const struct dalcs_radau_part *part) {
     const struct dalcs_component *c = part->component;
-    for (int i = 0; i < c->n_varying && gaps->rows->part[part->index].n_signals > 0; i++) {
-        const struct dalcs_bend *bend = &gaps->stimulus[c->system->stimulus[c->varying[i]]];
+    for (int i = 0; i < c->varying.n && gaps->rows->part[part->index].n_signals > 0; i++) {
+        const struct dalcs_bend *bend = &gaps->stimulus[c->system->stimulus[c->varying.input[i]]];
         if (bend->size > 0.0) {
             struct dalcs_bend *most = &gaps->algebraic;
             most->second = dalcs_larger(most->second, bend->second / bend->size);

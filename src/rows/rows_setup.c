@@ -111,7 +111,7 @@ static enum dalcs_status set_up_parts(struct dalcs_rows *rows, const int *output
     DALCS_TRY(list_signals(rows, output));
     for (int k = 0; k < rows->radau->n_parts; k++) {
         const struct dalcs_radau_part *part = &rows->radau->part[k];
-        bool is_solved = part->kind == DALCS_PART_ALGEBRAIC && part->component->n_varying > 0;
+        bool is_solved = part->kind == DALCS_PART_ALGEBRAIC && part->component->varying.n > 0;
         if (rows->part[k].n_signals > 0 || (is_solved && output == NULL)) {
             rows->asked[rows->n_asked++] = k;
             rows->one_by_one = rows->one_by_one || is_solved;

@@ -28,7 +28,7 @@ double dalcs_audit_most_allowed(const struct dalcs_audit_run *a) {
 
 double dalcs_audit_state_work(const struct dalcs_audit_run *a, int part) {
     const struct dalcs_component *c = &a->euler->component[part];
-    return value_work * dalcs_system_n_columns(c->system) + source_work * c->n_varying;
+    return value_work * dalcs_system_n_columns(c->system) + source_work * c->varying.n;
 }
 
 /* Of gates, and of sources and switches that jump at 0, the operating point is not what the run begins with. */
@@ -187,7 +187,7 @@ static void enter(struct dalcs_audit_run *a, int k) {
 
 void dalcs_audit_run_begin(struct dalcs_audit_run *a) {
     for (int i = 0; a->audit != NULL && i < a->n_stepped; i++) {
-        if (a->euler->component[a->stepped[i]].restless != NULL) {
+        if (a->euler->component[a->stepped[i]].commands.restless != NULL) {
             dalcs_audit_has_no_rest(a->audit, a->stepped[i]);
         }
         enter(a, a->stepped[i]);

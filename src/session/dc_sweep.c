@@ -154,8 +154,8 @@ static enum dalcs_status run_sources(struct sweep *s) {
     struct dalcs_stimulus before[DALCS_MOST_DC];
     struct dalcs_euler e;
     DALCS_TRY(dalcs_euler_setup(&e, circuit, &r->s->network, &r->osnsp, 1.0, 1.0));
-    e.open_user = &r->undetermined;
-    e.on_open = dalcs_undetermined_at;
+    e.listener.open_user = &r->undetermined;
+    e.listener.on_open = dalcs_undetermined_at;
     for (int i = 0; i < s->n_dc; i++) {
         const struct dalcs_stimulus *source = stimulus_of(circuit, &s->dc[i]);
         before[i] = source != NULL ? *source : (struct dalcs_stimulus){0};

@@ -95,7 +95,7 @@ static const char **whole_witness(struct dalcs_session *s, const struct dalcs_wi
 static void list_values(struct dalcs_refusal *x, const struct dalcs_component *c) {
     const struct dalcs_system *d = c->system;
     for (int k = 1; k < d->n_inputs; k++) {
-        x->value[d->stimulus[k]] = c->failed_u[d->n_x + k];
+        x->value[d->stimulus[k]] = c->failure.u[d->n_x + k];
     }
 }
 
@@ -105,11 +105,11 @@ static const double shorter = 1024.0;
 /* Has the problem no answer for certain? What a step sees of a circuit that is not passive is no more than that where
  * shorter ones see something else. */
 static enum dalcs_status find_certainty(struct dalcs_component *c, bool is_from, bool *is_certain) {
-    DALCS_TRY(dalcs_osnsp_refute(&c->osnsp, c->failed_sigma, c->failed_u, is_certain));
+    DALCS_TRY(dalcs_osnsp_refute(&c->osnsp, c->failure.sigma, c->failure.u, is_certain));
     bool is_mode = c->osnsp.witness.kind == DALCS_WITNESS_MODE || c->osnsp.weighed.n_elements > 0;
-    if (*is_certain && is_from && is_mode && c->failed_sigma > 0.0) {
+    if (*is_certain && is_from && is_mode && c->failure.sigma > 0.0) {
         DALCS_TRY(
-            dalcs_osnsp_refute(&c->osnsp, shorter * c->failed_sigma, c->failed_u, is_certain));
+            dalcs_osnsp_refute(&c->osnsp, shorter * c->failure.sigma, c->failure.u, is_certain));
     }
     return DALCS_OK;
 }
@@ -118,7 +118,7 @@ static enum dalcs_status find_certainty(struct dalcs_component *c, bool is_from,
 static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
                                             bool is_from, const char *when, const char *hint) {
     struct dalcs_session *s = r->s;
-    struct dalcs_component *c = &e->component[e->failed_system];
+    struct dalcs_component *c = &e->component[e->failure.system];
     const struct dalcs_witness *w = &c->osnsp.witness;
     static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
                                        [DALCS_WITNESS_CUTSET] = "cutset",
@@ -132,8 +132,8 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
         .circuit = &s->circuit,
         .osnsp = &c->osnsp,
         .kind = w->kind,
-        .time = e->failed_time,
-        .is_static = c->failed_sigma == 0.0,
+        .time = e->failure.time,
+        .is_static = c->failure.sigma == 0.0,
         .is_from = is_from,
         .is_named = dalcs_arena_alloc(&s->arena, n_devices, sizeof(*x.is_named)),
         .value = dalcs_arena_alloc(&s->arena, n_stimuli, sizeof(*x.value)),
@@ -160,7 +160,7 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
         return DALCS_NOT_CONVERGED;
     }
     s->report.infeasible.present = true;
-    s->report.infeasible.time = e->failed_time;
+    s->report.infeasible.time = e->failure.time;
     s->report.infeasible.kind = kind[x.kind];
     s->report.infeasible.n_elements = x.n_elements;
     s->report.infeasible.element = x.element;
@@ -171,15 +171,15 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
 /* Writes the problem if that is wanted. Returns the hint that says where it is, or NULL. */
 static const char *dump_problem(struct dalcs_run *r, const struct dalcs_euler *e,
                                 const char *when) {
-    const struct dalcs_component *c = &e->component[e->failed_system];
+    const struct dalcs_component *c = &e->component[e->failure.system];
     const char *path = r->options->dump_path;
     if (path == NULL) {
         return NULL;
     }
     struct dalcs_session *s = r->s;
     const char *about = dalcs_arena_printf(&s->arena, "%s %s", s->name, when);
-    const struct dalcs_system_step step = {.sigma = c->failed_sigma,
-                                           .u = c->failed_u,
+    const struct dalcs_system_step step = {.sigma = c->failure.sigma,
+                                           .u = c->failure.u,
                                            .mode = c->osnsp.mode,
                                            .about = about == NULL ? when : about};
     if (dalcs_system_file_write(path, c->system, &step) != DALCS_OK) {
@@ -193,13 +193,13 @@ static const char *dump_problem(struct dalcs_run *r, const struct dalcs_euler *e
 
 /* A state that has grown too large. */
 static void explain_growth(struct dalcs_session *s, const struct dalcs_component *c, double time) {
-    const char *element = c->system->column[c->overgrown].element;
+    const char *element = c->system->column[c->failure.overgrown].element;
     dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, element),
                    "a negative resistance or a controlled source supplies energy all the time",
                    "at t = %.8g s the circuit is unstable: the %s of '%s' "
                    "has grown to more than 1e240 %s",
-                   time, c->system->column_is_current[c->overgrown] ? "current" : "voltage",
-                   element, c->system->column_is_current[c->overgrown] ? "A" : "V");
+                   time, c->system->column_is_current[c->failure.overgrown] ? "current" : "voltage",
+                   element, c->system->column_is_current[c->failure.overgrown] ? "A" : "V");
 }
 
 /* Is it the name of an element or node that nobody has written? */
@@ -300,33 +300,34 @@ static void explain_smooth(struct dalcs_session *s, const struct dalcs_component
 enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
                                         enum dalcs_status status) {
     struct dalcs_session *s = r->s;
-    if (status <= DALCS_OK || e->failed_system < 0) {
+    if (status <= DALCS_OK || e->failure.system < 0) {
         return status;
     }
-    if (e->component[e->failed_system].overgrown >= 0) {
-        explain_growth(s, &e->component[e->failed_system], e->failed_time);
+    if (e->component[e->failure.system].failure.overgrown >= 0) {
+        explain_growth(s, &e->component[e->failure.system], e->failure.time);
         return status;
     }
     /* Radau fails just after a time, a step of Euler at its end. */
-    bool is_from = !e->at_operating_point && (e->looks_behind || r->method != DALCS_METHOD_EULER);
-    const char *when = e->at_operating_point              ? "at the operating point"
-                       : is_from && e->failed_time == 0.0 ? "from t = 0 on"
+    bool is_from = !e->failure.at_operating_point &&
+                   (e->failure.looks_behind || r->method != DALCS_METHOD_EULER);
+    const char *when = e->failure.at_operating_point       ? "at the operating point"
+                       : is_from && e->failure.time == 0.0 ? "from t = 0 on"
                        : is_from
-                           ? dalcs_arena_printf(&s->arena, "from t = %.8g s on", e->failed_time)
+                           ? dalcs_arena_printf(&s->arena, "from t = %.8g s on", e->failure.time)
                            : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
-                                                e->failed_time, e->steps + 1, e->failed_h);
+                                                e->failure.time, e->steps + 1, e->failure.h);
     when = when == NULL ? "" : when;
-    const bool is_smooth = e->component[e->failed_system].osnsp.smooth.newton != NULL;
+    const bool is_smooth = e->component[e->failure.system].osnsp.smooth.newton != NULL;
     const char *hint = is_smooth ? NULL : dump_problem(r, e, when);
     if (status == DALCS_INFEASIBLE) {
         return explain_infeasible(r, e, is_from, when, hint);
     }
     if (is_smooth) {
-        explain_smooth(s, &e->component[e->failed_system], when);
+        explain_smooth(s, &e->component[e->failure.system], when);
         return status;
     }
-    const struct dalcs_certificate *c = &e->component[e->failed_system].osnsp.certificate;
-    const char *row = dalcs_explain_row(s, e, e->failed_system, c->where);
+    const struct dalcs_certificate *c = &e->component[e->failure.system].osnsp.certificate;
+    const char *row = dalcs_explain_row(s, e, e->failure.system, c->where);
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, hint,
                    "%s no certified solution was found: the best residual is %.3g of its scale, %s",
                    when, c->worst, row == NULL ? "" : row);

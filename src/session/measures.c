@@ -46,8 +46,9 @@ static void find_sources(struct dalcs_measures *measures, const struct dalcs_cir
     }
     for (int k = 0; k < e->n_components; k++) {
         const struct dalcs_component *c = &e->component[k];
-        for (int i = 0; measures->reads[k] && i < c->n_varying; i++) {
-            const struct dalcs_stimulus *s = &circuit->stimulus[c->system->stimulus[c->varying[i]]];
+        for (int i = 0; measures->reads[k] && i < c->varying.n; i++) {
+            const struct dalcs_stimulus *s =
+                &circuit->stimulus[c->system->stimulus[c->varying.input[i]]];
             bool known = false;
             for (int j = 0; j < measures->n_stimuli && !known; j++) {
                 known = measures->stimulus[j] == s;

@@ -21,8 +21,8 @@ enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     struct dalcs_euler e;
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, 1.0, 1.0));
-    e.open_user = &r->undetermined;
-    e.on_open = dalcs_undetermined_at;
+    e.listener.open_user = &r->undetermined;
+    e.listener.on_open = dalcs_undetermined_at;
     struct dalcs_logic_run logic;
     enum dalcs_status status = dalcs_logic_run_setup(&logic, &s->circuit, &e, NULL);
     if (status == DALCS_OK) {
@@ -33,9 +33,9 @@ enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
         status = dalcs_run_begin_plot(r, DALCS_OPERATING_POINT);
     }
     if (status == DALCS_OK) {
-        e.at_operating_point = true;
+        e.failure.at_operating_point = true;
         status = dalcs_undetermined_several(&r->undetermined, &e, 0.0);
-        e.at_operating_point = false;
+        e.failure.at_operating_point = false;
     }
     double *row = dalcs_alloc((size_t)s->network.n_outputs, sizeof(*row));
     if (status == DALCS_OK && row == NULL) {

@@ -70,30 +70,30 @@ enum dalcs_status dalcs_run_announce(struct dalcs_run *r, const struct dalcs_plo
 
 /* Switches that no command agreed with what followed from it. */
 static void warn_of_switches(struct dalcs_run *r, const struct dalcs_component *c, long steps) {
-    if (c->slid_steps > 0) {
+    if (c->commands.n_slid > 0) {
         dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
                        "a hysteresis, Vh=, keeps it from switching without end",
                        "in %ld step%s a switch slides along its threshold: closing turns its "
                        "control off, opening turns it on; values are means of both positions",
-                       c->slid_steps, c->slid_steps == 1 ? "" : "s");
+                       c->commands.n_slid, c->commands.n_slid == 1 ? "" : "s");
     }
-    if (c->delayed_commands == 0) {
+    if (c->commands.n_delayed == 0) {
         return;
     }
-    bool once = (steps == 0 && c->delayed_commands == 1) || c->is_static;
-    if (once && c->restless != NULL) {
+    bool once = (steps == 0 && c->commands.n_delayed == 1) || c->is_static;
+    if (once && c->commands.restless != NULL) {
         dalcs_diag_add(
             &r->s->diag, DALCS_WARNING, NULL,
             c->is_static ? NULL : "with uic, and IC= where it matters, a run starts without one",
             "at the operating point '%s' and what controls it do not agree: closed it "
             "opens, open it closes; it is left as it stood",
-            c->restless);
+            c->commands.restless);
     } else {
         dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
                        "a hysteresis, Vh=, keeps it from switching without end",
                        "in %ld one-step problem%s a switch and the voltage that controls it did "
                        "not agree; its last command stood until the next one",
-                       c->delayed_commands, c->delayed_commands == 1 ? "" : "s");
+                       c->commands.n_delayed, c->commands.n_delayed == 1 ? "" : "s");
     }
 }
 
@@ -110,10 +110,10 @@ void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e) {
         report->work.singular += c->singular;
         warn_of_switches(r, &e->component[k], e->steps);
     }
-    if (e->worst.worst >= report->certificate.worst) {
-        const char *where = dalcs_explain_row(r->s, e, e->worst_system, e->worst.where);
-        report->certificate.worst = e->worst.worst;
-        report->certificate.time = e->worst_time;
+    if (e->worst.certificate.worst >= report->certificate.worst) {
+        const char *where = dalcs_explain_row(r->s, e, e->worst.system, e->worst.certificate.where);
+        report->certificate.worst = e->worst.certificate.worst;
+        report->certificate.time = e->worst.time;
         report->certificate.where = where == NULL ? "" : where;
     }
 }

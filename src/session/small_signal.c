@@ -363,17 +363,17 @@ static enum dalcs_status report_sides(struct dalcs_run *r, struct dalcs_euler *e
 
 static enum dalcs_status find_operating_point(struct dalcs_run *r, struct dalcs_euler *e,
                                               struct dalcs_logic_run *logic) {
-    e->open_user = &r->undetermined;
-    e->on_open = dalcs_undetermined_at;
+    e->listener.open_user = &r->undetermined;
+    e->listener.on_open = dalcs_undetermined_at;
     enum dalcs_status status = dalcs_logic_run_setup(logic, &r->s->circuit, e, NULL);
     if (status == DALCS_OK) {
         status = dalcs_gates_operating_point(e, logic, false);
         dalcs_warn_of_restless_gates(r, logic);
     }
     if (status == DALCS_OK) {
-        e->at_operating_point = true;
+        e->failure.at_operating_point = true;
         status = dalcs_undetermined_several(&r->undetermined, e, 0.0);
-        e->at_operating_point = false;
+        e->failure.at_operating_point = false;
     }
     status = dalcs_explain_failure(r, e, status);
     return status == DALCS_OK ? report_sides(r, e) : status;

@@ -30,8 +30,8 @@ enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, stru
         struct dalcs_component *c = &e->component[k];
         initial[k] = x;
         x += c->system->n_x;
-        for (int i = 0; i < c->n_switches; i++) {
-            dalcs_osnsp_command(&c->osnsp, c->switch_pair[i], closed[c->switch_pair[i]]);
+        for (int i = 0; i < c->switches.n; i++) {
+            dalcs_osnsp_command(&c->osnsp, c->switches.pair[i], closed[c->switches.pair[i]]);
         }
         closed += c->system->n_pairs;
     }
@@ -62,8 +62,8 @@ enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
     for (int k = 0; k < e->n_components; k++) {
         const struct dalcs_component *c = &e->component[k];
         memcpy(x, c->y, (size_t)c->system->n_x * sizeof(double));
-        for (int i = 0; i < c->n_switches; i++) {
-            closed[c->switch_pair[i]] = dalcs_osnsp_is_on(&c->osnsp, c->switch_pair[i]);
+        for (int i = 0; i < c->switches.n; i++) {
+            closed[c->switches.pair[i]] = dalcs_osnsp_is_on(&c->osnsp, c->switches.pair[i]);
         }
         x += c->system->n_x;
         closed += c->system->n_pairs;
@@ -263,7 +263,7 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,
         DALCS_TRY(
             dalcs_variation_setup(&variation, p->radau, &p->logic, &st->layout.memory, !with_M));
         observer = dalcs_variation_observer(&variation);
-        p->euler->observer = &observer;
+        p->euler->listener.observer = &observer;
     }
     enum dalcs_status status = start(st, p);
     if (status == DALCS_OK) {
@@ -280,7 +280,7 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,
         read_M(st, &variation);
         read_phase(st, &variation);
     }
-    p->euler->observer = NULL;
+    p->euler->listener.observer = NULL;
     p->logic.observer = NULL;
     dalcs_variation_finish(&variation);
     return status;
@@ -290,12 +290,12 @@ static enum dalcs_status run_watched(struct dalcs_steady *st, struct pass *p) {
     struct dalcs_observer observer;
     if (p->watch != NULL) {
         observer = dalcs_steady_watch_observer(p->watch);
-        p->euler->observer = &observer;
+        p->euler->listener.observer = &observer;
         dalcs_steady_watch_gates(p->watch, &p->logic);
     }
     enum dalcs_status status = start(st, p);
     status = status == DALCS_OK ? go(p) : status;
-    p->euler->observer = NULL;
+    p->euler->listener.observer = NULL;
     p->logic.observer = NULL;
     if (status == DALCS_OK) {
         status = read_point(st, p);
@@ -385,13 +385,13 @@ enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
 static enum dalcs_status run_logged(struct dalcs_steady *st, struct pass *p,
                                     struct dalcs_orbit_log *log) {
     struct dalcs_observer observer = dalcs_orbit_log_observer(log);
-    p->euler->observer = &observer;
+    p->euler->listener.observer = &observer;
     p->ramps = p->logic.circuit != NULL ? &st->layout.memory : NULL;
     DALCS_TRY(dalcs_orbit_log_watch(log, &p->logic, &st->layout.memory));
     enum dalcs_status status = start(st, p);
     status = status == DALCS_OK ? go(p) : status;
     status = status == DALCS_OK ? log->status : status;
-    p->euler->observer = NULL;
+    p->euler->listener.observer = NULL;
     status = status == DALCS_OK ? read_point(st, p) : status;
     return status == DALCS_OK ? dalcs_orbit_log_close(log, st->period) : status;
 }

@@ -46,7 +46,7 @@ void dalcs_steady_watch_finish(struct dalcs_steady_watch *watch);
 /* Gates are watched if nothing else in the circuit changes its side. */
 void dalcs_steady_watch_gates(struct dalcs_steady_watch *watch, struct dalcs_logic_run *logic);
 
-/* For radau->base->observer; user is the watch. */
+/* For radau->base->listener.observer; user is the watch. */
 struct dalcs_observer dalcs_steady_watch_observer(struct dalcs_steady_watch *watch);
 
 /* The last event and one like it before, between which a period may lie: from -> to. False: no event has come twice. */

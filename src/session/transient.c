@@ -136,11 +136,12 @@ static enum dalcs_status set_up_euler(struct dalcs_run *r, struct parts *p) {
     const double stop = s->circuit.transient.stop;
     struct dalcs_euler *e = &p->euler;
     DALCS_TRY(dalcs_euler_setup(e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
-    e->detect_jumps = r->options->record || dalcs_run_keeps_ledger(r) || dalcs_run_wants_losses(r);
-    e->jump_user = r;
-    e->on_jump = dalcs_note_jump;
-    e->open_user = &r->undetermined;
-    e->on_open = dalcs_undetermined_at;
+    e->listener.detects_jumps =
+        r->options->record || dalcs_run_keeps_ledger(r) || dalcs_run_wants_losses(r);
+    e->listener.jump_user = r;
+    e->listener.on_jump = dalcs_note_jump;
+    e->listener.open_user = &r->undetermined;
+    e->listener.on_open = dalcs_undetermined_at;
     s->report.step = p->is_euler ? r->h : r->fixed_step;
     s->report.stop = stop;
     return DALCS_OK;

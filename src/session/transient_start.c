@@ -33,8 +33,8 @@ static void take_over_switches(struct dalcs_euler *e, const struct dalcs_euler *
     for (int k = 0; k < e->n_components; k++) {
         struct dalcs_component *c = &e->component[k];
         const struct dalcs_osnsp *before = &held->component[k].osnsp;
-        for (int i = 0; i < c->n_switches; i++) {
-            int d = c->switch_pair[i];
+        for (int i = 0; i < c->switches.n; i++) {
+            int d = c->switches.pair[i];
             dalcs_osnsp_command(&c->osnsp, d, dalcs_osnsp_is_on(before, d));
         }
     }
@@ -71,9 +71,9 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
     struct dalcs_euler held;
     DALCS_TRY(dalcs_euler_setup(&held, &s->circuit, clamped, &r->osnsp, 1.0, 1.0));
     r->undetermined.clamped = clamped;
-    held.open_user = &r->undetermined;
-    held.on_open = dalcs_undetermined_at;
-    held.on_operating_point = dalcs_held_coils_rest;
+    held.listener.open_user = &r->undetermined;
+    held.listener.on_open = dalcs_undetermined_at;
+    held.listener.on_operating_point = dalcs_held_coils_rest;
     double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
     enum dalcs_status status = initial == NULL ? DALCS_E_NOMEM : rest_held(r, e, &held, logic);
     status = dalcs_explain_failure(r, &held, status);

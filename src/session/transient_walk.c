@@ -293,8 +293,8 @@ enum dalcs_status dalcs_transient_walk(struct dalcs_run *r, struct dalcs_radau *
                           .audit = audit,
                           .logic = logic,
                           .cosimulation = r->cosimulation};
-    logic->cut_user = audit;
-    logic->on_cut = tell_cut;
+    logic->cut.user = audit;
+    logic->cut.tell = tell_cut;
     c.next_row = dalcs_recorder_due(c.recorder);
     c.next_edge = edge_after(&c, 0.0);
     c.interval = c.to_go = dalcs_transient_progress_interval(&r->s->network);

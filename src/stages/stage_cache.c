@@ -23,21 +23,21 @@ static void link_newest(struct dalcs_stages *stages, struct dalcs_stage_entry *e
 }
 
 static void offer_as_base(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    e->older_base = stages->cache.newest_base;
+    e->as_base.older = stages->cache.newest_base;
     if (stages->cache.newest_base != NULL) {
-        stages->cache.newest_base->newer_base = e;
+        stages->cache.newest_base->as_base.newer = e;
     }
     stages->cache.newest_base = e;
 }
 
 static void withdraw_as_base(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
-    if (e->newer_base != NULL) {
-        e->newer_base->older_base = e->older_base;
+    if (e->as_base.newer != NULL) {
+        e->as_base.newer->as_base.older = e->as_base.older;
     } else if (stages->cache.newest_base == e) {
-        stages->cache.newest_base = e->older_base;
+        stages->cache.newest_base = e->as_base.older;
     }
-    if (e->older_base != NULL) {
-        e->older_base->newer_base = e->newer_base;
+    if (e->as_base.older != NULL) {
+        e->as_base.older->as_base.newer = e->as_base.newer;
     }
 }
 
@@ -49,12 +49,12 @@ static void entry_destroy(struct dalcs_stages *stages, struct dalcs_stage_entry 
 }
 
 void dalcs_stages_hold(struct dalcs_stage_entry *entry) {
-    entry->n_holders++;
+    entry->as_base.n_holders++;
 }
 
 /* The last one destroys it. */
 void dalcs_stages_release(struct dalcs_stages *stages, struct dalcs_stage_entry *entry) {
-    if (--entry->n_holders == 0) {
+    if (--entry->as_base.n_holders == 0) {
         stages->cache.bytes -= entry->bytes;
         entry_destroy(stages, entry);
     }
@@ -93,7 +93,7 @@ static size_t lay_out(const struct dalcs_stages *stages, struct dalcs_stage_entr
 }
 
 static struct dalcs_stage_entry *entry_alloc(const struct dalcs_stages *stages) {
-    struct dalcs_stage_entry laid_out = {.n_holders = 1};
+    struct dalcs_stage_entry laid_out = {.as_base.n_holders = 1};
     struct dalcs_stage_entry *e = dalcs_alloc(1, lay_out(stages, &laid_out, NULL));
     if (e != NULL) {
         lay_out(stages, &laid_out, e);

@@ -187,7 +187,7 @@ static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
         }
         filter(b, b->n_x, b->column.lasting, b->n_x, b->n - b->entry->n_on);
     }
-    for (int k = 0; k < b->entry->current_rows; k++) {
+    for (int k = 0; k < b->entry->maps.current_rows; k++) {
         out[k] = k < stages->n_levered ? filtered(b, stages->levered[k]).high : 0.0;
     }
 }
@@ -231,7 +231,7 @@ void dalcs_stage_column_fill(struct dalcs_stage_workshop *b, int column, int rhs
         out[i] = 0.0;
     }
     to->out += b->entry->rows;
-    to->currents += b->entry->current_rows;
+    to->currents += b->entry->maps.current_rows;
 }
 
 /* b->column.residual += value * what column c has in the equations without derivatives. Returns the largest term, at

@@ -19,7 +19,7 @@ static void fill_map(struct dalcs_stage_workshop *b, const struct dalcs_stage_fu
         .high = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0}};
     double share[DALCS_LANES] = {0.0};
     const struct dalcs_stage_drive constant = {share, &one, m->exact_to};
-    struct dalcs_map_column to = {b->entry->map, b->entry->current_map};
+    struct dalcs_map_column to = {b->entry->map, b->entry->maps.current};
     memset(b->column.lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int x = 0; x < b->n_x; x++) {
         dalcs_stage_column_fill(b, x, x, &constant, &to);
@@ -55,14 +55,14 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     DALCS_TRY(dalcs_stage_workshop_solve(b, entry));
     entry->n_clashes = b->open.nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
-    entry->current_rows = dalcs_dense_map_rows(stages->n_levered);
-    int all_rows = entry->rows + entry->current_rows + (entry->frees_states ? 0 : b->n_x);
+    entry->maps.current_rows = dalcs_dense_map_rows(stages->n_levered);
+    int all_rows = entry->rows + entry->maps.current_rows + (entry->frees_states ? 0 : b->n_x);
     entry->map = dalcs_dense_map_alloc(all_rows, n_columns(b));
     if (entry->map == NULL) {
         return DALCS_E_NOMEM;
     }
-    entry->current_map = entry->map + entry->rows * n_columns(b);
-    entry->shift_map = entry->current_map + entry->current_rows * n_columns(b);
+    entry->maps.current = entry->map + entry->rows * n_columns(b);
+    entry->maps.shift = entry->maps.current + entry->maps.current_rows * n_columns(b);
     entry->bytes += (size_t)all_rows * (size_t)n_columns(b) * sizeof(double);
     fill_map(b, function);
     if (!entry->frees_states) {
@@ -98,8 +98,8 @@ void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs
 void dalcs_stage_map_currents(const struct dalcs_stages *stages,
                               const struct dalcs_stage_entry *entry, const double *in,
                               double *drift) {
-    dalcs_dense_map_apply(entry->current_rows, n_columns(stages->workshop), entry->current_map,
-                          dalcs_stage_map_input(stages, in), drift);
+    dalcs_dense_map_apply(entry->maps.current_rows, n_columns(stages->workshop),
+                          entry->maps.current, dalcs_stage_map_input(stages, in), drift);
 }
 
 bool dalcs_stage_has_map(const struct dalcs_stage_entry *entry) {
@@ -130,5 +130,5 @@ double dalcs_stage_spread(const struct dalcs_stages *stages, const struct dalcs_
 double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
                                      const struct dalcs_stage_entry *entry, int k, const double *in,
                                      const double *scale) {
-    return spread(stages, entry->current_map + k, entry->current_rows, in, scale);
+    return spread(stages, entry->maps.current + k, entry->maps.current_rows, in, scale);
 }

@@ -58,7 +58,7 @@ void dalcs_stage_shift_find(struct dalcs_stage_workshop *b) {
 void dalcs_stage_shift_fill(const struct dalcs_stage_workshop *b,
                             const struct dalcs_stage_function *function) {
     const struct dalcs_excitation *e = b->stages->excitation;
-    double *to = b->entry->shift_map;
+    double *to = b->entry->maps.shift;
     for (int x = 0; x < b->n_x; x++) {
         for (int j = 0; j < b->n_x + (b->has_constants ? 1 : 0); j++) {
             *to++ = b->solved.shift[j * b->n_x + x];
@@ -79,7 +79,7 @@ double dalcs_stage_shift(const struct dalcs_stages *stages, const struct dalcs_s
         return 0.0;
     }
     const int n = dalcs_stage_map_columns(stages);
-    const double *row = entry->shift_map + x * n;
+    const double *row = entry->maps.shift + x * n;
     const double *factor = dalcs_stage_map_input(stages, in);
     double shift = 0.0;
     for (int j = 0; j < n; j++) {

@@ -86,7 +86,7 @@ static struct dalcs_stage_entry *choose_base(const struct dalcs_stages *stages,
     struct dalcs_stage_entry *chosen = NULL;
     int least = DALCS_STAGE_MOST_CHANGES + 1;
     struct dalcs_stage_entry *b = stages->cache.newest_base;
-    for (int k = 0; k < MOST_BASES && b != NULL && least > 0; k++, b = b->older_base) {
+    for (int k = 0; k < MOST_BASES && b != NULL && least > 0; k++, b = b->as_base.older) {
         int n = b->h == entry->h ? count_changes(stages, b, entry) : least;
         if (n < least) {
             least = n;
@@ -236,7 +236,7 @@ static void borrow(struct dalcs_stage_factors *f, const struct dalcs_stage_entry
         f->order[q].of_pair = NULL;
     }
     u->base = base;
-    base->n_holders++;
+    base->as_base.n_holders++;
 }
 
 enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,

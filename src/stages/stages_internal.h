@@ -25,15 +25,22 @@ struct dalcs_stage_entry {
     double residual;
     int rows;    /* of map, padded to 8 */
     double *map; /* [rows][n_in] by columns; NULL: factors */
-    int current_rows;
-    double *current_map; /* [current_rows][n_in] the drift of currents, behind map */
-    double *shift_map;   /* [n_x][n_in] how far the mode moves states at once, behind that */
+
+    struct { /* behind map */
+        int current_rows;
+        double *current; /* [current_rows][n_in] the drift of currents */
+        double *shift;   /* [n_x][n_in] how far the mode moves states at once */
+    } maps;
+
     int note;
     struct dalcs_stage_factors *factors;
-    /* Entries with factors of their own. Other entries may be stored as low-rank changes of them. */
-    struct dalcs_stage_entry *newer_base, *older_base;
-    int n_holders; /* the store and the entries that are updates of this one */
-    int spent;     /* changes worked in so far, of an update */
+
+    struct { /* of one with factors of its own, which others may be low-rank changes of */
+        struct dalcs_stage_entry *newer, *older;
+        int n_holders; /* the store and the entries that are updates of this one */
+    } as_base;
+
+    int spent; /* changes worked in so far, of an update */
     size_t bytes;
 };
 

@@ -57,7 +57,7 @@ void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, 
 }
 
 void dalcs_radau_go_after(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    const struct dalcs_observer *observer = r->base->observer;
+    const struct dalcs_observer *observer = r->base->listener.observer;
     if (observer != NULL) {
         observer->move(observer->user, part->index, part->x, part->work.after);
     }

@@ -204,7 +204,7 @@ static void run_a_little(const struct dalcs_circuit *circuit, const struct dalcs
     if (dalcs_euler_setup(&e, circuit, network, &options, stop / 7.0, stop) != DALCS_OK) {
         return;
     }
-    e.detect_jumps = true;
+    e.listener.detects_jumps = true;
     enum dalcs_status status = dalcs_euler_operating_point(&e, true);
     if (status == DALCS_OK || circuit->transient.use_initial_conditions) {
         status = dalcs_euler_start(&e, circuit->transient.use_initial_conditions ? network->initial

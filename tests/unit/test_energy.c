@@ -58,7 +58,7 @@ static void prepare(const char *text, double h, double stop) {
     build_good_network(&t, text);
     const struct dalcs_osnsp_options options = usual_osnsp_options();
     ck_assert_int_eq(dalcs_euler_setup(&e, &t.circuit, &t.network, &options, h, stop), DALCS_OK);
-    e.detect_jumps = true;
+    e.listener.detects_jumps = true;
 }
 
 static void run_euler(const char *text, double h, double stop) {

@@ -26,8 +26,8 @@ static void setup(const char *text, double h, double stop) {
     build_good_network(&t, text);
     const struct dalcs_osnsp_options options = usual_osnsp_options();
     ck_assert_int_eq(dalcs_euler_setup(&e, &t.circuit, &t.network, &options, h, stop), DALCS_OK);
-    e.on_jump = note_jump;
-    e.detect_jumps = true;
+    e.listener.on_jump = note_jump;
+    e.listener.detects_jumps = true;
     n_jumps = 0;
 }
 
@@ -236,8 +236,8 @@ START_TEST(test_failure) {
         step();
     }
     ck_assert_int_eq(dalcs_euler_step(&e), DALCS_INFEASIBLE);
-    ck_assert_int_eq(e.failed_system, 1);
-    ck_assert_double_eq_tol(e.failed_time, 6e-5, 1e-18);
+    ck_assert_int_eq(e.failure.system, 1);
+    ck_assert_double_eq_tol(e.failure.time, 6e-5, 1e-18);
     ck_assert_int_eq(e.steps, 5);
     finish();
 }

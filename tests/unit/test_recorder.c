@@ -31,8 +31,8 @@ static enum dalcs_status run(const char *text, double h, double stop,
     ck_assert_int_eq(dalcs_euler_setup(&e, &t.circuit, &t.network, &options, h, stop), DALCS_OK);
     ck_assert_int_eq(dalcs_recorder_setup(&r, &t.network, &sink, schedule, limit > 0, limit),
                      DALCS_OK);
-    e.on_jump = dalcs_event_log_jump;
-    e.jump_user = &r.log;
+    e.listener.on_jump = dalcs_event_log_jump;
+    e.listener.jump_user = &r.log;
     n_rows = 0;
     enum dalcs_status status = dalcs_euler_start(&e, t.network.initial);
     status = status == DALCS_OK ? dalcs_recorder_start(&r, &e) : status;

@@ -70,9 +70,10 @@ static void check_condensed(const struct dalcs_system *s, const struct dalcs_ste
         ck_assert_double_le(fabs(sum[i] - w), 1e-9 * (size[i] + fabs(w)) + 1e-300);
     }
     for (int x = 0; x < s->n_x; x++) {
-        double recovered = dalcs_csr_row_dot(&f->X, x, y) + dalcs_csr_row_dot(&f->Xu, x, u);
+        double recovered =
+            dalcs_csr_row_dot(&f->state.X, x, y) + dalcs_csr_row_dot(&f->state.Xu, x, u);
         ck_assert_double_eq_tol(recovered, y[x], 1e-9 * (1.0 + fabs(y[x])));
-        const int *ends = &f->x_ends[2 * x];
+        const int *ends = &f->state.ends[2 * x];
         if (ends[0] >= 0) {
             ck_assert_double_eq_tol(y[ends[0]] - y[ends[1]], y[x], 1e-9 * (1.0 + fabs(y[x])));
         }
