@@ -1,11 +1,15 @@
 /* component_size.c - the number of unknowns of each sort in a component, and the places of its nodes among them. */
 #include "component_size.h"
 
-#include "magnitudes.h"
 #include "stamp_behaviour.h"
 
 #include <float.h>
 #include <math.h>
+
+/* The sum of the conductances at a node is rounded: in KCL that is a conductance to ground of eps/2 of the sum, which no
+ * element has. Beside the least conductance of the part it must be less than the error that the default tolerance leaves to a
+ * step, 3e-8. What conducts better has its current as an unknown, and KCL has a 1 for it. */
+static const double most_conductances_apart = 3e-8 / (0.5 * DBL_EPSILON);
 
 /* Of resistors and of what leaks. */
 static double conductance_of(const struct dalcs_circuit *c, const struct dalcs_device *d) {
@@ -21,16 +25,13 @@ static double conductance_of(const struct dalcs_circuit *c, const struct dalcs_d
     }
 }
 
-/* The sum of the conductances at a node is rounded: in KCL that is a conductance to ground of eps/2 of the sum, which no
- * element has. Beside the least conductance of the part it must be a slight part of what the default tolerance sees. What
- * conducts better has its current as an unknown, and KCL has a 1 for it. */
 void dalcs_find_best_conductor(struct dalcs_layout *l, const struct dalcs_members *m) {
     double least = INFINITY;
     for (int i = 0; i < m->n_devices; i++) {
         double g = conductance_of(l->circuit, &l->circuit->device[m->device[i]]);
         least = g > 0.0 && g < least ? g : least;
     }
-    l->most_conductance = dalcs_slight * dalcs_nothing / (0.5 * DBL_EPSILON) * least;
+    l->most_conductance = most_conductances_apart * least;
 }
 
 bool dalcs_layout_is_branch(const struct dalcs_layout *l, int device) {

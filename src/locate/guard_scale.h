@@ -48,7 +48,7 @@ static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *pa
                                                const double *unit) {
     const struct dalcs_system *s = part->component->system;
     if (guard >= s->n_pairs) {
-        return dalcs_answer_rounded *
+        return dalcs_sum_rounded *
                unit[dalcs_system_control_is_current(s, dalcs_guard_pair(part, guard))];
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
