@@ -1,5 +1,4 @@
 /* search_mode.c - the answers to a step that is accurate and whose mode is wrong, or tied. */
-#include "magnitudes.h"
 #include "search_internal.h"
 
 #include "blocks.h"
@@ -241,7 +240,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
     bool is_resolved =
         recovery * part->segment.h >= dalcs_length_shortest(r); /* else no micro-step sees it */
-    if (recovery > 0.0 && recovery < dalcs_slight && is_resolved) {
+    if (recovery > 0.0 && recovery < INFINITY && is_resolved) {
         return ask_closer(r, part, search, recovery);
     }
     if (search->closer && search->flips_closer++ < MOST_FLIPS_CLOSER) {

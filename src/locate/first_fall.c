@@ -177,7 +177,8 @@ static void note_fall(struct dalcs_radau_part *part, const struct look *a,
      * closed switches, which take over one after the other, the band of kilovolts would be all of their nanovolts. */
     const double near =
         part->segment.rounding > 1.0 ? a->nothing : dalcs_doubt_band(part) * a->scale;
-    const bool slips = guards->fresh && c->theta <= dalcs_slight && c->peak <= depth;
+    /* From rest a circuit may begin to move as a power of time. */
+    const bool slips = guards->fresh && c->peak <= depth;
     guards->slips = guards->slips || slips;
     const bool soon =
         c->at_once ||

@@ -24,10 +24,10 @@ static double allowed_of(const struct dalcs_radau_part *part, int k, const doubl
                          const double besides[2]) {
     int column = part->stages.levered[k];
     bool is_current = part->component->system->column_is_current[column];
-    /* of a voltage more is what megohms make of the rounding of amperes */
-    double tolerance =
-        is_current ? part->inner_tolerance : dalcs_larger(part->inner_tolerance, dalcs_alike);
-    return tolerance * dalcs_step_scale(part, column, unit) + besides[is_current];
+    /* Megohms make voltages of the rounding of amperes: what nobody sees of one with a lever is let be. */
+    const double least = is_current ? 0.0 : dalcs_slight * dalcs_nothing;
+    return dalcs_larger(part->inner_tolerance, least) * dalcs_step_scale(part, column, unit) +
+           besides[is_current];
 }
 
 /* The largest drift of a state, over what is allowed, that states as large as they have been could make. */
