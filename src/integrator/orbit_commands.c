@@ -3,6 +3,7 @@
 
 #include "magnitudes.h"
 #include "orbit_rates.h"
+#include "rounding.h"
 
 #include <math.h>
 
@@ -13,7 +14,7 @@ static void find_command(const struct dalcs_orbit_log *log, const struct dalcs_r
     const struct dalcs_logic_memory *gates = log->gates != NULL ? log->gates->memory : NULL;
     const struct dalcs_control *control = &part->commands.control;
     const struct dalcs_csr *a = &part->component->system->direct_control;
-    double left = dalcs_control_value(control, pair, t * (1.0 - dalcs_orbit_before), DALCS_LEFT);
+    double left = dalcs_control_value(control, pair, t * (1.0 - dalcs_answer_rounded), DALCS_LEFT);
     double right = dalcs_control_value(control, pair, t, DALCS_RIGHT);
     double size = 0.0;
     double slope = 0.0;
@@ -30,7 +31,7 @@ static void find_command(const struct dalcs_orbit_log *log, const struct dalcs_r
         }
     }
     const double steep =
-        slope * t * dalcs_orbit_before; /* a ramp of no time goes as far from there to here */
+        slope * t * dalcs_answer_rounded; /* a ramp of no time goes as far from there to here */
     bool is_edge = fabs(left + steep - right) > dalcs_alike * size || slope == 0.0;
     dt[0] = is_edge ? 0.0 : -moved[0] / slope;
     dt[1] = is_edge ? 0.0 : -moved[1] / slope;

@@ -1,6 +1,8 @@
 /* orbit_rates.c - derivatives by time along a run. */
 #include "orbit_rates.h"
 
+#include "rounding.h"
+
 #include <lapacke.h>
 #include <math.h>
 
@@ -74,7 +76,8 @@ static double slope_at(const struct dalcs_stimulus *s, double t, struct dalcs_st
 
 double dalcs_slope_before(const struct dalcs_stimulus *s, double t,
                           struct dalcs_stimulus_term *term) {
-    return slope_at(s, t * (1.0 - dalcs_orbit_before), term);
+    /* a piece is asked for that ends there */
+    return slope_at(s, t * (1.0 - dalcs_answer_rounded), term);
 }
 
 double dalcs_slope_behind(const struct dalcs_stimulus *s, double t,

@@ -4,8 +4,6 @@
 
 #include "radau_state.h"
 
-#include "rounding.h"
-
 struct dalcs_orbit_rates {
     const struct dalcs_radau_part *part;
     int n_x;
@@ -38,9 +36,6 @@ int dalcs_orbit_bystander(const struct dalcs_radau_part *part, int column);
 /* The derivative by time of what a probe reads of the part, where the present segment begins, or ends; term: work. */
 double dalcs_orbit_probe_rate(const struct dalcs_radau_part *part, const struct dalcs_probe *probe,
                               bool at_begin, struct dalcs_stimulus_term *term);
-
-/* So far before a time, over it, a control is what it was, and a piece of a source is asked for that ends there. */
-static const double dalcs_orbit_before = dalcs_answer_rounded;
 
 /* V/s: the slope of a source just before t, and from t on; term: work, as many as it has. */
 double dalcs_slope_before(const struct dalcs_stimulus *s, double t,

@@ -5,11 +5,10 @@
 
 #include <math.h>
 
-/* Last Legendre coefficients, over the size of what they are of. Integrals of products of two such polynomials, which
- * means over a period are, see the square of what is missing. */
-static const double resolved = dalcs_alike;
-
-/* A piece is at least this part of its span: what is still rough there has died away behind it, for the steps are
+/* Last Legendre coefficients are resolved where they are nothing beside what they are of (dalcs_alike): integrals of products
+ * of two such polynomials, which means over a period are, see the square of what is missing.
+ *
+ * A piece is at least this part of its span: what is still rough there has died away behind it, for the steps are
  * L-stable. Where it has not after so many pieces the polynomials do not carry it, and a span would take 2^40 of them. */
 enum { MOST_HALVINGS = 40, MOST_ROUGH = 256 };
 
@@ -106,9 +105,9 @@ static void try_piece(struct probe *p, const struct dalcs_flow_map *map, double 
         const double rounding = k < flow->n_x    ? 0.0
                                 : k == flow->n_x ? map->rounding[flow->n_columns]
                                                  : map->rounding[k - 1];
-        size = fmax(size, rounding / resolved);
+        size = fmax(size, rounding / dalcs_alike);
         *tail = of > 0.0 ? fmax(*tail, of / size) : *tail;
-        const bool is_rounding = of > resolved * size && of <= noise_of(p, map, k);
+        const bool is_rounding = of > dalcs_alike * size && of <= noise_of(p, map, k);
         *seen = of > 0.0 && !is_rounding ? fmax(*seen, of / size) : *seen;
     }
 }
@@ -176,8 +175,8 @@ static enum dalcs_status look_at(struct probe *p, const struct dalcs_orbit_span 
  * the last coefficients, and makes more of what rounding has left in them. Half of these digits tell one from the other. */
 static enum dalcs_status is_good(struct probe *p, const struct dalcs_orbit_span *span, double h,
                                  struct piece *piece, bool *is) {
-    *is = piece->tail <= resolved;
-    if (*is || piece->seen > resolved) {
+    *is = piece->tail <= dalcs_alike;
+    if (*is || piece->seen > dalcs_alike) {
         return DALCS_OK;
     }
     struct piece half;
@@ -204,7 +203,7 @@ static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span
             level++;
             continue;
         }
-        n_rough += piece.tail > resolved ? 1 : 0;
+        n_rough += piece.tail > dalcs_alike ? 1 : 0;
         if (n_rough > MOST_ROUGH) {
             return DALCS_NOT_CONVERGED;
         }
@@ -215,7 +214,7 @@ static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span
         at += (uint64_t)1 << (MOST_HALVINGS - level);
         /* twice the length takes 2^s times the coefficients, and is tried where it can begin */
         bool aligned = level > 0 && (at & ((uint64_t)1 << (MOST_HALVINGS - level))) == 0;
-        level -= aligned && ldexp(piece.seen, flow->stages.method->s - 1) <= resolved ? 1 : 0;
+        level -= aligned && ldexp(piece.seen, flow->stages.method->s - 1) <= dalcs_alike ? 1 : 0;
     }
     return DALCS_OK;
 }

@@ -2,12 +2,10 @@
 #include "rows.h"
 
 #include "extremes.h"
+#include "magnitudes.h"
 #include "step_error.h"
 
 #include <math.h>
-
-/* Of the tolerance: what does not jump is this close to where it was. */
-static const double join_part = 0.125;
 
 /* The largest that an output has been, as far as is known without a look at all rows. */
 static double size_of(const struct dalcs_rows *rows, const struct dalcs_radau_part *part,
@@ -26,7 +24,8 @@ static void join(struct dalcs_rows *rows, const struct dalcs_radau_part *part,
     double *now = &rows->value[signal->output].at[0];
     double *largest = &rows->largest[signal->output];
     *largest = dalcs_larger(*largest, dalcs_larger(fabs(before), fabs(*now)));
-    double known = join_part * rows->radau->options.tolerance * size_of(rows, part, signal);
+    /* What does not jump is this close to where it was. */
+    double known = dalcs_slight * rows->radau->options.tolerance * size_of(rows, part, signal);
     if (*now != 0.0 && fabs(*now - before) <= known) {
         *now = before;
     }

@@ -79,6 +79,21 @@ START_TEST(test_large_parts) {
 
 END_TEST
 
+/* Each new mode is a factorisation for each stage, and a loose tolerance takes few. */
+START_TEST(test_large_parts_that_are_switched) {
+    static const char switched[] = "V1 n0 0 PULSE(0 1 0 1n 1n 1u 2u)\nD1 n0 n1 DI\n"
+                                   ".model DI D(ron=1)\n";
+    struct dalcs_radau_options asked = usual;
+    asked.tolerance = 2e-4;
+    ck_assert_int_eq(choice_of(switched, 40, 1e-3, &asked).stages, 3);
+    ck_assert_str_eq(choice_of(switched, 40, 1e-3, &asked).because, "large, loose tolerance");
+    asked.tolerance = 5e-5;
+    ck_assert_int_eq(choice_of(switched, 40, 1e-3, &asked).stages, 5);
+    ck_assert_str_eq(choice_of(switched, 40, 1e-3, &asked).because, "large");
+}
+
+END_TEST
+
 /* Maps beyond half the limit: at tight tolerances, where digits are lost on factors. */
 START_TEST(test_maps) {
     struct dalcs_radau_options fine = usual;
@@ -94,4 +109,4 @@ START_TEST(test_maps) {
 END_TEST
 
 RUN_TESTS("choice", test_small_parts_aim_higher, test_what_is_asked_for_is_taken, test_large_parts,
-          test_maps)
+          test_large_parts_that_are_switched, test_maps)
