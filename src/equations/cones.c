@@ -9,36 +9,17 @@
  * varies in time and enters w becomes one: as a voltage source does in a circuit, with
  *     0 = i + F' lambda,      0 = s(t) - u,      w = ... + F u.
  * So does each input that commands a switch together with columns. */
-#include "reading.h"
+#include "cone_assembly.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* Where multiplier j of the file went: lambda = offset + sign * column, and w = sign * row. */
-struct place {
-    int column;
-    int row;      /* of C, or, of a free one, of A */
-    bool is_free; /* an unknown */
-    double sign, offset;
-    int bound; /* the pairs of a box: up, then down; -1: none */
-};
 
 bool dalcs_multiplier_is_unknown(const struct dalcs_multiplier *m) {
     return m->cone == DALCS_CONE_FREE ||
            (m->cone == DALCS_CONE_BOX && isfinite(m->low) && isfinite(m->high));
 }
 
-struct assembly {
-    const struct dalcs_described_system *from;
-    struct dalcs_system *s;
-    struct place *place; /* [n_multipliers] */
-    int *lifted;         /* [n_inputs] column u of an input, i behind it; -1: it stays an input */
-    int n_lifted;
-    struct dalcs_triplets P, A, E, C, F, storage, control, direct_control;
-};
-
-static void lift(struct assembly *a, int input, int *next) {
+static void lift(struct dalcs_assembly *a, int input, int *next) {
     if (a->lifted[input] < 0) {
         a->lifted[input] = *next;
         *next += 2;
@@ -52,7 +33,7 @@ static bool follows_columns(const struct dalcs_multiplier *m) {
     return m->pair.kind == DALCS_PAIR_SWITCH && !m->pair.is_direct;
 }
 
-static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
+static void count_columns(const struct dalcs_reading *r, struct dalcs_assembly *a) {
     const struct dalcs_described_system *from = a->from;
     struct dalcs_system *s = a->s;
     s->n_x = (int)from->n_states;
@@ -83,8 +64,8 @@ static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
     }
     for (size_t j = 0; j < from->n_multipliers; j++) {
         const struct dalcs_multiplier *m = &from->multiplier[j];
-        struct place *p = &a->place[j];
-        *p = (struct place){.sign = 1.0, .bound = -1};
+        struct dalcs_multiplier_place *p = &a->place[j];
+        *p = (struct dalcs_multiplier_place){.sign = 1.0, .bound = -1};
         if (dalcs_multiplier_is_unknown(m)) {
             p->is_free = true;
             p->column = p->row = next_z++;
@@ -123,18 +104,18 @@ struct target {
     double factor;
 };
 
-static struct target target_of(struct assembly *a, const struct row_blocks *blocks, int i) {
+static struct target target_of(struct dalcs_assembly *a, const struct row_blocks *blocks, int i) {
     if (blocks == &ROWS_I) {
         return (struct target){&a->A, &a->E, i, 1.0};
     }
     if (blocks == &ROWS_II) {
         return (struct target){&a->A, &a->E, a->s->n_x + i, 1.0};
     }
-    const struct place *p = &a->place[i];
+    const struct dalcs_multiplier_place *p = &a->place[i];
     return (struct target){p->is_free ? &a->A : &a->C, p->is_free ? &a->E : &a->F, p->row, p->sign};
 }
 
-static enum dalcs_status add_rows(struct assembly *a, const struct row_blocks *blocks) {
+static enum dalcs_status add_rows(struct dalcs_assembly *a, const struct row_blocks *blocks) {
     const enum dalcs_block_name name[] = {blocks->x, blocks->z, blocks->multipliers, blocks->inputs,
                                           blocks->constant};
 
@@ -155,7 +136,7 @@ static enum dalcs_status add_rows(struct assembly *a, const struct row_blocks *b
                 int input = b == 3 ? e->column + 1 : 0;
                 DALCS_TRY(dalcs_triplets_add(to.inputs, to.row, input, value));
             } else {
-                const struct place *p = &a->place[e->column];
+                const struct dalcs_multiplier_place *p = &a->place[e->column];
                 double sign = p->is_free ? 1.0 : p->sign;
                 DALCS_TRY(dalcs_triplets_add(to.columns, to.row, p->column, sign * value));
                 if (p->offset != 0.0) {
@@ -167,7 +148,7 @@ static enum dalcs_status add_rows(struct assembly *a, const struct row_blocks *b
     return DALCS_OK;
 }
 
-static enum dalcs_status add_lifted(struct assembly *a) {
+static enum dalcs_status add_lifted(struct dalcs_assembly *a) {
     for (size_t k = 0; k < a->from->n_inputs; k++) {
         int u = a->lifted[k];
         if (u >= 0) {
@@ -179,9 +160,9 @@ static enum dalcs_status add_lifted(struct assembly *a) {
     return DALCS_OK;
 }
 
-static enum dalcs_status add_boxes(struct assembly *a) {
+static enum dalcs_status add_boxes(struct dalcs_assembly *a) {
     for (size_t j = 0; j < a->from->n_multipliers; j++) {
-        const struct place *p = &a->place[j];
+        const struct dalcs_multiplier_place *p = &a->place[j];
         const struct dalcs_multiplier *m = &a->from->multiplier[j];
         if (p->bound >= 0) {
             int up = dalcs_system_n_equations(a->s) + p->bound;
@@ -197,19 +178,19 @@ static enum dalcs_status add_boxes(struct assembly *a) {
 }
 
 /* What commands the switches; a constant part of it moves their thresholds. */
-static enum dalcs_status add_controls(struct assembly *a) {
+static enum dalcs_status add_controls(struct dalcs_assembly *a) {
     const struct dalcs_triplets *t = &a->from->block[DALCS_BLOCK_CONTROL].entries;
     int n_equations = a->s->n_x + (int)a->from->n_unknowns;
     for (size_t k = 0; k < t->n; k++) {
         const struct dalcs_triplet *e = &t->entry[k];
-        const struct place *row = &a->place[e->row];
+        const struct dalcs_multiplier_place *row = &a->place[e->row];
         if (a->from->multiplier[e->row].pair.kind != DALCS_PAIR_SWITCH) {
             continue;
         }
         if (e->column < n_equations) {
             DALCS_TRY(dalcs_triplets_add(&a->control, row->row, e->column, e->value));
         } else {
-            const struct place *p = &a->place[e->column - n_equations];
+            const struct dalcs_multiplier_place *p = &a->place[e->column - n_equations];
             double sign = p->is_free ? 1.0 : p->sign;
             DALCS_TRY(dalcs_triplets_add(&a->control, row->row, p->column, sign * e->value));
             a->s->pair[row->row].turn_on -= p->offset * e->value;
@@ -240,7 +221,7 @@ static enum dalcs_status copy_entries(struct dalcs_triplets *to,
 }
 
 /* P, the identity where it is not given; the storage, P where it is symmetric, else the identity. */
-static enum dalcs_status add_states(struct assembly *a) {
+static enum dalcs_status add_states(struct dalcs_assembly *a) {
     const struct dalcs_block *block = a->from->block;
     bool has_P = block[DALCS_BLOCK_P].card != NULL || a->from->n_coordinates > 0;
     bool has_storage = block[DALCS_BLOCK_STORAGE].card != NULL || a->from->n_coordinates > 0;
@@ -292,140 +273,7 @@ static enum dalcs_status allocate(struct dalcs_system *s) {
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-static void label_column(struct dalcs_system *s, int c, const struct dalcs_described_column *d) {
-    s->column[c] = (struct dalcs_label){d->name, d->kind};
-    s->column_is_current[c] = d->is_current;
-    s->forest_root[c] = d->root < 0 ? c : d->root;
-}
-
-static void label_pairs(struct assembly *a) {
-    struct dalcs_system *s = a->s;
-    int n_equations = dalcs_system_n_equations(s);
-    for (size_t j = 0; j < a->from->n_multipliers; j++) {
-        const struct dalcs_multiplier *m = &a->from->multiplier[j];
-        const struct place *p = &a->place[j];
-        if (p->is_free) {
-            s->column[p->column] = (struct dalcs_label){m->pair.element, DALCS_LABEL_BRANCH};
-            s->column_is_current[p->column] = p->bound < 0;
-            s->forest_root[p->column] = p->column;
-            for (int d = p->bound; p->bound >= 0 && d < p->bound + 2; d++) {
-                s->pair[d] = m->pair;
-            }
-            continue;
-        }
-        s->pair[p->row] = m->pair;
-    }
-    for (int d = 0; d < s->n_pairs; d++) {
-        s->column_is_current[n_equations + d] = true;
-    }
-}
-
-static enum dalcs_status label_lifted(struct dalcs_reading *r, struct assembly *a) {
-    struct dalcs_system *s = a->s;
-    for (size_t k = 0; k < a->from->n_inputs; k++) {
-        int u = a->lifted[k];
-        if (u < 0) {
-            continue;
-        }
-        const char *name = r->input_name[a->from->input[k]];
-        const char *dual = dalcs_arena_printf(&r->builder.circuit->arena, "i(%s)", name);
-        if (dual == NULL) {
-            return DALCS_E_NOMEM;
-        }
-        s->column[u] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
-        s->column[u + 1] = (struct dalcs_label){dual, DALCS_LABEL_BRANCH};
-        s->column_is_current[u + 1] = true;
-        s->forest_root[u] = u;
-        s->forest_root[u + 1] = u + 1;
-    }
-    return DALCS_OK;
-}
-
-/* A row without a card of its own has its column's name, and the unit whose product with that of the
- * column is a power. */
-static void label_rows(struct assembly *a) {
-    struct dalcs_system *s = a->s;
-    for (int i = 0; i < dalcs_system_n_equations(s); i++) {
-        s->dual[i] = i;
-        s->row[i] = s->column[i];
-        s->row_is_current[i] = !s->column_is_current[i];
-        if ((size_t)i < a->from->n_rows) {
-            const struct dalcs_described_column *d = &a->from->row[i];
-            s->dual[i] = d->dual < 0 ? i : d->dual;
-            s->row[i] = (struct dalcs_label){d->name, d->kind};
-            s->row_is_current[i] = d->is_current;
-        }
-    }
-}
-
-/* ---- Checks -------------------------------------------------------------------------------- */
-
-/* Numbers of columns that rows and trees name. */
-static bool check_labels(struct dalcs_reading *r, const struct assembly *a) {
-    const struct dalcs_system *s = a->s;
-    int n = dalcs_system_n_equations(s);
-    bool ok = a->from->n_rows == 0 || (int)a->from->n_rows == n - 2 * a->n_lifted;
-    bool *taken = dalcs_alloc((size_t)n, sizeof *taken);
-    if (taken == NULL) {
-        r->builder.out_of_memory = true;
-        return false;
-    }
-    for (int i = 0; i < n && ok; i++) {
-        ok = s->dual[i] < n && !taken[s->dual[i]] && s->forest_root[i] < n;
-        if (ok) {
-            taken[s->dual[i]] = true;
-            ok = (s->row[i].kind == DALCS_LABEL_REFERENCE) ==
-                     (s->column[s->dual[i]].kind == DALCS_LABEL_REFERENCE) &&
-                 (s->forest_root[i] == i || (i >= s->n_x && s->forest_root[i] >= s->n_x));
-        }
-    }
-    free(taken);
-    if (!ok) {
-        dalcs_builder_error(&r->builder, a->from->token, NULL,
-                            "rows and columns do not fit: there must be a row for each state and "
-                            "unknown, each paired (dual=) with a column of its own, references "
-                            "with references");
-    }
-    return ok;
-}
-
-/* Systems up to this size are looked at densely. */
-enum { DENSE = 500 };
-
-/* P must be nonsingular. */
-static bool check_P(struct dalcs_reading *r, const struct assembly *a) {
-    const struct dalcs_csr *P = &a->s->P;
-    size_t n = (size_t)a->s->n_x;
-    if (n == 0 || n > DENSE) {
-        return true;
-    }
-    double *dense = dalcs_alloc(n * n, sizeof *dense);
-    lapack_int *pivot = dalcs_alloc(n, sizeof *pivot);
-    bool ok = false;
-    if (dense == NULL || pivot == NULL) {
-        r->builder.out_of_memory = true;
-    } else {
-        for (size_t i = 0; i < n; i++) {
-            for (int k = P->p[i]; k < P->p[i + 1]; k++) {
-                dense[i * n + (size_t)P->j[k]] = P->x[k];
-            }
-        }
-        ok = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, (lapack_int)n, (lapack_int)n, dense, (lapack_int)n,
-                            pivot) == 0;
-        if (!ok) {
-            dalcs_builder_error(&r->builder, a->from->token,
-                                "what has no derivative is an unknown of its own",
-                                "the matrix P (of a mechanical system: the mass) is singular");
-        }
-    }
-    free(dense);
-    free(pivot);
-    return ok;
-}
-
-/* ---- All together -------------------------------------------------------------------------- */
-
-static enum dalcs_status compress(struct assembly *a) {
+static enum dalcs_status compress(struct dalcs_assembly *a) {
     struct dalcs_system *s = a->s;
     int n_equations = dalcs_system_n_equations(s);
     int n_columns = dalcs_system_n_columns(s);
@@ -439,72 +287,19 @@ static enum dalcs_status compress(struct assembly *a) {
     return dalcs_csr_compress(&s->direct_control, s->n_pairs, s->n_inputs, &a->direct_control);
 }
 
-static enum dalcs_status multiply(struct dalcs_csr *a, const struct dalcs_csr *S) {
-    struct dalcs_triplets t = {0};
-    enum dalcs_status status = DALCS_OK;
-    for (int i = 0; i < a->n_rows && status == DALCS_OK; i++) {
-        if (i >= S->n_rows) {
-            for (int k = a->p[i]; k < a->p[i + 1] && status == DALCS_OK; k++) {
-                status = dalcs_triplets_add(&t, i, a->j[k], a->x[k]);
-            }
-            continue;
-        }
-        for (int e = S->p[i]; e < S->p[i + 1]; e++) {
-            int from = S->j[e];
-            for (int k = a->p[from]; k < a->p[from + 1] && status == DALCS_OK; k++) {
-                status = dalcs_triplets_add(&t, i, a->j[k], S->x[e] * a->x[k]);
-            }
-        }
-    }
-    struct dalcs_csr product = {0};
-    if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&product, a->n_rows, a->n_columns, &t);
-    }
-    if (status == DALCS_OK) {
-        dalcs_csr_finish(a);
-        *a = product;
-    }
-    dalcs_triplets_finish(&t);
-    return status;
-}
-
-/* Of x' = A x + B lambda with a storage of its own: S x' = S A x + S B lambda, the form in which
- * S B = C' shows as skewness. */
-static enum dalcs_status scale_by_storage(struct assembly *a) {
-    const struct dalcs_block *block = a->from->block;
-    struct dalcs_system *s = a->s;
-    if (block[DALCS_BLOCK_P].card != NULL || block[DALCS_BLOCK_STORAGE].card == NULL ||
-        a->from->n_coordinates > 0) {
-        return DALCS_OK;
-    }
-    DALCS_TRY(multiply(&s->A, &s->storage));
-    DALCS_TRY(multiply(&s->E, &s->storage));
-    return multiply(&s->P, &s->storage);
-}
-
-static enum dalcs_status choose_inputs(struct dalcs_reading *r, struct assembly *a) {
-    struct dalcs_system *s = a->s;
-    s->stimulus[0] = -1;
-    for (int k = 1; k < s->n_inputs; k++) {
-        s->stimulus[k] = a->from->input[k - 1];
-        s->input_element[k] = r->input_name[s->stimulus[k]];
-    }
-    return DALCS_OK;
-}
-
-static enum dalcs_status build(struct dalcs_reading *r, struct assembly *a) {
+static enum dalcs_status build(struct dalcs_reading *r, struct dalcs_assembly *a) {
     count_columns(r, a);
     DALCS_TRY(allocate(a->s));
-    DALCS_TRY(choose_inputs(r, a));
+    dalcs_label_inputs(r, a);
     for (int x = 0; x < a->s->n_x; x++) {
-        label_column(a->s, x, &a->from->state[x]);
+        dalcs_label_column(a->s, x, &a->from->state[x]);
     }
     for (int z = 0; z < (int)a->from->n_unknowns; z++) {
-        label_column(a->s, a->s->n_x + z, &a->from->unknown[z]);
+        dalcs_label_column(a->s, a->s->n_x + z, &a->from->unknown[z]);
     }
-    label_pairs(a);
-    DALCS_TRY(label_lifted(r, a));
-    label_rows(a);
+    dalcs_label_pairs(a);
+    DALCS_TRY(dalcs_label_lifted(r, a));
+    dalcs_label_rows(a);
     DALCS_TRY(add_states(a));
     DALCS_TRY(add_rows(a, &ROWS_I));
     DALCS_TRY(add_rows(a, &ROWS_II));
@@ -513,11 +308,11 @@ static enum dalcs_status build(struct dalcs_reading *r, struct assembly *a) {
     DALCS_TRY(add_lifted(a));
     DALCS_TRY(add_controls(a));
     DALCS_TRY(compress(a));
-    if (!check_labels(r, a) || !check_P(r, a)) {
+    if (!dalcs_labels_fit(r, a) || !dalcs_storage_is_regular(r, a)) {
         return r->builder.out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
     }
-    DALCS_TRY(scale_by_storage(a));
-    if (!check_P(r, a)) {
+    DALCS_TRY(dalcs_scale_by_storage(a));
+    if (!dalcs_storage_is_regular(r, a)) {
         return r->builder.out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
     }
     return dalcs_system_prove_monotone(a->s, a->from->monotone);
@@ -527,7 +322,7 @@ enum dalcs_status dalcs_system_of_description(struct dalcs_reading *r,
                                               struct dalcs_described_system *from,
                                               struct dalcs_system *system, double **initial) {
     *system = (struct dalcs_system){0};
-    struct assembly a = {.from = from, .s = system};
+    struct dalcs_assembly a = {.from = from, .s = system};
     enum dalcs_status status = DALCS_E_NOMEM;
     a.place = dalcs_alloc(from->n_multipliers, sizeof *a.place);
     a.lifted = dalcs_alloc(from->n_inputs, sizeof *a.lifted);

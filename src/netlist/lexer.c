@@ -6,104 +6,17 @@
 #include "lexer.h"
 
 #include "eight_bytes.h"
-#include "lower_case.h"
 
 #include <limits.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Stands in `low` for a byte that is no text; `raw` shows it as '?'. */
-static const char INVALID = '\x01';
-
-static bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
-}
-
 static bool ends_word(char c) {
     static const bool ends[UCHAR_MAX + 1] = {
         ['\0'] = true, [' '] = true, ['\t'] = true, ['\r'] = true, ['\v'] = true, ['\f'] = true,
         [','] = true,  ['='] = true, ['('] = true,  [')'] = true,  [';'] = true};
     return ends[(unsigned char)c];
-}
-
-/* The length of the UTF-8 character at p (n bytes follow), 0 when it is not one. */
-static size_t utf8_length(const unsigned char *p, size_t n) {
-    size_t length;
-    unsigned least;
-    unsigned code;
-    if (p[0] < 0xC2) {
-        return 0;
-    } else if (p[0] < 0xE0) {
-        length = 2;
-        least = 0x80;
-        code = p[0] & 0x1FU;
-    } else if (p[0] < 0xF0) {
-        length = 3;
-        least = 0x800;
-        code = p[0] & 0x0FU;
-    } else if (p[0] < 0xF5) {
-        length = 4;
-        least = 0x10000;
-        code = p[0] & 0x07U;
-    } else {
-        return 0;
-    }
-    if (n < length) {
-        return 0;
-    }
-    for (size_t k = 1; k < length; k++) {
-        if ((p[k] & 0xC0) != 0x80) {
-            return 0;
-        }
-        code = code << 6 | (p[k] & 0x3FU);
-    }
-    const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
-    return code < least || code > 0x10FFFF || surrogate ? 0 : length;
-}
-
-/* Cleans the character at raw[k]; its bytes. A no-break space, which comes with text copied from web
- * pages, becomes blanks, and a carriage return that ends no line one. */
-static size_t clean_character(struct dalcs_lexer *lexer, size_t k) {
-    char *raw = lexer->raw;
-    char *low = lexer->low;
-    const size_t end = lexer->length;
-    const char c = raw[k];
-    const unsigned char byte = (unsigned char)c;
-    const size_t length = byte < 0x80 ? 0 : utf8_length((const unsigned char *)raw + k, end - k);
-    if (length == 2 && byte == 0xC2 && (unsigned char)raw[k + 1] == 0xA0) {
-        raw[k] = raw[k + 1] = low[k] = low[k + 1] = ' ';
-        return 2;
-    }
-    if (length > 0) {
-        memcpy(low + k, raw + k, length);
-        return length;
-    }
-    const bool ends_line = c == '\n' || (c == '\r' && (k + 1 == end || raw[k + 1] == '\n'));
-    if (byte >= 0x7F || (byte < 0x20 && !is_blank(c) && !ends_line)) {
-        raw[k] = '?';
-        low[k] = INVALID;
-        lexer->has_invalid = true;
-    } else if (is_blank(c) && c != '\t' && !ends_line) {
-        raw[k] = low[k] = ' ';
-    } else {
-        low[k] = dalcs_lower(c);
-    }
-    return 1;
-}
-
-void dalcs_lexer_clean(struct dalcs_lexer *lexer, size_t begin) {
-    for (size_t k = begin; k < lexer->length;) {
-        const bool is_room = lexer->length - k >= 8;
-        const uint64_t eight = is_room ? dalcs_eight_load(lexer->raw + k) : 0;
-        if (is_room && dalcs_eight_is_plain(eight)) {
-            const uint64_t lower = dalcs_eight_lower(eight);
-            memcpy(lexer->low + k, &lower, sizeof lower);
-            k += 8;
-        } else {
-            k += clean_character(lexer, k);
-        }
-    }
 }
 
 /* From raw[begin] on; a long line has many places, whose columns are not to be counted one by one. */
@@ -239,7 +152,7 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
         q = p + word_length(lexer, p);
         token->text = low + p;
     }
-    const bool invalid = lexer->has_invalid && memchr(low + p, INVALID, q - p) != NULL;
+    const bool invalid = lexer->has_invalid && memchr(low + p, DALCS_LEXER_INVALID, q - p) != NULL;
     low[q] = '\0';
     if (token->kind != DALCS_TOKEN_WORD && closed) {
         q++;
@@ -267,18 +180,18 @@ static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t
     const char *raw = lexer->raw;
     lexer->after_comma = lexer->after_comma && lexer->n_tokens > 0;
     for (;;) {
-        while (is_blank(raw[p]) || raw[p] == ',') {
+        while (dalcs_lexer_is_blank(raw[p]) || raw[p] == ',') {
             lexer->after_comma = lexer->after_comma || raw[p] == ',';
             p++;
         }
         if (raw[p] == '\0' || raw[p] == ';') {
             return DALCS_OK;
         }
-        if (raw[p] == '$' && (p == begin || is_blank(raw[p - 1])) &&
-            (raw[p + 1] == '\0' || is_blank(raw[p + 1]))) {
+        if (raw[p] == '$' && (p == begin || dalcs_lexer_is_blank(raw[p - 1])) &&
+            (raw[p + 1] == '\0' || dalcs_lexer_is_blank(raw[p + 1]))) {
             return DALCS_OK;
         }
-        if (starts_slashes(raw + p) && (p == begin || is_blank(raw[p - 1]))) {
+        if (starts_slashes(raw + p) && (p == begin || dalcs_lexer_is_blank(raw[p - 1]))) {
             return DALCS_OK;
         }
         DALCS_TRY(need_line(lexer, begin));
@@ -302,14 +215,14 @@ bool dalcs_lexer_starts_with(const struct dalcs_lexer *lexer, size_t p, const ch
 
 /* With or without .title before it. */
 static enum dalcs_status read_title(struct dalcs_lexer *lexer, size_t begin, size_t end) {
-    while (begin < end && is_blank(lexer->raw[begin])) {
+    while (begin < end && dalcs_lexer_is_blank(lexer->raw[begin])) {
         begin++;
     }
     begin += dalcs_lexer_starts_with(lexer, begin, ".title") ? strlen(".title") : 0;
-    while (begin < end && is_blank(lexer->raw[begin])) {
+    while (begin < end && dalcs_lexer_is_blank(lexer->raw[begin])) {
         begin++;
     }
-    while (end > begin && is_blank(lexer->raw[end - 1])) {
+    while (end > begin && dalcs_lexer_is_blank(lexer->raw[end - 1])) {
         end--;
     }
     lexer->netlist->title =
@@ -360,7 +273,7 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
         return read_title(lexer, begin, end);
     }
     size_t p = begin;
-    while (is_blank(lexer->raw[p])) {
+    while (dalcs_lexer_is_blank(lexer->raw[p])) {
         p++;
     }
     if (lexer->in_control) {
@@ -397,115 +310,4 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
     }
     lexer->in_control = dalcs_lexer_starts_with(lexer, p, ".control");
     return read_tokens(lexer, p, begin);
-}
-
-/* A card that is not of a flat netlist of numbers. */
-static bool is_language(const struct dalcs_token *name) {
-    static const char *const words[] = {
-        ".param",  ".params", ".csparam", ".global_param", ".func",   ".function",
-        ".subckt", ".ends",   ".global",  ".if",           ".elseif", ".else",
-        ".endif",  ".step",   ".wcase",   ".wc",           ".params:"};
-    for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
-        if (strcmp(name->text, words[k]) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* B sources, E, G, S and R with name=expression, L with Flux=, C with Q=: formulas need no braces. */
-static bool may_have_formula(const struct dalcs_card *card) {
-    bool may = card->letter == 'b';
-    const bool has_forms = card->letter == 'e' || card->letter == 'g' || card->letter == 's' ||
-                           (card->letter == 'r' && card->n > 6);
-    for (int k = 3; k < card->n && has_forms && !may; k++) {
-        may = card->token[k].kind == DALCS_TOKEN_EQUAL;
-    }
-    const bool is_coil = card->letter == 'l';
-    for (int k = 4; k < card->n && (is_coil || card->letter == 'c') && !may; k++) {
-        may = card->token[k].kind == DALCS_TOKEN_EQUAL &&
-              strcmp(card->token[k - 1].text, is_coil ? "flux" : "q") == 0;
-    }
-    return may;
-}
-
-/* DEV=5%, LOT/1/gauss=2%, on an element or in a model. */
-static bool may_have_tolerance(const struct dalcs_card *card) {
-    bool may = false;
-    for (int k = 3; k < card->n && !may; k++) {
-        const char *text = card->token[k].text;
-        may = card->token[k].kind == DALCS_TOKEN_WORD &&
-              (strncmp(text, "dev", 3) == 0 || strncmp(text, "lot", 3) == 0) &&
-              (text[3] == '\0' || text[3] == '/');
-    }
-    return may;
-}
-
-/* The brace or bracket that closes a model, which is the end of its last word or a word of its own. */
-static enum dalcs_status close_model(struct dalcs_lexer *lexer) {
-    const bool may = lexer->n_tokens > 4 && strcmp(lexer->token[0].text, ".model") == 0 &&
-                     lexer->token[3].kind == DALCS_TOKEN_OPEN && lexer->token[3].text[0] != '(';
-    struct dalcs_token *last = &lexer->token[lexer->n_tokens - 1];
-    if (!may || last->kind != DALCS_TOKEN_WORD) {
-        return DALCS_OK;
-    }
-    const char close = lexer->token[3].text[0] == '{' ? '}' : ']';
-    const size_t n = strlen(last->text);
-    if (last->text[n - 1] != close) {
-        return DALCS_OK;
-    }
-    struct dalcs_token token = *last;
-    token.kind = DALCS_TOKEN_CLOSE;
-    token.text = ")";
-    token.offset += (int)n - 1;
-    token.length = 1;
-    if (n == 1) {
-        *last = token;
-        return DALCS_OK;
-    }
-    ((char *)(uintptr_t)last->text)[n - 1] = '\0'; /* in `low`, which is the lexer's own */
-    last->length--;
-    DALCS_TRY(
-        dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
-    lexer->token[lexer->n_tokens++] = token;
-    return DALCS_OK;
-}
-
-/* The first letter; LTspice's F a b value={formula} and H a b value={formula} are G and E. */
-static char letter_of(const struct dalcs_token *token, int n) {
-    const char letter = token->text[0];
-    const bool has_formula =
-        n > 4 && (letter == 'f' || letter == 'h') && strcmp(token[3].text, "value") == 0 &&
-        (token[4].kind == DALCS_TOKEN_EQUAL || token[4].kind == DALCS_TOKEN_EXPRESSION);
-    return has_formula && letter == 'f' ? 'g' : has_formula ? 'e' : letter;
-}
-
-enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
-    struct dalcs_netlist *netlist = lexer->netlist;
-    if (lexer->n_tokens == 0) {
-        return DALCS_OK;
-    }
-    DALCS_TRY(close_model(lexer));
-    if (lexer->n_tokens > INT_MAX / 2) {
-        return DALCS_E_LIMIT;
-    }
-    struct dalcs_token *token = dalcs_arena_alloc(&netlist->arena, lexer->n_tokens, sizeof *token);
-    if (token == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    memcpy(token, lexer->token, lexer->n_tokens * sizeof *token);
-    const struct dalcs_card card = {token, (int)lexer->n_tokens,
-                                    letter_of(token, (int)lexer->n_tokens), 0};
-    lexer->n_tokens = 0;
-    if (card.letter == '.' && dalcs_include_is_card(token->text)) {
-        return dalcs_include_card(lexer, &card);
-    }
-    netlist->has_tolerances = netlist->has_tolerances || may_have_tolerance(&card);
-    netlist->has_language = netlist->has_language || netlist->has_tolerances ||
-                            card.letter == 'x' || (card.letter == '.' && is_language(token)) ||
-                            may_have_formula(&card);
-    DALCS_TRY(dalcs_grow(&netlist->card, &netlist->capacity, netlist->n_cards + 1,
-                         sizeof *netlist->card));
-    netlist->card[netlist->n_cards++] = card;
-    return DALCS_OK;
 }

@@ -1,4 +1,5 @@
-/* lexer.h - physical lines to cards; used by netlist.c only. */
+/* lexer.h - physical lines to cards; used by netlist.c only. Bytes are looked at in lexer_characters.c, cards are made in
+ * lexer_cards.c. */
 #ifndef DALCS_LEXER_H
 #define DALCS_LEXER_H
 
@@ -34,6 +35,13 @@ struct dalcs_lexer {
     bool after_comma; /* the card so far ends with one */
     size_t capacity;
 };
+
+/* Stands in `low` for a byte that is no text; `raw` shows it as '?'. */
+enum { DALCS_LEXER_INVALID = '\x01' };
+
+static inline bool dalcs_lexer_is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
 
 /* Lower-cases raw[begin..length-1] into `low` and marks what is no text, before any line is read. */
 void dalcs_lexer_clean(struct dalcs_lexer *lexer, size_t begin);
