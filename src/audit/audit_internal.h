@@ -53,6 +53,13 @@ struct audit_watch {
         bool complete; /* there was room for all */
     } fill;            /* while a screen is made */
 
+    struct audit_all_pieces {       /* what screens are sums of (screen_pieces.c) */
+        struct audit_pieces *first; /* NULL: none are made */
+        int n;
+        struct audit_piece **used; /* work: of the present mode */
+        double *is_read;           /* [n_columns] likewise */
+    } pieces;
+
     double
         *state_factor; /* [n_devices of the part] of a state, in their sum; NULL: not drawn yet */
     double barycentric[AUDIT_MOST_NODES];
@@ -340,6 +347,9 @@ double audit_jump_beside(const struct dalcs_audit *audit, const struct audit_par
 /* formulas.c, laws.c */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device);
+/* ... of all formulas of a part. */
+void audit_check_formulas(struct dalcs_audit *audit, struct audit_part *part,
+                          const struct dalcs_audit_state *s);
 /* ... is a pair of a formula where it may change sides? */
 bool audit_behaviour_may_turn(const struct dalcs_audit *audit, const struct audit_part *part,
                               const struct dalcs_audit_state *s, int device);
@@ -349,6 +359,10 @@ void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
 /* kirchhoff.c: what leaves each node of a part, audit->sums, with its scale and rounding. */
 void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
                         const struct dalcs_audit_state *s);
+
+/* ... what of that comes from storage: audit->sums.volts and amperes. */
+void audit_round_storage(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s);
 
 /* ... and what all nodes that ideal branches join with one have of that. Overwrites audit->crossing.cluster. */
 double audit_rounding_around(struct dalcs_audit *audit, const struct audit_part *part,

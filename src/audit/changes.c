@@ -129,7 +129,7 @@ bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint
     for (int k = 0; k < part->n_latches; k++) {
         const int device = part->latch[k];
         const bool now =
-            audit->reader.is_closed(audit->reader.user, (int)(part - audit->part), device);
+            audit->reader.is_on(audit->reader.user, (int)(part - audit->part), device, 0);
         turn = turn || (now != part->was_closed[k] && is_asked(audit, device));
         part->was_closed[k] = now;
     }
