@@ -126,6 +126,15 @@ static void leave_behind(struct audit_part *part) {
     part->watch->is_put_off = false;
 }
 
+/* No screen knows means of two positions. */
+static void look_at_means(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    take_up(&audit->part[stretch->part], stretch);
+    raise_scales(audit, stretch->part);
+    audit->now.side = DALCS_RIGHT;
+    audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
+    look(audit, stretch->part, &audit->now);
+}
+
 /* A screen is linear: it knows no smooth function. A polynomial may miss one anywhere in a stretch, and all else as before:
  * formulas that read it, and what it puts out. */
 static void look_at_formulas(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
@@ -154,7 +163,9 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
         return false;
     }
     const bool can_look = can_look_inside(audit, stretch);
-    if (can_look && part->has_smooth) {
+    if (can_look && stretch->stored == NULL) {
+        look_at_means(audit, stretch);
+    } else if (can_look && part->has_smooth) {
         look_at_formulas(audit, stretch);
     }
     const bool asks = audit_watch_asks(audit, stretch, can_look);

@@ -96,8 +96,8 @@ static double size_of(const struct audit_filling *f, int device, const struct da
             of = f->audit->scale.lambda[f->audit->net.first_lambda[device] + term->index];
             break;
         default:
-            of = fabs(dalcs_stimulus_value(&f->audit->circuit->stimulus[term->index], f->t,
-                                           DALCS_RIGHT));
+            of = fabs(
+                dalcs_stimulus_value(&f->audit->circuit->stimulus[term->index], f->t, DALCS_RIGHT));
             break;
         }
         size += fabs(term->coefficient) * of;
@@ -145,9 +145,9 @@ static void fill_pair(struct audit_filling *f, int device, int k, enum audit_sid
 
 int audit_n_choices(const struct dalcs_circuit *circuit, int device) {
     const struct dalcs_device *d = &circuit->device[device];
-    return d->behaviour != NULL                                    ? d->behaviour->n_pairs
+    return d->behaviour != NULL                                ? d->behaviour->n_pairs
            : d->kind == DALCS_DIODE || d->kind == DALCS_SWITCH ? 1
-                                                                   : 0;
+                                                               : 0;
 }
 
 /* As the run has it: a wrong side can only ask for a look that was not needed. */

@@ -12,8 +12,9 @@
 
 struct audit_piece {
     double now, rate; /* constants of the sum of laws, of what is integrated */
-    int n_columns;    /* terms of rows, with the row for a place; those of each kind are behind them */
-    int n_terms[AUDIT_N_TERM_KINDS]; /* whose places are counted from the first of its signs and guards */
+    int n_columns; /* terms of rows, with the row for a place; those of each kind are behind them */
+    int n_terms
+        [AUDIT_N_TERM_KINDS]; /* whose places are counted from the first of its signs and guards */
     int n_signs, n_guards;
     bool has_stimuli; /* in terms */
     struct audit_term *term;
@@ -60,7 +61,8 @@ static struct audit_pieces *pieces_of(struct audit_watch *watch, int class) {
     return set;
 }
 
-static struct audit_term *put_columns(const struct audit_sums_of_laws *fill, struct audit_term *to) {
+static struct audit_term *put_columns(const struct audit_sums_of_laws *fill,
+                                      struct audit_term *to) {
     for (int r = 0; r < AUDIT_N_ROWS; r++) {
         const struct dalcs_audit_row *row = &fill->row[r];
         for (int k = 0; k < row->n_columns; k++) {
@@ -239,7 +241,8 @@ static void add(struct audit_screen *screen, const struct audit_piece *piece, in
         screen->row[term->place * n + term->index] += term->factor * is_read[term->index];
     }
     const int past = AUDIT_SIGN_TIMES * sign;
-    struct audit_term *column = screen->term[AUDIT_TERM_COLUMN] + screen->n_terms[AUDIT_TERM_COLUMN];
+    struct audit_term *column =
+        screen->term[AUDIT_TERM_COLUMN] + screen->n_terms[AUDIT_TERM_COLUMN];
     term = add_terms(screen, AUDIT_TERM_COLUMN, piece, term, past);
     for (int k = 0; k < piece->n_terms[AUDIT_TERM_COLUMN]; k++, column++) {
         column->factor *= is_read[column->index];
