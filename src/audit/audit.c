@@ -1,5 +1,5 @@
 /* audit.c - what is looked at, and when. */
-#include "audit_internal.h"
+#include "crossing.h"
 
 #include "screen.h"
 

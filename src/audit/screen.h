@@ -12,7 +12,7 @@
 #ifndef DALCS_AUDIT_SCREEN_H
 #define DALCS_AUDIT_SCREEN_H
 
-#include "audit_internal.h"
+#include "watch.h"
 
 /* Rows over the columns: at one time; at the start, which is subtracted; to be integrated; states, of which none jumps. */
 enum audit_screen_row {
