@@ -1,5 +1,5 @@
 /* audit.c - what is looked at, and when. */
-#include "audit_internal.h"
+#include "crossing.h"
 
 #include "screen.h"
 
@@ -80,10 +80,7 @@ static void look_inside(struct dalcs_audit *audit, const struct dalcs_audit_stre
         audit->part[stretch->part].was_integrated = true;
         return;
     }
-    /* a polynomial may miss a smooth function anywhere in a stretch */
-    const bool is_full =
-        audit->options.mode == DALCS_AUDIT_FULL || audit->part[stretch->part].has_smooth;
-    const int n = is_full ? FULL_INSTANTS : 1;
+    const int n = audit->options.mode == DALCS_AUDIT_FULL ? FULL_INSTANTS : 1;
     for (int k = 0; k < n; k++) {
         audit->now.side = DALCS_RIGHT;
         audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
@@ -129,6 +126,28 @@ static void leave_behind(struct audit_part *part) {
     part->watch->is_put_off = false;
 }
 
+/* No screen knows means of two positions. */
+static void look_at_means(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    take_up(&audit->part[stretch->part], stretch);
+    raise_scales(audit, stretch->part);
+    audit->now.side = DALCS_RIGHT;
+    audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
+    look(audit, stretch->part, &audit->now);
+}
+
+/* A screen is linear: it knows no smooth function. A polynomial may miss one anywhere in a stretch, and all else as before:
+ * formulas that read it, and what it puts out. */
+static void look_at_formulas(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_part *part = &audit->part[stretch->part];
+    take_up(part, stretch);
+    raise_scales(audit, stretch->part);
+    audit->now.side = DALCS_RIGHT;
+    audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
+    audit->reader.read(audit->reader.user, stretch->part, &audit->now);
+    audit_note_scales(audit, part, &audit->now);
+    audit_check_formulas(audit, part, &audit->now);
+}
+
 bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
@@ -139,12 +158,16 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     part->at.past_coarse = part->at.was_coarse;
     part->at.was_coarse = stretch->rule == DALCS_AUDIT_COARSE;
     part->watch->asked = -1.0;
-    /* a screen is linear: it knows no smooth function */
-    part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL || part->has_smooth;
+    part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL;
     if (part->at.is_drawn) {
         return false;
     }
     const bool can_look = can_look_inside(audit, stretch);
+    if (can_look && stretch->stored == NULL) {
+        look_at_means(audit, stretch);
+    } else if (can_look && part->has_smooth) {
+        look_at_formulas(audit, stretch);
+    }
     const bool asks = audit_watch_asks(audit, stretch, can_look);
     const uint64_t key = stretch->stored != NULL ? stretch->stored->key : 0;
     part->watch->has_turned =
@@ -219,13 +242,9 @@ static void look_at_turn(struct dalcs_audit *audit, const struct dalcs_audit_str
     audit->budget.spent += part->cost;
 }
 
-/* A mode that is new is looked at by the screen that is made of it, from a state in it. */
+/* A mode that is new is looked at by the screen that is made of it. */
 static bool is_settled(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
-    struct audit_part *part = &audit->part[stretch->part];
-    audit->now.side = DALCS_RIGHT;
-    audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
-    audit->reader.read(audit->reader.user, stretch->part, &audit->now);
-    audit_note_scales(audit, part, &audit->now);
+    const struct audit_part *part = &audit->part[stretch->part];
     return !audit_watch_begins(audit, stretch) && !part->at.is_drawn && !stretch->is_last;
 }
 
@@ -278,9 +297,7 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     part->is_open = true;
     if (is_inside) {
         integrate(audit, stretch);
-        if (!part->has_smooth) {
-            audit_watch_learn(audit, stretch);
-        }
+        audit_watch_learn(audit, stretch);
     }
 }
 

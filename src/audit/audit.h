@@ -85,14 +85,17 @@ struct dalcs_audit_reader {
     void (*complete)(void *user, int part);
     /* [n_nodes stride] what input j is multiplied by; NULL: by 0. */
     const double *(*column)(void *user, int part, int j);
-    /* Adds so many times the voltage of a node, the current of a device and a formula's lambda, as read() has them. */
+    /* Adds so many times the voltage of a node, the current of a device and a formula's lambda, as read() has them. Not
+     * all columns are read in each mode: read_columns() tells which. */
     void (*add_voltage)(void *user, int part, int node, double factor, struct dalcs_audit_row *row);
     void (*add_current)(void *user, int part, int device, double factor,
                         struct dalcs_audit_row *row);
     void (*add_lambda)(void *user, int part, int lambda, double factor,
                        struct dalcs_audit_row *row);
-    /* Of a switch, in the present stretch. */
-    bool (*is_closed)(void *user, int part, int device);
+    /* is_read[n_columns]: 1 where the present mode reads a column, 0 where another number is in its place. */
+    void (*read_columns)(void *user, int part, double *is_read);
+    /* Of a device, in the present stretch: does its k-th pair conduct? That of a switch is whether it is closed. */
+    bool (*is_on)(void *user, int part, int device, int k);
     /* The state where the stretch before the present one ended, or so many s earlier. */
     void (*read_before)(void *user, int part, double earlier, struct dalcs_audit_state *state);
     /* Such a stretch takes the place of the present one, and what came before it of the one before; until go_back(). Both

@@ -10,15 +10,6 @@
 /* Instants of a look: one inside, and both sides of its end. */
 enum { AUDIT_LOOK_INSTANTS = 3 };
 
-/* Nodes of a step, at most. */
-enum { AUDIT_MOST_NODES = 12 };
-
-/* Instructions of a screen, about, of what is handed over and asked; together with others half as many. */
-#define AUDIT_SCREEN_WORK 600.0
-
-/* Times in a step that it is asked at, one of them each time. */
-enum { AUDIT_SCREEN_TIMES = 4 };
-
 /* What a stimulus is between two times, as a polynomial. */
 enum { AUDIT_COURSE_TERMS = 10 };
 
@@ -28,70 +19,8 @@ struct audit_course {
     double term[AUDIT_COURSE_TERMS];
 };
 
-/* How all stretches of a part are looked at by screens (screen.h). */
-struct audit_watch {
-    struct audit_screens {
-        int n, log2_slots;
-        struct audit_screen **slot;  /* [2^log2_slots] by key; NULL: none */
-        struct audit_screen *latest; /* that was found; NULL: none */
-        size_t numbers;              /* in all of them */
-    } screens;
-
-    struct audit_sums_of_laws {
-        struct dalcs_audit_row row[5]; /* by audit_screen_row, and a sign */
-        double *node_weight;           /* [2][n_nodes] of Kirchhoff's laws now and over time */
-        double *sign, *guard;          /* constants */
-        int n_signs, n_guards;
-        size_t sign_room, guard_room;
-
-        struct audit_list {
-            struct audit_term *term;
-            int n;
-            size_t room;
-        } list[5]; /* by audit_term_kind */
-
-        bool complete; /* there was room for all */
-    } fill;            /* while a screen is made */
-
-    double
-        *state_factor; /* [n_devices of the part] of a state, in their sum; NULL: not drawn yet */
-    double barycentric[AUDIT_MOST_NODES];
-    double theta
-        [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
-    bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there */
-    double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
-
-    struct audit_image *image; /* that the present one was asked by; NULL: by its values, or not */
-
-    struct audit_batch { /* of stretches that repeat one another (batch.c) */
-        struct dalcs_audit_batch gathered;
-        struct audit_screen *screen;    /* that asks them */
-        struct audit_image *image;      /* that passed the stretch before over; NULL: none */
-        int n_times;                    /* of the watch's times, those before its end */
-        int n_columns, n_nodes, stride; /* of polynomials, columns in whole quads */
-        const double *place;            /* of the image at the time that was drawn */
-        double past;                    /* s: that time */
-        double end;                     /* of the stretch before, in steps */
-        int node;                       /* where values beside it are */
-        double length, near;            /* s */
-        size_t room;
-        bool is_busy; /* some are looked at once more */
-    } batch;
-
-    double *column; /* [2][n_columns in whole quads] work */
-    double *place;  /* work */
-    size_t place_room;
-    double states; /* the sum of states where the stretch before ended */
-    bool knows_states;
-    bool is_put_off;    /* the present one does not begin there */
-    bool saw_beginning; /* its beginning was looked at */
-    bool makes;         /* a screen is to be made of the present stretch */
-    uint64_t key;       /* of the stretch before; 0: it had none */
-    bool knows_sides;   /* that switches with hysteresis had in the stretch before */
-    bool has_turned;    /* one of them is on the other now */
-    double asked;       /* s: a time in it that asks for a look; < 0: none does */
-    bool has_jumped; /* ... where all laws hold, but not all states are what they were before it */
-};
+/* How all stretches of a part are looked at by screens (watch.h). */
+struct audit_watch;
 
 /* A part: its devices and the nodes that they hang on, shorts merged, without ground. */
 struct audit_part {
@@ -340,6 +269,9 @@ double audit_jump_beside(const struct dalcs_audit *audit, const struct audit_par
 /* formulas.c, laws.c */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device);
+/* ... of all formulas of a part. */
+void audit_check_formulas(struct dalcs_audit *audit, struct audit_part *part,
+                          const struct dalcs_audit_state *s);
 /* ... is a pair of a formula where it may change sides? */
 bool audit_behaviour_may_turn(const struct dalcs_audit *audit, const struct audit_part *part,
                               const struct dalcs_audit_state *s, int device);
@@ -349,6 +281,10 @@ void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
 /* kirchhoff.c: what leaves each node of a part, audit->sums, with its scale and rounding. */
 void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
                         const struct dalcs_audit_state *s);
+
+/* ... what of that comes from storage: audit->sums.volts and amperes. */
+void audit_round_storage(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s);
 
 /* ... and what all nodes that ideal branches join with one have of that. Overwrites audit->crossing.cluster. */
 double audit_rounding_around(struct dalcs_audit *audit, const struct audit_part *part,
@@ -382,67 +318,6 @@ static inline bool audit_is_commanded(const struct dalcs_audit *audit, int switc
     return d->control < 0 && audit->net.is_held[d->node[2]] && audit->net.is_held[d->node[3]];
 }
 
-/* Does a device join its two nodes, from one state to another in no time? */
-typedef bool audit_joins(const struct dalcs_audit *audit, const struct audit_part *part,
-                         const struct dalcs_audit_state *before,
-                         const struct dalcs_audit_state *after, int device);
-
-/* crossing.c: of the nodes of a part, into audit->crossing.cluster. */
-void audit_find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
-                         const struct dalcs_audit_state *before,
-                         const struct dalcs_audit_state *after, audit_joins *join);
-audit_joins audit_passes_charge;
-
-/* crossing.c: how charge may pass through a branch while an event takes place; from its first node to its second is
- * forward. */
-enum { AUDIT_FORWARD = 1, AUDIT_BACKWARD = 2 };
-
-int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_part *part,
-                         const struct dalcs_audit_state *before,
-                         const struct dalcs_audit_state *after, int device);
-
-/* crossing.c: what the first plate of a capacitor gained across an event, and what that is held to. */
-double audit_charge_gained(const struct dalcs_audit *audit, const struct audit_part *part,
-                           const struct dalcs_audit_state *after, int device, double *scale);
-
-/* Is a node of a device among those that `root` names? */
-typedef bool audit_has_node(const struct dalcs_audit *audit, int node, int root);
-bool audit_is_in_cluster(const struct dalcs_audit *audit, int node, int root);
-
-/* What hangs on such nodes: all capacitances, and the largest conductance. */
-struct audit_hanging {
-    double farad, siemens;
-};
-struct audit_hanging audit_find_hanging(const struct dalcs_audit *audit,
-                                        const struct audit_part *part,
-                                        const struct dalcs_audit_state *at, audit_has_node *has,
-                                        int root);
-
-/* C, what that conductance moves in a time that the run does not resolve: an event is no better known. */
-double audit_charge_unresolved(const struct dalcs_audit *audit, const struct audit_part *part,
-                               const struct dalcs_audit_state *after, audit_has_node *has,
-                               int root);
-
-/* directions.c: where diodes let it pass one way only. */
-void audit_check_directions(struct dalcs_audit *audit, const struct audit_part *part,
-                            const struct dalcs_audit_state *before,
-                            const struct dalcs_audit_state *after);
-
-/* impulses.c: nodes whose potential may be an impulse, as what reads a current that is one makes it. */
-void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *part,
-                         const struct dalcs_audit_state *before,
-                         const struct dalcs_audit_state *after);
-
-void audit_forget_impulses(struct dalcs_audit *audit, const struct audit_part *part);
-
-/* Is such a node at one of its ends, or in what controls it? */
-bool audit_has_impulse(const struct dalcs_audit *audit, const struct dalcs_device *d);
-
-/* crossing.c: charges and fluxes, from audit->crossing.stored on. `before` is `after` where nothing else was before. */
-void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
-                      const struct dalcs_audit_state *before,
-                      const struct dalcs_audit_state *after);
-
 /* changes.c: does a switch with hysteresis stand on another side than in the stretch before? Screens tell no change within
  * a hysteresis. key: of its polynomials, the same only in the same mode; 0: there are none. */
 bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint64_t key);
@@ -456,10 +331,5 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
 void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *first,
                        const struct dalcs_audit_polynomials *stored);
-
-/* crossing.c: what holds from one side of an event to the other. */
-void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
-                          const struct dalcs_audit_state *before,
-                          const struct dalcs_audit_state *after);
 
 #endif

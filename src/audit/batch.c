@@ -11,10 +11,10 @@ struct dalcs_audit_batch *dalcs_audit_batch_of(const struct dalcs_audit *audit, 
     return &audit->part[part].watch->batch.gathered;
 }
 
-/* Sources in signs and in integrals are asked elsewhere. */
-static bool can_gather(const struct audit_watch *watch, const struct dalcs_audit_stretch *stretch) {
-    const struct audit_screen *screen = watch->screens.latest;
-    return !stretch->is_cut && screen->n_terms[AUDIT_TERM_SIGN] == 0 &&
+/* Sources in signs and in integrals are asked elsewhere, and so are smooth functions. */
+static bool can_gather(const struct audit_part *part, const struct dalcs_audit_stretch *stretch) {
+    const struct audit_screen *screen = part->watch->screens.latest;
+    return !part->has_smooth && !stretch->is_cut && screen->n_terms[AUDIT_TERM_SIGN] == 0 &&
            screen->n_terms[AUDIT_TERM_FLOW] == 0;
 }
 
@@ -39,7 +39,7 @@ void audit_batch_from(struct dalcs_audit *audit, struct audit_part *part,
         image != NULL && image == b->image && audit_is_same_end(image->end, b->end);
     b->image = image;
     b->end = image != NULL ? image->end : 0.0;
-    if (!is_second || b->is_busy || !can_gather(watch, stretch)) {
+    if (!is_second || b->is_busy || !can_gather(part, stretch)) {
         return;
     }
     const struct dalcs_audit_polynomials *p = stretch->stored;

@@ -197,7 +197,7 @@ int audit_batch_first(struct dalcs_audit *audit, struct audit_batch *b,
         enclose(b);
         ask_signs(b, s->below);
     }
-    for (int k = AUDIT_BATCH_FIRST; k < n && b->screen->n_terms[AUDIT_TERM_LAW] > 0; k++) {
+    for (int k = AUDIT_BATCH_FIRST; k < n && audit_laws_have_stimuli(b->screen); k++) {
         s->law[k] += audit_laws_stimuli(audit, b->screen, b->gathered.from[k] + b->past);
     }
     s->law[0] = s->below[0] = 0.0; /* of what was asked before */

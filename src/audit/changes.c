@@ -4,7 +4,7 @@
  * beyond, so only the side before the event tells, unless something else happened at that time that may have moved the
  * control: a source has an edge, or another switch or a diode was where it changes over, too. A step of implicit Euler ends
  * before what it ends at. */
-#include "audit_internal.h"
+#include "watch.h"
 
 /* By how much a control is short of the threshold behind which a switch closes, or opens. */
 static double short_of(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
@@ -129,7 +129,7 @@ bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint
     for (int k = 0; k < part->n_latches; k++) {
         const int device = part->latch[k];
         const bool now =
-            audit->reader.is_closed(audit->reader.user, (int)(part - audit->part), device);
+            audit->reader.is_on(audit->reader.user, (int)(part - audit->part), device, 0);
         turn = turn || (now != part->was_closed[k] && is_asked(audit, device));
         part->was_closed[k] = now;
     }

@@ -150,13 +150,74 @@ static void shift(int n, double by, double *term) {
     }
 }
 
-/* Their sum is one polynomial as long as all of them are. It is worth it where that is longer than since the time asked
- * before. */
+static const double turn = 2.0 * 3.14159265358979323846;
+
+/* Is it a sine from t on? */
+static bool is_wave(const struct dalcs_stimulus *s, double t) {
+    return s->kind == DALCS_STIMULUS_SIN && t >= s->u.sine.delay && !(s->u.sine.n_cycles > 0.0) &&
+           s->u.sine.damping == 0.0 && s->u.sine.frequency > 0.0;
+}
+
+/* Sines of one frequency are one sine: of two values, a quarter of its period apart. */
+static bool add_wave(const struct dalcs_stimulus *s, double factor, double t,
+                     struct audit_waves *all) {
+    int k = 0;
+    while (k < all->n && all->wave[k].frequency != s->u.sine.frequency) {
+        k++;
+    }
+    if (k == AUDIT_MOST_WAVES) {
+        return false;
+    }
+    struct audit_wave *w = &all->wave[k];
+    if (k == all->n) {
+        all->n++;
+        *w = (struct audit_wave){.frequency = s->u.sine.frequency, .origin = t};
+    }
+    const double since = w->origin;
+    const double quarter = since + 0.25 / w->frequency;
+    const double offset = s->u.sine.offset;
+    w->sine += factor * (dalcs_stimulus_value(s, since, DALCS_RIGHT) - offset);
+    w->cosine += factor * (dalcs_stimulus_value(s, quarter, DALCS_RIGHT) - offset);
+    all->offset += factor * offset;
+    return true;
+}
+
+/* Terms that are sines from t on are one wave for each frequency from now on. */
+static void take_waves(const struct dalcs_audit *audit, struct audit_screen *screen, double t) {
+    struct audit_term *term = screen->term[AUDIT_TERM_LAW];
+    int n_left = 0;
+    for (int k = 0; k < screen->n_terms[AUDIT_TERM_LAW]; k++) {
+        const struct dalcs_stimulus *s = &audit->circuit->stimulus[term[k].index];
+        if (!(is_wave(s, t) && add_wave(s, term[k].factor, t, &screen->waves))) {
+            term[n_left++] = term[k];
+        }
+    }
+    screen->n_terms[AUDIT_TERM_LAW] = n_left;
+    for (int k = 0; k < screen->waves.n; k++) {
+        struct audit_wave *w = &screen->waves.wave[k];
+        w->amplitude = hypot(w->sine, w->cosine);
+        w->phase = atan2(w->sine, w->cosine) / turn;
+    }
+}
+
+double audit_waves_value(const struct audit_waves *all, double t) {
+    double sum = all->offset;
+    for (int k = 0; k < all->n; k++) {
+        const struct audit_wave *w = &all->wave[k];
+        const double cycles = w->frequency * (t - w->origin);
+        sum += w->amplitude * sin(turn * (cycles - floor(cycles) + w->phase));
+    }
+    return sum;
+}
+
+/* What are no waves is one polynomial as long as all of them are. It is worth it where that is longer than since the time
+ * asked before. */
 double audit_laws_begin(struct dalcs_audit *audit, struct audit_screen *screen, double t) {
-    const struct audit_term *term = screen->term[AUDIT_TERM_LAW];
-    const int n = screen->n_terms[AUDIT_TERM_LAW];
     struct audit_course *all = &screen->course;
     const double before = all->origin;
+    take_waves(audit, screen, t);
+    const struct audit_term *term = screen->term[AUDIT_TERM_LAW];
+    const int n = screen->n_terms[AUDIT_TERM_LAW];
     double sum = 0.0;
     double from = -INFINITY;
     double to = INFINITY;

@@ -222,3 +222,13 @@ void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
     audit_find(audit, part, law, device, fabs(is - f) - rounding, held, s->t);
     check_pairs(audit, part, s, device, held);
 }
+
+void audit_check_formulas(struct dalcs_audit *audit, struct audit_part *part,
+                          const struct dalcs_audit_state *s) {
+    audit_round_storage(audit, part, s);
+    for (int k = 0; k < part->n_devices; k++) {
+        if (audit->circuit->device[part->device[k]].behaviour != NULL) {
+            audit_check_formula(audit, part, s, part->device[k]);
+        }
+    }
+}

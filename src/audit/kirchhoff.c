@@ -1,5 +1,5 @@
 /* kirchhoff.c - what leaves each node, with its rounding, and all that holds at one time. */
-#include "audit_internal.h"
+#include "crossing.h"
 
 #include "union_find.h"
 
@@ -16,8 +16,8 @@ static void leave(const struct dalcs_audit *audit, int node, double current, dou
 
 /* What rounding of fluxes makes of voltages and of charges of currents. Conducting branches hand it on, and along a chain
  * of them it adds up: what is at one device may come from all others. */
-static void round_storage(struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *s) {
+void audit_round_storage(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s) {
     const double least = STORED_ROUNDING * part->at.slope;
     audit->sums.volts = audit->sums.amperes = 0.0;
     for (int k = 0; k < part->n_devices; k++) {
@@ -64,7 +64,7 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
         const int node = part->node[k];
         audit->sums.current[node] = audit->sums.scale[node] = audit->sums.rounding[node] = 0.0;
     }
-    round_storage(audit, part, s);
+    audit_round_storage(audit, part, s);
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];

@@ -94,6 +94,21 @@ double audit_control_scale(const struct dalcs_audit *audit, const struct audit_p
     return fmax(signal, fabs(m->vt) + fabs(m->vh));
 }
 
+/* Does a formula that is a mean itself put out what controls a switch? Then that may be at the threshold for any share of
+ * the time, and tells nothing. */
+static bool is_put_out(const struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *s, const struct dalcs_device *of) {
+    bool is = false;
+    for (int k = 0; k < part->n_devices && of->control < 0 && !is; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        is = d->behaviour != NULL && d->kind == DALCS_VCVS && s->is_mean[part->device[k]] &&
+             isfinite(audit_jump_beside(audit, part, s, part->device[k])) &&
+             ((d->node[0] == of->node[2] && d->node[1] == of->node[3]) ||
+              (d->node[0] == of->node[3] && d->node[1] == of->node[2]));
+    }
+    return is;
+}
+
 /* A switch that slides stands at its threshold, or what commands it is a formula that does; for a mean of two positions
  * signs hold, and no law of either. */
 static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
@@ -104,6 +119,7 @@ static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
         const double scale = audit_control_scale(audit, part, device);
         double off = fabs(audit_control(audit, s, device, &half_width)) - half_width;
         off -= off > 0.0 ? audit_control_slack(audit, part, s, device) : 0.0;
+        off = is_put_out(audit, part, s, d) ? scale : off;
         for (int k = 0; k < part->n_devices && off > part->tolerance * scale; k++) {
             const int of = part->device[k];
             const bool may_command = s->is_mean[of] && audit->circuit->device[of].behaviour != NULL;

@@ -1,5 +1,5 @@
 /* parts.c - who belongs to a part, and room for what is read of it. */
-#include "audit_internal.h"
+#include "watch.h"
 
 #include "union_find.h"
 

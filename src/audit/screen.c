@@ -1,5 +1,5 @@
 /* screen.c - the screens of a part: found by key, made, kept in a table of bounded size. */
-#include "screen.h"
+#include "screen_rows.h"
 
 #include "quads.h"
 
@@ -103,6 +103,7 @@ static struct audit_screen *take(struct audit_watch *watch,
     struct audit_screens *screens = &watch->screens;
     if (screens->numbers > AUDIT_MOST_NUMBERS) {
         drop_all(screens);
+        audit_pieces_forget(watch);
     }
     if (!grow(screens)) {
         return NULL;
@@ -187,6 +188,7 @@ void audit_screen_rescale(struct dalcs_audit *audit, struct audit_part *part) {
         return;
     }
     draw_states(audit, part, watch);
+    audit_pieces_forget(watch);
     for (int k = 0; watch->screens.slot != NULL && k < 1 << watch->screens.log2_slots; k++) {
         if (watch->screens.slot[k] != NULL) {
             watch->screens.slot[k]->is_made = false;
@@ -212,7 +214,7 @@ static bool start(struct dalcs_audit *audit, struct audit_part *part,
         complete = start_row(audit, &fill->row[k], p->n_columns);
     }
     double *factor = dalcs_arena_alloc(&audit->arena, (size_t)part->n_devices, sizeof(double));
-    if (!complete || factor == NULL) {
+    if (!complete || factor == NULL || !audit_pieces_start(audit, part, p->n_columns)) {
         return false;
     }
     watch->state_factor = factor;
@@ -235,66 +237,15 @@ void audit_screen_finish(struct audit_part *part) {
     free(watch->batch.gathered.input);
     free(watch->fill.sign);
     free(watch->fill.guard);
+    audit_pieces_forget(watch);
     for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
         free(watch->fill.list[k].term);
     }
 }
 
-/* The sums and lists of the watch become those of the screen. */
-static bool put(struct audit_watch *watch, struct audit_screen *screen, int n_columns) {
-    const struct audit_sums_of_laws *fill = &watch->fill;
-    const int n = dalcs_quads_of(n_columns);
-    int n_terms = 0;
-    for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
-        n_terms += fill->list[k].n;
-    }
-    screen->n_guards = fill->n_guards;
-    for (int k = 0; k < AUDIT_WINDOWS; k++) {
-        screen->window[k] = (struct audit_window){.from = INFINITY};
-    }
-    screen->n_places = dalcs_quads_of(AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * fill->n_signs);
-    free(screen->row);
-    free(screen->term[0]);
-    const size_t numbers = (size_t)(AUDIT_N_ROWS * n + screen->n_places + screen->n_guards);
-    screen->row = dalcs_alloc(numbers, sizeof(double));
-    struct audit_term *to = screen->term[0] =
-        dalcs_alloc((size_t)n_terms + 1, sizeof(**screen->term));
-    if (screen->row == NULL || to == NULL ||
-        dalcs_grow(&watch->place, &watch->place_room, (size_t)screen->n_places, sizeof(double)) !=
-            DALCS_OK) {
-        return false;
-    }
-    watch->screens.numbers += numbers;
-    for (int r = 0; r < AUDIT_N_ROWS; r++) {
-        const struct dalcs_audit_row *row = &fill->row[r];
-        for (int k = 0; k < row->n_columns; k++) {
-            screen->row[r * n + row->listed_column[k]] = row->column[row->listed_column[k]];
-        }
-    }
-    screen->constant = screen->row + AUDIT_N_ROWS * n;
-    screen->constant[AUDIT_PLACE_LAWS] = fill->row[AUDIT_ROW_NOW].constant;
-    screen->rate = fill->row[AUDIT_ROW_FLOW].constant;
-    for (int k = AUDIT_PLACE_SIGNS; k < screen->n_places; k++) { /* no sign behind the last */
-        const int sign = (k - AUDIT_PLACE_SIGNS) / AUDIT_SIGN_TIMES;
-        screen->constant[k] = sign < fill->n_signs ? fill->sign[sign] : INFINITY;
-    }
-    for (int k = 0; k < fill->n_guards; k++) {
-        screen->constant[screen->n_places + k] = fill->guard[k];
-    }
-    for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
-        screen->n_terms[k] = fill->list[k].n;
-        screen->term[k] = to;
-        if (fill->list[k].n > 0) {
-            memcpy(to, fill->list[k].term, (size_t)fill->list[k].n * sizeof *to);
-        }
-        to += fill->list[k].n;
-    }
-    return true;
-}
-
 struct audit_screen *audit_screen_make(struct dalcs_audit *audit, struct audit_part *part,
                                        const struct dalcs_audit_polynomials *p,
-                                       const struct dalcs_audit_state *s) {
+                                       const struct dalcs_audit_state *s, double t) {
     struct audit_watch *watch = part->watch;
     if (watch->state_factor == NULL && !start(audit, part, p)) {
         return NULL;
@@ -303,10 +254,21 @@ struct audit_screen *audit_screen_make(struct dalcs_audit *audit, struct audit_p
     if (screen == NULL) {
         return NULL;
     }
+    struct audit_filling f = {.audit = audit,
+                              .part = part,
+                              .watch = watch,
+                              .s = s,
+                              .index = (int)(part - audit->part),
+                              .step = screen->length,
+                              .t = t};
     screen->rests = 0;
     screen->course.from = INFINITY;
+    screen->waves.n = 0;
+    screen->waves.offset = 0.0;
+    for (int k = 0; k < AUDIT_WINDOWS; k++) {
+        screen->window[k] = (struct audit_window){.from = INFINITY};
+    }
     audit_images_forget(screen);
-    screen->is_made =
-        audit_screen_fill(audit, part, screen->length, s) && put(watch, screen, p->n_columns);
+    screen->is_made = audit_pieces_add_up(&f, screen, screen->class, p->n_columns);
     return screen->is_made ? screen : NULL;
 }

@@ -7,12 +7,12 @@
  * by several times what is allowed. It is the same sum for all stretches of a mode, made once; of a stretch that is a
  * linear image of few numbers, its state above all, it is a product with these.
  *
- * Which side a diode is on is taken from a state that was looked at. The law of that side and its sign, together, are the
- * diode's, so a wrong guess can only ask for a look that was not needed. */
+ * Which side a diode is on is taken from the run. The law of that side and its sign, together, are the diode's, so a wrong
+ * guess can only ask for a look that was not needed. */
 #ifndef DALCS_AUDIT_SCREEN_H
 #define DALCS_AUDIT_SCREEN_H
 
-#include "audit_internal.h"
+#include "watch.h"
 
 /* Rows over the columns: at one time; at the start, which is subtracted; to be integrated; states, of which none jumps. */
 enum audit_screen_row {
@@ -85,6 +85,20 @@ struct audit_window {
     double period;   /* s: nor so much later; 0: that is not known */
 };
 
+/* Sines in a sum, of a few frequencies. */
+enum { AUDIT_MOST_WAVES = 4 };
+
+struct audit_waves {
+    int n;
+    double offset;
+
+    struct audit_wave {
+        double frequency, origin; /* Hz, s */
+        double sine, cosine;      /* at the origin, and a fourth of a period later */
+        double amplitude, phase;  /* phase: in cycles, at the origin */
+    } wave[AUDIT_MOST_WAVES];
+};
+
 struct audit_screen {
     uint64_t key;
     int class;     /* of the length, screen.c */
@@ -103,7 +117,8 @@ struct audit_screen {
     int window_at; /* the one that was found last */
     int n_terms[AUDIT_N_TERM_KINDS];
     struct audit_term *term[AUDIT_N_TERM_KINDS]; /* one behind the other */
-    struct audit_course course;                  /* of what sources add to the sum of laws */
+    struct audit_waves waves;                    /* of sines that go on, in the sum of laws */
+    struct audit_course course;                  /* of what other sources add to it */
     double step, end;                            /* of the stretch before that had no image */
     int image_at;                                /* the one that was of use last */
     struct audit_image image[AUDIT_IMAGES];
@@ -113,10 +128,14 @@ struct audit_screen {
 struct audit_screen *audit_screen_of(const struct audit_part *part,
                                      const struct dalcs_audit_polynomials *p);
 
-/* Makes it, from a state of the stretch that was looked at; NULL: no room. */
+/* Makes it, from a state of the stretch that was looked at, or NULL: that at a time t is read where it takes one. NULL: no
+ * room. */
 struct audit_screen *audit_screen_make(struct dalcs_audit *audit, struct audit_part *part,
                                        const struct dalcs_audit_polynomials *p,
-                                       const struct dalcs_audit_state *s);
+                                       const struct dalcs_audit_state *s, double t);
+
+/* What screens are sums of is made again. */
+void audit_pieces_forget(struct audit_watch *watch);
 
 /* States are held to the scales of now, where these have grown: then no screen is left. */
 void audit_screen_rescale(struct dalcs_audit *audit, struct audit_part *part);
@@ -127,15 +146,11 @@ void audit_screen_finish(struct audit_part *part);
 bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
                       bool can_look);
 
-/* Its mode is new, and audit->now is a state in it: a screen is made. Is it to be looked at? */
+/* Its mode is new: a screen is made. Is it to be looked at? */
 bool audit_watch_begins(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 
 /* It was looked at since it was asked for, and audit->now is a state in it. */
 void audit_watch_learn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
-
-/* screen_rows.c: the laws and signs of a mode at a state, into the sums and lists of the watch. */
-bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part, double step,
-                       const struct dalcs_audit_state *s);
 
 /* A random factor and sign, for a sum. */
 double audit_screen_weight(struct dalcs_audit *audit);
@@ -143,11 +158,21 @@ double audit_screen_weight(struct dalcs_audit *audit);
 /* courses.c: what sources add to its sum of laws where the course of that is not known. */
 double audit_laws_begin(struct dalcs_audit *audit, struct audit_screen *screen, double t);
 
+double audit_waves_value(const struct audit_waves *all, double t);
+
+static inline bool audit_laws_have_stimuli(const struct audit_screen *screen) {
+    return screen->n_terms[AUDIT_TERM_LAW] > 0 || screen->waves.n > 0;
+}
+
 static inline double audit_laws_stimuli(struct dalcs_audit *audit, struct audit_screen *screen,
                                         double t) {
     const struct audit_course *c = &screen->course;
-    return c->from <= t && t <= c->to ? audit_course_value(c, t)
-                                      : audit_laws_begin(audit, screen, t);
+    double sum = 0.0;
+    if (screen->n_terms[AUDIT_TERM_LAW] > 0) {
+        sum = c->from <= t && t <= c->to ? audit_course_value(c, t)
+                                         : audit_laws_begin(audit, screen, t);
+    }
+    return screen->waves.n > 0 ? sum + audit_waves_value(&screen->waves, t) : sum;
 }
 
 struct audit_question {

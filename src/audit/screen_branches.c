@@ -21,21 +21,18 @@ static void add_line(const struct audit_filling *f, struct dalcs_audit_row *row,
     add_own_current(f, row, device, roff, -r * factor);
 }
 
-static void fill_diode(struct audit_filling *f, int device) {
+static void fill_diode(struct audit_filling *f, int device, enum audit_side side) {
     const struct dalcs_device *d = &f->audit->circuit->device[device];
     const struct dalcs_diode_model *m = &f->audit->circuit->diode_model[d->model];
     double scale[2];
     audit_diode_scale(f->audit, f->part, device, scale);
     const double allowed[2] = {f->part->tolerance * scale[0],
                                f->part->tolerance * scale[1] + f->audit->options.abstol};
-    const double v = audit_voltage(f->s, d);
-    const double own = f->s->i[device] - (isfinite(m->roff) ? v / m->roff : 0.0);
-    if (own > 0.0 && fabs(m->vfwd + m->ron * own - v) * scale[1] <= own * scale[0]) {
+    if (side == AUDIT_ON) {
         add_line(f, audit_row_now(f), device, m->roff, m->vfwd, m->ron, audit_over(f, allowed[0]));
         add_own_current(f, sign(f), device, m->roff, 1.0 / allowed[1]);
         audit_put_sign(f);
-    } else if (own < 0.0 && isfinite(m->vrev) &&
-               fabs(m->vrev - m->rrev * own + v) * scale[1] <= -own * scale[0]) {
+    } else if (side == AUDIT_IN_BREAKDOWN) {
         add_line(f, audit_row_now(f), device, m->roff, -m->vrev, m->rrev,
                  audit_over(f, allowed[0]));
         add_own_current(f, sign(f), device, m->roff, -1.0 / allowed[1]);
@@ -51,10 +48,9 @@ static void fill_diode(struct audit_filling *f, int device) {
     }
 }
 
-static void fill_switch(struct audit_filling *f, int device) {
+static void fill_switch(struct audit_filling *f, int device, bool is_closed) {
     const struct dalcs_device *d = &f->audit->circuit->device[device];
     const struct dalcs_switch_model *m = &f->audit->circuit->switch_model[d->model];
-    const bool is_closed = f->s->is_closed[device];
     const double rounding = fmax(f->audit->sums.rounding[f->audit->net.node_of[d->node[0]]],
                                  f->audit->sums.rounding[f->audit->net.node_of[d->node[1]]]) +
                             f->audit->sums.amperes;
@@ -100,8 +96,8 @@ static double size_of(const struct audit_filling *f, int device, const struct da
             of = f->audit->scale.lambda[f->audit->net.first_lambda[device] + term->index];
             break;
         default:
-            of = fabs(dalcs_stimulus_value(&f->audit->circuit->stimulus[term->index], f->s->t,
-                                           f->s->side));
+            of = fabs(
+                dalcs_stimulus_value(&f->audit->circuit->stimulus[term->index], f->t, DALCS_RIGHT));
             break;
         }
         size += fabs(term->coefficient) * of;
@@ -109,27 +105,14 @@ static double size_of(const struct audit_filling *f, int device, const struct da
     return size;
 }
 
-static double value_of(const struct audit_filling *f, int device, const struct dalcs_affine *a) {
-    double sum = a->constant;
-    for (int k = 0; k < a->n; k++) {
-        const struct dalcs_affine_term *term = &a->term[k];
-        const double of = term->kind == DALCS_QUANTITY_VOLTAGE ? f->s->v[term->index]
-                          : term->kind == DALCS_QUANTITY_CURRENT
-                              ? audit_current(f->audit, f->s, term->index)
-                          : term->kind == DALCS_QUANTITY_PAIR
-                              ? f->s->lambda[f->audit->net.first_lambda[device] + term->index]
-                              : dalcs_stimulus_value(&f->audit->circuit->stimulus[term->index],
-                                                     f->s->t, f->s->side);
-        sum += term->coefficient * of;
-    }
-    return sum;
-}
-
+/* What a formula puts out, if that is no smooth function. What a part of one does is looked at where that is read. */
 static void fill_formula(struct audit_filling *f, int device) {
     const struct dalcs_device *d = &f->audit->circuit->device[device];
-    const struct dalcs_audit_reader *r = &f->audit->reader;
     const struct dalcs_behaviour *b = d->behaviour;
     const bool is_voltage = d->kind == DALCS_VCVS;
+    if (b->smooth != NULL || (f->audit->net.is_inner != NULL && f->audit->net.is_inner[device])) {
+        return;
+    }
     const double held = size_of(f, device, &b->output) +
                         (is_voltage ? audit_volts(f->audit, f->part, d->node[0], d->node[1])
                                     : audit_amperes(f->audit, f->part, device));
@@ -140,22 +123,54 @@ static void fill_formula(struct audit_filling *f, int device) {
     } else {
         audit_add_read_current(f, audit_row_now(f), device, factor);
     }
-    for (int k = 0; k < b->n_pairs; k++) {
-        const int pair = f->audit->net.first_lambda[device] + k;
-        const double size = fmax(size_of(f, device, &b->w[k]), 0x1p-500);
-        const double lambda_size = fmax(f->audit->scale.lambda[pair], 0x1p-500);
-        const double w = value_of(f, device, &b->w[k]);
-        const double tolerance = f->part->tolerance;
-        if (f->s->lambda[pair] * size > fabs(w) * lambda_size) {
-            audit_add_affine(f, audit_row_now(f), device, &b->w[k],
-                             audit_over(f, tolerance * size));
-            r->add_lambda(r->user, f->index, pair, 1.0 / (tolerance * lambda_size), sign(f));
-        } else {
-            r->add_lambda(r->user, f->index, pair, audit_over(f, tolerance * lambda_size),
-                          audit_row_now(f));
-            audit_add_affine(f, sign(f), device, &b->w[k], 1.0 / (tolerance * size));
-        }
-        audit_put_sign(f);
+}
+
+static void fill_pair(struct audit_filling *f, int device, int k, enum audit_side side) {
+    const struct dalcs_audit_reader *r = &f->audit->reader;
+    const struct dalcs_affine *w = &f->audit->circuit->device[device].behaviour->w[k];
+    const int pair = f->audit->net.first_lambda[device] + k;
+    const double size = fmax(size_of(f, device, w), 0x1p-500);
+    const double lambda_size = fmax(f->audit->scale.lambda[pair], 0x1p-500);
+    const double tolerance = f->part->tolerance;
+    if (side == AUDIT_ON) {
+        audit_add_affine(f, audit_row_now(f), device, w, audit_over(f, tolerance * size));
+        r->add_lambda(r->user, f->index, pair, 1.0 / (tolerance * lambda_size), sign(f));
+    } else {
+        r->add_lambda(r->user, f->index, pair, audit_over(f, tolerance * lambda_size),
+                      audit_row_now(f));
+        audit_add_affine(f, sign(f), device, w, 1.0 / (tolerance * size));
+    }
+    audit_put_sign(f);
+}
+
+int audit_n_choices(const struct dalcs_circuit *circuit, int device) {
+    const struct dalcs_device *d = &circuit->device[device];
+    return d->behaviour != NULL                                ? d->behaviour->n_pairs
+           : d->kind == DALCS_DIODE || d->kind == DALCS_SWITCH ? 1
+                                                               : 0;
+}
+
+/* As the run has it: a wrong side can only ask for a look that was not needed. */
+enum audit_side audit_side_of(const struct audit_filling *f, int device, int choice) {
+    const struct dalcs_device *d = &f->audit->circuit->device[device];
+    const struct dalcs_audit_reader *r = &f->audit->reader;
+    if (r->is_on(r->user, f->index, device, choice)) {
+        return AUDIT_ON;
+    }
+    const bool breaks_down = d->kind == DALCS_DIODE &&
+                             isfinite(f->audit->circuit->diode_model[d->model].vrev) &&
+                             r->is_on(r->user, f->index, device, choice + 1);
+    return breaks_down ? AUDIT_IN_BREAKDOWN : AUDIT_OFF;
+}
+
+void audit_fill_side(struct audit_filling *f, int device, int choice, enum audit_side side) {
+    const struct dalcs_device *d = &f->audit->circuit->device[device];
+    if (d->behaviour != NULL) {
+        fill_pair(f, device, choice, side);
+    } else if (d->kind == DALCS_DIODE) {
+        fill_diode(f, device, side);
+    } else {
+        fill_switch(f, device, side == AUDIT_ON);
     }
 }
 
@@ -216,12 +231,6 @@ void audit_fill_branch(struct audit_filling *f, int device) {
             factor = audit_over(f, tolerance * scale + f->audit->options.vntol);
             audit_add_voltage(f, audit_row_now(f), d, 0, factor);
         }
-        break;
-    case DALCS_DIODE:
-        fill_diode(f, device);
-        break;
-    case DALCS_SWITCH:
-        fill_switch(f, device);
         break;
     case DALCS_INDUCTOR:
         fill_coil(f, device);

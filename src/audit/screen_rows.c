@@ -222,10 +222,7 @@ static void add_start(const struct audit_filling *f) {
     }
 }
 
-bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part, double step,
-                       const struct dalcs_audit_state *s) {
-    struct audit_filling f = {audit, part, part->watch, s, (int)(part - audit->part), step};
-    struct audit_sums_of_laws *fill = &part->watch->fill;
+void audit_fill_begin(struct audit_sums_of_laws *fill) {
     for (int k = 0; k <= AUDIT_N_ROWS; k++) {
         clear(&fill->row[k]);
     }
@@ -234,17 +231,21 @@ bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part, doubl
     }
     fill->n_signs = fill->n_guards = 0;
     fill->complete = true;
-    audit_sum_currents(audit, part, s);
-    weigh_nodes(&f);
-    for (int k = 0; k < part->n_devices; k++) {
-        fill_nodes(&f, part->device[k]);
-        fill_state(&f, k);
+}
+
+void audit_fill_common(struct audit_filling *f) {
+    weigh_nodes(f);
+    for (int k = 0; k < f->part->n_devices; k++) {
+        fill_nodes(f, f->part->device[k]);
+        fill_state(f, k);
+        audit_fill_branch(f, f->part->device[k]);
     }
-    for (int k = 0; k < part->n_devices; k++) {
-        audit_fill_branch(&f, part->device[k]);
-    }
-    add_start(&f);
-    list_stimuli(&f, audit_row_now(&f), AUDIT_TERM_LAW, AUDIT_PLACE_LAWS);
-    list_stimuli(&f, &fill->row[AUDIT_ROW_FLOW], AUDIT_TERM_FLOW, AUDIT_PLACE_LAWS);
-    return fill->complete && fill->row[AUDIT_ROW_START].n_stimuli == 0;
+    add_start(f);
+}
+
+void audit_fill_end(struct audit_filling *f) {
+    struct audit_sums_of_laws *fill = &f->watch->fill;
+    list_stimuli(f, audit_row_now(f), AUDIT_TERM_LAW, AUDIT_PLACE_LAWS);
+    list_stimuli(f, &fill->row[AUDIT_ROW_FLOW], AUDIT_TERM_FLOW, AUDIT_PLACE_LAWS);
+    fill->complete = fill->complete && fill->row[AUDIT_ROW_START].n_stimuli == 0;
 }

@@ -314,7 +314,7 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
         sign = least_sign(screen->n_places, place);
     }
     double sum = place[AUDIT_PLACE_LAWS] + screen->rate * (t - stretch->from);
-    if (screen->n_terms[AUDIT_TERM_LAW] > 0) {
+    if (audit_laws_have_stimuli(screen)) {
         sum += audit_laws_stimuli(audit, screen, t);
     }
     if (screen->n_terms[AUDIT_TERM_FLOW] > 0) {

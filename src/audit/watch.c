@@ -104,14 +104,14 @@ static void allow(const struct dalcs_audit *audit, const struct audit_part *part
 /* The screen of the present stretch, and what it says of that; NULL: there is none. */
 static struct audit_screen *make(struct dalcs_audit *audit,
                                  const struct dalcs_audit_stretch *stretch,
+                                 const struct dalcs_audit_state *s, double t,
                                  struct audit_answer *answer) {
     struct audit_part *part = &audit->part[stretch->part];
     if (stretch->stored == NULL) {
         return NULL;
     }
     audit->reader.complete(audit->reader.user, stretch->part);
-    struct audit_screen *screen = audit_screen_make(audit, part, stretch->stored, &audit->now);
-    audit->budget.spent += part->cost;
+    struct audit_screen *screen = audit_screen_make(audit, part, stretch->stored, s, t);
     if (screen != NULL) {
         ask(audit, screen, stretch, answer);
     }
@@ -121,7 +121,8 @@ static struct audit_screen *make(struct dalcs_audit *audit,
 bool audit_watch_begins(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_watch *watch = audit->part[stretch->part].watch;
     struct audit_answer answer;
-    struct audit_screen *screen = make(audit, stretch, &answer);
+    const double t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
+    struct audit_screen *screen = make(audit, stretch, NULL, t, &answer);
     watch->knows_states = watch->knows_states && screen != NULL;
     return screen == NULL || alarms(audit, watch, screen, &answer);
 }
@@ -132,7 +133,8 @@ void audit_watch_learn(struct dalcs_audit *audit, const struct dalcs_audit_stret
     if (part->watch->asked < 0.0) {
         return;
     }
-    struct audit_screen *screen = make(audit, stretch, &answer);
+    audit_pieces_forget(part->watch);
+    struct audit_screen *screen = make(audit, stretch, &audit->now, audit->now.t, &answer);
     part->watch->knows_states = screen != NULL;
     if (screen != NULL) {
         part->watch->states = answer.end;

@@ -65,10 +65,23 @@ static void read_state(void *user, int part, struct dalcs_audit_state *s) {
     copy_answer(a, part, c->y, c->osnsp.mode, s);
 }
 
-static bool is_closed(void *user, int part, int device) {
+static bool is_on(void *user, int part, int device, int k) {
     const struct dalcs_audit_run *a = user;
     return dalcs_osnsp_is_on(&a->radau->part[part].component->osnsp,
-                             a->run->s->network.readout->first_pair[device]);
+                             a->run->s->network.readout->first_pair[device] + k);
+}
+
+/* In the place of the lambda of an open pair is another number. */
+static void read_columns(void *user, int part, double *is_read) {
+    const struct dalcs_audit_run *a = user;
+    const struct dalcs_component *c = a->radau->part[part].component;
+    const int n_equations = dalcs_system_n_equations(c->system);
+    for (int k = 0; k < n_equations; k++) {
+        is_read[k] = 1.0;
+    }
+    for (int k = 0; k < c->system->n_pairs; k++) {
+        is_read[n_equations + k] = dalcs_osnsp_is_on(&c->osnsp, k) ? 1.0 : 0.0;
+    }
 }
 
 static void raise(double *largest, double value) {
@@ -211,15 +224,11 @@ static const double *column(void *user, int index, int j) {
                : dalcs_stage_brief_column(map_of(part), j < n_x ? j : j - missing);
 }
 
-/* In the place of the lambda of an open pair is another number, and sources alone decide bystanders. */
+/* Sources alone decide bystanders. */
 static void add_column(const struct dalcs_audit_run *a, int index, int column, double factor,
                        struct dalcs_audit_row *row) {
     const struct dalcs_radau_part *part = &a->radau->part[index];
     const struct dalcs_system *s = part->component->system;
-    const int pair = column - dalcs_system_n_equations(s);
-    if (pair >= 0 && !dalcs_osnsp_is_on(&part->component->osnsp, pair)) {
-        return;
-    }
     const int bystander = a->part[index].bystander[column];
     if (bystander < 0) {
         dalcs_audit_row_add_column(row, column, factor);
@@ -268,7 +277,8 @@ struct dalcs_audit_reader dalcs_audit_reader_of(struct dalcs_audit_run *a) {
                                        .add_voltage = add_voltage,
                                        .add_current = add_current,
                                        .add_lambda = add_lambda,
-                                       .is_closed = is_closed,
+                                       .read_columns = read_columns,
+                                       .is_on = is_on,
                                        .read_before = read_before,
                                        .revisit = dalcs_audit_revisit,
                                        .go_back = dalcs_audit_go_back,

@@ -216,6 +216,14 @@ def once(calls, good, bad):
     return f"static long calls_; if (++calls_ == {calls}) {{ {bad} }} else {{ {good} }}"
 
 
+SATURABLE = """a coil that saturates smoothly, and a capacitor
+v1 1 0 SIN(0 1.1 0.3)
+r1 1 2 50m
+l1 2 3 Flux=1*asinh(x)
+c1 3 0 0.6 IC=0
+.tran 0.1 12 uic
+"""
+
 # name: (file, what to replace, by what, netlist)
 MUTATIONS = {
     "a source is dropped from a control": (
@@ -318,6 +326,14 @@ MUTATIONS = {
     "one output of many shows the other level": (
         "integrator/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
         "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
+    "a smooth function is too steep by 1e-5": (
+        "dalcs/smooth_tangents.c", "return dalcs_smooth_value(of->kind, x) - dalcs_smooth_line(of, 0)",
+        "return 1.00001 * dalcs_smooth_value(of->kind, x) - dalcs_smooth_line(of, 0)", SATURABLE),
+    "the values of one segment beside a smooth function are too large by 1e-5": (
+        "step/present.c", "    part->segment.by_euler = false;\n",
+        "    part->segment.by_euler = false;\n"
+        + once(150, "", "for (int k = part->stages.layout.stride; k < part->stages.layout.n_fixed; k++) "
+                        "{ part->segment.out[k] *= 1.00001; }"), SATURABLE),
     "one leap of many is nudged by 1e-6": (
         "memory/cycle_leap.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",
         "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n"

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Right waveforms of circuits that look as if a law were broken: the audit finds nothing in them, drawn or full.
+"""Right waveforms of circuits that look as if a law were broken: the audit finds nothing in them, drawn or full. And a
+comparator whose output stands between its levels: either its argument is at the knot, or the audit says that it is not.
 
 usage: sound.py PROGRAM
 """
@@ -82,11 +83,40 @@ CIRCUITS = {
         [], {}),
 }
 
+# A synchronous rectifier that its own voltage turns off: 10 mV is between 6 mV, closed, and 0.76 V, open.
+SLIDES = """i1 0 b {amperes}
+b1 sg 0 v={{v(b)-v(o) > {knot} ? {high} : 0}}
+s1 b o sg 0 sw
+d1 b o d
+r1 o 0 1
+c1 o 0 1u
+.model sw SW(vt={threshold} ron=1m roff=1meg)
+.model d D(ron=10m vfwd=0.7)
+.tran 0.1u 5u uic
+"""
+SLIDING = [{"amperes": 6, "knot": 10e-3, "high": 1, "threshold": 0.5},
+           {"amperes": 6, "knot": 0.3, "high": 5, "threshold": 1.5},
+           {"amperes": 60, "knot": 0.1, "high": 12, "threshold": 2}]
+
 
 def value_of(rows, signal, time):
     """On the right of an event at that time."""
     names, *lines = (line.split(",") for line in rows.splitlines())
     return [float(line[names.index(signal)]) for line in lines if abs(float(line[0]) - time) < 1e-12][-1]
+
+
+def check_slide(checker, program, values):
+    with tempfile.TemporaryDirectory() as directory:
+        where = pathlib.Path(directory)
+        (where / "c.cir").write_text(f"slide\n{SLIDES.format(**values)}.end\n")
+        ran = subprocess.run([program, "run", str(where / "c.cir"), "-o", str(where / "c.csv")],
+                             capture_output=True, text=True, check=False)
+        is_found = ran.returncode == 1 and "the audit finds position of s1" in ran.stderr
+        across = None if ran.returncode != 0 else max(
+            abs(value_of((where / "c.csv").read_text(), "v(b)", t) - value_of((where / "c.csv").read_text(), "v(o)", t)
+                - values["knot"]) for t in (1e-6, 3e-6, 5e-6))
+        checker.check(is_found or (across is not None and across <= 1e-6),
+                      f"slide at {values}: {ran.returncode}, off by {across} {ran.stderr}")
 
 
 def main():
@@ -106,6 +136,8 @@ def main():
                     is_value = value_of((where / "c.csv").read_text(), signal, time) if ran.returncode == 0 else None
                     checker.check(is_value is not None and abs(is_value - value) < 1e-6 * abs(value),
                                   f"{name}: {signal} is {is_value}, not {value}")
+    for values in SLIDING:
+        check_slide(checker, program, values)
     return checker.finish()
 
 

@@ -1,0 +1,87 @@
+/* watch.h - how all stretches of a part are looked at by screens (screen.h). */
+#ifndef DALCS_AUDIT_WATCH_H
+#define DALCS_AUDIT_WATCH_H
+
+#include "audit_internal.h"
+
+/* Nodes of a step, at most. */
+enum { AUDIT_MOST_NODES = 12 };
+
+/* Instructions of a screen, about, of what is handed over and asked; together with others half as many. */
+#define AUDIT_SCREEN_WORK 600.0
+
+/* Times in a step that it is asked at, one of them each time. */
+enum { AUDIT_SCREEN_TIMES = 4 };
+
+struct audit_watch {
+    struct audit_screens {
+        int n, log2_slots;
+        struct audit_screen **slot;  /* [2^log2_slots] by key; NULL: none */
+        struct audit_screen *latest; /* that was found; NULL: none */
+        size_t numbers;              /* in all of them */
+    } screens;
+
+    struct audit_sums_of_laws {
+        struct dalcs_audit_row row[5]; /* by audit_screen_row, and a sign */
+        double *node_weight;           /* [2][n_nodes] of Kirchhoff's laws now and over time */
+        double *sign, *guard;          /* constants */
+        int n_signs, n_guards;
+        size_t sign_room, guard_room;
+
+        struct audit_list {
+            struct audit_term *term;
+            int n;
+            size_t room;
+        } list[5]; /* by audit_term_kind */
+
+        bool complete; /* there was room for all */
+    } fill;            /* while a screen is made */
+
+    struct audit_all_pieces {       /* what screens are sums of (screen_pieces.c) */
+        struct audit_pieces *first; /* NULL: none are made */
+        int n;
+        struct audit_piece **used; /* work: of the present mode */
+        double *is_read;           /* [n_columns] likewise */
+    } pieces;
+
+    double
+        *state_factor; /* [n_devices of the part] of a state, in their sum; NULL: not drawn yet */
+    double barycentric[AUDIT_MOST_NODES];
+    double theta
+        [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
+    bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there */
+    double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
+
+    struct audit_image *image; /* that the present one was asked by; NULL: by its values, or not */
+
+    struct audit_batch { /* of stretches that repeat one another (batch.c) */
+        struct dalcs_audit_batch gathered;
+        struct audit_screen *screen;    /* that asks them */
+        struct audit_image *image;      /* that passed the stretch before over; NULL: none */
+        int n_times;                    /* of the watch's times, those before its end */
+        int n_columns, n_nodes, stride; /* of polynomials, columns in whole quads */
+        const double *place;            /* of the image at the time that was drawn */
+        double past;                    /* s: that time */
+        double end;                     /* of the stretch before, in steps */
+        int node;                       /* where values beside it are */
+        double length, near;            /* s */
+        size_t room;
+        bool is_busy; /* some are looked at once more */
+    } batch;
+
+    double *column; /* [2][n_columns in whole quads] work */
+    double *place;  /* work */
+    size_t place_room;
+    double states; /* the sum of states where the stretch before ended */
+    bool knows_states;
+    bool is_put_off;    /* the present one does not begin there */
+    bool saw_beginning; /* its beginning was looked at */
+    bool makes;         /* a screen is to be made of the present stretch */
+    uint64_t key;       /* of the stretch before; 0: it had none */
+    bool knows_sides;   /* that switches with hysteresis had in the stretch before */
+    bool has_turned;    /* one of them is on the other now */
+    double asked;       /* s: a time in it that asks for a look; < 0: none does */
+    bool has_jumped; /* ... where all laws hold, but not all states are what they were before it */
+};
+
+#endif
