@@ -61,23 +61,19 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
     if (status != DALCS_OK || !c->positions.alternates) {
         return status < DALCS_OK ? status : DALCS_OK; /* without an answer it does not slide */
     }
-    bool is_complete;
-    DALCS_TRY(dalcs_sliding_complete(&c->positions, part->work.u, step->y, &is_complete));
-    if (!is_complete) {
+    struct dalcs_observed_sides sides;
+    double noise = 0.0;
+    DALCS_TRY(dalcs_sliding_mean(&c->positions, part->work.u, step->y, &sides, &noise));
+    of->slides = sides.n > 0;
+    if (!of->slides) {
         return DALCS_OK;
     }
-    memcpy(c->scratch, step->y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
-    double noise = 0.0;
-    double weight = dalcs_sliding_mean(&c->positions, step->y, &noise);
     of->noise = fmax(of->noise, noise);
-    of->slides = weight > 0.0;
     for (int k = 0; k < c->osnsp.n_words; k++) {
-        part->work.mode_first[k] |= c->osnsp.mode[k] | c->positions.other[k];
+        part->work.mode_first[k] |= c->positions.sides.conducted[k];
     }
-    if (of->slides && observer != NULL) {
-        const struct dalcs_observed_sides sides = {.y = {c->scratch, c->positions.other_y},
-                                                   .weight = {1.0 - weight, weight},
-                                                   .time = step->times * step->h};
+    if (observer != NULL) {
+        sides.time = step->times * step->h;
         observer->scale(observer->user, part->index, &c->osnsp.certificate);
         of->taken +=
             step->times * observer->sliding_step(observer->user, part->index, step->state, step->y,
@@ -281,7 +277,8 @@ enum dalcs_status dalcs_slide_find_leading(struct dalcs_radau *r, struct dalcs_r
             dalcs_sliding_compare_gaps(p, part->work.y1);
         }
     }
-    return DALCS_OK;
+    return p->n_jumps > 0 ? dalcs_sliding_find_commanding(p, part->work.u, part->work.y1)
+                          : DALCS_OK;
 }
 
 enum dalcs_status dalcs_slide_micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
