@@ -6,6 +6,7 @@
 #include "slide_try.h"
 
 #include "restart.h"
+#include "rounding.h"
 #include "sliding.h"
 #include "step_error.h"
 
@@ -60,23 +61,19 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
     if (status != DALCS_OK || !c->positions.alternates) {
         return status < DALCS_OK ? status : DALCS_OK; /* without an answer it does not slide */
     }
-    bool is_complete;
-    DALCS_TRY(dalcs_sliding_complete(&c->positions, part->work.u, step->y, &is_complete));
-    if (!is_complete) {
+    struct dalcs_observed_sides sides;
+    double noise = 0.0;
+    DALCS_TRY(dalcs_sliding_mean(&c->positions, part->work.u, step->y, &sides, &noise));
+    of->slides = sides.n > 0;
+    if (!of->slides) {
         return DALCS_OK;
     }
-    memcpy(c->scratch, step->y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
-    double noise = 0.0;
-    double weight = dalcs_sliding_mean(&c->positions, step->y, &noise);
     of->noise = fmax(of->noise, noise);
-    of->slides = weight > 0.0;
     for (int k = 0; k < c->osnsp.n_words; k++) {
-        part->work.mode_first[k] |= c->osnsp.mode[k] | c->positions.other[k];
+        part->work.mode_first[k] |= c->positions.sides.conducted[k];
     }
-    if (of->slides && observer != NULL) {
-        const struct dalcs_observed_sides sides = {.y = {c->scratch, c->positions.other_y},
-                                                   .weight = {1.0 - weight, weight},
-                                                   .time = step->times * step->h};
+    if (observer != NULL) {
+        sides.time = step->times * step->h;
         observer->scale(observer->user, part->index, &c->osnsp.certificate);
         of->taken +=
             step->times * observer->sliding_step(observer->user, part->index, step->state, step->y,
@@ -160,21 +157,43 @@ static void begin_columns(struct dalcs_radau_part *part, const struct dalcs_slid
     memcpy(out, part->x, (size_t)n_x * sizeof(double));
 }
 
-/* How far a column is off, over what is allowed: what the last order changes, and of a state how far the polynomial through
- * the nodes misses the start, as of any other step (step_error.c). */
+/* What rounding makes of a column at a node that the sequences add up, over its unit's largest: the sum of the sizes of
+ * their weights, 92, times that of an answer. */
+static double rounding_of_sum(const double *weight) {
+    double sum = 0.0;
+    for (int j = 0; j < ORDER; j++) {
+        sum += fabs(weight[j]);
+    }
+    return sum * dalcs_sum_rounded;
+}
+
+/* How far a state's polynomial through the nodes misses the start, as of any other step (step_error.c), but for what
+ * rounding at the nodes makes of that. */
+static double miss_at_start(const struct dalcs_radau_part *part, int x, double rounding,
+                            const struct dalcs_slide_try *of) {
+    double amplified = 0.0;
+    for (int node = 1; node < part->stages.layout.n_nodes; node++) {
+        amplified += fabs(of->start[node]) * rounding;
+    }
+    return part->stages.layout.n_nodes > 2
+               ? fmax(0.0, fabs(part->work.after[x] - part->x[x]) - amplified)
+               : 0.0;
+}
+
+/* How far a column is off, over what is allowed: what the last order changes, and of a state how far it misses the start. A
+ * state beside larger ones, as a leak of a coil at rest beside one that conducts, has rounding of theirs. */
 static double error_of_column(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                              int column, bool is_current) {
+                              int column, bool is_current, const struct dalcs_slide_try *of) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const bool is_state = column < part->component->system->n_x;
-    double error = 0.0;
-    double size = 0.0;
-    if (is_state) {
-        error = l->n_nodes > 2 ? fabs(part->work.after[column] - part->x[column]) : 0.0;
-        size = fabs(part->x[column]);
-    }
+    const double rounding =
+        is_state ? rounding_of_sum(of->weight) * part->scales.unit[is_current] : 0.0;
+    double error = is_state ? miss_at_start(part, column, rounding, of) : 0.0;
+    double size = is_state ? fabs(part->x[column]) : 0.0;
     for (int node = 1; node < l->n_nodes; node++) {
         const double value = part->segment.out[node * l->stride + column];
-        error = fmax(error, fabs(value - part->work.out_tried[node * l->stride + column]));
+        const double other = part->work.out_tried[node * l->stride + column];
+        error = fmax(error, fabs(value - other) - rounding);
         size = fmax(size, fabs(value));
     }
     size = fmax(size, dalcs_step_scale(part, column, part->scales.unit));
@@ -182,17 +201,19 @@ static double error_of_column(const struct dalcs_radau *r, const struct dalcs_ra
 }
 
 /* The largest of states. */
-static double error_of_states(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+static double error_of_states(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                              const struct dalcs_slide_try *of) {
     const struct dalcs_system *s = part->component->system;
     double worst = 0.0;
     for (int x = 0; x < s->n_x; x++) {
-        worst = fmax(worst, error_of_column(r, part, x, s->column_is_current[x]));
+        worst = fmax(worst, error_of_column(r, part, x, s->column_is_current[x], of));
     }
     return worst;
 }
 
 /* And of the currents of pairs that conduct on either side. */
-static double error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+static double error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                             const struct dalcs_slide_try *of) {
     const struct dalcs_system *s = part->component->system;
     struct dalcs_osnsp *p = &part->component->osnsp;
     const size_t bytes = (size_t)p->n_words * sizeof(uint64_t);
@@ -201,7 +222,7 @@ static double error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_par
     memcpy(p->mode, part->work.mode_first, bytes);
     for (int d = 0; d < s->n_pairs; d++) {
         if (dalcs_mode_has(p->mode, d)) {
-            worst = fmax(worst, error_of_column(r, part, dalcs_system_n_equations(s) + d, true));
+            worst = fmax(worst, error_of_column(r, part, dalcs_system_n_equations(s) + d, true, of));
         }
     }
     memcpy(p->mode, part->work.mode_before, bytes);
@@ -231,8 +252,8 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
     if (of->slides) {
         put_voltages(part);
         begin_columns(part, of);
-        of->states = error_of_states(r, part);
-        of->pairs = error_of_pairs(r, part);
+        of->states = error_of_states(r, part, of);
+        of->pairs = error_of_pairs(r, part, of);
         of->is_coarse = of->pairs > 1.0 || part->stages.method->s == 1;
         of->pairs /= 1.0 + of->noise / part->inner_tolerance;
     }
@@ -256,7 +277,8 @@ enum dalcs_status dalcs_slide_find_leading(struct dalcs_radau *r, struct dalcs_r
             dalcs_sliding_compare_gaps(p, part->work.y1);
         }
     }
-    return DALCS_OK;
+    return p->n_jumps > 0 ? dalcs_sliding_find_commanding(p, part->work.u, part->work.y1)
+                          : DALCS_OK;
 }
 
 enum dalcs_status dalcs_slide_micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,

@@ -85,7 +85,7 @@ static double sliding_step(void *user, int k, const double *x, const double *y,
     struct dalcs_energy_part *part = &energy->part[k];
     double taken =
         dalcs_euler_stored_energy(part->system, y) - dalcs_euler_stored_energy(part->system, x);
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < sides->n; side++) {
         const double *at = sides->y[side];
         enter_powers(energy, part, at, inputs, sides->weight[side] * sides->time);
         taken += sides->weight[side] * (dalcs_euler_jump_energy(part->system, x, at) +

@@ -8,11 +8,15 @@
 struct dalcs_euler_jump;
 struct dalcs_radau_part;
 
-/* The answers on both sides of a switch that slides, and the part of the time for which each holds. */
+/* Of three switches that slide for themselves. */
+enum { DALCS_MOST_SIDES = 8 };
+
+/* The answers on all sides of what slides, two for a switch, and the part of the time for which each holds. */
 struct dalcs_observed_sides {
-    const double *y[2];
-    double weight[2];
-    double time; /* s; of both, less than 0 where a step counts against others */
+    int n;
+    const double *y[DALCS_MOST_SIDES];
+    double weight[DALCS_MOST_SIDES];
+    double time; /* s; of all, less than 0 where a step counts against others */
 };
 
 /* All of them are set; k is the number of a component, states are [n_x], y is [n_columns]. */

@@ -1,6 +1,7 @@
 /* positions.c - where switches stand whose control reads the circuit, at one instant. */
 #include "positions.h"
 
+#include "observer.h"
 #include "sliding.h"
 
 #include <stdlib.h>
@@ -37,10 +38,16 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
     p->other = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->other_y = dalcs_arena_alloc(arena, (size_t)dalcs_system_n_columns(s), sizeof(double));
     p->other_w = dalcs_arena_alloc(arena, (size_t)s->n_pairs, sizeof(double));
+    p->sides.group = dalcs_arena_alloc(arena, n_turning, sizeof(int));
+    p->sides.y = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)dalcs_system_n_columns(s),
+                                   sizeof(double));
+    p->sides.w = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)s->n_pairs, sizeof(double));
+    p->sides.conducted = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     if (p->pair == NULL || p->slack == NULL || p->mask == NULL || p->first == NULL ||
         p->present == NULL || p->mark == NULL || p->other == NULL || p->other_y == NULL ||
         p->other_w == NULL || p->jump == NULL || p->gap == NULL || p->follows == NULL ||
-        p->leads == NULL) {
+        p->leads == NULL || p->sides.group == NULL || p->sides.y == NULL || p->sides.w == NULL ||
+        p->sides.conducted == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int d = 0, i = 0, k = 0; d < s->n_pairs; d++) {
@@ -60,8 +67,7 @@ void dalcs_positions_finish(struct dalcs_positions *p) {
     *p = (struct dalcs_positions){0};
 }
 
-/* Does the answer y move the i-th switch? */
-static bool wants_to_move(const struct dalcs_positions *p, int i, const double *y) {
+bool dalcs_positions_moves(const struct dalcs_positions *p, int i, const double *y) {
     const struct dalcs_system *s = p->osnsp->system;
     const struct dalcs_pair *pair = &s->pair[p->pair[i]];
     if (dalcs_pair_remembers(pair) && p->keeps) {
@@ -80,7 +86,7 @@ static void flip(struct dalcs_positions *p, int i) {
 static bool move(struct dalcs_positions *p, const double *y) {
     bool any = false;
     for (int i = 0; i < p->n; i++) {
-        if (wants_to_move(p, i, y)) {
+        if (dalcs_positions_moves(p, i, y)) {
             flip(p, i);
             any = true;
         }
@@ -170,7 +176,7 @@ static void queue_flipped(struct dalcs_positions *p, int i) {
 static void queue_next(struct dalcs_positions *p, bool fails, const double *y) {
     for (int i = 0; i < p->n; i++) {
         bool remembers = dalcs_pair_remembers(&p->osnsp->system->pair[p->pair[i]]);
-        if (fails ? !remembers : wants_to_move(p, i, y)) {
+        if (fails ? !remembers : dalcs_positions_moves(p, i, y)) {
             queue_flipped(p, i);
         }
     }
@@ -287,7 +293,7 @@ enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma,
 
 const char *dalcs_positions_restless(const struct dalcs_positions *p, const double *y) {
     for (int i = 0; i < p->n; i++) {
-        if (wants_to_move(p, i, y)) {
+        if (dalcs_positions_moves(p, i, y)) {
             return p->osnsp->system->pair[p->pair[i]].element;
         }
     }

@@ -24,12 +24,18 @@ struct dalcs_positions {
         alternates; /* if not: all that want to move go to and fro between two positions, each with an answer */
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
     uint64_t *other;           /* and its mode, [n_words] */
-    bool joined;               /* sliding.h */
-    double *gap;               /* [n + n_jumps] between both sides, in a micro-step */
-    bool *follows;             /* [n + n_jumps] it turns since another one does */
-    bool *leads;               /* [n + n_jumps] a jump that others follow, at present */
-    uint64_t *mask;            /* [n_words] bits of these switches */
+    bool joined;    /* sliding.h */
+    double *gap;    /* [n + n_jumps] between both sides, in a micro-step */
+    bool *follows;  /* [n + n_jumps] it turns since another one does */
+    bool *leads;    /* [n + n_jumps] a jump that others follow, at present */
+    uint64_t *mask; /* [n_words] bits of these switches */
     uint64_t *first, *present, *mark; /* [n_words] */
+
+    struct dalcs_slide_sides { /* of a mean */
+        int *group;            /* [n + n_jumps] those that one part of the time suits, -1: no leading one */
+        double *y, *w;         /* [DALCS_MOST_SIDES][n_columns], [][n_pairs] */
+        uint64_t *conducted;   /* [n_words] on some side */
+    } sides;
 
     struct dalcs_tried_positions { /* one at a time */
         int n;
@@ -48,6 +54,9 @@ void dalcs_positions_finish(struct dalcs_positions *p);
  * positions without an answer; p->osnsp->mode and its witness are such ones. */
 enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
                                         double *y) DALCS_MUST_CHECK;
+
+/* Does the answer y move the i-th switch? */
+bool dalcs_positions_moves(const struct dalcs_positions *p, int i, const double *y);
 
 /* The first switch that does not agree with the answer y; NULL: all do. */
 const char *dalcs_positions_restless(const struct dalcs_positions *p, const double *y);

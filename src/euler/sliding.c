@@ -1,50 +1,40 @@
 /* sliding.c - between the two sides of a switch that opens what closes it and closes what opens it. */
-#include "sliding.h"
+#include "sliding_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Behind the switches, the jumps of formulas. */
-static int n_turning(const struct dalcs_positions *p) {
-    return p->n + p->n_jumps;
-}
-
-static int pair_of(const struct dalcs_positions *p, int i) {
-    return i < p->n ? p->pair[i] : p->jump[i - p->n];
-}
-
 /* Does the i-th stand differently on both sides? */
 static bool turns(const struct dalcs_positions *p, int i) {
-    const int d = pair_of(p, i);
+    const int d = dalcs_turning_pair(p, i);
     return dalcs_osnsp_is_on(p->osnsp, d) != dalcs_mode_has(p->other, d);
 }
 
-/* How far beyond its threshold the control of a switch is, or the argument of a jump. */
-static double beyond_threshold(const struct dalcs_positions *p, int i, const double *y,
-                               const double *w) {
+double dalcs_turning_beyond(const struct dalcs_positions *p, int i, const double *y,
+                            const double *w) {
     const struct dalcs_system *s = p->osnsp->system;
-    const int d = pair_of(p, i);
+    const int d = dalcs_turning_pair(p, i);
     return i < p->n ? dalcs_csr_row_dot(&s->control, d, y) - s->pair[d].turn_on
                     : y[dalcs_system_n_equations(s) + d + 1] - w[d];
 }
 
 static double here(const struct dalcs_positions *p, int i, const double *y) {
-    return beyond_threshold(p, i, y, p->osnsp->w);
+    return dalcs_turning_beyond(p, i, y, p->osnsp->w);
 }
 
 static double there(const struct dalcs_positions *p, int i) {
-    return beyond_threshold(p, i, p->other_y, p->other_w);
+    return dalcs_turning_beyond(p, i, p->other_y, p->other_w);
 }
 
 void dalcs_sliding_begin(struct dalcs_positions *p) {
-    for (int i = 0; i < n_turning(p); i++) {
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
         p->gap[i] = 0.0;
         p->follows[i] = false;
     }
 }
 
 void dalcs_sliding_note_gaps(struct dalcs_positions *p, const double *y) {
-    for (int i = 0; i < n_turning(p); i++) {
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
         p->gap[i] = turns(p, i) ? fabs(there(p, i) - here(p, i, y)) : 0.0;
     }
 }
@@ -53,54 +43,111 @@ void dalcs_sliding_note_gaps(struct dalcs_positions *p, const double *y) {
 static const double staying = 0.75;
 
 void dalcs_sliding_compare_gaps(struct dalcs_positions *p, const double *y) {
-    for (int i = 0; i < n_turning(p); i++) {
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
         p->follows[i] = turns(p, i) && p->gap[i] > staying * fabs(there(p, i) - here(p, i, y));
     }
 }
 
-/* Does another one decide that it turns? Where each follows another, in a loop without a state, switches do for
- * themselves. */
+/* Does another one decide that it turns? Where each follows another, in a loop without a state, and no formula moves
+ * switches, these do for themselves. */
 static bool is_decided_by_another(const struct dalcs_positions *p, int i) {
     bool any_leads = false;
-    for (int k = 0; k < n_turning(p) && !any_leads; k++) {
+    for (int k = 0; k < dalcs_turning_n(p) && !any_leads; k++) {
         any_leads = turns(p, k) && !p->follows[k];
     }
     return any_leads ? p->follows[i] : i >= p->n;
 }
 
-static bool is_leading_jump(const struct dalcs_positions *p, int i) {
-    return i >= p->n && turns(p, i) && !is_decided_by_another(p, i);
+bool dalcs_turning_leads(const struct dalcs_positions *p, int i) {
+    return turns(p, i) && !is_decided_by_another(p, i);
 }
 
-static void put_jump(struct dalcs_positions *p, int i, bool is_on) {
-    dalcs_osnsp_command(p->osnsp, pair_of(p, i), is_on);
-    dalcs_osnsp_command(p->osnsp, pair_of(p, i) + 1, is_on);
+void dalcs_turning_put(struct dalcs_positions *p, int i, bool is_on) {
+    dalcs_osnsp_command(p->osnsp, dalcs_turning_pair(p, i), is_on);
+    if (i >= p->n) {
+        dalcs_osnsp_command(p->osnsp, dalcs_turning_pair(p, i) + 1, is_on);
+    }
+}
+
+/* Does the last answer, with a jump's output on its other side and all else as it is, take the i-th nearer to where that
+ * is on the other side than to where it is here, in the answer y and w? */
+static bool moves(const struct dalcs_positions *p, int i, const double *y, const double *w) {
+    const double now = dalcs_turning_beyond(p, i, p->sides.y, p->osnsp->w);
+    return fabs(now - there(p, i)) < fabs(now - dalcs_turning_beyond(p, i, y, w));
+}
+
+/* Into p->leads: it moves another one; into p->sides.group, 1: another jump moves it. */
+static enum dalcs_status find_moves(struct dalcs_positions *p, const double *u, const double *y,
+                                    const double *w) {
+    for (int j = p->n; j < dalcs_turning_n(p); j++) {
+        if (!turns(p, j)) {
+            continue;
+        }
+        const bool is_on = dalcs_osnsp_is_on(p->osnsp, dalcs_turning_pair(p, j));
+        dalcs_turning_put(p, j, !is_on);
+        enum dalcs_status status = dalcs_osnsp_answer(p->osnsp, u, p->sides.y);
+        memcpy(p->osnsp->mode, p->present, (size_t)p->osnsp->n_words * sizeof(*p->present));
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        for (int i = 0; i < dalcs_turning_n(p) && status == DALCS_OK; i++) {
+            if (i != j && turns(p, i) && moves(p, i, y, w)) {
+                p->leads[j] = true;
+                p->sides.group[i] = 1;
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_sliding_find_commanding(struct dalcs_positions *p, const double *u,
+                                                const double *y) {
+    const size_t bytes = (size_t)p->osnsp->system->n_pairs * sizeof(double);
+    bool any = false;
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        any = any || (turns(p, i) && !p->follows[i]);
+        p->leads[i] = false;
+        p->sides.group[i] = 0;
+    }
+    if (any || p->osnsp->system->n_smooth > 0) {
+        return DALCS_OK;
+    }
+    memcpy(p->present, p->osnsp->mode, (size_t)p->osnsp->n_words * sizeof(*p->present));
+    memcpy(p->sides.w, p->osnsp->w, bytes);
+    enum dalcs_status status = find_moves(p, u, y, p->sides.w);
+    memcpy(p->osnsp->w, p->sides.w, bytes);
+    for (int i = p->n; i < dalcs_turning_n(p) && status == DALCS_OK; i++) {
+        p->follows[i] = p->follows[i] && !(p->leads[i] && p->sides.group[i] == 0);
+    }
+    return status;
 }
 
 /* Jumps that read a leading one take the side of their argument. Returns whether one changed. */
 static bool put_followers(struct dalcs_positions *p, const double *y) {
     bool any = false;
-    for (int i = p->n; i < n_turning(p); i++) {
-        const bool is_on = dalcs_osnsp_is_on(p->osnsp, pair_of(p, i));
+    for (int i = p->n; i < dalcs_turning_n(p); i++) {
+        const bool is_on = dalcs_osnsp_is_on(p->osnsp, dalcs_turning_pair(p, i));
         if (p->leads[i] || is_on == (here(p, i, y) > 0.0)) {
             continue;
         }
-        put_jump(p, i, !is_on);
+        dalcs_turning_put(p, i, !is_on);
         any = true;
     }
     return any;
+}
+
+bool dalcs_turning_is_of_leading_jump(const struct dalcs_positions *p, int pair) {
+    bool is = false;
+    for (int i = p->n; i < dalcs_turning_n(p) && !is; i++) {
+        const int behind = pair - dalcs_turning_pair(p, i);
+        is = p->leads[i] && (behind == 0 || behind == 1);
+    }
+    return is;
 }
 
 /* Are all signs right but those of leading jumps, and do switches agree with their controls? */
 static bool all_agree(const struct dalcs_positions *p, const double *y) {
     const struct dalcs_osnsp *o = p->osnsp;
     for (int k = 0; k < o->signs.n_violating; k++) {
-        bool is_leading = false;
-        for (int i = p->n; i < n_turning(p) && !is_leading; i++) {
-            const int behind = o->signs.violating[k] - pair_of(p, i);
-            is_leading = p->leads[i] && (behind == 0 || behind == 1);
-        }
-        if (!is_leading) {
+        if (!dalcs_turning_is_of_leading_jump(p, o->signs.violating[k])) {
             return false;
         }
     }
@@ -112,9 +159,9 @@ static enum dalcs_status answer_with(struct dalcs_positions *p, const uint64_t *
                                      const uint64_t *leading, const double *u, double *y,
                                      bool *is_complete) {
     memcpy(p->osnsp->mode, mode, (size_t)p->osnsp->n_words * sizeof(*mode));
-    for (int i = p->n; i < n_turning(p); i++) {
+    for (int i = p->n; i < dalcs_turning_n(p); i++) {
         if (p->leads[i]) {
-            put_jump(p, i, dalcs_mode_has(leading, pair_of(p, i)));
+            dalcs_turning_put(p, i, dalcs_mode_has(leading, dalcs_turning_pair(p, i)));
         }
     }
     *is_complete = false;
@@ -131,12 +178,16 @@ static enum dalcs_status answer_with(struct dalcs_positions *p, const uint64_t *
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_sliding_complete(struct dalcs_positions *p, const double *u, double *y,
-                                         bool *is_complete) {
+/* Behind an answer at the inputs u: where a formula leads, each of both answers has its output on the side that the
+ * switches are on, for what they are for a part of the time is what its output is for that part. An implicit step has it
+ * on the side that the switches go to. The argument is off by what it moves in the step. *is_complete: both have an
+ * answer, in which all that follows agrees. */
+static enum dalcs_status complete(struct dalcs_positions *p, const double *u, double *y,
+                                  bool *is_complete) {
     const struct dalcs_system *s = p->osnsp->system;
     bool any = false;
-    for (int i = 0; i < n_turning(p); i++) {
-        p->leads[i] = is_leading_jump(p, i);
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        p->leads[i] = i >= p->n && dalcs_turning_leads(p, i);
         any = any || p->leads[i];
     }
     *is_complete = !any || s->n_smooth == 0;
@@ -155,7 +206,7 @@ enum dalcs_status dalcs_sliding_complete(struct dalcs_positions *p, const double
 
 bool dalcs_sliding_follows_one(const struct dalcs_positions *p) {
     int n_leading = 0;
-    for (int i = 0; i < n_turning(p); i++) {
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
         if (turns(p, i) && !p->follows[i]) {
             if (i < p->n) {
                 return false;
@@ -166,23 +217,24 @@ bool dalcs_sliding_follows_one(const struct dalcs_positions *p) {
     return n_leading == 1;
 }
 
-/* The weight of the other side with which the i-th is at its threshold, and what rounding may make of it. */
-static double weight_of(const struct dalcs_positions *p, int i, const double *y, double *noise) {
+double dalcs_turning_weight(const struct dalcs_positions *p, int i, const double *y,
+                            double *noise) {
     const double gap = there(p, i) - here(p, i, y);
     *noise = p->slack[i] / fabs(gap);
     return -here(p, i, y) / gap;
 }
 
-/* Is a mean with this weight no farther from the threshold of the i-th than moves it, or than digits tell? */
-static bool is_at_threshold(const struct dalcs_positions *p, int i, double weight,
-                            const double *y) {
+bool dalcs_turning_is_at_threshold(const struct dalcs_positions *p, int i, double off,
+                                   double largest) {
+    return fabs(off) <= p->slack[i] + p->osnsp->options.certificate_tolerance * largest;
+}
+
+bool dalcs_turning_fits(const struct dalcs_positions *p, int i, double weight, const double *y) {
     const double turn_on = i < p->n ? p->osnsp->system->pair[p->pair[i]].turn_on : 0.0;
     const double one = here(p, i, y);
     const double other = there(p, i);
-    const double off = one + weight * (other - one);
-    const double digits =
-        p->osnsp->options.certificate_tolerance * (fabs(one + turn_on) + fabs(other + turn_on));
-    return fabs(off) <= p->slack[i] + digits;
+    return dalcs_turning_is_at_threshold(p, i, one + weight * (other - one),
+                                         fabs(one + turn_on) + fabs(other + turn_on));
 }
 
 static void mix(double *a, const double *b, double weight, int n) {
@@ -191,23 +243,47 @@ static void mix(double *a, const double *b, double weight, int n) {
     }
 }
 
-double dalcs_sliding_mean(struct dalcs_positions *p, double *y, double *noise) {
-    const struct dalcs_system *s = p->osnsp->system;
+/* The one of all that lead; 0: there is none. */
+static double common_weight(const struct dalcs_positions *p, const double *y, double *noise) {
     double weight = 0.0;
-    for (int i = 0; i < n_turning(p); i++) {
-        if (!turns(p, i) || is_decided_by_another(p, i)) {
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        if (!dalcs_turning_leads(p, i)) {
             continue;
         }
-        weight = weight > 0.0 ? weight : weight_of(p, i, y, noise);
-        bool fits = !dalcs_pair_remembers(&s->pair[pair_of(p, i)]) && weight > 0.0 &&
-                    weight < 1.0 && is_at_threshold(p, i, weight, y);
-        if (!fits) {
+        weight = weight > 0.0 ? weight : dalcs_turning_weight(p, i, y, noise);
+        if (!(weight > 0.0 && weight < 1.0 && dalcs_turning_fits(p, i, weight, y))) {
             return 0.0;
         }
     }
-    mix(y, p->other_y, weight, dalcs_system_n_columns(s));
-    mix(p->osnsp->w, p->other_w, weight, s->n_pairs);
     return weight;
+}
+
+enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, const double *u, double *y,
+                                     struct dalcs_observed_sides *sides, double *noise) {
+    const struct dalcs_system *s = p->osnsp->system;
+    const int n_columns = dalcs_system_n_columns(s);
+    bool may_slide;
+    sides->n = 0;
+    DALCS_TRY(complete(p, u, y, &may_slide));
+    for (int i = 0; i < p->n && may_slide; i++) {
+        may_slide = !dalcs_turning_leads(p, i) || !dalcs_pair_remembers(&s->pair[p->pair[i]]);
+    }
+    if (!may_slide) {
+        return DALCS_OK;
+    }
+    const double weight = common_weight(p, y, noise);
+    if (!(weight > 0.0)) {
+        return dalcs_sliding_mean_of_several(p, u, y, sides, noise);
+    }
+    memcpy(p->sides.y, y, (size_t)n_columns * sizeof(double));
+    *sides = (struct dalcs_observed_sides){
+        .n = 2, .y = {p->sides.y, p->other_y}, .weight = {1.0 - weight, weight}};
+    mix(y, p->other_y, weight, n_columns);
+    mix(p->osnsp->w, p->other_w, weight, s->n_pairs);
+    for (int k = 0; k < p->osnsp->n_words; k++) {
+        p->sides.conducted[k] = p->osnsp->mode[k] | p->other[k];
+    }
+    return DALCS_OK;
 }
 
 void dalcs_sliding_join(struct dalcs_positions *p, const uint64_t *conducted) {

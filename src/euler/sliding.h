@@ -10,11 +10,15 @@
 #ifndef DALCS_SLIDING_H
 #define DALCS_SLIDING_H
 
+#include "observer.h"
 #include "positions.h"
 
-/* y[n_columns] and p->osnsp->w, the answer on one side, become the mean with that on the other side, whose weight is
- * returned, with what rounding may make of it. 0: there is no such mean, and nothing is changed. */
-double dalcs_sliding_mean(struct dalcs_positions *p, double *y, double *noise);
+/* Behind dalcs_positions_solve() with p->alternates, at the inputs u: y[n_columns] and p->osnsp->w, the answer on one
+ * side, become the mean of all sides, which are told, with what rounding may make of their weights. sides->n = 0: there is
+ * no such mean, and y has no meaning. */
+enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, const double *u, double *y,
+                                     struct dalcs_observed_sides *sides,
+                                     double *noise) DALCS_MUST_CHECK;
 
 /* Before a slide: nothing is known of what turns. */
 void dalcs_sliding_begin(struct dalcs_positions *p);
@@ -24,12 +28,10 @@ void dalcs_sliding_begin(struct dalcs_positions *p);
 void dalcs_sliding_note_gaps(struct dalcs_positions *p, const double *y);
 void dalcs_sliding_compare_gaps(struct dalcs_positions *p, const double *y);
 
-/* Behind an answer at the inputs u: where a formula leads, each of both answers has its output on the side that the
- * switches are on, for what they are for a part of the time is what its output is for that part. An implicit step has it
- * on the side that the switches go to. The argument is off by what it moves in the step. *is_complete: both have an
- * answer, in which all that follows agrees. */
-enum dalcs_status dalcs_sliding_complete(struct dalcs_positions *p, const double *u, double *y,
-                                         bool *is_complete) DALCS_MUST_CHECK;
+/* Behind these: where each follows another, in a loop without a state, a formula that moves what turns, and that no other
+ * formula moves, decides. y, u: of the last one. */
+enum dalcs_status dalcs_sliding_find_commanding(struct dalcs_positions *p, const double *u,
+                                                const double *y) DALCS_MUST_CHECK;
 
 /* Do all switches that turn follow one formula? Then there are no positions between both. */
 bool dalcs_sliding_follows_one(const struct dalcs_positions *p);

@@ -111,14 +111,23 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     return DALCS_OK;
 }
 
+/* Is it one but for signs? */
+static bool is_answer(const struct dalcs_osnsp *p, bool sources_clash) {
+    const bool is_sign = p->certificate.where >= dalcs_system_n_equations(p->system);
+    return !sources_clash && (is_sign || p->certificate.worst <=
+                                             dalcs_beyond * p->options.certificate_tolerance);
+}
+
 enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u, double *y) {
     bool sources_clash;
     DALCS_TRY(dalcs_exact_try_mode(p, u, y, &sources_clash));
-    const bool is_sign = p->certificate.where >= dalcs_system_n_equations(p->system);
-    return !sources_clash && (is_sign || p->certificate.worst <=
-                                             dalcs_beyond * p->options.certificate_tolerance)
-               ? DALCS_OK
-               : DALCS_NOT_CONVERGED;
+    if (!is_answer(p, sources_clash) && !p->asks.refines) {
+        p->asks.refines = true; /* where a sign is wrong a map's answer is not refined by itself */
+        enum dalcs_status status = dalcs_exact_try_mode(p, u, y, &sources_clash);
+        p->asks.refines = false;
+        DALCS_TRY(status);
+    }
+    return is_answer(p, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
 }
 
 /* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR
