@@ -62,12 +62,20 @@ static double smooth_value(const struct dalcs_audit *audit, const struct audit_p
             x[k] = node_value(audit, part, s, smooth->node[k], false, &scale[k]);
         }
     }
+    x[0] = dalcs_smooth_held(smooth->kind, x, audit->options.failure * fmax(scale[0], fabs(x[0])));
     const double value = dalcs_smooth_value(smooth->kind, x);
     dalcs_smooth_gradient(smooth->kind, x, gradient);
     *size = fabs(value);
     for (int k = 0; k < smooth->n; k++) {
         const bool is_read = smooth->node[k] >= 0 && isfinite(gradient[k]);
         *size += is_read ? fabs(gradient[k]) * fmax(scale[k], fabs(x[k])) : 0.0;
+    }
+    if (isinf(
+            gradient
+                [0])) { /* a root of 0: rounding of what it is of makes of it what a difference tells */
+        const double beside[2] = {x[0] + AUDIT_ROUNDING * scale[0], x[1]};
+        const double differs = fabs(dalcs_smooth_value(smooth->kind, beside) - value);
+        *size += isfinite(differs) ? differs / AUDIT_ROUNDING : 0.0;
     }
     return value;
 }

@@ -129,6 +129,38 @@ double dalcs_smooth_value(enum dalcs_smooth_kind kind, const double *x) {
     }
 }
 
+/* Where its values begin and end. */
+static void find_domain(enum dalcs_smooth_kind kind, double exponent, double *low, double *high) {
+    *low = -(double)INFINITY;
+    *high = (double)INFINITY;
+    switch (kind) {
+    case DALCS_SMOOTH_SQRT:
+        *low = 0.0;
+        break;
+    case DALCS_SMOOTH_POWER:
+        *low = exponent > 0.0 && floor(exponent) != exponent ? 0.0 : *low;
+        break;
+    case DALCS_SMOOTH_ASIN:
+    case DALCS_SMOOTH_ACOS:
+        *low = -1.0;
+        *high = 1.0;
+        break;
+    case DALCS_SMOOTH_ACOSH:
+        *low = 1.0;
+        break;
+    default:
+        break;
+    }
+}
+
+double dalcs_smooth_held(enum dalcs_smooth_kind kind, const double *x, double slack) {
+    double low;
+    double high;
+    find_domain(kind, x[1], &low, &high);
+    const double held = x[0] < low ? low : x[0] > high ? high : x[0];
+    return fabs(x[0] - held) <= slack ? held : x[0];
+}
+
 /* x^y by y; a power whose exponent is a number has no use for it. */
 static double by_exponent(double power, double x) {
     return power == 0.0 ? 0.0 : power * log(x);

@@ -56,6 +56,10 @@ const char *dalcs_smooth_name(enum dalcs_smooth_kind kind);
 double dalcs_smooth_value(enum dalcs_smooth_kind kind, const double *x);
 void dalcs_smooth_gradient(enum dalcs_smooth_kind kind, const double *x, double *gradient);
 
+/* The first argument, or the end of the function's domain where that is no more than `slack` away from it: rounding, or an
+ * error that is allowed, makes of a root of 0 none of a number below. */
+double dalcs_smooth_held(enum dalcs_smooth_kind kind, const double *x, double slack);
+
 /* Where Newton's method takes a function's tangent next, on the way from one argument to another: an exponential above 1
  * grows e-fold with each unit, and its tangent says nothing of what is more than one above. */
 double dalcs_smooth_tangent_point(enum dalcs_smooth_kind kind, double from, double to);

@@ -2,6 +2,7 @@
 #include "smooth_newton.h"
 
 #include "extremes.h"
+#include "magnitudes.h"
 #include "rounding.h"
 #include "smooth_tangents.h"
 
@@ -23,13 +24,15 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
     newton->x = dalcs_arena_alloc(arena, n, sizeof(*newton->x));
     newton->terms = dalcs_arena_alloc(arena, n, sizeof(*newton->terms));
     newton->tangent = dalcs_arena_alloc(arena, n, sizeof(*newton->tangent));
+    newton->other = dalcs_arena_alloc(arena, 3 * (size_t)system->n_smooth, sizeof(*newton->other));
     newton->slope = dalcs_arena_alloc(arena, 2 * n * n, sizeof(double));
     newton->matrix = dalcs_arena_alloc(arena, n * n, sizeof(double));
     newton->step = dalcs_arena_alloc(arena, n, sizeof(double));
     newton->pivot = dalcs_arena_alloc(arena, n, sizeof(int));
     bool complete = newton->phi != NULL && newton->before != NULL && newton->x != NULL &&
-                    newton->terms != NULL && newton->tangent != NULL && newton->slope != NULL &&
-                    newton->matrix != NULL && newton->step != NULL && newton->pivot != NULL;
+                    newton->terms != NULL && newton->tangent != NULL && newton->other != NULL &&
+                    newton->slope != NULL && newton->matrix != NULL && newton->step != NULL &&
+                    newton->pivot != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -43,7 +46,7 @@ void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double 
         memcpy(newton->tangent[q], x[q % newton->system->n_smooth], sizeof(newton->tangent[q]));
     }
     newton->halved = newton->n_steps = 0;
-    newton->limits = false;
+    newton->limits = newton->at_pole = false;
     newton->defect = INFINITY;
 }
 
@@ -87,6 +90,8 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
                                           : is_part            ? fabs(newton->x[first + k][j])
                                                                : volt;
         }
+        newton->x[first + k][0] = dalcs_smooth_held(of->kind, newton->x[first + k],
+                                                    dalcs_alike * newton->terms[first + k][0]);
     }
 }
 
@@ -173,6 +178,13 @@ bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *rep
         }
     }
     return is || *repeats;
+}
+
+void dalcs_smooth_newton_blame_pole(struct dalcs_smooth_newton *newton, int worst,
+                                    const double *x) {
+    newton->worst = worst;
+    newton->at_pole = true;
+    memcpy(newton->x[worst], x, sizeof(newton->x[worst]));
 }
 
 /* Row q of 1 - f'(a) S. */

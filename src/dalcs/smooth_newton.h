@@ -22,6 +22,7 @@ struct dalcs_smooth_newton {
     double (*terms)
         [2]; /* [n] V: what they are made of, or the largest voltage that was read beside them */
     double (*tangent)[2]; /* [n] where tangents are */
+    double (*other)[2];   /* [3][n_smooth] arguments elsewhere, for who asks what is between */
     double *slope;        /* [n][2][n] S */
     double *matrix;       /* [n][n] work */
     double *step;         /* [n] work */
@@ -31,6 +32,7 @@ struct dalcs_smooth_newton {
     int halved;           /* times that the last step was halved, or the beginning was moved */
     bool
         is_refused; /* it ended where the rest of the circuit has no answer for the values that were tried */
+    bool at_pole;  /* what divides in the worst one passes 0 */
     int worst;     /* of the system's smooth inputs, the one that agrees least */
     double defect; /* of the last check: over the terms of each function alone, in the tolerance */
     double defect_before; /* of the one before */
@@ -87,6 +89,9 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
  * functions that have a value are given it, until those that read them have one: false where that was done too often.
  * *repeats: it was; the arguments are to be read again. */
 bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats);
+
+/* No value of source `worst` agrees, for it has none at these arguments. */
+void dalcs_smooth_newton_blame_pole(struct dalcs_smooth_newton *newton, int worst, const double *x);
 
 /* Factors of 1 - f'(x) S in newton->matrix, for changes of phi; false: there are none. */
 bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton);

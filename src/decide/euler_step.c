@@ -3,6 +3,7 @@
 #include "present.h"
 #include "restart.h"
 #include "slide.h"
+#include "smooth_step.h"
 
 #include <math.h>
 #include <string.h>
@@ -54,6 +55,9 @@ void dalcs_radau_accept_implicit(const struct dalcs_radau *r, struct dalcs_radau
                        part->work.u + c->system->n_x, h);
     }
     fill_out(part);
+    if (part->smooth != NULL) {
+        dalcs_smooth_euler_note(part);
+    }
     dalcs_radau_accept_euler(r, part, h);
 }
 
@@ -74,6 +78,9 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
         }
         dalcs_micro_positions(part, true);
         DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
+    }
+    if (dalcs_smooth_euler_meets_pole(part)) {
+        return dalcs_micro_fail(r, part, 1.0 / h, part->work.u, DALCS_NOT_CONVERGED);
     }
     c->commands.n_delayed += c->positions.settled ? 0 : 1; /* the present command stands */
     dalcs_radau_accept_implicit(r, part, h);

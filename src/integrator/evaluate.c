@@ -1,4 +1,5 @@
 /* evaluate.c - the solution of all parts at one time. */
+#include "algebraic_poles.h"
 #include "present.h"
 #include "radau.h"
 #include "recurrence.h"
@@ -68,15 +69,18 @@ static double first_without(struct dalcs_radau_part *part, double since, double 
     return has_none ? t : last; /* and what is told is of this time */
 }
 
+static void blame(const struct dalcs_radau *r, struct dalcs_radau_part *part, double t) {
+    r->base->failure.time = t;
+    r->base->failure.system = part->index;
+    part->component->failure.sigma = 0.0;
+    part->component->failure.u = part->component->u;
+}
+
 static void note_failure(const struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
                          enum dalcs_side side) {
-    struct dalcs_component *c = part->component;
+    const struct dalcs_component *c = part->component;
     const double since = last_edge(c, t, side);
-    r->base->failure.time =
-        c->system->n_smooth > 0 ? first_without(part, since, t, r->resolution) : since;
-    c->failure.sigma = 0.0;
-    c->failure.u = c->u;
-    r->base->failure.system = part->index;
+    blame(r, part, c->system->n_smooth > 0 ? first_without(part, since, t, r->resolution) : since);
 }
 
 static void evaluate_stepped(struct dalcs_radau_part *part, double t, enum dalcs_side side) {
@@ -130,12 +134,22 @@ enum dalcs_status dalcs_radau_solve(struct dalcs_radau *r, struct dalcs_radau_pa
         part->answered_at = t;
         return DALCS_OK;
     }
+    const bool looks_between = dalcs_algebraic_poles_expect(part, t);
+    const double before = part->answered_at;
     part->is_answered = false;
     enum dalcs_status status = dalcs_component_solve(c, 0.0, c->u, c->y);
     if (status > DALCS_OK) {
         note_failure(r, part, t, side);
     }
     DALCS_TRY(status);
+    if (looks_between) {
+        double at = t;
+        status = dalcs_algebraic_poles_check(r, part, before, &at, side);
+        if (status > DALCS_OK) {
+            blame(r, part, at);
+        }
+        DALCS_TRY(status);
+    }
     if (!dalcs_osnsp_is_open(&c->osnsp)) {
         part->is_answered = true;
         part->answered_at = t;

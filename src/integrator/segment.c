@@ -13,11 +13,13 @@
 #include "front.h"
 #include "guards.h"
 #include "magnitudes.h"
+#include "micro_steps.h"
 #include "present.h"
 #include "projection.h"
 #include "recurrence.h"
 #include "slide.h"
 #include "sliding.h"
+#include "smooth_step.h"
 #include "step_length.h"
 #include "tied.h"
 #include "transition.h"
@@ -173,6 +175,18 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     return DALCS_OK;
 }
 
+/* A formula that has no value somewhere in a step that holds has none there: the run ends. */
+static enum dalcs_status check_poles(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     double theta) {
+    if (!dalcs_smooth_step_meets_pole(part, &theta)) {
+        return DALCS_OK;
+    }
+    enum dalcs_status status =
+        dalcs_micro_fail(r, part, 1.0 / part->segment.h, part->work.u, DALCS_NOT_CONVERGED);
+    r->base->failure.time += theta * part->segment.h;
+    return status;
+}
+
 /* One try. *done: there is a segment. */
 static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                   struct dalcs_search *search, bool *done) {
@@ -199,6 +213,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (trial.holds) {
         part->segment.open =
             part->guards.fresh && (search->untied || dalcs_stage_n_clashes(trial.entry) > 0);
+        DALCS_TRY(check_poles(r, part, trial.next));
         DALCS_TRY(dalcs_trial_accept(r, part, search, &trial));
         trial.done = true;
     }

@@ -2,7 +2,8 @@
  *
  * Where a branch is chosen only where a quantity x is above a positive number c, x counts there as max(x, c/2), where it
  * divides or is the argument of a root, a logarithm or a power: the same function where it is chosen, and one with a
- * value elsewhere. Below a negative c it is min(x, c/2). Any number between 0 and c would do.
+ * value elsewhere. Below a negative c it is min(x, c/2). Any number between 0 and c would do. Where it is chosen where |x|
+ * is above c, n/x is n x / max(x^2, c^2/4).
  *
  * What is divided by a choice of numbers is a product with the choice of what is 1 over them: a product with steps has an
  * exact value, a quotient of what jumps would be found by Newton's method. */
@@ -10,13 +11,15 @@
 
 #include "formula.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* A quantity, as a branch sees it. */
 struct guard {
     const struct dalcs_formula *quantity;
-    double bound; /* above 0: it is larger; below 0: it is smaller */
+    double bound;    /* above 0: it is larger; below 0: it is smaller */
+    bool is_of_size; /* its magnitude is larger than the bound */
     const struct guard *outer;
 };
 
@@ -45,6 +48,17 @@ static bool is_same(const struct dalcs_formula *a, const struct dalcs_formula *b
     return is;
 }
 
+static const struct guard *add_guard_of_size(struct guarding *g, const struct guard *outer,
+                                             const struct dalcs_formula *quantity, double bound) {
+    struct guard *guard = dalcs_arena_alloc(g->arena, 1, sizeof *guard);
+    if (guard == NULL) {
+        g->failed = true;
+        return outer;
+    }
+    *guard = (struct guard){quantity, bound, true, outer};
+    return guard;
+}
+
 static const struct guard *add_guard(struct guarding *g, const struct guard *outer,
                                      const struct dalcs_formula *quantity, double limit,
                                      bool is_above) {
@@ -56,8 +70,20 @@ static const struct guard *add_guard(struct guarding *g, const struct guard *out
         g->failed = true;
         return outer;
     }
-    *guard = (struct guard){quantity, 0.5 * limit, outer};
-    return guard;
+    *guard = (struct guard){quantity, 0.5 * limit, false, outer};
+    const bool is_size = is_above && quantity->kind == DALCS_FORMULA_CALL && quantity->n == 1 &&
+                         strcmp(quantity->function, "abs") == 0;
+    return is_size ? add_guard_of_size(g, guard, quantity->argument[0], 0.5 * limit) : guard;
+}
+
+/* Of two that are known each in its own case: what is known in both. */
+static const struct guard *join_guards(struct guarding *g, const struct guard *outer,
+                                       const struct guard *a, const struct guard *b) {
+    if (a == outer || b == outer || a->is_of_size || b->is_of_size ||
+        !is_same(a->quantity, b->quantity)) {
+        return outer;
+    }
+    return add_guard_of_size(g, outer, a->quantity, fmin(fabs(a->bound), fabs(b->bound)));
 }
 
 /* What is known where a condition is true, or where it is not. */
@@ -78,7 +104,8 @@ static const struct guard *read_condition(struct guarding *g, const struct dalcs
     case DALCS_JUMP_OR:
         return (f->code == DALCS_JUMP_AND) == is_true
                    ? read_condition(g, b, is_true, read_condition(g, a, is_true, guards))
-                   : guards;
+                   : join_guards(g, guards, read_condition(g, a, is_true, guards),
+                                 read_condition(g, b, is_true, guards));
     case DALCS_LESS:
     case DALCS_LESS_EQUAL:
     case DALCS_GREATER:
@@ -164,7 +191,7 @@ static const struct dalcs_formula *argument_of(struct guarding *g, const struct 
     }
     const struct dalcs_formula *made = rebuild(g, x, guards, memo);
     for (const struct guard *at = guards; at != NULL && is_narrow(f, k); at = at->outer) {
-        if (is_same(at->quantity, x)) {
+        if (!at->is_of_size && is_same(at->quantity, x)) {
             return hold(g, made, at->bound);
         }
     }
@@ -191,6 +218,31 @@ static const struct dalcs_formula *reciprocal(struct guarding *g, const struct d
     const struct dalcs_formula *argument[3] = {f->argument[0], reciprocal(g, f->argument[1]),
                                                reciprocal(g, f->argument[2])};
     return g->failed ? NULL : make_like(g, f, 3, argument);
+}
+
+static const struct dalcs_formula *multiply(struct guarding *g, const struct dalcs_formula *f,
+                                            const struct dalcs_formula *a,
+                                            const struct dalcs_formula *b) {
+    struct dalcs_formula *made = make_like(g, f, 2, (const struct dalcs_formula *[]){a, b});
+    if (made != NULL) {
+        made->code = DALCS_MULTIPLY;
+    }
+    return made != NULL ? made : a;
+}
+
+/* Does f divide by what is larger than a bound in magnitude? Then n/x becomes n x / max(x^2, bound^2). */
+static bool divide_by_size(struct guarding *g, const struct dalcs_formula *f,
+                           const struct guard *guards, const struct dalcs_formula **argument) {
+    const bool divides = f->kind == DALCS_FORMULA_OPERATION && f->code == DALCS_DIVIDE;
+    for (const struct guard *at = guards; at != NULL && divides; at = at->outer) {
+        if (at->is_of_size && is_same(at->quantity, f->argument[1])) {
+            const struct dalcs_formula *x = argument[1];
+            argument[0] = multiply(g, f, argument[0], x);
+            argument[1] = hold(g, multiply(g, f, x, x), at->bound * at->bound);
+            return true;
+        }
+    }
+    return false;
 }
 
 /* A part as f is, of these arguments; f itself where they are its own. */
@@ -227,6 +279,7 @@ static const struct dalcs_formula *rebuild(struct guarding *g, const struct dalc
         argument[k] = argument_of(g, f, k, guards, memo);
         is_new = is_new || argument[k] != f->argument[k];
     }
+    is_new = (!g->failed && divide_by_size(g, f, guards, argument)) || is_new;
     *known = g->failed ? f : with_arguments(g, f, argument, is_new);
     free(argument);
     return *known;

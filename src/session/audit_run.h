@@ -39,6 +39,7 @@ struct dalcs_audit_run {
     double leap_time;    /* s, where one began */
     double tried_time;   /* s, when; INFINITY: none is tried */
     double *passed;      /* states from which a whole period was stepped last, behind a leap */
+    bool ends_at_pole;   /* of a formula, which tells more than what is broken on the way to it */
     double landed;       /* s, where a leap ended from which one has to be; INFINITY: none */
     bool was_left;       /* a segment that was looked at ended at the present time */
     bool has_rows;       /* since the last segment ended */

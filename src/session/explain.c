@@ -265,6 +265,18 @@ static const char *hint_of_smooth(enum dalcs_smooth_kind kind, double x, double 
            "bounds an argument, and a resistance what a source can do";
 }
 
+/* Where a function has no value on the way. */
+static const char *pole_of(enum dalcs_smooth_kind kind) {
+    switch (kind) {
+    case DALCS_SMOOTH_QUOTIENT:
+        return "the divisor passes 0";
+    case DALCS_SMOOTH_TAN:
+        return "the argument passes an odd multiple of pi/2";
+    default:
+        return "what has a negative exponent passes 0";
+    }
+}
+
 /* Newton's method has found no values of smooth functions that agree with what they read. */
 static void explain_smooth(struct dalcs_session *s, const struct dalcs_component *c,
                            const char *when) {
@@ -288,6 +300,14 @@ static void explain_smooth(struct dalcs_session *s, const struct dalcs_component
                        : of->n > 1
                            ? dalcs_arena_printf(&s->arena, "%s(%s, %s)", name, first, second)
                            : dalcs_arena_printf(&s->arena, "%s(%s)", name, first);
+    if (newton->at_pole) {
+        dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
+                       "a condition keeps away from it, as in abs(x) > 1m ? 1/x : 0, or "
+                       "limit(x, low, high) or max(x, least) bounds what divides",
+                       "%s %s in '%s' has no value: %s", when, text == NULL ? "" : text,
+                       name_owner(s, of->element), pole_of(of->kind));
+        return;
+    }
     const double x = newton->x[newton->worst][of->column[0] >= 0 ? 0 : 1] + 0.0; /* no -0 */
     dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
                    hint_of_smooth(of->kind, x, newton->x[newton->worst][1]),
@@ -295,6 +315,14 @@ static void explain_smooth(struct dalcs_session *s, const struct dalcs_component
                    "agrees with the circuit; the last one tried was %.6g, for an argument of %.6g",
                    when, text == NULL ? "" : text, name_owner(s, of->element),
                    newton->phi[newton->worst], x);
+}
+
+bool dalcs_failed_at_pole(const struct dalcs_euler *e, enum dalcs_status status) {
+    const struct dalcs_smooth_newton *newton =
+        status > DALCS_OK && e->failure.system >= 0
+            ? e->component[e->failure.system].osnsp.smooth.newton
+            : NULL;
+    return newton != NULL && newton->at_pole;
 }
 
 enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
@@ -310,14 +338,18 @@ enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_
     /* Radau fails just after a time, a step of Euler at its end. */
     bool is_from = !e->failure.at_operating_point &&
                    (e->failure.looks_behind || r->method != DALCS_METHOD_EULER);
-    const char *when = e->failure.at_operating_point       ? "at the operating point"
+    const struct dalcs_smooth_newton *newton =
+        e->component[e->failure.system].osnsp.smooth.newton;
+    const char *when = e->failure.at_operating_point ? "at the operating point"
+                       : dalcs_failed_at_pole(e, status)
+                           ? dalcs_arena_printf(&s->arena, "at t = %.8g s", e->failure.time)
                        : is_from && e->failure.time == 0.0 ? "from t = 0 on"
                        : is_from
                            ? dalcs_arena_printf(&s->arena, "from t = %.8g s on", e->failure.time)
                            : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
                                                 e->failure.time, e->steps + 1, e->failure.h);
     when = when == NULL ? "" : when;
-    const bool is_smooth = e->component[e->failure.system].osnsp.smooth.newton != NULL;
+    const bool is_smooth = newton != NULL;
     const char *hint = is_smooth ? NULL : dump_problem(r, e, when);
     if (status == DALCS_INFEASIBLE) {
         return explain_infeasible(r, e, is_from, when, hint);

@@ -329,6 +329,9 @@ void dalcs_nonunique_count_rest(struct dalcs_run *r);
 enum dalcs_status dalcs_loop_shorts_find(const struct dalcs_circuit *circuit, const bool *is_named,
                                          bool *is_part) DALCS_MUST_CHECK;
 
+/* Did the run end where a formula has no value? */
+bool dalcs_failed_at_pole(const struct dalcs_euler *e, enum dalcs_status status);
+
 /* Puts a numerical failure of e into words, into the report and, if wanted, into a dump. Other
  * statuses explain themselves elsewhere. Returns the status; instead of DALCS_INFEASIBLE, DALCS_NOT_CONVERGED where
  * no witness could be verified, or DALCS_E_NOMEM. */

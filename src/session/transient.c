@@ -237,6 +237,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     DALCS_TRY(set_up_rows(r));
     DALCS_TRY(set_up_euler(r, &p));
     enum dalcs_status status = walk_and_report(r, &p);
+    p.audit.ends_at_pole = dalcs_failed_at_pole(&p.euler, status);
     const bool is_wrong = dalcs_audit_run_fails(&p.audit);
     const enum dalcs_status audited = dalcs_audit_run_report(&p.audit);
     status = status == DALCS_OK ? audited : status;

@@ -1,25 +1,16 @@
 /* smooth_step.c - Newton's method on the values of smooth sources at the nodes of a step. */
-#include "smooth_step.h"
+#include "smooth_step_internal.h"
 
 #include "extremes.h"
 #include "magnitudes.h"
 #include "present.h"
 #include "rounding.h"
-#include "smooth_newton.h"
+#include "smooth_poles.h"
 
 #include <math.h>
 
 /* A step in which so many are not enough is too long: near the solution each doubles the digits. */
 enum { MOST_STEPS = 12 };
-
-struct dalcs_smooth_step {
-    struct dalcs_smooth_newton newton;
-    int n_tangents;   /* of the one-step problem when the steps were factored */
-    double slope_h;   /* s, of the step that newton.slope is of; 0: none */
-    uint64_t *mode;   /* [n_words] and its mode */
-    double *in, *out; /* a step with one value changed */
-    double (*dx)[2];  /* [n] changes of arguments */
-};
 
 enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
@@ -37,9 +28,13 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
     p->out = dalcs_arena_alloc(&part->arena, dalcs_stages_room(stages), sizeof(double));
     p->dx = dalcs_arena_alloc(&part->arena, (size_t)(stages->method->s + 1) * (size_t)s->n_smooth,
                               sizeof(*p->dx));
-    if (p->mode == NULL || p->in == NULL || p->out == NULL || p->dx == NULL) {
+    p->last = dalcs_arena_alloc(&part->arena, (size_t)s->n_smooth, sizeof(*p->last));
+    p->most = dalcs_arena_alloc(&part->arena, (size_t)s->n_smooth, sizeof(*p->most));
+    if (p->mode == NULL || p->in == NULL || p->out == NULL || p->dx == NULL || p->last == NULL ||
+        p->most == NULL) {
         return DALCS_E_NOMEM;
     }
+    p->may_have_poles = dalcs_smooth_may_have_poles(s);
     return dalcs_smooth_newton_setup(&p->newton, s, stages->method->s + 1, &part->arena);
 }
 
@@ -125,8 +120,10 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
         const struct dalcs_smooth_input *of = &s->smooth[k];
         double x[2] = {of->number[0], of->number[1]};
         double phi = 0.0;
+        double terms = 0.0;
         for (int node = 0; node <= m->s; node++) {
             const int q = node * s->n_smooth + k;
+            terms = dalcs_larger(terms, n->terms[q][0]);
             for (int j = 0; j < of->n; j++) {
                 x[j] += of->column[j] >= 0 ? m->test[node] * n->x[q][j] : 0.0;
             }
@@ -135,6 +132,7 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
         for (int j = 0; j < of->n; j++) {
             x[j] += of->column[j] >= 0 ? ripple[of->column[j]] : 0.0;
         }
+        x[0] = dalcs_smooth_held(of->kind, x, dalcs_alike * terms);
         const double off = dalcs_smooth_rest(of, x) - phi;
         const double rest = fabs(off) - dalcs_smooth_rounding(of, x);
         const double missed = isfinite(off) ? copysign(dalcs_larger(rest, 0.0), off) : off;
@@ -244,14 +242,13 @@ void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta) {
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
     for (int k = 0; k < n_smooth; k++) {
-        now->phi[k] = now->x[k][0] = now->x[k][1] = 0.0;
+        now->phi[k] = 0.0;
         for (int node = 0; node < n->n_points; node++) {
-            const int q = node * n_smooth + k;
-            now->phi[k] += weight[node] * n->phi[q];
-            now->x[k][0] += weight[node] * n->x[q][0];
-            now->x[k][1] += weight[node] * n->x[q][1];
+            now->phi[k] += weight[node] * n->phi[node * n_smooth + k];
         }
     }
+    dalcs_smooth_step_arguments(part, theta, now->x);
+    dalcs_smooth_euler_note(part);
 }
 
 enum dalcs_status dalcs_smooth_step_vary_begin(struct dalcs_radau_part *part,

@@ -22,7 +22,15 @@ enum dalcs_status dalcs_smooth_step_vary_begin(struct dalcs_radau_part *part,
                                                struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
 void dalcs_smooth_step_vary(const struct dalcs_radau_part *part, const double *out, double *in);
 
+/* Does a function have no value somewhere in the present step up to *theta, or since the segment before? Then *theta is
+ * where, and the component's functions tell which. */
+bool dalcs_smooth_step_meets_pole(const struct dalcs_radau_part *part, double *theta);
+
 /* The present step up to theta is a segment: what follows starts with the values there. */
 void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta);
+
+/* The same of a step of implicit Euler, that the one-step problem was solved for last. */
+bool dalcs_smooth_euler_meets_pole(const struct dalcs_radau_part *part);
+void dalcs_smooth_euler_note(const struct dalcs_radau_part *part);
 
 #endif
