@@ -16,18 +16,18 @@ static bool read(const struct dalcs_logic_network *l, const struct dalcs_logic_i
 }
 
 static bool of_inputs(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g) {
-    bool all = true;
-    bool any = false;
-    bool odd = false;
+    int n = 0;
+    int n_high = 0;
     for (int k = 0; k < g->n_inputs; k++) {
         if (g->input[k].from != DALCS_GATE_OPEN) {
-            const bool bit = read(l, &g->input[k]);
-            all = all && bit;
-            any = any || bit;
-            odd = odd != bit;
+            n++;
+            n_high += read(l, &g->input[k]) ? 1 : 0;
         }
     }
-    return g->kind == DALCS_GATE_AND ? all : g->kind == DALCS_GATE_XOR ? odd : any;
+    return g->kind == DALCS_GATE_AND   ? n_high == n
+           : g->kind == DALCS_GATE_XOR ? n_high % 2 == 1
+           : g->kind == DALCS_GATE_ONE ? n_high == 1
+                                       : n_high > 0;
 }
 
 static bool of_latch(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
