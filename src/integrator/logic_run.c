@@ -37,12 +37,13 @@ static void queue(void *user, int gate, const struct dalcs_logic_state *next) {
     }
     o->due[end] = (struct dalcs_logic_due){due, l->instant};
     o->n_due++;
+    dalcs_logic_set_add(&l->waits, gate);
 }
 
 double dalcs_logic_run_next(const struct dalcs_logic_run *l) {
     double next = INFINITY;
-    for (int k = 0; l->circuit != NULL && k < l->network.n; k++) {
-        const struct dalcs_logic_output *o = &l->output[k];
+    for (int i = 0; i < l->waits.n; i++) {
+        const struct dalcs_logic_output *o = &l->output[l->waits.gate[i]];
         next = fmin(next, o->n_due > 0 ? fmin(o->ends, o->due[o->first_due].t) : o->ends);
     }
     return next;
@@ -50,16 +51,16 @@ double dalcs_logic_run_next(const struct dalcs_logic_run *l) {
 
 /* Pulses that begin at t. */
 static void start_pulses(struct dalcs_logic_run *l, double t) {
-    for (int k = 0; k < l->network.n; k++) {
+    for (int i = 0; i < l->n_pulses; i++) {
+        const int k = l->pulse[i];
         const struct dalcs_logic_gate *g = &l->network.gate[k];
         struct dalcs_logic_state *state = &l->network.state[k];
-        if (g->kind != DALCS_GATE_MONOSTABLE) {
-            continue;
-        }
         if (state->takes) {
             l->output[k].ends =
                 t + g->pulse.lead + (g->sampled >= 0 ? fmax(0.0, l->taken[k]) : g->pulse.length);
             l->output[k].ends_since = ++l->number;
+            dalcs_logic_set_add(&l->waits, k);
+            dalcs_logic_touch(&l->network, k, false);
             if (l->observer != NULL) {
                 l->observer->pulse(l->observer->user, k, l->number);
             }
@@ -79,12 +80,14 @@ static void tell_due(const struct dalcs_logic_run *l, long since) {
 /* One that ends is followed by a time in which no other begins. */
 static bool end_pulses(struct dalcs_logic_run *l, double t) {
     bool any = false;
-    for (int k = 0; k < l->network.n; k++) {
+    for (int i = 0; i < l->n_pulses; i++) {
+        const int k = l->pulse[i];
         const struct dalcs_logic_gate *g = &l->network.gate[k];
         struct dalcs_logic_state *state = &l->network.state[k];
         struct dalcs_logic_output *o = &l->output[k];
         while (o->ends <= t + resolution(l)) {
             tell_due(l, o->ends_since);
+            dalcs_logic_touch(&l->network, k, false);
             const bool rests = state->count == 1 && !g->pulse.is_retriggered;
             if (state->q) {
                 state->q = state->is_forced = false;
@@ -101,14 +104,20 @@ static bool end_pulses(struct dalcs_logic_run *l, double t) {
 /* Has anything come due? */
 static bool release(struct dalcs_logic_run *l, double t) {
     bool any = end_pulses(l, t);
-    for (int k = 0; k < l->network.n; k++) {
+    for (int i = l->waits.n - 1; i >= 0; i--) {
+        const int k = l->waits.gate[i];
         struct dalcs_logic_output *o = &l->output[k];
         while (o->n_due > 0 && o->due[o->first_due].t <= t + resolution(l)) {
             tell_due(l, o->due[o->first_due].since);
             l->network.state[k].seen = !l->network.state[k].seen;
+            dalcs_logic_touch(&l->network, k, true);
             o->first_due++;
             o->n_due--;
             any = true;
+        }
+        if (o->n_due == 0 && isinf(o->ends)) {
+            l->waits.has[k] = false;
+            l->waits.gate[i] = l->waits.gate[--l->waits.n];
         }
     }
     return any;
@@ -119,7 +128,11 @@ static bool release(struct dalcs_logic_run *l, double t) {
 static void read_bits(struct dalcs_logic_run *l) {
     for (int k = 0; k < l->n_comparators; k++) {
         const struct dalcs_component *component = &l->euler->component[l->place[k].part];
-        l->bit[k] = dalcs_osnsp_is_on(&component->osnsp, l->place[k].pair);
+        const bool bit = dalcs_osnsp_is_on(&component->osnsp, l->place[k].pair);
+        if (bit != l->bit[k]) {
+            l->bit[k] = bit;
+            dalcs_logic_touch_bit(&l->network, k);
+        }
     }
 }
 
@@ -156,13 +169,17 @@ enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed)
 static enum dalcs_status show_changes(struct dalcs_logic_run *l, double t, bool *acts) {
     *acts = false;
     memset(l->changed, 0, (size_t)l->circuit->n_stimuli * sizeof(bool));
-    for (int k = 0; k < l->network.n; k++) {
+    for (int i = 0; i < l->network.moved.n; i++) {
+        const int k = l->network.moved.gate[i];
         l->network.moves[k] =
             l->network.state[k].seen != l->output[k].shown || l->network.state[k].takes;
         if (l->network.moves[k]) {
             DALCS_TRY(dalcs_logic_output_show(l, k, t));
             *acts = true;
         }
+    }
+    if (!*acts) {
+        dalcs_logic_set_clear(&l->network.moved);
     }
     return l->inputs != NULL ? dalcs_logic_inputs_show(l, t, acts) : DALCS_OK;
 }

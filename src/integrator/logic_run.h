@@ -66,8 +66,9 @@ struct dalcs_logic_run {
     void *cut_user;
     void (*on_cut)(void *user, int part,
                    double t); /* a segment of a part ends at t, before its time; or NULL */
-    int n_samples;
-    int *sample; /* [n_samples] gates */
+    int n_samples, n_pulses;
+    int *sample, *pulse;          /* [n_samples], [n_pulses] gates; pulse: monostables */
+    struct dalcs_logic_set waits; /* gates of which something is due */
     double *
         taken; /* [n gates] V: what samples may take at t, as it was before anything happened there */
     bool *changed;                     /* [n_stimuli] in the present round */

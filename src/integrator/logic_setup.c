@@ -43,25 +43,24 @@ static enum dalcs_status allocate(struct dalcs_logic_run *l) {
     const size_t n = (size_t)l->circuit->n_gates;
     const size_t n_comparators = (size_t)l->circuit->n_comparators;
     const size_t n_stimuli = (size_t)l->circuit->n_stimuli;
-    struct dalcs_logic_network *w = &l->network;
     l->bit = dalcs_alloc(n_comparators + 1, sizeof(*l->bit));
     l->place = dalcs_alloc(n_comparators + 1, sizeof(*l->place));
     l->output = dalcs_alloc(n, sizeof(*l->output));
     l->sample = dalcs_alloc(n, sizeof(*l->sample));
+    l->pulse = dalcs_alloc(n, sizeof(*l->pulse));
     l->taken = dalcs_alloc(n, sizeof(*l->taken));
     l->changed = dalcs_alloc(n_stimuli, sizeof(*l->changed));
     l->as_built = dalcs_alloc(n_stimuli, sizeof(*l->as_built));
-    w->state = dalcs_alloc(n, sizeof(*w->state));
-    w->next = dalcs_alloc(n, sizeof(*w->next));
-    w->mark = dalcs_alloc(n, sizeof(*w->mark));
-    w->moves = dalcs_alloc(n, sizeof(*w->moves));
     bool complete = l->bit != NULL && l->place != NULL && l->output != NULL && l->sample != NULL &&
-                    l->taken != NULL && l->changed != NULL && l->as_built != NULL &&
-                    w->state != NULL && w->next != NULL && w->mark != NULL && w->moves != NULL;
+                    l->pulse != NULL && l->taken != NULL && l->changed != NULL &&
+                    l->as_built != NULL;
     if (complete) {
         memcpy(l->as_built, l->circuit->stimulus, n_stimuli * sizeof(*l->as_built));
     }
-    return complete ? DALCS_OK : DALCS_E_NOMEM;
+    DALCS_TRY(complete ? DALCS_OK : DALCS_E_NOMEM);
+    l->network.bit = l->bit;
+    DALCS_TRY(dalcs_logic_set_setup(&l->waits, l->network.n));
+    return dalcs_logic_network_setup(&l->network, l->n_comparators);
 }
 
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
@@ -79,7 +78,6 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
     l->network.n = circuit->n_gates;
     l->network.gate = circuit->gate;
     enum dalcs_status status = allocate(l);
-    l->network.bit = l->bit;
     status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, euler, l->place) : status;
     for (int k = 0; k < l->network.n && status == DALCS_OK; k++) {
         struct dalcs_logic_state *state = &l->network.state[k];
@@ -88,6 +86,9 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
         l->output[k].ends = INFINITY;
         if (circuit->gate[k].sampled >= 0) {
             l->sample[l->n_samples++] = k;
+        }
+        if (circuit->gate[k].kind == DALCS_GATE_MONOSTABLE) {
+            l->pulse[l->n_pulses++] = k;
         }
     }
     if (status != DALCS_OK) {
@@ -113,13 +114,12 @@ void dalcs_logic_run_finish(struct dalcs_logic_run *l) {
     free(l->place);
     free(l->output);
     free(l->sample);
+    free(l->pulse);
     free(l->taken);
     free(l->changed);
     free(l->as_built);
-    free(l->network.state);
-    free(l->network.next);
-    free(l->network.mark);
-    free(l->network.moves);
+    dalcs_logic_set_finish(&l->waits);
+    dalcs_logic_network_finish(&l->network);
     if (l->radau != NULL) {
         l->radau->decider = (struct dalcs_radau_decider){0};
     }
