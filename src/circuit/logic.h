@@ -17,7 +17,8 @@ enum { DALCS_GATE_DEVICES = 8 + 2 * DALCS_GATE_PINS };
 enum dalcs_logic_kind {
     DALCS_GATE_AND,
     DALCS_GATE_OR,
-    DALCS_GATE_XOR,
+    DALCS_GATE_XOR, /* an odd number of inputs */
+    DALCS_GATE_ONE, /* one input and no other: LTspice's XOR */
     DALCS_GATE_BUFFER,
     DALCS_GATE_LATCH,      /* set, reset: which wins */
     DALCS_GATE_FLIP_FLOP,  /* data, -, clock, preset, clear: which wins */

@@ -55,7 +55,7 @@ static const struct function *find_function(const char *word) {
 
     static const struct function functions[] = {
         {"and", DALCS_GATE_AND, 31, LEVELS},         {"or", DALCS_GATE_OR, 31, LEVELS},
-        {"xor", DALCS_GATE_XOR, 31, LEVELS},         {"srflop", DALCS_GATE_LATCH, 3, LEVELS},
+        {"xor", DALCS_GATE_ONE, 31, LEVELS},         {"srflop", DALCS_GATE_LATCH, 3, LEVELS},
         {"dflop", DALCS_GATE_FLIP_FLOP, 29, LEVELS}, {"counter", DALCS_GATE_COUNTER, 3, COUNT},
         {"samplehold", DALCS_GATE_SAMPLE, 15, 0},    {"", DALCS_GATE_BUFFER, 1, LEVELS}};
     int k = 0;
@@ -230,12 +230,8 @@ static bool check_pins(struct dalcs_builder *builder, const struct card *c) {
             n -= pin < DALCS_GATE_PINS;
         }
     }
-    if (n == 0 || (n > 2 && c->function->kind == DALCS_GATE_XOR)) {
-        dalcs_builder_error(builder, name, USAGE,
-                            n == 0 ? "no input of '%s' is wired"
-                                   : "'%s' is an XOR of more than two inputs, which is not "
-                                     "supported: write a chain of them",
-                            name->text);
+    if (n == 0) {
+        dalcs_builder_error(builder, name, USAGE, "no input of '%s' is wired", name->text);
         return false;
     }
     return true;

@@ -155,6 +155,11 @@ static void obey_sources(struct dalcs_component *c, const double *inputs) {
     }
 }
 
+void dalcs_component_command_behind(struct dalcs_component *c, double t) {
+    dalcs_component_sample(c, t, DALCS_RIGHT, c->probe_u);
+    obey_sources(c, c->probe_u + c->system->n_x);
+}
+
 enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma, const double *u,
                                         double *y) {
     c->commands.moved = false;

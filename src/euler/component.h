@@ -75,6 +75,9 @@ bool dalcs_component_jumps_at_start(const struct dalcs_component *c);
 void dalcs_component_sample_operating(const struct dalcs_component *c, bool transient_follows,
                                       double *u);
 
+/* Commands the switches that sources alone control as they stand just behind t. Nothing is solved. */
+void dalcs_component_command_behind(struct dalcs_component *c, double t);
+
 /* Commands the switches and solves at sigma; y gets the answer. Switches that sources control are
  * set first, the others agree with the answer (positions.h). */
 enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma, const double *u,

@@ -186,7 +186,11 @@ enum dalcs_status dalcs_logic_memory_restore(const struct dalcs_logic_memory *m,
             }
         }
         DALCS_TRY(restore_dues(m, &l->output[k], number, &n));
+        if (l->output[k].n_due > 0 || isfinite(l->output[k].ends)) {
+            dalcs_logic_set_add(&l->waits, k);
+        }
     }
+    dalcs_logic_touch_all(&l->network);
     for (int k = 0; k < m->n_pins; k++) {
         DALCS_TRY(dalcs_logic_output_restore(l, &m->pin[k], number[k]));
     }

@@ -8,6 +8,45 @@
 
 #include <string.h>
 
+void dalcs_logic_set_add(struct dalcs_logic_set *set, int gate) {
+    if (!set->has[gate]) {
+        set->has[gate] = true;
+        set->gate[set->n++] = gate;
+    }
+}
+
+void dalcs_logic_set_clear(struct dalcs_logic_set *set) {
+    for (int i = 0; i < set->n; i++) {
+        set->has[set->gate[i]] = false;
+    }
+    set->n = 0;
+}
+
+static void ask_readers(struct dalcs_logic_network *l, int source) {
+    for (int i = l->first_reader[source]; i < l->first_reader[source + 1]; i++) {
+        dalcs_logic_set_add(&l->asked, l->reader[i]);
+    }
+}
+
+void dalcs_logic_touch(struct dalcs_logic_network *l, int gate, bool seen) {
+    dalcs_logic_set_add(&l->asked, gate);
+    dalcs_logic_set_add(&l->marked, gate);
+    dalcs_logic_set_add(&l->moved, gate);
+    if (seen) {
+        ask_readers(l, gate);
+    }
+}
+
+void dalcs_logic_touch_bit(struct dalcs_logic_network *l, int comparator) {
+    ask_readers(l, l->n + comparator);
+}
+
+void dalcs_logic_touch_all(struct dalcs_logic_network *l) {
+    for (int k = 0; k < l->n; k++) {
+        dalcs_logic_touch(l, k, false);
+    }
+}
+
 static bool read(const struct dalcs_logic_network *l, const struct dalcs_logic_input *input) {
     bool bit = input->from == DALCS_GATE_COMPARATOR ? l->bit[input->index]
                : input->from == DALCS_GATE_GATE     ? l->state[input->index].seen
@@ -16,18 +55,18 @@ static bool read(const struct dalcs_logic_network *l, const struct dalcs_logic_i
 }
 
 static bool of_inputs(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g) {
-    bool all = true;
-    bool any = false;
-    bool odd = false;
+    int n = 0;
+    int n_high = 0;
     for (int k = 0; k < g->n_inputs; k++) {
         if (g->input[k].from != DALCS_GATE_OPEN) {
-            const bool bit = read(l, &g->input[k]);
-            all = all && bit;
-            any = any || bit;
-            odd = odd != bit;
+            n++;
+            n_high += read(l, &g->input[k]) ? 1 : 0;
         }
     }
-    return g->kind == DALCS_GATE_AND ? all : g->kind == DALCS_GATE_XOR ? odd : any;
+    return g->kind == DALCS_GATE_AND   ? n_high == n
+           : g->kind == DALCS_GATE_XOR ? n_high % 2 == 1
+           : g->kind == DALCS_GATE_ONE ? n_high == 1
+                                       : n_high > 0;
 }
 
 static bool of_latch(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
@@ -130,19 +169,26 @@ static bool is_same(const struct dalcs_logic_state *a, const struct dalcs_logic_
 /* One round; does anything change? */
 static bool change(struct dalcs_logic_network *l, void *user,
                    void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
+    const struct dalcs_logic_set asked = l->asked;
     bool any = false;
-    for (int k = 0; k < l->n; k++) {
-        l->next[k] = decide(l, k);
+    l->asked = l->round;
+    l->round = asked;
+    for (int i = 0; i < asked.n; i++) {
+        l->next[asked.gate[i]] = decide(l, asked.gate[i]);
     }
-    for (int k = 0; k < l->n; k++) {
-        if (l->next[k].q != l->state[k].q) {
+    for (int i = 0; i < asked.n; i++) {
+        const int k = asked.gate[i];
+        const struct dalcs_logic_state before = l->state[k];
+        if (l->next[k].q != before.q) {
             on_q(user, k, &l->next[k]);
         }
-        any = any || !is_same(&l->next[k], &l->state[k]);
+        l->state[k] = l->next[k];
+        if (!is_same(&l->state[k], &before)) {
+            dalcs_logic_touch(l, k, l->state[k].seen != before.seen);
+            any = true;
+        }
     }
-    struct dalcs_logic_state *before = l->state;
-    l->state = l->next;
-    l->next = before;
+    dalcs_logic_set_clear(&l->round);
     return any;
 }
 
@@ -162,6 +208,7 @@ void dalcs_logic_rest(struct dalcs_logic_network *l) {
         l->state[k].q = dalcs_gate_has_delay(&l->gate[k]) ? decide(l, k).q : l->state[k].q;
     }
     l->rests = false;
+    dalcs_logic_touch_all(l);
 }
 
 bool dalcs_logic_is_at_rest(struct dalcs_logic_network *l) {
@@ -177,10 +224,17 @@ bool dalcs_logic_is_at_rest(struct dalcs_logic_network *l) {
 
 static bool is_at_mark(const struct dalcs_logic_network *l) {
     bool is = true;
-    for (int k = 0; k < l->n && is; k++) {
-        is = is_same(&l->state[k], &l->mark[k]);
+    for (int i = 0; i < l->marked.n && is; i++) {
+        is = is_same(&l->state[l->marked.gate[i]], &l->mark[l->marked.gate[i]]);
     }
     return is;
+}
+
+static void set_mark(struct dalcs_logic_network *l) {
+    for (int i = 0; i < l->marked.n; i++) {
+        l->mark[l->marked.gate[i]] = l->state[l->marked.gate[i]];
+    }
+    dalcs_logic_set_clear(&l->marked);
 }
 
 static void ignore(void *user, int gate, const struct dalcs_logic_state *next) {
@@ -202,15 +256,14 @@ static void find_loop(struct dalcs_logic_network *l) {
 
 bool dalcs_logic_settle(struct dalcs_logic_network *l, void *user,
                         void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
-    const size_t bytes = (size_t)l->n * sizeof(*l->state);
-    memcpy(l->mark, l->state, bytes);
+    set_mark(l);
     for (long round = 1; change(l, user, on_q); round++) {
         if (is_at_mark(l)) {
             find_loop(l);
             return false;
         }
         if ((round & (round - 1)) == 0) {
-            memcpy(l->mark, l->state, bytes);
+            set_mark(l);
         }
     }
     return true;

@@ -13,15 +13,47 @@ struct dalcs_logic_state {
     bool takes;     /* a sample takes what stood before this instant, a pulse begins */
 };
 
+/* Some of the gates, each once. */
+struct dalcs_logic_set {
+    int n, *gate; /* [n] */
+    bool *has;    /* [n gates] */
+};
+
+/* What has not changed, and reads nothing that has, decides as before: no round asks it. An instant costs what acts in it,
+ * however many gates there are. */
 struct dalcs_logic_network {
     int n;
     const struct dalcs_logic_gate *gate;   /* [n] */
     const bool *bit;                       /* of comparators */
     struct dalcs_logic_state *state;       /* [n] */
     struct dalcs_logic_state *next, *mark; /* [n] work */
-    bool rests;                            /* a clock that stands high has not risen */
+    int *first_reader,
+        *reader; /* of the bits of gate k, k < n, and of comparator k - n: first_reader[k] up to the next */
+    struct dalcs_logic_set asked, round; /* to decide in the next round, and in this one */
+    struct dalcs_logic_set marked;       /* whose state may differ from its mark */
+    struct dalcs_logic_set moved; /* whose state has changed since what it shows was looked at */
+    bool rests;                   /* a clock that stands high has not risen */
     bool *moves; /* [n] after a failure: in the loop that does not settle, or not at rest */
 };
+
+/* Behind n, gate and bit. */
+enum dalcs_status dalcs_logic_network_setup(struct dalcs_logic_network *network,
+                                            int n_comparators) DALCS_MUST_CHECK;
+void dalcs_logic_network_finish(struct dalcs_logic_network *network);
+
+enum dalcs_status dalcs_logic_set_setup(struct dalcs_logic_set *set, int n_gates) DALCS_MUST_CHECK;
+void dalcs_logic_set_finish(struct dalcs_logic_set *set);
+void dalcs_logic_set_add(struct dalcs_logic_set *set, int gate);
+void dalcs_logic_set_clear(struct dalcs_logic_set *set);
+
+/* The state of a gate has been changed from outside; seen: what others read of it, too. */
+void dalcs_logic_touch(struct dalcs_logic_network *network, int gate, bool seen);
+
+/* The bit of a comparator has changed. */
+void dalcs_logic_touch_bit(struct dalcs_logic_network *network, int comparator);
+
+/* All may have. */
+void dalcs_logic_touch_all(struct dalcs_logic_network *network);
 
 /* The states at rest as the bits have them, one gate after the other, with no delay. What has no rest goes on from there:
  * where gates in a ring differ, one does, as of a ring oscillator that runs. */

@@ -81,6 +81,7 @@ static enum dalcs_status show_sample(struct dalcs_logic_run *l, int k, double t)
                         &o->capacity[2], &(struct ramp){t, state->seen, 0.0, 1.0}));
     }
     state->takes = false;
+    dalcs_logic_set_add(&l->network.marked, k);
     o->shown = state->seen;
     return DALCS_OK;
 }

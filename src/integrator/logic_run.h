@@ -68,12 +68,14 @@ struct dalcs_logic_run {
         void (*tell)(void *user, int part, double t); /* or NULL */
     } cut;
 
-    int n_samples;
-    int *sample; /* [n_samples] gates */
+    int n_samples, n_pulses;
+    int *sample, *pulse;          /* [n_samples], [n_pulses] gates; pulse: monostables */
+    struct dalcs_logic_set waits; /* gates of which something is due */
     double *
         taken; /* [n gates] V: what samples may take at t, as it was before anything happened there */
     bool *changed;                     /* [n_stimuli] in the present round */
     double now;                        /* s, of the changes of q that the queue is told of */
+    bool is_open;                      /* what happens at `now` is still being decided */
     long number;                       /* the last one given */
     long instant;                      /* the number of this one */
     struct dalcs_logic_inputs *inputs; /* NULL: nothing comes from outside */
@@ -102,6 +104,10 @@ bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l);
 
 /* s, the next change of an output that waits; INFINITY: none does. */
 double dalcs_logic_run_next(const struct dalcs_logic_run *l);
+
+/* user is the logic. Before parts begin at t, by the positions that commands and crossings have given comparators. What does
+ * not settle is refused by dalcs_logic_run_at(). */
+enum dalcs_status dalcs_logic_decide_early(void *user, double t) DALCS_MUST_CHECK;
 
 /* All that happens at t, to which all parts have come. DALCS_NOT_CONVERGED: it does not settle; network.moves are the
  * gates that go on changing. */

@@ -1,91 +1,18 @@
-/* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
+/* radau.c - the parts of a run, passed from segment to segment. */
 #include "radau.h"
+
 #include "cycle.h"
 #include "guards.h"
 #include "magnitudes.h"
 #include "periodic.h"
 #include "present.h"
+#include "radau_enter.h"
 #include "recurrence.h"
-#include "restart.h"
 #include "segment.h"
 #include "step_error.h"
 
 #include <math.h>
 #include <string.h>
-
-static void obey_commands(struct dalcs_radau_part *part) {
-    for (int k = 0; k < part->commands.n; k++) {
-        const struct dalcs_command *m = &part->commands.command[k];
-        dalcs_osnsp_command(&part->component->osnsp, m->pair, m->is_on);
-    }
-}
-
-/* Those of the operating point, where there was one: a hysteresis goes on from there. */
-static void remember_switches(struct dalcs_radau_part *part) {
-    for (int k = 0; k < part->commands.n; k++) {
-        struct dalcs_command *m = &part->commands.command[k];
-        m->is_on = dalcs_osnsp_is_on(&part->component->osnsp, m->pair);
-    }
-}
-
-/* Times closer than the resolution are one: what sources do just behind the instant they do at it. A carrier that meets
- * its reference at t = 0 crosses it at 1e-21 s by rounding. Returns whether any has an edge; *jumps: whether its value jumps. */
-static bool enter_edges(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool *jumps) {
-    struct dalcs_excitation *e = &part->excitation;
-    bool any = false;
-    *jumps = false;
-    while (e->next_edge <= part->segment.t + r->resolution) {
-        dalcs_excitation_enter(e, fmax(part->segment.t, e->next_edge));
-        *jumps = *jumps || e->jumps;
-        any = true;
-    }
-    return any;
-}
-
-bool dalcs_radau_commands_at_start(struct dalcs_radau *r) {
-    bool moves = false;
-    for (int k = 0; k < r->n_parts; k++) {
-        struct dalcs_radau_part *part = &r->part[k];
-        if (part->kind != DALCS_PART_ALGEBRAIC) {
-            remember_switches(part);
-            dalcs_commands_start(&part->commands);
-            moves = dalcs_commands_obey(&part->commands, r->resolution) || moves;
-        }
-    }
-    return moves;
-}
-
-enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initial) {
-    for (int k = 0; k < r->n_parts; k++) {
-        struct dalcs_radau_part *part = &r->part[k];
-        struct dalcs_component *c = part->component;
-        const double *x = initial != NULL ? initial[k] : c->y;
-        memcpy(part->x, x, (size_t)c->system->n_x * sizeof(double));
-        dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
-        if (r->base->listener.observer != NULL) {
-            r->base->listener.observer->start(r->base->listener.observer->user, k, x);
-        }
-        part->is_answered = false;
-        part->answered_at = 0.0;
-        if (part->kind == DALCS_PART_ALGEBRAIC) {
-            part->segment.t_end = INFINITY;
-            continue;
-        }
-        remember_switches(part);
-        dalcs_commands_start(&part->commands);
-        (void)dalcs_commands_obey(&part->commands, r->resolution);
-        bool jumps; /* as a start does anyhow */
-        (void)enter_edges(r, part, &jumps);
-        obey_commands(part);
-        part->guards.fresh = true;
-        if (initial != NULL || dalcs_component_jumps_at_start(c)) {
-            bool is_off; /* for the first segment to find */
-            DALCS_TRY(dalcs_radau_restart(r, part, 0, false, &is_off));
-        }
-        DALCS_TRY(dalcs_segment_begin(r, part));
-    }
-    return dalcs_radau_tell_open(r);
-}
 
 double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
     double next = INFINITY;
@@ -152,11 +79,18 @@ static void go_to_end(struct dalcs_radau_part *part) {
     }
 }
 
-/* The next segment of a part that may come back to where it was; repeats: it is known to. */
+/* From one segment to the next. */
+struct passage {
+    bool repeats;   /* the part is known to come back to where it was */
+    bool commanded; /* a switch is */
+};
+
+/* The next segment of a part that may come back to where it was. */
 static enum dalcs_status repeat_or_begin(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                         bool commanded, bool repeats) {
+                                         const struct passage *passage) {
+    bool repeats = passage->repeats;
     dalcs_periodic_look_ahead(part);
-    if (!repeats && (part->guards.n_crossed > 0 || commanded)) {
+    if (!repeats && (part->guards.n_crossed > 0 || passage->commanded)) {
         dalcs_periodic_event(r, part);
         repeats = dalcs_periodic_repeats(r, part);
     }
@@ -173,7 +107,7 @@ static enum dalcs_status repeat_or_begin(struct dalcs_radau *r, struct dalcs_rad
  * switch is commanded. */
 static bool enter_changes(struct dalcs_radau *r, struct dalcs_radau_part *part, bool goes_on) {
     bool jumps;
-    if (enter_edges(r, part, &jumps)) {
+    if (dalcs_radau_enter_edges(r, part, &jumps)) {
         part->guards.fresh = true;
         part->guards.bends = goes_on && !jumps;
         part->guards.leaps = jumps;
@@ -181,7 +115,7 @@ static bool enter_changes(struct dalcs_radau *r, struct dalcs_radau_part *part, 
     const bool commanded = part->commands.next <= part->segment.t + r->resolution &&
                            dalcs_commands_obey(&part->commands, part->segment.t + r->resolution);
     if (commanded) {
-        obey_commands(part);
+        dalcs_radau_obey_commands(part);
         part->guards.fresh = true;
         part->guards.flipped = true;
         part->guards.bends = false;
@@ -189,13 +123,15 @@ static bool enter_changes(struct dalcs_radau *r, struct dalcs_radau_part *part, 
     return commanded;
 }
 
-static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+/* Its segment ends. */
+static enum dalcs_status leave(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                               struct passage *passage) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->segment.jumped = false;
     if (r->base->listener.observer != NULL) {
         memcpy(part->work.after, part->x, state_bytes);
     }
-    bool repeats = part->memory.periodic != NULL && dalcs_periodic_repeats(r, part);
+    const bool repeats = part->memory.periodic != NULL && dalcs_periodic_repeats(r, part);
     if (!repeats || r->base->listener.observer != NULL) {
         go_to_end(part);
         if (dalcs_component_overgrows(part->component, part->x)) {
@@ -221,12 +157,20 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     if (part->guards.n_crossed > 0 || part->segment.by_euler) {
         count_flurry(r, part);
     }
-    const bool commanded = enter_changes(r, part, goes_on);
-    if (part->segment.t >= r->options.stop) {
+    *passage = (struct passage){repeats, enter_changes(r, part, goes_on)};
+    part->waits = part->segment.t < r->options.stop;
+    return DALCS_OK;
+}
+
+/* The next one begins. */
+static enum dalcs_status go_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                               const struct passage *passage) {
+    if (!part->waits) {
         return DALCS_OK;
     }
+    part->waits = false;
     if (part->memory.periodic != NULL) {
-        DALCS_TRY(repeat_or_begin(r, part, commanded, repeats));
+        DALCS_TRY(repeat_or_begin(r, part, passage));
     } else {
         set_aside(part);
         DALCS_TRY(dalcs_segment_begin(r, part));
@@ -234,11 +178,41 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     return part->memory.cycle != NULL ? dalcs_cycle_note(r, part) : DALCS_OK;
 }
 
-enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
+static bool ends_by(const struct dalcs_radau *r, const struct dalcs_radau_part *part, double t) {
+    return part->segment.t_end <= t && part->segment.t < r->options.stop;
+}
+
+/* With gates: what they command at t acts together with what sources command there. A part that begins between the two
+ * might have both switches of a leg closed, or neither. Nothing is taken to repeat there (radau_setup.c). */
+static enum dalcs_status pass_deciding(struct dalcs_radau *r, double t) {
+    const struct passage plain = {false, false};
+    struct passage passage;
     bool opens = false;
     for (int k = 0; k < r->n_parts; k++) {
-        if (r->part[k].segment.t_end <= t && r->part[k].segment.t < r->options.stop) {
-            DALCS_TRY(pass(r, &r->part[k]));
+        if (ends_by(r, &r->part[k], t)) {
+            DALCS_TRY(leave(r, &r->part[k], &passage));
+        }
+    }
+    DALCS_TRY(t < r->options.stop ? dalcs_radau_decide(r, t)
+                                  : DALCS_OK); /* at the end nothing begins */
+    for (int k = 0; k < r->n_parts; k++) {
+        const bool waits = r->part[k].waits;
+        DALCS_TRY(go_on(r, &r->part[k], &plain));
+        opens = opens || (waits && r->part[k].segment.open);
+    }
+    return opens ? dalcs_radau_tell_open(r) : DALCS_OK;
+}
+
+enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
+    bool opens = false;
+    if (r->decider.decide != NULL) {
+        return pass_deciding(r, t);
+    }
+    for (int k = 0; k < r->n_parts; k++) {
+        if (ends_by(r, &r->part[k], t)) {
+            struct passage passage;
+            DALCS_TRY(leave(r, &r->part[k], &passage));
+            DALCS_TRY(go_on(r, &r->part[k], &passage));
             opens = opens || r->part[k].segment.open;
         }
     }
@@ -254,17 +228,22 @@ bool dalcs_radau_is_disturbed(const struct dalcs_radau_part *part, const bool *c
     return is;
 }
 
-/* Its segment has begun at t, as if nothing had changed. */
-static enum dalcs_status begin_again(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+/* Sources and commands where its segment begins are others. */
+static void enter_again(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     bool jumps;
     dalcs_excitation_enter(&part->excitation, part->segment.t);
-    (void)enter_edges(r, part, &jumps);
+    (void)dalcs_radau_enter_edges(r, part, &jumps);
     if (dalcs_commands_obey(&part->commands, part->segment.t + r->resolution)) {
-        obey_commands(part);
+        dalcs_radau_obey_commands(part);
         part->guards.flipped = true;
     }
     part->guards.fresh = true;
     part->guards.bends = part->guards.leaps = false;
+}
+
+/* Its segment has begun at t, as if nothing had changed. */
+static enum dalcs_status begin_again(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    enter_again(r, part);
     part->guards.n_crossed = 0;
     part->segment.late = NULL;
     part->segment.brief = NULL;
@@ -287,9 +266,15 @@ enum dalcs_status dalcs_radau_disturb(struct dalcs_radau *r, struct dalcs_radau_
         return DALCS_OK;
     }
     dalcs_commands_disturb(&part->commands, t, changed);
+    if (part->waits) {
+        enter_again(r, part);
+        return DALCS_OK;
+    }
     if (part->segment.t >= t) {
         return begin_again(r, part);
     }
+    struct passage passage;
     part->excitation.next_edge = t; /* so that it is entered */
-    return pass(r, part);
+    DALCS_TRY(leave(r, part, &passage));
+    return r->decider.is_asked ? DALCS_OK : go_on(r, part, &passage);
 }

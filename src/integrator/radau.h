@@ -23,9 +23,12 @@ void dalcs_radau_finish(struct dalcs_radau *r);
  * operating point at 0 and moves just after it. Before the start. */
 bool dalcs_radau_commands_at_start(struct dalcs_radau *r);
 
-/* Starts at t = 0 from the components' states: initial[k][n_x] = x(0-), or NULL for the operating
+/* Stands at t = 0 with the components' states: initial[k][n_x] = x(0-), or NULL for the operating
  * point that base has solved. */
-enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initial) DALCS_MUST_CHECK;
+void dalcs_radau_start(struct dalcs_radau *r, double *const *initial);
+
+/* Goes on from there: what happens at 0, and the first segments. */
+enum dalcs_status dalcs_radau_begin(struct dalcs_radau *r) DALCS_MUST_CHECK;
 
 /* The earliest end of a segment; INFINITY when nothing steps. *happens: not just the end of a step. */
 double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens);

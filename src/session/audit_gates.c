@@ -127,6 +127,7 @@ static struct verdict of_inputs(const struct dalcs_audit_gates *a,
     }
     v.q = g->kind == DALCS_GATE_AND   ? n_high == n
           : g->kind == DALCS_GATE_XOR ? n_high % 2 == 1
+          : g->kind == DALCS_GATE_ONE ? n_high == 1
                                       : n_high > 0;
     return v;
 }

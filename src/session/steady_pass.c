@@ -40,7 +40,9 @@ enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, stru
         status = dalcs_logic_memory_restore(&l->memory, logic, point->x + l->n_states,
                                             point->closed + l->n_switches);
     }
-    status = status == DALCS_OK ? dalcs_radau_start(radau, initial) : status;
+    if (status == DALCS_OK) {
+        dalcs_radau_start(radau, initial);
+    }
     dalcs_arena_finish(&arena);
     return status;
 }
@@ -245,12 +247,10 @@ static enum dalcs_status go_with_means(struct dalcs_steady *st, struct pass *p) 
 }
 
 static enum dalcs_status start(struct dalcs_steady *st, struct pass *p) {
-    const enum dalcs_status status =
-        st->has_point ? dalcs_steady_start(&st->at, p->euler, p->radau, &p->logic)
-                      : dalcs_transient_start(st->run, p->euler, p->radau, &p->logic, false);
-    return status == DALCS_OK && p->logic.circuit != NULL
-               ? dalcs_transient_decide(st->run, &p->logic, 0.0)
-               : status;
+    DALCS_TRY(st->has_point ? dalcs_steady_start(&st->at, p->euler, p->radau, &p->logic)
+                            : dalcs_transient_start(st->run, p->euler, p->radau, &p->logic, false));
+    DALCS_TRY(dalcs_radau_begin(p->radau));
+    return p->logic.circuit != NULL ? dalcs_transient_decide(st->run, &p->logic, 0.0) : DALCS_OK;
 }
 
 static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,

@@ -79,6 +79,12 @@ static enum dalcs_status cross(struct dalcs_run *r, struct parts *p) {
     if (has_gates) {
         dalcs_gates_read_euler(&r->s->network, &p->logic);
     }
+    for (int k = 0; has_gates && e->at_jump && k < e->n_components; k++) {
+        dalcs_component_command_behind(&e->component[k], e->t);
+    }
+    if (has_gates && e->at_jump) { /* what both command acts together */
+        DALCS_TRY(dalcs_transient_decide(r, &p->logic, e->t));
+    }
     DALCS_TRY(e->at_jump ? dalcs_euler_cross(e) : DALCS_OK);
     if (has_gates) {
         DALCS_TRY(dalcs_transient_decide(r, &p->logic, e->t));
@@ -176,6 +182,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
     if (r->orbit != NULL && !p->is_euler) {
         DALCS_TRY(dalcs_audit_gates_go_on(&p->audit.gates, &p->logic));
     }
+    DALCS_TRY(radau != NULL ? dalcs_radau_begin(radau) : DALCS_OK);
     DALCS_TRY(dalcs_transient_decide(r, &p->logic, 0.0));
     if (radau != NULL) {
         DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));

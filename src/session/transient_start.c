@@ -11,7 +11,11 @@
 /* From x(0-), or from the operating point (NULL). */
 static enum dalcs_status start_at(struct dalcs_euler *e, struct dalcs_radau *radau,
                                   double *const *initial) {
-    return radau != NULL ? dalcs_radau_start(radau, initial) : dalcs_euler_start(e, initial);
+    if (radau == NULL) {
+        return dalcs_euler_start(e, initial);
+    }
+    dalcs_radau_start(radau, initial);
+    return DALCS_OK;
 }
 
 bool dalcs_sources_jump(const struct dalcs_circuit *circuit, double t) {

@@ -165,6 +165,7 @@ struct dalcs_radau_part {
     struct dalcs_used_inputs used;
     double *x; /* [n_x] the state at segment.t, in whole quads */
     struct dalcs_part_segment segment;
+    bool waits; /* its segment has ended at segment.t, and the next one is still to begin */
     struct dalcs_part_length length;
     struct dalcs_part_scales scales;
     struct dalcs_part_guards guards;
@@ -190,9 +191,18 @@ struct dalcs_radau_options {
     double stop;       /* s */
 };
 
+/* What decides sources at an instant, gates: asked where segments have ended and none has begun. */
+struct dalcs_radau_decider {
+    void *user;
+    enum dalcs_status (*decide)(void *user, double t);
+    bool is_asked; /* now: what it disturbs does not begin yet */
+};
+
 struct dalcs_radau {
-    struct dalcs_euler *base; /* components, start, what failed; borrowed */
+    struct dalcs_euler *base;           /* components, start, what failed; borrowed */
+    struct dalcs_radau_decider decider; /* decide NULL: there is none */
     struct dalcs_radau_options options;
+    bool is_given; /* the states at 0 are: they need not fit together */
     int n_parts;
     struct dalcs_radau_part *part;
     struct dalcs_radau_part *cycling; /* the one that may leap; NULL: none */

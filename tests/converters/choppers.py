@@ -46,10 +46,10 @@ class PeakCurrentBuck(Circuit):
         return (mode[0], False, mode[2]), x
 
 
-def peak_current():
+def peak_current(rows=None):
     """Duty cycles below and above a half, with ramps and without. In the fourth each deviation of the current has the
     other sign after a period and is larger by a twelfth: the subharmonic of the clock grows from a start beside it."""
-    for k, (volts, hertz, duty, ripple, ohms, ramp, periods) in enumerate([
+    for k, (volts, hertz, duty, ripple, ohms, ramp, periods) in enumerate(rows or [
             (12, 1e5, 0.3, 0.3, 2, 0, 60), (48, 5e4, 0.6, 0.2, 1.5, 0.15, 60), (400, 2e4, 0.45, 0.4, 50, 0, 60),
             (12, 2e5, 0.52, 0.3, 3, 0, 50), (5, 1e6, 0.35, 3, 10, 0, 60), (24, 1e3, 0.7, 0.5, 8, 0.4, 60)]):
         period = 1 / hertz
@@ -57,7 +57,7 @@ def peak_current():
         load = out / ohms
         coil = out * (1 - duty) * period / (ripple * load)
         store, peak = 30 * period / ohms, load * (1 + ripple / 2 + ramp * duty)
-        start, valley = (out, load * (1 - ripple / 2 * 0.99)) if k == 3 else (0.9 * out, 0.0)
+        start, valley = (out, load * (1 - ripple / 2 * 0.99)) if k == 3 and not rows else (0.9 * out, 0.0)
         text = f"vin in 0 {volts!r}\ns1 in sw q 0 sm\nd1 0 sw\nvs sw x 0\nl1 x out {coil!r} ic={valley!r}\n" \
                f"c1 out 0 {store!r} ic={start!r}\nr1 out 0 {ohms!r}\n.model sm sw(vt=0.5)\n"
         text += card_pulse("vclk", "clk 0", 0.0, period / 50, period)
@@ -125,8 +125,8 @@ class PowerFactorBoost(Circuit):
         return mode, x
 
 
-def power_factor():
-    for k, (volts, hertz, wanted, power, switching, half_waves) in enumerate([
+def power_factor(rows=None):
+    for k, (volts, hertz, wanted, power, switching, half_waves) in enumerate(rows or [
             (325, 50, 400, 500, 20e3, 2), (170, 60, 380, 250, 30e3, 1.7), (20, 400, 36, 40, 50e3, 4),
             (600, 16.7, 900, 3e3, 4e3, 1.5)]):
         period, ohms = 1 / switching, wanted ** 2 / power
@@ -196,9 +196,9 @@ class Charger(Circuit):
         return mode, x
 
 
-def charger():
+def charger(rows=None):
     """From constant current to constant voltage: the battery is small enough to be full within the run."""
-    for k, (volts, full, amperes, switching, periods) in enumerate([
+    for k, (volts, full, amperes, switching, periods) in enumerate(rows or [
             (24, 14.4, 5, 50e3, 250), (400, 56, 20, 20e3, 250), (5, 4.2, 0.5, 1e6, 300), (800, 450, 100, 8e3, 250)]):
         period = 1 / switching
         ohms = full / amperes
@@ -273,9 +273,9 @@ class SaturatingForward(Circuit):
         return (switch, not switch and x[0] > 0.0, mode[2], mode[3]), x
 
 
-def forward():
+def forward(rows=None):
     """Duty cycles that let the flux come back to 0, and such that do not: then it walks into saturation."""
-    for k, (volts, hertz, ratio, reset, duty, ohms, light, periods) in enumerate([
+    for k, (volts, hertz, ratio, reset, duty, ohms, light, periods) in enumerate(rows or [
             (48, 1e5, 0.5, 1, 0.4, 2, 1, 40), (48, 1e5, 0.5, 1, 0.56, 2, 1, 60), (310, 5e4, 0.1, 1, 0.45, 0.5, 8, 40),
             (310, 2e4, 0.2, 1.5, 0.5, 1, 1, 60), (12, 3e5, 2, 0.8, 0.6, 20, 30, 60), (600, 1e4, 1, 1, 0.53, 20, 1, 60)]):
         period = 1 / hertz

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Converters as people draw them, with their control, against their equations, integrated from event to event.
 
-usage: converters.py PROGRAM KIND
-       converters.py show KIND NUMBER      the netlist of one
+usage: converters.py PROGRAM KIND [--drawn FROM-TO]    those of its list, or others with values drawn by these numbers
+       converters.py show KIND NUMBER [--drawn FROM-TO]    the netlist of one
 
 Each signal is compared at 97 times and must be within 1e-9 of its largest value there. The last converter of each kind
 is run once more with a coil or capacitor that is larger by a millionth, which has to be noticed.
@@ -10,10 +10,12 @@ is run once more with a coil or capacitor that is larger by a millionth, which h
 
 import importlib
 import pathlib
+import random
 import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import drawn  # pylint: disable=wrong-import-position
 import events  # pylint: disable=wrong-import-position
 from dalcs_program import Checker, run, some_of  # pylint: disable=wrong-import-position,import-error
 
@@ -24,8 +26,12 @@ POINTS = 97
 NEAR = 1e-9
 
 
-def cases_of(kind):
-    return getattr(importlib.import_module(KINDS[kind]), kind)()
+def cases_of(kind, options):
+    rows = None
+    if options and options[0] == "--drawn":
+        first, last = map(int, options[1].split("-"))
+        rows = [getattr(drawn, kind)(random.Random(f"{kind} {seed}")) for seed in range(first, last + 1)]
+    return getattr(importlib.import_module(KINDS[kind]), kind)(rows)
 
 
 def text_of(case):
@@ -83,10 +89,10 @@ def look_at(program, checker, case):
 
 def main():
     if sys.argv[1] == "show":
-        print(text_of(list(cases_of(sys.argv[2]))[int(sys.argv[3])]), end="")
+        print(text_of(list(cases_of(sys.argv[2], sys.argv[4:]))[int(sys.argv[3])]), end="")
         return 0
     program, checker, last = pathlib.Path(sys.argv[1]).resolve(), Checker(sys.argv[2]), None
-    for case in some_of(cases_of(sys.argv[2])):
+    for case in some_of(cases_of(sys.argv[2], sys.argv[3:])):
         last = look_at(program, checker, case) or last
     if last:
         done = last.run(program, spoilt(text_of(last.case)))

@@ -137,8 +137,8 @@ class Inverter(ThreePhase):
         return min(self.clock.after(t), self.changes.after(t))
 
 
-def svpwm():
-    for k, (volts, hertz, switching, amperes, part, periods) in enumerate([
+def svpwm(rows=None):
+    for k, (volts, hertz, switching, amperes, part, periods) in enumerate(rows or [
             (600, 50, 5e3, 10, 0.6, 1), (48, 400, 40e3, 30, 0.8, 1), (3e3, 16.7, 1.2e3, 200, 0.75, 1.2)]):
         period = 1 / switching
         back = part * volts / math.sqrt(3) * 0.8
@@ -206,8 +206,8 @@ class ActiveRectifier(ThreePhase):
         return rates + [pi.rate(err, h) for (pi, _), err, h in zip(self.controllers, self.errors(t, x), held)]
 
 
-def active_rectifier():
-    for k, (peak, hertz, wanted, power, switching, phase, periods) in enumerate([
+def active_rectifier(rows=None):
+    for k, (peak, hertz, wanted, power, switching, phase, periods) in enumerate(rows or [
             (325, 50, 700, 5e3, 5e3, 0.5, 0.4), (170, 400, 400, 1e3, 48e3, -1.2, 0.5), (30, 60, 80, 200, 8e3, 1.9, 0.5)]):
         period = 1 / switching
         amperes = 2 * power / (3 * peak)
@@ -287,8 +287,8 @@ class Machine(Circuit):
         return (mode if self.depth else self.legs(t)), x
 
 
-def machine():
-    for k, (volts, hertz, power, pairs, depth, switching, periods) in enumerate([
+def machine(rows=None):
+    for k, (volts, hertz, power, pairs, depth, switching, periods) in enumerate(rows or [
             (540, 50, 4e3, 2, None, None, 6), (540, 50, 4e3, 2, 0.9, 3e3, 2), (48, 100, 300, 1, None, None, 8),
             (3e3, 60, 500e3, 3, 0.8, 1.5e3, 3)]):
         # per unit of impedance: resistances, leakages and the mutual inductance

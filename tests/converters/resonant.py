@@ -55,8 +55,8 @@ class Llc(Circuit):
         return (half, diode, held), x
 
 
-def llc():
-    for k, (volts, resonance, wanted, power, quality, periods) in enumerate([
+def llc(rows=None):
+    for k, (volts, resonance, wanted, power, quality, periods) in enumerate(rows or [
             (400, 1e5, 12, 200, 0.35, 60), (48, 5e5, 5, 20, 0.6, 80), (800, 4e4, 400, 6e3, 0.25, 60),
             (24, 1e6, 24, 10, 0.45, 80)]):
         ohms = wanted ** 2 / power

@@ -95,8 +95,8 @@ class SixPulse(Circuit):
         return (mode[0], mode[1], self.gates.after(t, mode[2])), x
 
 
-def six_pulse():
-    for k, (volts, hertz, alpha, line, coil, ohms, battery, width, periods) in enumerate([
+def six_pulse(rows=None):
+    for k, (volts, hertz, alpha, line, coil, ohms, battery, width, periods) in enumerate(rows or [
             (325, 50, 30, 2e-3, 20e-3, 5, 0, 100, 3), (8e3, 60, 15, 1e-3, 30e-3, 20, 0, 110, 3),
             (170, 400, 70, 5e-6, 100e-6, 0.5, 20, 100, 4), (325, 50, 120, 1e-3, 50e-3, 1, -450, 90, 5),
             (325, 50, 60, 1e-3, 2e-3, 10, 120, 100, 3), (48, 1e3, 45, 10e-6, 1e-3, 3, 0, 61, 6)]):
@@ -144,8 +144,8 @@ class AcController(Circuit):
         return (mode[0], self.gates.after(t, mode[1])), x
 
 
-def ac_controller():
-    for k, (volts, hertz, alpha, coil, ohms, width, periods) in enumerate([
+def ac_controller(rows=None):
+    for k, (volts, hertz, alpha, coil, ohms, width, periods) in enumerate(rows or [
             (325, 50, 90, 20e-3, 10, 20, 4), (325, 50, 130, 0.1, 5, 10, 4), (10, 1e3, 75, 1e-4, 1, 30, 5),
             (8e3, 16.7, 100, 0.3, 10, 5, 3), (325, 60, 45, 50e-3, 10, 100, 6), (170, 60, 150, 1e-3, 100, 3, 3)]):
         period = 1 / hertz
@@ -199,8 +199,8 @@ class GtoInverter(Circuit):
         return (mode[0], self.gates.after(t, mode[1])), x
 
 
-def gto_inverter():
-    for k, (volts, hertz, shift, dead, coil, store, ohms, periods) in enumerate([
+def gto_inverter(rows=None):
+    for k, (volts, hertz, shift, dead, coil, store, ohms, periods) in enumerate(rows or [
             (600, 50, 120, 2, 10e-3, 1, 5, 4), (600, 50, 180, 5, 30e-3, 400e-6, 2, 5),
             (1500, 400, 90, 10, 1e-3, 100e-6, 10, 5), (24, 2e3, 150, 1, 100e-6, 1, 4, 6),
             (3e3, 150, 60, 4, 5e-3, 300e-6, 1, 6)]):

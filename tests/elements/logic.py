@@ -85,6 +85,22 @@ def divider(checker, program):
                   f"{what}: two clocks later")
 
 
+def many_inputs(checker, program):
+    """All values of five inputs, those of a binary counter: LTspice's XOR is 1 while one input is and no other."""
+    functions = {"AND": all, "OR": any, "XOR": lambda bits: sum(bits) == 1}
+    for n in range(2, 6):
+        names = [f"i{k}" for k in range(n)] + ["0"] * (5 - n)
+        cards = [f"v{k} i{k} 0 pulse(0 1 {2 ** k!r} 0 0 {2 ** k!r} {2 ** (k + 1)!r})" for k in range(n)]
+        cards += [f"a{name} {' '.join(names)} 0 o{name} 0 {name}\nr{name} o{name} 0 1" for name in functions]
+        done = run_cards(program, f"{n} inputs", [*cards, f".tran 0.25 {2 ** n}"])
+        if runs(checker, done, f"{n} inputs"):
+            for name, value in functions.items():
+                for k in range(2 ** n):
+                    wanted = value([k >> bit & 1 for bit in range(n)])
+                    found = [v for t, v in zip(done.time, done.column(f"v(o{name})".lower())) if k < t < k + 1]
+                    checker.check(all(v == wanted for v in found), f"{name} of {k:0{n}b}: {found}")
+
+
 def root(f, low, high):
     for _ in range(200):
         middle = (low + high) / 2
@@ -303,7 +319,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("logic")
-    for part in (ring, relaxation, divider, modulator, peak_current, small, measured, samples, sampled_control, counters,
+    for part in (ring, relaxation, divider, many_inputs, modulator, peak_current, small, measured, samples, sampled_control, counters,
                  refused):
         part(checker, program)
     return checker.finish()

@@ -188,7 +188,8 @@ static void run_the_default(const struct dalcs_circuit *circuit,
         bool from_initial = circuit->transient.use_initial_conditions;
         enum dalcs_status status = from_initial ? DALCS_OK : dalcs_euler_operating_point(&e, true);
         if (status == DALCS_OK) {
-            status = dalcs_radau_start(&r, from_initial ? network->initial : NULL);
+            dalcs_radau_start(&r, from_initial ? network->initial : NULL);
+            status = dalcs_radau_begin(&r);
         }
         if (status == DALCS_OK) {
             follow(&r);

@@ -307,7 +307,7 @@ MUTATIONS = {
     "a state jumps against a diode": (
         "integrator/segment.c", "!guessed && !asks &&", "!guessed &&", VIENNA),
     "an AND is an OR": (
-        "integrator/logic_network.c", "g->kind == DALCS_GATE_AND ? all", "g->kind == DALCS_GATE_AND ? any", GATES),
+        "integrator/logic_network.c", "DALCS_GATE_AND   ? n_high == n", "DALCS_GATE_AND   ? n_high > 0", GATES),
     "a latch is reset by nothing": (
         "integrator/logic_network.c", "return !reset && (set || q);", "return (reset || true) && (set || q);", GATES),
     "a flip-flop falls through": (
