@@ -163,6 +163,11 @@ enum dalcs_status dalcs_run_progress(const struct dalcs_run *r, double time,
 /* Settles what the options of the run and of the netlist leave open; checks them. */
 enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;
 
+/* The caller's options as this library has them (sized_options.c). */
+enum dalcs_status dalcs_run_options_take(struct dalcs_session *session,
+                                         const struct dalcs_run_options *given,
+                                         struct dalcs_run_options *own) DALCS_MUST_CHECK;
+
 /* The option of the run, else that of the netlist, else the default. */
 double dalcs_run_tolerance(const struct dalcs_run_options *options,
                            const struct dalcs_circuit *circuit);
