@@ -73,6 +73,7 @@ struct dalcs_session {
     struct dalcs_override *own; /* of the present step; heap */
     size_t n_own;
     struct dalcs_steps steps;
+    struct dalcs_lu_patterns patterns; /* of modes, kept from step to step: values do not matter */
     struct dalcs_drawn_value *unbuilt; /* [n_unbuilt] drawn for a step that could not be built */
     size_t n_unbuilt;
     const char *why_unbuilt; /* the first error of that; the arena's */
