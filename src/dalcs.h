@@ -22,9 +22,9 @@ extern "C" {
 #pragma GCC visibility push(default) /* all else in the library is hidden */
 #endif
 
-/* The number of this interface, and of the library's file: libdalcs.so.0. It is raised when a program
+/* The number of this interface, and of the library's file: libdalcs.so.1. It is raised when a program
  * that was built with an older header could not go on with a newer library. */
-#define DALCS_ABI 0
+#define DALCS_ABI 1
 
 /* 0 is success, > 0 a numerical failure that a smaller step may cure, < 0 is final. */
 #define DALCS_STATUS_LIST(ENTRY)                                                                   \
@@ -336,7 +336,10 @@ enum dalcs_audit_mode {
     DALCS_AUDIT_OFF
 };
 
+/* Made by dalcs_run_options_default(). Later versions add fields at the end, and only there: a program that was built
+ * with an older header has their defaults, which are 0. */
 struct dalcs_run_options {
+    size_t size; /* of the struct as the program knows it */
     const char
         *method; /* "auto", "radau", "lobatto" or "euler", the papers' implicit Euler; NULL: the
                            netlist's or the default */
@@ -408,8 +411,15 @@ struct dalcs_run_options {
 
 enum { DALCS_MOST_SIDEBAND = 1000000 };
 
-/* The values named above, all else 0. Owns nothing. */
-struct dalcs_run_options dalcs_run_options_default(void);
+/* Writes the values named above, all else 0, into the first `size` bytes. */
+void dalcs_run_options_init(struct dalcs_run_options *options, size_t size);
+
+/* The same, by the size that this header has. Owns nothing. */
+static inline struct dalcs_run_options dalcs_run_options_default(void) {
+    struct dalcs_run_options options;
+    dalcs_run_options_init(&options, sizeof(options));
+    return options;
+}
 
 /* The same for languages that do not read this header: made, set by name, destroyed by the caller. */
 enum dalcs_status dalcs_run_options_create(struct dalcs_run_options **options) DALCS_MUST_CHECK;

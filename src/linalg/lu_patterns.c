@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of patterns that are kept behind a run: some 10 MB. */
+static const size_t MOST_ENTRIES = (size_t)1 << 20;
+
 static void forget(struct dalcs_lu_pattern *known, klu_common *common) {
     klu_free_symbolic(&known->symbolic, common);
     free(known->p);
@@ -31,13 +34,23 @@ static void put_first(struct dalcs_lu_patterns *patterns, int from) {
     patterns->known[0] = known;
 }
 
+/* Is there no room for one more with so many entries? Those of a run are few enough in any case. */
+static bool are_full(const struct dalcs_lu_patterns *patterns, int most, size_t more) {
+    size_t sum = more;
+    for (int k = 0; k < patterns->n; k++) {
+        sum += (size_t)patterns->known[k].p[patterns->known[k].n];
+    }
+    return patterns->n == most || (most > DALCS_LU_PATTERNS && sum > MOST_ENTRIES);
+}
+
 static enum dalcs_status analyse(struct dalcs_lu_patterns *patterns, klu_common *common,
                                  bool keeps_diagonal, int n, int *p, int *i) {
     const size_t n_starts = (size_t)n + 1;
     const size_t n_entries = (size_t)p[n];
+    const int most = patterns->most > 0 ? patterns->most : DALCS_LU_PATTERNS;
     struct dalcs_lu_pattern made = {.n = n, .keeps_diagonal = keeps_diagonal};
     if (patterns->known == NULL) {
-        patterns->known = dalcs_alloc(DALCS_LU_PATTERNS, sizeof(*patterns->known));
+        patterns->known = dalcs_alloc((size_t)most, sizeof(*patterns->known));
     }
     if (patterns->known == NULL) {
         return DALCS_E_NOMEM;
@@ -50,7 +63,7 @@ static enum dalcs_status analyse(struct dalcs_lu_patterns *patterns, klu_common 
     }
     memcpy(made.p, p, n_starts * sizeof(*p));
     memcpy(made.p + n_starts, i, n_entries * sizeof(*i));
-    if (patterns->n == DALCS_LU_PATTERNS) {
+    while (patterns->n > 0 && are_full(patterns, most, n_entries)) {
         forget(&patterns->known[--patterns->n], common);
     }
     patterns->known[patterns->n] = made;

@@ -11,16 +11,20 @@
  * again, with 8 two thirds, with 64 no more than that. */
 enum { DALCS_LU_PATTERNS = 8 };
 
+/* Between the variants of a circuit those of one whole run are kept, which are up to some thirty. */
+enum { DALCS_LU_PATTERNS_OF_RUNS = 64 };
+
 /* All 0: none. */
 struct dalcs_lu_patterns {
     int n;
+    int most; /* that are kept; 0: DALCS_LU_PATTERNS; of more also a bound on their entries */
 
     struct dalcs_lu_pattern {
         int n;
         bool keeps_diagonal;
         int *p; /* [n + 1], behind it i[p[n]] */
         klu_symbolic *symbolic;
-    } * known; /* [DALCS_LU_PATTERNS] the latest first; NULL: there was none yet */
+    } * known; /* [most] the latest first; NULL: there was none yet */
 };
 
 /* dalcs_lu_factor() by an analysis that is there, or that is kept. */

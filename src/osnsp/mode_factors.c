@@ -155,13 +155,17 @@ enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct d
                : DALCS_SINGULAR;
 }
 
+struct dalcs_lu_patterns *dalcs_modes_patterns(struct dalcs_osnsp *p) {
+    return p->options.patterns != NULL ? p->options.patterns : &p->cache.patterns;
+}
+
 static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
                                 struct dalcs_columns *a) {
     if (a->n >= LARGE_MODE) {
         return factor_large(p, e, a);
     }
     enum dalcs_status status = dalcs_modes_factor_small(p, &e->lu, a, dalcs_nothing);
-    return status > DALCS_OK ? dalcs_lu_factor_again(&e->lu, &p->cache.patterns, &p->cache.klu,
+    return status > DALCS_OK ? dalcs_lu_factor_again(&e->lu, dalcs_modes_patterns(p), &p->cache.klu,
                                                      a->n, a->p, a->i, a->x, least_rcond(p))
                              : status;
 }

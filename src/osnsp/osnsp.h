@@ -27,6 +27,8 @@ struct dalcs_osnsp_options {
     int max_pivots;               /* mode changes per solve, on top of twice the number of pairs */
     size_t cache_bytes;           /* factors and maps kept */
     int dense_limit;              /* unknowns up to which recurring modes use a dense map */
+    struct dalcs_lu_patterns
+        *patterns; /* of modes, which outlive the problem; NULL: it has its own */
 };
 
 /* Those of a run. */
@@ -68,7 +70,7 @@ struct dalcs_smooth_newton;
 /* Condensed forms by sigma, and factors by (mode, sigma). */
 struct dalcs_mode_cache {
     klu_common klu;
-    struct dalcs_lu_patterns patterns; /* of modes */
+    struct dalcs_lu_patterns patterns; /* of modes, where the options have none */
     struct dalcs_step_form **form;     /* most recently used first */
     int n_forms;
     uint32_t *form_id; /* [n_forms] */

@@ -71,6 +71,9 @@ enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n,
 
 void dalcs_columns_finish(struct dalcs_columns *a);
 
+/* Analyses that are there, and the place for others. */
+struct dalcs_lu_patterns *dalcs_modes_patterns(struct dalcs_osnsp *p);
+
 /* Factors of a small matrix by columns of which little will be asked. DALCS_SINGULAR: it is not small, or more has to be
  * known of it than plain elimination tells. */
 enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu,

@@ -15,7 +15,6 @@
 
 #define COINCIDENT 1e-3 /* of a panel's range: less cannot be seen */
 #define OVERLAP    0.02 /* of a panel's width */
-#define BAND       0.3 /* opacity: two that lie on each other, and a line in either, can be told apart */
 
 enum { MAX_TITLE = 100, PIXELS_PER_INCH = 100, LEFT_OUT = 220 };
 
@@ -29,6 +28,12 @@ static const char *unit_prefix(double scale) {
 static bool has_bands(const struct dalcs_figure *figure, int v) {
     return v == 0 && figure->period > 0.0 && !figure->axis.logarithmic &&
            strcmp(figure->axis.unit, "s") == 0;
+}
+
+/* With the opacity a the last of n bands on each other adds a (1 - a)^(n - 1) to what is beneath, which is most where
+ * a = 1/n. The line in it adds (1 - a)^n: of one band alone both are told apart best where they are the same. */
+static double band_opacity(int n) {
+    return 1.0 / (n > 2 ? n : 2);
 }
 
 static void write_band(FILE *stream, const struct dalcs_figure *figure, int p, int i,
@@ -208,7 +213,7 @@ static void write_panel(FILE *stream, const struct dalcs_figure *figure,
             stream,
             "%s $v%dp%dc%d using 1:3:4 with filledcurves fs transparent solid %.2g noborder fc rgb "
             "'%s' notitle",
-            i == 0 ? "plot" : ",", v, p, i, BAND, figure->theme->curve[i]);
+            i == 0 ? "plot" : ",", v, p, i, band_opacity(panel->n), figure->theme->curve[i]);
     }
     for (int i = 0; i < panel->n; i++) {
         fprintf(stream, "%s $v%dp%dc%d using 1:2 with lines lw %.1f lc rgb '%s' ",

@@ -3,9 +3,10 @@
  *
  * The number of points is not known while streaming: its field is padded and filled in at the end. Points
  * are gathered into a block, for a point is written in no time and a call to write it is not.
- * ngspice runs a Command line when it loads the file; starting with '*' it is a comment there, and
- * spicelib still finds the word that it looks for. It stands where spyci, whose pattern of a header knows no such line,
- * takes it for a part of the flags; ngspice wants it behind the plot's name. */
+ * spicelib refuses a file without a Command line, by which it knows the dialect. ngspice writes one from version 44 on,
+ * between Date and Plotname; versions up to 43 have none, run one when they load the file, where '*' makes it a comment,
+ * and say that it is misplaced in front of the plot's name. Behind the flags it is read by all that look for keys, and
+ * by spyci, whose pattern takes it for a part of the flags. Those who count lines need it left out (doc/output.md). */
 #include "decimal.h"
 #include "memory.h"
 #include "table.h"

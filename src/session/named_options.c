@@ -51,7 +51,7 @@ enum dalcs_status dalcs_run_options_create(struct dalcs_run_options **options) {
     if (*options == NULL) {
         return DALCS_E_NOMEM;
     }
-    **options = dalcs_run_options_default();
+    dalcs_run_options_init(*options, sizeof **options);
     return DALCS_OK;
 }
 
@@ -119,7 +119,7 @@ enum dalcs_status dalcs_run_options_set(struct dalcs_run_options *options, const
     while (option < N_OPTIONS && strcmp(OPTION[option].name, name) != 0) {
         option++;
     }
-    if (option == N_OPTIONS) {
+    if (option == N_OPTIONS || OPTION[option].offset >= options->size) {
         return DALCS_E_OPTION;
     }
     void *field = (char *)options + OPTION[option].offset;

@@ -4,8 +4,6 @@
  * from. */
 #include "session_internal.h"
 
-#include "rounding.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -16,17 +14,6 @@ static const double USUAL_TOLERANCE = 1e-6;
 
 /* Of filling where nothing is said: who looks at rows looks no closer. */
 static const double LEAST_FILL = 1e-6;
-
-struct dalcs_run_options dalcs_run_options_default(void) {
-    return (struct dalcs_run_options){.certificate_tolerance = dalcs_answer_rounded,
-                                      .proximal_weight = 1e-8,
-                                      .rcond_min = 1e-14,
-                                      .max_outer = 40,
-                                      .max_pivots = 200,
-                                      .cache_bytes = (size_t)256 << 20,
-                                      .dense_limit = 64,
-                                      .max_events = 1000000};
-}
 
 /* By enum dalcs_method. */
 static const char *const METHODS[] = {"auto", "radau", "lobatto", "euler"};
@@ -249,6 +236,7 @@ enum dalcs_status dalcs_run_choose(struct dalcs_run *r) {
     DALCS_TRY(choose_compression(r));
     DALCS_TRY(check_tolerances(r->s, r->options));
     r->osnsp = dalcs_osnsp_options_of(r->options);
+    r->osnsp.patterns = r->s->steps.n > 0 ? &r->s->patterns : NULL;
     DALCS_TRY(choose_step(r));
     return choose_filling(r);
 }

@@ -370,7 +370,9 @@ static enum dalcs_status run_all(struct dalcs_session *session,
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) {
-    session->ended = run_all(session, options, sink);
+    struct dalcs_run_options own;
+    session->ended = dalcs_run_options_take(session, options, &own);
+    session->ended = session->ended == DALCS_OK ? run_all(session, &own, sink) : session->ended;
     atomic_store(&session->is_cancelled, false);
     return session->ended;
 }

@@ -15,7 +15,11 @@
 
 enum dalcs_status dalcs_session_create(struct dalcs_session **session) {
     *session = dalcs_alloc(1, sizeof(**session));
-    return *session == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    if (*session == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    (*session)->patterns.most = DALCS_LU_PATTERNS_OF_RUNS;
+    return DALCS_OK;
 }
 
 void dalcs_session_forget_run(struct dalcs_session *s) {
@@ -52,6 +56,9 @@ void dalcs_session_destroy(struct dalcs_session *session) {
     }
     dalcs_steady_anchor_forget(session);
     dalcs_session_finish_other(session);
+    klu_common klu;
+    dalcs_lu_common_init(&klu);
+    dalcs_lu_patterns_finish(&session->patterns, &klu);
     if (session->has_netlist) {
         dalcs_netlist_finish(&session->netlist);
     }

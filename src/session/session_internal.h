@@ -73,6 +73,7 @@ struct dalcs_session {
     struct dalcs_override *own; /* of the present step; heap */
     size_t n_own;
     struct dalcs_steps steps;
+    struct dalcs_lu_patterns patterns; /* of modes, kept from step to step: values do not matter */
     struct dalcs_drawn_value *unbuilt; /* [n_unbuilt] drawn for a step that could not be built */
     size_t n_unbuilt;
     const char *why_unbuilt; /* the first error of that; the arena's */
@@ -162,6 +163,11 @@ enum dalcs_status dalcs_run_progress(const struct dalcs_run *r, double time,
 
 /* Settles what the options of the run and of the netlist leave open; checks them. */
 enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* The caller's options as this library has them (sized_options.c). */
+enum dalcs_status dalcs_run_options_take(struct dalcs_session *session,
+                                         const struct dalcs_run_options *given,
+                                         struct dalcs_run_options *own) DALCS_MUST_CHECK;
 
 /* The option of the run, else that of the netlist, else the default. */
 double dalcs_run_tolerance(const struct dalcs_run_options *options,

@@ -170,7 +170,7 @@ library.ngSpice_CurPlot.restype""")
             self.assertRegex(line.split()[-1], "^ng(Spice|Get|CM)_")
         self.assertGreaterEqual(len(names), 22)
         # that both can be loaded
-        both = [ctypes.CDLL(str(library)), ctypes.CDLL(str(next(self.root.rglob("libdalcs.so.0"))))]
+        both = [ctypes.CDLL(str(library)), ctypes.CDLL(str(next(self.root.rglob("libdalcs.so.1"))))]
         self.assertEqual(both[0].ngSpice_running(), 0)
 
 

@@ -25,7 +25,7 @@ def main():
                        stdout=subprocess.DEVNULL)
         root = pathlib.Path(folder)
         module, = root.rglob("dalcs/__init__.py")
-        library = next(root.rglob("libdalcs.so.0")).parent
+        library = next(root.rglob("libdalcs.so.1")).parent
         place = module.parent.parent
         prefix = next(root.rglob("bin/dalcs")).parent.parent.relative_to(root)
         installed = "/" + str(place.relative_to(root))

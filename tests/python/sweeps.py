@@ -22,6 +22,11 @@ SOURCE = pathlib.Path(sys.argv[1])
 LOADS = np.geomspace(50.0, 20e3, 60)
 
 
+def children():
+    """Processes that this one has started and that are still there."""
+    return [int(pid) for pid in pathlib.Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()]
+
+
 def bytes_of(sweep):
     return {name: pickle.dumps(column.tolist()) for name, column in sweep.columns.items()}
 
@@ -55,7 +60,7 @@ class Sweeps(unittest.TestCase):
         def each(result):
             return {"rows": result.values.tobytes(), "events": result.events.tobytes(), **result.measures}
 
-        one, two, five = (dalcs.sweep(NETLIST, grid, workers=n, each=each) for n in (1, 2, 5))
+        one, two, five = (dalcs.sweep(NETLIST, grid, workers=n, each=each, isolate=n == 5) for n in (1, 2, 5))
         self.assertEqual(len(one), 30)
         self.assertEqual(bytes_of(one), bytes_of(two))
         self.assertEqual(bytes_of(one), bytes_of(five))
@@ -210,6 +215,62 @@ class Failures(unittest.TestCase):
             if workers == 1:  # two may be done before the other thread is told
                 self.assertEqual(well, list(range(len(well))))
                 self.assertEqual(set(table["error"][len(well):]), {"not run: the sweep was ended before"})
+
+    def test_a_crash(self):
+        """Of the process in which a run is made, by faults, by the system and by exit(), loses that run alone."""
+        ends = {7: signal.SIGSEGV, 23: signal.SIGKILL, 24: signal.SIGABRT, 41: 3}
+
+        def each(result):
+            k = next(k for k, ohm in enumerate(LOADS) if result.measures["rload"] == ohm)
+            if ends.get(k) == 3:
+                os._exit(3)
+            if k in ends:
+                os.kill(os.getpid(), ends[k])
+            return result.measures
+
+        text = NETLIST + ".meas tran rload param={rload}\n"
+        for workers in 1, 2, 5:
+            table = dalcs.sweep(text, {"rload": LOADS}, workers=workers, each=each, isolate=True)
+            self.assertEqual(sorted(table.errors), sorted(ends))
+            self.assertEqual({type(error) for error in table.errors.values()}, {dalcs.Crashed})
+            self.assertIn("ended: Segmentation fault", table["error"][7])
+            self.assertIn("Killed, which the system does where memory runs out", table["error"][23])
+            self.assertIn("ended: status 3", table["error"][41])
+            good = [k for k in range(60) if k not in ends]
+            np.testing.assert_allclose(table["vlow"][good], [output(LOADS[k], closes(LOADS[k])) for k in good], atol=1e-7)
+            self.assertEqual(children(), [])
+
+    def test_a_process_that_is_killed(self):
+        """Without a word of the caller: runs are made in other processes."""
+        for workers in 1, 2:
+            killed = []
+
+            def kill(done, count, killed=killed):
+                self.assertEqual(count, 60)
+                if done >= 10 and not killed:
+                    killed.extend(children()[:1])
+                    os.kill(killed[0], signal.SIGKILL)
+
+            table = dalcs.sweep(NETLIST.replace("10u 40m", "10u 4"), {"rload": LOADS}, workers=workers, done=kill)
+            self.assertEqual(len(table.errors), 1)
+            self.assertEqual({type(error) for error in table.errors.values()}, {dalcs.Crashed})
+            self.assertEqual(children(), [])
+
+    def test_what_cannot_be_sent(self):
+        table = dalcs.sweep(NETLIST, {"rload": LOADS[:3]}, each=lambda result: result, isolate=True)
+        self.assertIn("memory of libdalcs", table["error"][2])
+        seen = []
+        table = dalcs.sweep(NETLIST, {"rload": LOADS[:3]}, each=seen.append)  # in threads: the caller's memory
+        self.assertEqual((len(seen), len(table.errors)), (3, 0))
+
+        class Strange(Exception):
+            """Local, so that no other process can make one."""
+
+        def fail(result):
+            raise Strange("why")
+
+        table = dalcs.sweep(NETLIST, {"rload": LOADS[:3]}, each=fail, isolate=True)
+        self.assertEqual(list(table["error"]), ["Strange: why"] * 3)
 
     def test_how_many_are_done(self):
         for workers in 1, 2:

@@ -129,6 +129,24 @@ class Variants(unittest.TestCase):
                 one = self.rows("one.csv")[0]
                 self.assertEqual([row[name] for name in one], list(one.values()))
 
+    def test_what_is_kept_changes_no_byte(self):
+        """Of an inverter, whose modes are factored by KLU: each variant is what its own process gives, also behind those
+        that are other circuits (a load of 0, no load), whose patterns are others."""
+        text = (pathlib.Path(__file__).parents[2] / "netlists" / "converters" / "inverter_three_phase.cir").read_text()
+        for old, new in (("RA A1 N 10", "RA A1 N {LOAD}"), ("100M UIC", "60M UIC"), (".PROBE V(A,B) V(A,N) I(LA)", (
+                ".PARAM LOAD=10\n.MEAS TRAN IRMS RMS I(LA) FROM=40M\n.MEAS TRAN VMAX MAX V(A,N) FROM=40M\n"
+                ".STEP PARAM LOAD LIST 10 11 0 12 1G 10"))):
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        self.write(text)
+        self.run_it("m.csv", "--jobs", "1")
+        whole = self.text("m.csv").splitlines()
+        self.assertEqual(len(whole), 7)
+        self.assertEqual(whole[1], whole[6])
+        for k in range(1, 7):
+            self.run_it("one.csv", "--only", str(k))
+            self.assertEqual(self.text("one.csv").splitlines()[1], whole[k])
+
     def test_threads_and_parts_change_no_byte(self):
         self.run_it("m.csv", "--jobs", "1", status=1)
         for jobs in "2", "5", "40":

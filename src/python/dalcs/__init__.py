@@ -30,7 +30,7 @@ from typing import Any, Callable, List, Mapping, Optional
 from . import _library
 from ._circuit import Check, Circuit
 from ._equations import System
-from ._errors import Cancelled, Error, NetlistError, NoSolution, OptionError, WrongWaveform
+from ._errors import Cancelled, Crashed, Error, NetlistError, NoSolution, OptionError, WrongWaveform
 from ._response import Response
 from ._result import Result, Table
 from ._sensitivities import Sensitivities
@@ -39,7 +39,7 @@ from ._simulation import Simulation
 from ._sweep import Grid, Sweep
 
 __version__: str = _library.lib.dalcs_version().decode()
-__all__ = ["Cancelled", "Check", "Circuit", "Error", "NetlistError", "NoSolution", "OptionError", "Response",
+__all__ = ["Cancelled", "Check", "Circuit", "Crashed", "Error", "NetlistError", "NoSolution", "OptionError", "Response",
            "Result", "Sensitivities", "Simulation", "Sweep", "System", "Table", "WrongWaveform", "bode", "check",
            "envelope", "equations", "run", "steady", "sweep", "variants"]
 
@@ -70,10 +70,10 @@ def envelope(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,
 
 def sweep(netlist: Netlist, grid: Optional[Grid] = None, *, workers: Optional[int] = None,
           each: Optional[Callable[[Result], Any]] = None,
-          done: Optional[Callable[[int, int], Any]] = None, dialect: Optional[str] = None,
-          **options: Any) -> Sweep:
-    """Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, done=done, **options)"""
-    return Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, done=done, **options)
+          done: Optional[Callable[[int, int], Any]] = None, isolate: Optional[bool] = None,
+          dialect: Optional[str] = None, **options: Any) -> Sweep:
+    """Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, done=done, isolate=isolate, **options)"""
+    return Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, done=done, isolate=isolate, **options)
 
 
 def variants(netlist: Netlist, values: Optional[Mapping[str, Number]] = None, *,

@@ -16,7 +16,7 @@ from ._response import Response
 from ._result import Result
 from ._session import Exchange, Netlist, Number, Options, Session, Window
 from ._simulation import Simulation
-from ._sweep import Grid, Sweep, sweep_of, variants_of
+from ._sweep import Crew, Grid, Sweep, sweep_of, variants_of
 
 
 def _asks_of(options: Mapping[str, Any], sensitivities: bool) -> List[Callable[[Any], int]]:
@@ -155,26 +155,33 @@ class Circuit:
 
     def sweep(self, grid: Optional[Grid] = None, *, workers: Optional[int] = None,
               each: Optional[Callable[[Result], Any]] = None,
-              done: Optional[Callable[[int, int], Any]] = None, **options: Any) -> Sweep:
-        """Runs of all combinations of values, in several threads.
+              done: Optional[Callable[[int, int], Any]] = None, isolate: Optional[bool] = None,
+              **options: Any) -> Sweep:
+        """Runs of all combinations of values, several at a time.
 
         grid     {"rload": [5, 10], "c1": [10e-6, 20e-6]}: all combinations, the last name fastest;
                  or a list of dicts, one a run. Lists may also stand by name: sweep(rload=[5, 10])
-        workers  threads; None: as many as there are cores. Results do not depend on it
+        workers  how many at a time; None: as many as there are cores. Results do not depend on it
         each     each(result) gives the values to keep: a dict, or one value, which is called "value".
                  None: the measurements, and no rows are made, which is fastest
         done     called as done(how many runs are over, how many there are), in the thread of the caller
+        isolate  True: runs are made in processes of their own: one that crashes, or that the system kills
+                 where memory runs out, loses none of the others. `each` then sees a copy of the caller's
+                 memory, and what it gives is pickled. False: in threads.
+                 None: in processes, unless a function is given that may write into the caller's memory
+                 (each, progress, exchange)
         options  those of run()
 
         A run that fails loses none of the others: its row has its message in the column "error".
         Ctrl-C ends all runs; the exception has the table so far in its attribute `sweep`.
         """
-        return sweep_of(self.run, grid, workers, each, done, options)
+        return sweep_of(self.run, grid, Crew(workers, isolate, each, done), options)
 
     def variants(self, values: Optional[Mapping[str, Number]] = None, *, seed: Optional[int] = None,
                  workers: Optional[int] = None, each: Optional[Callable[[Result], Any]] = None,
-                 done: Optional[Callable[[int, int], Any]] = None, **options: Any) -> Sweep:
-        """The runs of the netlist's .step and .mc, in several threads.
+                 done: Optional[Callable[[int, int], Any]] = None, isolate: Optional[bool] = None,
+                 **options: Any) -> Sweep:
+        """The runs of the netlist's .step and .mc, several at a time.
 
         The table has what is stepped, what random functions gave, and the measurements. Other arguments
         are those of sweep() and run().
@@ -182,7 +189,8 @@ class Circuit:
         points = self._read(values=values, seed=seed).steps()
         if not points:
             raise ValueError("the netlist has neither .step nor .mc; a .wcase is a part of one run()")
-        return variants_of(self.run, points, workers, each, done, {**options, "values": values, "seed": seed})
+        return variants_of(self.run, points, Crew(workers, isolate, each, done),
+                           {**options, "values": values, "seed": seed})
 
     def check(self, values: Optional[Mapping[str, Number]] = None, *,
               step: float = 0.0) -> Check:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import signal
 from typing import Any, Optional, Sequence
 
 from . import _library as c
@@ -77,6 +78,22 @@ class WrongWaveform(Error):
 
 class Cancelled(Error):
     """The run was ended from outside."""
+
+
+class Crashed(Error):
+    """The process that made this run of a sweep died in it.
+
+    exit_status   below 0: of the signal with that number
+    """
+
+    def __init__(self, exit_status: int) -> None:
+        self.exit_status = exit_status
+        told = f"status {exit_status}" if exit_status >= 0 else signal.strsignal(-exit_status)
+        why = ", which the system does where memory runs out" if exit_status == -signal.SIGKILL else ""
+        super().__init__(c.E_INTERNAL, [f"error: the process of this run ended: {told}{why}"])
+
+    def __reduce__(self):  # type: ignore[no-untyped-def]
+        return type(self), (self.exit_status,)
 
 
 _KINDS = {c.E_NETLIST: NetlistError, c.E_OPTION: OptionError, c.E_CANCELLED: Cancelled,

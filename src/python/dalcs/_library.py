@@ -12,7 +12,7 @@ from ctypes import CFUNCTYPE, POINTER, c_bool, c_char_p, c_double, c_int, c_size
 from . import _where
 
 OK, SINGULAR, NOT_CONVERGED, INFEASIBLE, REFUTED = 0, 1, 2, 3, 4
-E_NOMEM, E_NETLIST, E_OPTION, E_CANCELLED = -1, -3, -4, -6
+E_NOMEM, E_NETLIST, E_OPTION, E_CANCELLED, E_INTERNAL = -1, -3, -4, -6, -7
 
 ANALYSES = ("op", "tran", "dc", "ac", "pss")
 UNITS = ("V", "A", "s", "Hz", "ohm", "")

@@ -1,11 +1,10 @@
-"""Many runs of one netlist, in threads: the library runs outside of the interpreter's lock."""
+"""Many runs of one netlist, and the table of them."""
 
 from __future__ import annotations
 
 import itertools
 import os
-import threading
-from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Type, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from ._errors import Cancelled, Error, OptionError
 from ._names import find
 from ._result import Result
 from ._session import OWN_OPTIONS, Number, number_of
+from ._workers import Processes, Threads
 
 Grid = Union[Mapping[str, Sequence[Number]], Sequence[Mapping[str, Number]]]
 
@@ -153,129 +153,71 @@ def _column_of(values: List[Any]) -> NDArray[Any]:
     return column
 
 
-class NotRun(Error):
-    """A run that was not begun or not ended: Ctrl-C came before."""
+class Crew(NamedTuple):
+    """Who makes the runs of a sweep, and what is kept of each."""
 
-    def __init__(self) -> None:
-        super().__init__(c.E_CANCELLED, ["error: not run: the sweep was ended before"])
+    workers: Optional[int]
+    isolate: Optional[bool]
+    each: Optional[Callable[[Result], Any]]
+    done: Optional[Callable[[int, int], Any]]
 
-    def __reduce__(self):  # type: ignore[no-untyped-def]
-        return type(self), ()
-
-
-class _Workers:
-    """Threads that take the next run until there is none, or until they are stopped."""
-
-    def __init__(self, task: Callable[[int], Any], count: int, stopped: threading.Event,
-                 done: Optional[Callable[[int, int], Any]]) -> None:
-        self.task, self.stopped, self.done = task, stopped, done
-        self.kept: List[Any] = [NotRun() for _ in range(count)]
-        self.failure: Optional[BaseException] = None
-        self.next = itertools.count()
-        self.moved = threading.Condition()
-        self.n_done = 0
-
-    def work(self, tell: Callable[[int], None]) -> None:
-        while not self.stopped.is_set():
-            index = next(self.next)
-            if index >= len(self.kept):
-                return
-            try:
-                self.kept[index] = self.task(index)
-            except Exception as error:  # pylint: disable=broad-except
-                if not (self.stopped.is_set() and isinstance(error, Cancelled)):
-                    self.kept[index] = error
-            except BaseException as error:  # pylint: disable=broad-except
-                self.failure = self.failure or error
-                self.stopped.set()
-                return
-            with self.moved:
-                self.n_done += 1
-                count = self.n_done
-                self.moved.notify_all()
-            tell(count)
-
-    def _in_threads(self, workers: int) -> None:
-        threads = [threading.Thread(target=self.work, args=(lambda count: None,), daemon=True)
-                   for _ in range(workers)]
-        for thread in threads:
-            thread.start()
-        try:
-            told = 0
-            while self.done is not None and told < len(self.kept) and not self.stopped.is_set():
-                with self.moved:
-                    while self.n_done == told and not self.stopped.is_set():
-                        self.moved.wait(0.1)
-                    told = self.n_done
-                self.done(told, len(self.kept))
-            for thread in threads:
-                thread.join()
-        finally:
-            self.stopped.set()
-            for thread in threads:
-                thread.join()
-
-    def run(self, workers: int) -> None:
-        """With one worker in this thread, which Ctrl-C interrupts by itself."""
-        done = self.done
-        if workers > 1:
-            self._in_threads(workers)
-        else:
-            self.work(lambda count: None if done is None else done(count, len(self.kept)))
-        if self.failure is not None:
-            raise self.failure
+    def workers_of(self, options: Mapping[str, Any]) -> "Type[Threads] | Type[Processes]":
+        """Functions of the caller may write into its memory, which threads share."""
+        calls = self.each is not None or any(options.get(name) is not None for name in ("progress", "exchange"))
+        alone = self.isolate if self.isolate is not None else hasattr(os, "fork") and not calls
+        return Processes if alone else Threads
 
 
-def _table_of(run: Callable[..., Result], points: List[Dict[str, float]], workers: Optional[int],
-              each: Optional[Callable[[Result], Any]], done: Optional[Callable[[int, int], Any]],
-              options: Mapping[str, Any], keep: Callable[[int, Result], None]) -> Sweep:
-    """run(k, ...) is point k, of which `keep` may write more into the points."""
+def _table_of(run: Callable[..., Result], points: List[Dict[str, float]], crew: Crew,
+              options: Mapping[str, Any], takes_drawn: bool) -> Sweep:
+    """run(k, ...) is point k, to which what was drawn in it may belong."""
     asked = dict(options)
-    if each is None:
+    kind = crew.workers_of(asked)
+    if crew.each is None:
         asked = {"rows": False, "record": False, **asked}
     told = asked.pop("progress", None)
-    stopped = threading.Event()
 
     def progress(time: float, stop: float) -> None:
-        if stopped.is_set():
+        if all_of_them.is_stopped():
             raise Cancelled(c.E_CANCELLED, ())
         if told is not None:
             told(time, stop)
 
     def task(index: int) -> Any:
         result = run(index, progress=progress, **asked)
-        keep(index, result)
-        kept = result.measures if each is None else each(result)
-        return kept if isinstance(kept, Mapping) else {"value": kept}
+        kept = result.measures if crew.each is None else crew.each(result)
+        point = {**points[index], **(result.drawn if takes_drawn else {})}
+        return point, dict(kept) if isinstance(kept, Mapping) else {"value": kept}
 
-    if workers is None:
-        workers = len(os.sched_getaffinity(0))
-    crew = _Workers(task, len(points), stopped, done)
+    all_of_them = kind(task, len(points), crew.done)
+    workers = len(os.sched_getaffinity(0)) if crew.workers is None else crew.workers
     try:
-        crew.run(min(workers, len(points)))
+        all_of_them.run(min(workers, len(points)))
     except BaseException as end:
-        setattr(end, "sweep", Sweep(points, crew.kept))  # what is there is not lost
+        setattr(end, "sweep", _sweep_of(points, all_of_them.kept))  # what is there is not lost
         raise
-    table = Sweep(points, crew.kept)
+    table = _sweep_of(points, all_of_them.kept)
     if points and all(isinstance(table.errors.get(k), OptionError) for k in range(len(points))):
         raise table.errors[0]  # a name that there is not: a mistake of the call and not of a variant
     return table
 
 
-def sweep_of(run: Callable[..., Result], grid: Optional[Grid], workers: Optional[int],
-             each: Optional[Callable[[Result], Any]], done: Optional[Callable[[int, int], Any]],
-             options: Mapping[str, Any]) -> Sweep:
+def _sweep_of(points: List[Dict[str, float]], ended: List[Any]) -> Sweep:
+    """Of each run that went well there are its point, with what was drawn, and what is kept of it."""
+    well = [isinstance(value, tuple) for value in ended]
+    return Sweep([value[0] if good else point for point, value, good in zip(points, ended, well)],
+                 [value[1] if good else value for value, good in zip(ended, well)])
+
+
+def sweep_of(run: Callable[..., Result], grid: Optional[Grid], crew: Crew, options: Mapping[str, Any]) -> Sweep:
     """What Circuit.sweep does, by this function that runs one point."""
     asked = dict(options)
     points = _points_of(_grid_of(grid, asked))
     fixed = dict(asked.pop("values", None) or {})
-    return _table_of(lambda index, **more: run({**fixed, **points[index]}, **more), points, workers, each,
-                     done, asked, lambda index, result: None)
+    return _table_of(lambda index, **more: run({**fixed, **points[index]}, **more), points, crew, asked, False)
 
 
-def variants_of(run: Callable[..., Result], points: List[Dict[str, float]], workers: Optional[int],
-                each: Optional[Callable[[Result], Any]], done: Optional[Callable[[int, int], Any]],
+def variants_of(run: Callable[..., Result], points: List[Dict[str, float]], crew: Crew,
                 options: Mapping[str, Any]) -> Sweep:
     """What Circuit.variants does: point k is step k of the netlist, and gets what was drawn."""
-    return _table_of(lambda index, **more: run(only=index + 1, **more), points, workers, each, done, options,
-                     lambda index, result: points[index].update(result.drawn))
+    return _table_of(lambda index, **more: run(only=index + 1, **more), points, crew, options, True)
