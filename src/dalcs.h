@@ -458,7 +458,7 @@ void dalcs_session_cancel(struct dalcs_session *session);
 
 /* ---- Co-simulation ---------------------------------------------------------------------------- */
 
-/* What the circuit and a program outside tell each other at one time. */
+/* What the circuit and a program outside exchange at one time. */
 struct dalcs_exchange {
     double time; /* s; first 0, before there is anything to read */
     size_t n_signals, n_inputs;
@@ -468,7 +468,7 @@ struct dalcs_exchange {
         input; /* [n_inputs] V and I with the word EXTERNAL on their card, as dalcs_session_input_name */
     double
         *given;  /* [n_inputs] V or A, as it was; the program gives what they are from `time` on */
-    double next; /* s, > time: the program gives when to ask it again; INFINITY, as it was: never */
+    double next; /* s, > time: the program gives its next call; INFINITY, as it was: none */
 };
 
 /* Names of the external sources, in the netlist's order; NULL when index is too large. */
@@ -677,7 +677,7 @@ struct dalcs_element_losses {
     double power;         /* W, the mean of what it takes; what a source delivers is negative */
     double jumps;         /* J of that, at instants when states jumped */
     double stored_change; /* J, of coils and capacitors */
-    double switching;     /* J by the tables of .switchloss: the circuit knows nothing of them */
+    double switching;     /* J by the tables of .switchloss, besides the circuit's own */
     long n_on, n_off;     /* of diodes and switches: how often they turned on and off */
     long n_clamped;       /* of these, those outside their table, at its edge */
     double frequency;     /* Hz, of a source with a period; else 0 */

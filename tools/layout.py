@@ -135,9 +135,9 @@ class Layout:
         sources = [part.ends[0] for part in parts if part.letter in "vi" and part.ends[0] != self.bottom]
         self.order = order_of([node for node in nodes if node != self.bottom],
                               [part.ends for part in self.across], sources)
-        self.text, self.left, self.right, self.slots = [], {}, {}, []
+        self.text, self.left, self.right, self.slots, self.names = [], {}, {}, [], []
         self.place_nodes()
-        self.place_lanes()
+        self.place_names(self.place_lanes())
 
     def top_of(self, part):
         return part.ends[0] if part.ends[1] == self.bottom else part.ends[1]
@@ -163,10 +163,11 @@ class Layout:
                 at += part.width()
             self.right.setdefault(node, x + 1.0)
             middle = (x + (self.right[node] if not below else self.slots[-len(below)])) / 2
-            self.text += [f"wire {x:g},0 {middle:g},0 {self.right[node]:g},0", f"node {node} {middle:g},0"]
+            self.names.append((node, middle))
             after = self.order[k + 1] if k + 1 < len(self.order) else None
             between = [part for part in self.across if set(part.ends) == {node, after}]
-            x = max(self.right[node] + (between[0].width() if between else 0.6), at - 0.5)
+            joined = after is not None and self.sides_of(after, k + 1)[0]
+            x = max(self.right[node] + (between[0].width() if between else 0.6), at - 0.5 * joined)
             if between:
                 self.on_line.add(between[0])
                 self.text.append(between[0].line(*self.directed(between[0], node, (self.right[node], 0.0), (x, 0.0))))
@@ -180,7 +181,7 @@ class Layout:
         return (a, b) if part.ends[0] == node else (b, a)
 
     def place_lanes(self):
-        """What is left, each in the lowest lane that is free."""
+        """What is left, each in the lowest lane that is free. Returns where wires go up to the lanes."""
         lanes, spans = [], []
         for part in self.across:
             if part not in self.on_line:
@@ -198,6 +199,19 @@ class Layout:
             self.text += [f"wire {a:g},0 {a:g},{y:g} {middle - half:g},{y:g}",
                           f"wire {middle + half:g},{y:g} {b:g},{y:g} {b:g},0",
                           part.line(*self.directed(part, begin, (middle - half, y), (middle + half, y)))]
+        return risers
+
+    def place_names(self, risers):
+        """Above the line of each node, where no wire up to a lane crosses the name; else below it."""
+        for node, middle in self.names:
+            begin, end = self.left[node], self.right[node]
+            half = LETTER * (len(node) + 1) / 2
+            places = sorted([middle, begin, end, *(x + side * half for x in risers for side in (-1, 1))],
+                            key=lambda x, middle=middle: abs(x - middle))
+            free = [x for x in places if begin <= x <= end and all(abs(x - riser) >= half - 1e-9 for riser in risers)]
+            at = free[0] if free else middle
+            side = "" if free or any(abs(at - slot) < half for slot in self.slots) else " below"
+            self.text += [f"wire {begin:g},0 {at:g},0 {end:g},0", f"node {node} {at:g},0{side}"]
 
     def lines(self):
         return self.text

@@ -1,7 +1,7 @@
-/* magnitudes.h - the orders of magnitude that rules of the engine tell apart.
+/* magnitudes.h - the orders of magnitude by which rules of the engine decide.
  *
- * Most rules ask whether a quantity is much smaller than another, is nothing beside it, or is the same. These cases lie
- * far apart, so that an order of magnitude tells them apart. Each question has one number here. A rule that needs a number
+ * Most rules decide whether a quantity is much smaller than another, is nothing beside it, or is the same. These cases lie
+ * far apart, so that an order of magnitude separates them. Each decision has one number here. A rule that needs a number
  * of its own says where that comes from. What rounding alone makes of a value is in rounding.h. */
 #ifndef DALCS_MAGNITUDES_H
 #define DALCS_MAGNITUDES_H

@@ -71,7 +71,7 @@ static const struct dalcs_stimulus *source_of(struct dalcs_compiler *c, int node
     return NULL;
 }
 
-/* .dc sweeps it, or .ac asks for a phase that no source has. */
+/* .dc sweeps it, or .ac needs a phase that no source has. */
 static bool may_be_another(const struct dalcs_compiler *c, const struct dalcs_stimulus *s) {
     return c->builder->circuit->n_dc > 0 ||
            (c->builder->ac != NULL && (s->ac_real != 0 || s->ac_imaginary != 0));

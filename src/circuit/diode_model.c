@@ -19,7 +19,7 @@ static const char MODEL_USAGE[] =
 /* k T / q at SPICE's 27 degrees. */
 static const double THERMAL_VOLTAGE = 300.15 * 1.380649e-23 / 1.602176634e-19;
 
-/* An N up to this asks for an ideal diode: no junction has one. */
+/* An N up to this means an ideal diode: no junction has one. */
 static const double IDEAL_EMISSION = 0.05;
 
 enum {

@@ -55,7 +55,7 @@ struct dalcs_logic_gate {
      * clear */
     double delay[2], forced_delay[2];
     double rise, fall; /* s */
-    bool initial;      /* of what remembers */
+    bool initial;      /* of a part with a memory */
     int cycles;        /* of a counter: clocks until it begins anew; */
     int n_high;        /* q is high in so many of them */
     int first;         /* of the clocks that have been, at the start */

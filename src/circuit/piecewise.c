@@ -122,7 +122,7 @@ static void simplify(struct dalcs_piecewise *f) {
         const double next = dalcs_piecewise_slope(f, k + 1);
         struct dalcs_knot knot = f->knot[k];
         if (is_flat_at(&knot, size)) {
-            /* The side on which the function is constant knows its value best. */
+            /* The side on which the function is constant has its value without rounding. */
             knot.left = knot.right = next == 0 ? knot.right : knot.left;
             knot.value = knot.left;
         }

@@ -64,7 +64,7 @@ static void write_help(FILE *stream) {
     }
     fputs("\n"
           "  -h, --help     this text; 'dalcs help VERB' has the options and examples of a verb\n"
-          "      --version  the version\n"
+          "  -v, --version  the version\n"
           "  -b             as ngspice is called: dalcs -b --help\n"
           "\n"
           "examples:\n"
@@ -163,7 +163,7 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
         write_help(cli->out);
         return DALCS_EXIT_OK;
     }
-    if (strcmp(argv[1], "--version") == 0) {
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-v") == 0) { /* as of ngspice */
         fprintf(cli->out, "dalcs %s\n", dalcs_version());
         return DALCS_EXIT_OK;
     }

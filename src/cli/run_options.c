@@ -1,4 +1,4 @@
-/* run_options.c - what a command line asks of a run. */
+/* run_options.c - the options of a run on the command line. */
 #include "run_state.h"
 
 #include "settings.h"

@@ -25,7 +25,7 @@ struct dalcs_run {
     struct dalcs_bifurcation_chart bifurcation;
 };
 
-/* What the command line asks for, as the library takes it. */
+/* The options of the command line, as the library takes them. */
 struct dalcs_run_options dalcs_run_options_of(const struct dalcs_run *run,
                                               const struct dalcs_arguments *arguments,
                                               const struct dalcs_times *times);

@@ -81,7 +81,7 @@ static void eigenvalues(int k_and_s, int s, complex_real *mu) {
 }
 
 /* Solves a v = b, overwriting both, by elimination with row exchanges; a pivot of 0 counts as a
- * rounding, which is what inverse iteration wants. */
+ * rounding, as inverse iteration needs it. */
 static void solve_small(int n, complex_real a[MAX][MAX], complex_real *b) {
     for (int k = 0; k < n; k++) {
         int pivot = k;

@@ -76,7 +76,7 @@ enum dalcs_status dalcs_list_members(int n_items, const int *part, int n_parts, 
 }
 
 /* The component that holds a .ic voltage; -1 when there is nothing to hold, because a short joins
- * its nodes or no equation knows one of them. */
+ * its nodes or no equation has one of them. */
 static int holding_component(const struct dalcs_layout *l,
                              const struct dalcs_initial_condition *ic) {
     const struct dalcs_topology *t = &l->topology;

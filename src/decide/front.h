@@ -3,7 +3,7 @@
  * In a chain of diodes at rest each carries something from the moment on that the first one does, the
  * farther the less. No guard sees that before it has grown to the error, and to learn of one after the
  * other would take a step each. So the signs of the equations are followed from the pair that closes
- * through all that is at rest; what they tell is a guess of the mode that has to pass like any other. */
+ * through all that is at rest; their result is a guess of the mode, which is checked as any other. */
 #ifndef DALCS_FRONT_H
 #define DALCS_FRONT_H
 

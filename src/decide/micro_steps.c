@@ -1,4 +1,4 @@
-/* micro_steps.c - pairs of micro-steps of implicit Euler, and what they tell of states. */
+/* micro_steps.c - pairs of micro-steps of implicit Euler, and the states that follow from them. */
 #include "micro_steps.h"
 #include "doubt.h"
 #include "guard_scale.h"

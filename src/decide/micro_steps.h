@@ -1,4 +1,4 @@
-/* micro_steps.h - pairs of micro-steps of implicit Euler from part->segment.t, and what they tell of states. */
+/* micro_steps.h - pairs of micro-steps of implicit Euler from part->segment.t, and the states that follow from them. */
 #ifndef DALCS_MICRO_STEPS_H
 #define DALCS_MICRO_STEPS_H
 

@@ -85,7 +85,7 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
     return dalcs_radau_euler_step(r, part, part->length.fell_back);
 }
 
-/* Where dalcs_search_project() cannot tell. */
+/* Where dalcs_search_project() cannot decide. */
 static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                    struct dalcs_search *search, const double *unit) {
     if (!dalcs_projection_settle(r, part, unit)) {

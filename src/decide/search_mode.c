@@ -87,7 +87,7 @@ enum dalcs_status dalcs_search_ask_from(struct dalcs_radau *r, struct dalcs_rada
     return DALCS_OK;
 }
 
-/* Not if it has jumped and only micro-steps know how far. */
+/* Not if it has jumped and only micro-steps show how far. */
 static bool is_state_known(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     return !part->segment.jumped || r->base->jump.is_known;
 }
@@ -251,7 +251,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
         return dalcs_search_ask_from(r, part, search, dalcs_blocks_first_crossed(part));
     }
     if (search->flips == 2 && dalcs_search_may_refine(search)) {
-        search->flips = 0; /* on neither side: a shorter step may tell which */
+        search->flips = 0; /* on neither side: a shorter step may decide */
         return dalcs_search_refine(r, part, search);
     }
     if (search->flips++ < MOST_FLIPS) {

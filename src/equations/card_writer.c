@@ -1,4 +1,4 @@
-/* card_writer.c - words, names and numbers of cards; numbers with as few digits as tell them from their neighbours. */
+/* card_writer.c - words, names and numbers of cards; numbers with as few digits as make them distinct. */
 #include "card_writer.h"
 
 #include <math.h>

@@ -114,7 +114,7 @@ enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) DALCS_MUST_CHECK;
 
 /* Tells of a jump of component k from before[n_x] to e->jump.after: the ledger always, on_jump only if a state changes by
  * more than e->telling.noise. If no voltage does, impulses of charge are rounding and become 0; if no current does, those of flux
- * likewise. from and to[n_columns]: all columns just before and after; NULL: nobody knows. */
+ * likewise. from and to[n_columns]: all columns just before and after; NULL: unknown. */
 enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
                                           const double *before, const double *from,
                                           const double *to) DALCS_MUST_CHECK;

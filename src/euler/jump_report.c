@@ -73,7 +73,7 @@ static bool tell_states(struct dalcs_euler *e, const struct dalcs_system *s, con
     return jumps[0] || jumps[1];
 }
 
-/* And the other columns of the equations, as far as two micro-steps tell of them. */
+/* And the other columns of the equations, as far as they follow from two micro-steps. */
 static void tell_columns(struct dalcs_euler *e, const struct dalcs_system *s, const double *from,
                          const double *to) {
     for (int c = s->n_x; c < dalcs_system_n_equations(s); c++) {

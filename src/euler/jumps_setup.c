@@ -1,4 +1,4 @@
-/* jumps_setup.c - where the circuit keeps what the two networks of a jump ask for. */
+/* jumps_setup.c - the data of the circuit that the two networks of a jump use. */
 #include "jumps_internal.h"
 
 #include "names.h"

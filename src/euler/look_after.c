@@ -1,4 +1,4 @@
-/* look_after.c - micro-steps of implicit Euler that tell what happens at a discontinuity. */
+/* look_after.c - micro-steps of implicit Euler that show what happens at a discontinuity. */
 #include "euler_internal.h"
 
 #include "magnitudes.h"
@@ -164,7 +164,7 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
     }
     DALCS_TRY(dalcs_euler_solve(e, k, 2.0 / h, u, c->scratch));
     if (c->commands.moved) {
-        return DALCS_OK; /* a switch moved in between: the two tell nothing together */
+        return DALCS_OK; /* a switch moved in between: the two steps cannot be combined */
     }
     if (!dalcs_osnsp_is_monotone(&c->osnsp) && runs_away(c, u, y, limit)) {
         return refuse_derivative(e, k, u, y, c->scratch);
@@ -214,7 +214,7 @@ enum dalcs_status dalcs_euler_settle_after(struct dalcs_euler *e, int k, const d
     if (status < DALCS_OK) {
         return status;
     }
-    /* otherwise the first micro-step has to do, and the next step tells */
+    /* otherwise the first micro-step is taken, and the next step decides */
     if (status == DALCS_OK) {
         memcpy(y, c->scratch, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
     }

@@ -1,4 +1,4 @@
-/* accept.c - a step that holds becomes a segment, and what comes after the next change like this is learnt from it. */
+/* accept.c - a step that holds becomes a segment, and is kept for the next change of the same kind. */
 #include "accept.h"
 
 #include "extremes.h"

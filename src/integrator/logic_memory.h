@@ -1,4 +1,4 @@
-/* logic_memory.h - what gates remember, as numbers and bits behind the states and the switches of a circuit.
+/* logic_memory.h - the memory of gates, as numbers and bits behind the states and the switches of a circuit.
  *
  * Numbers are what moves with a small change: the voltage of each output, what each sample may take just now, how long a
  * pulse still lasts, and when the changes that are on their way are seen. All else is bits. */

@@ -79,7 +79,7 @@ struct dalcs_logic_run {
     long number;                       /* the last one given */
     long instant;                      /* the number of this one */
     struct dalcs_logic_inputs *inputs; /* NULL: nothing comes from outside */
-    const struct dalcs_logic_observer *observer; /* NULL: nobody asks */
+    const struct dalcs_logic_observer *observer; /* NULL: none */
     bool out_of_memory;
     struct dalcs_stimulus *as_built; /* [n_stimuli] what the circuit had */
 };
@@ -99,7 +99,7 @@ void dalcs_logic_run_finish(struct dalcs_logic_run *l);
 /* Bits and outputs as the operating point that the engine has solved has them. *changed: it is to be solved again. */
 enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed) DALCS_MUST_CHECK;
 
-/* Do all show what the operating point that the engine has solved asks for? If not, network.moves says which do not. */
+/* Have all gates the outputs that the solved operating point demands? If not, network.moves lists the others. */
 bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l);
 
 /* s, the next change of an output that waits; INFINITY: none does. */

@@ -166,7 +166,7 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
         dalcs_tied_stay(part, dalcs_stage_n_clashes(part->segment.entry) == 0, q->unit)) {
         return dalcs_search_untie(r, part, search, next, q);
     }
-    /* What dies away within the step may have swung below 0, or not: a shorter step tells. */
+    /* What dies away within the step may have swung below 0, or not: a shorter step decides. */
     bool may_dip = part->guards.fresh && part->guards.may_dip;
     if (dalcs_search_may_refine(search) && (may_dip || dalcs_guards_swing(part))) {
         return dalcs_search_refine(r, part, search);
@@ -270,7 +270,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
     if (part->guards.fresh && part->guards.flipped && !guessed && !search.fixed) {
         part->length.level = search.first_level = search.asked_level = cheapest_level(part);
     }
-    if (asks) { /* what is asked is no guess: it is not taken back for the mode before */
+    if (asks) { /* what the caller demands is no guess: the mode before does not replace it */
         DALCS_TRY(dalcs_search_ask(r, part, &search, false));
     }
     bool done = false;

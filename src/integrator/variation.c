@@ -12,7 +12,7 @@
 
 /* ---- Segments ------------------------------------------------------------------------------------ */
 
-/* The modes that follow each other tell two runs apart. Returns whether this is another one than before. */
+/* Two runs differ where their modes follow each other in another order. Returns whether this mode is another one. */
 static bool sign_mode(struct dalcs_variation_part *v) {
     const struct dalcs_osnsp *p = &v->part->component->osnsp;
     uint64_t mode = 0;

@@ -100,7 +100,7 @@ static double spread_of_voltage(const struct dalcs_radau_part *part, int pair, c
     return spread;
 }
 
-/* What such errors make of a pair, as far as its row or its nodes tell: on factors. */
+/* What such errors make of a pair, as far as this follows from its row or its nodes: on factors. */
 static double spread_about(const struct dalcs_radau_part *part, int pair, const double *unit) {
     return dalcs_osnsp_is_on(&part->component->osnsp, pair) ? spread_of_current(part, pair, unit)
                                                             : spread_of_voltage(part, pair, unit);

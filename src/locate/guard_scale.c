@@ -1,4 +1,4 @@
-/* guard_scale.c - of voltages that move switches, and of rounding as maps and Kirchhoff's laws tell it. */
+/* guard_scale.c - of voltages that move switches, and of rounding as it follows from maps and Kirchhoff's laws. */
 #include "guard_scale.h"
 
 #include "extremes.h"

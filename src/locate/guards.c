@@ -102,7 +102,7 @@ bool dalcs_guards_overreach(const struct dalcs_radau_part *part, const double *u
     return any;
 }
 
-/* Is it 0 at all nodes, as far as digits tell? */
+/* Is it 0 at all nodes, to the digits of doubles? */
 static bool rests(const struct dalcs_radau_part *part, int guard, const double *unit) {
     double nothing = dalcs_guard_rounding(part, guard, unit);
     bool is = true;

@@ -15,7 +15,7 @@ struct dalcs_pair_law {
     double inductance;               /* H, of the largest coil at the node */
 };
 
-/* A per V, by which voltages are rounded, of the currents of closed pairs; INFINITY: no law tells. */
+/* A per V, by which voltages are rounded, of the currents of closed pairs; INFINITY: it follows from no law. */
 struct dalcs_pair_rate {
     uint64_t *mode; /* for which they are known */
     double h;       /* likewise; 0: they are not */
@@ -25,7 +25,7 @@ struct dalcs_pair_rate {
 /* NULL: out of memory. */
 struct dalcs_pair_rate *dalcs_pair_rate_create(struct dalcs_arena *arena, int n_pairs, int n_words);
 
-/* Fills what the part knows of its pairs: pair_row, held_charge, held_flux, pair_law. */
+/* Fills the part's data of its pairs: pair_row, held_charge, held_flux, pair_law. */
 void dalcs_pair_laws_find(struct dalcs_radau_part *part);
 
 /* A of the current of a closed pair per V by which voltages are rounded, in the present step: by the law

@@ -1,4 +1,4 @@
-/* tied.c - diodes that may be on either side, and attempts to tell. */
+/* tied.c - diodes that may be on either side, and how one of the two is chosen. */
 #include "tied.h"
 
 #include "doubt.h"

@@ -71,7 +71,7 @@ double dalcs_affine_quads_least(int n_x, const struct dalcs_affine_quads *all, c
     return find_least(n_x, all, x);
 }
 
-/* The states later; false: one is too far. n_x is known to the compiler where it matters. */
+/* The states after one map; false: one of them is too far. n_x is known to the compiler where it matters. */
 static inline __attribute__((always_inline)) bool pass_once(int n_x, const double *map,
                                                             const double *x, const double *near,
                                                             const double *most, double *later) {

@@ -1,4 +1,4 @@
-/* affine.h - functions of a few states, affine in them: put together, and asked again and again. */
+/* affine.h - functions of a few states, affine in them: composed, and evaluated many times. */
 #ifndef DALCS_AFFINE_H
 #define DALCS_AFFINE_H
 

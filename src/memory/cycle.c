@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Fewer segments that recur in a row are looked at no further: between two events there are some in most periods. */
+/* Fewer segments that recur in a row do not count: between two events there are some in most periods. */
 enum { FEWEST_IN_A_ROW = 4 };
 
 /* The only part that steps, if its periods may be put together; NULL: none. Pairs of formulas are told of
@@ -144,7 +144,7 @@ static enum dalcs_status take_last(const struct dalcs_radau_part *part,
     return row != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-/* What recurrence.c asks of the step: of states at its end and their drift, of guards. */
+/* What recurrence.c reads of the step: of states at its end and their drift, of guards. */
 static enum dalcs_status take_conditions(const struct dalcs_radau_part *part,
                                          struct dalcs_cycle_segment *segment) {
     const struct dalcs_system *s = part->component->system;

@@ -57,7 +57,7 @@ enum dalcs_status dalcs_cycle_setup(struct dalcs_radau *r) DALCS_MUST_CHECK;
 
 void dalcs_cycle_finish(struct dalcs_radau_part *part);
 
-/* The present segment has just begun: it recurred, or what was known of a cycle is over. */
+/* The present segment has just begun: it recurred, or the cycle has ended. */
 enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r,
                                    struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 

@@ -159,7 +159,7 @@ void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *
     }
     double off = is_first ? INFINITY : distance(r, part);
     periodic->repeats = periodic->keeps && off <= 1.0;
-    /* Farther off than any error they will hardly have come back a period later. The period of a converter is short, and what happens in it moves about for many: that is not worth a copy. */
+    /* The states will hardly have come back a period later if they are farther off than any error. The period of a converter is short, and what happens in it moves about for many: that is not worth a copy. */
     periodic->keeps = dalcs_nothing * off < 1.0 || (isinf(off) && !periodic->by_commands);
     if (periodic->repeats) {
         periodic->start = part->segment.t;

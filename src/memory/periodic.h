@@ -33,8 +33,8 @@ enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) DALCS_MUST_
  * part->segment.out is the part's own again. */
 bool dalcs_periodic_repeats(const struct dalcs_radau *r, struct dalcs_radau_part *part);
 
-/* Then at part->segment.t, where that one ended, it is the present one. part->x is its state only where the
- * energies are asked for. */
+/* After dalcs_periodic_repeats(), where the present segment ended: the known one is the present one. part->x is its state only
+ * where the energies are needed. */
 void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part);
 
 #endif

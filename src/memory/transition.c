@@ -127,7 +127,7 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     part->length.tries_longer = false;
     if (!part->memory.transition[slot].is_known ||
         !dalcs_mode_is(known, part->memory.modes_before, 2 * p->n_words)) {
-        /* On dense maps to ask the circuit costs little, and tells more than a step that is short. */
+        /* On dense maps a one-step problem costs little, and decides more than a short step. */
         int level = find_beginning(part)->level;
         if (part->segment.rounding > 1.0 && level > part->length.level) {
             part->length.level = level;

@@ -1,4 +1,4 @@
-/* transition.h - what followed the last time that pairs changed sides like this.
+/* transition.h - the mode and the step that followed the last such change of pairs.
  *
  * In a converter the same switch opens again and again, and the same diode takes over. What was found
  * out once, the mode and a length of step that suits its beginning, is tried first the next time, and

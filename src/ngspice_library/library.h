@@ -53,7 +53,7 @@ struct ng_library {
     bool has_waiting;         /* such a block is waiting */
     bool is_busy;             /* a command is executed */
     bool reads_no_start_file; /* before ngSpice_Init was called */
-    bool fails;               /* the command at hand, in what the script does not know */
+    bool fails;               /* the present command, in a part of which the script does not know */
 };
 
 /* ---- interface.c ---------------------------------------------------------------------------------- */

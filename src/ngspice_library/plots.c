@@ -94,7 +94,7 @@ static enum dalcs_status add_constants(struct ng_plots *plots) {
 }
 
 enum dalcs_status ng_plots_open(struct ng_plots *plots) {
-    /* a program may hold it, by ngSpice_LockRealloc, while it asks for vectors */
+    /* a program may hold it, by ngSpice_LockRealloc, while it reads vectors */
     pthread_mutexattr_t attributes;
     bool made = pthread_mutexattr_init(&attributes) == 0;
     if (made) {

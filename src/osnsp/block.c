@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What extracting a block needs to know of the whole. place: of a column of the block its number there, of another one
+/* What the extraction of a block needs of the whole system. place: of a column of the block its number there, of another one
  * the input by which it is read, -1: none yet. */
 struct extraction {
     const struct dalcs_system *from;

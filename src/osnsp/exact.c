@@ -30,7 +30,7 @@ static enum dalcs_status factor_whole(struct dalcs_osnsp *p, struct dalcs_mode_e
     return DALCS_OK;
 }
 
-/* In p->mode. From the first certified answer on a singular mode is one like others. */
+/* In p->mode. From the first certified answer on, a singular mode is treated as any other. */
 static enum dalcs_status try_whole(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
                                    const double *u, double *y, bool *sources_clash) {
     if (entry->is_too_open) {

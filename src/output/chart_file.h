@@ -10,7 +10,7 @@
 /* Is that the name of a page? */
 bool dalcs_chart_is_page(const char *path);
 
-/* The terminal that the name of the file asks for; in pixels. */
+/* The terminal that follows from the file's name; in pixels. */
 void dalcs_chart_write_terminal(FILE *script, const char *path, const struct dalcs_theme *theme,
                                 int width, int height);
 

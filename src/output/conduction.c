@@ -66,6 +66,7 @@ enum dalcs_status dalcs_conduction_add_jump(struct dalcs_conduction *conduction,
 
 enum dalcs_status dalcs_conduction_add_report(struct dalcs_conduction *conduction,
                                               const struct dalcs_report *report) {
+    conduction->of_matrices = report->size.nodes == 0;
     for (size_t i = 0; i < report->n_events; i++) {
         DALCS_TRY(dalcs_conduction_add(conduction, report->event[i].element, report->event[i].time,
                                        report->event[i].on));

@@ -23,7 +23,8 @@ struct dalcs_conduction {
     size_t n, capacity;
     struct dalcs_conduction_element *element; /* [n] in the order in which they were met */
     size_t n_jumps, jump_capacity;
-    double *jump; /* [n_jumps] s, ascending */
+    double *jump;     /* [n_jumps] s, ascending */
+    bool of_matrices; /* of a system file: a pair is on or off, nothing conducts */
     struct dalcs_names names;
     struct dalcs_arena arena;
 };

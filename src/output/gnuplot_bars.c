@@ -55,6 +55,18 @@ static void write_boxes(FILE *stream, const struct dalcs_figure *figure, int v, 
             view->start / time_scale, view->start / time_scale, row, row);
 }
 
+/* What a bar says. A diode or a switch conducts, one of a subcircuit too: x1.d1. A relay and a pair of a system file are
+ * on or off: lambda of a pair may be a voltage. */
+static const char *caption(const struct dalcs_conduction *conduction, size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        const char *name = conduction->element[i].name, *last = strrchr(name, '.');
+        if (conduction->of_matrices || !strchr("djmqswz", (last ? last + 1 : name)[0])) {
+            return "on";
+        }
+    }
+    return "conducts";
+}
+
 void dalcs_gnuplot_write_bars(FILE *stream, const struct dalcs_figure *figure,
                               const struct dalcs_gnuplot_page *page, int v) {
     const struct dalcs_conduction *conduction = figure->conduction;
@@ -77,9 +89,9 @@ void dalcs_gnuplot_write_bars(FILE *stream, const struct dalcs_figure *figure,
     fputs(")\n", stream);
     if (page->place[v].legend) {
         fprintf(stream,
-                "set label 4 'conducts' at graph 1.012, graph 1.0 offset 0,-0.6 left "
+                "set label 4 '%s' at graph 1.0, graph 1.0 offset 1,-0.6 left "
                 "textcolor rgb '%s'\n",
-                figure->theme->quiet_text);
+                caption(conduction, n), figure->theme->quiet_text);
     }
     if (conduction->n > n) {
         fprintf(stream,

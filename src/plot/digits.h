@@ -22,7 +22,7 @@ void dalcs_digits_note(struct dalcs_digits *digits, const char *from, const char
 
 /* Half a unit in the last place. Where all numbers but those of the axis, column 0, have as many decimals, and no
  * exponents, they were written with a fixed point. Else zeros at the end may have been left away, so that the
- * longest number of the table tells how many digits there were. The axis is judged on its own. Columns without
+ * longest number of the table shows how many digits there were. The axis is judged on its own. Columns without
  * digits are left alone. */
 void dalcs_digits_judge(const struct dalcs_digits *digits, size_t n_columns,
                         struct dalcs_precision *precision);

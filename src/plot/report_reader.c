@@ -102,6 +102,8 @@ enum dalcs_status dalcs_report_reader_read(const char *path, struct dalcs_conduc
                                    ? add_events(events, path, conduction, diag)
                                    : refuse(diag, path, "it has no list of events");
     if (status == DALCS_OK) {
+        const json_t *nodes = json_object_get(json_object_get(report, "size"), "nodes");
+        conduction->of_matrices = nodes && json_integer_value(nodes) == 0;
         status = add_jumps(json_object_get(report, "jumps"), conduction);
     }
     if (status == DALCS_OK && json_object_get(report, "events_dropped")) {

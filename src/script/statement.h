@@ -81,7 +81,7 @@ enum dalcs_status dalcs_statements_read(struct dalcs_statements *statements,
                                         const struct dalcs_session *session, size_t first,
                                         size_t end) DALCS_MUST_CHECK;
 
-/* Matches blocks with their ends, leaves to the host what it knows; errors and warnings go to its session.
+/* Matches blocks with their ends, leaves to the host its own commands; errors and warnings go to its session.
  * DALCS_E_NETLIST: there were errors. */
 enum dalcs_status dalcs_statements_check(struct dalcs_statements *statements,
                                          const struct dalcs_script_host *host) DALCS_MUST_CHECK;

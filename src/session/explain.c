@@ -153,6 +153,11 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
     for (size_t k = 0; k < x.n_elements && where == NULL; k++) {
         where = dalcs_place_of(&s->circuit, x.element[k]);
     }
+    if (hint != NULL && dalcs_refusal_is_of_start(&x)) {
+        hint = dalcs_arena_printf(
+            &s->arena, "'uic' on .tran starts from initial values, without an operating point; %s",
+            hint);
+    }
     dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s %s: %s", when,
                    x.is_certain ? "no solution exists" : "a solution may exist, but none was found",
                    x.because);

@@ -258,3 +258,18 @@ void dalcs_refusal_explain(struct dalcs_refusal *r) {
     }
     r->because = r->because == NULL ? "" : r->because;
 }
+
+bool dalcs_refusal_is_of_start(const struct dalcs_refusal *r) {
+    const struct dalcs_transient *t = &r->circuit->transient;
+    struct dalcs_fed_part part = {0};
+    if (!r->is_static || !t->present || t->use_initial_conditions ||
+        (r->kind == DALCS_WITNESS_CUTSET && dalcs_fed_part_find(r, &part) != DALCS_OK)) {
+        return false;
+    }
+    bool has_capacitor = false;
+    for (int i = 0; i < r->circuit->n_devices; i++) {
+        has_capacitor |=
+            r->circuit->device[i].kind == DALCS_CAPACITOR && (!part.found || part.blocks[i]);
+    }
+    return !r->is_certain || (has_capacitor && r->kind != DALCS_WITNESS_LOOP);
+}

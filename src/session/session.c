@@ -74,7 +74,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
 
 /* ---- Reading ------------------------------------------------------------------------------- */
 
-/* Steps, sweeps of what is no source, and scripts want other circuits of the same netlist. */
+/* Steps, sweeps of what is no source, and scripts need other circuits of the same netlist. */
 static bool is_built_again(const struct dalcs_circuit *circuit, const struct dalcs_netlist *netlist,
                            bool is_kept) {
     bool again = circuit->n_steps > 0 || circuit->sensitivity.present ||

@@ -19,7 +19,7 @@ static const double near_circle = 1e-7;
 /* Smaller than this beside 1 is none: nothing of it is left after one period. */
 static const double vanishes = 1e-12;
 
-/* "q(a1)": of what gates remember. */
+/* "q(a1)": of the memory of gates. */
 static const char *name_of_number(struct dalcs_steady *st, int number) {
     static const char *const what[] = {
         [DALCS_NUMBER_PIN] = "q", [DALCS_NUMBER_TAKEN] = "sample", [DALCS_NUMBER_PULSE] = "pulse"};
@@ -110,7 +110,7 @@ static enum dalcs_status multipliers_of(struct dalcs_steady *st, int system,
     return DALCS_OK;
 }
 
-/* What is left out: of states that nothing remembers for a period. */
+/* What is left out: factors of states whose value is lost within a period. */
 static size_t count_lasting(const struct dalcs_floquet *m, size_t n) {
     size_t lasting = 0;
     while (lasting < n && hypot(m[lasting].re, m[lasting].im) > vanishes) {

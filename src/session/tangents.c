@@ -3,6 +3,7 @@
  * An exponential diode is right at the current that its tangent is taken at. Which current it carries cannot be known
  * before the run, and a diode for milliamperes at the tangent of 1 A has a fifth of a volt too much. A MOSFET's channel
  * carries no more than its saturation current, the switch in its place does. */
+#include "quantity.h"
 #include "session_internal.h"
 
 #include <math.h>
@@ -98,15 +99,16 @@ static void judge_tangents(struct dalcs_run *r) {
     if (worst < 0) {
         return;
     }
+    char text[DALCS_QUANTITY_SIZE];
     const struct dalcs_device *d = &c->device[c->signal[recorder->watched[worst].output].device];
     dalcs_diag_add(&r->s->diag, DALCS_NOTE, &d->where,
                    dalcs_arena_printf(&r->s->arena, ".options diodecurrent=%.2g takes it there",
                                       recorder->watched[worst].largest),
-                   "'%s' carries %.3g A at most, where its tangent at %.3g A is %.3g mV %s the "
+                   "'%s' carries %.3g A at most, where its tangent at %.3g A is %s %s the "
                    "exponential diode",
                    d->name, recorder->watched[worst].largest,
-                   c->diode_model[d->model].exponential.at, 1e3 * fabs(over),
-                   over > 0.0 ? "above" : "below");
+                   c->diode_model[d->model].exponential.at,
+                   dalcs_quantity_write(text, fabs(over), "V", 3), over > 0.0 ? "above" : "below");
 }
 
 void dalcs_currents_judge(struct dalcs_run *r) {

@@ -1,4 +1,4 @@
-/* choice.h - with what a part is stepped: how exactly, with how many stages, on maps or on factors. */
+/* choice.h - the tolerance and the stages of a part, and whether its steps are maps or solves with factors. */
 #ifndef DALCS_CHOICE_H
 #define DALCS_CHOICE_H
 

@@ -1,4 +1,4 @@
-/* current_error.h - errors of currents that are small differences of large voltages, and the other way round. */
+/* current_error.h - errors of currents that are small differences of large voltages, and of voltages that are such of currents. */
 #ifndef DALCS_CURRENT_ERROR_H
 #define DALCS_CURRENT_ERROR_H
 

@@ -1,4 +1,4 @@
-/* present.c - a part's present step: what goes into it, what comes out, and that it holds. */
+/* present.c - a part's present step: its input, its output, and its acceptance. */
 #include "present.h"
 
 #include "extremes.h"

@@ -1,4 +1,4 @@
-/* present.h - a part's present step: what goes into it, what comes out, and that it holds. */
+/* present.h - a part's present step: its input, its output, and its acceptance. */
 #ifndef DALCS_PRESENT_H
 #define DALCS_PRESENT_H
 

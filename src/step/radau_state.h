@@ -64,13 +64,13 @@ struct dalcs_part_length {
     long held_back;           /* steps that would have been longer, had the longest one been */
 };
 
-/* What signals are measured by, and what rounding makes of currents: step_error.h, current_error.h. */
+/* The scales of signals, and the errors of currents by rounding: step_error.h, current_error.h. */
 struct dalcs_part_scales {
     double *column;    /* [n_columns] largest magnitudes so far; this and the next in whole quads */
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
     double magnitude_end;
     double unit[2];  /* V, A: the largest of each */
-    double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
+    double cross[2]; /* V per A, A per V: the part of one unit's scale that counts for the other */
     /* A per V, what rounding of conductances that meet makes of nothing between them and ground. */
     double leak;
     struct dalcs_column_kinds *kinds; /* see step_scales.h */
@@ -107,7 +107,7 @@ struct dalcs_part_laws {
     double *inductance; /* [n_equations] H, at nodes; work */
 };
 
-/* What is remembered of the past. It proposes; a step or a bound of its own accepts. */
+/* Kept from the past. It proposes a mode and a length; a step, or a bound of its own, accepts them. */
 struct dalcs_part_memory {
     struct dalcs_transition *transition; /* [n_transitions], see transition.h */
     int n_transitions;

@@ -26,7 +26,7 @@ static bool is_on(const struct dalcs_radau_part *part, int pair) {
     return dalcs_osnsp_is_on(&part->component->osnsp, pair);
 }
 
-/* Each unit vouches a little for the other. */
+/* A quantity of one unit has a part of the other unit's scale. */
 static void cross_units(const struct dalcs_radau_part *part, double *unit) {
     double volt = unit[0];
     unit[0] = dalcs_larger(unit[0], part->scales.cross[0] * unit[1]);
@@ -184,7 +184,7 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
     cross_units(part, q->unit);
     find_allowance(r, part, q, &a);
     compare_all(part, &a, curved ? dalcs_system_n_columns(s) : s->n_x, s->n_x, drift, ripple, q);
-    if (!(q->ratio <= 1.0)) { /* is it rounding? Few steps have to ask. */
+    if (!(q->ratio <= 1.0)) { /* is it rounding? The test is needed for few steps. */
         compare(part, &a, dalcs_stage_natural_units(entry), dalcs_step_rounding(part, entry), q);
     }
     q->own = q->ratio;

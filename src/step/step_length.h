@@ -22,7 +22,7 @@ double dalcs_length_longest(const struct dalcs_radau *r, const struct dalcs_rada
  * of one of them; INFINITY: none do. */
 double dalcs_length_of_spans(const struct dalcs_radau_part *part);
 
-/* Is a span (s) as long as from `from` to `to` (s), as far as rounded times can tell? */
+/* Is a span (s) as long as from `from` to `to` (s), to the rounding of times? */
 static inline bool dalcs_length_is_same(double span, double from, double to) {
     return fabs(to - from - span) <= dalcs_rounded * to;
 }

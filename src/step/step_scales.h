@@ -1,4 +1,4 @@
-/* step_scales.h - what the columns of a step are measured by. Private to src/step. */
+/* step_scales.h - the scales of a step's columns. Private to src/step. */
 #ifndef DALCS_STEP_SCALES_H
 #define DALCS_STEP_SCALES_H
 

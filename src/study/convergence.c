@@ -31,7 +31,7 @@ static enum dalcs_status measure(struct dalcs_convergence *c, struct dalcs_conve
     options.n_at = c->reference.n_times;
     struct dalcs_samples samples;
     enum dalcs_status status = dalcs_samples_run(&samples, c->session, &options, c->interrupted);
-    if (status > 0) { /* it cannot step like this: no reason to stop */
+    if (status > 0) { /* such a step is not possible: the others go on */
         row->failed = true;
         return DALCS_OK;
     }

@@ -149,7 +149,7 @@ enum dalcs_status dalcs_ngspice_time_start(struct dalcs_ngspice *ng, const char 
     return status;
 }
 
-/* The first line of its log that sounds like a reason. */
+/* The first line of its log that reads as a reason. */
 static void read_reason(struct dalcs_ngspice_run *r, FILE *log) {
     static const char *const word[] = {"timestep too small", "singular",     "fatal",  "error",
                                        "no convergence",     "not converge", "aborted"};

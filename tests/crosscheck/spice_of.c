@@ -1,4 +1,4 @@
-/* spice_of.c - a netlist as dalcs tells it to ngspice, flat and with near-ideal devices.
+/* spice_of.c - a netlist as dalcs writes it for ngspice, flat and with near-ideal devices.
  *
  *     spice_of SETTING FILE SIGNAL ...     settings from 0 on
  *

@@ -70,6 +70,20 @@ class Schematics(unittest.TestCase):
         with self.assertRaises(layout.NoLayout):
             layout.describe("title\nX1 a b two\nR1 a b 1\n")
 
+    def test_no_wire_crosses_a_name(self):
+        """A name stands where wires up to the lanes leave room for it; 'out' has one beside its middle."""
+        deck = layout.plain("Bridge\nVsource ac1 w 17\nRw w ac2 0.5\nD1 ac1 out d\nD2 ac2 out d\nD3 0 ac1 d\nD4 0 ac2 d\n"
+                            "C1 out 0 1m\nR1 out 0 50\n")
+        text, _ = layout.describe(deck)
+        lines = [line.split() for line in text.split("\n")]
+        corners = [[tuple(map(float, point.split(","))) for point in words[1:]] for words in lines if words[:1] == ["wire"]]
+        risers = {a[0] for wire in corners for a, b in zip(wire, wire[1:]) if a[0] == b[0] and min(a[1], b[1]) < 0.0}
+        self.assertTrue(risers)
+        for words in lines:
+            if words and words[0] == "node":
+                at, half = float(words[2].split(",")[0]), layout.LETTER * len(words[1]) / 2
+                self.assertTrue(all(abs(at - x) >= half for x in risers), f"{words} {risers}")
+
     def test_lanes_do_not_touch(self):
         """Two that pass over each other are in two lanes: the comparison would see one node."""
         deck = "Ring\n" + "".join(f"R{i}{j} {i} {j} 1k\n" for i in range(1, 8) for j in range(i + 1, 8)) + "C1 1 0 1u\n"
@@ -89,6 +103,10 @@ class Page(unittest.TestCase):
             index = (place / "gallery/index.html").read_text(encoding="utf-8")
             self.assertEqual(len(re.findall("<article", index)), 3)
             self.assertEqual(len(re.findall("Refused: .*no solution", index)), 3)
+            for only, what in ("hc01a", "jump at t=0: c1 10 V -&gt; 4 V"), ("hc07", r"v\(a\) +0\.000  V"):
+                done = run(SOURCE / "tools/gallery", "--build", BUILD, "--only", only, place / "values")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertRegex((place / "values/index.html").read_text(encoding="utf-8"), what)
             done = run(SOURCE / "tools/gallery", "--build", BUILD, "--only", "full_bridge_r.cir", place / "gallery")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertTrue((place / "gallery/rectifiers_full_bridge_r.png").read_bytes().startswith(b"\x89PNG"))

@@ -28,7 +28,7 @@ USER_PAGES = [
     "doc/README.md", "doc/averaged.md", "doc/figures.md", "doc/first-circuit.md", "doc/gallery.md", "doc/install.md",
     "doc/library.md", "doc/lessons/*.md", "doc/magnetics.md", "doc/methods.md", "doc/netlist.md",
     "doc/ngspice-library.md", "doc/output.md", "doc/plots.md", "doc/python.md", "doc/steady.md", "doc/sweeps.md",
-    "doc/system-file.md",
+    "doc/system-file.md", "doc/words.md",
 ]
 DEVELOPER_PAGES = ["doc/adding-a-*.md", "doc/architecture.md", "doc/auditor.md", "doc/integrator.md",
                    "doc/observers.md", "doc/one-step.md", "doc/testing.md", "doc/theory.md", "tools/wasm/README.md"]

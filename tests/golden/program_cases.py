@@ -105,7 +105,8 @@ class Usage(Case):
             self.assertIn(option, text)
 
     def test_version(self):
-        self.assertRegex(self.dalcs("--version").stdout, r"^dalcs \d+\.\d+\.\d+\n$")
+        for option in "--version", "-v":
+            self.assertRegex(self.dalcs(option).stdout, r"^dalcs \d+\.\d+\.\d+\n$")
 
     def refused(self, *arguments):
         done = self.dalcs(*arguments, expect=USAGE)

@@ -102,6 +102,19 @@ class Plot(unittest.TestCase):
         self.assertTrue(any(text.endswith("events: too many to mark") for text in texts), texts)
         self.assertNotIn("conducts", texts)
 
+    def test_what_a_bar_says(self):
+        """A diode conducts. A relay and a pair of a system file, whose lambda may be a voltage, are on."""
+        self.need_gnuplot()
+        for name, says, not_so in (("papers/bt10_fig_2_1.cir", "conducts", "on"), ("papers/bt10_fig_2_1.dalcs", "on", "conducts"),
+                                   ("relays/relay.cir", "on", "conducts"), ("converters/inverter_three_phase.cir", "conducts", "on")):
+            self.run_program("run", ROOT / "netlists" / name, "-o", "bar.raw", "--report", "bar.json", "-q")
+            if "without the library" in self.run_program("plot", "bar.raw", "--report", "bar.json").stderr:
+                self.skipTest("built without jansson")
+            self.plot("bar.raw", "--report", "bar.json", "-o", "bar.svg")
+            texts = self.texts("bar.svg")
+            self.assertIn(says, texts, name)
+            self.assertNotIn(not_so, texts, name)
+
     def test_a_long_title_stays_on_the_page(self):
         """At 0.54 em for a character, in pixels of SVG, of PNG at 96 and of PDF at 100 in an inch."""
         program = self.folder / "bin" / "gnuplot"

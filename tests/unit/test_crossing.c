@@ -163,7 +163,7 @@ static double at(const struct dalcs_collocation *c, const double *value, double 
     return sum;
 }
 
-/* By its coefficients alone, where they tell it. */
+/* By its coefficients alone, where they suffice. */
 static double only_fall(const struct dalcs_collocation *c, const double *value, double end,
                         double depth) {
     double coefficient[DALCS_MAX_NODES] = {0.0};

@@ -123,7 +123,7 @@ START_TEST(test_buck) {
 
 END_TEST
 
-/* Rows in every second period leave nothing to leap over, and ask no less. */
+/* With rows in every second period nothing can be leapt over, and the checks are the same. */
 START_TEST(test_many_rows) {
     long n_steps;
     long n_leapt = compare(BUCK("R1 out 0 2\n"), 1e-3, 60, 1e-12, &n_steps);

@@ -8,7 +8,7 @@
 enum { MOST = 12 };
 
 START_TEST(test_known) {
-    /* zeros where elimination wants its pivots; two right-hand sides; behind them what is no part of it */
+    /* zeros where elimination has its pivots; two right-hand sides; behind them what is no part of it */
     double a[3][8] = {
         {0, 2, 1, 7, 1, 9, 9, 9}, {1, 0, 0, 1, 3, 9, 9, 9}, {4, 0, 2, 10, 12, 9, 9, 9}};
     const double x[3][2] = {{1, 3}, {2, 0.5}, {3, 0}};

@@ -125,7 +125,7 @@ START_TEST(test_conditions) {
 
 END_TEST
 
-/* A copy knows its text and the calls that made it. */
+/* A copy has its text and the calls that made it. */
 START_TEST(test_places) {
     expand("t\n.subckt in p\nR1 p 0 1\n.ends\n.subckt out p\nX2 p in\n.ends\nX1 a out\n");
     const struct dalcs_location where = dalcs_token_location(&deck.card[0].token[1]);

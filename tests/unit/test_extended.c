@@ -14,7 +14,7 @@ static void check_near(long double a, long double b, long double tolerance) {
 }
 
 START_TEST(test_real) {
-    /* zeros where elimination wants its pivots; two right-hand sides */
+    /* zeros where elimination has its pivots; two right-hand sides */
     long double a[3][5] = {{0, 2, 1, 7, 1}, {1, 0, 0, 1, 3}, {4, 0, 2, 10, 12}};
     const long double x[3][2] = {{1, 3}, {2, 0.5L}, {3, 0}};
     ck_assert(dalcs_extended_solve(3, 2, a[0], NULL) > 0.0L);

@@ -27,7 +27,7 @@ static const double unit[2] = {1.0, 1.0};
 static const char usual[] = "guards\nV1 a 0 1\nR1 a b 1\nD1 b c\nD2 b d\nR2 d 0 1\nC1 c 0 1\n"
                             "S1 c 0 b 0 sm\n.model sm SW(Vt=0.5 Vh=0.25)\n.tran 1 100\n";
 
-/* The same, but nothing tells what the source delivers. */
+/* The same, but the source's current is not known. */
 static const char without_law[] = "guards\nV1 b 0 1\nD1 b c\nD2 b d\nR2 d 0 1\nC1 c 0 1\n"
                                   "S1 c 0 d 0 sm\n.model sm SW(Vt=0.5 Vh=0.25)\n.tran 1 100\n";
 

@@ -143,7 +143,7 @@ END_TEST
 static const char rectifier[] = "rectifier\nV1 a 0 SIN(0 1 50)\nD1 a b\nR1 b 0 1\n.tran 1m 1\n"
                                 ".save v(b)\n";
 
-/* The diode of a half-wave rectifier: each half period of 10 ms it changes its mind, at the first
+/* The diode of a half-wave rectifier: each half period of 10 ms it changes sides, at the first
  * step at which the sine has the other sign. */
 START_TEST(test_events) {
     const struct dalcs_schedule every = {.kind = DALCS_EVERY_STEP};

@@ -209,6 +209,15 @@ class Page(unittest.TestCase):
                           "return Math.max(...w.map((x, k) => Math.min(Math.abs(x), 100 * Math.abs(i[k]))));")
         self.assertLess(off, 1e-9)
 
+    def test_a_relay_that_never_switches(self):
+        """It has no events, so the panel does not know on which side it is, and does not say `none`."""
+        if "10-relay" not in LESSONS:
+            self.skipTest("not asked for")
+        self.open("10-relay")
+        self.move(0, 1000)
+        self.assertEqual(self.script("return [...document.querySelectorAll('#modes td')].map((c) => c.textContent);"),
+                         ["nothing changes sides", "1", "100.0 %"])
+
     def test_what_happened(self):
         """A jump and a steady state in words, with the numbers of closed forms."""
         for name, words in (("19-sweeping-process", "At 15 ms: l1 jumps from 1 A to 2 A, flux of d1 1 mWb; 500 µJ are lost."),

@@ -93,11 +93,11 @@ function conduction(result, elements) {
 /** The modes of a run, by how long they last: [{mode, visits, share}, ...]. */
 function modesOf(bodies, start, stop) {
     const edges = [...new Set([start, stop, ...bodies.flatMap(({spans}) => spans.flat())])].sort((a, b) => a - b);
-    const found = new Map();
+    const found = new Map(), nothing = bodies.length ? 'none' : 'nothing changes sides';
     let before = null;
     for (let k = 0; k + 1 < edges.length; k++) {
         const middle = (edges[k] + edges[k + 1]) / 2;
-        const mode = bodies.filter(({spans}) => spans.some(([a, b]) => a <= middle && middle < b)).map(({name}) => name).join(', ') || 'none';
+        const mode = bodies.filter(({spans}) => spans.some(([a, b]) => a <= middle && middle < b)).map(({name}) => name).join(', ') || nothing;
         const entry = found.get(mode) || {mode, visits: 0, share: 0};
         entry.visits += mode === before ? 0 : 1;
         entry.share += (edges[k + 1] - edges[k]) / (stop - start);

@@ -107,8 +107,8 @@ class Circuit:
         """The periodic steady state: rows of one period, `.steady` says whether it is stable.
 
         period    s; None: that of .pss, else it follows from the sources
-        more      those of run(); sensitivities=True: .sensitivities tells how measurements follow
-                  from the values of elements
+        more      those of run(); sensitivities=True: .sensitivities gives the derivatives of measurements
+                  by the values of elements
         """
         if period is not None:
             more["period"] = float(period)
@@ -133,7 +133,7 @@ class Circuit:
         asked: Dict[str, Any] = {"bode_from": start, "bode_to": stop, "bode_points": points, "bode_loop": loop,
                                  "bode_injection": injection, "bode_sideband": sideband, "period": period}
         if frequencies is not None and (start, stop, points) != (None, None, None):
-            raise TypeError("frequencies are all there are: start, stop and points cannot stand beside them")
+            raise TypeError("give frequencies, or start, stop and points, not both")
         given = {name: value for name, value in asked.items() if value is not None}
         found = self.run(values, bode=True, frequencies=frequencies, **given, **more)
         assert isinstance(found, Response)
