@@ -1,5 +1,5 @@
 /* audit.c - what is looked at, and when. */
-#include "crossing.h"
+#include "audit_crossing.h"
 
 #include "screen.h"
 

@@ -6,7 +6,7 @@
  * ground. Nodes that branches of the second kind do not separate have one potential: around a loop of coils
  * between such sets the fluxes that changed add up to 0. No state can jump but by such charges and fluxes,
  * and one that does not jump is where it was. */
-#include "crossing.h"
+#include "audit_crossing.h"
 
 #include "union_find.h"
 

@@ -4,7 +4,7 @@
  * gained has come along branches from nodes that lost it. So of all nodes from which charge can reach one, none
  * outside can have given them any, and together they hold no more than before; of all that charge from one can reach,
  * no less (Gale 1957: a flow exists only if every such set allows it). */
-#include "crossing.h"
+#include "audit_crossing.h"
 
 /* Branches are gone through so many times, in both orders, for a set; where chains of diodes lead farther, there is none. */
 enum { MOST_SWEEPS = 32 };

@@ -4,7 +4,7 @@
  * an impulse of voltage across what hangs there, or of current into it. Where the current of a coil jumps, the voltage
  * across it is one, and E, G and formulas read that. It goes along resistances, and moves charge through them and flux in
  * coils, as far as nodes that capacitors and sources tie to ground. */
-#include "crossing.h"
+#include "audit_crossing.h"
 
 #include "union_find.h"
 

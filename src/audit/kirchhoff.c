@@ -1,5 +1,5 @@
 /* kirchhoff.c - what leaves each node, with its rounding, and all that holds at one time. */
-#include "crossing.h"
+#include "audit_crossing.h"
 
 #include "union_find.h"
 

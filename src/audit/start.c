@@ -4,7 +4,7 @@
  * currents that are no capacitor's cancel at each set of nodes that ideal branches join, and no voltage is across a coil.
  * An ideal branch may carry at once what a capacitor behind it takes from a source that moves, so no node alone is asked.
  * A law has one unit: where it is asked as a charge or a flux elsewhere, here it is that of a step. */
-#include "crossing.h"
+#include "audit_crossing.h"
 
 #include "union_find.h"
 

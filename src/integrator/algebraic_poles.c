@@ -45,8 +45,8 @@ bool dalcs_algebraic_poles_expect(const struct dalcs_radau_part *part, double t)
 }
 
 static enum dalcs_status solve(struct dalcs_component *c, double t, enum dalcs_side side) {
-    for (int i = 0; i < c->n_varying; i++) {
-        const int k = c->varying[i];
+    for (int i = 0; i < c->varying.n; i++) {
+        const int k = c->varying.input[i];
         c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[c->system->stimulus[k]], t, side);
     }
     return dalcs_component_solve(c, 0.0, c->u, c->y);
@@ -54,8 +54,8 @@ static enum dalcs_status solve(struct dalcs_component *c, double t, enum dalcs_s
 
 static double next_edge(const struct dalcs_component *c, double since) {
     double next = INFINITY;
-    for (int i = 0; i < c->n_varying; i++) {
-        const int k = c->varying[i];
+    for (int i = 0; i < c->varying.n; i++) {
+        const int k = c->varying.input[i];
         next = fmin(next,
                     dalcs_stimulus_next_edge(&c->circuit->stimulus[c->system->stimulus[k]], since));
     }

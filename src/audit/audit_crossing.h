@@ -1,4 +1,4 @@
-/* crossing.h - what holds from one side of an event to the other: who is joined while it takes place, and what charge and
+/* audit_crossing.h - what holds from one side of an event to the other: who is joined while it takes place, and what charge and
  * flux may do. */
 #ifndef DALCS_AUDIT_CROSSING_H
 #define DALCS_AUDIT_CROSSING_H
