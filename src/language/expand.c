@@ -293,6 +293,13 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
     return language->out_of_memory ? DALCS_E_NOMEM : emit(language, &copy);
 }
 
+static enum dalcs_status copy_derived(struct dalcs_language *language, struct dalcs_scope *scope,
+                                      const struct dalcs_item *item) {
+    struct dalcs_item whole = {.card = dalcs_model_derive(language, scope, item->card),
+                               .kind = item->kind};
+    return whole.card != NULL ? copy_card(language, scope, &whole) : DALCS_E_NOMEM;
+}
+
 /* ---- Calls ------------------------------------------------------------------------------------- */
 
 /* The parts of an X card. */
@@ -620,7 +627,8 @@ static enum dalcs_status expand_scope(struct dalcs_language *language, struct da
         if (item->kind == DALCS_ITEM_CALL) {
             DALCS_TRY(expand_call(language, scope, item));
         } else if (item->kind == DALCS_ITEM_CARD || item->kind == DALCS_ITEM_MODEL) {
-            DALCS_TRY(copy_card(language, scope, item));
+            DALCS_TRY(dalcs_card_is_derived_model(item->card) ? copy_derived(language, scope, item)
+                                                              : copy_card(language, scope, item));
         }
         if (language->out_of_memory) {
             return DALCS_E_NOMEM;

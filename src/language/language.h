@@ -174,6 +174,11 @@ void dalcs_language_report_at(struct dalcs_language *language, enum dalcs_severi
                               const char *hint, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
 
+/* A card of dalcs_card_is_derived_model() in full. What cannot be is reported, and is no type that anybody reads. NULL: out of memory. */
+const struct dalcs_card *dalcs_model_derive(struct dalcs_language *language,
+                                            const struct dalcs_scope *scope,
+                                            const struct dalcs_card *card);
+
 /* "did you mean 'a'?", "the things are: a, b", or NULL. */
 const char *dalcs_language_suggest(struct dalcs_language *language, const struct dalcs_names *names,
                                    const char *name, const char *plural);

@@ -77,6 +77,11 @@ static enum dalcs_status close_model(struct dalcs_lexer *lexer) {
     return DALCS_OK;
 }
 
+bool dalcs_card_is_derived_model(const struct dalcs_card *card) {
+    return card->n > 2 && strcmp(card->token->text, ".model") == 0 &&
+           card->token[2].kind == DALCS_TOKEN_WORD && strncmp(card->token[2].text, "ako:", 4) == 0;
+}
+
 /* The first letter; LTspice's F a b value={formula} and H a b value={formula} are G and E. */
 static char letter_of(const struct dalcs_token *token, int n) {
     const char letter = token->text[0];
@@ -109,7 +114,7 @@ enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
     netlist->has_tolerances = netlist->has_tolerances || may_have_tolerance(&card);
     netlist->has_language = netlist->has_language || netlist->has_tolerances ||
                             card.letter == 'x' || (card.letter == '.' && is_language(token)) ||
-                            may_have_formula(&card);
+                            may_have_formula(&card) || dalcs_card_is_derived_model(&card);
     DALCS_TRY(dalcs_grow(&netlist->card, &netlist->capacity, netlist->n_cards + 1,
                          sizeof *netlist->card));
     netlist->card[netlist->n_cards++] = card;

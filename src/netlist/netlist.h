@@ -70,6 +70,9 @@ struct dalcs_card {
     double parallel; /* so many of them, by m= of subcircuit calls; 0: one */
 };
 
+/* `.model new ako:old [type] [parameters]` */
+bool dalcs_card_is_derived_model(const struct dalcs_card *card);
+
 /* The losses of the options of a command line, beside those of the netlist (circuit/losses.h). */
 struct dalcs_losses_request {
     bool is_asked, has_window;

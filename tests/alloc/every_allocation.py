@@ -268,7 +268,8 @@ K1 L2 L3 0.5
 R1 c 0 2R2
 S1 a d m1 CONTROL={2*v(a)-1}
 R2 d 0 1k
-.model m1 SW(Ron=1 Roff=1Meg Vt=1 Lser=1m Vser=0.6)
+.model m1 ako:m0 Ron=1
+.model m0 SW(Ron=2 Roff=1Meg Vt=1 Lser=1m Vser=0.6)
 .save v(*) i(*)
 .tran 1
 .end

@@ -46,6 +46,17 @@ def check(checker, program, kind):
 
 # ---- Elements ------------------------------------------------------------------------------------
 
+DERIVED = """
+V1 a 0 10
+D1 a b new
+R1 b 0 1k
+.model old D(Ron=10 Vfwd=1)
+.model other D(Ron=1k Vfwd=0.3)
+.model both D(Ron=1k Vfwd=1)
+@
+.op
+"""
+
 DIVIDER = """
 V1 a 0 10
 @
@@ -555,6 +566,15 @@ FORMULAS = [
         "B1 b 0 P=0.1\nB2 b 0 P=v(c)/2",
         "B1 b 0 P={max(v(c),0)}",
     ], [("B1 b 0 Q={v(c)}", "has no 'q='")]),
+    Kind("a kind of another model", DERIVED, ".model new D(Ron=1k Vfwd=1)", "v(b)", 4.5, [
+        ".model new ako:old Ron=1k", ".model new AKO:old D(Ron=1k)", ".model new ako: old D Ron=1k",
+        ".model new AKO:Old D (Ron=1k)", ".model new ako:other Vfwd=1", ".model new ako:other (Vfwd=1)",
+        ".model new ako:between\n.model between ako:old Ron=1k", ".model new ako:old Ron={2*k}\n.param k=500",
+        ".model new ako:old Ron=1k Vfwd=1", ".model new ako:Both",
+        ".subckt s p q\nD1 p q inner\n.model inner ako:other Vfwd=1\n.ends\n.model new ako:old Vfwd=100\nX1 a b s",
+    ], [(".model new ako:nothing", "there is no model 'nothing' that this one could be a kind of"),
+        (".model new ako:new", "'new' is a kind of itself"),
+        (".model new ako:next\n.model next ako:new", "is a kind of itself")]),
     Kind("sources in parallel", DOUBLED, "B1 b 0 I={2m*v(b)}", "v(b)", 10 / 3, [
         "B1 b 0 I={1m*v(b)} m=2",
         "B1 b 0 I=1m*v(b) m=2",
