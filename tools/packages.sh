@@ -9,7 +9,7 @@ packages_of() {
         build) echo gcc libc6-dev meson ninja-build pkg-config libsuitesparse-dev liblapacke-dev \
             libgfortran-12-dev libglpk-dev libjansson-dev libjs-dygraphs libltdl-dev sdpa uthash-dev ;;
         test) echo check g++ mandoc mypy python3 python3-jsonschema python3-markdown python3-matplotlib \
-            parallel python3-distributed python3-joblib python3-numpy python3-pandas python3-scipy ;;
+            parallel python3-distributed python3-joblib python3-numpy python3-pandas python3-scipy python3-xarray ;;
         plot) echo gnuplot-nox ;;
         latex) echo texlive-latex-base ;;
         browser) echo chromium chromium-driver firefox-esr python3-selenium ;;

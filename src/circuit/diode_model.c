@@ -49,13 +49,15 @@ enum { FIRST_BERKELEY = IS, MOST_IGNORED = 16 /* that a note names */ };
 
 /* Of the exponential diode, without a counterpart here. */
 static const char *const IGNORED[] = {
-    "jsw",   "ns",     "ibvl",   "nbvl",   "cjo",    "cj0",    "cj",    "cjp",   "vj",
-    "pb",    "m",      "mj",     "fc",     "fcs",    "tt",     "eg",    "xti",   "kf",
-    "af",    "ik",     "ikf",    "ikr",    "isr",    "nr",     "tbv",   "tbv1",  "tbv2",
-    "trs",   "trs1",   "trs2",   "tikf",   "tnom",   "tref",   "vp",    "level", "area",
-    "rsw",   "tcv",    "cta",    "vjsw",   "php",    "mjsw",   "cjsw",  "ctp",   "tlev",
-    "tlevc", "tm1",    "tm2",    "ttt1",   "ttt2",   "w",      "l",     "pj",    "rth0",
-    "cth0",  "fv_max", "bv_max", "id_max", "te_max", "pd_max", "expli", "dcap",  "shrink"};
+    "jsw",   "ns",     "ibvl",   "nbvl",   "cjo",    "cj0",    "cj",     "cjp",   "vj",
+    "pb",    "m",      "mj",     "fc",     "fcs",    "tt",     "eg",     "xti",   "kf",
+    "af",    "ik",     "ikf",    "ikr",    "isr",    "nr",     "tbv",    "tbv1",  "tbv2",
+    "trs",   "trs1",   "trs2",   "tikf",   "tnom",   "tref",   "vp",     "level", "area",
+    "rsw",   "tcv",    "cta",    "vjsw",   "php",    "mjsw",   "cjsw",   "ctp",   "tlev",
+    "tlevc", "tm1",    "tm2",    "ttt1",   "ttt2",   "w",      "l",      "pj",    "rth0",
+    "cth0",  "fv_max", "bv_max", "id_max", "te_max", "pd_max", "expli",  "dcap",  "shrink",
+    "tc1",   "tc2",    "tpb",    "tphp",   "tvj",    "jtun",   "jtunsw", "ntun",  "xtitun",
+    "keg",   "lm",     "lp",     "wm",     "wp",     "xom",    "xoi",    "xm",    "xp"};
 
 /* Reports a parameter that a diode does not have; false for one that means nothing. */
 static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {

@@ -46,6 +46,8 @@ struct dalcs_steps {
     const char **drawn; /* [n_drawn] the values that are drawn, by name */
 };
 
+#define DALCS_KEEP_HINT "call dalcs_session_keep_netlist() before the netlist is read"
+
 /* The initial value of a capacitor or coil. */
 struct dalcs_set_state {
     const char *element;

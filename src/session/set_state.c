@@ -40,12 +40,12 @@ static enum dalcs_status refuse(struct dalcs_session *s, const char *name) {
 enum dalcs_status dalcs_session_set_state(struct dalcs_session *session, const char *element,
                                           double value) {
     if (!session->has_netlist || !isfinite(value)) {
-        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, NULL,
-                       session->has_netlist
-                           ? "the state of '%s' cannot be %g"
-                           : "the state of '%s' cannot be set to %g: no netlist was "
-                             "read that keeps its cards",
-                       element, value);
+        dalcs_diag_add(
+            &session->diag, DALCS_ERROR, NULL, session->has_netlist ? NULL : DALCS_KEEP_HINT,
+            session->has_netlist ? "the state of '%s' cannot be %g"
+                                 : "the state of '%s' cannot be set to %g: no netlist was "
+                                   "read that keeps its cards",
+            element, value);
         return DALCS_E_OPTION;
     }
     char *name = dalcs_arena_copy(&session->arena, element, strlen(element));

@@ -97,7 +97,7 @@ static void tell_unknown(struct dalcs_session *s, const char *name, const char *
 enum dalcs_status dalcs_session_set_value(struct dalcs_session *session, const char *name,
                                           double value) {
     if (!session->has_netlist) {
-        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, NULL,
+        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, DALCS_KEEP_HINT,
                        "'%s' cannot be set: no netlist was read that keeps its cards", name);
         return DALCS_E_OPTION;
     }

@@ -300,6 +300,15 @@ class Exports(unittest.TestCase):
     def test_lepton(self):
         self.assertAlmostEqual(self.last(LEPTON)["v(out)"], CHARGED, delta=1e-9)
 
+    def test_diode_models(self):
+        """Each parameter of ngspice's diode but those that have a meaning here: a note names those of an ideal diode."""
+        names = ("tc1 tc2 ttt1 ttt2 cjsw tm1 tm2 pj tlev tlevc ctp tpb tphp tvj jtun jtunsw ntun xtitun keg fv_max bv_max "
+                 "id_max te_max pd_max rth0 cth0 lm lp wm wp xom xoi xm xp").split()
+        for model in [" ".join(f"{name}=1" for name in names), *(f"{name}=1" for name in names)]:
+            text = f"t\nV1 a 0 1\nD1 a b DM\nR1 b 0 1k\n.model DM D(N=0.01 rs=0 {model})\n.op\n.end\n"
+            self.assertIn(model.split("=")[0], self.run_it(text).stderr)
+            self.assertGreater(self.last(text)["v(b)"], 0.9)
+
     def test_oregano(self):
         self.assertAlmostEqual(self.last(OREGANO)["v(2)"], CHARGED, delta=1e-9)
 

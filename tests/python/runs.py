@@ -229,6 +229,16 @@ class Rows(unittest.TestCase):
         self.assertEqual(axes.get_ylabel(), "V")
 
     @unittest.skipUnless(has("matplotlib"), "no matplotlib")
+    def test_jupyter(self):
+        """What a notebook shows: signals with their ranges, of many runs the first."""
+        shown = dalcs.run(NETLIST)._repr_html_()  # pylint: disable=protected-access
+        self.assertIn("<tr><td>v(out)</td><td>V</td><td>0</td><td>10</td>", shown)
+        self.assertIn("<p>no rows: 0</p>", dalcs.run(NETLIST, rows=False)._repr_html_())  # pylint: disable=protected-access
+        text = NETLIST.replace("Half-wave rectifier", "t").replace("{rload}", "{1k+rload}")
+        shown = dalcs.sweep(text, rload=[*range(30), -1000.0])._repr_html_()  # pylint: disable=protected-access
+        self.assertEqual(shown.count("<tr>"), 21)
+        self.assertIn("&lt;sweep of 31 runs, 1 failed", shown)
+
     def test_overlay(self):
         """Each step is a curve, of a colour that follows its parameter; a bar has the values."""
         result = dalcs.run(NETLIST + ".step param rload list 1k 3k 2k\n")

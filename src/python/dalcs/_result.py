@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _library as c
+from ._html import table_of
 from ._names import Measures, no_such
 from ._sensitivities import Sensitivities
 from ._session import Session, Tables
@@ -160,6 +161,20 @@ class Table:
 
     def __repr__(self) -> str:
         return f"<{self.analysis or 'no'} rows: {len(self)} of {', '.join(self.names)}>"
+
+    def _repr_html_(self) -> str:
+        """In Jupyter: the range of each signal, of complex ones that of the magnitude.
+
+        What is less than 1e-9 of a signal's largest value is 0, as in the table on the terminal.
+        """
+        rows = []
+        for k, name in enumerate(self.names if len(self) > 0 else ()):
+            column = self.values[:, k]
+            size = np.abs(column) if np.iscomplexobj(column) else column
+            three = np.array([size.min(), size.max(), size[-1]])
+            three[np.abs(three) < 1e-9 * np.abs(size).max()] = 0.0
+            rows.append((name, self.units[name], *three.tolist()))
+        return table_of(f"{self.analysis or 'no'} rows: {len(self)}", ("signal", "unit", "min", "max", "final"), rows)
 
 
 class Result(Table):

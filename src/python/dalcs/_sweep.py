@@ -11,10 +11,13 @@ from numpy.typing import NDArray
 
 from . import _library as c
 from ._errors import Cancelled, Error, OptionError
+from ._html import table_of
 from ._names import find
 from ._result import Result
 from ._session import OWN_OPTIONS, Number, number_of
 from ._workers import Processes, Threads
+
+MOST_SHOWN = 20  # runs, in Jupyter
 
 Grid = Union[Mapping[str, Sequence[Number]], Sequence[Mapping[str, Number]]]
 
@@ -133,6 +136,11 @@ class Sweep:
             return frame.set_index(names).to_xarray()
         frame.index.name = "run"
         return xarray.Dataset.from_dataframe(frame)
+
+    def _repr_html_(self) -> str:
+        """In Jupyter: the runs, of many the first."""
+        shown = range(min(len(self), MOST_SHOWN))
+        return table_of(repr(self), list(self), [[self[name][k] for name in self] for k in shown])
 
     def __repr__(self) -> str:
         nothing = "; nothing was kept: write .meas into the netlist, or give each=" if self._keeps_nothing else ""
