@@ -887,7 +887,7 @@ struct dalcs_report {
         double period;         /* s, of the sources */
         long periods;          /* from the start to the end */
         long run;              /* of them, those that were run to find the others */
-        long leaps, rejected;  /* over periods that were not; tried in vain, for the error */
+        long leaps, rejected;  /* over periods that were not; tried, but not accurate */
         double worst, allowed; /* the largest error of a leap, over each state's largest value */
     } envelope;
 

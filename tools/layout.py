@@ -1,8 +1,8 @@
 """Places the elements of a netlist for a schematic: tools/schematics.py draws it.
 
 Nodes lie on a line, in the order in which the fewest elements pass over others; elements between neighbours lie on
-this line, others in lanes above it, and those at ground hang below it. A transistor is the switch that it is; what has
-inner elements or more ends is not drawn.
+this line, others in lanes above it, and those at ground hang below it. A transistor is the switch that it is, a
+subcircuit its elements, x1.d1; what has more ends is not drawn.
 """
 
 import itertools
@@ -28,7 +28,7 @@ class Part:
     """An element: its name, kind, nodes and what is written beside it."""
 
     def __init__(self, words):
-        self.name, self.letter, self.words = words[0], words[0][0].lower(), words
+        self.name, self.letter, self.words = words[0], letter_of(words[0]), words
         self.kind, unit = KINDS[self.letter]
         self.ends = tuple(word.lower() for word in words[1:3])
         rest = " ".join(words[3:])
@@ -64,19 +64,59 @@ def quantity(word, unit):
     return f"{number} {PREFIXES[match[2].lower()]}{unit}".replace("-", "−")
 
 
+def letter_of(name):
+    """The family of an element, d of x1.d1."""
+    return name.rsplit(".", maxsplit=1)[-1][0].lower()
+
+
+def definitions(lines):
+    """(The lines outside of subcircuits; for each name of one its ports and its lines.)"""
+    outside, found, inside = [], {}, None
+    for line in lines:
+        words = line.split()
+        if re.match(r"\.subckt\b", line, re.IGNORECASE) and len(words) > 1:
+            ports = [word for word in itertools.takewhile(lambda word: "=" not in word and word.lower() != "params:", words[2:])]
+            inside = found[words[1].lower()] = ([port.lower() for port in ports], [])
+        elif re.match(r"\.ends\b", line, re.IGNORECASE):
+            inside = None
+        elif inside:
+            inside[1].append(line)
+        else:
+            outside.append(line)
+    return outside, found
+
+
+def expanded(words, found):
+    """The elements of a subcircuit that a card calls, with the names and nodes that they have outside."""
+    called = [k for k, word in enumerate(words) if word.lower() in found and k > 0]
+    if not called or len(words[1:called[-1]]) != len(found[words[called[-1]].lower()][0]):
+        return [words]
+    ports, lines = found[words[called[-1]].lower()]
+    outer, cards = dict(zip(ports, words[1:called[-1]])), []
+    for inner in (line.split(";")[0].split() for line in lines):
+        if inner and inner[0][0].isalpha():
+            n_nodes = {"x": len(inner) - 2, "s": 4, "e": 4, "g": 4, "m": 4, "q": 3, "z": 3}.get(letter_of(inner[0]), 2)
+            inner[1:1 + n_nodes] = [node if node.lower() in GROUND else outer.get(node.lower(), f"{words[0]}.{node}")
+                                    for node in inner[1:1 + n_nodes]]
+            inner[0] = f"{words[0]}.{inner[0]}"
+            cards += expanded(inner, found) if letter_of(inner[0]) == "x" else [inner]
+    return cards
+
+
 def plain(netlist):
     """The title and the elements, each on one line, transistors by the two nodes that their current flows between."""
     text = re.sub(r"\n\+", " ", netlist)
-    for begin, end in ("control", "endc"), ("subckt", "ends"):
-        text = re.sub(rf"^\.{begin}\b.*?^\.{end}\b.*?$", "", text, flags=re.IGNORECASE | re.MULTILINE | re.DOTALL)
+    text = re.sub(r"^\.control\b.*?^\.endc\b.*?$", "", text, flags=re.IGNORECASE | re.MULTILINE | re.DOTALL)
     title, *lines = text.split("\n")
+    lines, found = definitions(lines)
     cards = []
-    for words in (line.split(";")[0].split() for line in lines):
-        if words and words[0][0].isalpha():
-            if words[0][0].lower() in "mzq" and len(words) > 4:
-                words[2:4] = words[3], words[2]
-            words[1:3] = ["0" if word.lower() in GROUND else word for word in words[1:3]]
-            cards.append(" ".join(words))
+    for card in (line.split(";")[0].split() for line in lines):
+        for words in expanded(card, found) if card and card[0][0].lower() == "x" else [card]:
+            if words and words[0][0].isalpha():
+                if letter_of(words[0]) in "mzq" and len(words) > 4:
+                    words[2:4] = words[3], words[2]
+                words[1:3] = ["0" if word.lower() in GROUND else word for word in words[1:3]]
+                cards.append(" ".join(words))
     return "\n".join([title, *cards, ""])
 
 
@@ -84,7 +124,7 @@ def parts_of(deck):
     """(elements to draw, names that are not drawn) of what plain() gives."""
     parts, omitted, controls = [], [], set()
     for words in map(str.split, deck.split("\n")[1:-1]):
-        letter = words[0][0].lower()
+        letter = letter_of(words[0])
         if letter in KINDS and len(words) > 3 or letter in "ds" and len(words) > 2:
             parts.append(Part(words))
         elif letter in "ka":
@@ -195,7 +235,7 @@ class Layout:
             y = -LANE * (lane + 1) - 0.2
             inside = [a] + [x for x in risers if a < x < b] + [b]
             c, d = max(zip(inside, inside[1:]), key=lambda gap: gap[1] - gap[0])
-            middle, half = (c + d) / 2, min(0.6, (d - c) / 2)
+            middle, half = (c + d) / 2, min(0.6, (d - c) / 2 - 0.05)  # its ends touch no wire up to a lane
             self.text += [f"wire {a:g},0 {a:g},{y:g} {middle - half:g},{y:g}",
                           f"wire {middle + half:g},{y:g} {b:g},{y:g} {b:g},0",
                           part.line(*self.directed(part, begin, (middle - half, y), (middle + half, y)))]

@@ -69,7 +69,7 @@ struct dalcs_undetermined {
     struct dalcs_seen {
         uint64_t name; /* 0: free */
         bool is_done;
-        unsigned n_asked; /* in vain: all intervals vanished */
+        unsigned n_asked; /* without a result: all intervals vanished */
     } seen[DALCS_SEEN_SLOTS];
 };
 

@@ -14,7 +14,7 @@ double dalcs_tied_nothing(const struct dalcs_radau_part *part, int pair, const d
  * knows which is of least norm. A closed one that had no current before the event either is none of them
  * where the mode determines all: nothing happened to it. Nor is an open
  * one whose voltage is 0 to the last bit, as before anything has been charged, once the circuit is known to
- * leave no choice. Large components, where that is dear, are asked only at their start and at edges, not
+ * leave no choice. Large components, where that is expensive, are asked only at their start and at edges, not
  * after every event. */
 bool dalcs_tied_stay(const struct dalcs_radau_part *part, bool is_determined, const double *unit);
 

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-/* So much is let be in any case, over the unit's scale, where time does not tell it from nothing. */
+/* A wrong sign of at most this, over the unit's scale, counts as 0 in any case: times are too coarse to resolve it. */
 static const double unresolved = 1e-5;
 
 /* Is a guard above 0 before times can be told apart? */

@@ -13,7 +13,7 @@
 /* Fewer periods are not worth the look at the conditions. */
 enum { FEWEST_PERIODS = 2 };
 
-/* Segments until it is tried again, after it was in vain, at most. */
+/* Segments until it is tried again, after it failed, at most. */
 enum { MOST_PATIENCE = 64 };
 
 /* Divides a condition by what a change of the states by their scales may make of it; false: no change does. */

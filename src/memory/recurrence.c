@@ -235,7 +235,7 @@ void dalcs_recurrence_note(struct dalcs_radau_part *part) {
     struct dalcs_transition *known = dalcs_transition_known(part);
     bool on_map = part->segment.rounding == 1.0;
     if (!on_map || part->excitation.is_curved) {
-        return; /* factors for one span are too dear; what sources do between the nodes is not looked at */
+        return; /* factors for one span cost too much; what sources do between the nodes is not looked at */
     }
     if (part->segment.why == DALCS_END_AT_EDGE) {
         note_span(part, &known->span);

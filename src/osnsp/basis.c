@@ -128,7 +128,7 @@ enum dalcs_status dalcs_basis_prefer(struct dalcs_osnsp *p, const double *u, dou
     uint64_t tie = dalcs_ties_name(p);
     struct dalcs_mode_entry *e;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
-    if (e->tie == tie) { /* looked for before, in vain */
+    if (e->tie == tie) { /* looked for before, not found */
         return DALCS_OK;
     }
     memcpy(p->work.tied_mode, p->mode, bytes);

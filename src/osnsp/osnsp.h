@@ -121,7 +121,7 @@ struct dalcs_osnsp_asks {
     bool insists; /* modes of small pivots are tried, too: nothing else has found an answer */
     bool
         refines; /* each answer of a regular mode is refined once, for small currents next to large ones, which the
-                     certificate lets be off */
+                     certificate does not bound */
     bool
         is_passing; /* forms and modes serve a problem or two, so that small ones are factored in the least time; steps
                         of implicit Euler go on with the digits of KLU's order */

@@ -101,7 +101,7 @@ static bool has_one_mode(const struct dalcs_component *c) {
 }
 
 /* Small parts pay little for more stages, mostly as dense maps, and save steps and maps. Nine are
- * too many where pulses end steps before errors do, where a map is dear, and where controlled sources may
+ * too many where pulses end steps before errors do, where a map is expensive, and where controlled sources may
  * make the index 3: second derivatives show ten times the rounding of seven. Large parts pay for each
  * stage with a factorisation in some new modes, and save steps where a sine sets their length. */
 static int choose_stages(double tolerance, bool does_better, const struct dalcs_component *c, int n,

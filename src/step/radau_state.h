@@ -15,7 +15,7 @@ enum dalcs_radau_end {
     DALCS_END_AT_EDGE /* or at a command, or where the search for one goes on */
 };
 
-/* Components with more pairs than this are large: what is looked up for each pair in each mode would be dear. */
+/* Components with more pairs than this are large: what is looked up for each pair in each mode would cost too much. */
 enum { DALCS_MANY_PAIRS = 64 };
 
 /* Spans between commands that maps are made for: one PULSE has two. */

@@ -48,7 +48,7 @@ double dalcs_step_rounding(const struct dalcs_radau_part *part,
     return rounding_part * part->segment.rounding * balanced;
 }
 
-/* One more error, over what is allowed for it. Divisions are dear, and few columns are worse than all
+/* One more error, over what is allowed for it. Divisions cost time, and few columns are worse than all
  * before. */
 static inline void judge(struct dalcs_step_quality *q, double error, double allowed) {
     if (!(error <= q->ratio * allowed) && q->ratio == q->ratio) {
