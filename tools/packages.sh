@@ -8,7 +8,7 @@ packages_of() {
     case $1 in
         build) echo gcc libc6-dev meson ninja-build pkg-config libsuitesparse-dev liblapacke-dev \
             libgfortran-12-dev libglpk-dev libjansson-dev libjs-dygraphs libltdl-dev sdpa uthash-dev ;;
-        test) echo check g++ mandoc mypy python3 python3-jsonschema python3-markdown python3-matplotlib \
+        test) echo check g++ mandoc mkdocs mypy python3 python3-jsonschema python3-matplotlib \
             parallel python3-distributed python3-joblib python3-numpy python3-pandas python3-scipy python3-xarray ;;
         plot) echo gnuplot-nox ;;
         latex) echo texlive-latex-base ;;

@@ -83,7 +83,7 @@ class Page(unittest.TestCase):
         self.fail(f"did not come true: {condition}")
 
     def open(self, name):
-        self.driver.get((self.site / "lessons" / f"{name}.html").as_uri())
+        self.driver.get((self.site / "doc/lessons" / f"{name}.html").as_uri())
         self.wait("document.body.dataset.ready === 'yes'")
 
     def move(self, slider, place):
@@ -180,10 +180,10 @@ class Page(unittest.TestCase):
 
     @unittest.skipUnless(BROWSER == "chromium", "its log names what a page loads")
     def test_pages_are_small_and_load_nothing_else(self):
-        files = sum((self.site / "lessons" / name).stat().st_size for name in ("dalcs-engine.js", *play.SCRIPTS))
+        files = sum((self.site / "doc/lessons" / name).stat().st_size for name in ("dalcs-engine.js", *play.SCRIPTS))
         for name in LESSONS:
-            pictures = sum(path.stat().st_size for path in (self.site / "lessons/pictures").glob(f"{name}*"))
-            size = files + pictures + (self.site / "lessons" / f"{name}.html").stat().st_size
+            pictures = sum(path.stat().st_size for path in (self.site / "doc/lessons/pictures").glob(f"{name}*"))
+            size = files + pictures + (self.site / "doc/lessons" / f"{name}.html").stat().st_size
             self.assertLess(size, LARGEST_PAGE, name)
         self.driver.get_log("performance"), self.driver.get_log("browser")
         self.open(LESSONS[0])
