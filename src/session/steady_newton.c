@@ -6,6 +6,8 @@
  * period to period, and in this piece of the map there is no steady state. */
 #include "steady.h"
 
+#include "magnitudes.h"
+
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
@@ -216,13 +218,22 @@ static enum dalcs_status solve(struct dalcs_steady *st, int system, struct newto
     return DALCS_OK;
 }
 
-/* Estimates of the norm of an inverse are too small by less than this factor, but for matrices made for it (N. J. Higham,
- * ACM Trans. Math. Softw. 14, 1988). Ten times as large, or as small, more steps, or fewer, take singular values, and none
- * gives another answer. */
-static const double underestimated = 10.0;
+/* The largest sum of magnitudes of a column, or with the steps the other way round of a row. */
+static double largest_sum(const double *A, int n, int to_next, int within) {
+    double largest = 0.0;
+    for (int k = 0; k < n; k++) {
+        double sum = 0.0;
+        for (int i = 0; i < n; i++) {
+            sum += fabs(A[k * to_next + i * within]);
+        }
+        largest = fmax(largest, sum);
+    }
+    return largest;
+}
 
 /* Triangles of 1 - M, of M in w->A, into w->U. Are all singular values above rounding? They lie between the roots of
- * |A|_1 |A|_inf of 1 - M and of its inverse. Singular values take ten times as long as triangles. */
+ * |A|_1 |A|_inf of 1 - M and of its inverse, estimated (N. J. Higham, ACM Trans. Math. Softw. 14, 1988). Where the answer
+ * is no, singular values tell, which take ten times as long. */
 static bool is_regular(struct newton *w) {
     const int n = w->n;
     double *A = w->U;
@@ -230,15 +241,15 @@ static bool is_regular(struct newton *w) {
     for (int i = 0; i < n * n; i++) {
         A[i] = (i % (n + 1) == 0 ? 1.0 : 0.0) - w->A[i];
     }
-    const double one = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, A, n);
-    const double all = LAPACKE_dlange(LAPACK_COL_MAJOR, 'I', n, n, A, n);
+    const double one = largest_sum(A, n, n, 1);
+    const double all = largest_sum(A, n, 1, n);
     if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, A, n, w->pivot) != 0 ||
         LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, A, n, one, &rcond[0]) != 0 ||
         LAPACKE_dgecon(LAPACK_COL_MAJOR, 'I', n, A, n, all, &rcond[1]) != 0) {
         return false;
     }
     const double largest = sqrt(one * all);
-    const double least = sqrt(rcond[0] * one * rcond[1] * all) / underestimated;
+    const double least = sqrt(rcond[0] * one * rcond[1] * all) / dalcs_beyond;
     return least > is_singular * fmax(1.0, largest);
 }
 
