@@ -32,10 +32,10 @@ bool dalcs_variation_shares(const struct dalcs_variation_part *v,
 /* Columns from `first` on to `four`; those behind the last are 0. */
 static void load(struct dalcs_variation_part *v, int first) {
     for (int l = 0; l < DALCS_COLUMNS; l++) {
-        const int k = first + l;
-        const double *column = v->v + (size_t)k * (size_t)v->n_x;
+        const bool is_there = first + l < v->n_columns;
+        const double *column = v->v + (size_t)(is_there ? first + l : 0) * (size_t)v->n_x;
         for (int x = 0; x < v->n_x; x++) {
-            v->four.states[x][l] = k < v->n_columns ? column[x] : 0.0;
+            v->four.states[x][l] = is_there ? column[x] : 0.0;
         }
     }
 }
