@@ -6,6 +6,7 @@
 #include "segments_observer.h"
 #include "smooth_step.h"
 #include "step_error.h"
+#include "variation_columns.h"
 
 #include <math.h>
 #include <string.h>
@@ -100,6 +101,10 @@ static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row, b
     memset(v->in, 0, (size_t)stages->n_in * sizeof(double));
     if (part->smooth != NULL) {
         DALCS_TRY(dalcs_smooth_step_vary_begin(part, entry));
+    }
+    if (dalcs_variation_shares(v, entry)) {
+        dalcs_variation_pass_columns(v, entry, weight, row, is_new);
+        return DALCS_OK;
     }
     for (int k = 0; k < v->n_columns; k++) {
         double *column = v->v + k * v->n_x;
@@ -266,6 +271,7 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     for (size_t k = 0; k < n; k++) {
         v->v[k * n + k] = 1.0;
     }
+    DALCS_TRY(dalcs_variation_columns_setup(v, arena));
     return dalcs_orbit_rates_setup(&v->rates, arena, part);
 }
 

@@ -9,6 +9,7 @@
 #define DALCS_VARIATION_H
 
 #include "gate_variation.h"
+#include "stage_columns.h"
 
 struct dalcs_variation_part {
     struct dalcs_radau_part *part;
@@ -17,6 +18,7 @@ struct dalcs_variation_part {
     struct dalcs_gate_variation *gates; /* NULL: there are none */
     double *v;                          /* [n_columns][n_x] column after column */
     double *in, *out, *guard;           /* of one column; [n_columns] of a guard, then dt */
+    struct dalcs_stage_columns four;    /* of four columns; work is NULL: steps are dense maps */
     struct dalcs_orbit_rates rates;
     double *before, *after; /* [n_x] f- and f+ */
     double *y;              /* work */

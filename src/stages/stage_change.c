@@ -17,8 +17,7 @@ static int compare_pairs(const void *a, const void *b) {
     return *(const int *)a - *(const int *)b;
 }
 
-/* The unknown of the base that a column of the system is, -1: none. */
-static int unknown_of(const struct dalcs_stage_factors *f, int column) {
+int dalcs_stage_unknown(const struct dalcs_stage_factors *f, int column) {
     int n_equations = f->n - f->n_pairs;
     if (column < n_equations) {
         return column;
@@ -42,7 +41,7 @@ static enum dalcs_status list_terms(const struct dalcs_system *s,
     }
     double largest = 0.0;
     for (int k = first; k < end; k++) {
-        int u = unknown_of(f, s->C.j[k]);
+        int u = dalcs_stage_unknown(f, s->C.j[k]);
         if (u < 0) {
             continue;
         }
@@ -79,7 +78,7 @@ static void load_change(const struct dalcs_stage_plan *plan, const struct dalcs_
             c->row_at[system]++;
         }
         work[c->row_at[system] * stride] = 1.0;
-        c->lambda_at[system] = o->position[unknown_of(f, n_equations + c->pair)];
+        c->lambda_at[system] = o->position[dalcs_stage_unknown(f, n_equations + c->pair)];
         return;
     }
     memset(plan->work.rhs, 0, (size_t)plan->n_rows * sizeof(double));

@@ -32,6 +32,9 @@ struct dalcs_stage_factors {
     struct dalcs_stage_change **change;   /* [pairs of the system] NULL: none is known */
 };
 
+/* stage_change.c: the unknown that a column of the system is, lambdas of `pair` from n_equations on; -1: none. */
+int dalcs_stage_unknown(const struct dalcs_stage_factors *f, int column);
+
 /* stage_build.c: what row r of M without derivatives misses at y, an answer at a node, and the sum of
  * its terms' sizes. */
 struct dalcs_row_miss {

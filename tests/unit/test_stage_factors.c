@@ -1,5 +1,6 @@
 /* test_stage_factors.c - steps on sparse factors, and on those of another mode with a few changes,
  * against the dense map, which is solved in extended precision and knows nothing of KLU. */
+#include "stage_columns.h"
 #include "stage_update.h"
 
 #include "build_network.h"
@@ -138,6 +139,7 @@ struct tally {
     int n_regular, n_singular, n_clashes;
     int n_closings, n_openings, n_several; /* updates by what changes */
     int n_free;                            /* entries that free the states */
+    int n_columns;                         /* several at once, with a guard */
 };
 
 /* Everything is compared, with a name for the message. */
@@ -231,6 +233,87 @@ static void check_steps(struct both *b, struct dalcs_stages *stages, const uint6
     free(y);
 }
 
+/* What is asked of an answer: rows, at nodes from `first` on. */
+static double weigh(const struct both *b, const double *weight, int first, const double *out,
+                    int row) {
+    double sum = 0.0;
+    for (int node = first; node < b->dense.layout.n_nodes; node++) {
+        sum += weight[node - first] * out[node * b->dense.layout.stride + row];
+    }
+    return sum;
+}
+
+/* Column k against the dense map of the same state, with no sources. */
+static void compare_column(struct both *b, struct dalcs_stage_entry *dense,
+                           const struct dalcs_stage_entry *sparse,
+                           const struct dalcs_stage_columns *c, int k, double *in, double *x) {
+    const struct dalcs_collocation *method = b->dense.method;
+    const int n_x = b->system->n_x;
+    double scale[2];
+    memset(in, 0, (size_t)b->dense.n_in * sizeof(*in));
+    for (int i = 0; i < n_x; i++) {
+        in[i] = c->states[i][k];
+    }
+    ck_assert_int_eq(dalcs_stages_apply(&b->dense, dense, in, x), DALCS_OK);
+    find_scales(b, dense, x, scale);
+    if (dalcs_stage_is_update(sparse)) {
+        raise_to_start(b->system, dense, in, scale);
+    }
+    const double tolerance = regular_tolerance * lost_digits(method->s);
+    for (int i = 0; i < n_x; i++) {
+        const double unit = tolerance * scale[unit_of(b->system, dense, i)];
+        ck_assert_double_le(fabs(c->end[i][k] - weigh(b, c->weight, 0, x, i)), unit);
+        ck_assert_double_le(fabs(c->begin[i][k] - weigh(b, method->back, 1, x, i)), unit);
+    }
+    if (c->row >= 0) {
+        const double error = fabs(c->guard[k] - weigh(b, c->weight, 0, x, c->row));
+        ck_assert_msg(error <= tolerance * scale[unit_of(b->system, dense, c->row)],
+                      "s = %d, row %d: off by %g", method->s, c->row, error);
+    }
+}
+
+/* Some columns at once, with each guard. */
+static void check_columns(struct both *b, struct dalcs_stages *stages, const uint64_t *mode,
+                          double h, struct dalcs_stage_entry *dense, struct tally *tally) {
+    uint64_t random = 31 + mode[0];
+    struct dalcs_stage_entry *sparse;
+    const size_t n_x = (size_t)b->system->n_x;
+    const size_t room = dalcs_stage_columns_room(b->system);
+    double weight[DALCS_MAX_NODES];
+    ck_assert_int_eq(dalcs_stages_get(stages, mode, h, &sparse), DALCS_OK);
+    if (!dalcs_stage_columns_can(sparse)) {
+        ck_assert_int_gt(dense->n_clashes, 0);
+        return;
+    }
+    dalcs_four *storage = dalcs_alloc(3 * n_x + room, sizeof *storage);
+    double *in = dalcs_alloc((size_t)b->dense.n_in, sizeof(*in));
+    double *x = dalcs_alloc(dalcs_stages_room(&b->dense), sizeof(*x));
+    ck_assert(storage != NULL && in != NULL && x != NULL);
+    dalcs_collocation_weights(b->dense.method, 0.37 + 0.5 * next_random(&random), weight);
+    struct dalcs_stage_columns c = {.weight = weight,
+                                    .states = storage,
+                                    .end = storage + n_x,
+                                    .begin = storage + 2 * n_x,
+                                    .work = storage + 3 * n_x};
+    for (size_t k = 0; k < n_x * DALCS_COLUMNS; k++) {
+        c.states[k / DALCS_COLUMNS][k % DALCS_COLUMNS] = next_random(&random);
+    }
+    c.row = -1;
+    for (; c.row < b->dense.layout.stride; c.row++) {
+        if (c.row == 0) {
+            c.row = dalcs_system_n_equations(b->system);
+        }
+        dalcs_stage_columns_apply(stages, sparse, &c);
+        for (int k = 0; k < DALCS_COLUMNS; k++) {
+            compare_column(b, dense, sparse, &c, k, in, x);
+        }
+        tally->n_columns += c.row >= 0 ? DALCS_COLUMNS : 0;
+    }
+    free(storage);
+    free(in);
+    free(x);
+}
+
 /* Wherever the states are, a vanishing step leaves them there. */
 static void check_freedom(struct both *b, const uint64_t *mode, double h) {
     uint64_t random = 23;
@@ -301,6 +384,8 @@ static void check_mode(struct both *b, const uint64_t *mode, double h, uint64_t 
     tally->n_free += dalcs_stage_frees_states(dense);
     check_steps(b, &b->sparse, mode, h, dense, random, tally);
     check_steps(b, &b->updated, mode, h, dense, random, tally);
+    check_columns(b, &b->sparse, mode, h, dense, tally);
+    check_columns(b, &b->updated, mode, h, dense, tally);
     ck_assert_int_eq(dalcs_stages_get(&b->updated, mode, h, &updated), DALCS_OK);
     count_changes(updated, tally);
 }
@@ -338,6 +423,7 @@ static struct tally check_netlist(const char *netlist, double h) {
 
 /* Updates that are wrong are refused, and thus missing. */
 static void check_updates(const struct tally *t) {
+    ck_assert_int_gt(t->n_columns, 900);
     ck_assert_int_gt(t->n_closings, 15);
     ck_assert_int_gt(t->n_openings, 15);
     ck_assert_int_gt(t->n_several, 0);

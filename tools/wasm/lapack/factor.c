@@ -90,11 +90,12 @@ lapack_int LAPACKE_dgesv(int layout, lapack_int n, lapack_int n_right, double *a
  * inverse: its 1-norm does not need them. */
 lapack_int LAPACKE_dgecon(int layout, char norm, lapack_int n, const double *a, lapack_int lda,
                           double anorm, double *rcond) {
-    (void)norm;
     double *column = malloc(((size_t)n + 1) * sizeof(*column));
+    double *row = calloc((size_t)n + 1, sizeof(*row)); /* sums of the inverse, for 'I' */
     lapack_int *in_place = malloc(((size_t)n + 1) * sizeof(*in_place));
+    const int has_memory = column != NULL && row != NULL && in_place != NULL;
     double largest = 0.0;
-    for (lapack_int j = 0; column != NULL && in_place != NULL && j < n; j++) {
+    for (lapack_int j = 0; has_memory && j < n; j++) {
         double sum = 0.0;
         for (lapack_int i = 0; i < n; i++) {
             column[i] = i == j ? 1.0 : 0.0;
@@ -104,11 +105,15 @@ lapack_int LAPACKE_dgecon(int layout, char norm, lapack_int n, const double *a, 
                              layout == LAPACK_ROW_MAJOR ? 1 : n);
         for (lapack_int i = 0; i < n; i++) {
             sum += fabs(column[i]);
+            row[i] += fabs(column[i]);
         }
-        largest = fmax(largest, sum);
+        largest = norm == 'I' ? largest : fmax(largest, sum);
     }
-    const int has_memory = column != NULL && in_place != NULL;
+    for (lapack_int i = 0; has_memory && norm == 'I' && i < n; i++) {
+        largest = fmax(largest, row[i]);
+    }
     free(column);
+    free(row);
     free(in_place);
     *rcond = n == 0 ? 1.0 : largest > 0.0 && anorm > 0.0 ? 1.0 / (largest * anorm) : 0.0;
     return has_memory ? 0 : LAPACK_WORK_MEMORY_ERROR;

@@ -1,0 +1,191 @@
+/* stage_columns.c - four differences of states through a step on sparse factors: stage_factors.c has the equations. */
+#include "stage_columns.h"
+
+#include "columns_solve.h"
+#include "stage_update.h"
+#include "wide_vectors.h"
+
+#include <string.h>
+
+/* A guard as a sum of columns of the system. */
+struct guard {
+    int n;
+    int one;          /* of a sum of one */
+    const int *index; /* [n] */
+    const double *coefficient;
+};
+
+/* One step. */
+struct walk {
+    const struct dalcs_stages *stages;
+    const struct dalcs_stage_entry *entry;
+    struct dalcs_stage_columns *c;
+    struct guard guard;
+    dalcs_four *rhs;                                               /* [n_rows] */
+    dalcs_four *solved;                                            /* [2 (n_rows + spare)] */
+    dalcs_four *missed;                                            /* [n_x] */
+    double end[DALCS_SOLUTION_PARTS], begin[DALCS_SOLUTION_PARTS]; /* of states, from parts */
+};
+
+size_t dalcs_stage_columns_room(const struct dalcs_system *s) {
+    const size_t n_rows = (size_t)dalcs_system_n_columns(s);
+    return n_rows + 2 * (n_rows + DALCS_LU_SPARE) + (size_t)s->n_x;
+}
+
+bool dalcs_stage_columns_can(const struct dalcs_stage_entry *entry) {
+    return entry->map == NULL && entry->factors->singular.n == 0;
+}
+
+/* ---- Guards -------------------------------------------------------------------------------------- */
+
+static struct guard guard_of(const struct dalcs_stages *stages,
+                             const struct dalcs_stage_entry *entry, int row) {
+    static const double once = 1.0;
+    const struct dalcs_system *s = stages->system;
+    const int n_equations = dalcs_system_n_equations(s);
+    const int watched = row - dalcs_system_n_columns(s);
+    const int pair = watched >= 0 ? stages->watched[watched] : row - n_equations;
+    if (row < 0) {
+        return (struct guard){0};
+    }
+    if (watched < 0 && (dalcs_stage_is_on(entry, pair) || s->pair[pair].kind != DALCS_PAIR_DIODE)) {
+        return (struct guard){.n = 1, .one = row, .coefficient = &once};
+    }
+    const struct dalcs_csr *a = watched >= 0 ? &s->control : &s->C;
+    const int first = a->p[pair];
+    return (struct guard){
+        .n = a->p[pair + 1] - first, .index = a->j + first, .coefficient = a->x + first};
+}
+
+static int guard_column(const struct guard *g, int k) {
+    return g->index != NULL ? g->index[k] : g->one;
+}
+
+/* c->guard += sum of the guard's unknowns without memory, or of its states, in w->solved, of a part. */
+static void add_to_guard(const struct walk *w, int system, int part, bool states, double factor) {
+    const struct dalcs_stage_factors *f = w->entry->factors;
+    const int n_x = w->stages->system->n_x;
+    const int n_equations = f->n - f->n_pairs;
+    const int stride = system > 0 ? 2 : 1;
+    for (int k = 0; k < w->guard.n; k++) {
+        const int u = dalcs_stage_unknown(f, guard_column(&w->guard, k));
+        if (u < 0 || (u < n_x) != states) {
+            continue;
+        }
+        const int pair = u - n_equations;
+        const struct dalcs_stage_order *o = &f->order[system];
+        const int at = pair >= 0 ? o->of_pair[pair] : o->position[u];
+        const double scale = pair >= 0 ? f->pair_scale[pair] : f->column_scale[u];
+        w->c->guard += w->guard.coefficient[k] * factor * scale * w->solved[at * stride + part];
+    }
+}
+
+/* ---- Steps --------------------------------------------------------------------------------------- */
+
+static void set_weights(struct walk *w) {
+    const struct dalcs_stage_plan *plan = w->stages->plan;
+    const struct dalcs_collocation *m = w->stages->method;
+    for (int q = 0; q < plan->n_parts; q++) {
+        w->end[q] = w->begin[q] = 0.0;
+        for (int i = 0; i < m->s; i++) {
+            w->end[q] += w->c->weight[i + 1] * plan->to[i + 1][q];
+            w->begin[q] += m->back[i] * plan->to[i + 1][q];
+        }
+    }
+}
+
+/* The states, their differences at nodes being what parts of them make: parts `first` and behind, of one system. */
+DALCS_TWICE(void, put_states, (const struct walk *w, int system, int first), (w, system, first)) {
+    const struct dalcs_stage_factors *f = w->entry->factors;
+    const double *to_start = w->stages->plan->to[0];
+    const int n_parts = system > 0 ? 2 : 1;
+    for (int x = 0; x < w->stages->system->n_x; x++) {
+        const double scale = f->column_scale[x];
+        for (int part = 0; part < n_parts; part++) {
+            const dalcs_four *z = &w->solved[f->order[system].position[x] * n_parts + part];
+            const double end = scale * w->end[first + part];
+            const double begin = scale * w->begin[first + part];
+            const double start = scale * to_start[first + part];
+            w->c->end[x] += end * *z;
+            w->c->begin[x] += begin * *z;
+            w->missed[x] -= start * *z;
+        }
+    }
+}
+
+static void put_guard(const struct walk *w, int system, int first) {
+    const double *to_start = w->stages->plan->to[0];
+    for (int part = 0; part < (system > 0 ? 2 : 1); part++) {
+        const double end = w->end[first + part];
+        add_to_guard(w, system, part, true, end);
+        add_to_guard(w, system, part, false, end + w->c->weight[0] * to_start[first + part]);
+    }
+}
+
+DALCS_TWICE(void, find_drive, (const struct walk *w, const dalcs_four *states), (w, states)) {
+    const struct dalcs_csr *a = &w->stages->plan->drive_of_states;
+    for (int r = 0; r < a->n_rows; r++) {
+        dalcs_four sum = {0.0};
+        for (int k = a->p[r]; k < a->p[r + 1]; k++) {
+            sum += a->x[k] * states[a->j[k]];
+        }
+        w->rhs[r] = sum;
+    }
+}
+
+static void solve(const struct walk *w, int system, const dalcs_four *states) {
+    find_drive(w, states);
+    dalcs_columns_solve(w->entry->factors, system, w->rhs, w->solved);
+}
+
+/* What of the guard at the start is corrected for what the states miss there, as in dalcs_stage_factors_apply. */
+static void correct_start(const struct walk *w) {
+    const struct dalcs_stage_factors *f = w->entry->factors;
+    const double weight = w->c->weight[0];
+    solve(w, 0, w->missed);
+    add_to_guard(w, 0, 0, false, weight);
+    for (int x = 0; x < w->stages->system->n_x; x++) {
+        w->missed[x] = -f->column_scale[x] * w->solved[f->order[0].position[x]];
+    }
+    solve(w, 0, w->missed);
+    add_to_guard(w, 0, 0, false, weight);
+}
+
+static void begin(const struct walk *w) {
+    struct dalcs_stage_columns *c = w->c;
+    const size_t n_x = (size_t)w->stages->system->n_x;
+    memcpy(c->end, c->states, n_x * sizeof *c->end);
+    memcpy(c->begin, c->states, n_x * sizeof *c->begin);
+    memset(w->missed, 0, n_x * sizeof *w->missed);
+    memset(&c->guard, 0, sizeof c->guard);
+    for (int k = 0; k < w->guard.n; k++) {
+        const int u = guard_column(&w->guard, k);
+        if (u < (int)n_x) {
+            c->guard += w->guard.coefficient[k] * c->states[u];
+        }
+    }
+}
+
+void dalcs_stage_columns_apply(const struct dalcs_stages *stages,
+                               const struct dalcs_stage_entry *entry,
+                               struct dalcs_stage_columns *c) {
+    const int n_rows = stages->plan->n_rows;
+    struct walk w = {.stages = stages,
+                     .entry = entry,
+                     .c = c,
+                     .guard = guard_of(stages, entry, c->row),
+                     .rhs = c->work,
+                     .solved = c->work + n_rows,
+                     .missed = c->work + n_rows + 2 * (n_rows + DALCS_LU_SPARE)};
+    set_weights(&w);
+    begin(&w);
+    find_drive(&w, c->states);
+    for (int q = 0; q < entry->factors->n_systems; q++) {
+        dalcs_columns_solve(entry->factors, q, w.rhs, w.solved);
+        put_states(&w, q, q > 0 ? 2 * q - 1 : 0);
+        put_guard(&w, q, q > 0 ? 2 * q - 1 : 0);
+    }
+    if (w.guard.n > 0 && c->weight[0] != 0.0) {
+        correct_start(&w);
+    }
+}
