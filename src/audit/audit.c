@@ -19,7 +19,7 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
         .circuit = circuit, .options = *options, .reader = *reader, .seed = first_seed};
     enum dalcs_status status = options->n_parts > 0 ? audit_set_up(a) : DALCS_OK;
     for (int k = 0; k < options->n_parts && status == DALCS_OK; k++) {
-        a->part[k].cost = audit_instant_work(circuit, &a->part[k]) + options->read_work[k];
+        a->part[k].cost = audit_instant_work(&a->part[k]) + options->read_work[k];
         a->budget.credit -=
             AUDIT_LOOK_INSTANTS * a->part[k].cost; /* of its end, which is looked at in any case */
     }

@@ -162,7 +162,7 @@ static inline double audit_stimulus_at(struct dalcs_audit *audit, int stimulus, 
 }
 
 /* budget.c: instructions of an instant, about. */
-double audit_instant_work(const struct dalcs_circuit *circuit, const struct audit_part *part);
+double audit_instant_work(const struct audit_part *part);
 
 /* Is it this stretch's turn? Which ones are is drawn, so that no period of the circuit hides any. */
 bool audit_is_drawn(struct dalcs_audit *audit, double cost);
