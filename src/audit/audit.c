@@ -233,12 +233,8 @@ static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretc
 /* The switches that have changed over where it begins. */
 static void look_at_turn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
-    audit->reader.read_before(audit->reader.user, stretch->part, 0.0, &audit->before);
-    audit->now.t = stretch->from;
-    audit->now.side = DALCS_RIGHT;
-    audit->reader.read(audit->reader.user, stretch->part, &audit->now);
     part->at.from_coarse = part->at.past_coarse;
-    audit_check_changes(audit, part, &audit->before, &audit->now);
+    audit_check_turns(audit, part, stretch->from);
     audit->budget.spent += part->cost;
 }
 
