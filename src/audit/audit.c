@@ -59,9 +59,6 @@ static void look(struct dalcs_audit *audit, int index, struct dalcs_audit_state 
 /* Instants in a stretch with --audit full, beside its ends, and pieces that integrals are taken over. */
 enum { FULL_INSTANTS = 3, FULL_PIECES = 2, INTERVAL_INSTANTS = 7 };
 
-/* Of the looks of a sample, those with an interval, which costs more than twice as much as all else. */
-static const double with_interval = 0.25;
-
 static bool can_look_inside(const struct dalcs_audit *audit,
                             const struct dalcs_audit_stretch *stretch) {
     return stretch->rule == DALCS_AUDIT_SMOOTH &&
@@ -98,7 +95,9 @@ static void integrate(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         }
         return;
     }
-    if (!(audit_draw(audit) < with_interval || (stretch->is_last && part->was_integrated))) {
+    /* of the looks of a sample as many as make intervals take what instants do */
+    if (!(INTERVAL_INSTANTS * audit_draw(audit) < AUDIT_LOOK_INSTANTS ||
+          (stretch->is_last && part->was_integrated))) {
         return;
     }
     part->was_integrated = true;
