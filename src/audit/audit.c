@@ -19,7 +19,7 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
         .circuit = circuit, .options = *options, .reader = *reader, .seed = first_seed};
     enum dalcs_status status = options->n_parts > 0 ? audit_set_up(a) : DALCS_OK;
     for (int k = 0; k < options->n_parts && status == DALCS_OK; k++) {
-        a->part[k].cost = audit_instant_work(circuit, &a->part[k]) + options->read_work[k];
+        a->part[k].cost = audit_instant_work(&a->part[k]) + options->read_work[k];
         a->budget.credit -=
             AUDIT_LOOK_INSTANTS * a->part[k].cost; /* of its end, which is looked at in any case */
     }
@@ -59,9 +59,6 @@ static void look(struct dalcs_audit *audit, int index, struct dalcs_audit_state 
 /* Instants in a stretch with --audit full, beside its ends, and pieces that integrals are taken over. */
 enum { FULL_INSTANTS = 3, FULL_PIECES = 2, INTERVAL_INSTANTS = 7 };
 
-/* Of the looks of a sample, those with an interval, which costs more than twice as much as all else. */
-static const double with_interval = 0.25;
-
 static bool can_look_inside(const struct dalcs_audit *audit,
                             const struct dalcs_audit_stretch *stretch) {
     return stretch->rule == DALCS_AUDIT_SMOOTH &&
@@ -98,7 +95,9 @@ static void integrate(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         }
         return;
     }
-    if (!(audit_draw(audit) < with_interval || (stretch->is_last && part->was_integrated))) {
+    /* of the looks of a sample as many as make intervals take what instants do */
+    if (!(INTERVAL_INSTANTS * audit_draw(audit) < AUDIT_LOOK_INSTANTS ||
+          (stretch->is_last && part->was_integrated))) {
         return;
     }
     part->was_integrated = true;
@@ -233,12 +232,8 @@ static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretc
 /* The switches that have changed over where it begins. */
 static void look_at_turn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
-    audit->reader.read_before(audit->reader.user, stretch->part, 0.0, &audit->before);
-    audit->now.t = stretch->from;
-    audit->now.side = DALCS_RIGHT;
-    audit->reader.read(audit->reader.user, stretch->part, &audit->now);
     part->at.from_coarse = part->at.past_coarse;
-    audit_check_changes(audit, part, &audit->before, &audit->now);
+    audit_check_turns(audit, part, stretch->from);
     audit->budget.spent += part->cost;
 }
 

@@ -29,6 +29,7 @@ struct audit_part {
     int n_couplings, *coupling;
     int n_latches, *latch; /* its switches with hysteresis */
     bool *was_closed;      /* [n_latches] */
+    bool *has_turned;      /* [n_latches] where the stretch begins, of those that are asked */
     double tolerance;
 
     struct audit_floor {     /* of scales */
@@ -162,7 +163,7 @@ static inline double audit_stimulus_at(struct dalcs_audit *audit, int stimulus, 
 }
 
 /* budget.c: instructions of an instant, about. */
-double audit_instant_work(const struct dalcs_circuit *circuit, const struct audit_part *part);
+double audit_instant_work(const struct audit_part *part);
 
 /* Is it this stretch's turn? Which ones are is drawn, so that no period of the circuit hides any. */
 bool audit_is_drawn(struct dalcs_audit *audit, double cost);
@@ -321,6 +322,9 @@ static inline bool audit_is_commanded(const struct dalcs_audit *audit, int switc
 /* changes.c: does a switch with hysteresis stand on another side than in the stretch before? Screens tell no change within
  * a hysteresis. key: of its polynomials, the same only in the same mode; 0: there are none. */
 bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint64_t key);
+
+/* changes.c: those of them that have turned, where the stretch begins. */
+void audit_check_turns(struct dalcs_audit *audit, const struct audit_part *part, double t);
 
 /* changes.c: switches that are on other sides. */
 void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *part,

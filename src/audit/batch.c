@@ -103,7 +103,7 @@ static void ask(struct dalcs_audit *audit, int index) {
     const int last = g->n - 1;
     audit->count.stretches += first - AUDIT_BATCH_FIRST;
     audit->count.screened += first - AUDIT_BATCH_FIRST;
-    audit->budget.spent += 0.5 * AUDIT_SCREEN_WORK * (first - AUDIT_BATCH_FIRST);
+    audit->budget.spent += AUDIT_SCREEN_WORK * (first - AUDIT_BATCH_FIRST);
     dalcs_audit_earn(audit, g->work);
     g->work = 0.0;
     part->at.past =

@@ -114,6 +114,29 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
     }
 }
 
+/* Most have reached their thresholds before: then nothing else is read. */
+void audit_check_turns(struct dalcs_audit *audit, const struct audit_part *part, double t) {
+    const int index = (int)(part - audit->part);
+    const struct dalcs_audit_reader *r = &audit->reader;
+    bool reach = true;
+    r->read_before(r->user, index, 0.0, &audit->before);
+    for (int k = 0; k < part->n_latches && reach; k++) {
+        const int device = part->latch[k];
+        if (part->has_turned[k]) {
+            const bool closes = r->is_on(r->user, index, device, 0);
+            reach = short_of(audit, &audit->before, device, closes) <=
+                    AUDIT_ROUNDING * audit_control_scale(audit, part, device);
+            audit->count.positions += reach ? 1 : 0;
+        }
+    }
+    if (!reach) {
+        audit->now.t = t;
+        audit->now.side = DALCS_RIGHT;
+        r->read(r->user, index, &audit->now);
+        audit_check_changes(audit, part, &audit->before, &audit->now);
+    }
+}
+
 /* One that sources alone move is asked while the run can afford it: guards.c asks for the thresholds behind it. */
 static bool is_asked(const struct dalcs_audit *audit, int device) {
     return !audit_is_commanded(audit, device) || audit->budget.credit >= 0.0;
@@ -130,7 +153,8 @@ bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint
         const int device = part->latch[k];
         const bool now =
             audit->reader.is_on(audit->reader.user, (int)(part - audit->part), device, 0);
-        turn = turn || (now != part->was_closed[k] && is_asked(audit, device));
+        part->has_turned[k] = now != part->was_closed[k] && is_asked(audit, device);
+        turn = turn || part->has_turned[k];
         part->was_closed[k] = now;
     }
     turn = turn && watch->knows_sides && !watch->is_put_off && !part->has_formula;

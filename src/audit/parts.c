@@ -140,8 +140,10 @@ static enum dalcs_status make_parts(struct dalcs_audit *audit) {
         part->coupling = dalcs_arena_alloc(arena, (size_t)part->n_couplings, sizeof(int));
         part->latch = dalcs_arena_alloc(arena, (size_t)part->n_latches, sizeof(int));
         part->was_closed = dalcs_arena_alloc(arena, (size_t)part->n_latches, sizeof(bool));
+        part->has_turned = dalcs_arena_alloc(arena, (size_t)part->n_latches, sizeof(bool));
         if (part->watch == NULL || part->device == NULL || part->node == NULL ||
-            part->coupling == NULL || part->latch == NULL || part->was_closed == NULL) {
+            part->coupling == NULL || part->latch == NULL || part->was_closed == NULL ||
+            part->has_turned == NULL) {
             return DALCS_E_NOMEM;
         }
         part->tolerance = audit->options.tolerance[k];

@@ -213,12 +213,14 @@ static bool make_room(struct audit_watch *watch, struct audit_screen *screen, in
     free(screen->term[0]);
     screen->row = dalcs_alloc(numbers, sizeof(double));
     screen->term[0] = dalcs_alloc((size_t)n_terms + 1, sizeof(**screen->term));
+    if (screen->row == NULL || screen->term[0] == NULL) {
+        return false;
+    }
     for (int k = 1; k < AUDIT_N_TERM_KINDS; k++) {
         screen->term[k] = screen->term[k - 1] + screen->n_terms[k - 1];
     }
     watch->screens.numbers += numbers;
-    return screen->row != NULL && screen->term[0] != NULL &&
-           dalcs_grow(&watch->place, &watch->place_room, (size_t)screen->n_places,
+    return dalcs_grow(&watch->place, &watch->place_room, (size_t)screen->n_places,
                       sizeof(double)) == DALCS_OK;
 }
 

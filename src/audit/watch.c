@@ -9,9 +9,6 @@ enum { MOST_DOUBLINGS = 16 };
  * states that jump in each period, are looked at while the run can afford it. */
 enum { FEW_ALARMS = 4 };
 
-/* Instructions of a screen, about, of an element of its image, of a value in its polynomials. */
-static const double element_work = 0.5, value_work = 2.5;
-
 /* At one of the watch's times, by an image of such steps where there is one. The values have to reach from one end of the
  * stretch to the other. Times are known to their resolution, and events to what changes no value by more than the
  * tolerance: so near an end is as good as there. */
@@ -42,9 +39,9 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
     if (over > q.near || (!stretch->is_cut && -over > q.near)) {
         answer->worst = INFINITY;
     }
-    audit->budget.spent +=
-        AUDIT_SCREEN_WORK + (q.image != NULL ? element_work * p->n_inputs * screen->n_places
-                                             : value_work * p->n_nodes * p->n_columns);
+    /* and about one instruction for each number, as four are taken at once */
+    audit->budget.spent += AUDIT_SCREEN_WORK + (q.image != NULL ? p->n_inputs * screen->n_places
+                                                                : p->n_nodes * p->n_columns);
 }
 
 /* Is the stretch to be looked at, for what the screen says, or because states are not what they were at the end of the one

@@ -7,7 +7,7 @@
 /* Nodes of a step, at most. */
 enum { AUDIT_MOST_NODES = 12 };
 
-/* Instructions of a screen, about, of what is handed over and asked; together with others half as many. */
+/* Instructions of a screen, about, of what is handed over and asked; together with others fewer. */
 #define AUDIT_SCREEN_WORK 600.0
 
 /* Times in a step that it is asked at, one of them each time. */

@@ -87,11 +87,47 @@ static void check_extreme(const struct told *q) {
     off_in_time(q, is_time ? value : detail(q, "at"), is_most ? item->most_at : item->least_at);
 }
 
+/* What was told of the card that has this name; no number: nothing was, or two cards have it. */
+static double told_of(const struct dalcs_run *r, const char *name) {
+    double value = NAN;
+    int n = 0;
+    for (size_t k = 0; k < r->s->report.n_measurements; k++) {
+        const struct dalcs_measurement *m = &r->measurement[k];
+        if (strcmp(m->name, name) == 0) {
+            value = m->found ? m->value : (double)NAN;
+            n++;
+        }
+    }
+    return n == 1 ? value : (double)NAN;
+}
+
+/* A formula of earlier results, of those that were told. */
+static void check_formula(const struct told *q) {
+    const struct dalcs_run *r = q->a->run->run;
+    const struct dalcs_circuit *c = &r->s->circuit;
+    const struct dalcs_signal_formula *formula = &q->item->card->formula;
+    double *result =
+        dalcs_arena_alloc(&q->a->run->arena, (size_t)c->n_measures + 1, sizeof(*result));
+    bool is_known = result != NULL;
+    for (int k = 0; k < formula->n && is_known; k++) {
+        const struct dalcs_signal_formula_step *step = &formula->step[k];
+        if (step->push == DALCS_PUT_RESULT) {
+            result[step->index] = told_of(r, c->measure[step->index].name);
+            is_known = !isnan(result[step->index]);
+        }
+    }
+    if (is_known) {
+        const struct dalcs_signal_formula_point at = {.result = result};
+        off(q, q->measurement->value - dalcs_signal_formula_value(formula, &at));
+    }
+}
+
 static void check(const struct told *q) {
     const struct dalcs_instant *i = q->item->instant;
     const double value = q->measurement->value;
     switch (q->item->card->kind) {
     case DALCS_MEASURE_PARAM:
+        check_formula(q);
         return;
     case DALCS_MEASURE_WHEN:
         off_in_time(q, value, i[0].time);

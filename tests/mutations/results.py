@@ -29,6 +29,7 @@ r2 out 0 100
 .meas tran slope deriv v(a) at=33m
 .meas tran delay trig v(a) val=0 rise=2 targ v(b) val=8 rise=2
 .meas tran power avg v(a)*i(v1) from=40m to=80m
+.meas tran ripple param='100*swing/mean'
 .four 50 v(out) i(r1)
 .losses from=20m to=60m
 .tran 0.2m 0.1
@@ -85,6 +86,9 @@ MUTATIONS = {
         "session/measure_report.c", "give(r, item->most_at);", "give(r, item->least_at);", METER),
     "a delay is told the other way": (
         "session/measure_report.c", "give(r, i[1].time - i[0].time);", "give(r, i[0].time - i[1].time);", METER),
+    "a formula of results reads others than those that are told": (
+        "session/measure_report.c", "r->result[k] = measurement->found ? measurement->value",
+        "r->result[k] = measurement->found ? 1.001 * measurement->value + 1e-6", METER),
     "a sine is summed as a cosine": (
         "waveform/harmonics.c", "h->sine[k] += value * s;", "h->sine[k] += value * c;", METER),
     "harmonics are of a period that is not the last": (
