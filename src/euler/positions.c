@@ -43,11 +43,12 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
                                    sizeof(double));
     p->sides.w = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)s->n_pairs, sizeof(double));
     p->sides.conducted = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
+    p->sides.leading = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
     if (p->pair == NULL || p->slack == NULL || p->mask == NULL || p->first == NULL ||
         p->present == NULL || p->mark == NULL || p->other == NULL || p->other_y == NULL ||
         p->other_w == NULL || p->jump == NULL || p->gap == NULL || p->follows == NULL ||
         p->leads == NULL || p->sides.group == NULL || p->sides.y == NULL || p->sides.w == NULL ||
-        p->sides.conducted == NULL) {
+        p->sides.conducted == NULL || p->sides.leading == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int d = 0, i = 0, k = 0; d < s->n_pairs; d++) {
