@@ -110,11 +110,13 @@ static enum dalcs_status find_corner(struct dalcs_positions *p, const double *u,
     memcpy(corner_w(p, corner), o->w, (size_t)o->system->n_pairs * sizeof(double));
     for (int k = 0; k < o->n_words; k++) {
         p->sides.conducted[k] |= o->mode[k];
+        p->mark[k] &= o->mode[k];
     }
     return DALCS_OK;
 }
 
-/* y is the answer on one side of all; that on the other side of all is p->other_y. */
+/* y is the answer on one side of all; that on the other side of all is p->other_y. What is on in all corners stays in
+ * p->mark. */
 static enum dalcs_status find_corners(struct dalcs_positions *p, const double *u, const double *y,
                                       const struct several *of, bool *are_complete) {
     const struct dalcs_system *s = p->osnsp->system;
@@ -129,6 +131,7 @@ static enum dalcs_status find_corners(struct dalcs_positions *p, const double *u
     memcpy(corner_w(p, last), p->other_w, w_bytes);
     for (int k = 0; k < p->osnsp->n_words; k++) {
         p->sides.conducted[k] = p->present[k] | p->other[k];
+        p->mark[k] = p->present[k] & p->other[k];
     }
     enum dalcs_status status = DALCS_OK;
     *are_complete = true;
@@ -249,5 +252,7 @@ enum dalcs_status dalcs_sliding_mean_of_several(struct dalcs_positions *p, const
         *noise = fmax(*noise, own);
     }
     put_mean(p, &of, y, sides);
+    /* A pair that is off in some corner turns, though it may be on in the two that differ in all (sliding.h). */
+    memcpy(p->other, p->mark, (size_t)p->osnsp->n_words * sizeof(*p->other));
     return DALCS_OK;
 }
