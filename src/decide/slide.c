@@ -103,9 +103,10 @@ static bool is_exact(const struct dalcs_slide_try *of, double pairs_before) {
 }
 
 /* Where a slide ends the flow of one side is along the threshold, and what is left of it is so short that its square is
- * not worth a word: a step on that side. */
-static enum dalcs_status finish(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                                bool *done) {
+ * not worth a word: a step on that side. Where another switch begins or ends to slide meanwhile it is one through that. */
+static enum dalcs_status finish(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                struct dalcs_slide_try *of, bool *done) {
+    const double h = of->h;
     prepare_positions(part);
     DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
     *done = part->component->positions.settled;
@@ -113,6 +114,18 @@ static enum dalcs_status finish(struct dalcs_radau *r, struct dalcs_radau_part *
     if (*done) {
         part->component->commands.n_slid++;
         dalcs_radau_accept_implicit(r, part, h);
+        return DALCS_OK;
+    }
+    of->may_change = true;
+    DALCS_TRY(dalcs_slide_attempt(r, part, of));
+    of->may_change = false;
+    of->is_coarse = true;
+    *done = of->slides;
+    if (*done) {
+        part->length.slide_until = INFINITY;
+        accept(r, part, of);
+    } else {
+        take_back(r);
     }
     return DALCS_OK;
 }
@@ -127,7 +140,8 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
     const double left = part->length.slide_until - part->segment.t;
     double pairs_before = INFINITY;
     if (left < 2.0 * least_end) {
-        return finish(r, part, left, slides);
+        of->h = left;
+        return finish(r, part, of, slides);
     }
     for (;;) {
         DALCS_TRY(dalcs_slide_attempt(r, part, of));
@@ -142,7 +156,7 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
         }
         take_back(r);
         if (is_last) {
-            return finish(r, part, of->h, slides);
+            return finish(r, part, of, slides);
         }
         pairs_before = of->slides ? of->pairs : INFINITY;
         of->h *= 0.5;

@@ -64,7 +64,8 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
     struct dalcs_observed_sides sides;
     double noise = 0.0;
     DALCS_TRY(dalcs_sliding_mean(&c->positions, part->work.u, step->y, &sides, &noise));
-    of->slides = sides.n > 0;
+    of->slides = sides.n > 0 && (of->begins || of->may_change || !c->positions.sides.have_changed);
+    of->begins = false;
     if (!of->slides) {
         return DALCS_OK;
     }
@@ -222,7 +223,8 @@ static double error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_par
     memcpy(p->mode, part->work.mode_first, bytes);
     for (int d = 0; d < s->n_pairs; d++) {
         if (dalcs_mode_has(p->mode, d)) {
-            worst = fmax(worst, error_of_column(r, part, dalcs_system_n_equations(s) + d, true, of));
+            worst =
+                fmax(worst, error_of_column(r, part, dalcs_system_n_equations(s) + d, true, of));
         }
     }
     memcpy(p->mode, part->work.mode_before, bytes);
@@ -243,7 +245,7 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
         observer->hold(observer->user);
     }
     of->taken = of->noise = 0.0;
-    of->slides = true;
+    of->slides = of->begins = true;
     for (int j = ORDER; j > 0 && of->slides; j--) {
         DALCS_TRY(run_sequence(r, part, j, of));
     }
@@ -283,7 +285,7 @@ enum dalcs_status dalcs_slide_find_leading(struct dalcs_radau *r, struct dalcs_r
 
 enum dalcs_status dalcs_slide_micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                           double h, bool *slides) {
-    struct dalcs_slide_try of = {.h = h};
+    struct dalcs_slide_try of = {.h = h, .begins = true};
     const struct counted_step first = {
         .h = h, .tau = h, .times = 0.0, .state = part->x, .y = part->work.y1};
     const struct counted_step second = {

@@ -10,6 +10,20 @@
 /* Positions that are tried one switch at a time: all of eight switches. */
 enum { MOST_TRIED = 256 };
 
+static bool allocate_sides(struct dalcs_positions *p, struct dalcs_arena *arena) {
+    const struct dalcs_system *s = p->osnsp->system;
+    const size_t n_turning = (size_t)p->n + (size_t)p->n_jumps;
+    struct dalcs_slide_sides *sides = &p->sides;
+    sides->group = dalcs_arena_alloc(arena, n_turning, sizeof(int));
+    sides->y = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)dalcs_system_n_columns(s),
+                                 sizeof(double));
+    sides->w = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)s->n_pairs, sizeof(double));
+    sides->conducted = dalcs_arena_alloc(arena, (size_t)p->osnsp->n_words, sizeof(uint64_t));
+    sides->leading = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
+    return sides->group != NULL && sides->y != NULL && sides->w != NULL &&
+           sides->conducted != NULL && sides->leading != NULL;
+}
+
 enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_osnsp *osnsp,
                                         struct dalcs_arena *arena) {
     const struct dalcs_system *s = osnsp->system;
@@ -38,16 +52,10 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
     p->other = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->other_y = dalcs_arena_alloc(arena, (size_t)dalcs_system_n_columns(s), sizeof(double));
     p->other_w = dalcs_arena_alloc(arena, (size_t)s->n_pairs, sizeof(double));
-    p->sides.group = dalcs_arena_alloc(arena, n_turning, sizeof(int));
-    p->sides.y = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)dalcs_system_n_columns(s),
-                                   sizeof(double));
-    p->sides.w = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)s->n_pairs, sizeof(double));
-    p->sides.conducted = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     if (p->pair == NULL || p->slack == NULL || p->mask == NULL || p->first == NULL ||
         p->present == NULL || p->mark == NULL || p->other == NULL || p->other_y == NULL ||
         p->other_w == NULL || p->jump == NULL || p->gap == NULL || p->follows == NULL ||
-        p->leads == NULL || p->sides.group == NULL || p->sides.y == NULL || p->sides.w == NULL ||
-        p->sides.conducted == NULL) {
+        p->leads == NULL || !allocate_sides(p, arena)) {
         return DALCS_E_NOMEM;
     }
     for (int d = 0, i = 0, k = 0; d < s->n_pairs; d++) {

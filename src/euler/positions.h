@@ -24,17 +24,19 @@ struct dalcs_positions {
         alternates; /* if not: all that want to move go to and fro between two positions, each with an answer */
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
     uint64_t *other;           /* and its mode, [n_words] */
-    bool joined;    /* sliding.h */
-    double *gap;    /* [n + n_jumps] between both sides, in a micro-step */
-    bool *follows;  /* [n + n_jumps] it turns since another one does */
-    bool *leads;    /* [n + n_jumps] a jump that others follow, at present */
-    uint64_t *mask; /* [n_words] bits of these switches */
+    bool joined;               /* sliding.h */
+    double *gap;               /* [n + n_jumps] between both sides, in a micro-step */
+    bool *follows;             /* [n + n_jumps] it turns since another one does */
+    bool *leads;               /* [n + n_jumps] a jump that others follow, at present */
+    uint64_t *mask;            /* [n_words] bits of these switches */
     uint64_t *first, *present, *mark; /* [n_words] */
 
     struct dalcs_slide_sides { /* of a mean */
-        int *group;            /* [n + n_jumps] those that one part of the time suits, -1: no leading one */
-        double *y, *w;         /* [DALCS_MOST_SIDES][n_columns], [][n_pairs] */
-        uint64_t *conducted;   /* [n_words] on some side */
+        int *group;    /* [n + n_jumps] those that one part of the time suits, -1: no leading one */
+        double *y, *w; /* [DALCS_MOST_SIDES][n_columns], [][n_pairs] */
+        uint64_t *conducted; /* [n_words] on some side */
+        bool *leading;       /* [n + n_jumps] */
+        bool have_changed;   /* others lead than in the mean before */
     } sides;
 
     struct dalcs_tried_positions { /* one at a time */

@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Newton's method: where what each reads goes on in a straight line with what each does, one of these does. */
-enum { MOST_SEVERAL = 3, MOST_NEWTON = 16 };
+enum { MOST_SEVERAL = 3, MOST_NEWTON = 16, ROWS = 4 * MOST_SEVERAL };
 
 _Static_assert(1 << MOST_SEVERAL == DALCS_MOST_SIDES, "a side for each of their positions");
 
@@ -110,11 +110,13 @@ static enum dalcs_status find_corner(struct dalcs_positions *p, const double *u,
     memcpy(corner_w(p, corner), o->w, (size_t)o->system->n_pairs * sizeof(double));
     for (int k = 0; k < o->n_words; k++) {
         p->sides.conducted[k] |= o->mode[k];
+        p->mark[k] &= o->mode[k];
     }
     return DALCS_OK;
 }
 
-/* y is the answer on one side of all; that on the other side of all is p->other_y. */
+/* y is the answer on one side of all; that on the other side of all is p->other_y. What is on in all corners stays in
+ * p->mark. */
 static enum dalcs_status find_corners(struct dalcs_positions *p, const double *u, const double *y,
                                       const struct several *of, bool *are_complete) {
     const struct dalcs_system *s = p->osnsp->system;
@@ -129,6 +131,7 @@ static enum dalcs_status find_corners(struct dalcs_positions *p, const double *u
     memcpy(corner_w(p, last), p->other_w, w_bytes);
     for (int k = 0; k < p->osnsp->n_words; k++) {
         p->sides.conducted[k] = p->present[k] | p->other[k];
+        p->mark[k] = p->present[k] & p->other[k];
     }
     enum dalcs_status status = DALCS_OK;
     *are_complete = true;
@@ -162,6 +165,53 @@ static double beyond_in_mean(const struct dalcs_positions *p, const struct sever
     return sum;
 }
 
+/* In rows of a quad: how far each first one is beyond its threshold, behind how that changes with the parts of the time. */
+static void fill_rows(const struct dalcs_positions *p, const struct several *of, double *a) {
+    const int row = dalcs_dense_row(of->n, 1);
+    memset(a, 0, ROWS * sizeof(*a));
+    for (int g = 0; g < of->n; g++) {
+        double largest;
+        for (int corner = 0; corner < 1 << of->n; corner++) {
+            const double at = beyond(p, of->first[g], corner);
+            for (int by = 0; by < of->n; by++) {
+                const double sign = (corner >> by & 1) != 0 ? 1.0 : -1.0;
+                a[g * row + by] += sign * weight_of(of, corner, by) * at;
+            }
+        }
+        a[g * row + of->n] = beyond_in_mean(p, of, of->first[g], &largest);
+    }
+}
+
+/* Does each turn its own control off, more than others turn it on? Where all principal minors are above 0 no other parts of
+ * the time do (Cottle, Pang and Stone, The Linear Complementarity Problem, thm 3.3.7). Of switches that hold each other
+ * open, as in a flip-flop, two stay, and the mean is where neither does. */
+static bool is_only_one(const struct dalcs_positions *p, const struct several *of) {
+    const int row = dalcs_dense_row(of->n, 1);
+    double a[ROWS];
+    double m[MOST_SEVERAL][MOST_SEVERAL] = {{0}};
+    fill_rows(p, of, a);
+    bool is = true;
+    for (int by = 0; by < of->n; by++) {
+        const int i = of->first[by];
+        const bool closes =
+            dalcs_mode_has(i < p->n ? p->other : p->present, dalcs_turning_pair(p, i));
+        for (int g = 0; g < of->n; g++) {
+            m[g][by] = closes ? -a[g * row + by] : a[g * row + by];
+        }
+    }
+    for (int g = 0; g < of->n; g++) {
+        is = is && m[g][g] > 0.0;
+        for (int k = 0; k < g; k++) {
+            is = is && m[g][g] * m[k][k] > m[g][k] * m[k][g];
+        }
+    }
+    return is &&
+           (of->n < MOST_SEVERAL || m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                                            m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                                            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) >
+                                        0.0);
+}
+
 /* By Newton's method, from half of the time on. */
 static bool find_parts(const struct dalcs_positions *p, struct several *of) {
     const int row = dalcs_dense_row(of->n, 1);
@@ -170,18 +220,8 @@ static bool find_parts(const struct dalcs_positions *p, struct several *of) {
         of->part[g] = 0.5;
     }
     for (int k = 0; k < MOST_NEWTON && moved > dalcs_rounded; k++) {
-        double a[MOST_SEVERAL * 4] = {0}; /* rows of a quad */
-        for (int g = 0; g < of->n; g++) {
-            double largest;
-            for (int corner = 0; corner < 1 << of->n; corner++) {
-                const double at = beyond(p, of->first[g], corner);
-                for (int by = 0; by < of->n; by++) {
-                    const double sign = (corner >> by & 1) != 0 ? 1.0 : -1.0;
-                    a[g * row + by] += sign * weight_of(of, corner, by) * at;
-                }
-            }
-            a[g * row + of->n] = beyond_in_mean(p, of, of->first[g], &largest);
-        }
+        double a[ROWS];
+        fill_rows(p, of, a);
         if (!(dalcs_dense_solve(of->n, 1, a) > 0.0)) {
             return false;
         }
@@ -239,7 +279,7 @@ enum dalcs_status dalcs_sliding_mean_of_several(struct dalcs_positions *p, const
     }
     bool are_complete;
     DALCS_TRY(find_corners(p, u, y, &of, &are_complete));
-    if (!are_complete || !find_parts(p, &of) || !all_fit(p, &of)) {
+    if (!are_complete || !find_parts(p, &of) || !all_fit(p, &of) || !is_only_one(p, &of)) {
         return DALCS_OK;
     }
     *noise = 0.0;
@@ -249,5 +289,7 @@ enum dalcs_status dalcs_sliding_mean_of_several(struct dalcs_positions *p, const
         *noise = fmax(*noise, own);
     }
     put_mean(p, &of, y, sides);
+    /* A pair that is off in some corner turns, though it may be on in the two that differ in all (sliding.h). */
+    memcpy(p->other, p->mark, (size_t)p->osnsp->n_words * sizeof(*p->other));
     return DALCS_OK;
 }

@@ -258,6 +258,15 @@ static double common_weight(const struct dalcs_positions *p, const double *y, do
     return weight;
 }
 
+static void note_leading(struct dalcs_positions *p) {
+    p->sides.have_changed = false;
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        const bool leads = dalcs_turning_leads(p, i);
+        p->sides.have_changed = p->sides.have_changed || leads != p->sides.leading[i];
+        p->sides.leading[i] = leads;
+    }
+}
+
 enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, const double *u, double *y,
                                      struct dalcs_observed_sides *sides, double *noise) {
     const struct dalcs_system *s = p->osnsp->system;
@@ -271,6 +280,7 @@ enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, const double *u,
     if (!may_slide) {
         return DALCS_OK;
     }
+    note_leading(p);
     const double weight = common_weight(p, y, noise);
     if (!(weight > 0.0)) {
         return dalcs_sliding_mean_of_several(p, u, y, sides, noise);

@@ -114,8 +114,8 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
 /* Is it one but for signs? */
 static bool is_answer(const struct dalcs_osnsp *p, bool sources_clash) {
     const bool is_sign = p->certificate.where >= dalcs_system_n_equations(p->system);
-    return !sources_clash && (is_sign || p->certificate.worst <=
-                                             dalcs_beyond * p->options.certificate_tolerance);
+    return !sources_clash &&
+           (is_sign || p->certificate.worst <= dalcs_beyond * p->options.certificate_tolerance);
 }
 
 enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u, double *y) {
