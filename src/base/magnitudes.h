@@ -20,8 +20,8 @@ static const double dalcs_small = 1e-3;
 /* Nothing beside another of its kind: who asks for six digits, which is the default, does not see it. */
 static const double dalcs_nothing = 1e-6;
 
-/* Alike: the difference, over the largest of the unit, is what a one-step problem may be off by. Of sixteen digits,
- * conductances that are seven orders of magnitude apart cost seven. */
+/* Alike: the difference, over the largest of the unit, is what a one-step problem may be off by. Any value from 1e-10 to
+ * 1e-8 is right: of sixteen digits, conductances that are seven orders of magnitude apart cost seven. */
 static const double dalcs_alike = 1e-9;
 
 #endif

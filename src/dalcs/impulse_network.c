@@ -12,10 +12,6 @@ struct reduction {
     bool *is_transformer; /* [from->n_devices] */
 };
 
-/* What is left of a transformer when its magnetising current has no time to change: inductances this
- * many times as large take no part. */
-static const double magnetised = 0x1p100;
-
 void dalcs_mark_transformers(const struct dalcs_circuit *c, bool *is_transformer) {
     for (int k = 0; k < c->n_couplings; k++) {
         const int *coil = c->coupling[k].inductor;
@@ -66,7 +62,8 @@ static enum dalcs_status reduce_to_charge(struct reduction *r, const struct dalc
     switch (d->kind) {
     case DALCS_INDUCTOR:
         if (r->is_transformer[d - r->from->device]) {
-            add(r, d)->value *= magnetised;
+            /* Its magnetising current has no time to change: an inductance without end, which overflows in no product. */
+            add(r, d)->value *= 0x1p100;
         }
         break;
     case DALCS_CAPACITOR:

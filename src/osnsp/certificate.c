@@ -25,7 +25,7 @@ static void recover_states(const struct dalcs_osnsp *p, const double *u, double 
     const struct dalcs_step_form *f = p->cache.form[0];
     int n_x = p->system->n_x;
     for (int x = 0; x < n_x; x++) {
-        const int *ends = &f->state.ends[2 * x];
+        const int *ends = f->state.ends + 2 * x;
         if (ends[0] >= 0) {
             y[x] = y[ends[0]] - y[ends[1]];
             continue;

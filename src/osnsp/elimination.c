@@ -4,12 +4,11 @@
  * along, so that one elimination gives K, R and the recovery of x+ at once. */
 #include "elimination.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A pivot this much smaller than its row is kept as an unknown: a coil that is nearly a short. */
-static const double pivot_floor = 1e-8;
 static const int fill_limit = 4096;
 
 /* Entries that a row may get before it moves. */
@@ -180,7 +179,8 @@ static bool pivot_is_sound(const struct dalcs_elimination *e, int x, int row) {
             n_left++;
         }
     }
-    return pivot > 0.0 && pivot >= pivot_floor * largest &&
+    /* A pivot that is smaller beside its row than half of the digits is kept as an unknown: a coil that is nearly a short. */
+    return pivot > 0.0 && pivot >= sqrt(DBL_EPSILON) * largest &&
            (long)(n_left - 1) * (e->users[x].n - 1) <= fill_limit;
 }
 

@@ -58,7 +58,8 @@ static void list_runs(struct dalcs_osnsp *p) {
 }
 
 /* V: thresholds say little about the voltages of a circuit (Vrev = 1 MV: never), but where all else is
- * 0 the least of them, up to this, tells rounding from an answer. */
+ * 0 the least of them, up to this, tells rounding from an answer. Any value from 1e-3 to 1e3 is right: 2e-13 of it is
+ * rounding, which is less than a nanovolt. */
 static const double largest_threshold = 1.0;
 
 /* What sources and thresholds ask for counts as a current or voltage even where the answer is 0. */

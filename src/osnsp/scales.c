@@ -69,7 +69,7 @@ struct dalcs_scales dalcs_scales_physical(const struct dalcs_osnsp *p, struct da
 /* V or A: a state that is recovered is known as well as what it is recovered from. */
 static double state_size(const struct dalcs_osnsp *p, const double *u, const double *y, int x) {
     const struct dalcs_step_form *f = p->cache.form[0];
-    const int *ends = &f->state.ends[2 * x];
+    const int *ends = f->state.ends + 2 * x;
     double sum = fabs(u[x]);
     if (ends[0] >= 0) {
         return sum + fabs(y[ends[0]]) + fabs(y[ends[1]]);

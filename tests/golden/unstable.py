@@ -59,6 +59,10 @@ def main():
         for case in CASES:
             check(checker, program, folder, case, [])
         check(checker, program, folder, CASES[0], ["--method", "euler"])
+        for times, status in (0.5, OK), (2.0, FAILED):
+            stop = (LIMIT + math.log(times)) * 1e-6
+            done = run(program, folder, f"C1 a 0 1u ic=1\nR1 a 0 -1\n.tran 1u {stop!r} uic")
+            checker.check(done.returncode == status, f"{times} times what a state may grow to: {done.stderr}")
         done = run(program, folder, "C1 a 0 1u ic=1\nR1 a 0 -1\n.tran 1u 0.3m uic")
         checker.check(done.returncode == OK, f"it has not grown so far yet: {done.stderr}")
         last = rows_of(folder / "a.csv")[-1]

@@ -64,7 +64,7 @@ MUTATIONS = {
     "a square is too large by 1e-4": (
         "waveform/measuring.c", "item->square += length * square;", "item->square += 1.0001 * length * square;", METER),
     "extremes between the ends of stretches are not seen": (
-        "waveform/measuring.c", "if (!(first > 0.0 && last < 0.0)) {", "if (first == first) {", METER),
+        "waveform/measuring_extremes.c", "if (!(first > 0.0 && last < 0.0)) {", "if (first == first) {", METER),
     "falls are not counted": (
         "waveform/instant.c", "return i->side > 0 && value <= reach ? DALCS_EDGE_FALL", "return value > INFINITY ? DALCS_EDGE_FALL",
         METER),
