@@ -343,8 +343,7 @@ enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_
     /* Radau fails just after a time, a step of Euler at its end. */
     bool is_from = !e->failure.at_operating_point &&
                    (e->failure.looks_behind || r->method != DALCS_METHOD_EULER);
-    const struct dalcs_smooth_newton *newton =
-        e->component[e->failure.system].osnsp.smooth.newton;
+    const struct dalcs_smooth_newton *newton = e->component[e->failure.system].osnsp.smooth.newton;
     const char *when = e->failure.at_operating_point ? "at the operating point"
                        : dalcs_failed_at_pole(e, status)
                            ? dalcs_arena_printf(&s->arena, "at t = %.8g s", e->failure.time)
