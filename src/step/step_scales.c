@@ -24,6 +24,20 @@ static void find_controls(struct dalcs_radau_part *part) {
     }
 }
 
+/* A part of a formula is judged by what reads it. The output of a comparison shows nothing of its argument but when it
+ * changes its sign: as a control, that is held to its own scale. */
+static void find_arguments(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    for (int d = 0; d < s->n_pairs && s->is_part != NULL; d++) {
+        for (int k = s->C.p[d]; k < s->C.p[d + 1] && s->pair[d].is_jump; k++) {
+            const int c = s->C.j[k];
+            if (c < dalcs_system_n_equations(s) && s->is_part[c]) {
+                part->scales.kinds->counts[c] = UINT64_MAX;
+            }
+        }
+    }
+}
+
 /* Lambda and w of a formula have no unit; thresholds of diodes that are far away make a large w of small voltages.
  * Neither is a signal of the circuit, by which others are measured. */
 static bool measures_nothing(const struct dalcs_system *s, int pair) {
@@ -65,6 +79,7 @@ enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
         }
     }
     find_controls(part);
+    find_arguments(part);
     return DALCS_OK;
 }
 
