@@ -46,32 +46,39 @@ static bool has_tied_coils(const struct dalcs_radau *r, const struct dalcs_radau
     return has;
 }
 
-/* The columns just behind a jump, of micro-steps of length h: a second and a third one on a line back to the instant, for
- * the first has the impulses. What does not survive that has not jumped. part->work.y2 is the second step and becomes
- * what is before. NULL where nobody asks for them: at the start, and where all that is told is a state. */
+/* The columns just behind a jump, of two micro-steps of length h from the states there, on a line back to the instant. What
+ * does not survive that has not jumped. The steps that found the jump do not serve: the first of them has the impulses, and
+ * beside these a sign that is wrong may be rounding. part->work.y2, the second of those, becomes what is before. NULL where
+ * nobody asks for them: at the start, and where all that is told is a state. */
 static enum dalcs_status columns_behind(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                         double h, const double **before, double *behind) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     const int n = dalcs_system_n_columns(p->system);
     const bool slides = part->guards.slides;
+    double *near = part->work.y1;
     *before = NULL;
     if (!(part->segment.t > 0.0) || !has_tied_coils(r, part)) {
         return DALCS_OK;
     }
     memcpy(part->work.mode_before, p->mode, (size_t)p->n_words * sizeof(uint64_t));
-    enum dalcs_status status =
-        dalcs_radau_implicit_step(r, part, h, 3.0 * h, part->work.y2, part->work.y1);
+    enum dalcs_status status = dalcs_radau_implicit_step(r, part, h, h, r->base->jump.after, near);
+    if (status > DALCS_OK) {
+        memcpy(near, part->work.y2, (size_t)n * sizeof(double));
+    } else if (status == DALCS_OK) {
+        status = dalcs_radau_implicit_step(r, part, h, 2.0 * h, near, part->work.y2);
+    }
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
     const bool goes_on =
         status == DALCS_OK && dalcs_mode_is(p->mode, part->work.mode_before, p->n_words);
     memcpy(p->mode, part->work.mode_before, (size_t)p->n_words * sizeof(uint64_t));
     part->guards.slides = slides;
-    memcpy(behind, part->work.y2, (size_t)n * sizeof(double));
+    for (int c = 0; c < n; c++) {
+        behind[c] = goes_on ? 2.0 * near[c] - part->work.y2[c] : near[c];
+    }
     *before = columns_before(part);
-    for (int c = 0; c < n && goes_on; c++) {
-        double from = part->work.y2[c];
-        double limit = 3.0 * behind[c] - 2.0 * part->work.y1[c];
-        behind[c] = fabs(limit - from) > 0.5 * fabs(behind[c] - from) ? limit : from;
+    for (int c = 0; c < n; c++) {
+        const double from = part->work.y2[c];
+        behind[c] = fabs(behind[c] - from) > 0.5 * fabs(near[c] - from) ? behind[c] : from;
     }
     return DALCS_OK;
 }

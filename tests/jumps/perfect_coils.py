@@ -56,11 +56,35 @@ def flyback(c, name, volts, henry, period):
         c.close(found[0]["states"][state]["after"], after, 1e-9 * scale, f"flyback, {name}: {state} after")
 
 
+def cut_resonant(c, name, volts, henry, period):
+    """Switches without a path in their dead time cut a resonant current off; a secondary takes over what magnetises."""
+    farad = (period / 6) ** 2 / henry
+    gates = [f"vg{k} g{k} 0 pulse(0 1 {(k - 1) * period / 2!r} 0 0 {0.48 * period!r} {period!r})" for k in (1, 2)]
+    found = jumps_of(c, f"cut, {name}", [
+        f"v1 in 0 {volts!r}", *gates, "s1 in a g1 0 sw", "s2 a 0 g2 0 sw", f"cr a x {farad!r}", f"lr x y {henry!r}",
+        f"lm y 0 {5 * henry!r}", f"ls1 e 0 {0.08 * henry!r}", f"ls2 0 f {0.08 * henry!r}", "k1 lm ls1 ls2 1", "d1 e o d", "d2 f o d",
+        f"co o 0 {1e4 * farad!r} ic={0.06 * volts!r}", f"ro o 0 {0.05 * henry / period!r}"],
+        f"{period / 20!r} {4 * period!r} uic")
+    c.check(len(found) == 8, f"cut, {name}: {len(found)} jumps")
+    turns = 0.016 ** 0.5
+    for jump in found:
+        states, label = jump["states"], f"cut, {name}: at {jump['time']}"
+        if not c.check({"lr", "lm"} <= set(states), f"{label} {states}"):
+            continue
+        ampere = abs(states["lr"]["before"])
+        magnetises = {side: states["lm"][side] + turns * sum(states[s][side] for s in ("ls1", "ls2") if s in states)
+                      for side in ("before", "after")}
+        c.close(states["lr"]["after"], 0.0, 1e-9 * ampere, f"{label}: lr after")
+        c.close(states["lm"]["after"], 0.0, 1e-9 * ampere, f"{label}: lm after")
+        c.close(magnetises["after"], magnetises["before"], 1e-9 * ampere, f"{label}: ampere-turns")
+
+
 def main():
     c = Checker("perfect_coils")
     for size in some_of(SIZES):
         half_bridge(c, *size)
         flyback(c, *size)
+        cut_resonant(c, *size)
     return c.finish()
 
 
