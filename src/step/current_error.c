@@ -109,7 +109,9 @@ static double rounding_of(const struct dalcs_radau_part *part,
             dalcs_stage_spread_of_current(stages, entry, k, part->segment.in, part->scales.column);
         return dalcs_sum_rounded * (spread + part->scales.current_parts[k]);
     }
-    return dalcs_step_rounding(part, entry) * dalcs_stage_natural_units(entry)[stages->levered[k]];
+    /* the drift is a solution by itself, of small numbers: what cancels in stages on factors is not in it */
+    return dalcs_step_rounding(part, entry) / part->segment.rounding *
+           dalcs_stage_natural_units(entry)[stages->levered[k]];
 }
 
 void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
