@@ -4,6 +4,7 @@
 #include "memory.h"
 #include "rounding.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,10 +78,12 @@ static const char *compare(const struct dalcs_table_audit_sums *a,
         t = time[k];
     }
     const double largest = fmax(fabs(least), fabs(most));
+    /* the waves that have not come yet are of 1e-200 V: their products are as coarse as numbers get */
     const double off =
-        dalcs_sum_rounded * ((double)n * largest * (t - begin) + fabs(now->integral));
+        dalcs_sum_rounded * ((double)n * largest * (t - begin) + fabs(now->integral)) + DBL_MIN;
     const double off_square = dalcs_sum_rounded * ((double)n * largest * largest * (t - begin) +
-                                                   fabs(now->square_integral));
+                                                   fabs(now->square_integral)) +
+                              DBL_MIN;
     if (!isfinite(now->square_integral) || !isfinite(square) || !isfinite(sum)) {
         return a->wrong; /* beyond all numbers */
     }
@@ -153,10 +156,10 @@ static const char *told_wrong(const struct dalcs_table_audit_sums *a,
     if (!(length > 0.0)) {
         return mean != s->final ? "the average" : NULL;
     }
-    return !(fabs(mean * length - s->integral) <= dalcs_sum_rounded * fabs(s->integral))
+    return !(fabs(mean * length - s->integral) <= dalcs_sum_rounded * fabs(s->integral) + DBL_MIN)
                ? "the average"
            : !(rms >= 0.0 && fabs(rms * rms * length - s->square_integral) <=
-                                 dalcs_sum_rounded * s->square_integral)
+                                 dalcs_sum_rounded * s->square_integral + DBL_MIN)
                ? "the rms value"
                : NULL;
 }

@@ -53,6 +53,10 @@ CIRCUITS = {
     "capacitors that a gate through E and B joins": (
         "vp p 0 PULSE(0 1 10u 0 0 40u 100u)\ne1 g 0 p 0 2\nv1 in 0 10\ns1 in x g 0 sw\nc1 x 0 1u\ns2 x y g2 0 sw\n"
         "c2 y 0 1u\nb1 g2 0 V=2-v(g)\nr1 y 0 1k\n.model sw SW(vt=1 vh=0.2 ron=0)\n.tran 1u 1m uic\n", [], {}),
+    "the front of a wave, as small as numbers get": (
+        "v1 a 0 SIN(0 1e-311 50)\nr1 a b 1k\nc1 b 0 1u\n.tran 10u 100m\n", [], {}),
+    "the square of the front of a wave": (
+        "v1 a 0 SIN(0 1e-158 50)\nr1 a b 1k\nc1 b 0 1u\n.tran 10u 100m\n", [], {}),
     "a coil that a resistance leaves less time than a run resolves": (
         "v1 v1 0 SIN(0 1 1k)\nb1 int 0 V=(u(v(v1)*8-1)+u(v(v1)*8-2))/8\nc1 c 0 10p\nr1 n c 100g\nl1 int n .01u\n"
         ".tran .25m\n", [], {}),
