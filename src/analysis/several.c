@@ -74,7 +74,7 @@ static enum dalcs_status list_answers(struct dalcs_component *c, double h, doubl
     memcpy(u, c->y, (size_t)s->n_x * sizeof(*u));
     memcpy(u + s->n_x, c->u + s->n_x, (size_t)s->n_inputs * sizeof(*u));
     if (h > 0.0) {
-        dalcs_component_look_ahead(c, h, u);
+        dalcs_component_look_ahead(c, h, DALCS_RIGHT, u);
     }
     DALCS_TRY(dalcs_osnsp_list_answers(&c->osnsp, sigma, u, MOST_ANSWERS, answer, n));
     *n = keep_true(c, answer, *n);

@@ -36,11 +36,22 @@ static void find_start(const struct dalcs_collocation *method, double *start) {
     }
 }
 
+/* What rounding makes of a column at a node that the sequences add up, over its unit's largest: the sum of the sizes of
+ * their weights, 92, times that of an answer. */
+static double rounding_of_sum(const double *weight) {
+    double sum = 0.0;
+    for (int j = 0; j < ORDER; j++) {
+        sum += fabs(weight[j]);
+    }
+    return sum * dalcs_sum_rounded;
+}
+
 struct dalcs_slide_try dalcs_slide_try_of(const struct dalcs_collocation *method, double h) {
     struct dalcs_slide_try of = {.h = h};
     find_weights(1, of.weight);
     find_weights(2, of.estimate);
     find_start(method, of.start);
+    of.rounding = rounding_of_sum(of.weight);
     return of;
 }
 
@@ -158,16 +169,6 @@ static void begin_columns(struct dalcs_radau_part *part, const struct dalcs_slid
     memcpy(out, part->x, (size_t)n_x * sizeof(double));
 }
 
-/* What rounding makes of a column at a node that the sequences add up, over its unit's largest: the sum of the sizes of
- * their weights, 92, times that of an answer. */
-static double rounding_of_sum(const double *weight) {
-    double sum = 0.0;
-    for (int j = 0; j < ORDER; j++) {
-        sum += fabs(weight[j]);
-    }
-    return sum * dalcs_sum_rounded;
-}
-
 /* How far a state's polynomial through the nodes misses the start, as of any other step (step_error.c), but for what
  * rounding at the nodes makes of that. */
 static double miss_at_start(const struct dalcs_radau_part *part, int x, double rounding,
@@ -187,8 +188,7 @@ static double error_of_column(const struct dalcs_radau *r, const struct dalcs_ra
                               int column, bool is_current, const struct dalcs_slide_try *of) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const bool is_state = column < part->component->system->n_x;
-    const double rounding =
-        is_state ? rounding_of_sum(of->weight) * part->scales.unit[is_current] : 0.0;
+    const double rounding = is_state ? of->rounding * part->scales.unit[is_current] : 0.0;
     double error = is_state ? miss_at_start(part, column, rounding, of) : 0.0;
     double size = is_state ? fabs(part->x[column]) : 0.0;
     for (int node = 1; node < l->n_nodes; node++) {

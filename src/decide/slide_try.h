@@ -13,6 +13,7 @@ struct dalcs_slide_try {
     double
         estimate[DALCS_SLIDE_ORDER]; /* and in those of an order less, without the first of them */
     double start[DALCS_MAX_NODES];   /* of the nodes behind the start, in the value at the start */
+    double rounding;                 /* of a state at a node, over its unit's largest */
     double taken;                    /* J */
     bool may_change;                 /* what slides along its threshold within the segment */
     bool begins;                     /* nothing has slid so far */

@@ -108,12 +108,22 @@ void dalcs_component_disturb(struct dalcs_component *c, double t) {
     }
 }
 
-void dalcs_component_look_ahead(const struct dalcs_component *c, double t, double *u) {
+void dalcs_component_look_ahead(const struct dalcs_component *c, double t, enum dalcs_side side,
+                                double *u) {
     const struct dalcs_system *s = c->system;
     for (int i = 0; i < c->varying.n; i++) {
         int k = c->varying.input[i];
-        u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, DALCS_RIGHT);
+        u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
     }
+}
+
+double dalcs_component_next_edge(const struct dalcs_component *c, double since) {
+    double next = INFINITY;
+    for (int i = 0; i < c->varying.n; i++) {
+        const int k = c->system->stimulus[c->varying.input[i]];
+        next = fmin(next, dalcs_stimulus_next_edge(&c->circuit->stimulus[k], since));
+    }
+    return next;
 }
 
 bool dalcs_component_jumps_at_start(const struct dalcs_component *c) {

@@ -63,7 +63,11 @@ void dalcs_component_finish(struct dalcs_component *c);
 void dalcs_component_sample(struct dalcs_component *c, double t, enum dalcs_side side, double *u);
 
 /* The same at a time t that the next samples may lie before. */
-void dalcs_component_look_ahead(const struct dalcs_component *c, double t, double *u);
+void dalcs_component_look_ahead(const struct dalcs_component *c, double t, enum dalcs_side side,
+                                double *u);
+
+/* The first edge of an input after a time, s; INFINITY: none. */
+double dalcs_component_next_edge(const struct dalcs_component *c, double since);
 
 /* Its sources are others from t on. */
 void dalcs_component_disturb(struct dalcs_component *c, double t);

@@ -202,7 +202,7 @@ enum dalcs_status dalcs_euler_settle_after(struct dalcs_euler *e, int k, const d
     DALCS_TRY(dalcs_euler_look_after(e, k, before, u, y, &h));
     memcpy(c->probe_u, e->after, n_x * sizeof(double));
     memcpy(c->probe_u + n_x, u + n_x, input_bytes);
-    dalcs_component_look_ahead(c, e->t + h, c->probe_u);
+    dalcs_component_look_ahead(c, e->t + h, DALCS_RIGHT, c->probe_u);
     enum dalcs_status status = dalcs_euler_solve(e, k, 1.0 / h, c->probe_u, c->scratch);
     if (status == DALCS_OK) {
         for (size_t x = 0; x < n_x; x++) {

@@ -45,21 +45,8 @@ bool dalcs_algebraic_poles_expect(const struct dalcs_radau_part *part, double t)
 }
 
 static enum dalcs_status solve(struct dalcs_component *c, double t, enum dalcs_side side) {
-    for (int i = 0; i < c->varying.n; i++) {
-        const int k = c->varying.input[i];
-        c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[c->system->stimulus[k]], t, side);
-    }
+    dalcs_component_look_ahead(c, t, side, c->u);
     return dalcs_component_solve(c, 0.0, c->u, c->y);
-}
-
-static double next_edge(const struct dalcs_component *c, double since) {
-    double next = INFINITY;
-    for (int i = 0; i < c->varying.n; i++) {
-        const int k = c->varying.input[i];
-        next = fmin(next,
-                    dalcs_stimulus_next_edge(&c->circuit->stimulus[c->system->stimulus[k]], since));
-    }
-    return next;
 }
 
 static bool turns(const struct span *span, int k, int j, const double (*after)[2]) {
@@ -136,7 +123,7 @@ static enum dalcs_status look_in(struct span *span, double from, double *t) {
     enum dalcs_status status = DALCS_OK;
     for (double since = from; since < to && status == DALCS_OK; since = span->to) {
         span->from = *t = since;
-        span->to = fmin(to, next_edge(span->c, since));
+        span->to = fmin(to, dalcs_component_next_edge(span->c, since));
         DALCS_TRY(solve(span->c, since, DALCS_RIGHT));
         keep(span, span->before);
         *t = span->to;
@@ -155,7 +142,8 @@ enum dalcs_status dalcs_algebraic_poles_check(const struct dalcs_radau *r,
                                               struct dalcs_radau_part *part, double from, double *t,
                                               enum dalcs_side side) {
     struct span span = make(r, part);
-    if (!(next_edge(span.c, from) < *t) && !any_turns(&span, (const double(*)[2])span.newton->x)) {
+    if (!(dalcs_component_next_edge(span.c, from) < *t) &&
+        !any_turns(&span, (const double(*)[2])span.newton->x)) {
         return DALCS_OK;
     }
     const double asked = *t;

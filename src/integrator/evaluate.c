@@ -30,22 +30,9 @@ static double last_edge(const struct dalcs_component *c, double t, enum dalcs_si
     double since = 0.0;
     for (double next = 0.0; next < t || (next == t && side == DALCS_RIGHT);) {
         since = next;
-        next = INFINITY;
-        for (int i = 0; i < c->varying.n; i++) {
-            const struct dalcs_stimulus *s =
-                &c->circuit->stimulus[c->system->stimulus[c->varying.input[i]]];
-            next = fmin(next, dalcs_stimulus_next_edge(s, since));
-        }
+        next = dalcs_component_next_edge(c, since);
     }
     return since;
-}
-
-static void take_inputs(struct dalcs_component *c, double t, enum dalcs_side side) {
-    const struct dalcs_system *s = c->system;
-    for (int i = 0; i < c->varying.n; i++) {
-        int k = c->varying.input[i];
-        c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
-    }
 }
 
 /* Where smooth functions end, no source need have an edge: between a time that has a solution, or an edge, and t. */
@@ -54,7 +41,7 @@ static double first_without(struct dalcs_radau_part *part, double since, double 
     double last = fmax(since, part->answered_at);
     while (t - last > near) {
         const double middle = last + 0.5 * (t - last);
-        take_inputs(c, middle, DALCS_LEFT);
+        dalcs_component_look_ahead(c, middle, DALCS_LEFT, c->u);
         if (middle <= last || middle >= t) {
             break;
         }
@@ -64,7 +51,7 @@ static double first_without(struct dalcs_radau_part *part, double since, double 
             last = middle;
         }
     }
-    take_inputs(c, t, DALCS_LEFT);
+    dalcs_component_look_ahead(c, t, DALCS_LEFT, c->u);
     const bool has_none = dalcs_component_solve(c, 0.0, c->u, c->y) > DALCS_OK;
     return has_none ? t : last; /* and what is told is of this time */
 }
