@@ -153,6 +153,6 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
     memcpy(p->mode, p->work.tied_mode, mode_bytes);
     memcpy(y, p->work.tied_answer, answer_bytes);
     bool sources_clash;
-    dalcs_certificate_evaluate(p, u, y, &sources_clash);
+    dalcs_certificate_evaluate_either(p, u, y, &sources_clash);
     return DALCS_OK;
 }
