@@ -1,11 +1,9 @@
-/* choices.c - equations that take, of what a mode leaves open, the answer of least norm.
- *
- * An answer of least norm is orthogonal to all that is open. What pairs see of that is made independent first
- * (Gram and Schmidt); the rest, which no pair sees, is measured in the unknowns, balanced. */
+/* choices.c - equations that take, of what a mode leaves open, the answer of least norm (least_norm.h): of the diodes, of
+ * the switches where no diode sees it, and of the unknowns, balanced, where no pair does. */
+#include "least_norm.h"
 #include "osnsp_internal.h"
 #include "whole.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -13,8 +11,7 @@ struct choices {
     const struct dalcs_whole *whole;
     const struct dalcs_system *s;
     size_t n_columns, n_pairs;
-    double conductance; /* S */
-    double *size;       /* [n_choices] of what rounding is of, as pairs see it */
+    double root; /* of a conductance in S: pairs all have one norm */
 };
 
 static double *vector_of(const struct choices *c, int k) {
@@ -25,98 +22,48 @@ static double *voltages_of(const struct choices *c, int k) {
     return c->whole->choice_w + (size_t)k * c->n_pairs;
 }
 
-/* sqrt(W): so that pairs all have one norm. */
-static double product(const struct choices *c, int i, int k) {
-    const double *lambda_i = vector_of(c, i) + (c->n_columns - c->n_pairs);
-    const double *lambda_k = vector_of(c, k) + (c->n_columns - c->n_pairs);
-    const double *w_i = voltages_of(c, i);
-    const double *w_k = voltages_of(c, k);
-    double sum = 0.0;
-    for (size_t d = 0; d < c->n_pairs; d++) {
-        double currents = c->s->pair[d].is_left_out[1] ? 0.0 : lambda_i[d] * lambda_k[d];
-        sum += c->conductance * w_i[d] * w_k[d] + currents / c->conductance;
-    }
-    return sum;
+/* May it have current? */
+static bool is_closed(const struct choices *c, int d) {
+    return c->whole->place[c->n_columns - c->n_pairs + (size_t)d] >= 0;
 }
 
-static void find_voltages(const struct choices *c, int k) {
-    const double *vector = vector_of(c, k);
+/* What pairs of one kind have in a vector: lambda of closed ones, w of open ones. Returns the norm of its terms' sizes. */
+static double find_parts(const struct choices *c, enum dalcs_pair_kind kind, const double *vector,
+                         double *part) {
     const double *lambda = vector + (c->n_columns - c->n_pairs);
-    double size = 0.0;
+    const struct dalcs_csr *C = &c->s->C;
+    double square = 0.0;
     for (int d = 0; d < c->s->n_pairs; d++) {
-        double terms = 0.0;
-        for (int i = c->s->C.p[d]; i < c->s->C.p[d + 1]; i++) {
-            terms += fabs(c->s->C.x[i] * vector[c->s->C.j[i]]);
+        const struct dalcs_pair *pair = &c->s->pair[d];
+        bool counts = pair->kind == kind && !pair->is_left_out[is_closed(c, d)];
+        double sum = counts && is_closed(c, d) ? lambda[d] / c->root : 0.0;
+        double size = fabs(sum);
+        for (int i = C->p[d]; counts && !is_closed(c, d) && i < C->p[d + 1]; i++) {
+            double term = c->root * C->x[i] * vector[C->j[i]];
+            sum += term;
+            size += fabs(term);
         }
-        bool is_closed = c->whole->place[c->n_columns - c->n_pairs + (size_t)d] >= 0 ||
-                         c->s->pair[d].is_left_out[0];
-        voltages_of(c, k)[d] = is_closed ? 0.0 : dalcs_csr_row_dot(&c->s->C, d, vector);
-        size += is_closed ? lambda[d] * lambda[d] / c->conductance : c->conductance * terms * terms;
+        part[d] = sum;
+        square += size * size;
     }
-    c->size[k] = sqrt(size);
-}
-
-static void swap_vectors(const struct choices *c, int i, int k) {
-    for (size_t j = 0; j < c->n_columns && i != k; j++) {
-        double value = vector_of(c, i)[j];
-        vector_of(c, i)[j] = vector_of(c, k)[j];
-        vector_of(c, k)[j] = value;
-    }
-    for (size_t d = 0; d < c->n_pairs && i != k; d++) {
-        double value = voltages_of(c, i)[d];
-        voltages_of(c, i)[d] = voltages_of(c, k)[d];
-        voltages_of(c, k)[d] = value;
-    }
-    double size = c->size[i];
-    c->size[i] = c->size[k];
-    c->size[k] = size;
-}
-
-/* Vectors that pairs see come first and are orthogonal to all others; returns how many. */
-static int separate(const struct choices *c) {
-    double rounding = (double)c->n_columns * DBL_EPSILON;
-    int n = 0;
-    for (; n < c->whole->n_choices; n++) {
-        int best = n;
-        double most = 0.0;
-        for (int k = n; k < c->whole->n_choices; k++) {
-            double seen = sqrt(product(c, k, k));
-            if (seen > rounding * c->size[k] && seen > most * c->size[k]) {
-                most = seen / c->size[k];
-                best = k;
-            }
-        }
-        if (most == 0.0) {
-            break;
-        }
-        swap_vectors(c, n, best);
-        double norm = product(c, n, n);
-        for (int k = n + 1; k < c->whole->n_choices; k++) {
-            double part = product(c, n, k) / norm;
-            for (size_t j = 0; j < c->n_columns; j++) {
-                vector_of(c, k)[j] -= part * vector_of(c, n)[j];
-            }
-            for (size_t d = 0; d < c->n_pairs; d++) {
-                voltages_of(c, k)[d] -= part * voltages_of(c, n)[d];
-            }
-            c->size[k] += fabs(part) * c->size[n];
-        }
-    }
-    return n;
+    return sqrt(square);
 }
 
 /* The product with a vector that pairs see, as coefficients of the unknowns and of w - knee. */
 static void weigh_by_pairs(const struct choices *c, int k) {
+    const struct dalcs_csr *C = &c->s->C;
     double *vector = vector_of(c, k);
-    double *of_w = voltages_of(c, k);
-    memset(vector, 0, (c->n_columns - c->n_pairs) * sizeof(*vector));
-    for (size_t d = 0; d < c->n_pairs; d++) {
-        vector[c->n_columns - c->n_pairs + d] /= c->conductance;
-        of_w[d] *= c->conductance;
-    }
+    double *part = voltages_of(c, k);
+    memset(vector, 0, c->n_columns * sizeof(*vector));
     for (int d = 0; d < c->s->n_pairs; d++) {
-        for (int i = c->s->C.p[d]; i < c->s->C.p[d + 1]; i++) {
-            vector[c->s->C.j[i]] += of_w[d] * c->s->C.x[i];
+        if (is_closed(c, d)) {
+            vector[c->n_columns - c->n_pairs + (size_t)d] = part[d] / c->root;
+            part[d] = 0.0;
+            continue;
+        }
+        part[d] *= c->root;
+        for (int i = C->p[d]; i < C->p[d + 1]; i++) {
+            vector[C->j[i]] += part[d] * C->x[i];
         }
     }
 }
@@ -156,25 +103,40 @@ static void normalise(const struct choices *c, int k) {
     }
 }
 
+/* Of the vectors from `first` on, those that pairs of one kind see; returns the first that they do not. */
+static int choose_in_kind(const struct choices *c, enum dalcs_pair_kind kind, double *size,
+                          int first) {
+    struct dalcs_least_norm open = {.n = c->whole->n_choices - first,
+                                    .n_columns = (int)c->n_columns,
+                                    .n_parts = (int)c->n_pairs,
+                                    .vector = vector_of(c, first),
+                                    .part = voltages_of(c, first),
+                                    .size = size};
+    for (int k = 0; k < open.n; k++) {
+        size[k] = find_parts(c, kind, vector_of(c, first + k), voltages_of(c, first + k));
+    }
+    int n_seen = dalcs_least_norm_separate(&open);
+    for (int k = first; k < first + n_seen; k++) {
+        weigh_by_pairs(c, k);
+    }
+    return first + n_seen;
+}
+
 enum dalcs_status dalcs_choices_make(struct dalcs_whole *whole) {
     const struct dalcs_system *s = whole->p->system;
     struct choices c = {.whole = whole,
                         .s = s,
                         .n_columns = (size_t)dalcs_system_n_columns(s),
                         .n_pairs = (size_t)s->n_pairs,
-                        .conductance = whole->p->cache.form[0]->pair_conductance};
-    c.size = dalcs_arena_alloc(&whole->arena, (size_t)whole->n_choices, sizeof(double));
-    if (c.size == NULL) {
+                        .root = sqrt(whole->p->cache.form[0]->pair_conductance)};
+    double *size = dalcs_arena_alloc(&whole->arena, (size_t)whole->n_choices, sizeof(double));
+    if (size == NULL) {
         return DALCS_E_NOMEM;
     }
+    int n_seen = choose_in_kind(&c, DALCS_PAIR_DIODE, size, 0);
+    n_seen = choose_in_kind(&c, DALCS_PAIR_SWITCH, size, n_seen);
     for (int k = 0; k < whole->n_choices; k++) {
-        find_voltages(&c, k);
-    }
-    int n_seen = separate(&c);
-    for (int k = 0; k < whole->n_choices; k++) {
-        if (k < n_seen) {
-            weigh_by_pairs(&c, k);
-        } else {
+        if (k >= n_seen) {
             weigh_by_unknowns(&c, k);
         }
         normalise(&c, k);

@@ -1,6 +1,6 @@
 /* open_mode.c - of all answers that a singular mode leaves open, the one of least norm that has the right signs.
  *
- * They are y + sum t_k n_k. With directions n_k that are orthonormal to the pairs, sum G w^2 + lambda^2 / G, it has the
+ * They are y + sum t_k n_k. With directions n_k that are orthonormal to the diodes, sum G w^2 + lambda^2 / G, it has the
  * least |t| with V t + b >= 0, where b are the signs of y, the answer of least norm of all: least distance programming,
  * which non-negative least squares decide (C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23).
  * What the reference of an island carries must be 0 as well: a source that reads the island may drive it, by as much as
@@ -23,8 +23,8 @@ struct open_mode {
     struct dalcs_arena arena;
 };
 
-/* lambda of closed pairs and w of open ones, of an answer or of a direction, and currents of references, in units of
- * one conductance. */
+/* lambda of closed diodes and w of open ones, of an answer or of a direction, and currents of references, in units of
+ * one conductance. What no diode sees stays of least norm in the switches. */
 static void look_at_parts(const struct open_mode *m, const double *y, bool is_answer,
                           double *part) {
     const struct dalcs_system *s = m->p->system;
@@ -32,7 +32,8 @@ static void look_at_parts(const struct open_mode *m, const double *y, bool is_an
     for (int d = 0; d < s->n_pairs; d++) {
         double lambda = y[m->n_columns - m->n_pairs + (size_t)d];
         double w = is_answer ? m->p->w[d] : dalcs_csr_row_dot(&s->C, d, y);
-        part[d] = dalcs_osnsp_is_on(m->p, d) ? lambda / root : w * root;
+        double of_diode = dalcs_osnsp_is_on(m->p, d) ? lambda / root : w * root;
+        part[d] = m->p->lists.is_diode[d] ? of_diode : 0.0;
     }
     for (int k = 0; k < m->p->lists.n_references; k++) {
         part[s->n_pairs + k] = y[m->p->lists.reference[k]] / root;

@@ -5,9 +5,7 @@
  * currents, and iterative refinement with residuals in extended precision does the rest.
  *
  * Equations that follow from others (null_space.h) give their place to a choice: of all answers of the mode
- * the one of least norm, sum G (w - knee)^2 + lambda^2 / G with one conductance G for all pairs, which is the
- * limit of equal small on-resistances and leaks; of what no pair sees, the one of least norm of the
- * unknowns, balanced. Where resistances are given, each pair is the line w + R lambda = t instead. */
+ * the one of least norm (least_norm.h), sum G (w - knee)^2 + lambda^2 / G with one conductance G for all pairs. Where resistances are given, each pair is the line w + R lambda = t instead. */
 #ifndef DALCS_WHOLE_H
 #define DALCS_WHOLE_H
 

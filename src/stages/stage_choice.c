@@ -2,11 +2,11 @@
  * them. */
 #include "stage_choice.h"
 
-#include "magnitudes.h"
+#include "least_norm.h"
 #include "null_space.h"
 #include "partition.h"
+#include "rounding.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -64,28 +64,30 @@ static enum dalcs_status find_null_vectors(struct dalcs_stage_workshop *b, bool 
     return *vector != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-/* The other sides of the pairs in a null vector, over its largest entry: lambda of closed ones, w of open diodes. */
-static void find_other_sides(const struct dalcs_stage_workshop *b, const double *vector,
-                             double *of_pair) {
+/* The other sides of the pairs of one kind in a null vector: lambda of closed ones, w of open ones. Returns the norm of
+ * their terms' sizes. */
+static double find_other_sides(const struct dalcs_stage_workshop *b, enum dalcs_pair_kind kind,
+                               const double *vector, double *of_pair) {
     const struct dalcs_csr *C = &b->system->C;
     int n_equations = dalcs_system_n_equations(b->system);
-    double largest = 0.0;
-    for (int i = 0; i < b->n; i++) {
-        largest = fmax(largest, fabs(vector[i] * b->eq.column_scale[i]));
-    }
+    double square = 0.0;
     for (int d = 0; d < b->system->n_pairs; d++) {
         int closed = b->place[n_equations + d];
         const struct dalcs_pair *pair = &b->system->pair[d];
-        bool is_closed = closed >= 0 && !pair->is_left_out[1];
-        bool is_open = closed < 0 && pair->kind == DALCS_PAIR_DIODE && !pair->is_left_out[0];
-        double side = is_closed ? vector[closed] * b->eq.column_scale[closed] : 0.0;
-        for (int k = C->p[d]; is_open && k < C->p[d + 1]; k++) {
+        bool counts = pair->kind == kind && !pair->is_left_out[closed >= 0 ? 1 : 0];
+        double side = counts && closed >= 0 ? vector[closed] * b->eq.column_scale[closed] : 0.0;
+        double size = fabs(side);
+        for (int k = C->p[d]; counts && closed < 0 && k < C->p[d + 1]; k++) {
             int c = b->place[C->j[k]];
-            side += c >= 0 ? C->x[k] * vector[c] * b->eq.column_scale[c] : 0.0;
+            double term = c >= 0 ? C->x[k] * vector[c] * b->eq.column_scale[c] : 0.0;
+            side += term;
+            size += fabs(term);
         }
-        of_pair[d] = fabs(side) > dalcs_alike * largest ? side : 0.0;
+        of_pair[d] = fabs(side) > dalcs_sum_rounded * size ? side : 0.0;
+        square += size * size;
     }
     dalcs_partition_keep_first(b->stages->block_of, b->system, of_pair);
+    return sqrt(square);
 }
 
 /* Row k: the sum of weight[n_pairs] times the other sides of the pairs is 0, with reverse voltages over their knees. */
@@ -136,75 +138,47 @@ static void balance_choice(const struct dalcs_stage_workshop *b, int k) {
     }
 }
 
-/* Combinations of the null vectors whose other sides of pairs, side[nullity][n_pairs], are orthogonal and of length 1:
- * the first *rank of them; the others do nothing to pairs. */
-static enum dalcs_status make_orthogonal(const struct dalcs_stage_workshop *b, double *side,
-                                         double *combination, int *rank) {
-    int n_pairs = b->system->n_pairs;
-    int n = b->open.nullity;
-    double *length = dalcs_alloc((size_t)n + 1, sizeof(double));
-    double *work = dalcs_alloc((size_t)(n + n_pairs) + 1, sizeof(double));
-    double *left = dalcs_alloc((size_t)n * (size_t)n + 1, sizeof(double));
-    bool has_memory = length != NULL && work != NULL && left != NULL;
-    /* side' = U S V': rows of `side`, by columns n_pairs x n, are null vectors */
-    bool is_done = has_memory && LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'O', 'A', n_pairs, n, side,
-                                                n_pairs, length, NULL, 1, left, n, work) == 0;
-    *rank = 0;
-    for (int k = 0; is_done && k < n && k < n_pairs; k++) {
-        *rank += length[k] > dalcs_alike * length[0] ? 1 : 0;
-    }
-    for (int k = 0; is_done && k < n; k++) {
-        for (int i = 0; i < n; i++) {
-            combination[k * n + i] = left[i * n + k];
-        }
-    }
-    free(length);
-    free(work);
-    free(left);
-    return is_done ? DALCS_OK : DALCS_E_NOMEM;
-}
-
-/* Row k is the combination of the null vectors itself: the least of all unknowns. */
-static void choose_in_all(const struct dalcs_stage_workshop *b, int k, const double *combination,
-                          const double *null_vectors) {
-    double *row = b->open.choice + k * b->n;
+/* Row k is null vector k itself: the least of all unknowns. */
+static void choose_in_all(const struct dalcs_stage_workshop *b, int k, const double *vector) {
     for (int i = 0; i < b->n; i++) {
-        for (int v = 0; v < b->open.nullity; v++) {
-            row[i] += combination[v] * null_vectors[v * b->n + i] / b->eq.column_scale[i];
-        }
+        b->open.choice[k * b->n + i] = vector[i] / b->eq.column_scale[i];
     }
 }
 
-static enum dalcs_status choose(struct dalcs_stage_workshop *b, const double *null_vectors) {
-    int n_pairs = b->system->n_pairs;
+/* The rows of null vectors from `first` on that pairs of one kind see; returns the first that they do not. */
+static int choose_in_kind(const struct dalcs_stage_workshop *b, enum dalcs_pair_kind kind,
+                          const struct dalcs_least_norm *all, int first) {
+    struct dalcs_least_norm open = *all;
+    open.n -= first;
+    open.vector = dalcs_least_norm_vector(all, first);
+    for (int k = 0; k < open.n; k++) {
+        open.size[k] = find_other_sides(b, kind, dalcs_least_norm_vector(&open, k),
+                                        dalcs_least_norm_part(&open, k));
+    }
+    int n_seen = dalcs_least_norm_separate(&open);
+    for (int k = 0; k < n_seen; k++) {
+        choose_in_pairs(b, first + k, dalcs_least_norm_part(&open, k));
+    }
+    return first + n_seen;
+}
+
+static enum dalcs_status choose(struct dalcs_stage_workshop *b, double *null_vectors) {
     int n = b->open.nullity;
-    int rows = n_pairs > n ? n_pairs : n;
-    double *side = dalcs_stage_workshop_reals(&b->arena, n * rows);
-    double *combination = dalcs_stage_workshop_reals(&b->arena, n * n);
+    struct dalcs_least_norm open = {
+        .n = n, .n_columns = b->n, .n_parts = b->system->n_pairs, .vector = null_vectors};
+    open.part = dalcs_stage_workshop_reals(&b->arena, n * open.n_parts);
+    open.size = dalcs_stage_workshop_reals(&b->arena, n);
     b->open.choice = dalcs_stage_workshop_reals(&b->arena, n * b->n);
     b->open.chosen = dalcs_stage_workshop_reals(&b->arena, n * b->n_rhs);
-    if (side == NULL || combination == NULL || b->open.choice == NULL || b->open.chosen == NULL) {
+    if (open.part == NULL || open.size == NULL || b->open.choice == NULL ||
+        b->open.chosen == NULL) {
         return DALCS_E_NOMEM;
     }
-    double largest = 0.0;
+    int n_seen = choose_in_kind(b, DALCS_PAIR_DIODE, &open, 0);
+    n_seen = choose_in_kind(b, DALCS_PAIR_SWITCH, &open, n_seen);
     for (int k = 0; k < n; k++) {
-        find_other_sides(b, null_vectors + k * b->n, side + k * n_pairs);
-        combination[k * n + k] = 1.0;
-        for (int d = 0; d < n_pairs; d++) {
-            largest = fmax(largest, fabs(side[k * n_pairs + d]));
-        }
-    }
-    int rank = largest > 0.0 ? 1 : 0;
-    if (n > 1 &&
-        largest >
-            0.0) { /* in most modes that leave anything open it is one, where LAPACK would take long */
-        DALCS_TRY(make_orthogonal(b, side, combination, &rank));
-    }
-    for (int k = 0; k < n; k++) {
-        if (k < rank) {
-            choose_in_pairs(b, k, side + k * n_pairs);
-        } else {
-            choose_in_all(b, k, combination + k * n, null_vectors);
+        if (k >= n_seen) {
+            choose_in_all(b, k, dalcs_least_norm_vector(&open, k));
         }
         balance_choice(b, k);
     }

@@ -4,9 +4,8 @@
  * has no memory, and as many. Where sources only read, blocks follow each other (partition.h). What one reads of another
  * follows, states included, and so the null vectors of the columns are those of the blocks by themselves. With the null vectors l of the rows and as many
  * conditions c y = g, S + l c' is regular, and what it makes of the right-hand sides and l g is the solution of S with
- * these conditions, states that read what is open included. The conditions are those of the least norm of the currents
- * of closed and of the voltages of open diodes: the limit of equal small on-resistances and equal small leaks. What is
- * open and no diode's has the least norm of all unknowns. */
+ * these conditions, states that read what is open included. The conditions are those of the least norm
+ * (least_norm.h): of the diodes, then the switches, then all unknowns. */
 #ifndef DALCS_STAGE_CHOICE_H
 #define DALCS_STAGE_CHOICE_H
 

@@ -1,9 +1,8 @@
 /* stage_singular.c - which equations of a mode follow from others, and what is chosen instead.
  *
  * Equations that follow are found among those without derivatives, in all columns; what is open among
- * the columns without memory, in all rows (dalcs_null_space). Least norm means that of the currents
- * of closed and the voltages of open diodes: the limit of equal small on-resistances and equal small
- * leaks. What is open and no diode's has the least norm of all unknowns. In both, those count that are open
+ * the columns without memory, in all rows (dalcs_null_space). Least norm is that of least_norm.h, for
+ * the diodes, then the switches, then all unknowns. In each, those count that are open
  * first: what later blocks read of them (partition.h) follows. */
 #include "stage_singular.h"
 
@@ -17,7 +16,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What a solution that is 0 on every right-hand side has in diodes. */
+/* What a solution that is 0 on every right-hand side has in pairs of one kind. */
 struct trace {
     int n;
     int *pair;
@@ -152,40 +151,49 @@ static int block_of(const struct search *s, int column) {
     return block[column < n_z ? s->system->n_x + column : n_equations + s->entry->on[column - n_z]];
 }
 
-/* Makes the traces orthogonal (Gram and Schmidt, twice), and those that vanish empty. */
-static enum dalcs_status find_traces(struct search *s) {
+/* Of solution k, what pairs of one kind have; orthogonal to what those before have (Gram and Schmidt, twice). Empty where
+ * it vanishes. */
+static enum dalcs_status find_trace(struct search *s, enum dalcs_pair_kind kind, int k) {
     int n_pairs = s->system->n_pairs;
+    double *vector = s->vector + k * s->n_columns;
+    for (int d = 0; d < n_pairs; d++) {
+        const struct dalcs_pair *pair = &s->system->pair[d];
+        bool counts = pair->kind == kind && !pair->is_left_out[dalcs_stage_is_on(s->entry, d)];
+        s->of_pair[d] = counts ? other_side(s, d, vector) : 0.0;
+    }
+    dalcs_partition_keep_first(s->plan->stages->block_of, s->system, s->of_pair);
+    double before = norm_of(s->of_pair, n_pairs);
+    for (int i = 0; i < 2 * k; i++) {
+        const struct trace *other = &s->trace[i % k];
+        double share = product(other, s->of_pair);
+        for (int e = 0; share != 0.0 && e < other->n; e++) {
+            s->of_pair[other->pair[e]] -= share * other->value[e];
+        }
+        for (int c = 0; share != 0.0 && c < s->n_columns; c++) {
+            vector[c] -= share * s->vector[i % k * s->n_columns + c];
+        }
+    }
+    double norm = norm_of(s->of_pair, n_pairs);
+    if (!(norm > dalcs_alike * before)) {
+        return DALCS_OK; /* what rounding left of it */
+    }
+    for (int d = 0; d < n_pairs; d++) {
+        s->of_pair[d] = fabs(s->of_pair[d]) > dalcs_alike * norm ? s->of_pair[d] / norm : 0.0;
+    }
+    for (int c = 0; c < s->n_columns; c++) {
+        vector[c] /= norm;
+    }
+    return keep_trace(s, &s->trace[k]);
+}
+
+/* What no diode sees of the solutions comes after what diodes see: a trace of one kind is 0 in the other, so that those of
+ * both are orthogonal. */
+static enum dalcs_status find_traces(struct search *s) {
     for (int k = 0; k < s->n_open; k++) {
-        double *vector = s->vector + k * s->n_columns;
-        for (int d = 0; d < n_pairs; d++) {
-            bool is_diode = s->system->pair[d].kind == DALCS_PAIR_DIODE;
-            bool is_on = dalcs_stage_is_on(s->entry, d);
-            bool counts = is_diode && !s->system->pair[d].is_left_out[is_on ? 1 : 0];
-            s->of_pair[d] = counts ? other_side(s, d, vector) : 0.0;
+        DALCS_TRY(find_trace(s, DALCS_PAIR_DIODE, k));
+        if (s->trace[k].n == 0) {
+            DALCS_TRY(find_trace(s, DALCS_PAIR_SWITCH, k));
         }
-        dalcs_partition_keep_first(s->plan->stages->block_of, s->system, s->of_pair);
-        double before = norm_of(s->of_pair, n_pairs);
-        for (int i = 0; i < 2 * k; i++) {
-            const struct trace *other = &s->trace[i % k];
-            double share = product(other, s->of_pair);
-            for (int e = 0; share != 0.0 && e < other->n; e++) {
-                s->of_pair[other->pair[e]] -= share * other->value[e];
-            }
-            for (int c = 0; share != 0.0 && c < s->n_columns; c++) {
-                vector[c] -= share * s->vector[i % k * s->n_columns + c];
-            }
-        }
-        double norm = norm_of(s->of_pair, n_pairs);
-        if (!(norm > dalcs_alike * before)) {
-            continue; /* what rounding left of it */
-        }
-        for (int d = 0; d < n_pairs; d++) {
-            s->of_pair[d] = fabs(s->of_pair[d]) > dalcs_alike * norm ? s->of_pair[d] / norm : 0.0;
-        }
-        for (int c = 0; c < s->n_columns; c++) {
-            vector[c] /= norm;
-        }
-        DALCS_TRY(keep_trace(s, &s->trace[k]));
     }
     return DALCS_OK;
 }
@@ -195,8 +203,8 @@ static enum dalcs_status put(struct search *s, int k, int column, double value) 
     return dalcs_triplets_add(&s->of_column, column, k, value);
 }
 
-/* The choice that is orthogonal to solution k in diodes. */
-static enum dalcs_status choose_in_diodes(struct search *s, int k) {
+/* The choice that is orthogonal to solution k in its pairs. */
+static enum dalcs_status choose_in_pairs(struct search *s, int k) {
     const struct dalcs_csr *C = &s->system->C;
     const struct trace *trace = &s->trace[k];
     int n_equations = dalcs_system_n_equations(s->system);
@@ -274,7 +282,7 @@ static enum dalcs_status fill(struct dalcs_stage_singular *g, struct search *s,
     }
     DALCS_TRY(find_traces(s));
     for (int k = 0; k < g->n; k++) {
-        DALCS_TRY(s->trace[k].n > 0 ? choose_in_diodes(s, k) : choose_in_all(s, k));
+        DALCS_TRY(s->trace[k].n > 0 ? choose_in_pairs(s, k) : choose_in_all(s, k));
     }
     int n_rows = dalcs_system_n_columns(s->system);
     DALCS_TRY(dalcs_csr_compress(&g->choice, g->n, n_rows, &s->choice));

@@ -4,7 +4,7 @@
  * equations follow from the others and some solutions are 0 on every right-hand side. For a passive
  * circuit the null spaces do not depend on the step: such a solution stores no energy, for y' (sigma P - A) y = 0,
  * so states have no part in it. Each equation that follows gives its row to an equation that makes
- * the choice of least norm: orthogonal, in diodes, to one of these solutions. */
+ * the choice of least norm (least_norm.h): orthogonal to one of these solutions. */
 #ifndef DALCS_STAGE_SINGULAR_H
 #define DALCS_STAGE_SINGULAR_H
 
