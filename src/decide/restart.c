@@ -5,10 +5,11 @@
  * the limit of vanishing steps, which for passive circuits is the projection in the energy norm
  * (Heemels, Schumacher and Weiland 1999; Brogliato 2022, sec. 4). */
 #include "restart.h"
+
 #include "magnitudes.h"
 #include "micro_steps.h"
 #include "present.h"
-#include "step_error.h"
+#include "seen_jump.h"
 #include "step_length.h"
 #include "take_jump.h"
 
@@ -48,147 +49,6 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
     return dalcs_micro_steps(r, part, h);
 }
 
-/* Is the exact jump of this state known? What sources that read act on jumps by more than problems without time tell. */
-static bool is_told(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int x) {
-    const struct dalcs_euler *e = r->base;
-    return e->jump.is_known || (e->jump.is_first && !e->jumps.is_driven[part->index][x]);
-}
-
-/* Does the exact jump, where it is known, move a state by more than the error that the state of an event has? */
-static bool is_noticeable(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    const struct dalcs_system *s = part->component->system;
-    const double *after = r->base->jump.after;
-    double smallest = dalcs_micro_noticeable(part);
-    bool noticeable = false;
-    for (int x = 0; x < s->n_x && !noticeable; x++) {
-        double scale = fmax(part->scales.unit[s->column_is_current[x]],
-                            fmax(fabs(part->x[x]), fabs(after[x])));
-        noticeable = is_told(r, part, x) && fabs(after[x] - part->x[x]) > smallest * scale;
-    }
-    return noticeable;
-}
-
-static enum dalcs_status find_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
-    const struct dalcs_system *s = part->component->system;
-    dalcs_micro_impulses(r, part, h);
-    memcpy(part->work.u, part->x, (size_t)s->n_x * sizeof(double));
-    dalcs_excitation_inputs(&part->excitation, part->segment.t, 0.0, part->work.u + s->n_x);
-    return dalcs_euler_find_jump(r->base, part->index, part->work.u);
-}
-
-/* part->work.after becomes the limit of what micro-steps of length h and h/2 see, `whole` of the former. Returns what may be
- * left of it, over what is allowed: it is of second order, the square of what they differ by over the jump, and 1 is the
- * tolerance of its scale. A small change that is no jump differs by half of itself. */
-static double extrapolate_lengths(const struct dalcs_radau_part *part, const double *whole) {
-    double *after = part->work.after;
-    double left = 0.0;
-    for (int x = 0; x < part->component->system->n_x; x++) {
-        double most = part->inner_tolerance * fmax(dalcs_step_scale(part, x, part->scales.unit),
-                                                   fmax(fabs(part->x[x]), fabs(after[x])));
-        double differ = after[x] - whole[x];
-        after[x] += differ;
-        double allowed = most * fmax(fabs(after[x] - part->x[x]), most);
-        left = differ != 0.0 ? fmax(left, differ * differ / allowed) : left;
-    }
-    return left;
-}
-
-/* Of micro-steps of length h and h/2, with the sources as they are just behind the instant; where what acts has jumped
- * before, with sources that go on: what reads may read the current that they move through a capacitor. */
-static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                                  bool *is_seen, double *left) {
-    double *whole = r->base->after;
-    double goes_on = r->base->jump.is_first ? 1.0 : 0.0;
-    bool noticeable;
-    double closer;
-    DALCS_TRY(dalcs_micro_pair(r, part, h, goes_on * h));
-    (void)dalcs_micro_extrapolate(part, whole, &noticeable, &closer);
-    h *= 0.5;
-    DALCS_TRY(dalcs_micro_pair(r, part, h, goes_on * h));
-    *is_seen = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
-    *left = extrapolate_lengths(part, whole);
-    return DALCS_OK;
-}
-
-/* The same from ever shorter ones, until they tell the jump; or else of the length *h that tells it best: what they see is
- * off by what moves meanwhile, and the shorter they are by what rounding of currents makes of coils, L eps i / h. */
-static enum dalcs_status find_limit(struct dalcs_radau *r, struct dalcs_radau_part *part, double *h,
-                                    bool *is_seen, bool *is_near) {
-    double left = INFINITY;
-    double least = INFINITY;
-    double length = *h;
-    enum dalcs_status status = see_jump(r, part, length, is_seen, &left);
-    const enum dalcs_status first = status;
-    while (status == DALCS_OK && left > 1.0 &&
-           dalcs_micro_shorter * length >= dalcs_length_shortest(r)) {
-        *h = left < least ? length : *h;
-        least = fmin(left, least);
-        length *= dalcs_micro_shorter;
-        status = see_jump(r, part, length, is_seen, &left);
-    }
-    if (status == DALCS_OK && left < least) {
-        *h = length;
-    } else if (status >= DALCS_OK && first == DALCS_OK && *h != length) {
-        status = see_jump(r, part, *h, is_seen, &left);
-    }
-    *is_near = status == DALCS_OK && left <= 1.0;
-    return status;
-}
-
-/* Puts states that nothing which reads acts on where they jump to, as far as that is known. */
-static void move_first(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    for (int x = 0; r->base->jump.is_first && x < part->component->system->n_x; x++) {
-        part->x[x] = is_told(r, part, x) ? r->base->jump.after[x] : part->x[x];
-    }
-}
-
-/* The limit where sources that read act on states. What jumps without them drives impulses, which they may read: what
- * they act on jumps by the area where it adds it up. Where it keeps the peak there is no limit; and where what moves is
- * an event's error, its impulse is none. Then the others are where they jump to before, and what is read is finite. */
-static enum dalcs_status find_read_limit(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                         double *h, bool *is_seen) {
-    struct dalcs_osnsp *p = &part->component->osnsp;
-    const size_t bytes = (size_t)p->n_words * sizeof(uint64_t);
-    bool is_near = false;
-    if (r->base->jump.is_first && is_noticeable(r, part)) {
-        const double longest = *h;
-        memcpy(part->work.mode_before, p->mode, bytes);
-        enum dalcs_status status = find_limit(r, part, h, is_seen, &is_near);
-        if (status < DALCS_OK || (status == DALCS_OK && is_near)) {
-            return status;
-        }
-        *h = longest;
-        memcpy(p->mode, part->work.mode_before, bytes);
-    }
-    move_first(r, part);
-    return find_limit(r, part, h, is_seen, &is_near);
-}
-
-/* A jump that no problem without time tells is the limit of vanishing micro-steps (Heemels, Schumacher and Weiland 1999,
- * thm 4.1), with the sources as they are just behind it: where they fall at once, the state would follow them for a
- * while only. */
-static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                        double h) {
-    const size_t bytes = (size_t)part->component->system->n_x * sizeof(double);
-    bool is_seen;
-    double last = h;
-    memcpy(part->work.before, part->x, bytes);
-    enum dalcs_status status = find_read_limit(r, part, &last, &is_seen);
-    memcpy(part->x, part->work.before, bytes);
-    if (status == DALCS_OK && !is_seen && !r->base->jump.is_first) { /* it was a fast transient */
-        return dalcs_micro_steps(r, part, last);
-    }
-    if (status == DALCS_OK && (is_seen || r->base->jump.is_first)) {
-        DALCS_TRY(find_jump(r, part, 0.5 * last));
-    }
-    DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-    move_first(r, part);
-    status = dalcs_micro_steps(r, part, h); /* for the mode */
-    memcpy(part->x, part->work.before, bytes);
-    DALCS_TRY(status);
-    return dalcs_take_jump(r, part, h);
-}
-
 /* Are both micro-steps in one mode, and does it allow every state? Then none jumps, for a jump is the projection onto
  * what the mode allows (Heemels, Schumacher and Weiland 1999, sec. 4): what moves is faster than the micro-steps are. */
 static enum dalcs_status find_freedom(struct dalcs_radau_part *part, bool *is_free) {
@@ -226,15 +86,15 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         DALCS_TRY(check_limit(r, part, h));
     }
     while (moves && noticeable) {
-        DALCS_TRY(find_jump(r, part, h));
+        DALCS_TRY(dalcs_find_jump(r, part, h));
         if (!e->jump.is_covered) {
-            return take_seen_jump(r, part, h);
+            return dalcs_take_seen_jump(r, part, h);
         }
         bool is_last = dalcs_micro_shorter * h < dalcs_length_shortest(r);
         bool is_whole = e->jump.is_known ? dalcs_jumps_agree(s, part->x, part->work.after,
                                                              part->work.y1, e->jump.after)
                                          : is_last;
-        if (is_whole || (e->jump.is_known && is_noticeable(r, part))) {
+        if (is_whole || (e->jump.is_known && dalcs_jump_is_noticeable(r, part))) {
             DALCS_TRY(dalcs_take_jump(r, part, h));
         }
         if (is_whole) {

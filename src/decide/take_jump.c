@@ -11,6 +11,33 @@
 #include <math.h>
 #include <string.h>
 
+bool dalcs_jump_is_told(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int x) {
+    const struct dalcs_euler *e = r->base;
+    return e->jump.is_known || (e->jump.is_first && !e->jumps.is_driven[part->index][x]);
+}
+
+bool dalcs_jump_is_noticeable(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const double *after = r->base->jump.after;
+    double smallest = dalcs_micro_noticeable(part);
+    bool noticeable = false;
+    for (int x = 0; x < s->n_x && !noticeable; x++) {
+        double scale = fmax(part->scales.unit[s->column_is_current[x]],
+                            fmax(fabs(part->x[x]), fabs(after[x])));
+        noticeable =
+            dalcs_jump_is_told(r, part, x) && fabs(after[x] - part->x[x]) > smallest * scale;
+    }
+    return noticeable;
+}
+
+enum dalcs_status dalcs_find_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
+    const struct dalcs_system *s = part->component->system;
+    dalcs_micro_impulses(r, part, h);
+    memcpy(part->work.u, part->x, (size_t)s->n_x * sizeof(double));
+    dalcs_excitation_inputs(&part->excitation, part->segment.t, 0.0, part->work.u + s->n_x);
+    return dalcs_euler_find_jump(r->base, part->index, part->work.u);
+}
+
 /* The change of each state that is not worth a word: what is left of it where it falls to 0, over its own scale, or
  * rounding. */
 static void find_noise(const struct dalcs_radau_part *part, const double *after, double *noise) {
