@@ -151,6 +151,28 @@ static void read_passive(struct dalcs_reader *reader, struct dalcs_model *model)
     }
 }
 
+/* What closes the bracket; false after an error. */
+static bool take_close(struct dalcs_reader *reader, const struct dalcs_token *open) {
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
+    if (dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        return true;
+    }
+    if (next == NULL && open->text[0] == '(') { /* SPICE takes those of a model for blanks */
+        dalcs_builder_warn(reader->builder, open, "end the card with ')'",
+                           "this parenthesis is never closed: the model ends with its card");
+        return true;
+    }
+    if (next == NULL) {
+        dalcs_builder_error(reader->builder, open, NULL, "this bracket is never closed");
+    } else if (next->kind == DALCS_TOKEN_WORD) {
+        dalcs_builder_error(reader->builder, next, reader->usage,
+                            "'%s' is not of the form parameter=value", next->text);
+    } else {
+        dalcs_reader_unexpected(reader);
+    }
+    return false;
+}
+
 /* Reads the parameters of a D or SW into the circuit; false when an error was reported. */
 static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *model) {
     struct dalcs_circuit *circuit = reader->builder->circuit;
@@ -188,19 +210,7 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
     if (!ok) {
         return false;
     }
-    if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
-        if (dalcs_reader_at_end(reader)) {
-            dalcs_builder_error(reader->builder, open, NULL, "this parenthesis is never closed");
-        } else if (dalcs_reader_peek(reader, 0)->kind == DALCS_TOKEN_WORD) {
-            dalcs_builder_error(reader->builder, dalcs_reader_peek(reader, 0), reader->usage,
-                                "'%s' is not of the form parameter=value",
-                                dalcs_reader_peek(reader, 0)->text);
-        } else {
-            dalcs_reader_unexpected(reader);
-        }
-        return false;
-    }
-    return dalcs_reader_end(reader);
+    return (!opened || take_close(reader, open)) && dalcs_reader_end(reader);
 }
 
 /* What people call a part, and how SPICE calls its model. */

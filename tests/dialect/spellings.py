@@ -245,6 +245,8 @@ MODELS = [
         ".model d D {Ron=500\n+ Vfwd=0.5}",
         ".model d D {Ron=500, Vfwd=0.5 }",
         ".MODEL D d{ROFF=inf RON=500 VFWD=0.5}",
+        ".model d D(Ron=500 Vfwd=0.5",
+        ".model d D ( Vfwd=0.5\n+ Ron=500",
     ], [(".model d D {Ron=500 Vfwd=0.5", "never closed")]),
     Kind("blanks of a model", MODEL_D, ".model d D(Ron=500 Vfwd=0.5)", "v(b)", ON, [
         ".model d D( RON 500 VFWD 0.5 )",
@@ -684,6 +686,9 @@ NOTED = [
     ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.lib /home/me/my lib (2)/cmp/Standard.BJT\n", "is left out"),
     ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.lib standard.cap\n", "is left out"),
     ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.include C:\\LTC\\cmp\\standard.jft\n", "is left out"),
+    ("an open model", "V1 a 0 1\nD1 a b d\nR1 b 0 1\n.model d D(Ron=1\n.op\n", "the model ends with its card"),
+    ("a sound file", "V1 a 0 1\nR1 a 0 1\n.tran 1m\n.wave out.wav 16 44100 v(a)\n", "(.wave) are not written"),
+    ("a sound file", "V1 a 0 1\nR1 a 0 1\n.op\n.wave \"c:\\my sounds\\o.wav\" 8 8k v(a) v(a)\n", "(.wave) are not written"),
 ]
 
 
