@@ -37,6 +37,7 @@ struct dalcs_model {
     bool was_refused; /* an element names it, where another kind is wanted */
     const struct dalcs_token *name;
     const struct dalcs_token *type;
+    const struct dalcs_card *card;
     struct dalcs_diode_card diode;
     const struct dalcs_thyristor *thyristor;
     const struct dalcs_block *block;

@@ -227,6 +227,28 @@ static const char *hint_of_type(struct dalcs_builder *builder, const char *word)
     return USAGE;
 }
 
+static bool is_same_card(const struct dalcs_card *a, const struct dalcs_card *b) {
+    bool same = a->n == b->n;
+    for (int k = 0; k < a->n && same; k++) {
+        same = strcmp(a->token[k].text, b->token[k].text) == 0;
+    }
+    return same;
+}
+
+/* A model of the same name: one that says the same, as where two parts bring their models along, does no harm. */
+static void report_second(struct dalcs_builder *builder, const struct dalcs_model *first,
+                          const struct dalcs_card *card) {
+    const struct dalcs_token *name = &card->token[1];
+    if (is_same_card(first->card, card)) {
+        dalcs_builder_note(builder, name, NULL, "this model '%s' is the one at %s once more",
+                           name->text, dalcs_builder_place(builder, first->name));
+    } else {
+        dalcs_builder_error(builder, name, "give it another name",
+                            "there are two models '%s', the first at %s", name->text,
+                            dalcs_builder_place(builder, first->name));
+    }
+}
+
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *name;
@@ -236,14 +258,13 @@ void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     }
     const int first = dalcs_names_find(&builder->models, name->text);
     if (first >= 0) {
-        dalcs_builder_error(builder, name, "give it another name",
-                            "there are two models '%s', the first at %s", name->text,
-                            dalcs_builder_place(builder, builder->model[first].name));
+        report_second(builder, &builder->model[first], card);
         return;
     }
     struct dalcs_model *model = &builder->model[builder->n_models];
     model->kind = DALCS_MODEL_WRONG;
     model->name = name;
+    model->card = card;
     if (dalcs_names_add(&builder->models, name->text, builder->n_models) != DALCS_OK) {
         builder->out_of_memory = true;
         return;

@@ -688,6 +688,8 @@ NOTED = [
     ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.include C:\\LTC\\cmp\\standard.jft\n", "is left out"),
     ("an integral", "V1 a 0 1\nB1 b 0 V=idt(v(a)-2*v(b))\nR1 b 0 1k\n.op\n", "without a .tran an integral is at rest"),
     ("an integral", "V1 a 0 1\nB1 b 0 V=idt(v(a)-2*v(b))\nR1 b 0 1k\n.ic v(b)=1\n.op\n", ".ic v(...) counts only for .tran"),
+    ("a model twice", "V1 a 0 1\nD1 a b d\nR1 b 0 1\n.model d D(Ron=1 Vfwd={0.1*2})\n.model d  d(ron=1 vfwd={0.1*2}) ; again\n.op\n",
+     "this model 'd' is the one at"),
     ("an open model", "V1 a 0 1\nD1 a b d\nR1 b 0 1\n.model d D(Ron=1\n.op\n", "the model ends with its card"),
     ("a sound file", "V1 a 0 1\nR1 a 0 1\n.tran 1m\n.wave out.wav 16 44100 v(a)\n", "(.wave) are not written"),
     ("a sound file", "V1 a 0 1\nR1 a 0 1\n.op\n.wave \"c:\\my sounds\\o.wav\" 8 8k v(a) v(a)\n", "(.wave) are not written"),
