@@ -248,6 +248,26 @@ MODELS = [
         ".model d D(Ron=500 Vfwd=0.5",
         ".model d D ( Vfwd=0.5\n+ Ron=500",
     ], [(".model d D {Ron=500 Vfwd=0.5", "never closed")]),
+    Kind("a list of a code model", """
+V1 a 0 1
+V2 b 0 2
+.param kp=2
+A1 [a b] o su
+R1 o 0 1k
+@
+.tran 1u 10u
+""", ".model su summer(in_gain=[2 1])", "v(o)", 4, [
+        ".model su summer(in_gain=[{kp} 1.0])",
+        ".model su summer(in_gain=[{kp} {kp/2}])",
+        ".model su summer(in_gain=[2 {kp-1}])",
+        ".model su summer(in_gain=[{ kp } 1 ])",
+        ".model su summer(in_gain=[ {kp} 1 ])",
+        ".model su summer(in_gain = ['kp' '1'])",
+        ".model su summer(in_gain=['2*kp-2' 1])",
+        ".model su summer(in_gain=[{kp}\n+ 1])",
+        ".model su summer(in_gain=[{kp/2} {kp/4}] out_gain={kp})",
+        ".model su summer in_gain=[{kp} 1]",
+    ], [(".model su summer(in_gain=[{kp} 1", "a value is missing")]),
     Kind("blanks of a model", MODEL_D, ".model d D(Ron=500 Vfwd=0.5)", "v(b)", ON, [
         ".model d D( RON 500 VFWD 0.5 )",
         ".model d D(Ron 500 Vfwd 0.5)",
