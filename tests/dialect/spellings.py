@@ -115,6 +115,8 @@ ELEMENTS = [
         "R1 a b noiseless R=1k",
         "R1 a b R=1k noiseless",
         "R1 a b 1k noiseless tol=1",
+        "R1 a b 1k noiseless=True",
+        "R1 a b 1k noiseless = 1 tol=1",
         "R1 a b 1k tol=1 noiseless",
         "R1 a b 1k tc=1m noiseless",
         "R1 a b {1k} noiseless",
