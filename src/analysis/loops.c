@@ -6,6 +6,7 @@
  * to its tail through the others. */
 #include "branch_graph.h"
 #include "freedom.h"
+#include "names.h"
 
 #include <math.h>
 
@@ -163,6 +164,57 @@ static bool is_shunted_switch(const struct dalcs_view *view, int n, const int *p
            dalcs_view_are_parallel(view, n, part);
 }
 
+/* A thyristor is a switch behind a valve, an inner diode: where its end is, if the two are alone at a node; else -1.
+ * *end: the switch's terminal there. */
+static int behind_valve(const struct dalcs_view *view, const struct dalcs_freedom *valve,
+                        const struct dalcs_freedom *f, int *end) {
+    for (int k = 0; k < 4 && f->device >= 0; k++) {
+        const int node = valve->node[k / 2];
+        if (view->u->circuit->device[f->device].kind == DALCS_SWITCH && f->node[k % 2] == node &&
+            dalcs_names_is_inner(view->u->circuit->node_name[node])) {
+            *end = k % 2;
+            return valve->node[1 - k / 2];
+        }
+    }
+    return -1;
+}
+
+/* Takes valves out of part[0..n-1]: their switches reach to the end of both until unfold_valves(). Returns how many
+ * are left; those taken out follow them. */
+static int fold_valves(struct dalcs_view *view, int n, int *part) {
+    int left = n;
+    for (int e = 0; e < left; e++) {
+        struct dalcs_freedom *valve = &view->freedom[part[e]];
+        int end;
+        int node = -1;
+        for (int i = 0; i < n && node < 0 && valve->is_diode && dalcs_names_is_inner(valve->name);
+             i++) {
+            struct dalcs_freedom *f = &view->freedom[part[i]];
+            node = behind_valve(view, valve, f, &end);
+            if (node >= 0) {
+                f->node[end] = node;
+            }
+        }
+        if (node >= 0) {
+            const int taken = part[e];
+            part[e--] = part[--left];
+            part[left] = taken;
+        }
+    }
+    return left;
+}
+
+static void unfold_valves(struct dalcs_view *view, int n, const int *part) {
+    for (int e = 0; e < n; e++) {
+        struct dalcs_freedom *f = &view->freedom[part[e]];
+        const struct dalcs_device *d = f->device >= 0 ? &view->u->circuit->device[f->device] : NULL;
+        if (d != NULL && d->kind == DALCS_SWITCH) {
+            f->node[0] = d->node[0];
+            f->node[1] = d->node[1];
+        }
+    }
+}
+
 static enum dalcs_status tell_block(struct loops *l, int k) {
     struct dalcs_view *view = l->view;
     int n = l->start[k + 1] - l->start[k];
@@ -182,8 +234,10 @@ static enum dalcs_status tell_block(struct loops *l, int k) {
     }
     for (int e = 0; e < n; e++) { /* of the graph's branches to the view's */
         part[e] = l->freedom[part[e]];
-        const struct dalcs_freedom *f = &view->freedom[part[e]];
-        dalcs_view_place(f, &finding);
+    }
+    const int left = l->has_coils[k] ? n : fold_valves(view, n, part);
+    for (int e = 0; e < left; e++) {
+        dalcs_view_place(&view->freedom[part[e]], &finding);
     }
     if (l->has_coils[k]) {
         DALCS_TRY(dalcs_coils_intervals(view, n, part, finding.n_signals, finding.signal,
@@ -198,8 +252,10 @@ static enum dalcs_status tell_block(struct loops *l, int k) {
         }
     }
     finding.n_signals = n_open;
-    finding.kind = is_shunted_switch(view, n, part) ? DALCS_SHUNTED_SWITCHES : DALCS_OPEN_CURRENTS;
-    finding.because = n_open > 0 ? dalcs_words_for_loop(view, n, part) : "";
+    finding.kind =
+        is_shunted_switch(view, left, part) ? DALCS_SHUNTED_SWITCHES : DALCS_OPEN_CURRENTS;
+    finding.because = n_open > 0 ? dalcs_words_for_loop(view, left, part) : "";
+    unfold_valves(view, left, part);
     return dalcs_view_tell(view, &finding);
 }
 

@@ -193,6 +193,11 @@ const char *dalcs_names_nearest_of(const char *const *candidate, size_t n, const
     return nearest.name;
 }
 
+bool dalcs_names_is_inner(const char *name) {
+    const char *open = strchr(name, '(');
+    return open != NULL && (open == name || open[-1] != '-');
+}
+
 size_t dalcs_names_current_of(const char *text) {
     const char *bracket = text[0] == '@' ? strchr(text, '[') : NULL;
     const bool is_current =

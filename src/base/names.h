@@ -39,6 +39,9 @@ const char *dalcs_names_nearest_of(const char *const *candidate, size_t n, const
  * where `text` is something else. The name begins at text + 1. */
 size_t dalcs_names_current_of(const char *text);
 
+/* Is it the name of an element or node that nobody has written, such as "rser(c1)"? KiCad's "net-(d1-k)" a person gave. */
+bool dalcs_names_is_inner(const char *name);
+
 /* "a, b, c": the names in order of insertion, in `arena`; NULL when the table is empty, has more
  * than `most` names, or memory runs out. */
 const char *dalcs_names_join(const struct dalcs_names *names, size_t most,

@@ -4,6 +4,7 @@
  *     Aname frequency amplitude 0 0 0 cos sin com MODULATE mark=hertz space=hertz [Vhigh=1 Vlow=-1]
  *
  * A varistor is two ideal diodes, each before a source of the voltage that it breaks down at. */
+#include "logic_parts.h"
 #include "oscillator.h"
 
 #include <math.h>
@@ -44,45 +45,10 @@ static bool read_pins(struct dalcs_reader *reader, int *node) {
 }
 
 /* And its parameters; false: an error was reported. */
-static bool read_card(struct dalcs_reader *reader, int *node, struct dalcs_parameter *p, int n) {
-    static const char *const without_effect[] = {"tripdt", "tripdv", "ttol", "temp"};
-
-    enum { N_WITHOUT = sizeof without_effect / sizeof without_effect[0] };
-    struct dalcs_builder *builder = reader->builder;
-    if (!read_pins(reader, node)) {
-        return false;
-    }
-    while (!dalcs_reader_at_end(reader)) {
-        const struct dalcs_token *parameter = dalcs_reader_take_parameter(reader);
-        if (parameter == NULL) {
-            dalcs_reader_unexpected(reader);
-            return false;
-        }
-        int k = 0;
-        while (k < n && strcmp(parameter->text, p[k].name) != 0) {
-            k++;
-        }
-        if (k == n && dalcs_builder_is_one_of(parameter->text, without_effect, N_WITHOUT)) {
-            if (!dalcs_reader_skip_value(reader)) {
-                return false;
-            }
-            continue;
-        }
-        if (k == n) {
-            dalcs_builder_error(builder, parameter, reader->usage,
-                                "there is no parameter '%s' here", parameter->text);
-            return false;
-        }
-        p[k].place = parameter;
-        if (!dalcs_reader_number(reader, p[k].quantity, "a value", &p[k].value)) {
-            return false;
-        }
-        if (!(p[k].value >= 0) && p[k].quantity != DALCS_VOLTAGE) {
-            dalcs_builder_error(builder, parameter, NULL, "'%s' cannot be negative", p[k].name);
-            return false;
-        }
-    }
-    return true;
+static bool read_card(struct dalcs_reader *reader, int *node,
+                      const struct dalcs_logic_parameters *parameters) {
+    return read_pins(reader, node) && dalcs_logic_read_parameters(reader, parameters) &&
+           dalcs_logic_check_signs(reader, parameters);
 }
 
 /* ---- VARISTOR --------------------------------------------------------------------------------------------------- */
@@ -115,7 +81,7 @@ static void parse_varistor(struct dalcs_builder *builder, const struct dalcs_car
         "pins 3 to 6 tied to pin 8");
     struct dalcs_parameter p = {"rclamp", DALCS_OHM, false, 1, NULL};
     int node[N_PINS];
-    if (!read_card(&reader, node, &p, 1)) {
+    if (!read_card(&reader, node, &(struct dalcs_logic_parameters){"a varistor", &p, 1, false})) {
         return;
     }
     struct dalcs_block_end control = {.node = node[0], .reference = node[1]};
@@ -213,7 +179,8 @@ static void parse_modulator(struct dalcs_builder *builder, const struct dalcs_ca
                                                 [HIGH] = {"vhigh", DALCS_VOLTAGE, false, 1, NULL},
                                                 [LOW] = {"vlow", DALCS_VOLTAGE, false, -1, NULL}};
     int node[N_PINS];
-    if (!read_card(&reader, node, p, N_OF_MODULATOR)) {
+    if (!read_card(&reader, node,
+                   &(struct dalcs_logic_parameters){"a modulator", p, N_OF_MODULATOR, false})) {
         return;
     }
     if (p[MARK].place == NULL || p[SPACE].place == NULL) {

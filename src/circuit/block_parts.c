@@ -37,13 +37,17 @@ bool dalcs_block_add_constant(const struct dalcs_block_card *c, enum dalcs_devic
 /* LTspice's models of amplifiers write this for none. */
 static const double no_limit = 1e30;
 
+bool dalcs_block_is_level(double level) {
+    return fabs(level) <= no_limit;
+}
+
 /* Its forward voltage is the level, or there is a source where that lies on the other side of 0. */
 bool dalcs_block_add_clamp(const struct dalcs_block_card *c, const int *node,
                            const struct dalcs_block_clamp *clamp) {
     struct dalcs_circuit *circuit = c->builder->circuit;
     const char *what = clamp->is_upper ? "upper" : "lower";
     const bool is_behind = clamp->is_upper ? clamp->level < 0 : clamp->level > 0;
-    if (fabs(clamp->level) > no_limit) {
+    if (!dalcs_block_is_level(clamp->level)) {
         return true;
     }
     const int end =

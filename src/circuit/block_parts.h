@@ -23,6 +23,8 @@ struct dalcs_block_clamp {
     double ohms;
 };
 
+/* Is it a level, or a number so large that it says there is none? */
+bool dalcs_block_is_level(double level);
 /* An ideal diode that conducts where node[0] is beyond a level against node[1]; a level of 1e30 V and more is none. */
 bool dalcs_block_add_clamp(const struct dalcs_block_card *c, const int *node,
                            const struct dalcs_block_clamp *clamp);

@@ -221,12 +221,6 @@ int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
                     element);
 }
 
-/* "rser(c1)"; KiCad's "net-(d1-k)" is a name that a person gave. */
-bool dalcs_builder_is_inner(const char *name) {
-    const char *open = strchr(name, '(');
-    return open != NULL && (open == name || open[-1] != '-');
-}
-
 /* x1:n1 as x1.n1, in scratch; NULL when out of memory. */
 static char *with_dots(struct dalcs_builder *builder, const char *name) {
     char *copy = dalcs_arena_copy(&builder->scratch, name, strlen(name));

@@ -37,6 +37,7 @@ struct dalcs_model {
     bool was_refused; /* an element names it, where another kind is wanted */
     const struct dalcs_token *name;
     const struct dalcs_token *type;
+    const struct dalcs_card *card;
     struct dalcs_diode_card diode;
     const struct dalcs_thyristor *thyristor;
     const struct dalcs_block *block;
@@ -246,8 +247,6 @@ bool dalcs_builder_reserve_devices(struct dalcs_builder *builder, size_t n);
 bool dalcs_builder_add_terminal(struct dalcs_builder *builder, const struct dalcs_token *element,
                                 struct dalcs_device *device);
 
-/* Was this name made by one of these? */
-bool dalcs_builder_is_inner(const char *name);
 /* The first letter of an element's name in its own subcircuit, lower case. */
 char dalcs_builder_letter(const struct dalcs_token *name);
 

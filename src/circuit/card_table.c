@@ -69,7 +69,6 @@ static const struct dot_card DOT_CARDS[] = {
     {".data", DALCS_CARD_NONE, "tables of parameters",
      "write .step param name list value value ...", NOTHING, ".enddata"},
     {".enddata", DALCS_CARD_NONE, "tables of parameters", NULL, NOTHING, NULL},
-    {".wave", DALCS_CARD_NONE, "sound files", NULL, NOTHING, NULL},
     {".distribution", DALCS_CARD_NONE, "distributions by tables",
      "write table(rand(), 0, smallest, ..., 1, largest) in a .param", NOTHING, NULL},
     {".sampling", DALCS_CARD_NONE, "Xyce's samplings",
@@ -86,6 +85,9 @@ static const char *const IGNORED[] = {".temp",       ".width",  ".prot", ".unpro
 
 /* What is computed from an .ac besides its signals. */
 static const char NETWORK_PARAMETERS[] = ".net";
+
+/* LTspice's sound files, an output beside others. */
+static const char SOUND[] = ".wave";
 
 /* Analyses that this simulator will not have. */
 static const char *const NEVER[] = {".noise", ".pz",      ".disto", ".tf",    ".sp",
@@ -195,6 +197,9 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
     } else if (strcmp(name->text, NETWORK_PARAMETERS) == 0) {
         dalcs_builder_warn(builder, name, "v(out)/i(v1) of an .ac is an impedance",
                            "network parameters (.net) are not computed: the card is left out");
+    } else if (strcmp(name->text, SOUND) == 0) {
+        dalcs_builder_warn(builder, name, "-o file.csv has the waveforms",
+                           "sound files (.wave) are not written: the card is left out");
     } else if (dalcs_builder_is_one_of(name->text, NEVER, sizeof NEVER / sizeof NEVER[0])) {
         dalcs_builder_error(builder, name, "use .tran, .op, .dc or .ac",
                             "%s is not an analysis of ideal-diode circuits", name->text);

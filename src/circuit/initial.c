@@ -166,6 +166,23 @@ void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dal
                        ".nodeset has no effect: an operating point is computed without a guess");
 }
 
+/* Voltages that .ic names, and integrals, which a .tran begins at their first values. */
+static void tell_not_held(struct dalcs_builder *builder) {
+    bool told[2] = {false, false};
+    for (size_t k = 0; k < builder->n_initial_conditions; k++) {
+        const struct dalcs_initial_condition *ic = &builder->initial_condition[k];
+        const bool is_integral = dalcs_names_is_inner(builder->node_name[ic->node[0]]);
+        if (!told[is_integral]) {
+            dalcs_diag_add(builder->diag, DALCS_NOTE, &ic->where,
+                           is_integral ? "with a .tran it begins at its first value" : NULL, "%s",
+                           is_integral ? "without a .tran an integral is at rest: what is "
+                                         "integrated is 0, and the circuit decides its value"
+                                       : ".ic v(...) counts only for .tran; .op does not hold it");
+        }
+        told[is_integral] = true;
+    }
+}
+
 void dalcs_initial_check(struct dalcs_builder *builder) {
     const struct dalcs_transient *transient = &builder->circuit->transient;
     if ((transient->present && transient->use_initial_conditions) ||
@@ -178,8 +195,7 @@ void dalcs_initial_check(struct dalcs_builder *builder) {
                            "IC= and .ic i(...) count only with 'uic' on .tran; the states here are "
                            "those of the operating point");
     }
-    if (!transient->present && builder->n_initial_conditions > 0) {
-        dalcs_diag_add(builder->diag, DALCS_NOTE, &builder->initial_condition[0].where, NULL,
-                       ".ic v(...) counts only for .tran; .op does not hold it");
+    if (!transient->present) {
+        tell_not_held(builder);
     }
 }

@@ -3,6 +3,7 @@
  *     Aname in1 in2 in3 in4 in5 qbar q com FUNCTION [Vhigh=1 Vlow=0 Ref=middle Td=0 Trise=0 Tfall=Trise Vt=0 Vh=0 ...]
  *
  * A pin that is tied to com is not there. */
+#include "block_parts.h"
 #include "logic_parts.h"
 
 #include <math.h>
@@ -47,6 +48,7 @@ struct card {
     struct dalcs_logic_card *of;
     int node[N_PINS];
     bool is_schmitt;
+    double lower, upper; /* V, of a sample */
     struct dalcs_parameter p[N_PARAMETERS];
 };
 
@@ -84,46 +86,33 @@ static bool find_kind(struct dalcs_builder *builder, struct card *c) {
     return true;
 }
 
-/* Vhigh and Vlow are levels of all but samples, which have a limit there, and no time passes in those. */
+/* Vhigh and Vlow are levels of all but samples, whose input they limit; no time passes in those. */
 static bool has_parameter(const struct card *c, int k) {
     const bool is_sample = c->function->kind == DALCS_GATE_SAMPLE;
     const bool is_special = k == VT || k == VH || k == CYCLES || k == DUTY;
     return is_special ? (c->function->wants >> k & 1U) != 0
-                      : !is_sample || k == REF || k == ROUT || k == COUT || k == TAU || k == IC;
+                      : !is_sample || k <= REF || k == ROUT || k == COUT || k == TAU || k == IC;
 }
 
 static bool read_parameters(struct dalcs_reader *reader, struct card *c) {
-    static const char *const without_effect[] = {"tripdt", "ttol", "temp"};
-    struct dalcs_builder *builder = reader->builder;
-    while (!dalcs_reader_at_end(reader)) {
-        const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
-        if (name == NULL) {
-            dalcs_reader_unexpected(reader);
-            return false;
-        }
-        int k = 0;
-        while (k < N_PARAMETERS &&
-               (strcmp(name->text, c->p[k].name) != 0 || !has_parameter(c, k))) {
-            k++;
-        }
-        if (k == N_PARAMETERS) {
-            if (dalcs_builder_is_one_of(name->text, without_effect, 3)) {
-                if (!dalcs_reader_skip_value(reader)) {
-                    return false;
-                }
-                continue;
-            }
-            dalcs_builder_error(
-                builder, name, USAGE, "%s has no parameter '%s' here",
-                c->function->kind >= DALCS_GATE_COUNTER ? c->function->name : "a gate", name->text);
-            return false;
-        }
-        c->p[k].place = name;
-        if (!dalcs_reader_number(reader, c->p[k].quantity, "a value", &c->p[k].value)) {
-            return false;
-        }
+    const struct dalcs_logic_parameters parameters = {
+        c->function->kind >= DALCS_GATE_COUNTER ? c->function->name : "a gate", c->p, N_PARAMETERS,
+        false};
+    for (int k = 0; k < N_PARAMETERS; k++) {
+        c->p[k].name = has_parameter(c, k) ? c->p[k].name : NULL;
     }
-    return true;
+    return dalcs_logic_read_parameters(reader, &parameters);
+}
+
+/* Of a sample Vhigh and Vlow bound what it takes, and say nothing of its clock: Ref stays where it is without them. */
+static void take_limits(struct card *c) {
+    struct dalcs_parameter *high = &c->p[VHIGH];
+    struct dalcs_parameter *low = &c->p[VLOW];
+    const bool is_sample = c->function->kind == DALCS_GATE_SAMPLE;
+    c->upper = is_sample && high->place != NULL ? high->value : (double)INFINITY;
+    c->lower = is_sample && low->place != NULL ? low->value : -(double)INFINITY;
+    high->value = is_sample ? 1 : high->value;
+    low->value = is_sample ? 0 : low->value;
 }
 
 /* A ramp, a time constant, a resistance with a capacitance: ways to say how an output goes from level to level. */
@@ -144,7 +133,8 @@ static bool check_ways(struct dalcs_builder *builder, const struct dalcs_paramet
     return true;
 }
 
-static bool check_parameters(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
+static bool check_parameters(struct dalcs_builder *builder, const struct card *c) {
+    const struct dalcs_parameter *p = c->p;
     static const int not_negative[] = {TD, TRISE, TFALL, VH, ROUT, RHIGH, RLOW, COUT, TAU};
     for (size_t k = 0; k < sizeof not_negative / sizeof not_negative[0]; k++) {
         const struct dalcs_parameter *one = &p[not_negative[k]];
@@ -156,7 +146,7 @@ static bool check_parameters(struct dalcs_builder *builder, const struct dalcs_p
     if (!check_ways(builder, p)) {
         return false;
     }
-    if (!(p[VHIGH].value > p[VLOW].value)) {
+    if (!(p[VHIGH].value > p[VLOW].value) || !(c->upper > c->lower)) {
         dalcs_builder_error(builder, p[VHIGH].place != NULL ? p[VHIGH].place : p[VLOW].place,
                             "exchange the two, and use the other output",
                             "Vhigh must be above Vlow");
@@ -196,7 +186,7 @@ static void take_parameters(struct card *c) {
     g->rise = p[TRISE].value;
     g->fall = p[TFALL].place != NULL ? p[TFALL].value : p[TRISE].value;
     if (g->kind == DALCS_GATE_SAMPLE) {
-        g->held = p[IC].place != NULL ? p[IC].value : 0;
+        g->held = fmin(fmax(p[IC].place != NULL ? p[IC].value : 0, c->lower), c->upper);
     } else if (g->kind == DALCS_GATE_COUNTER) {
         g->cycles = (int)p[CYCLES].value;
         const double n_high = round(p[DUTY].value * g->cycles);
@@ -248,7 +238,38 @@ static bool has_output(struct dalcs_builder *builder, const struct card *c) {
     return has;
 }
 
-static void take_pins(struct card *c) {
+/* What a sample takes: its input between its limits. */
+static struct dalcs_logic_sampled sampled(struct dalcs_builder *builder, const struct card *c) {
+    const struct dalcs_block_card block = {.builder = builder, .card = c->card};
+    const bool has_lower = dalcs_block_is_level(c->lower);
+    const bool has_upper = dalcs_block_is_level(c->upper);
+    const struct dalcs_logic_sampled all = {c->node[0], c->node[1]};
+    if (!has_lower && !has_upper) {
+        return all;
+    }
+    const int node = dalcs_builder_inner_node(builder, "limited", c->card->token);
+    struct dalcs_device *e = dalcs_block_add(&block, DALCS_VCVS, "limited", node, 0);
+    struct dalcs_piecewise table = dalcs_block_make_table(&block, has_lower + has_upper);
+    if (node < 0 || e == NULL || table.knot == NULL) {
+        return all;
+    }
+    if (has_lower) {
+        dalcs_block_set_knot(&table, 0, c->lower, c->lower);
+    }
+    if (has_upper) {
+        dalcs_block_set_knot(&table, has_lower, c->upper, c->upper);
+    }
+    table.before = has_lower ? 0 : 1;
+    table.after = has_upper ? 0 : 1;
+    table.has_zero = true;
+    table.zero = fmin(fmax(0, c->lower), c->upper);
+    dalcs_block_control(e, &(struct dalcs_block_end){.node = all.node, .reference = all.reference},
+                        1);
+    dalcs_behavioural_add_table(builder, e, &table);
+    return (struct dalcs_logic_sampled){node, 0};
+}
+
+static void take_pins(struct dalcs_builder *builder, struct card *c) {
     struct dalcs_logic_card *of = c->of;
     const bool is_sample = c->function->kind == DALCS_GATE_SAMPLE;
     const int common = c->node[PIN_COMMON];
@@ -267,7 +288,7 @@ static void take_pins(struct card *c) {
     }
     of->common = common;
     if (is_sample) {
-        of->sampled = (struct dalcs_logic_sampled){c->node[0], c->node[1]};
+        of->sampled = sampled(builder, c);
     }
 }
 
@@ -296,8 +317,12 @@ void dalcs_logic_parse(struct dalcs_builder *builder, const struct dalcs_card *c
         return;
     }
     reader.at++; /* the function */
-    if (!find_kind(builder, &c) || !read_parameters(&reader, &c) ||
-        !check_parameters(builder, c.p) || !check_pins(builder, &c)) {
+    bool ok = find_kind(builder, &c) && read_parameters(&reader, &c);
+    if (ok) {
+        take_limits(&c);
+        ok = check_parameters(builder, &c) && check_pins(builder, &c);
+    }
+    if (!ok) {
         builder->hidden |= DALCS_HIDDEN_ELEMENTS;
         return;
     }
@@ -305,6 +330,6 @@ void dalcs_logic_parse(struct dalcs_builder *builder, const struct dalcs_card *c
         return;
     }
     take_parameters(&c);
-    take_pins(&c);
+    take_pins(builder, &c);
     dalcs_logic_add(builder, c.of);
 }

@@ -25,6 +25,21 @@ struct dalcs_logic_card {
     } sampled; /* of a sample; of a pulse, whose length it is; else both are ground */
 };
 
+/* What an element of this function may have behind it. */
+struct dalcs_logic_parameters {
+    const char *what;          /* in messages: "a gate" */
+    struct dalcs_parameter *p; /* a name that is NULL is not of this function */
+    int n;
+    bool has_noise; /* as an OTA has: named, and without a meaning here */
+};
+
+/* False: an error was reported. */
+bool dalcs_logic_read_parameters(struct dalcs_reader *reader,
+                                 const struct dalcs_logic_parameters *of);
+/* Voltages alone may be negative; false: an error was reported. */
+bool dalcs_logic_check_signs(const struct dalcs_reader *reader,
+                             const struct dalcs_logic_parameters *of);
+
 /* A gate with so many inputs, none of which is wired; NULL: out of memory. */
 struct dalcs_logic_card *dalcs_logic_start(struct dalcs_builder *builder,
                                            const struct dalcs_token *name, int n_inputs);

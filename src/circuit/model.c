@@ -151,6 +151,28 @@ static void read_passive(struct dalcs_reader *reader, struct dalcs_model *model)
     }
 }
 
+/* What closes the bracket; false after an error. */
+static bool take_close(struct dalcs_reader *reader, const struct dalcs_token *open) {
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
+    if (dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        return true;
+    }
+    if (next == NULL && open->text[0] == '(') { /* SPICE takes those of a model for blanks */
+        dalcs_builder_warn(reader->builder, open, "end the card with ')'",
+                           "this parenthesis is never closed: the model ends with its card");
+        return true;
+    }
+    if (next == NULL) {
+        dalcs_builder_error(reader->builder, open, NULL, "this bracket is never closed");
+    } else if (next->kind == DALCS_TOKEN_WORD) {
+        dalcs_builder_error(reader->builder, next, reader->usage,
+                            "'%s' is not of the form parameter=value", next->text);
+    } else {
+        dalcs_reader_unexpected(reader);
+    }
+    return false;
+}
+
 /* Reads the parameters of a D or SW into the circuit; false when an error was reported. */
 static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *model) {
     struct dalcs_circuit *circuit = reader->builder->circuit;
@@ -188,19 +210,7 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
     if (!ok) {
         return false;
     }
-    if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
-        if (dalcs_reader_at_end(reader)) {
-            dalcs_builder_error(reader->builder, open, NULL, "this parenthesis is never closed");
-        } else if (dalcs_reader_peek(reader, 0)->kind == DALCS_TOKEN_WORD) {
-            dalcs_builder_error(reader->builder, dalcs_reader_peek(reader, 0), reader->usage,
-                                "'%s' is not of the form parameter=value",
-                                dalcs_reader_peek(reader, 0)->text);
-        } else {
-            dalcs_reader_unexpected(reader);
-        }
-        return false;
-    }
-    return dalcs_reader_end(reader);
+    return (!opened || take_close(reader, open)) && dalcs_reader_end(reader);
 }
 
 /* What people call a part, and how SPICE calls its model. */
@@ -217,6 +227,28 @@ static const char *hint_of_type(struct dalcs_builder *builder, const char *word)
     return USAGE;
 }
 
+static bool is_same_card(const struct dalcs_card *a, const struct dalcs_card *b) {
+    bool same = a->n == b->n;
+    for (int k = 0; k < a->n && same; k++) {
+        same = strcmp(a->token[k].text, b->token[k].text) == 0;
+    }
+    return same;
+}
+
+/* A model of the same name: one that says the same, as where two parts bring their models along, does no harm. */
+static void report_second(struct dalcs_builder *builder, const struct dalcs_model *first,
+                          const struct dalcs_card *card) {
+    const struct dalcs_token *name = &card->token[1];
+    if (is_same_card(first->card, card)) {
+        dalcs_builder_note(builder, name, NULL, "this model '%s' is the one at %s once more",
+                           name->text, dalcs_builder_place(builder, first->name));
+    } else {
+        dalcs_builder_error(builder, name, "give it another name",
+                            "there are two models '%s', the first at %s", name->text,
+                            dalcs_builder_place(builder, first->name));
+    }
+}
+
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *name;
@@ -226,14 +258,13 @@ void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     }
     const int first = dalcs_names_find(&builder->models, name->text);
     if (first >= 0) {
-        dalcs_builder_error(builder, name, "give it another name",
-                            "there are two models '%s', the first at %s", name->text,
-                            dalcs_builder_place(builder, builder->model[first].name));
+        report_second(builder, &builder->model[first], card);
         return;
     }
     struct dalcs_model *model = &builder->model[builder->n_models];
     model->kind = DALCS_MODEL_WRONG;
     model->name = name;
+    model->card = card;
     if (dalcs_names_add(&builder->models, name->text, builder->n_models) != DALCS_OK) {
         builder->out_of_memory = true;
         return;

@@ -91,11 +91,14 @@ static bool read_multiplier(struct dalcs_reader *reader, double *multiplier) {
     return is_multiplier(reader, *multiplier);
 }
 
-/* `noiseless` and `x2`, which LTspice writes behind a value: two in parallel. *taken: was it one? */
+/* `noiseless`, `noiseless=True` and `x2`, which LTspice writes behind a value: two in parallel. *taken: was it one? */
 static bool read_word(struct dalcs_reader *reader, double *multiplier, bool *taken) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     struct dalcs_number number;
     *taken = dalcs_reader_take_word(reader, "noiseless");
+    if (*taken && dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
+        return dalcs_reader_skip_value(reader);
+    }
     if (*taken || token == NULL || token->kind != DALCS_TOKEN_WORD || token->text[0] != 'x' ||
         dalcs_number_parse(token->text + 1, &number) != DALCS_NUMBER_OK) {
         return true;

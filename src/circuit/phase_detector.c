@@ -8,8 +8,6 @@
 #include "block_parts.h"
 #include "logic_parts.h"
 
-#include <string.h>
-
 enum { N_PINS = 8, PIN_OUTPUT = 6, PIN_COMMON };
 
 enum { IOUT, HIGH, LOW, REF, TD, ROUT, COUT, N_PARAMETERS };
@@ -26,42 +24,6 @@ struct detector {
 };
 
 /* ---- The card ------------------------------------------------------------------------------------------------ */
-
-static bool read_parameters(struct dalcs_reader *reader, struct detector *of) {
-    static const char *const without_effect[] = {"tripdt", "tripdv", "ttol", "temp"};
-    while (!dalcs_reader_at_end(reader)) {
-        const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
-        if (name == NULL) {
-            dalcs_reader_unexpected(reader);
-            return false;
-        }
-        int k = 0;
-        while (k < N_PARAMETERS && strcmp(name->text, of->p[k].name) != 0) {
-            k++;
-        }
-        if (k == N_PARAMETERS && dalcs_builder_is_one_of(name->text, without_effect, 4)) {
-            if (!dalcs_reader_skip_value(reader)) {
-                return false;
-            }
-            continue;
-        }
-        if (k == N_PARAMETERS) {
-            dalcs_builder_error(reader->builder, name, USAGE,
-                                "a phase detector has no parameter '%s' here", name->text);
-            return false;
-        }
-        of->p[k].place = name;
-        if (!dalcs_reader_number(reader, of->p[k].quantity, "a value", &of->p[k].value)) {
-            return false;
-        }
-        if (of->p[k].quantity != DALCS_VOLTAGE && of->p[k].value < 0) {
-            dalcs_builder_error(reader->builder, name, USAGE, "'%s' cannot be negative",
-                                of->p[k].name);
-            return false;
-        }
-    }
-    return true;
-}
 
 static bool check(const struct detector *of) {
     struct dalcs_builder *builder = of->card.builder;
@@ -172,7 +134,10 @@ void dalcs_phase_detector_parse(struct dalcs_builder *builder, const struct dalc
         return;
     }
     reader.at++; /* the function */
-    if (!read_parameters(&reader, &of) || !check(&of)) {
+    const struct dalcs_logic_parameters parameters = {"a phase detector", of.p, N_PARAMETERS,
+                                                      false};
+    if (!dalcs_logic_read_parameters(&reader, &parameters) ||
+        !dalcs_logic_check_signs(&reader, &parameters) || !check(&of)) {
         builder->hidden |= DALCS_HIDDEN_ELEMENTS;
         return;
     }

@@ -123,7 +123,7 @@ static void add_formula(struct dalcs_builder *builder, const struct dalcs_token 
 /* Of each element that has one: ngspice's allp, PSpice's w(alias(*)). */
 void dalcs_signals_add_powers(struct dalcs_builder *builder, char letter) {
     for (int k = 0; k < builder->circuit->n_devices; k++) {
-        if (!dalcs_builder_is_inner(builder->circuit->device[k].name) &&
+        if (!dalcs_names_is_inner(builder->circuit->device[k].name) &&
             dalcs_signal_formula_has_power(builder, k)) {
             dalcs_signals_add_power(builder, letter, k);
         }

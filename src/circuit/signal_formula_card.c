@@ -219,7 +219,7 @@ bool dalcs_signal_formula_has_power(const struct dalcs_builder *builder, int k) 
     bool has_two = strchr("rlcvidsw", device->letter) != NULL && builder->current_of[k] == k;
     for (int end = 0; end < 2; end++) { /* other parts of the element are behind an inner node */
         const int node = device->node[end];
-        has_two = has_two && (node == 0 || !dalcs_builder_is_inner(builder->node_name[node]));
+        has_two = has_two && (node == 0 || !dalcs_names_is_inner(builder->node_name[node]));
     }
     return has_two;
 }

@@ -75,7 +75,7 @@ void dalcs_signals_add_voltage(struct dalcs_builder *builder, int a, int b, bool
 
 void dalcs_signals_add_current(struct dalcs_builder *builder, int device) {
     const struct dalcs_device *d = &builder->circuit->device[device];
-    const bool is_bend = d->is_storage && dalcs_builder_is_inner(d->name); /* of a coil */
+    const bool is_bend = d->is_storage && dalcs_names_is_inner(d->name); /* of a coil */
     const int named = is_bend ? builder->current_of[device] : device;
     const char *name = signal_name(builder, 'i', builder->circuit->device[named].name);
     dalcs_signals_add(
@@ -88,12 +88,12 @@ static bool has_default(const struct dalcs_device *d) {
     const bool is_default = (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) ||
                             d->kind == DALCS_DIODE || d->kind == DALCS_SWITCH ||
                             (d->letter == 'b' && d->kind == DALCS_VCVS);
-    return is_default && !dalcs_builder_is_inner(d->name);
+    return is_default && !dalcs_names_is_inner(d->name);
 }
 
 void dalcs_signals_add_voltages(struct dalcs_builder *builder) {
     for (int k = 1; k < builder->circuit->n_nodes; k++) {
-        if (!dalcs_builder_is_inner(builder->node_name[k])) {
+        if (!dalcs_names_is_inner(builder->node_name[k])) {
             dalcs_signals_add_voltage(builder, k, 0, false);
         }
     }
@@ -121,7 +121,7 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
 /* ngspice's alli and LTspice's i(*): the current of each element. */
 void dalcs_signals_add_currents(struct dalcs_builder *builder) {
     for (int k = 0; k < builder->circuit->n_devices; k++) {
-        if (!dalcs_builder_is_inner(builder->circuit->device[k].name)) {
+        if (!dalcs_names_is_inner(builder->circuit->device[k].name)) {
             dalcs_signals_add_current(builder, k);
         }
     }

@@ -81,7 +81,7 @@ static void start_up(struct dalcs_builder *builder) {
     const char *first = NULL;
     for (int k = 0; k < circuit->n_devices; k++) {
         const struct dalcs_device *device = &circuit->device[k];
-        if (device->stimulus < 0 || dalcs_builder_is_inner(device->name)) {
+        if (device->stimulus < 0 || dalcs_names_is_inner(device->name)) {
             continue;
         }
         struct dalcs_stimulus *s = &circuit->stimulus[device->stimulus];

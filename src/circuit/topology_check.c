@@ -40,7 +40,7 @@ static void check_nodes(struct dalcs_builder *builder, const struct touch *touch
                                "node '%s' only controls '%s': nothing sets its voltage",
                                circuit->node_name[k], circuit->device[t->device].name);
         } else if (t->n_terminals + t->n_controls == 1 &&
-                   !dalcs_builder_is_inner(circuit->node_name[k])) {
+                   !dalcs_names_is_inner(circuit->node_name[k])) {
             dalcs_builder_warn(builder, builder->node_token[k], NULL,
                                "node '%s' has one connection only, '%s'", circuit->node_name[k],
                                circuit->device[t->device].name);

@@ -5,13 +5,28 @@
  * It puts out Iout tanh(G (v - Ref)/Iout), or with `linear` G (v - Ref), where v is v(plus,minus), times v(plus2,minus2)
  * if pins 3 and 4 are wired. Rout and Cout lie across the output. An ideal diode each keeps that between Vlow and Vhigh. */
 #include "block_parts.h"
+#include "logic_parts.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { N_PINS = 8, PIN_OUTPUT = 6, PIN_COMMON };
 
-enum { GAIN, REF, IOUT, ISINK, HIGH, LOW, ROUT, COUT, RCLAMP, N_PARAMETERS };
+enum {
+    GAIN,
+    REF,
+    IOUT,
+    ISOURCE,
+    ISRC,
+    ISINK,
+    HIGH,
+    LOW,
+    LINEAR,
+    ASYM, /* as Isink= says */
+    ROUT,
+    COUT,
+    RCLAMP,
+    N_PARAMETERS
+};
 
 static const char USAGE[] =
     "an OTA is: Aname minus plus 0 0 0 0 out com OTA [G=1 Ref=0 Iout=10u Isink= Vhigh=2 Vlow=0 "
@@ -21,77 +36,25 @@ struct ota {
     struct dalcs_block_card card;
     int node[N_PINS];
     struct dalcs_parameter p[N_PARAMETERS];
-    bool is_linear;
 };
 
-/* Noise, which is not simulated, and what an ideal clamp has no use for. */
-static bool is_ignored(const struct dalcs_token *name) {
-    static const char *const names[] = {"en", "enk", "in", "ink", "epsilon", "powerup"};
-    return dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]);
-}
-
-/* `linear` or `linear=1`; false: another word follows. *is_set stays where it is without effect. */
-static bool take_flag(struct dalcs_reader *reader, const char *word, bool *is_set, bool *failed) {
-    double value = 1;
-    if (!dalcs_reader_take_word(reader, word)) {
+/* Two more names of Iout; false: an error was reported. */
+static bool read_parameters(struct dalcs_reader *reader, struct ota *ota) {
+    struct dalcs_parameter *p = ota->p;
+    if (!dalcs_logic_read_parameters(
+            reader, &(struct dalcs_logic_parameters){"an OTA", p, N_PARAMETERS, true})) {
         return false;
     }
-    *failed = dalcs_reader_take(reader, DALCS_TOKEN_EQUAL) &&
-              !dalcs_reader_number(reader, DALCS_PLAIN, "1 or 0", &value);
-    *is_set = value != 0;
-    return true;
-}
-
-static int find_parameter(const struct ota *ota, const char *name) {
-    static const char *const others[][2] = {{"isource", "iout"}, {"isrc", "iout"}};
-    for (size_t k = 0; k < sizeof others / sizeof others[0]; k++) {
-        name = strcmp(name, others[k][0]) == 0 ? others[k][1] : name;
-    }
-    int k = 0;
-    while (k < N_PARAMETERS && strcmp(name, ota->p[k].name) != 0) {
-        k++;
-    }
-    return k;
-}
-
-static bool read_parameters(struct dalcs_reader *reader, struct ota *ota) {
-    bool failed = false;
-    bool is_asymmetric; /* as Isink= says */
-    while (!dalcs_reader_at_end(reader)) {
-        if (take_flag(reader, "linear", &ota->is_linear, &failed) ||
-            take_flag(reader, "asym", &is_asymmetric, &failed)) {
-            if (failed) {
-                return false;
-            }
-            continue;
-        }
-        const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
-        if (name == NULL) {
-            dalcs_reader_unexpected(reader);
-            return false;
-        }
-        const int k = find_parameter(ota, name->text);
-        if (k == N_PARAMETERS && is_ignored(name)) {
-            dalcs_builder_note(reader->builder, name, NULL,
-                               "'%s' has no meaning here and is ignored: noise and the powering up "
-                               "of an OTA are not simulated",
-                               name->text);
-            if (!dalcs_reader_skip_value(reader)) {
-                return false;
-            }
-            continue;
-        }
-        if (k == N_PARAMETERS) {
-            dalcs_builder_error(reader->builder, name, USAGE, "an OTA has no parameter '%s' here",
-                                name->text);
-            return false;
-        }
-        ota->p[k].place = name;
-        if (!dalcs_reader_number(reader, ota->p[k].quantity, "a value", &ota->p[k].value)) {
-            return false;
+    for (int k = ISOURCE; k <= ISRC; k++) {
+        if (p[k].place != NULL) {
+            p[IOUT].value = p[k].value;
         }
     }
     return true;
+}
+
+static bool is_linear(const struct ota *ota) {
+    return ota->p[LINEAR].value != 0;
 }
 
 static bool check(struct ota *ota) {
@@ -116,7 +79,7 @@ static bool check(struct ota *ota) {
         dalcs_builder_error(builder, name, NULL, "Vhigh must be above Vlow");
         return false;
     }
-    if (!ota->is_linear && !(p[IOUT].value > 0 && p[ISINK].value > 0)) {
+    if (!is_linear(ota) && !(p[IOUT].value > 0 && p[ISINK].value > 0)) {
         dalcs_builder_error(builder, name, "linear has no limit of the current",
                             "Iout and Isink of '%s' are not 0", name->text);
         return false;
@@ -138,7 +101,7 @@ static const struct dalcs_formula *limited(struct dalcs_formula_writer *w, const
                                            const struct dalcs_formula *what) {
     const double up = ota->p[IOUT].value;
     const double down = ota->p[ISINK].value;
-    if (ota->is_linear) {
+    if (is_linear(ota)) {
         return what;
     }
     if (up == down) {
@@ -179,9 +142,13 @@ void dalcs_transconductor_parse(struct dalcs_builder *builder, const struct dalc
                       .p = {[GAIN] = {"g", DALCS_PLAIN, false, 1, NULL},
                             [REF] = {"ref", DALCS_VOLTAGE, false, 0, NULL},
                             [IOUT] = {"iout", DALCS_CURRENT, false, 10e-6, NULL},
+                            [ISOURCE] = {"isource", DALCS_CURRENT, false, 0, NULL},
+                            [ISRC] = {"isrc", DALCS_CURRENT, false, 0, NULL},
                             [ISINK] = {"isink", DALCS_CURRENT, false, 0, NULL},
                             [HIGH] = {"vhigh", DALCS_VOLTAGE, false, 2, NULL},
                             [LOW] = {"vlow", DALCS_VOLTAGE, false, 0, NULL},
+                            [LINEAR] = {"linear", DALCS_PLAIN, false, 0, NULL},
+                            [ASYM] = {"asym", DALCS_PLAIN, false, 0, NULL},
                             [ROUT] = {"rout", DALCS_OHM, true, 0, NULL},
                             [COUT] = {"cout", DALCS_FARAD, false, 0, NULL},
                             [RCLAMP] = {"rclamp", DALCS_OHM, false, 0, NULL}}};

@@ -247,7 +247,8 @@ enum dalcs_status dalcs_table_audit_file(const struct dalcs_table_audit_sums *a,
                    : format == &dalcs_raw_ascii_format ? read_raw_ascii(a, file, row)
                                                        : read_raw(a, file, row);
         for (size_t k = 0; k < n && is_right; k++) {
-            is_right = row[k] == a->row[k];
+            /* a formula that divides by 0 has no value in both */
+            is_right = row[k] == a->row[k] || (isnan(row[k]) && isnan(a->row[k]));
         }
     }
     if (file != NULL) {

@@ -87,6 +87,10 @@ static size_t word_length(const struct dalcs_lexer *lexer, size_t p) {
     const char *raw = lexer->raw;
     const bool is_type = is_model_word(lexer, 2);
     size_t q = p + 1;
+    if (raw[p] == '[' &&
+        (raw[q] == '{' || raw[q] == '\'')) { /* a list that begins with an expression */
+        return 1;
+    }
     while (!ends_word(raw[q]) && !(is_type && (raw[q] == '{' || raw[q] == '['))) {
         q++;
     }

@@ -207,16 +207,11 @@ static void explain_growth(struct dalcs_session *s, const struct dalcs_component
                    element, c->system->column_is_current[c->failure.overgrown] ? "A" : "V");
 }
 
-/* Is it the name of an element or node that nobody has written? */
-static bool is_inner(const char *name) {
-    return strchr(name, '(') != NULL;
-}
-
 /* "v(a)", "40", and "..." for what stands in the formula alone. */
 static const char *name_argument(struct dalcs_session *s, const struct dalcs_system *system,
                                  const struct dalcs_smooth_input *of, int k) {
     const int column = of->column[k];
-    if (column >= 0 && is_inner(system->column[column].element)) {
+    if (column >= 0 && dalcs_names_is_inner(system->column[column].element)) {
         return "...";
     }
     const char *name = column >= 0

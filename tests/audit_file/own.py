@@ -28,6 +28,25 @@ R3 m h 1k
 .end
 """
 FORMATS = {".raw": "1e-6", ".csv": "1e-3"}
+# a formula that divides by 0 at every row: what is written is what was computed
+WITHOUT_VALUES = """no value
+V1 a 0 PULSE(0 1 1u 0 0 1u 3u)
+R1 a 0 1
+V2 z 0 0
+R2 z 0 1
+.save v(a) {v(a)/v(z)}
+.tran 0.1u 10u
+.end
+"""
+
+
+def rows_without_values(program, checker):
+    for options in (("-o", "x.raw"), ("-o", "x.csv"), ("--ascii", "-o", "x.raw")):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "x.cir").write_text(WITHOUT_VALUES)
+            ran = subprocess.run([program, "run", "x.cir", "--quiet", *options], cwd=folder, stdin=subprocess.DEVNULL,
+                                 capture_output=True, text=True, check=False)
+            checker.check(ran.returncode == 0, f"rows without values, {options}: {ran.stderr}")
 
 
 def main(program):
@@ -54,6 +73,7 @@ def main(program):
                 checker.check(done.returncode == 0 or few,
                               f"{netlist.name} as {ending}: status {done.returncode} {done.stderr}"
                               f"{[law for law in answer['laws'] if law['broken']]}")
+    rows_without_values(program, checker)
     checker.check(asked > 3 * len(netlists), f"only {asked} laws were asked of {len(netlists)} netlists")
     return checker.finish()
 

@@ -115,6 +115,8 @@ ELEMENTS = [
         "R1 a b noiseless R=1k",
         "R1 a b R=1k noiseless",
         "R1 a b 1k noiseless tol=1",
+        "R1 a b 1k noiseless=True",
+        "R1 a b 1k noiseless = 1 tol=1",
         "R1 a b 1k tol=1 noiseless",
         "R1 a b 1k tc=1m noiseless",
         "R1 a b {1k} noiseless",
@@ -245,7 +247,29 @@ MODELS = [
         ".model d D {Ron=500\n+ Vfwd=0.5}",
         ".model d D {Ron=500, Vfwd=0.5 }",
         ".MODEL D d{ROFF=inf RON=500 VFWD=0.5}",
+        ".model d D(Ron=500 Vfwd=0.5",
+        ".model d D ( Vfwd=0.5\n+ Ron=500",
     ], [(".model d D {Ron=500 Vfwd=0.5", "never closed")]),
+    Kind("a list of a code model", """
+V1 a 0 1
+V2 b 0 2
+.param kp=2
+A1 [a b] o su
+R1 o 0 1k
+@
+.tran 1u 10u
+""", ".model su summer(in_gain=[2 1])", "v(o)", 4, [
+        ".model su summer(in_gain=[{kp} 1.0])",
+        ".model su summer(in_gain=[{kp} {kp/2}])",
+        ".model su summer(in_gain=[2 {kp-1}])",
+        ".model su summer(in_gain=[{ kp } 1 ])",
+        ".model su summer(in_gain=[ {kp} 1 ])",
+        ".model su summer(in_gain = ['kp' '1'])",
+        ".model su summer(in_gain=['2*kp-2' 1])",
+        ".model su summer(in_gain=[{kp}\n+ 1])",
+        ".model su summer(in_gain=[{kp/2} {kp/4}] out_gain={kp})",
+        ".model su summer in_gain=[{kp} 1]",
+    ], [(".model su summer(in_gain=[{kp} 1", "a value is missing")]),
     Kind("blanks of a model", MODEL_D, ".model d D(Ron=500 Vfwd=0.5)", "v(b)", ON, [
         ".model d D( RON 500 VFWD 0.5 )",
         ".model d D(Ron 500 Vfwd 0.5)",
@@ -684,6 +708,13 @@ NOTED = [
     ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.lib /home/me/my lib (2)/cmp/Standard.BJT\n", "is left out"),
     ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.lib standard.cap\n", "is left out"),
     ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.include C:\\LTC\\cmp\\standard.jft\n", "is left out"),
+    ("an integral", "V1 a 0 1\nB1 b 0 V=idt(v(a)-2*v(b))\nR1 b 0 1k\n.op\n", "without a .tran an integral is at rest"),
+    ("an integral", "V1 a 0 1\nB1 b 0 V=idt(v(a)-2*v(b))\nR1 b 0 1k\n.ic v(b)=1\n.op\n", ".ic v(...) counts only for .tran"),
+    ("a model twice", "V1 a 0 1\nD1 a b d\nR1 b 0 1\n.model d D(Ron=1 Vfwd={0.1*2})\n.model d  d(ron=1 vfwd={0.1*2}) ; again\n.op\n",
+     "this model 'd' is the one at"),
+    ("an open model", "V1 a 0 1\nD1 a b d\nR1 b 0 1\n.model d D(Ron=1\n.op\n", "the model ends with its card"),
+    ("a sound file", "V1 a 0 1\nR1 a 0 1\n.tran 1m\n.wave out.wav 16 44100 v(a)\n", "(.wave) are not written"),
+    ("a sound file", "V1 a 0 1\nR1 a 0 1\n.op\n.wave \"c:\\my sounds\\o.wav\" 8 8k v(a) v(a)\n", "(.wave) are not written"),
 ]
 
 

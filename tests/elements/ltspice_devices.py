@@ -145,7 +145,7 @@ def transconductors(checker, program):
                  f"a3 0 p q 0 0 0 c 0 OTA G={i / scale!r} linear=1 Rout={r!r} Vhigh=1e308 Vlow=-1e308",
                  f"a4 p 0 0 0 0 0 d 0 OTA G={i / scale!r} asym Isource={3 * i!r} Isink={-i!r} Rout={r!r} Vhigh=1e308 Vlow=-1e308",
                  f"a5 0 p 0 0 0 0 e 0 OTA G={i / scale!r} linear Ref={0.5 * scale!r} Rout={r!r} Vhigh={-0.2 * scale!r} Vlow={-1.2 * scale!r}",
-                 f"a6 g p 0 0 0 0 g 0 OTA G={i / scale!r} linear Rout={1e6 * r!r} Vhigh=1e308 Vlow=-1e308 en=1n",
+                 f"a6 g p 0 0 0 0 g 0 OTA G={i / scale!r} linear Rout={1e6 * r!r} Vhigh=1e308 Vlow=-1e308 en=1n incm=1f incmk=10",
                  "a7 0 p 0 0 0 0 0 0 OTA g=0 in=3p", f".tran {0.01 / f!r} {2 / f!r}"]
         done = run_cards(program, what, cards)
         if not runs(checker, done, what):
@@ -168,6 +168,39 @@ def transconductors(checker, program):
         checker.check(done.status == 3 and part in done.stderr and "1:1" not in done.stderr, f"{card}: {done.stderr}")
 
 
+def limited_samples(checker, program):
+    """Vhigh and Vlow of a sample: both, one, those that are as good as none; held, tracked, at the start; the clock's level is what it is."""
+    for scale, period in ((1.0, 1e-3), (1e-3, 2e-6), (400.0, 0.05)):
+        what = f"samples between limits at {scale} V"
+        inf = math.inf
+        cases = {"a": ("Vhigh={h} Vlow={l}", -1, 2), "b": ("Vhigh={h}", -inf, 2), "c": ("Vlow={l}", -1, inf), "d": ("Vhigh=1e308 Vlow=-1e308", -inf, inf),
+                 "e": ("Vhigh=1e6 Vlow=-1e6", -inf, inf), "f": ("Vhigh={n} Vlow={l}", -1, -0.5)}
+        cards = [f"v1 s 0 sin(0 {3 * scale!r} {1 / period!r})", f"v2 c 0 pulse(0 1 {period / 80!r} 0 0 {period / 40!r} {period / 20!r})"]
+        for x, (words, _, _) in cases.items():
+            words = words.format(h=2 * scale, l=-scale, n=-0.5 * scale)
+            cards += [f"a1{x} s 0 c 0 0 0 h{x} 0 SAMPLEHOLD IC={scale!r} {words}", f"a2{x} s 0 0 c 0 0 t{x} 0 SAMPLEHOLD {words}", f"r1{x} h{x} 0 1k",
+                      f"r2{x} t{x} 0 1k"]
+        done = run_cards(program, what, [*cards, f".tran {period / 300!r} {2 * period!r}"])
+        if not runs(checker, done, what):
+            continue
+        for x, (words, low, high) in cases.items():
+            for t, held, tracked in zip(done.time, done.column(f"v(h{x})"), done.column(f"v(t{x})")):
+                clock = math.floor((t - period / 80) / (period / 20) + 1e-9)
+                since = t - period / 80 - clock * period / 20
+                if min(since, abs(since - period / 40), period / 20 - since) < 1e-6 * period:
+                    continue
+                at = period / 80 + clock * period / 20
+
+                def taken(time, x=x, low=low, high=high):
+                    return scale * min(high, max(low, 3 * math.sin(2 * math.pi * time / period)))
+                wanted = taken(at) if clock >= 0 else scale * min(high, max(low, 1))
+                checker.close(held, wanted, 1e-8 * scale, f"{what}: {words} holds at {t}")
+                wanted = taken(t) if clock >= 0 and since < period / 40 else taken(at + period / 40) if clock >= 0 else taken(0)
+                checker.close(tracked, wanted, 1e-8 * scale, f"{what}: {words} tracks at {t}")
+    done = run_cards(program, "crossed", ["v1 s 0 1", "v2 c 0 1", "a1 s 0 c 0 0 0 o 0 SAMPLEHOLD Vhigh=-1 Vlow=1", "r1 o 0 1", ".tran 1 1"])
+    checker.check(done.status == 3 and "Vhigh must be above Vlow" in done.stderr, f"crossed: {done.stderr}")
+
+
 def parameters(checker, program):
     """Each function with each parameter of LTspice: accepted, or refused with its name; never passed over in silence.
     Those without effect are the accuracies of its own time steps."""
@@ -176,12 +209,12 @@ def parameters(checker, program):
               "tripdt=1n", "ttol=1n", "temp=50"]
     known = {name: set(levels) | {"Vt=0.4", "Vh=0.1"} for name in gates}
     known["COUNTER"] = set(levels) | {"cycles=3", "duty=0.4"}
-    known["SAMPLEHOLD"] = {"Ref=0.3", "Rout=10", "Cout=1n", "Tau=1u", "IC=1", "tripdt=1n", "ttol=1n", "temp=50"}
+    known["SAMPLEHOLD"] = {"Vhigh=2", "Vlow=-1", "Ref=0.3", "Rout=10", "Cout=1n", "Tau=1u", "IC=1", "tripdt=1n", "ttol=1n", "temp=50"}
     accuracies = {"tripdt=1n", "ttol=1n", "temp=50"}
     known["VARISTOR"] = {"Rclamp=2"} | accuracies
     known["MODULATE"] = {"mark=2k space=1k", "Vhigh=2", "Vlow=-1"} | accuracies
     known["OTA"] = {"Vhigh=2", "Vlow=-1", "Ref=0.3", "Rout=10", "Cout=1n", "Rclamp=2", "G=1m", "Iout=1m", "Isink=1m", "linear=1", "asym=1",
-                    "en=1n", "enk=10", "powerup=1"}
+                    "en=1n", "enk=10", "powerup=1"} | accuracies
     words = set(levels) | {"Vt=0.4", "Vh=0.1", "cycles=3", "duty=0.4", "Rclamp=2", "mark=2k space=1k", "G=1m", "Iout=1m", "Isink=1m", "linear=1",
                            "asym=1", "en=1n", "enk=10", "powerup=1"}
     for name, accepted in known.items():
@@ -221,7 +254,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("ltspice_devices")
-    for part in (outputs, varistors, modulators, quadratures, many, transconductors, parameters, refused):
+    for part in (outputs, varistors, modulators, quadratures, many, transconductors, limited_samples, parameters, refused):
         part(checker, program)
     return checker.finish()
 

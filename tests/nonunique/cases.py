@@ -257,6 +257,24 @@ R1 o 0 1k
 V2 on 0 1
 .tran 1u 10u uic
 """, {"i(s1)": (2, INF, "s1 parallel to d1"), "i(d1)": (0, INF, "s1 parallel to d1")}),
+    "a thyristor with a diode across it": ("""Switch and valve of the thyristor are one branch beside the diode
+V1 a 0 6
+V2 g b 1
+A1 a b g m
+D1 b a DI
+R1 b 0 2
+.model m gto
+.tran 1u 10u uic
+""", {"i(a1)": (3, INF, "a1 parallel to d1"), "i(d1)": (0, INF, "a1 parallel to d1")}),
+    "a switch behind a diode, and a diode across both": ("""Three elements in a loop: none of them is a part of another
+I1 0 a 3
+V1 g 0 1
+S1 a c g 0 SW
+D2 c b DI
+D1 b a DI
+R1 b 0 2
+.tran 1u 10u uic
+""", {"i(s1)": (3, INF, "loop s1-d2-d1"), "i(d2)": (3, INF, "loop s1-d2-d1"), "i(d1)": (0, INF, "loop s1-d2-d1")}),
     "a rectifier behind a transformer": ("""Its diodes share the current of a choke, and none of it goes through the winding
 I1 a 0 0
 R1 a 0 1

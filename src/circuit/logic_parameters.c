@@ -1,0 +1,90 @@
+/* logic_parameters.c - what stands behind the function of one of LTspice's A elements: parameter=value, and flags. */
+#include "logic_parts.h"
+
+#include <string.h>
+
+/* The accuracies of LTspice's own steps, and a temperature that nothing here has. */
+static bool is_without_effect(const struct dalcs_token *name) {
+    static const char *const names[] = {"tripdt", "tripdv", "ttol", "temp"};
+    return dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]);
+}
+
+/* Noise, how an OTA powers up, and the width of its clamps' knees, which are sharp here. */
+static bool is_noise(const struct dalcs_token *name) {
+    static const char *const names[] = {"en",    "enk",   "in",        "ink",     "incm",
+                                        "incmk", "noisy", "noiseless", "epsilon", "powerup"};
+    return dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]);
+}
+
+static struct dalcs_parameter *find(const struct dalcs_logic_parameters *of, const char *name) {
+    for (int k = 0; k < of->n; k++) {
+        if (of->p[k].name != NULL && strcmp(of->p[k].name, name) == 0) {
+            return &of->p[k];
+        }
+    }
+    return NULL;
+}
+
+/* A word alone: a flag that is set. */
+static bool take_flag(struct dalcs_reader *reader, const struct dalcs_logic_parameters *of) {
+    static const char *const flags[] = {"linear", "asym"};
+    const struct dalcs_token *word = dalcs_reader_peek(reader, 0);
+    struct dalcs_parameter *p =
+        word->kind == DALCS_TOKEN_WORD && dalcs_builder_is_one_of(word->text, flags, 2)
+            ? find(of, word->text)
+            : NULL;
+    if (p == NULL) {
+        dalcs_reader_unexpected(reader);
+        return false;
+    }
+    p->place = word;
+    p->value = 1;
+    reader->at++;
+    return true;
+}
+
+static bool take_other(struct dalcs_reader *reader, const struct dalcs_logic_parameters *of,
+                       const struct dalcs_token *name) {
+    if (of->has_noise && is_noise(name)) {
+        dalcs_builder_note(reader->builder, name, NULL,
+                           "'%s' has no meaning here and is ignored: noise and the powering up "
+                           "of an OTA are not simulated",
+                           name->text);
+    } else if (!is_without_effect(name)) {
+        dalcs_builder_error(reader->builder, name, reader->usage, "%s has no parameter '%s' here",
+                            of->what, name->text);
+        return false;
+    }
+    return dalcs_reader_skip_value(reader);
+}
+
+bool dalcs_logic_read_parameters(struct dalcs_reader *reader,
+                                 const struct dalcs_logic_parameters *of) {
+    bool ok = true;
+    while (ok && !dalcs_reader_at_end(reader)) {
+        const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
+        struct dalcs_parameter *p = name != NULL ? find(of, name->text) : NULL;
+        if (name == NULL) {
+            ok = take_flag(reader, of);
+        } else if (p == NULL) {
+            ok = take_other(reader, of, name);
+        } else {
+            p->place = name;
+            ok = dalcs_reader_number(reader, p->quantity, "a value", &p->value);
+        }
+    }
+    return ok;
+}
+
+bool dalcs_logic_check_signs(const struct dalcs_reader *reader,
+                             const struct dalcs_logic_parameters *of) {
+    for (int k = 0; k < of->n; k++) {
+        const struct dalcs_parameter *p = &of->p[k];
+        if (p->place != NULL && p->quantity != DALCS_VOLTAGE && !(p->value >= 0)) {
+            dalcs_builder_error(reader->builder, p->place, reader->usage, "'%s' cannot be negative",
+                                p->name);
+            return false;
+        }
+    }
+    return true;
+}
