@@ -143,9 +143,9 @@ enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, 
         memset(p->smooth.newton->x, 0, (size_t)p->smooth.newton->n * sizeof(*p->smooth.newton->x));
         status = iterate(p, sigma, y, solve);
     }
-    if (status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_smooth_steeper)) {
-        put_sources(p, p->smooth.given);
-        return solve(p, sigma, p->smooth.given, y);
+    /* beside a line that is far steeper what is rounding would be any answer */
+    for (int k = 0; status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_smooth_steeper); k++) {
+        status = k < MOST_STEEPER ? iterate(p, sigma, y, solve) : DALCS_NOT_CONVERGED;
     }
     return status;
 }
