@@ -1,9 +1,11 @@
 /* euler_step.c - a step of implicit Euler as a segment, where events crowd or no mode is found. */
+#include "magnitudes.h"
 #include "micro_steps.h"
 #include "present.h"
 #include "restart.h"
 #include "slide.h"
 #include "smooth_step.h"
+#include "step_length.h"
 
 #include <math.h>
 #include <string.h>
@@ -61,6 +63,52 @@ void dalcs_radau_accept_implicit(const struct dalcs_radau *r, struct dalcs_radau
     dalcs_radau_accept_euler(r, part, h);
 }
 
+/* Does half of the step, part->work.y2, lead at least a quarter as far as the step itself, the same way, and no farther?
+ * Else a value of a smooth function may be one that no state goes to: c v' = v^3 has v = -(c / h)^1/2 on the other side of
+ * infinity. */
+static bool is_on_way(const struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const double noticeable = dalcs_micro_noticeable(part);
+    bool is = true;
+    for (int x = 0; x < s->n_x && is; x++) {
+        double whole = part->work.y1[x] - part->x[x];
+        double half = part->work.y2[x] - part->x[x];
+        double scale = fmax(part->scales.unit[s->column_is_current[x]], fabs(part->x[x]));
+        double along = copysign(half, half * whole); /* below 0: the other way */
+        is = fabs(whole) <= noticeable * scale ||
+             (4.0 * along >= fabs(whole) && along <= (1.0 + dalcs_slight) * fabs(whole));
+    }
+    return is;
+}
+
+/* part->work.y1 by a step of length *h, or of a part of it: where sources are smooth functions, so long that the state is
+ * on its way. */
+static enum dalcs_status solve_on_way(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      double *h) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    const size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
+    memcpy(part->work.mode_before, p->mode, bytes);
+    while (*h >= dalcs_length_shortest(r)) {
+        DALCS_TRY(dalcs_radau_implicit_step(r, part, *h, *h, part->x, part->work.y1));
+        if (part->smooth == NULL || dalcs_smooth_euler_meets_pole(part)) {
+            return DALCS_OK;
+        }
+        memcpy(p->mode, part->work.mode_before, bytes);
+        double half = 0.5 * *h;
+        enum dalcs_status status =
+            dalcs_radau_implicit_step(r, part, half, half, part->x, part->work.y2);
+        memcpy(p->mode, part->work.mode_before, bytes);
+        if (status < DALCS_OK) {
+            return status;
+        }
+        if (status == DALCS_OK && is_on_way(part)) {
+            return dalcs_radau_implicit_step(r, part, *h, *h, part->x, part->work.y1);
+        }
+        *h *= 0.25;
+    }
+    return dalcs_micro_fail(r, part, 1.0 / *h, part->work.u, DALCS_NOT_CONVERGED);
+}
+
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) {
     struct dalcs_component *c = part->component;
@@ -68,7 +116,7 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
     part->guards.slides = false;
     if (!slides) {
         dalcs_micro_positions(part, true);
-        DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
+        DALCS_TRY(solve_on_way(r, part, &h));
         slides = c->positions.alternates;
     }
     if (slides) {

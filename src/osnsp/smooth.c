@@ -43,8 +43,22 @@ static void forget(struct dalcs_osnsp *p) {
     p->smooth.n_tangents++;
 }
 
-bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, double factor) {
-    if (!dalcs_smooth_retangent(p->system, p->smooth.newton->x, factor, p->smooth.newton->phi)) {
+/* V, A: the largest of an answer, but of parts of formulas. */
+static void find_largest(const struct dalcs_system *s, const double *y, double *largest) {
+    largest[0] = largest[1] = 0.0;
+    for (int c = 0; c < dalcs_system_n_columns(s); c++) {
+        double *of = &largest[s->column_is_current[c]];
+        *of = s->is_part[c] ? *of : fmax(*of, fabs(y[c]));
+    }
+}
+
+bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, double factor, const double *y) {
+    double largest[2] = {INFINITY, INFINITY};
+    if (y != NULL) {
+        find_largest(p->system, y, largest);
+    }
+    if (!dalcs_smooth_retangent(p->system, p->smooth.newton->x, factor, largest,
+                                p->smooth.newton->phi)) {
         return false;
     }
     forget(p);
@@ -119,7 +133,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
         }
         is_last = agrees && is_done;
         bool stalls = step > 0 && is_done && !is_last && !n->limits; /* the digits do not suffice */
-        if (stalls && dalcs_osnsp_retangent(p, dalcs_smooth_steeper)) {
+        if (stalls && dalcs_osnsp_retangent(p, dalcs_smooth_steeper, y)) {
             continue;
         }
         DALCS_TRY(find_slope(p, p->smooth.given, y));
@@ -144,7 +158,7 @@ enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, 
         status = iterate(p, sigma, y, solve);
     }
     /* beside a line that is far steeper what is rounding would be any answer */
-    for (int k = 0; status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_smooth_steeper); k++) {
+    for (int k = 0; status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_smooth_steeper, y); k++) {
         status = k < MOST_STEEPER ? iterate(p, sigma, y, solve) : DALCS_NOT_CONVERGED;
     }
     return status;

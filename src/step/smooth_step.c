@@ -224,9 +224,10 @@ static enum dalcs_status solve(struct dalcs_radau_part *part, struct dalcs_stage
 
 enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
                                           struct dalcs_stage_entry **entry) {
-    (void)dalcs_osnsp_retangent(&part->component->osnsp, dalcs_smooth_steeper);
+    (void)dalcs_osnsp_retangent(&part->component->osnsp, dalcs_smooth_steeper, NULL);
     enum dalcs_status status = solve(part, entry);
-    if (status > DALCS_OK && dalcs_osnsp_retangent(&part->component->osnsp, dalcs_smooth_steeper)) {
+    if (status > DALCS_OK &&
+        dalcs_osnsp_retangent(&part->component->osnsp, dalcs_smooth_steeper, NULL)) {
         status = solve(part, entry);
     }
     if (status == DALCS_OK) {
