@@ -99,7 +99,7 @@ struct scaled {
 
 /* Rounds to the nearest multiple of `unit`. KEEPS: what is there is read back as the same double. UNDECIDED: two
  * multiples may be as near, or two doubles. */
-static enum rounding round_to(uint64_t unit, const struct scaled *s, uint64_t *digits) {
+static inline enum rounding round_to(uint64_t unit, const struct scaled *s, uint64_t *digits) {
     const uint64_t high = s->high;
     const int shift = s->shift;
     const uint64_t mask = (UINT64_C(1) << shift) - 1, fraction = high & mask;
@@ -117,12 +117,14 @@ static enum rounding round_to(uint64_t unit, const struct scaled *s, uint64_t *d
     return is_tie || distance + 4 > half ? UNDECIDED : KEEPS;
 }
 
-/* value = digits * 10^(power - 16) rounded; false when the product has too few digits to decide. value > 0. */
+/* value = digits * 10^(power - 16) rounded; false when the product has too few digits to decide. value is positive and
+ * normal. */
 static bool find_digits_fast(const struct dalcs_decimal *decimal, double value, uint64_t *digits,
                              int *power) {
-    int binary = 0;
-    uint64_t mantissa = (uint64_t)ldexp(frexp(value, &binary), 53) << 11;
-    binary -= 64; /* value = mantissa * 2^binary, mantissa in [2^63, 2^64) */
+    uint64_t bits = 0;
+    memcpy(&bits, &value, sizeof bits);
+    const uint64_t mantissa = UINT64_C(1) << 63 | bits << 11;
+    const int binary = (int)(bits >> 52) - (DBL_MAX_EXP - 1) - 63; /* value = mantissa * 2^binary */
     *power = (int)floor((binary + 63) * 0.30102999566398120);
     for (;; ++*power) {
         int slot = N_DIGITS - 1 - *power - DALCS_DECIMAL_MIN_POWER;
@@ -175,6 +177,21 @@ static void find_digits_exactly(double value, uint64_t *digits, int *power) {
     *power = atoi(c + 1);
 }
 
+/* Two halves at once: each digit waits for the division that gave the one before it. */
+static void spell(uint64_t digits, char digit[N_DIGITS]) {
+    enum { HALF = N_DIGITS / 2, TEN_8 = 100000000 };
+
+    uint32_t upper = (uint32_t)(digits / TEN_8);
+    uint32_t lower = (uint32_t)(digits % TEN_8);
+    for (int i = HALF; i > 0; i--) {
+        digit[i] = (char)('0' + upper % 10);
+        digit[i + HALF] = (char)('0' + lower % 10);
+        upper /= 10;
+        lower /= 10;
+    }
+    digit[0] = (char)('0' + upper);
+}
+
 static size_t write_scientific(char *text, const char *digit, int n, int power) {
     char *c = text;
     *c++ = digit[0];
@@ -183,7 +200,15 @@ static size_t write_scientific(char *text, const char *digit, int n, int power) 
         memcpy(c, digit + 1, (size_t)n - 1);
         c += n - 1;
     }
-    return (size_t)(c - text) + (size_t)sprintf(c, "e%c%02d", power < 0 ? '-' : '+', abs(power));
+    const int size = abs(power);
+    *c++ = 'e';
+    *c++ = power < 0 ? '-' : '+';
+    if (size >= 100) {
+        *c++ = (char)('0' + size / 100);
+    }
+    *c++ = (char)('0' + size / 10 % 10);
+    *c++ = (char)('0' + size % 10);
+    return (size_t)(c - text);
 }
 
 static size_t write_fixed(char *text, const char *digit, int n, int power) {
@@ -207,18 +232,24 @@ static size_t write_fixed(char *text, const char *digit, int n, int power) {
     return (size_t)(c - text);
 }
 
+static size_t write_word(char *text, const char *word) {
+    const size_t length = strlen(word);
+    memcpy(text, word, length + 1);
+    return length;
+}
+
 size_t dalcs_decimal_write(const struct dalcs_decimal *decimal, double value,
                            char text[DALCS_DECIMAL_SIZE]) {
     char *c = text;
     if (isnan(value)) {
-        return (size_t)sprintf(text, "nan");
+        return write_word(text, "nan");
     }
     if (signbit(value)) {
         *c++ = '-';
         value = -value;
     }
     if (value == 0.0 || isinf(value)) {
-        return (size_t)(c - text) + (size_t)sprintf(c, value == 0.0 ? "0" : "inf");
+        return (size_t)(c - text) + write_word(c, value == 0.0 ? "0" : "inf");
     }
     uint64_t digits = 0;
     int power = 0;
@@ -226,10 +257,7 @@ size_t dalcs_decimal_write(const struct dalcs_decimal *decimal, double value,
         find_digits_exactly(value, &digits, &power);
     }
     char digit[N_DIGITS];
-    for (int i = N_DIGITS - 1; i >= 0; i--) {
-        digit[i] = (char)('0' + digits % 10);
-        digits /= 10;
-    }
+    spell(digits, digit);
     int n = N_DIGITS;
     while (n > 1 && digit[n - 1] == '0') {
         n--;
