@@ -190,6 +190,18 @@ static void add_real(const struct dalcs_stage_plan *plan, const struct dalcs_sta
     }
 }
 
+/* What no solution is put into: pairs without a current, and what ripple is added to. The columns of equations are most of
+ * `out`, and all of them are put. */
+static void clear_rest(const struct dalcs_stages *stages, double *out) {
+    const struct dalcs_stage_layout *l = &stages->layout;
+    int n_equations = dalcs_system_n_equations(stages->system);
+    for (int node = 0; node <= stages->method->n_stages; node++) {
+        memset(out + node * l->stride + n_equations, 0,
+               (size_t)(l->stride - n_equations) * sizeof(double));
+    }
+    memset(out + l->ripple, 0, (size_t)(l->n_fixed - l->ripple) * sizeof(double));
+}
+
 enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
                                             const struct dalcs_stage_entry *entry, const double *in,
                                             double *out) {
@@ -198,7 +210,7 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     const struct dalcs_stage_layout *l = &stages->layout;
     int n_x = stages->system->n_x;
     int n_columns = dalcs_system_n_columns(stages->system);
-    memset(out, 0, (size_t)l->n_fixed * sizeof(double));
+    clear_rest(stages, out);
     dalcs_stage_find_shares(stages, f, in + n_x + 1);
     dalcs_stage_find_start(plan, f, in);
     dalcs_stage_find_drive(plan, f, &plan->drive, plan->work.from, in[n_x]);

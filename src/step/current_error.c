@@ -100,18 +100,24 @@ static bool may_matter(struct dalcs_radau_part *part, struct dalcs_stage_entry *
 }
 
 /* What rounding may make of the drift of a current, or of a voltage: of what it is a difference of now, and of the most
- * that it has been one of, whose rounding the states keep. */
+ * that it has been one of, whose rounding the states keep; on factors, of a balanced column of 1 by `balanced`. */
 static double rounding_of(const struct dalcs_radau_part *part,
-                          const struct dalcs_stage_entry *entry, int k) {
+                          const struct dalcs_stage_entry *entry, int k, double balanced) {
     const struct dalcs_stages *stages = &part->stages;
     if (dalcs_stage_has_map(entry)) {
         double spread =
             dalcs_stage_spread_of_current(stages, entry, k, part->segment.in, part->scales.column);
         return dalcs_sum_rounded * (spread + part->scales.current_parts[k]);
     }
-    /* the drift is a solution by itself, of small numbers: what cancels in stages on factors is not in it */
-    return dalcs_step_rounding(part, entry) / part->segment.rounding *
-           dalcs_stage_natural_units(entry)[stages->levered[k]];
+    return balanced * dalcs_stage_natural_units(entry)[stages->levered[k]];
+}
+
+/* The drift on factors is a solution by itself, of small numbers: what cancels in stages is not in it. It takes a pass over
+ * all columns. */
+static double balanced_rounding(const struct dalcs_radau_part *part,
+                                const struct dalcs_stage_entry *entry) {
+    return dalcs_stage_has_map(entry) ? 0.0
+                                      : dalcs_step_rounding(part, entry) / part->segment.rounding;
 }
 
 void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
@@ -123,6 +129,7 @@ void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry
     if (n > 0) {
         dalcs_stages_drift_of_currents(stages, entry, part->segment.in, part->scales.current_drift);
     }
+    double balanced = n > 0 ? balanced_rounding(part, entry) : 0.0;
     for (int k = 0; k < n; k++) {
         double *worst = k < stages->n_currents ? &e->of_currents : &e->of_voltages;
         /* What is left of the drift after its filter once more is so many times what currents are off by between the nodes,
@@ -133,7 +140,7 @@ void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry
         if (!(error > least * allowed)) {
             continue;
         }
-        if (!(error * dalcs_beyond > rounding_of(part, entry, k))) {
+        if (!(error * dalcs_beyond > rounding_of(part, entry, k, balanced))) {
             continue;
         }
         *worst = dalcs_larger(*worst, error / allowed);
