@@ -87,14 +87,15 @@ static enum dalcs_status solve_on_way(struct dalcs_radau *r, struct dalcs_radau_
                                       double *h) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     const size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
+    bool is_shortest = false;
     memcpy(part->work.mode_before, p->mode, bytes);
-    while (*h >= dalcs_length_shortest(r)) {
+    while (!is_shortest) {
         DALCS_TRY(dalcs_radau_implicit_step(r, part, *h, *h, part->x, part->work.y1));
         if (part->smooth == NULL || dalcs_smooth_euler_meets_pole(part)) {
             return DALCS_OK;
         }
         memcpy(p->mode, part->work.mode_before, bytes);
-        double half = 0.5 * *h;
+        const double half = 0.5 * *h;
         enum dalcs_status status =
             dalcs_radau_implicit_step(r, part, half, half, part->x, part->work.y2);
         memcpy(p->mode, part->work.mode_before, bytes);
@@ -104,7 +105,8 @@ static enum dalcs_status solve_on_way(struct dalcs_radau *r, struct dalcs_radau_
         if (status == DALCS_OK && is_on_way(part)) {
             return dalcs_radau_implicit_step(r, part, *h, *h, part->x, part->work.y1);
         }
-        *h *= 0.25;
+        is_shortest = 0.25 * *h < dalcs_length_shortest(r);
+        *h *= is_shortest ? 1.0 : 0.25;
     }
     return dalcs_micro_fail(r, part, 1.0 / *h, part->work.u, DALCS_NOT_CONVERGED);
 }
