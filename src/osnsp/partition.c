@@ -234,15 +234,17 @@ enum dalcs_status dalcs_partition_find(struct dalcs_partition *p, const struct d
     return status;
 }
 
-void dalcs_partition_keep_first(const int *block_of, const struct dalcs_system *s, double *value) {
+void dalcs_partition_keep_first(const int *block_of, const struct dalcs_system *s,
+                                enum dalcs_pair_kind kind, double *value) {
     const int *of = block_of != NULL ? block_of + dalcs_system_n_equations(s) : NULL;
     int first = -1;
     for (int d = 0; of != NULL && d < s->n_pairs; d++) {
         bool is_first = value[d] != 0.0 && (first < 0 || of[d] < first);
         first = is_first ? of[d] : first;
     }
-    for (int d = 0; of != NULL && d < s->n_pairs; d++) {
-        value[d] = of[d] == first ? value[d] : 0.0;
+    for (int d = 0; d < s->n_pairs; d++) {
+        bool counts = s->pair[d].kind == kind && (of == NULL || of[d] == first);
+        value[d] = counts ? value[d] : 0.0;
     }
 }
 

@@ -25,8 +25,9 @@ enum dalcs_status dalcs_partition_find(struct dalcs_partition *p,
                                        const struct dalcs_system *s) DALCS_MUST_CHECK;
 
 /* Of an open quantity, value[n_pairs] is what it is in pairs: what readers make of it, in later blocks than the first in
- * which it is anything, becomes 0. block_of[n_columns]; NULL: there is one block. */
-void dalcs_partition_keep_first(const int *block_of, const struct dalcs_system *s, double *value);
+ * which it is anything, becomes 0, and what it is in pairs of another kind. block_of[n_columns]; NULL: there is one block. */
+void dalcs_partition_keep_first(const int *block_of, const struct dalcs_system *s,
+                                enum dalcs_pair_kind kind, double *value);
 
 void dalcs_partition_finish(struct dalcs_partition *p);
 

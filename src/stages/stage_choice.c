@@ -64,8 +64,8 @@ static enum dalcs_status find_null_vectors(struct dalcs_stage_workshop *b, bool 
     return *vector != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-/* The other sides of the pairs of one kind in a null vector: lambda of closed ones, w of open ones. Returns the norm of
- * their terms' sizes. */
+/* The other sides of the pairs of one kind in a null vector: lambda of closed ones, w of open ones; of pairs of any kind
+ * those count that it reaches first. Returns the norm of their terms' sizes. */
 static double find_other_sides(const struct dalcs_stage_workshop *b, enum dalcs_pair_kind kind,
                                const double *vector, double *of_pair) {
     const struct dalcs_csr *C = &b->system->C;
@@ -73,8 +73,7 @@ static double find_other_sides(const struct dalcs_stage_workshop *b, enum dalcs_
     double square = 0.0;
     for (int d = 0; d < b->system->n_pairs; d++) {
         int closed = b->place[n_equations + d];
-        const struct dalcs_pair *pair = &b->system->pair[d];
-        bool counts = pair->kind == kind && !pair->is_left_out[closed >= 0 ? 1 : 0];
+        bool counts = !b->system->pair[d].is_left_out[closed >= 0 ? 1 : 0];
         double side = counts && closed >= 0 ? vector[closed] * b->eq.column_scale[closed] : 0.0;
         double size = fabs(side);
         for (int k = C->p[d]; counts && closed < 0 && k < C->p[d + 1]; k++) {
@@ -86,7 +85,7 @@ static double find_other_sides(const struct dalcs_stage_workshop *b, enum dalcs_
         of_pair[d] = fabs(side) > dalcs_sum_rounded * size ? side : 0.0;
         square += size * size;
     }
-    dalcs_partition_keep_first(b->stages->block_of, b->system, of_pair);
+    dalcs_partition_keep_first(b->stages->block_of, b->system, kind, of_pair);
     return sqrt(square);
 }
 

@@ -157,11 +157,10 @@ static enum dalcs_status find_trace(struct search *s, enum dalcs_pair_kind kind,
     int n_pairs = s->system->n_pairs;
     double *vector = s->vector + k * s->n_columns;
     for (int d = 0; d < n_pairs; d++) {
-        const struct dalcs_pair *pair = &s->system->pair[d];
-        bool counts = pair->kind == kind && !pair->is_left_out[dalcs_stage_is_on(s->entry, d)];
+        bool counts = !s->system->pair[d].is_left_out[dalcs_stage_is_on(s->entry, d)];
         s->of_pair[d] = counts ? other_side(s, d, vector) : 0.0;
     }
-    dalcs_partition_keep_first(s->plan->stages->block_of, s->system, s->of_pair);
+    dalcs_partition_keep_first(s->plan->stages->block_of, s->system, kind, s->of_pair);
     double before = norm_of(s->of_pair, n_pairs);
     for (int i = 0; i < 2 * k; i++) {
         const struct trace *other = &s->trace[i % k];
