@@ -10,8 +10,9 @@
 #include <time.h>
 
 static void tell(const struct ng_background *b, bool is_not_running) {
-    if (b->tell != NULL) {
-        b->tell(is_not_running, b->id, b->user);
+    ng_thread_state *state = b->tell;
+    if (state != NULL) {
+        state(is_not_running, b->id, b->user);
     }
 }
 

@@ -17,7 +17,7 @@ enum ng_state {
 
 /* Zero-initialise, set the first three, then open. */
 struct ng_background {
-    ng_thread_state *tell; /* of the program; may be NULL */
+    ng_thread_state *_Atomic tell; /* of the program; may be NULL; read once for a call */
     int id;
     void *user;
     pthread_mutex_t lock;

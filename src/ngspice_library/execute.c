@@ -105,8 +105,9 @@ bool ng_forget_all(struct ng_library *l) {
 
 static void quit(struct ng_library *l) {
     (void)ng_forget_all(l);
-    if (l->tell.exit != NULL) {
-        l->tell.exit(0, false, true, l->talk.id, l->talk.user);
+    ng_controlled_exit *leave = l->tell.exit;
+    if (leave != NULL) {
+        leave(0, false, true, l->talk.id, l->talk.user);
     }
 }
 

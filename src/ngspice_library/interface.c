@@ -24,7 +24,10 @@ bool ng_is_ready(void) {
 __attribute__((destructor)) static void leave(void) {
     if (ng_the.is_open) {
         ng_the.talk.send_char = NULL; /* the program's functions may be gone */
-        ng_the.tell = (struct ng_callbacks){0};
+        ng_the.tell.status = NULL;
+        ng_the.tell.exit = NULL;
+        ng_the.tell.data = NULL;
+        ng_the.tell.init_data = NULL;
         ng_the.background.tell = NULL;
         ng_library_close(&ng_the);
     }
@@ -57,7 +60,10 @@ int ngSpice_Init(ng_send_char *send_char, ng_send_status *send_status,
                  ng_send_init_data *send_init_data, ng_thread_state *thread_state, void *user) {
     ng_the.talk.send_char = send_char;
     ng_the.talk.user = user;
-    ng_the.tell = (struct ng_callbacks){send_status, controlled_exit, send_data, send_init_data};
+    ng_the.tell.status = send_status;
+    ng_the.tell.exit = controlled_exit;
+    ng_the.tell.data = send_data;
+    ng_the.tell.init_data = send_init_data;
     ng_the.background.tell = thread_state;
     ng_the.background.user = user;
     if (!ng_is_ready()) {

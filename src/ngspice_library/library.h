@@ -20,11 +20,12 @@
 #include "talk.h"
 
 /* The arguments of ngSpice_Init; any may be NULL. */
+/* Of the program. At its end they become NULL while a thread may still be about to call one: it reads each once. */
 struct ng_callbacks {
-    ng_send_status *status;
-    ng_controlled_exit *exit;
-    ng_send_data *data;
-    ng_send_init_data *init_data;
+    ng_send_status *_Atomic status;
+    ng_controlled_exit *_Atomic exit;
+    ng_send_data *_Atomic data;
+    ng_send_init_data *_Atomic init_data;
 };
 
 /* Of one row, as SendData gets it. */

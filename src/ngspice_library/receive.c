@@ -15,9 +15,10 @@ static double now(void) {
 
 static void send_status(struct ng_library *l, const char *text) {
     char copy[64];
-    if (l->tell.status != NULL) {
+    ng_send_status *send = l->tell.status;
+    if (send != NULL) {
         snprintf(copy, sizeof copy, "%s", text);
-        l->tell.status(copy, l->talk.id, l->talk.user);
+        send(copy, l->talk.id, l->talk.user);
     }
 }
 
@@ -90,16 +91,17 @@ static enum dalcs_status announce(struct ng_library *l, struct ng_plot *plot) {
                                           .vector = plot->vector[k],
                                           .scale = plot->has_scale ? plot->vector[0] : NULL};
     }
-    if (status == DALCS_OK) {
+    ng_send_init_data *send = l->tell.init_data;
+    if (status == DALCS_OK && send != NULL) {
         char kind[64];
         snprintf(kind, sizeof kind, "%s", plot->kind);
-        l->tell.init_data(&(struct ng_announcement){.name = kind,
-                                                    .title = plot->title,
-                                                    .date = plot->date,
-                                                    .type = plot->type,
-                                                    .n = (int)plot->n,
-                                                    .vector = pointer},
-                          l->talk.id, l->talk.user);
+        send(&(struct ng_announcement){.name = kind,
+                                       .title = plot->title,
+                                       .date = plot->date,
+                                       .type = plot->type,
+                                       .n = (int)plot->n,
+                                       .vector = pointer},
+             l->talk.id, l->talk.user);
     }
     free(vector);
     free(pointer);
@@ -131,7 +133,10 @@ static void send_row(struct ng_library *l, double scale, const double *value) {
         v->re = is_scale ? scale : *value++;
         v->im = !is_scale && v->is_complex ? *value++ : 0.0;
     }
-    l->tell.data(&l->sent.row, l->sent.row.n, l->talk.id, l->talk.user);
+    ng_send_data *send = l->tell.data;
+    if (send != NULL) {
+        send(&l->sent.row, l->sent.row.n, l->talk.id, l->talk.user);
+    }
     l->sent.row.index++;
 }
 

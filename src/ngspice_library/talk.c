@@ -14,9 +14,10 @@ enum { LONGEST = 4000 };
 /* One line, its newline not counted. */
 static void send_line(struct ng_talk *talk, const char *stream, const char *text, size_t n) {
     char line[LONGEST];
-    if (talk->send_char != NULL) {
+    ng_send_char *send = talk->send_char;
+    if (send != NULL) {
         snprintf(line, sizeof line, "%s %.*s", stream, (int)(n < LONGEST ? n : LONGEST - 1), text);
-        talk->send_char(line, talk->id, talk->user);
+        send(line, talk->id, talk->user);
     }
 }
 

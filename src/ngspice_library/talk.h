@@ -13,7 +13,7 @@
 
 /* Zero-initialise, set the first three. */
 struct ng_talk {
-    ng_send_char *send_char; /* NULL: no callback */
+    ng_send_char *_Atomic send_char; /* NULL: no callback; read once for a call */
     int id;
     void *user;
     FILE *out;  /* of print and echo */
