@@ -19,8 +19,8 @@
 #include "script.h"
 #include "talk.h"
 
-/* The arguments of ngSpice_Init; any may be NULL. */
-/* Of the program. At its end they become NULL while a thread may still be about to call one: it reads each once. */
+/* The arguments of ngSpice_Init; any may be NULL. At the end of the program all become NULL while a thread may be about to
+ * call one: it reads each once. */
 struct ng_callbacks {
     ng_send_status *_Atomic status;
     ng_controlled_exit *_Atomic exit;

@@ -6,8 +6,8 @@
 #include <math.h>
 
 /* What a small part aims at where less is asked for. A run takes hardly longer for it, and an event is where it should
- * be to 1e-11 of the run. */
-static const double aimed = 1e-9; /* as choose_stages() says in words */
+ * be to 1e-11 of the run. choose_stages() says it in words, too. */
+static const double aimed = 1e-9;
 
 /* Where the number of stages of a large part without a sine changes. */
 static const double loose = 1e-4;
