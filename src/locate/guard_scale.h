@@ -5,7 +5,6 @@
 #include "radau_state.h"
 
 #include "rounding.h"
-#include "step_scales.h"
 
 #include <float.h>
 
@@ -44,10 +43,8 @@ double dalcs_guard_control_scale(const struct dalcs_radau_part *part, int guard,
 /* V or A. */
 static inline double dalcs_guard_scale(const struct dalcs_radau_part *part, int guard,
                                        const double *unit) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    return guard < p->system->n_pairs
-               ? dalcs_step_unit_of_block(part, dalcs_system_n_equations(p->system) + guard,
-                                          dalcs_osnsp_is_on(p, guard) ? 1 : 0, unit)
+    return guard < part->component->system->n_pairs
+               ? unit[dalcs_osnsp_is_on(&part->component->osnsp, guard) ? 1 : 0]
                : dalcs_guard_control_scale(part, guard, unit);
 }
 

@@ -69,7 +69,7 @@ void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *
     bool *armed = part->guards.armed;
     for (int d = 0; d < n_pairs; d++) {
         if (p->lists.is_diode[d] && !(at_end && armed[d])) {
-            double scale = dalcs_guard_scale(part, d, unit);
+            double scale = unit[dalcs_osnsp_is_on(p, d)];
             armed[d] =
                 value[d] > band * scale || (value[d] > dalcs_tied_nothing(part, d, unit) &&
                                             ((!at_end && dalcs_guard_goes_on(part, d, value[d])) ||

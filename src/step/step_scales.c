@@ -80,15 +80,6 @@ enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
     }
     find_controls(part);
     find_arguments(part);
-    const struct dalcs_partition *partition = &part->component->osnsp.partition;
-    if (partition->block_of != NULL) {
-        size_t n_units = 2 * (size_t)partition->n_blocks;
-        kinds->of_block = dalcs_arena_alloc(&part->arena, n_units, sizeof(double));
-        kinds->of_block_here = dalcs_arena_alloc(&part->arena, n_units, sizeof(double));
-        if (kinds->of_block == NULL || kinds->of_block_here == NULL) {
-            return DALCS_E_NOMEM;
-        }
-    }
     return DALCS_OK;
 }
 
@@ -187,43 +178,12 @@ DALCS_TWICE(void, compare_ends,
     unit[1] = dalcs_quad_largest(&amperes);
 }
 
-/* What only reads has no part in how well that which it reads is known. */
-static void find_units_of_blocks(const struct dalcs_radau_part *part) {
-    const struct dalcs_partition *partition = &part->component->osnsp.partition;
-    const struct dalcs_column_kinds *kinds = part->scales.kinds;
-    double *here = kinds->of_block_here;
-    memset(here, 0, 2 * (size_t)partition->n_blocks * sizeof(*here));
-    for (int c = 0; c < dalcs_system_n_columns(part->component->system); c++) {
-        const double m = part->scales.magnitude[c];
-        double *of = here + 2 * (ptrdiff_t)partition->block_of[c];
-        of[0] = dalcs_larger(of[0], kinds->is_volt[c] * m);
-        of[1] = dalcs_larger(of[1], (kinds->is_ampere[c] + kinds->is_closed[c]) * m);
-    }
-    for (int k = 2; k < 2 * partition->n_blocks; k++) {
-        here[k] = dalcs_larger(here[k], here[k - 2]);
-    }
-}
-
-double dalcs_step_unit_of_block(const struct dalcs_radau_part *part, int column, int is_current,
-                                const double *unit) {
-    const struct dalcs_column_kinds *kinds = part->scales.kinds;
-    if (kinds->of_block == NULL) {
-        return unit[is_current];
-    }
-    const int k = 2 * part->component->osnsp.partition.block_of[column] + is_current;
-    return dalcs_smaller(unit[is_current],
-                         dalcs_larger(kinds->of_block[k], kinds->of_block_here[k]));
-}
-
 void dalcs_step_find_magnitudes(struct dalcs_radau_part *part, double end, double *unit) {
     const double *known = part->segment.out + last_node(part, end) * part->stages.layout.stride;
     find_kinds(part);
     compare_ends(part->scales.kinds, dalcs_system_n_columns(part->component->system),
                  part->segment.out, known, part->scales.magnitude, unit);
     part->scales.magnitude_end = end;
-    if (part->scales.kinds->of_block != NULL) {
-        find_units_of_blocks(part);
-    }
 }
 
 /* Those of n columns, but of a current only since its pair closed. */
@@ -250,11 +210,6 @@ void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double
                  part->scales.kinds->counts, part->scales.column);
     part->scales.unit[0] = unit[0];
     part->scales.unit[1] = unit[1];
-    const struct dalcs_column_kinds *kinds = part->scales.kinds;
-    for (int k = 0; kinds->of_block != NULL && k < 2 * part->component->osnsp.partition.n_blocks;
-         k++) {
-        kinds->of_block[k] = dalcs_larger(kinds->of_block[k], kinds->of_block_here[k]);
-    }
 }
 
 void dalcs_step_take_in(struct dalcs_radau_part *part) {

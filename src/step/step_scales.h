@@ -10,17 +10,10 @@ struct dalcs_column_kinds {
     double *is_volt, *is_ampere, *is_closed; /* 1 or 0: V or A of an equation, A of a closed pair */
     double *leans; /* 1; 0: it moves a switch, and is held to its own scale however small that is */
     uint64_t *counts; /* all bits, but none of an open pair, whose voltage is one of the columns */
-    /* [n_blocks][2] V, A: the largest of each in a block and those before it (partition.h), in the present step and so far.
-     * NULL: there is one block */
-    double *of_block_here, *of_block;
 };
 
 /* The larger of what a column is at the first and at the last known node of a segment; raises the
  * units to the largest of them. */
 void dalcs_step_find_magnitudes(struct dalcs_radau_part *part, double end, double *unit);
-
-/* The part of a unit, V (0) or A (1), that a column's block knows of: `unit` without what only reads it. */
-double dalcs_step_unit_of_block(const struct dalcs_radau_part *part, int column, int is_current,
-                                const double *unit);
 
 #endif
