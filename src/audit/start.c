@@ -20,7 +20,6 @@ static void check_initial(struct dalcs_audit *audit, const struct audit_part *pa
 static bool is_ideal(const struct dalcs_audit *audit, const struct audit_part *part,
                      const struct dalcs_audit_state *before, const struct dalcs_audit_state *first,
                      int device) {
-    (void)part, (void)before;
     const struct dalcs_circuit *c = audit->circuit;
     const struct dalcs_device *d = &c->device[device];
     switch (d->kind) {
@@ -31,10 +30,8 @@ static bool is_ideal(const struct dalcs_audit *audit, const struct audit_part *p
         return d->value == 0.0;
     case DALCS_SWITCH:
         return first->is_closed[device] && c->switch_model[d->model].ron == 0.0;
-    case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &c->diode_model[d->model];
-        return first->i[device] != 0.0 && (m->ron == 0.0 || m->rrev == 0.0);
-    }
+    case DALCS_DIODE: /* one at its knee may have carried at rest what a source that moves takes from it at once */
+        return audit_ways_of_charge(audit, part, before, first, device) != 0;
     default:
         return false;
     }
