@@ -28,12 +28,12 @@ static enum dalcs_status stamp_formulas(struct stamps *b, const struct dalcs_mem
     return DALCS_OK;
 }
 
-/* Adds a factor times the voltage of a node that sources fix: from source to source to ground, and for an E source from
- * the nodes that control it on. */
+/* Adds a factor times the voltage of a node to the root of its tree of sources: from source to source, and for an E
+ * source from the nodes that control it on. */
 static enum dalcs_status add_potential(struct stamps *b, int pair, int node, double factor) {
     const struct dalcs_layout *l = b->layout;
     const struct dalcs_topology *t = &l->topology;
-    for (int n = t->node_of[node]; n != 0;) {
+    for (int n = t->node_of[node]; t->potential_source[n] >= 0;) {
         int source = t->potential_source[n];
         const struct dalcs_device *d = &l->circuit->device[source];
         bool upward = t->node_of[d->node[0]] == n;

@@ -241,9 +241,10 @@ static enum dalcs_status stamp_diode(struct stamps *b, int device) {
     return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
 }
 
-static bool is_direct(const struct dalcs_layout *l, int node) {
-    int n = l->topology.node_of[node];
-    return n == 0 || l->topology.potential_source[n] >= 0;
+static bool is_direct(const struct dalcs_layout *l, const struct dalcs_device *d) {
+    const struct dalcs_topology *t = &l->topology;
+    const int root = t->potential_root[t->node_of[d->node[2]]];
+    return root >= 0 && root == t->potential_root[t->node_of[d->node[3]]];
 }
 
 double dalcs_stamp_control_sign(const struct dalcs_switch_model *m) {
@@ -264,7 +265,7 @@ static enum dalcs_status stamp_switch(struct stamps *b, int device) {
     if (d->control < 0) {
         DALCS_TRY(dalcs_stamp_add_voltage(b, &b->control, b->next_pair, d->node[2], d->node[3],
                                           dalcs_stamp_control_sign(m)));
-        pair.is_direct = is_direct(b->layout, d->node[2]) && is_direct(b->layout, d->node[3]);
+        pair.is_direct = is_direct(b->layout, d);
     }
     DALCS_TRY(
         stamp_pair(b, d->node[0], d->node[1], 0.0, dalcs_stamp_series_part(m->ron, m->roff), pair));

@@ -193,14 +193,15 @@ enum dalcs_status dalcs_topology_build(struct dalcs_topology *t,
         .has_current = dalcs_alloc(n_devices, sizeof(bool)),
         .is_idle = dalcs_alloc(n_devices, sizeof(bool)),
         .potential_source = dalcs_alloc(n_nodes, sizeof(int)),
+        .potential_root = dalcs_alloc(n_nodes, sizeof(int)),
         .forest_root = dalcs_alloc(n_nodes, sizeof(int)),
     };
     int *parent = dalcs_alloc(n_nodes + n_devices, sizeof(*parent));
     int *number = dalcs_alloc(n_nodes + n_devices, sizeof(*number));
-    if (t->potential_source == NULL || t->node_of == NULL || t->node_component == NULL ||
-        t->device_component == NULL || t->is_reference == NULL || t->reference_of == NULL ||
-        t->in_forest == NULL || t->has_current == NULL || t->is_idle == NULL ||
-        t->forest_root == NULL || parent == NULL || number == NULL) {
+    if (t->potential_source == NULL || t->potential_root == NULL || t->node_of == NULL ||
+        t->node_component == NULL || t->device_component == NULL || t->is_reference == NULL ||
+        t->reference_of == NULL || t->in_forest == NULL || t->has_current == NULL ||
+        t->is_idle == NULL || t->forest_root == NULL || parent == NULL || number == NULL) {
         free(parent);
         free(number);
         dalcs_topology_finish(t);
@@ -233,6 +234,7 @@ void dalcs_topology_finish(struct dalcs_topology *t) {
     free(t->has_current);
     free(t->is_idle);
     free(t->potential_source);
+    free(t->potential_root);
     free(t->forest_root);
     *t = (struct dalcs_topology){0};
 }

@@ -18,9 +18,11 @@ struct dalcs_topology {
     bool *is_idle; /* [n_devices] V sources and shorts that close a loop of such elements whose
                               voltages agree: they carry no current by convention */
     int *
-        potential_source; /* [n_nodes] V device between a node and one nearer to ground, or an E that such
-                              nodes control, when sources alone fix the node's voltage; else -1, as all are
-                              without switches */
+        potential_source; /* [n_nodes] V device between a node and one nearer to its root, or an E that such
+                              nodes control; -1 for a root, for a node of no tree, and without switches */
+    int *
+        potential_root; /* [n_nodes] between nodes with one root sources alone fix the voltage; ground, or a
+                              floating node at a source; -1 for a node of no tree, and without switches */
     int *forest_root; /* [n_nodes] root of the capacitor tree that a node is in; itself if none */
 };
 

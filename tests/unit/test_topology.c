@@ -137,10 +137,40 @@ START_TEST(test_potentials) {
     ck_assert_int_eq(s.t.potential_source[node(&s, "a")], device(&s, "v1"));
     ck_assert_int_eq(s.t.potential_source[node(&s, "b")], device(&s, "v2"));
     ck_assert_int_eq(s.t.potential_source[node(&s, "c")], -1);
-    ck_assert_int_eq(s.t.potential_source[node(&s, "d")], -1);
+    ck_assert_int_eq(s.t.potential_root[node(&s, "b")], 0);
+    ck_assert_int_eq(s.t.potential_root[node(&s, "c")], s.t.potential_root[node(&s, "d")]);
     sketch_finish(&s);
 }
 
 END_TEST
 
-RUN_TESTS("topology", test_shorts, test_components, test_references, test_forest, test_potentials)
+static int root(const struct sketch *s, const char *name) {
+    return s->t.potential_root[node(s, name)];
+}
+
+/* Floating trees of sources: along an E of such a tree into others and on, not between trees that stand already. */
+START_TEST(test_floating_potentials) {
+    struct sketch s;
+    sketch_build(
+        &s,
+        "floating\nE1 x y a b 2\nE3 m n x y 2\nV1 a b 1\nV2 p q 1\nE2 p 0 a b 3\nE4 f 0 r 0 1\n"
+        "R1 a 0 1\nR2 x 0 1\nR3 q r 1\nR4 m 0 1\nS1 r 0 a b m\n.model m sw\n.op\n",
+        NULL);
+    ck_assert_int_eq(root(&s, "a"), root(&s, "b"));
+    ck_assert_int_ge(root(&s, "a"), 1);
+    ck_assert_int_eq(root(&s, "x"), root(&s, "y"));
+    ck_assert_int_ge(root(&s, "x"), 1);
+    ck_assert_int_ne(root(&s, "x"), root(&s, "a"));
+    ck_assert_int_eq(root(&s, "m"), root(&s, "n"));
+    ck_assert_int_ge(root(&s, "m"), 1);
+    ck_assert_int_eq(root(&s, "p"), 0);
+    ck_assert_int_eq(root(&s, "q"), 0);
+    ck_assert_int_eq(root(&s, "r"), -1);
+    ck_assert_int_eq(root(&s, "f"), -1);
+    sketch_finish(&s);
+}
+
+END_TEST
+
+RUN_TESTS("topology", test_shorts, test_components, test_references, test_forest, test_potentials,
+          test_floating_potentials)
