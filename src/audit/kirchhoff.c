@@ -29,6 +29,10 @@ void audit_round_storage(struct dalcs_audit *audit, const struct audit_part *par
             audit->sums.amperes += least * d->value * volts;
         }
     }
+    for (int k = 0; k < part->n_devices; k++) { /* a derivative is read as a voltage */
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        audit->sums.volts += d->kind == DALCS_CCVS ? fabs(d->value) * audit->sums.amperes : 0.0;
+    }
 }
 
 /* What rounding of the voltages at a device makes of its current, of a charge over a step, or over a step of a flux. A value

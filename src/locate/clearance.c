@@ -37,7 +37,8 @@ static double doubtless(const struct dalcs_radau_part *part, int guard) {
 }
 
 static bool is_beyond_rounding(const struct dalcs_radau_part *part, int guard, double value) {
-    return value > dalcs_beyond * dalcs_guard_most_rounding(part, guard, part->scales.unit) ||
+    return (!dalcs_guard_may_read_rates(part) &&
+            value > dalcs_beyond * dalcs_guard_most_rounding(part, guard, part->scales.unit)) ||
            value > dalcs_beyond * dalcs_guard_rounding(part, guard, part->scales.unit);
 }
 

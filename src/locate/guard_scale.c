@@ -19,9 +19,13 @@ double dalcs_guard_control_scale(const struct dalcs_radau_part *part, int guard,
     return fmax(size, fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
 }
 
+static bool has_map(const struct dalcs_radau_part *part) {
+    return part->segment.entry != NULL && dalcs_stage_has_map(part->segment.entry);
+}
+
 /* Of a guard by the map of the step; `most` where there is none. */
 static double rounding_by_map(const struct dalcs_radau_part *part, int place, double most) {
-    if (part->segment.entry == NULL || !dalcs_stage_has_map(part->segment.entry)) {
+    if (!has_map(part)) {
         return most;
     }
     return dalcs_smaller(most, dalcs_sum_rounded *
@@ -41,14 +45,16 @@ double dalcs_guard_rounding_across(const struct dalcs_radau_part *part, int pair
 static double rounding_of_pair(const struct dalcs_radau_part *part, int guard, const double *unit) {
     const struct dalcs_system *s = part->component->system;
     double most = dalcs_guard_most_rounding(part, guard, unit);
+    if (dalcs_guard_may_read_rates(part)) {
+        return rounding_by_map(part, dalcs_system_n_equations(s) + guard, INFINITY);
+    }
     if (!(most > 0.0)) {
         return 0.0;
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    bool has_map = part->segment.entry != NULL && dalcs_stage_has_map(part->segment.entry);
     most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0]
                  : part->laws.held_flux[guard] / part->segment.h * unit[1];
-    if (!has_map && !is_on) {
+    if (!has_map(part) && !is_on) {
         most = dalcs_smaller(most, dalcs_pair_flux(part, guard) / part->segment.h);
     }
     return rounding_by_map(part, dalcs_system_n_equations(s) + guard, dalcs_sum_rounded * most);
@@ -59,7 +65,8 @@ double dalcs_guard_rounding(const struct dalcs_radau_part *part, int guard, cons
     if (guard < s->n_pairs) {
         return rounding_of_pair(part, guard, unit) + dalcs_guard_rounding_across(part, guard, unit);
     }
-    double most = dalcs_guard_most_rounding(part, guard, unit);
+    double most =
+        dalcs_guard_may_read_rates(part) ? INFINITY : dalcs_guard_most_rounding(part, guard, unit);
     return most > 0.0 ? rounding_by_map(part, dalcs_system_n_columns(s) + guard - s->n_pairs, most)
                       : 0.0;
 }

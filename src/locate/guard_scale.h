@@ -64,6 +64,12 @@ static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *pa
                   : part->laws.held_flux[guard] * unit[1]);
 }
 
+/* Does what a map tells of rounding count, whatever is held beside a guard? */
+static inline bool dalcs_guard_may_read_rates(const struct dalcs_radau_part *part) {
+    return part->laws.reads_rates && part->segment.entry != NULL &&
+           dalcs_stage_has_map(part->segment.entry);
+}
+
 /* What rounding makes of a pair that is 0 where its whole unit is, in V or A. Where nothing flows in an island that
  * floats, the sum of two conductances, rounded, less each of them is a leak to ground of the last digit. */
 double dalcs_guard_rounding_across(const struct dalcs_radau_part *part, int pair,

@@ -70,6 +70,29 @@ static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equ
     }
 }
 
+/* Is a column that no state decides one of the algebraic columns by which a state's rate follows: a current into a
+ * capacitor's node, a voltage at a coil? */
+static bool is_rate(const struct dalcs_system *s, int column) {
+    bool is = false;
+    for (int r = 0; r < s->n_x && column >= s->n_x && !is; r++) {
+        for (int k = s->A.p[r]; k < s->A.p[r + 1] && !is; k++) {
+            is = s->A.j[k] == column && column < dalcs_system_n_equations(s) &&
+                 s->column_is_current[column] == s->row_is_current[r];
+        }
+    }
+    return is;
+}
+
+/* Without readers a rate acts on what is next to it, and charges and fluxes there tell. */
+static void find_read_rates(struct dalcs_radau_part *part) {
+    const struct dalcs_csr *reads = &part->component->system->reads;
+    part->laws.reads_rates = false;
+    for (int k = 0; reads->p != NULL && k < reads->p[reads->n_rows] && !part->laws.reads_rates;
+         k++) {
+        part->laws.reads_rates = is_rate(part->component->system, reads->j[k]);
+    }
+}
+
 /* row < 0: ground. */
 static struct dalcs_pair_law law_of_node(const struct dalcs_system *s, int row,
                                          const double *inductance) {
@@ -101,6 +124,7 @@ void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
     find_charges(part);
     double *inductance = part->laws.inductance;
     find_fluxes(part, inductance);
+    find_read_rates(part);
     for (int d = 0; d < s->n_pairs; d++) {
         part->laws.law[DALCS_PAIR_LAWS * d] =
             law_of_node(s, part->laws.pair_row[2 * d], inductance);

@@ -105,6 +105,7 @@ struct dalcs_part_laws {
     int *charging_row;  /* [n_equations] of the capacitor that a current charges, -1: none */
     int *pair_row;      /* [n_pairs][2] KCL rows that its current enters, -1: ground */
     double *inductance; /* [n_equations] H, at nodes; work */
+    bool reads_rates; /* does an element read what charges a capacitor, or the voltage of a coil? */
 };
 
 /* Kept from the past. It proposes a mode and a length; a step, or a bound of its own, accepts them. */
