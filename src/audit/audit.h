@@ -256,6 +256,10 @@ void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int in
 /* The same of what a device is in: its position. */
 void dalcs_audit_add_position(struct dalcs_audit *audit, int device, double defect, double time);
 
+/* Is something in a part at t where it changes over, or has a source an edge there? Then what reads the part may have been
+ * anything for no time. begins: its present stretch begins at t. */
+bool dalcs_audit_has_cause(struct dalcs_audit *audit, int part, double t, bool begins);
+
 /* May so much more be looked at, in instructions, about? It is charged where it may. */
 bool dalcs_audit_may(struct dalcs_audit *audit, double work);
 

@@ -70,6 +70,20 @@ static bool has_other_cause(struct dalcs_audit *audit, const struct audit_part *
     return has;
 }
 
+bool dalcs_audit_has_cause(struct dalcs_audit *audit, int index, double t, bool begins) {
+    struct dalcs_audit_state *before = &audit->later, *after = &audit->now;
+    before->t = after->t = t;
+    before->side = DALCS_LEFT;
+    after->side = DALCS_RIGHT;
+    if (begins) {
+        audit->reader.read_before(audit->reader.user, index, 0.0, before);
+    } else {
+        audit->reader.read(audit->reader.user, index, before);
+    }
+    audit->reader.read(audit->reader.user, index, after);
+    return has_other_cause(audit, &audit->part[index], before, after, -1);
+}
+
 /* ---- Changes ------------------------------------------------------------------------------------- */
 
 /* How far a control moved just before an event, or moves just behind it, while times cannot be told apart: with 0.1 ohm and

@@ -130,10 +130,18 @@ static void read_bits(struct dalcs_logic_run *l) {
         const struct dalcs_component *component = &l->euler->component[l->place[k].part];
         const bool bit = dalcs_osnsp_is_on(&component->osnsp, l->place[k].pair);
         if (bit != l->bit[k]) {
+            struct dalcs_logic_change *change = &l->change[k];
+            change->n = change->instant == l->instant ? change->n + 1 : 1;
+            change->instant = l->instant;
             l->bit[k] = bit;
             dalcs_logic_touch_bit(&l->network, k);
         }
     }
+}
+
+bool dalcs_logic_run_flashed(const struct dalcs_logic_run *l, int comparator) {
+    const struct dalcs_logic_change *change = &l->change[comparator];
+    return change->instant == l->instant && change->n > 1;
 }
 
 bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l) {

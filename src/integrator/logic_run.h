@@ -42,6 +42,12 @@ struct dalcs_logic_run {
     bool *bit; /* [n_comparators] */
     int n_comparators;
 
+    struct
+        dalcs_logic_change { /* of a bit: the instant of the last one, and how many there were in it */
+        long instant;
+        int n;
+    } * change; /* [n_comparators] */
+
     struct dalcs_logic_place { /* of a comparator: its component, or part, and its pair there */
         int part, pair;
     } * place;
@@ -101,6 +107,9 @@ enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed)
 
 /* Have all gates the outputs that the solved operating point demands? If not, network.moves lists the others. */
 bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l);
+
+/* Has a comparator been on another side within this instant, and come back? */
+bool dalcs_logic_run_flashed(const struct dalcs_logic_run *l, int comparator);
 
 /* s, the next change of an output that waits; INFINITY: none does. */
 double dalcs_logic_run_next(const struct dalcs_logic_run *l);

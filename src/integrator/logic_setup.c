@@ -44,6 +44,7 @@ static enum dalcs_status allocate(struct dalcs_logic_run *l) {
     const size_t n_comparators = (size_t)l->circuit->n_comparators;
     const size_t n_stimuli = (size_t)l->circuit->n_stimuli;
     l->bit = dalcs_alloc(n_comparators + 1, sizeof(*l->bit));
+    l->change = dalcs_alloc(n_comparators + 1, sizeof(*l->change));
     l->place = dalcs_alloc(n_comparators + 1, sizeof(*l->place));
     l->output = dalcs_alloc(n, sizeof(*l->output));
     l->sample = dalcs_alloc(n, sizeof(*l->sample));
@@ -51,9 +52,9 @@ static enum dalcs_status allocate(struct dalcs_logic_run *l) {
     l->taken = dalcs_alloc(n, sizeof(*l->taken));
     l->changed = dalcs_alloc(n_stimuli, sizeof(*l->changed));
     l->as_built = dalcs_alloc(n_stimuli, sizeof(*l->as_built));
-    bool complete = l->bit != NULL && l->place != NULL && l->output != NULL && l->sample != NULL &&
-                    l->pulse != NULL && l->taken != NULL && l->changed != NULL &&
-                    l->as_built != NULL;
+    bool complete = l->bit != NULL && l->change != NULL && l->place != NULL && l->output != NULL &&
+                    l->sample != NULL && l->pulse != NULL && l->taken != NULL &&
+                    l->changed != NULL && l->as_built != NULL;
     if (complete) {
         memcpy(l->as_built, l->circuit->stimulus, n_stimuli * sizeof(*l->as_built));
     }
@@ -111,6 +112,7 @@ void dalcs_logic_run_finish(struct dalcs_logic_run *l) {
                (size_t)l->circuit->n_stimuli * sizeof(*l->as_built));
     }
     free(l->bit);
+    free(l->change);
     free(l->place);
     free(l->output);
     free(l->sample);

@@ -19,10 +19,11 @@ struct audit_gate {
     int count;               /* of clocks; -1: it is not known */
     double held;             /* V, by a sample */
     bool was_seen;
-    double free_at; /* s: what was decided when it was lost is shown from then on */
-    double before;  /* V, what it may take at this instant */
-    double ends;    /* s: a pulse, or the time behind it in which no clock counts */
-    double *due;    /* [n_due] s: what it has to show changes */
+    unsigned flashes; /* its inputs that were on another side for no time */
+    double free_at;   /* s: what was decided when it was lost is shown from then on */
+    double before;    /* V, what it may take at this instant */
+    double ends;      /* s: a pulse, or the time behind it in which no clock counts */
+    double *due;      /* [n_due] s: what it has to show changes */
     size_t first_due, n_due, capacity;
 };
 
@@ -109,6 +110,29 @@ static bool reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_in
     return bit != input->is_inverted;
 }
 
+/* What ends a pulse of a comparator may be what it did: a latch that opens a switch at a current is reset for no time, as the
+ * current falls from there on. The run tells which comparators came back; that they could have gone is found here: what
+ * they read was where it changes over. A bit for each input. */
+static unsigned flashes_of(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g,
+                           struct dalcs_audit *audit, double t) {
+    unsigned flashes = 0;
+    for (int i = 0; i < g->n_inputs; i++) {
+        const struct dalcs_logic_input *input = &g->input[i];
+        if (input->from == DALCS_GATE_COMPARATOR &&
+            dalcs_logic_run_flashed(a->logic, input->index)) {
+            const struct dalcs_radau_part *part = &a->radau->part[a->place[input->index].part];
+            const bool begins =
+                part->kind == DALCS_PART_STEPPED && part->segment.t >= t - a->radau->resolution;
+            flashes |= dalcs_audit_has_cause(audit, part->index, t, begins) ? 1u << i : 0u;
+        }
+    }
+    return flashes;
+}
+
+static bool has(const struct audit_gate *s, int input) {
+    return (s->flashes >> input & 1u) != 0;
+}
+
 /* What the inputs say; held: they leave it as it was, as far as can be told. */
 struct verdict {
     bool q, is_held, is_known, is_forced;
@@ -153,7 +177,7 @@ static bool after_clock(enum dalcs_logic_kind kind, bool q, bool data, bool rese
 static struct verdict of_memory(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g,
                                 struct audit_gate *s) {
     const bool is_latch = g->kind == DALCS_GATE_LATCH;
-    struct verdict v = {.is_known = true};
+    struct verdict v = {.is_known = s->flashes == 0};
     const bool clears = reads(a, &g->input[is_latch ? 1 : DALCS_GATE_CLEAR], &v.is_known);
     const bool sets = reads(a, &g->input[is_latch ? 0 : DALCS_GATE_PRESET], &v.is_known);
     const bool clock = !is_latch && reads(a, &g->input[DALCS_GATE_CLOCK], &v.is_known);
@@ -187,8 +211,10 @@ static struct verdict of_counter(const struct dalcs_audit_gates *a,
                                  const struct dalcs_logic_gate *g, struct audit_gate *s, bool now) {
     struct verdict v = {.is_known = true};
     const bool clock = reads(a, &g->input[0], &v.is_known);
-    const bool rises = clock && !s->clock && s->was_seen;
-    if (reads(a, &g->input[1], &v.is_known)) {
+    const bool rises = (clock && !s->clock && s->was_seen) || s->flashes == 1u;
+    if (s->flashes > 2u) {
+        s->count = -1; /* which was first? */
+    } else if (reads(a, &g->input[1], &v.is_known) || s->flashes == 2u) {
         s->count = 0;
     } else if (rises && s->count >= 0) {
         s->count = s->count % g->cycles + 1;
@@ -215,14 +241,15 @@ static struct verdict of_monostable(const struct dalcs_audit_gates *a,
         s->count = s->count == 1 && !g->pulse.is_retriggered ? 2 : 0;
         s->ends += g->pulse.recovery;
     }
-    if (clears) {
+    const bool rises = (clock && !s->clock && s->was_seen) || has(s, DALCS_GATE_CLOCK);
+    if (clears || has(s, DALCS_GATE_CLEAR)) {
         s->count = 0;
-    } else if (clock && !s->clock && s->was_seen && (s->count == 0 || g->pulse.is_retriggered)) {
+    } else if (rises && (s->count == 0 || g->pulse.is_retriggered)) {
         s->count = 1;
         s->ends = t + g->pulse.lead + (g->sampled >= 0 ? fmax(0.0, s->before) : g->pulse.length);
     }
     v.is_known = v.is_known && (s->was_seen || !clock);
-    v.is_forced = clears;
+    v.is_forced = clears || has(s, DALCS_GATE_CLEAR);
     v.q = s->count == 1;
     s->clock = clock;
     return v;
@@ -424,7 +451,7 @@ static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
     bool is_known = true;
     const bool clock = reads(a, &g->input[DALCS_GATE_CLOCK], &is_known);
     const bool tracks = reads(a, &g->input[DALCS_GATE_PRESET], &is_known);
-    if (!s->is_lost && ((clock && !s->clock) || (s->q && !tracks))) {
+    if (!s->is_lost && ((clock && !s->clock) || (s->q && !tracks) || s->flashes != 0)) {
         s->held = s->before;
     } else if (!is_known || may_have_missed(a, g) || (s->is_lost && clock)) {
         s->held =
@@ -439,10 +466,12 @@ static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
 }
 
 enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dalcs_audit *audit,
-                                         double t) {
+                                         const struct dalcs_logic_run *logic, double t) {
+    a->logic = logic;
     for (int k = 0; a->gate != NULL && k < a->circuit->n_gates; k++) {
         if (shown_by(&a->circuit->gate[k]) >= 0) {
             bool is_wrong;
+            a->gate[k].flashes = flashes_of(a, &a->circuit->gate[k], audit, t);
             if (a->circuit->gate[k].kind == DALCS_GATE_SAMPLE) {
                 is_wrong = is_sample_wrong(a, k);
             } else {

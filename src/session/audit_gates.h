@@ -9,9 +9,10 @@ struct dalcs_audit_gates {
     const struct dalcs_circuit *circuit;
     struct dalcs_radau *radau;
     const struct dalcs_readout *readout;
-    struct dalcs_logic_place *place; /* [n_comparators] */
-    struct audit_gate *gate;         /* [n_gates]; NULL: there are none */
-    int *node_system;                /* [n_nodes] -1: none; NULL: there are no samples */
+    const struct dalcs_logic_run *logic; /* that has decided last; of it, which bits came back */
+    struct dalcs_logic_place *place;     /* [n_comparators] */
+    struct audit_gate *gate;             /* [n_gates]; NULL: there are none */
+    int *node_system;                    /* [n_nodes] -1: none; NULL: there are no samples */
 };
 
 /* Does nothing where the circuit has no gates. */
@@ -31,6 +32,7 @@ enum dalcs_status dalcs_audit_gates_sample(struct dalcs_audit_gates *a, double t
 
 /* All gates have decided at t, where something may have happened; findings go to audit. */
 enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dalcs_audit *audit,
+                                         const struct dalcs_logic_run *logic,
                                          double t) DALCS_MUST_CHECK;
 
 #endif

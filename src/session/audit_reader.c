@@ -135,6 +135,10 @@ static void read_before(void *user, int index, double earlier, struct dalcs_audi
     const struct dalcs_component *c = part->component;
     const struct audit_members *m = &a->part[index];
     const int n_equations = dalcs_system_n_equations(c->system);
+    if (m->last_out == NULL) { /* the first one begins there */
+        read_state(user, index, s);
+        return;
+    }
     dalcs_recurrence_complete_before(part);
     double *present = part->segment.out;
     part->segment.out = m->last_out;

@@ -288,8 +288,9 @@ void dalcs_audit_run_enter_now(struct dalcs_audit_run *a) {
     }
 }
 
-enum dalcs_status dalcs_audit_run_gates(struct dalcs_audit_run *a, double t) {
-    return a->audit != NULL ? dalcs_audit_gates_look(&a->gates, a->audit, t) : DALCS_OK;
+enum dalcs_status dalcs_audit_run_gates(struct dalcs_audit_run *a,
+                                        const struct dalcs_logic_run *logic, double t) {
+    return a->audit != NULL ? dalcs_audit_gates_look(&a->gates, a->audit, logic, t) : DALCS_OK;
 }
 
 enum dalcs_status dalcs_audit_run_sample(struct dalcs_audit_run *a, double t) {

@@ -130,7 +130,9 @@ bool dalcs_audit_run_fails(const struct dalcs_audit_run *a);
 enum dalcs_status dalcs_audit_run_sample(struct dalcs_audit_run *a, double t) DALCS_MUST_CHECK;
 
 /* Gates have decided at t. */
-enum dalcs_status dalcs_audit_run_gates(struct dalcs_audit_run *a, double t) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_audit_run_gates(struct dalcs_audit_run *a,
+                                        const struct dalcs_logic_run *logic,
+                                        double t) DALCS_MUST_CHECK;
 
 /* Between leave and enter: a part's segment ends at t, before its time. */
 void dalcs_audit_run_cut(struct dalcs_audit_run *a, int part, double t);

@@ -153,7 +153,7 @@ static enum dalcs_status pass_gates(struct transient *c, double t) {
     }
     DALCS_TRY(dalcs_transient_decide(c->run, c->logic, t));
     dalcs_measures_renew(c->measures, t);
-    return dalcs_audit_run_gates(c->audit, t);
+    return dalcs_audit_run_gates(c->audit, c->logic, t);
 }
 
 /* What samples may take, before anything happens at t. */
@@ -304,7 +304,7 @@ enum dalcs_status dalcs_transient_walk(struct dalcs_run *r, struct dalcs_radau *
     status = status == DALCS_OK ? dalcs_gate_samples_setup(&c.samples, logic) : status;
     dalcs_audit_run_begin(audit);
     dalcs_audit_run_told(audit, 0.0);
-    status = status == DALCS_OK ? dalcs_audit_run_gates(audit, 0.0) : status;
+    status = status == DALCS_OK ? dalcs_audit_run_gates(audit, logic, 0.0) : status;
     while (c.t < radau->options.stop && status == DALCS_OK) {
         status = advance(&c);
         status = status == DALCS_OK ? tell_progress(&c, 1) : status;
