@@ -201,8 +201,8 @@ static void jump(void *user, const struct dalcs_euler_jump *told) {
         return;
     }
     const uint64_t *mode = part->work.mode_first;
-    log->is_exact = log->is_exact &&
-                    (!p->jumped || dalcs_mode_is(p->jump_mode, mode, part->stages.n_words));
+    log->is_exact =
+        log->is_exact && (!p->jumped || dalcs_mode_is(p->jump_mode, mode, part->stages.n_words));
     memcpy(p->jump_mode, mode, (size_t)part->stages.n_words * sizeof(*mode));
     p->jumped = true;
 }

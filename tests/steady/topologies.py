@@ -244,7 +244,7 @@ def pumps():
                    "C1 out 0 22u\nR1 out 0 4\nVcc vcc 0 10\nDb vcc bt\nCb bt sw 220n\nRb bt sw 10k\n" + SW,
                    24.0, 1e-3, 10e-6, "v(bt)")
     yield Topology("a comparator strikes the pump", "Vin in 0 {S}\nVr r 0 PULSE(0 1 0 20u 0 0 20u)\n"
-                   "S1 in ck r c s0\nS2 0 ck c r s0\nE1 c 0 out 0 60m\nC1 ck a 100n\nD1 in a\nD2 a out\nC2 out 0 1u\nR1 out 0 3k\nRa a out 40k\n"
+                   "S1 in ck r c s0\nS2 0 ck c r s0\nE1 c 0 f 0 60m\nRf out f 10k\nCf f 0 10n\nC1 ck a 100n\nD1 in a\nD2 a out\nC2 out 0 1u\nR1 out 0 3k\nRa a out 40k\n"
                    ".model s0 SW(Ron=0 Vt=0)\n", 6.0, 1e-3, 20e-6, "v(out)")
 
 
