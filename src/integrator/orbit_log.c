@@ -109,7 +109,7 @@ static enum dalcs_status note_arguments(struct dalcs_orbit_part *p, struct dalcs
 
 static bool goes_on(const struct dalcs_orbit_part *p, const uint64_t *mode) {
     const struct dalcs_orbit_span *last =
-        p->n > 0 && p->rates.part->smooth == NULL ? &p->span[p->n - 1] : NULL;
+        p->n > 0 && !p->jumped && p->rates.part->smooth == NULL ? &p->span[p->n - 1] : NULL;
     return last != NULL && last->df == NULL && last->gates == NULL &&
            dalcs_mode_is(last->mode, mode, p->rates.part->stages.n_words);
 }
@@ -123,9 +123,29 @@ static enum dalcs_status end_at_gates(struct dalcs_orbit_part *p, struct dalcs_o
                : DALCS_E_NOMEM;
 }
 
+/* The jump that the span begins with; f: f+ of the event that moves it, NULL if none does. */
+static enum dalcs_status begin_with_jump(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span,
+                                         const double *f) {
+    const size_t words = (size_t)p->rates.part->stages.n_words;
+    const size_t n_x = (size_t)p->rates.n_x;
+    span->jump = dalcs_arena_alloc(&p->log->arena, words, sizeof(*span->jump));
+    span->behind = f != NULL ? dalcs_arena_alloc(&p->log->arena, n_x, sizeof(double)) : NULL;
+    if (span->jump == NULL || (f != NULL && span->behind == NULL)) {
+        return DALCS_E_NOMEM;
+    }
+    memcpy(span->jump, p->jump_mode, words * sizeof(*span->jump));
+    if (f != NULL) {
+        memcpy(span->behind, f, n_x * sizeof(double));
+    }
+    p->jumped = false;
+    return DALCS_OK;
+}
+
 static enum dalcs_status take_segment(struct dalcs_orbit_part *p) {
     const struct dalcs_radau_part *part = p->rates.part;
     const uint64_t *mode = part->component->osnsp.mode;
+    const bool moves_jump = p->pending;
+    p->jumped = p->jumped && !dalcs_mode_is(p->jump_mode, mode, part->stages.n_words);
     if (p->n == 0) {
         DALCS_TRY(find_begin(p, p->f, p->y));
     } else if (p->pending) {
@@ -137,6 +157,7 @@ static enum dalcs_status take_segment(struct dalcs_orbit_part *p) {
     if (span == NULL) {
         return DALCS_E_NOMEM;
     }
+    DALCS_TRY(p->jumped ? begin_with_jump(p, span, moves_jump ? p->work_f : NULL) : DALCS_OK);
     span->from = goes ? span->from : part->segment.t;
     span->to = part->segment.t_end;
     if (part->smooth != NULL) {
@@ -171,6 +192,21 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     log->status = status < DALCS_OK ? status : log->status;
 }
 
+/* The mode of its impulses, that of the first micro-step, counts where it is not that of the segment behind it. */
+static void jump(void *user, const struct dalcs_euler_jump *told) {
+    struct dalcs_orbit_log *log = user;
+    struct dalcs_orbit_part *p = &log->part[told->system];
+    const struct dalcs_radau_part *part = p->rates.part;
+    if (log->status < DALCS_OK || part->kind != DALCS_PART_STEPPED) {
+        return;
+    }
+    const uint64_t *mode = part->work.mode_first;
+    log->is_exact =
+        log->is_exact && (!p->jumped || dalcs_mode_is(p->jump_mode, mode, part->stages.n_words));
+    memcpy(p->jump_mode, mode, (size_t)part->stages.n_words * sizeof(*mode));
+    p->jumped = true;
+}
+
 static double sliding_step(void *user, int k, const double *x, const double *y,
                            const struct dalcs_observed_sides *sides, const double *inputs) {
     struct dalcs_orbit_log *log = user;
@@ -185,6 +221,7 @@ static double sliding_step(void *user, int k, const double *x, const double *y,
 
 struct dalcs_observer dalcs_orbit_log_observer(struct dalcs_orbit_log *log) {
     struct dalcs_observer observer = dalcs_segments_observer(log, segment);
+    observer.jump = jump;
     observer.sliding_step = sliding_step;
     return observer;
 }
@@ -272,7 +309,10 @@ static enum dalcs_status part_setup(struct dalcs_orbit_log *log, struct dalcs_or
     p->work_f = dalcs_arena_alloc(&log->arena, n_x, sizeof(double));
     p->y = dalcs_arena_alloc(&log->arena, stride, sizeof(double));
     p->work_y = dalcs_arena_alloc(&log->arena, stride, sizeof(double));
-    if (p->f == NULL || p->work_f == NULL || p->y == NULL || p->work_y == NULL) {
+    p->jump_mode =
+        dalcs_arena_alloc(&log->arena, (size_t)part->stages.n_words + 1, sizeof(*p->jump_mode));
+    if (p->f == NULL || p->work_f == NULL || p->y == NULL || p->work_y == NULL ||
+        p->jump_mode == NULL) {
         return DALCS_E_NOMEM;
     }
     return dalcs_orbit_rates_setup(&p->rates, &log->arena, part);

@@ -15,8 +15,11 @@
 struct dalcs_orbit_span {
     double from, to; /* s */
     uint64_t *mode;  /* [n_words] */
-    int row;         /* of the guard in an answer that ends it; -1: none does */
-    double rate;     /* of it, by time */
+    uint64_t *
+        jump; /* [n_words] of the impulses of a jump that it begins with; NULL: none, or the same */
+    double *behind; /* [n_x] f+, where an event moves that jump; NULL: none does */
+    int row;        /* of the guard in an answer that ends it; -1: none does */
+    double rate;    /* of it, by time */
     double moved
         [2]; /* s, re and im: how a command that ends it moves with the small signals of its sources */
     double h;              /* s, of the step that it is, where there are smooth sources */
@@ -33,6 +36,8 @@ struct dalcs_orbit_part {
     size_t capacity;
     struct dalcs_orbit_span *span; /* [n] */
     bool pending;                  /* what lies behind the last one is not known yet */
+    bool jumped;                   /* behind the last one, in jump_mode */
+    uint64_t *jump_mode;           /* [n_words] */
     double *f, *y; /* [n_x], [n_columns] where the period begins; y NULL: nothing was told */
     double *work_f, *work_y;
 };

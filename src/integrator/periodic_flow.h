@@ -51,6 +51,8 @@ struct dalcs_flow_start {
 struct dalcs_flow_piece {
     struct dalcs_flow_map *map;
     double t;                             /* s, where it begins */
+    const struct dalcs_flow_start *jump;  /* with that of these impulses; NULL: none, or the same */
+    const double *behind;                 /* [n_x] as of the span */
     const struct dalcs_flow_start *start; /* NULL: the mode was there before */
     const struct dalcs_orbit_span
         *end; /* that ends with it, and something moves there; else NULL */

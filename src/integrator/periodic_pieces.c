@@ -238,6 +238,30 @@ static void begin_span(struct probe *p, const struct dalcs_flow_start *start, do
     }
 }
 
+/* An event that moves the jump lets f- go on before it, and takes f+ away behind it; its span's end had both. */
+static void pass_jump(struct probe *p, const struct dalcs_flow_start *start,
+                      const struct dalcs_orbit_span *span) {
+    const int n_x = p->flow->n_x;
+    for (int side = 0; side < 2; side++) {
+        for (int k = 0; k < p->n && span->behind != NULL; k++) {
+            for (int x = 0; x < n_x; x++) {
+                const double complex moved = p->dt[k] * span->behind[x];
+                p->column[k * n_x + x] += side == 0 ? moved : -moved;
+            }
+        }
+        begin_span(p, side == 0 ? start : NULL, span->from);
+    }
+}
+
+static enum dalcs_status find_jump(struct dalcs_periodic_flow *flow,
+                                   const struct dalcs_orbit_span *span,
+                                   const struct dalcs_flow_start **start) {
+    struct dalcs_orbit_span with_impulses = *span;
+    with_impulses.mode = span->jump;
+    *start = NULL;
+    return span->jump != NULL ? dalcs_periodic_flow_start(flow, &with_impulses, start) : DALCS_OK;
+}
+
 static enum dalcs_status cut_period(struct probe *p) {
     struct dalcs_periodic_flow *flow = p->flow;
     const struct dalcs_orbit_part *orbit = flow->orbit;
@@ -245,19 +269,26 @@ static enum dalcs_status cut_period(struct probe *p) {
     for (int k = 0; k < orbit->n; k++) {
         const struct dalcs_orbit_span *span = &orbit->span[k];
         const struct dalcs_flow_start *start = NULL;
+        const struct dalcs_flow_start *jump;
         if (!(span->to > span->from)) {
             continue;
         }
         DALCS_TRY(flow->asked.go_on(flow->asked.user));
-        if (flow->smooth == NULL || before == NULL ||
+        DALCS_TRY(find_jump(flow, span, &jump));
+        if (flow->smooth == NULL || before == NULL || span->jump != NULL ||
             !dalcs_mode_is(before->mode, span->mode, flow->stages.n_words)) {
             DALCS_TRY(dalcs_periodic_flow_start(flow, span, &start));
         }
         before = span;
+        if (jump != NULL) {
+            pass_jump(p, jump, span);
+        }
         begin_span(p, start, span->from);
         const int first = flow->pieces.n;
         DALCS_TRY(cut_span(p, span));
         flow->pieces.piece[first].start = start;
+        flow->pieces.piece[first].jump = jump;
+        flow->pieces.piece[first].behind = jump != NULL ? span->behind : NULL;
         if (span->df != NULL) {
             flow->pieces.piece[flow->pieces.n - 1].end = span;
             end_span(p, span);

@@ -56,17 +56,35 @@ static void find_means(const struct dalcs_periodic_response *r, struct dalcs_flo
 
 /* ---- Through the period -------------------------------------------------------------------------- */
 
-static void begin_piece(struct dalcs_periodic_response *r, const struct dalcs_flow_piece *piece,
-                        double complex phase) {
+static void begin_with(struct dalcs_periodic_response *r, const struct dalcs_flow_start *start,
+                       double complex phase) {
     const int n_x = r->flow->n_x;
     for (int x = 0; x < n_x; x++) {
-        double complex sum = piece->start->by_source[x] * phase;
+        double complex sum = start->by_source[x] * phase;
         for (int k = 0; k < r->flow->n_columns; k++) {
-            sum += piece->start->P[k * n_x + x] * r->now[k];
+            sum += start->P[k * n_x + x] * r->now[k];
         }
         r->next[x] = sum;
     }
     memcpy(r->now, r->next, (size_t)n_x * sizeof *r->now);
+}
+
+/* late: s, by which the event before it is. */
+static void begin_piece(struct dalcs_periodic_response *r, const struct dalcs_flow_piece *piece,
+                        double complex phase, double complex late) {
+    const int n_x = r->flow->n_x;
+    for (int x = 0; x < n_x && piece->behind != NULL; x++) {
+        r->now[x] += late * piece->behind[x];
+    }
+    if (piece->jump != NULL) {
+        begin_with(r, piece->jump, phase);
+    }
+    for (int x = 0; x < n_x && piece->behind != NULL; x++) {
+        r->now[x] -= late * piece->behind[x];
+    }
+    if (piece->start != NULL) {
+        begin_with(r, piece->start, phase);
+    }
 }
 
 /* One row where the piece ends. */
@@ -140,6 +158,7 @@ static void end_gates(struct dalcs_periodic_response *r, double w) {
 static void go_through(struct dalcs_periodic_response *r, double w, double other, bool means) {
     const struct dalcs_periodic_flow *flow = r->flow;
     const int n_x = flow->n_x;
+    double complex dt = 0.0;
     if (r->gates.log != NULL) {
         dalcs_periodic_gates_begin(&r->gates, r->now + n_x);
     }
@@ -152,14 +171,12 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
             find_means(r, map, other);
             map->stamp = r->stamp;
         }
-        if (piece->start != NULL) {
-            begin_piece(r, piece, phase);
-        }
+        begin_piece(r, piece, phase, dt);
         if (means) {
             add_means(r, map, phase, conj(turn(other, piece->t)));
         }
         const struct dalcs_orbit_span *end = piece->end;
-        const double complex dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;
+        dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;
         if (p == flow->pieces.n - 1 && r->gates.log != NULL) {
             end_gates(r, w);
         }

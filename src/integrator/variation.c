@@ -3,6 +3,7 @@
 
 #include "quads.h"
 #include "recurrence.h"
+#include "restart.h"
 #include "segments_observer.h"
 #include "smooth_step.h"
 #include "step_error.h"
@@ -30,6 +31,15 @@ static bool sign_mode(struct dalcs_variation_part *v) {
     return is_new;
 }
 
+/* V += f dt of the event. */
+static void shift(struct dalcs_variation_part *v, const double *f) {
+    for (int k = 0; k < v->n_columns; k++) {
+        for (int x = 0; x < v->n_x; x++) {
+            v->v[k * v->n_x + x] += f[x] * v->guard[k];
+        }
+    }
+}
+
 /* What the event before has done, now that f+ is known: V += (f- - f+) dt. */
 static void pass_event(struct dalcs_variation_part *v) {
     if (!v->pending) {
@@ -39,11 +49,10 @@ static void pass_event(struct dalcs_variation_part *v) {
     const int stride = v->part->stages.layout.stride;
     memcpy(v->y, v->part->segment.out, (size_t)stride * sizeof(double));
     dalcs_orbit_rates_of(&v->rates, v->y, 0.0, v->after);
-    for (int k = 0; k < v->n_columns; k++) {
-        for (int x = 0; x < v->n_x; x++) {
-            v->v[k * v->n_x + x] += (v->before[x] - v->after[x]) * v->guard[k];
-        }
+    for (int x = 0; x < v->n_x; x++) {
+        v->before[x] -= v->after[x];
     }
+    shift(v, v->before);
 }
 
 static double size_of(const struct dalcs_variation_part *v, const double *x, const double *less) {
@@ -88,6 +97,39 @@ static enum dalcs_status apply(struct dalcs_variation_part *v, struct dalcs_stag
     }
     dalcs_smooth_step_vary(v->part, v->out, v->in);
     return dalcs_stages_apply(stages, entry, v->in, v->out);
+}
+
+/* Where the states of the impulses are held: what a diode conducts for an instant alone, and is open behind, takes out of V
+ * what nothing behind the jump shows. The mode is that of the first micro-step; in it the polynomial through the stages
+ * starts where the states come to (Heemels, Schumacher and Weiland 1999, sec. 4). An event that moves the jump adds f- dt
+ * before it, and takes f+ dt away behind it. */
+static enum dalcs_status pass_jump(const struct dalcs_radau *radau,
+                                   struct dalcs_variation_part *v) {
+    const struct dalcs_collocation *c = v->part->stages.method;
+    struct dalcs_stage_entry *entry;
+    double weight[DALCS_MAX_NODES] = {0.0};
+    v->jumped = false;
+    DALCS_TRY(dalcs_stages_get(&v->part->stages, v->jump_mode,
+                               dalcs_radau_micro_length(radau, v->part, 0), &entry));
+    memcpy(weight + 1, c->back, (size_t)c->s * sizeof(double));
+    if (v->pending) {
+        shift(v, v->before);
+        memset(v->before, 0, (size_t)v->n_x * sizeof(double));
+    }
+    if (dalcs_variation_shares(v, entry)) {
+        dalcs_variation_project_columns(v, entry, weight);
+        return DALCS_OK;
+    }
+    for (int k = 0; k < v->n_columns; k++) {
+        double *column = v->v + k * v->n_x;
+        memset(v->in, 0, (size_t)v->part->stages.n_in * sizeof(double));
+        memcpy(v->in, column, (size_t)v->n_x * sizeof(double));
+        DALCS_TRY(dalcs_stages_apply(&v->part->stages, entry, v->in, v->out));
+        for (int x = 0; x < v->n_x; x++) {
+            column[x] = dalcs_orbit_weigh(&v->part->stages.layout, weight, v->out, x);
+        }
+    }
+    return DALCS_OK;
 }
 
 /* V at the end of the segment; v->guard = how the guard `row` (-1: none) moves there. */
@@ -175,6 +217,32 @@ static void meet_gates(struct dalcs_variation_part *v) {
     v->pending = is_known || moves;
 }
 
+/* The jump that was told last, if it is in another mode than what follows it. */
+static bool pass_jump_before(struct dalcs_variation *variation, struct dalcs_variation_part *v,
+                             const uint64_t *mode) {
+    if (!v->jumped || dalcs_mode_is(v->jump_mode, mode, v->part->stages.n_words)) {
+        v->jumped = false;
+        return false;
+    }
+    const enum dalcs_status status = pass_jump(variation->radau, v);
+    v->is_exact = v->is_exact && status == DALCS_OK;
+    variation->status = status < DALCS_OK ? status : variation->status;
+    return status == DALCS_OK;
+}
+
+/* The mode of a jump counts where it is not that of the segment behind it, which takes out as much. */
+static void jump(void *user, const struct dalcs_euler_jump *told) {
+    struct dalcs_variation *variation = user;
+    struct dalcs_variation_part *v = &variation->part[told->system];
+    if (v->n_columns == 0 || variation->status < DALCS_OK) {
+        return;
+    }
+    pass_jump_before(variation, v, v->part->work.mode_first);
+    memcpy(v->jump_mode, v->part->work.mode_first,
+           (size_t)v->part->stages.n_words * sizeof(*v->jump_mode));
+    v->jumped = true;
+}
+
 static void segment(void *user, const struct dalcs_radau_part *present, const double *start) {
     struct dalcs_variation *variation = user;
     struct dalcs_variation_part *v = &variation->part[present->index];
@@ -188,6 +256,7 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     bool ends_at_event = !present->segment.by_euler && g->n_crossed > 0;
     int row = ends_at_event ? dalcs_orbit_guard_row(present, g->crossed[0]) : -1;
     v->is_exact = v->is_exact && !present->segment.by_euler;
+    is_new = pass_jump_before(variation, v, present->component->osnsp.mode) || is_new;
     pass_event(v);
     note_flow(v, variation->radau->options.stop);
     if (v->gates != NULL) {
@@ -230,6 +299,7 @@ static void slide(void *user, int k, const double *x, const double *y, double ta
 
 struct dalcs_observer dalcs_variation_observer(struct dalcs_variation *variation) {
     struct dalcs_observer observer = dalcs_segments_observer(variation, segment);
+    observer.jump = jump;
     observer.sliding_step = sliding_step;
     observer.slide = slide;
     return observer;
@@ -263,9 +333,11 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     v->last = dalcs_arena_alloc(arena, n, sizeof(double));
     v->moves = dalcs_arena_alloc(arena, n_all, sizeof(double));
     v->y = dalcs_arena_alloc(arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
+    v->jump_mode =
+        dalcs_arena_alloc(arena, (size_t)part->stages.n_words + 1, sizeof(*v->jump_mode));
     if (v->v == NULL || v->in == NULL || v->out == NULL || v->guard == NULL || v->before == NULL ||
         v->after == NULL || v->first == NULL || v->last == NULL || v->moves == NULL ||
-        v->y == NULL) {
+        v->y == NULL || v->jump_mode == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {

@@ -27,7 +27,9 @@ struct dalcs_variation_part {
     double moved;  /* s, when it comes; INFINITY: none has come yet */
     bool begun;    /* `first` is known */
     bool pending;  /* an event has just been passed */
-    bool is_exact; /* no step of implicit Euler, nothing that slides */
+    bool jumped;   /* since the last segment, in jump_mode */
+    uint64_t *jump_mode;           /* [n_words] */
+    bool is_exact;                 /* no step of implicit Euler, nothing that slides */
     uint64_t signature, last_mode; /* of the modes that followed each other */
 };
 

@@ -46,6 +46,11 @@ static void unload(struct dalcs_variation_part *v, int first) {
         for (int x = 0; x < v->n_x; x++) {
             column[x] = v->four.end[x][l];
         }
+    }
+}
+
+static void unload_guard(struct dalcs_variation_part *v, int first) {
+    for (int l = 0; l < DALCS_COLUMNS && first + l < v->n_columns; l++) {
         v->guard[first + l] = v->four.guard[l];
     }
 }
@@ -83,6 +88,18 @@ void dalcs_variation_pass_columns(struct dalcs_variation_part *v,
         if (is_new && project(v)) {
             dalcs_stage_columns_apply(&v->part->stages, entry, &v->four);
         }
+        unload(v, k);
+        unload_guard(v, k);
+    }
+}
+
+void dalcs_variation_project_columns(struct dalcs_variation_part *v,
+                                     const struct dalcs_stage_entry *entry, const double *weight) {
+    v->four.weight = weight;
+    v->four.row = -1;
+    for (int k = 0; k < v->n_columns; k += DALCS_COLUMNS) {
+        load(v, k);
+        dalcs_stage_columns_apply(&v->part->stages, entry, &v->four);
         unload(v, k);
     }
 }

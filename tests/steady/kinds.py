@@ -209,6 +209,17 @@ def gates():
         yield name, text.replace("{S}", repr(level)).split("\n", 1)[1]
 
 
+def ideal_pumps():
+    """Diodes that charge a capacitor in an instant, and are left with neither voltage nor current: doublers, two loads each."""
+    for level, period, store, out in ((5.0, 10e-6, 100e-9, 10e-6), (2e3, 1e-3, 10e-9, 33e-9), (1.2, 50e-9, 1e-12, 3e-12),
+                                      (48.0, 2e-6, 2.2e-6, 4.7e-6), (12.0, 0.1, 1e-3, 5e-3)):
+        for name, load in (("resistor", f"R1 out 0 {100 * period / store!r}"), ("current", f"I1 out 0 {0.01 * level * store / period!r}")):
+            yield (f"{name}, {level:g} V", f"Vin in 0 {level!r}\nVck ck 0 PULSE(0 {level!r} 0 0 0 {period / 2!r} {period!r})\nD1 in a\n"
+                   f"C1 ck a {store!r}\nD2 a out\nC2 out 0 {out!r}\n{load}\n")
+    for load in (300.0, 1e3, 2e4):
+        yield (f"Greinacher, {load:g} Ohm", f"V1 in 0 PULSE(-5 5 0 0 0 5u 10u)\nC1 in a 100n\nD1 0 a\nD2 a out\nC2 out 0 1u\nR1 out 0 {load!r}\n")
+
+
 KINDS = {
     "gates": gates,
     "buck_ccm": lambda: buck(True), "buck_dcm": lambda: buck(False),
@@ -216,4 +227,5 @@ KINDS = {
     "flyback_ccm": lambda: flyback(True), "flyback_dcm": lambda: flyback(False),
     "slow_rectifier": slow_rectifier, "six_pulse": six_pulse, "coupled": coupled, "llc": llc,
     "tank": tank, "multiplier": multiplier, "scales": scales, "hard_edges": hard_edges, "interleaved": interleaved,
+    "ideal_pumps": ideal_pumps,
 }

@@ -202,6 +202,52 @@ def free():
                    40.0, 1e-3, 0, "v(out)")
 
 
+def square(node, low, high, period, duty=0.5, begin=0.0, edge=0.0):
+    """Low at the beginning unless begin is 0."""
+    return f"V{node} {node} 0 PULSE({low!r} {high!r} {begin * period!r} {edge!r} {edge!r} {duty * period!r} {period!r})\n"
+
+
+def doubler(name, load, level=5.0, period=10e-6, store=100e-9, out="10u", edge=0.0):
+    return Topology(name, "Vin in 0 {S}\n" + square("ck", 0.0, level, period, 0.5, 0.0, edge) + f"D1 in a\nC1 ck a {store!r}\n"
+                    f"D2 a out\nC2 out 0 {out}\nRa a out {200 * period / store!r}\n{load}\n",
+                    level, 1e-4 * level, period, "v(out)")
+
+
+def pumps():
+    """Capacitors that share charge in an instant, through diodes that are open right behind it.
+
+    Small resistances of leakage open them: at no voltage and no current they would conduct half of a small signal.
+    """
+    yield doubler("doubler", "R1 out 0 10k")
+    yield doubler("doubler, load of a current", "I1 out 0 1m")
+    yield doubler("doubler, kilovolts", "R1 out 0 10meg", 2000.0, 1e-3, 10e-9, "33n")
+    yield doubler("doubler, picofarads", "I1 out 0 20n", 1.2, 50e-9, 1e-12, "3p")
+    yield doubler("doubler, edges of 10 ns", "R1 out 0 2k", edge=10e-9)
+    yield doubler("doubler, a filter behind it", "R1 out f 10\nL1 f g 1m\nC3 g 0 4.7u\nR2 g 0 1k", out="1u")
+    yield Topology("Greinacher on a square wave", "Vs s 0 {S}\nV1 in s PULSE(-5 5 0 0 0 5u 10u)\nC1 in a 100n\nD1 0 a\nD2 a out\n"
+                   "C2 out 0 1u\nR1 out 0 1k\nRa a out 20k\n", 0.0, 1e-3, 10e-6, "v(out)")
+    yield Topology("Cockcroft-Walton on a square wave", "Vs s 0 {S}\nV1 in s PULSE(-100 100 0 0 0 0.4m 1m)\nC1 in a 1u\nC2 a b 470n\n"
+                   "D1 0 a\nD2 a m\nD3 m b\nD4 b out\nC3 m 0 1u\nC4 out m 330n\nR1 out 0 100k\nRa a m 200k\nRb b out 400k\n", 0.0, 1e-2, 1e-3, "v(out)")
+    yield Topology("Dickson, three stages", "Vin in 0 {S}\n" + square("k", 0.0, 3.3, 1e-6) + square("q", 0.0, 3.3, 1e-6, 0.45, 0.52) +
+                   "D0 in n0\nC0 k n0 10p\nD1 n0 n1\nC1 q n1 10p\nD2 n1 n2\nC2 k n2 10p\nD3 n2 out\nCo out 0 50p\nI1 out 0 1u\n"
+                   "R0 n0 n1 5meg\nR1 n1 n2 5meg\nR2 n2 out 5meg\n", 3.3, 1e-4, 1e-6, "v(out)")
+    yield Topology("inverting pump", "Vin in 0 {S}\nB1 ck 0 V=v(in)*v(g)\nVg g 0 PULSE(0 1 0 0 0 0.4u 1u)\nC1 ck a 1u\n"
+                   "D1 a 0\nD2 b a\nC2 b 0 4.7u\nR1 b 0 150\nRa a b 200\n", 12.0, 1e-3, 1e-6, "v(b)")
+    yield Topology("halver of switches", "Vin in 0 {S}\n" + gate(1, 2e-6, 0, 0.45) + gate(2, 2e-6, 0.5, 0.45) +
+                   "S1 in a g1 0 s0\nS2 b out g1 0 s0\nS3 a out g2 0 s0\nS4 b 0 g2 0 s0\nC1 a b 2.2u\nC2 out 0 10u\nR1 out 0 5\n"
+                   ".model s0 SW(Ron=0 Vt=0.5)\n", 24.0, 1e-2, 2e-6, "v(out)")
+    yield Topology("charged side by side, emptied in a row", "Vin in 0 {S}\n" + gate(1, 100e-6, 0.1, 0.3) +
+                   "D1 in a\nD2 in b\nS1 0 am gn 0 s0\nS2 0 bm gn 0 s0\nC1 a am 1u\nC2 b bm 680n\nS3 a bm g1 0 s0\nS4 in am g1 0 s0\n"
+                   "D3 b out\nC3 out 0 3.3u\nR1 out 0 2k\nRa a out 20k\nRb b out 30k\nEn gn 0 hi g1 1\nVh hi 0 1\n.model s0 SW(Ron=0 Vt=0.5)\n",
+                   10.0, 1e-3, 100e-6, "v(out)")
+    yield Topology("bootstrap of a buck", "Vin in 0 {S}\n" + gate(1, 10e-6, 0, 0.4) + "S1 in sw g1 0 sm\nD1 0 sw\nL1 sw out 47u\n"
+                   "C1 out 0 22u\nR1 out 0 4\nVcc vcc 0 10\nDb vcc bt\nCb bt sw 220n\nRb bt sw 10k\n" + SW,
+                   24.0, 1e-3, 10e-6, "v(bt)")
+    yield Topology("a comparator strikes the pump", "Vin in 0 {S}\nVr r 0 PULSE(0 1 0 20u 0 0 20u)\n"
+                   "S1 in ck r c s0\nS2 0 ck c r s0\nE1 c 0 f 0 60m\nRf out f 10k\nCf f 0 10n\nC1 ck a 100n\nD1 in a\nD2 a out\nC2 out 0 1u\nR1 out 0 3k\nRa a out 40k\n"
+                   ".model s0 SW(Ron=0 Vt=0)\n", 6.0, 1e-3, 20e-6, "v(out)")
+
+
 GROUPS = {"two_coils": two_coils, "transformers": transformers, "dual_active": dual_active, "resonant": resonant,
           "phases": phases, "ladders": ladders, "controlled": controlled, "at_the_mains": at_the_mains,
-          "floating": floating, "inverters": inverters, "free": free}
+          "floating": floating, "inverters": inverters, "free": free, "pumps": pumps}
