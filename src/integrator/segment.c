@@ -283,6 +283,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
 enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     double limit = dalcs_radau_limit(r, part);
     bool slides = false;
+    dalcs_segment_renew(part);
     if (dalcs_sliding_leave(&part->component->positions)) {
         DALCS_TRY(dalcs_slide_step(r, part, limit, false, &slides));
     }
