@@ -34,8 +34,8 @@ enum dalcs_status dalcs_step_lines_add(struct dalcs_step_lines *lines,
     for (size_t i = 0; i < least(plot->n_signals, DALCS_STEP_SIGNALS); i++) {
         const bool is_wave = plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC;
         line->value[i] = is_wave                      ? dalcs_measure_shown_average(measure, i)
-                         : plot->analysis == DALCS_AC ? measure->signal[i].max
-                                                      : measure->signal[i].final;
+                         : plot->analysis == DALCS_AC ? dalcs_measure_of(measure, i).max
+                                                      : dalcs_measure_of(measure, i).final;
     }
     return DALCS_OK;
 }

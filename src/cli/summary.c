@@ -194,8 +194,9 @@ static bool has_averages(const struct dalcs_plot *plot) {
     return plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC;
 }
 
-static double largest_of(const struct dalcs_measure_signal *signal) {
-    return fmax(fabs(signal->min), fabs(signal->max));
+static double largest_of(const struct dalcs_measure *measure, size_t i) {
+    const struct dalcs_measure_signal signal = dalcs_measure_of(measure, i);
+    return fmax(fabs(signal.min), fabs(signal.max));
 }
 
 static void write_value(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
@@ -203,7 +204,7 @@ static void write_value(FILE *out, const struct dalcs_measure *measure, size_t i
     const enum dalcs_unit of = measure->plot->unit[i];
     const char *unit = unit_name(of);
     if (has_averages(measure->plot) && (of == DALCS_VOLT || of == DALCS_AMPERE) &&
-        largest_of(&measure->signal[i]) < DALCS_FIGURE_NOTHING) {
+        largest_of(measure, i) < DALCS_FIGURE_NOTHING) {
         value = 0.0;
     }
     fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit, DIGITS));
@@ -212,7 +213,7 @@ static void write_value(FILE *out, const struct dalcs_measure *measure, size_t i
 /* A value of signal i; what is round-off beside its largest one is shown as 0. */
 static void write_cell(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
     const double invisible = has_averages(measure->plot) ? INVISIBLE_IN_WAVEFORMS : INVISIBLE;
-    const double largest = largest_of(&measure->signal[i]);
+    const double largest = largest_of(measure, i);
     write_value(out, measure, i, fabs(value) <= invisible * largest ? 0.0 : value);
 }
 
@@ -233,16 +234,16 @@ static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool
 }
 
 static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i, bool ends) {
-    const struct dalcs_measure_signal *signal = &measure->signal[i];
+    const struct dalcs_measure_signal signal = dalcs_measure_of(measure, i);
     if (measure->plot->analysis != DALCS_OPERATING_POINT && !ends) {
-        write_cell(out, measure, i, signal->min);
-        write_cell(out, measure, i, signal->max);
+        write_cell(out, measure, i, signal.min);
+        write_cell(out, measure, i, signal.max);
     }
     if (has_averages(measure->plot) && !ends) {
         write_value(out, measure, i, dalcs_measure_shown_average(measure, i));
         write_value(out, measure, i, dalcs_measure_rms(measure, i));
     }
-    write_cell(out, measure, i, signal->final);
+    write_cell(out, measure, i, signal.final);
 }
 
 void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report) {

@@ -51,7 +51,7 @@ void dalcs_table_audit_before(struct dalcs_table_audit_sums *a,
                               const struct dalcs_measure *measure) {
     if (a->plot != NULL && looks(a)) {
         a->signal = (size_t)(draw(a) * (double)a->plot->n_signals);
-        a->before = measure->signal[a->signal];
+        a->before = dalcs_measure_of(measure, a->signal);
         a->time = measure->last_time;
     }
 }
@@ -106,7 +106,8 @@ void dalcs_table_audit_after(struct dalcs_table_audit_sums *a, const struct dalc
         a->first = time[0];
     }
     if (measure != NULL && looks(a)) {
-        a->wrong = compare(a, &measure->signal[a->signal], n, time, value);
+        const struct dalcs_measure_signal now = dalcs_measure_of(measure, a->signal);
+        a->wrong = compare(a, &now, n, time, value);
         a->n_looks += n >= LEAST_ROWS ? 1 : 0;
         a->next_look =
             a->n_rows + n +
@@ -143,23 +144,23 @@ static bool has_its_unit(const struct dalcs_plot *plot, size_t signal) {
 /* What is told of its sums. */
 static const char *told_wrong(const struct dalcs_table_audit_sums *a,
                               const struct dalcs_measure *measure) {
-    const struct dalcs_measure_signal *s = &measure->signal[a->signal];
+    const struct dalcs_measure_signal s = dalcs_measure_of(measure, a->signal);
     const double length = measure->last_time - a->first;
     const double mean = dalcs_measure_average(measure, a->signal);
     const double rms = dalcs_measure_rms(measure, a->signal);
     if (!has_its_unit(a->plot, a->signal)) {
         return "the unit";
     }
-    if (!isfinite(s->integral) || !isfinite(s->square_integral / length)) {
+    if (!isfinite(s.integral) || !isfinite(s.square_integral / length)) {
         return NULL; /* beyond all numbers */
     }
     if (!(length > 0.0)) {
-        return mean != s->final ? "the average" : NULL;
+        return mean != s.final ? "the average" : NULL;
     }
-    return !(fabs(mean * length - s->integral) <= dalcs_sum_rounded * fabs(s->integral) + DBL_MIN)
+    return !(fabs(mean * length - s.integral) <= dalcs_sum_rounded * fabs(s.integral) + DBL_MIN)
                ? "the average"
-           : !(rms >= 0.0 && fabs(rms * rms * length - s->square_integral) <=
-                                 dalcs_sum_rounded * s->square_integral + DBL_MIN)
+           : !(rms >= 0.0 && fabs(rms * rms * length - s.square_integral) <=
+                                 dalcs_sum_rounded * s.square_integral + DBL_MIN)
                ? "the rms value"
                : NULL;
 }

@@ -253,6 +253,7 @@ static enum dalcs_status begin_again(struct dalcs_radau *r, struct dalcs_radau_p
 void dalcs_radau_cut(struct dalcs_radau_part *part, double t) {
     dalcs_recurrence_complete(part);
     part->segment.brief = NULL;
+    dalcs_segment_renew(part);
     part->segment.end = (t - part->segment.t) / part->segment.h;
     part->segment.t_end = t;
     part->segment.why = DALCS_END_AT_EDGE;

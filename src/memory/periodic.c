@@ -272,6 +272,7 @@ void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
         periodic->own_out = part->segment.out;
     }
     part->segment.out = value;
+    dalcs_segment_renew(part);
     if (r->base->listener.observer != NULL) {
         memcpy(part->segment.in, value + periodic->size.out, periodic->size.in * sizeof(double));
         memcpy(part->work.after, value + periodic->size.out + periodic->size.in,

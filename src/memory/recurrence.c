@@ -248,6 +248,7 @@ void dalcs_recurrence_begin(struct dalcs_radau_part *part) {
     dalcs_stage_brief_apply(&part->stages, step, part->segment.in);
     part->segment.late = step->entry;
     part->segment.brief = step;
+    dalcs_segment_renew(part);
 }
 
 const double *dalcs_recurrence_end(const struct dalcs_radau_part *part) {

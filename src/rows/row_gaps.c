@@ -138,12 +138,11 @@ static enum dalcs_status look_at_stepped(struct dalcs_row_gaps *gaps,
                                          struct dalcs_radau_part *part) {
     const struct dalcs_rows_part *p = &gaps->rows->part[part->index];
     struct dalcs_row_gaps_part *g = &gaps->part[part->index];
-    if (p->n_read > 0 && (g->since != part->segment.t || g->length != part->segment.h)) {
+    if (p->n_read > 0 && g->number != part->segment.number) {
         DALCS_TRY(dalcs_rows_find_polynomials(gaps->rows, part));
         find_bends(g->basis, part->stages.method, part->segment.h, part->segment.end,
                    p->coefficient, p->n_read, g->bend);
-        g->since = part->segment.t;
-        g->length = part->segment.h;
+        g->number = part->segment.number;
     }
     if (part->segment.by_euler || part->stages.method->s < ENOUGH_STAGES) {
         gaps->line = dalcs_smaller(gaps->line, part->segment.h);

@@ -34,7 +34,7 @@ struct dalcs_row_gaps {
 
     struct dalcs_row_gaps_part {
         const struct dalcs_row_basis *basis;
-        double since, length;    /* s, of the segment that `bend` is of */
+        long number;             /* of the segment that `bend` is of; 0: none yet */
         struct dalcs_bend *bend; /* [n_read] of the polynomials that outputs read, in their order */
     } * part;                    /* [n_parts] */
 

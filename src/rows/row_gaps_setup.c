@@ -64,7 +64,6 @@ static bool set_up_parts(struct dalcs_row_gaps *gaps) {
             continue;
         }
         find_crosses(gaps, &rows->radau->part[k]);
-        part->since = NAN;
         part->bend =
             dalcs_arena_alloc(&gaps->arena, (size_t)rows->part[k].n_read, sizeof(*part->bend));
         complete = part->bend != NULL && give_basis(gaps, k);

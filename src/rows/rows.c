@@ -145,18 +145,34 @@ static inline __attribute__((always_inline)) void add_sources(const struct dalcs
     }
 }
 
-static inline void ask_sources(struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
-                               const union dalcs_row_values *time, int n, enum dalcs_side side) {
+/* A bystander as in dalcs_radau_bystander, from the inputs before it, each of which is asked once. */
+static void add_inputs(const struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
+                       int n_groups, struct dalcs_row_source *bystander) {
+    const struct dalcs_system *s = part->component->system;
+    const double *gain = part->excitation.bystanders.gain + bystander->index * s->n_inputs;
+    const int *place = p->place + dalcs_system_n_columns(s);
+    memset(bystander->value.group, 0, (size_t)n_groups * sizeof(dalcs_four));
+    add_constant(gain[0], n_groups, &bystander->value);
+    for (int k = 1; k < s->n_inputs; k++) {
+        if (gain[k] != 0.0) {
+            add(&p->source[place[k]].value, gain[k], n_groups, &bystander->value);
+        }
+    }
+}
+
+static void ask_sources(struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
+                        const union dalcs_row_values *time, int n, enum dalcs_side side) {
     const struct dalcs_component *c = part->component;
     for (int k = 0; k < p->n_sources; k++) {
         struct dalcs_row_source *source = &p->source[k];
+        if (source->is_bystander) {
+            add_inputs(p, part, (n + 3) / 4, source);
+            continue;
+        }
+        const struct dalcs_stimulus *stimulus =
+            &c->circuit->stimulus[c->system->stimulus[source->index]];
         for (int i = 0; i < n; i++) {
-            source->value.at[i] =
-                source->is_bystander
-                    ? dalcs_radau_bystander(part, source->index, time->at[i], side)
-                    : dalcs_stimulus_value(
-                          &c->circuit->stimulus[c->system->stimulus[source->index]], time->at[i],
-                          side);
+            source->value.at[i] = dalcs_stimulus_value(stimulus, time->at[i], side);
         }
     }
 }
@@ -229,6 +245,10 @@ enum dalcs_status dalcs_rows_find_polynomials(struct dalcs_rows *rows,
                                               struct dalcs_radau_part *part) {
     struct dalcs_rows_part *p = &rows->part[part->index];
     const double *map = NULL;
+    if (p->number == part->segment.number) {
+        return DALCS_OK;
+    }
+    p->number = part->segment.number;
     if (part->segment.brief != NULL) {
         DALCS_TRY(find_map(p, part, &map));
     }

@@ -41,6 +41,7 @@ struct dalcs_rows_part {
 
     double *
         coefficient; /* [rows] Newton's, in DALCS_MAX_NODES, of one output after the other that reads this part */
+    long number; /* of the segment that they are of; 0: none yet */
 
     /* Columns and inputs that sources decide have a place among the `source`s when they are read. */
     int *place; /* [n_columns + n_inputs], -1: none, below: bystander -2 - place */
@@ -50,7 +51,7 @@ struct dalcs_rows_part {
         bool is_bystander; /* or an input */
         int index;
         union dalcs_row_values value;
-    } * source; /* [n_sources] */
+    } * source; /* [n_sources] the inputs that others need first, bystanders last */
 };
 
 struct dalcs_rows {

@@ -56,20 +56,46 @@ static void read_source(struct dalcs_rows_part *p, int place, bool is_bystander,
     }
 }
 
+/* The inputs that make up a bystander. */
+static void read_inputs(struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
+                        int bystander) {
+    const struct dalcs_system *s = part->component->system;
+    const double *gain = part->excitation.bystanders.gain + bystander * s->n_inputs;
+    for (int k = 1; k < s->n_inputs; k++) {
+        if (gain[k] != 0.0) {
+            read_source(p, dalcs_system_n_columns(s) + k, false, k);
+        }
+    }
+}
+
+/* All inputs have their places before bystanders get one. */
+static void list_inputs(struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
+                        const struct dalcs_probe *probe) {
+    const int n_columns = dalcs_system_n_columns(part->component->system);
+    for (int k = 0; k < probe->n_terms; k++) {
+        const int column = probe->term[k].index;
+        if (p->place[column] < -1) {
+            read_inputs(p, part, -2 - p->place[column]);
+        }
+    }
+    for (int k = 0; k < probe->n_inputs; k++) {
+        const int input = probe->term[probe->n_terms + k].index;
+        if (varies(part->component, input)) {
+            read_source(p, n_columns + input, false, input);
+        }
+    }
+}
+
 static void list_sources(struct dalcs_rows_part *p, const struct dalcs_radau_part *part) {
-    int n_columns = dalcs_system_n_columns(part->component->system);
+    for (int i = 0; i < p->n_signals; i++) {
+        list_inputs(p, part, p->signal[i].probe);
+    }
     for (int i = 0; i < p->n_signals; i++) {
         const struct dalcs_probe *probe = p->signal[i].probe;
         for (int k = 0; k < probe->n_terms; k++) {
-            int column = probe->term[k].index;
+            const int column = probe->term[k].index;
             if (p->place[column] < -1) {
                 read_source(p, column, true, -2 - p->place[column]);
-            }
-        }
-        for (int k = 0; k < probe->n_inputs; k++) {
-            int input = probe->term[probe->n_terms + k].index;
-            if (varies(part->component, input)) {
-                read_source(p, n_columns + input, false, input);
             }
         }
     }

@@ -95,6 +95,13 @@ static void put_stages(const struct dalcs_stage_workshop *b, int unknown,
     b->column.start[unknown] = dalcs_extended_scaled(row->high[s], row->low[s], scale);
 }
 
+/* Likewise of an unknown that is 0. */
+static void put_nothing(const struct dalcs_stage_workshop *b, int unknown) {
+    memset(b->column.lanes + unknown * DALCS_LANES + 1, 0,
+           (size_t)b->stages->method->n_stages * sizeof(double));
+    b->column.start[unknown] = (struct dalcs_extended){0.0, 0.0};
+}
+
 /* The stages of what is kept, as increments, and then of the followers. */
 static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_column,
                         const struct dalcs_stage_drive *drive) {
@@ -114,7 +121,11 @@ static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_colu
         struct dalcs_extended_row row;
         long double own = dalcs_stage_workshop_drive(b, f, rhs_column);
         b->kept.follows_x[to - 1] = dalcs_extended_of(own);
-        to -= own == 0.0L ? 1 : 0; /* most are driven by no source */
+        to -= own == 0.0L ? 1 : 0; /* most are driven by no source, and half by nothing at all */
+        if (from == to) {
+            put_nothing(b, b->kept.follower[f]);
+            continue;
+        }
         dalcs_extended_combine(m->s + 1, to - from, b->kept.follows_x + from, b->column.stage,
                                b->kept.follows_j + from, &row);
         put_stages(b, b->kept.follower[f], &row, 0.0);

@@ -13,6 +13,11 @@ double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_p
 /* part->segment.in for a step of length part->segment.h from part->t. */
 void dalcs_segment_inputs(struct dalcs_radau_part *part);
 
+/* What was derived from the segment before is not valid for the present one. */
+static inline void dalcs_segment_renew(struct dalcs_radau_part *part) {
+    part->segment.number++;
+}
+
 /* Such a step in the present mode, into part->out. */
 enum dalcs_status dalcs_segment_solve(struct dalcs_radau_part *part,
                                       struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;

@@ -23,6 +23,7 @@ enum { DALCS_SPANS = 4 };
 
 /* A step from t of length h in one mode, which holds from t to t_end. */
 struct dalcs_part_segment {
+    long number; /* no other segment of the part has it, nor this one before it was cut short */
     double t, h; /* s */
     double end;  /* in steps */
     double t_end;

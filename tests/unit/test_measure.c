@@ -29,9 +29,9 @@ static struct dalcs_measure measure_rows(const double (*row)[2], size_t n) {
 START_TEST(test_uneven_grid) {
     const double row[][2] = {{0, -2}, {1, -2}, {1, 6}, {1.5, 5}, {4, 0}};
     struct dalcs_measure measure = measure_rows(row, 5);
-    ck_assert_double_eq(measure.signal[0].min, -2.0);
-    ck_assert_double_eq(measure.signal[0].max, 6.0);
-    ck_assert_double_eq(measure.signal[0].final, 0.0);
+    ck_assert_double_eq(dalcs_measure_of(&measure, 0).min, -2.0);
+    ck_assert_double_eq(dalcs_measure_of(&measure, 0).max, 6.0);
+    ck_assert_double_eq(dalcs_measure_of(&measure, 0).final, 0.0);
     ck_assert_double_eq_tol(dalcs_measure_average(&measure, 0), (-2.0 + 9.0) / 4.0, 1e-15);
     ck_assert_double_eq_tol(dalcs_measure_rms(&measure, 0), sqrt((4.0 + 36.0) / 4.0), 1e-15);
     dalcs_measure_finish(&measure);
@@ -42,8 +42,8 @@ END_TEST
 START_TEST(test_one_row) {
     const double row[][2] = {{3, -2.5}};
     struct dalcs_measure measure = measure_rows(row, 1);
-    ck_assert_double_eq(measure.signal[0].min, -2.5);
-    ck_assert_double_eq(measure.signal[0].max, -2.5);
+    ck_assert_double_eq(dalcs_measure_of(&measure, 0).min, -2.5);
+    ck_assert_double_eq(dalcs_measure_of(&measure, 0).max, -2.5);
     ck_assert_double_eq(dalcs_measure_average(&measure, 0), -2.5);
     ck_assert_double_eq(dalcs_measure_rms(&measure, 0), 2.5);
     dalcs_measure_finish(&measure);
