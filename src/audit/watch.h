@@ -62,7 +62,7 @@ struct audit_watch {
         uint64_t key;
         double step;                 /* s */
         struct audit_screen *screen; /* NULL: none */
-        struct audit_image *image;   /* of that screen; of such steps while its own step is theirs */
+        struct audit_image *image; /* of that screen; of such steps while its own step is theirs */
     } lane[1 << AUDIT_LOG2_LANES];
 
     struct audit_batch { /* of stretches that repeat one another (batch.c) */
