@@ -147,6 +147,17 @@ static void look_at_formulas(struct dalcs_audit *audit, const struct dalcs_audit
     audit_check_formulas(audit, part, &audit->now);
 }
 
+/* A stretch that no lane passes. */
+static bool asks_otherwise(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    const bool can_look = can_look_inside(audit, stretch);
+    if (can_look && stretch->stored == NULL) {
+        look_at_means(audit, stretch);
+    } else if (can_look && audit->part[stretch->part].has_smooth) {
+        look_at_formulas(audit, stretch);
+    }
+    return audit_watch_asks(audit, stretch, can_look);
+}
+
 bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
@@ -157,17 +168,12 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     part->at.past_coarse = part->at.was_coarse;
     part->at.was_coarse = stretch->rule == DALCS_AUDIT_COARSE;
     part->watch->asked = -1.0;
+    part->watch->drawn = -1;
     part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL;
     if (part->at.is_drawn) {
         return false;
     }
-    const bool can_look = can_look_inside(audit, stretch);
-    if (can_look && stretch->stored == NULL) {
-        look_at_means(audit, stretch);
-    } else if (can_look && part->has_smooth) {
-        look_at_formulas(audit, stretch);
-    }
-    const bool asks = audit_watch_asks(audit, stretch, can_look);
+    const bool asks = !audit_lane_passes(audit, part, stretch) && asks_otherwise(audit, stretch);
     const uint64_t key = stretch->stored != NULL ? stretch->stored->key : 0;
     part->watch->has_turned =
         part->n_latches > 0 && audit_latches_turn(audit, part, key) && !part->watch->saw_beginning;

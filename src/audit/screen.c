@@ -103,6 +103,7 @@ static struct audit_screen *take(struct audit_watch *watch,
     struct audit_screens *screens = &watch->screens;
     if (screens->numbers > AUDIT_MOST_NUMBERS) {
         drop_all(screens);
+        memset(watch->lane, 0, sizeof watch->lane);
         audit_pieces_forget(watch);
     }
     if (!grow(screens)) {

@@ -193,6 +193,20 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
                       struct audit_screen *screen, const struct audit_question *q,
                       struct audit_answer *answer);
 
+/* lane.c: where screens and images of such steps are at hand. */
+struct audit_lane *audit_lane_of(struct audit_watch *watch,
+                                 const struct dalcs_audit_polynomials *p);
+
+/* Is the stretch asked by what is at hand, and all holds? */
+bool audit_lane_passes(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_stretch *stretch);
+
+/* screen_sum.c: into watch->place what an image makes of its input at the m-th time; the least sign. *off: how far values at
+ * a node, where there are any, are from the image. */
+double audit_screen_by_image(const struct audit_watch *watch, const struct audit_screen *screen,
+                             const struct dalcs_audit_polynomials *p, int m,
+                             struct audit_image *image, double *off);
+
 /* batch.c: the stretch has been passed over; so may be those that repeat it. */
 void audit_batch_from(struct dalcs_audit *audit, struct audit_part *part,
                       const struct dalcs_audit_stretch *stretch);
@@ -225,6 +239,16 @@ static inline int audit_n_times_before(const struct audit_watch *watch, double e
         n++;
     }
     return n;
+}
+
+/* The one of them that the present stretch is asked at; 0 where there are none. */
+static inline int audit_watch_draw(struct dalcs_audit *audit, struct audit_watch *watch,
+                                   const struct dalcs_audit_polynomials *p) {
+    if (watch->drawn < 0) {
+        const int n = p->end >= 1.0 ? AUDIT_SCREEN_TIMES : audit_n_times_before(watch, p->end);
+        watch->drawn = (int)(n * audit_draw(audit));
+    }
+    return watch->drawn;
 }
 
 /* How much later than in the window two times are that it has, s; no number: it has them not. */

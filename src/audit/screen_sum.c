@@ -240,6 +240,15 @@ DALCS_TWICE(double, multiply_to_end,
     return audit_least_sign(screen->n_places, place);
 }
 
+double audit_screen_by_image(const struct audit_watch *watch, const struct audit_screen *screen,
+                             const struct dalcs_audit_polynomials *p, int m,
+                             struct audit_image *image, double *off) {
+    struct audit_image_at *at = &image->at[m];
+    return audit_is_same_end(at->end, p->end)
+               ? multiply(screen, p, m, at, watch->place, off)
+               : multiply_to_end(watch, screen, p, m, image, watch->place, off);
+}
+
 /* ---- Stimuli ------------------------------------------------------------------------------------- */
 
 /* In the signs that read them, at their three times. */
@@ -300,10 +309,7 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
     double laws = 0.0;
     double sign;
     if (q->image != NULL) {
-        struct audit_image_at *at = &q->image->at[q->m];
-        sign = audit_is_same_end(at->end, p->end)
-                   ? multiply(screen, p, q->m, at, place, &laws)
-                   : multiply_to_end(watch, screen, p, q->m, q->image, place, &laws);
+        sign = audit_screen_by_image(watch, screen, p, q->m, q->image, &laws);
     } else {
         theta = ask_values(audit, watch, screen, q->m, p);
         sign = least_sign(screen->n_places, place);

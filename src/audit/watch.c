@@ -18,19 +18,20 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
     const struct audit_part *part = &audit->part[stretch->part];
     struct audit_watch *watch = part->watch;
     const double length = stretch->to - stretch->from;
-    const int n_times =
-        p->end >= 1.0 ? AUDIT_SCREEN_TIMES : audit_n_times_before(part->watch, p->end);
     struct audit_question q = {.stretch = stretch,
                                .near = part->tolerance * length + 4.0 * audit->options.resolution,
-                               .m = (int)(n_times * audit_draw(audit))};
+                               .m = audit_watch_draw(audit, watch, p)};
     if (!watch->is_weighed[q.m]) {
         audit_screen_weigh(watch, p, q.m);
     }
-    if (n_times > 0) {
+    if (watch->theta[0] <= p->end) {
         q.image = audit_image_again(screen, p, q.m);
         q.image = q.image == NULL ? audit_image_of(audit, part, screen, p, q.m) : q.image;
     }
     watch->image = q.image;
+    if (q.image != NULL) {
+        *audit_lane_of(watch, p) = (struct audit_lane){p->key, p->step, screen, q.image};
+    }
     if (q.image == NULL && p->value == NULL) {
         audit->reader.complete(audit->reader.user, stretch->part);
     }

@@ -13,6 +13,9 @@ enum { AUDIT_MOST_NODES = 12 };
 /* Times in a step that it is asked at, one of them each time. */
 enum { AUDIT_SCREEN_TIMES = 4 };
 
+/* Screens and images that are at hand: a converter has a few modes and lengths of steps in turn. */
+enum { AUDIT_LOG2_LANES = 4 };
+
 struct audit_watch {
     struct audit_screens {
         int n, log2_slots;
@@ -53,6 +56,14 @@ struct audit_watch {
     double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
 
     struct audit_image *image; /* that the present one was asked by; NULL: by its values, or not */
+    int drawn; /* of the times, that the present one is asked at; < 0: none is drawn yet */
+
+    struct audit_lane { /* of steps of a mode and a length (lane.c) */
+        uint64_t key;
+        double step;                 /* s */
+        struct audit_screen *screen; /* NULL: none */
+        struct audit_image *image; /* of that screen; of such steps while its own step is theirs */
+    } lane[1 << AUDIT_LOG2_LANES];
 
     struct audit_batch { /* of stretches that repeat one another (batch.c) */
         struct dalcs_audit_batch gathered;
