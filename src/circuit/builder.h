@@ -109,6 +109,7 @@ struct dalcs_builder {
     const struct dalcs_oscillator
         *oscillator;                     /* likewise: code models that wait for their control */
     const struct dalcs_delay *delay;     /* likewise: delay() in formulas */
+    const struct dalcs_later_list *later; /* likewise: delayed sources */
     const struct dalcs_storage *storage; /* likewise: coils and capacitors that are no lines */
 
     const struct dalcs_token *pss;  /* so with .pss */
