@@ -9,50 +9,70 @@
 #include "later.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char USAGE[] = "a transmission line is: Tname a b c d Z0=ohms TD=seconds";
 
 enum { Z0, TD, FREQUENCY, LENGTH, N_PARAMETERS };
 
 struct line {
+    double value[N_PARAMETERS];
+    const struct dalcs_token *place[N_PARAMETERS]; /* NULL: not on the card */
     double ohms, seconds;
     double initial[4]; /* V, A, V, A */
 };
 
-/* IC=v1,i1,v2,i2, which `unknown` has no place for: read by its reader. */
-static bool report_unknown(struct dalcs_reader *reader, const struct dalcs_token *name) {
+static bool read_parameter(struct dalcs_reader *reader, const struct dalcs_token *name,
+                           struct line *line) {
+    static const char *const names[] = {"z0", "td", "f", "nl"};
+    static const enum dalcs_quantity quantity[] = {DALCS_OHM, DALCS_SECOND, DALCS_HERTZ,
+                                                   DALCS_PLAIN};
+    if (strcmp(name->text, "ic") == 0) {
+        bool ok = true;
+        for (int k = 0; k < 4 && ok; k++) {
+            ok = dalcs_reader_list_number(reader, k % 2 == 0 ? DALCS_VOLTAGE : DALCS_CURRENT,
+                                          "the other one of v1,i1,v2,i2", &line->initial[k]);
+        }
+        return ok;
+    }
+    for (int k = 0; k < N_PARAMETERS; k++) {
+        if (strcmp(name->text, names[k]) == 0) {
+            line->place[k] = name;
+            return dalcs_reader_number(reader, quantity[k], "a value", &line->value[k]);
+        }
+    }
     dalcs_builder_error(reader->builder, name, USAGE, "a transmission line has no parameter '%s'",
                         name->text);
-    return true;
+    return false;
 }
 
+/* Z0, and TD or else NL/F. */
 static bool read_values(struct dalcs_reader *reader, const struct dalcs_token *card,
                         struct line *line) {
-    struct dalcs_parameter p[N_PARAMETERS] = {{"z0", DALCS_OHM, false, 0, NULL},
-                                              {"td", DALCS_SECOND, false, 0, NULL},
-                                              {"f", DALCS_HERTZ, false, 0, NULL},
-                                              {"nl", DALCS_PLAIN, false, 0.25, NULL}};
     struct dalcs_builder *builder = reader->builder;
-    if (!dalcs_model_read_parameters(reader, p, N_PARAMETERS, report_unknown)) {
+    const struct dalcs_token *name;
+    line->value[LENGTH] = 0.25;
+    while ((name = dalcs_reader_take_parameter(reader)) != NULL) {
+        if (!read_parameter(reader, name, line)) {
+            return false;
+        }
+    }
+    if (!dalcs_reader_end(reader)) {
         return false;
     }
-    line->ohms = p[Z0].value;
-    line->seconds = p[TD].place != NULL || p[FREQUENCY].place == NULL
-                        ? p[TD].value
-                        : p[LENGTH].value / p[FREQUENCY].value;
-    if (!(line->ohms > 0) || p[Z0].place == NULL) {
-        dalcs_builder_error(builder, p[Z0].place != NULL ? p[Z0].place : card, USAGE,
-                            "a transmission line has an impedance above 0 ohm");
-        return false;
+    const bool by_frequency = line->place[TD] == NULL && line->place[FREQUENCY] != NULL;
+    line->ohms = line->value[Z0];
+    line->seconds =
+        by_frequency ? line->value[LENGTH] / line->value[FREQUENCY] : line->value[TD];
+    const bool has_ohms = line->ohms > 0 && isfinite(line->ohms);
+    const bool has_seconds = line->seconds > 0 && isfinite(line->seconds);
+    const struct dalcs_token *place = line->place[!has_ohms ? Z0 : by_frequency ? FREQUENCY : TD];
+    if (!has_ohms || !has_seconds) {
+        dalcs_builder_error(builder, place != NULL ? place : card, USAGE,
+                            "a transmission line has %s",
+                            has_ohms ? "a delay above 0 s" : "an impedance Z0 above 0 ohm");
     }
-    if (!(line->seconds > 0) || !isfinite(line->seconds)) {
-        const struct dalcs_token *place = p[TD].place != NULL          ? p[TD].place
-                                          : p[FREQUENCY].place != NULL ? p[FREQUENCY].place
-                                                                       : card;
-        dalcs_builder_error(builder, place, USAGE, "a transmission line has a delay above 0 s");
-        return false;
-    }
-    return true;
+    return has_ohms && has_seconds;
 }
 
 /* A sum of two voltages against ground at a new node: v(plus[0], plus[1]) + v(more[0], more[1]); -1: out of memory. */

@@ -1,6 +1,7 @@
 /* transient_start.c - where a transient starts: initial conditions, held voltages, the operating point, an orbit. */
 #include "transient.h"
 
+#include "delayed.h"
 #include "gates.h"
 #include "history.h"
 #include "losses_run.h"
@@ -86,6 +87,7 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
                                     const struct dalcs_network *clamped) {
     struct dalcs_session *s = r->s;
     struct dalcs_euler held;
+    dalcs_delayed_rest(&s->circuit);
     DALCS_TRY(dalcs_euler_setup(&held, &s->circuit, clamped, &r->osnsp, 1.0, 1.0));
     r->undetermined.clamped = clamped;
     held.listener.open_user = &r->undetermined;
