@@ -4,6 +4,8 @@
 
 #include "history.h"
 
+#include <string.h>
+
 struct dalcs_later_list {
     const struct dalcs_later_list *before;
     struct dalcs_later item;
@@ -43,6 +45,8 @@ static void add_one(struct dalcs_builder *builder, const struct dalcs_later *lat
     struct dalcs_history *history = make_history(builder, later->seconds);
     const int middle = dalcs_builder_inner_node(builder, later->what, later->name);
     const char *rest_name = dalcs_builder_hint(builder, "rest_%s", later->what);
+    const char *element =
+        dalcs_arena_copy(&circuit->arena, later->name->text, strlen(later->name->text));
     const char *name =
         dalcs_arena_printf(&circuit->arena, "%s(%s)", later->what, later->name->text);
     struct dalcs_device *v =
@@ -51,7 +55,7 @@ static void add_one(struct dalcs_builder *builder, const struct dalcs_later *lat
         rest_name != NULL
             ? dalcs_builder_add_inner_device(builder, DALCS_VCVS, rest_name, later->name)
             : NULL;
-    if (history == NULL || middle < 0 || name == NULL || v == NULL || rest == NULL) {
+    if (history == NULL || middle < 0 || element == NULL || name == NULL || v == NULL || rest == NULL) {
         builder->out_of_memory = true;
         return;
     }
@@ -66,7 +70,7 @@ static void add_one(struct dalcs_builder *builder, const struct dalcs_later *lat
     struct dalcs_signal signal = {
         .name = name, .kind = DALCS_SIGNAL_VOLTAGE, .device = -1, .node = {later->input, 0}};
     circuit->delayed[circuit->n_delayed++] =
-        (struct dalcs_delayed){.name = name,
+        (struct dalcs_delayed){.name = element,
                                .signal = dalcs_signals_measure(builder, signal),
                                .initial = later->initial,
                                .history = history};
