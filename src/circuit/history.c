@@ -86,6 +86,28 @@ double dalcs_history_next_edge(const struct dalcs_history *history, double t) {
     return end > t + near ? end : t + history->delay;
 }
 
+double dalcs_history_missed(const struct dalcs_history *history, double t, double h,
+                            const double *value) {
+    struct dalcs_history_piece step = {.t = t - history->delay, .h = h, .end = t - history->delay + h};
+    const double near = nearness(history, t + h);
+    double most = 0.0;
+    memcpy(step.value, value, (size_t)(history->degree + 1) * sizeof(*value));
+    const size_t before = find(history, step.t);
+    for (size_t k = before == history->first - 1 ? history->first : before;
+         k < history->n && history->piece[k].t < step.end - near; k++) {
+        const struct dalcs_history_piece *piece = &history->piece[k];
+        const double until = fmin(piece->end, step.end) - near;
+        for (int i = 0; i <= history->degree; i++) {
+            const double at = piece->t + piece->h * history->node[i];
+            if (at > step.t + near && at < until) {
+                const double missed = piece->value[i] - value_in(history, &step, (at - step.t) / h);
+                most = fabs(missed) > fabs(most) ? missed : most;
+            }
+        }
+    }
+    return fabs(most) > history->tolerance * history->largest ? most : 0.0;
+}
+
 bool dalcs_history_jumps_at(const struct dalcs_history *history, double t) {
     const double near = nearness(history, t);
     const size_t k = find(history, t - history->delay + near);

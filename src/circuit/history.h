@@ -47,6 +47,12 @@ double dalcs_history_value(const struct dalcs_history *history, double t, enum d
 /* The first edge after t; where what is known ends, it is one. */
 double dalcs_history_next_edge(const struct dalcs_history *history, double t);
 
+/* What the polynomial through value[degree + 1] at the nodes of a step from t of length h misses: the most at any node of the
+ * pieces that are put out meanwhile, for a pulse as narrow as one of them may stand between the nodes of the step. 0 where
+ * it is no more than what these pieces may be off by themselves, of which a shorter step would miss as much. */
+double dalcs_history_missed(const struct dalcs_history *history, double t, double h,
+                            const double *value);
+
 bool dalcs_history_jumps_at(const struct dalcs_history *history, double t);
 
 #endif

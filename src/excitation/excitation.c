@@ -1,6 +1,8 @@
 /* excitation.c - the functions of time in a system's equations, and their coefficients. */
 #include "excitation.h"
 
+#include "history.h"
+
 #include "pi.h"
 #include "rounding.h"
 
@@ -213,17 +215,15 @@ static void find_terms(const struct dalcs_excitation_wave *wave, double t,
     }
 }
 
-/* out[s + 2]: the values at the nodes, and what the polynomial through them misses where it is tested. */
+/* out[s + 2]: the values at the nodes, and what the polynomial through them misses. */
 static void find_delayed(const struct dalcs_excitation *excitation,
                          const struct dalcs_excitation_wave *wave, double t, double h, double *out) {
     const struct dalcs_collocation *method = excitation->function[wave->first].method;
-    double missed = dalcs_stimulus_value(wave->stimulus, t + h * method->test_node, DALCS_RIGHT);
     for (int k = 0; k <= method->s; k++) {
         const enum dalcs_side side = k == 0 ? DALCS_RIGHT : DALCS_LEFT;
         out[k] = dalcs_stimulus_value(wave->stimulus, t + h * method->node[k], side);
-        missed -= method->test[k] * out[k];
     }
-    out[method->s + 1] = missed;
+    out[method->s + 1] = dalcs_history_missed(wave->stimulus->u.history, t, h, out);
 }
 
 void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, double t, double h,

@@ -10,7 +10,7 @@ void dalcs_delays_setup(struct dalcs_radau *r, const struct dalcs_circuit *circu
     for (int k = 0; k < circuit->n_delayed; k++) {
         struct dalcs_history *history = circuit->delayed[k].history;
         dalcs_history_start(history, 0.0);
-        history->tolerance = r->options.tolerance;
+        history->tolerance = r->inner_tolerance;
     }
 }
 

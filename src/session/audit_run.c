@@ -217,7 +217,8 @@ static inline bool gathers(struct dalcs_audit_run *a, int k) {
     const struct dalcs_part_segment *s = &part->segment;
     struct audit_members *m = &a->part[k];
     struct dalcs_audit_batch *batch = m->batch;
-    if (!batch->is_on || s->t_end > batch->last || !dalcs_audit_reader_repeats(part, m) ||
+    if (a->delays.delay != NULL /* what sources put out is not kept for so long (history.h) */ ||
+        !batch->is_on || s->t_end > batch->last || !dalcs_audit_reader_repeats(part, m) ||
         (s->late == NULL && !dalcs_audit_is_image(a->audit, k, s->in, s->out))) {
         return false;
     }
