@@ -5,11 +5,9 @@
  * conditions and included files are gone before: language/ has expanded them. */
 #include "card_table.h"
 
-#include "later.h"
-
 #include "core.h"
+#include "later.h"
 #include "number.h"
-#include "pi.h"
 #include "rational.h"
 #include "slips.h"
 
@@ -106,7 +104,7 @@ static const char *refused_element(char letter) {
     case 'u':
     case 'y':
     case 'p':
-        return "transmission lines";
+        return "transmission lines with losses";
     default:
         return NULL;
     }
@@ -116,6 +114,11 @@ static const char *hint_of_element(char letter) {
     switch (letter) {
     case 'j':
         return "write an ideal switch S, with a diode D across it for a body diode";
+    case 'o':
+    case 'u':
+    case 'y':
+    case 'p':
+        return "Tname a b c d Z0=ohms TD=seconds is a line without losses";
     default:
         return NULL;
     }
@@ -302,8 +305,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     const char *what = refused_element(letter);
     builder->hidden |= DALCS_HIDDEN_ELEMENTS;
     if (what != NULL) {
-        dalcs_builder_error(builder, name,
-                            hint_of_element(letter),
+        dalcs_builder_error(builder, name, hint_of_element(letter),
                             "%s are not supported yet ('%s')", what, name->text);
     } else {
         dalcs_builder_error(builder, name, "'*' starts a comment line, '+' continues a card",

@@ -276,8 +276,9 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
  * looked for, all of it is one system. */
 static bool is_whole(const struct dalcs_builder *builder) {
     const struct dalcs_circuit *c = builder->circuit;
-    return builder->later != NULL || (c->n_gates > 0 && (builder->netlist->asks_steady || c->periodic.present ||
-                              c->transient.starts_steady || c->envelope.present));
+    return builder->later != NULL ||
+           (c->n_gates > 0 && (builder->netlist->asks_steady || c->periodic.present ||
+                               c->transient.starts_steady || c->envelope.present));
 }
 
 static enum dalcs_status build(struct dalcs_builder *builder) {

@@ -88,7 +88,8 @@ double dalcs_history_next_edge(const struct dalcs_history *history, double t) {
 
 double dalcs_history_missed(const struct dalcs_history *history, double t, double h,
                             const double *value) {
-    struct dalcs_history_piece step = {.t = t - history->delay, .h = h, .end = t - history->delay + h};
+    struct dalcs_history_piece step = {
+        .t = t - history->delay, .h = h, .end = t - history->delay + h};
     const double near = nearness(history, t + h);
     double most = 0.0;
     memcpy(step.value, value, (size_t)(history->degree + 1) * sizeof(*value));
@@ -140,6 +141,7 @@ static double rise(const struct dalcs_history *history, const struct dalcs_histo
  * that of higher derivatives the error of steps deals. */
 static void look_at_seam(const struct dalcs_history *history, struct dalcs_history_piece *piece) {
     enum { PARTS = 64 };
+
     const double allowed = history->tolerance * history->largest;
     double last = history->before;
     double slope = 0.0; /* V in the shorter step */
@@ -166,8 +168,8 @@ enum dalcs_status dalcs_history_add(struct dalcs_history *history,
     if (!is_smooth) {
         look_at_seam(history, &next);
     }
-    DALCS_TRY(dalcs_grow(&history->piece, &history->capacity, history->n + 1,
-                         sizeof(*history->piece)));
+    DALCS_TRY(
+        dalcs_grow(&history->piece, &history->capacity, history->n + 1, sizeof(*history->piece)));
     history->piece[history->n++] = next;
     history->known = next.end;
     forget(history);

@@ -20,14 +20,14 @@ struct dalcs_history_piece {
 };
 
 struct dalcs_history {
-    double delay;                    /* s, above 0 */
-    double before;                   /* V, until t = 0 */
-    double known;                    /* s, the end of the last piece; 0: there is none */
-    double largest;                  /* V, so far */
-    double tolerance;                /* a jump or bend this part of that is none */
-    int degree;                      /* of the polynomials */
-    const double *node, *weight;     /* [degree + 1] in steps; of the barycentric form. Borrowed */
-    size_t first, n, capacity;       /* pieces before the first are no longer asked for */
+    double delay;                /* s, above 0 */
+    double before;               /* V, until t = 0 */
+    double known;                /* s, the end of the last piece; 0: there is none */
+    double largest;              /* V, so far */
+    double tolerance;            /* a jump or bend this part of that is none */
+    int degree;                  /* of the polynomials */
+    const double *node, *weight; /* [degree + 1] in steps; of the barycentric form. Borrowed */
+    size_t first, n, capacity;   /* pieces before the first are no longer asked for */
     struct dalcs_history_piece *piece; /* [n] owned */
 };
 

@@ -30,8 +30,7 @@ size_t dalcs_later_pending(const struct dalcs_builder *builder) {
 }
 
 static struct dalcs_history *make_history(struct dalcs_builder *builder, double seconds) {
-    struct dalcs_history *history =
-        dalcs_arena_alloc(&builder->circuit->arena, 1, sizeof *history);
+    struct dalcs_history *history = dalcs_arena_alloc(&builder->circuit->arena, 1, sizeof *history);
     if (history == NULL) {
         builder->out_of_memory = true;
         return NULL;
@@ -55,7 +54,8 @@ static void add_one(struct dalcs_builder *builder, const struct dalcs_later *lat
         rest_name != NULL
             ? dalcs_builder_add_inner_device(builder, DALCS_VCVS, rest_name, later->name)
             : NULL;
-    if (history == NULL || middle < 0 || element == NULL || name == NULL || v == NULL || rest == NULL) {
+    if (history == NULL || middle < 0 || element == NULL || name == NULL || v == NULL ||
+        rest == NULL) {
         builder->out_of_memory = true;
         return;
     }

@@ -24,6 +24,9 @@ void dalcs_later_resolve(struct dalcs_builder *builder);
 /* Tname a b c d Z0=ohms TD=seconds: a lossless line (line.c). */
 void dalcs_line_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 
-enum { DALCS_LINE_DEVICES = 5, DALCS_LATER_DEVICES = 2 }; /* besides its own: of a line; of a delayed source */
+enum {
+    DALCS_LINE_DEVICES = 5,
+    DALCS_LATER_DEVICES = 2
+}; /* besides its own: of a line; of a delayed source */
 
 #endif

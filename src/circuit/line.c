@@ -25,8 +25,10 @@ struct line {
 static bool read_parameter(struct dalcs_reader *reader, const struct dalcs_token *name,
                            struct line *line) {
     static const char *const names[] = {"z0", "td", "f", "nl"};
+
     static const enum dalcs_quantity quantity[] = {DALCS_OHM, DALCS_SECOND, DALCS_HERTZ,
                                                    DALCS_PLAIN};
+
     if (strcmp(name->text, "ic") == 0) {
         bool ok = true;
         for (int k = 0; k < 4 && ok; k++) {
@@ -62,8 +64,7 @@ static bool read_values(struct dalcs_reader *reader, const struct dalcs_token *c
     }
     const bool by_frequency = line->place[TD] == NULL && line->place[FREQUENCY] != NULL;
     line->ohms = line->value[Z0];
-    line->seconds =
-        by_frequency ? line->value[LENGTH] / line->value[FREQUENCY] : line->value[TD];
+    line->seconds = by_frequency ? line->value[LENGTH] / line->value[FREQUENCY] : line->value[TD];
     const bool has_ohms = line->ohms > 0 && isfinite(line->ohms);
     const bool has_seconds = line->seconds > 0 && isfinite(line->seconds);
     const struct dalcs_token *place = line->place[!has_ohms ? Z0 : by_frequency ? FREQUENCY : TD];
@@ -85,8 +86,7 @@ static int add_sum(struct dalcs_builder *builder, const struct dalcs_token *name
         node[k] = what[k] != NULL ? dalcs_builder_inner_node(builder, what[k], name) : -1;
     }
     for (int k = 0; k < 2 && node[0] > 0 && node[1] > 0; k++) {
-        struct dalcs_device *e =
-            dalcs_builder_add_inner_device(builder, DALCS_VCVS, what[k], name);
+        struct dalcs_device *e = dalcs_builder_add_inner_device(builder, DALCS_VCVS, what[k], name);
         if (e == NULL) {
             return -1;
         }
@@ -123,13 +123,13 @@ void dalcs_line_parse(struct dalcs_builder *builder, const struct dalcs_card *ca
         const int far = 1 - k;
         const int input = add_sum(builder, card->token, far + 1, &node[2 * far],
                                   (int[]){node[2 * far], inside[far]});
-        const struct dalcs_later later = {
-            .name = card->token,
-            .what = what[k],
-            .input = input,
-            .output = {inside[k], node[2 * k + 1]},
-            .seconds = line.seconds,
-            .initial = line.initial[2 * far] + line.ohms * line.initial[2 * far + 1]};
+        const struct dalcs_later later = {.name = card->token,
+                                          .what = what[k],
+                                          .input = input,
+                                          .output = {inside[k], node[2 * k + 1]},
+                                          .seconds = line.seconds,
+                                          .initial = line.initial[2 * far] +
+                                                     line.ohms * line.initial[2 * far + 1]};
         if (input > 0) {
             dalcs_later_add(builder, &later);
         }

@@ -19,9 +19,9 @@ enum dalcs_stimulus_kind {
     DALCS_STIMULUS_PULSE,
     DALCS_STIMULUS_PWL,
     DALCS_STIMULUS_EXP,
-    DALCS_STIMULUS_TONES,  /* AM and SFFM */
+    DALCS_STIMULUS_TONES,   /* AM and SFFM */
     DALCS_STIMULUS_DELAYED, /* what a signal was: history.h */
-    DALCS_STIMULUS_FORMULA /* of others: decided.h */
+    DALCS_STIMULUS_FORMULA  /* of others: decided.h */
 };
 
 /* Which limit to take at a discontinuity. */

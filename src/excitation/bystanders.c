@@ -43,7 +43,8 @@ static void find_blocks(const struct dalcs_circuit *circuit, const struct dalcs_
             }
         }
     }
-    for (int r = 0; r < n_equations; r++) { /* what they read has to be known at the nodes of steps */
+    for (int r = 0; r < n_equations;
+         r++) { /* what they read has to be known at the nodes of steps */
         for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
             const int stimulus = s->stimulus[s->E.j[k]];
             if (stimulus >= 0 && circuit->stimulus[stimulus].kind == DALCS_STIMULUS_DELAYED) {

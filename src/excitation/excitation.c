@@ -89,7 +89,8 @@ static void add_nodes(struct dalcs_excitation *excitation, struct dalcs_excitati
 static void add_smooth(struct dalcs_excitation *excitation, int k,
                        const struct dalcs_collocation *method) {
     struct dalcs_excitation_wave *wave = &excitation->wave[excitation->n_waves++];
-    *wave = (struct dalcs_excitation_wave){.input = excitation->system->smooth[k].input, .smooth = k};
+    *wave =
+        (struct dalcs_excitation_wave){.input = excitation->system->smooth[k].input, .smooth = k};
     add_nodes(excitation, wave, method);
 }
 
@@ -124,10 +125,9 @@ static enum dalcs_status allocate(struct dalcs_excitation *excitation,
         most = n_of_wave > most ? n_of_wave : most;
     }
     excitation->wave = dalcs_arena_alloc(&excitation->arena, n, sizeof(*excitation->wave));
-    excitation->function =
-        dalcs_arena_alloc(&excitation->arena,
-                          2 * n + 2 * n_terms + (n_smooth + n_delayed) * FUNCTIONS_OF_SMOOTH,
-                          sizeof(*excitation->function));
+    excitation->function = dalcs_arena_alloc(
+        &excitation->arena, 2 * n + 2 * n_terms + (n_smooth + n_delayed) * FUNCTIONS_OF_SMOOTH,
+        sizeof(*excitation->function));
     excitation->smooth =
         dalcs_arena_alloc(&excitation->arena, n_smooth * FUNCTIONS_OF_SMOOTH, sizeof(double));
     excitation->term =
@@ -217,7 +217,8 @@ static void find_terms(const struct dalcs_excitation_wave *wave, double t,
 
 /* out[s + 2]: the values at the nodes, and what the polynomial through them misses. */
 static void find_delayed(const struct dalcs_excitation *excitation,
-                         const struct dalcs_excitation_wave *wave, double t, double h, double *out) {
+                         const struct dalcs_excitation_wave *wave, double t, double h,
+                         double *out) {
     const struct dalcs_collocation *method = excitation->function[wave->first].method;
     for (int k = 0; k <= method->s; k++) {
         const enum dalcs_side side = k == 0 ? DALCS_RIGHT : DALCS_LEFT;

@@ -39,8 +39,8 @@ struct dalcs_excitation_wave {
     bool has_level, has_ramp; /* at any time */
     double from;              /* s, where `piece` was taken */
     struct dalcs_stimulus_piece piece;
-    bool is_delayed;          /* known at the nodes of a step */
-    int smooth; /* of the system's smooth sources; -1: it is a stimulus */
+    bool is_delayed; /* known at the nodes of a step */
+    int smooth;      /* of the system's smooth sources; -1: it is a stimulus */
 };
 
 struct dalcs_excitation {

@@ -32,11 +32,11 @@ static void add_probe(const struct dalcs_radau_part *part, const struct dalcs_pr
             const double t = part->segment.t + part->segment.h * method->node[i];
             const double *y = part->segment.out + i * part->stages.layout.stride;
             const int stimulus = is_input ? c->system->stimulus[term->index] : -1;
-            value[i] += factor * (!is_input       ? y[term->index]
-                                  : stimulus >= 0 ? dalcs_stimulus_value(
-                                                        &c->circuit->stimulus[stimulus], t,
-                                                        i == 0 ? DALCS_RIGHT : DALCS_LEFT)
-                                                  : 1.0);
+            value[i] +=
+                factor * (!is_input       ? y[term->index]
+                          : stimulus >= 0 ? dalcs_stimulus_value(&c->circuit->stimulus[stimulus], t,
+                                                                 i == 0 ? DALCS_RIGHT : DALCS_LEFT)
+                                          : 1.0);
         }
     }
 }

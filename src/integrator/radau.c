@@ -161,8 +161,8 @@ static enum dalcs_status leave(struct dalcs_radau *r, struct dalcs_radau_part *p
         count_flurry(r, part);
     }
     *passage = (struct passage){repeats, enter_changes(r, part, goes_on)};
-    part->segment.anew = part->segment.anew || passage->commanded || part->guards.bends ||
-                         part->guards.leaps;
+    part->segment.anew =
+        part->segment.anew || passage->commanded || part->guards.bends || part->guards.leaps;
     part->waits = part->segment.t < r->options.stop;
     return DALCS_OK;
 }

@@ -10,9 +10,9 @@
 #include <string.h>
 
 struct audit_delay {
-    int device;  /* the source */
-    int input;   /* node, against ground */
-    int system;  /* of both */
+    int device; /* the source */
+    int input;  /* node, against ground */
+    int system; /* of both */
     double seconds;
     size_t first, n, capacity;
 
@@ -64,8 +64,7 @@ void dalcs_audit_delays_finish(struct dalcs_audit_delays *a) {
     *a = (struct dalcs_audit_delays){0};
 }
 
-static double potential(const struct dalcs_audit_delays *a, const struct audit_delay *d,
-                        int node) {
+static double potential(const struct dalcs_audit_delays *a, const struct audit_delay *d, int node) {
     const int column = node != 0 ? a->readout->node_column[node] : -1;
     return column >= 0 ? a->radau->part[d->system].component->y[column] : 0.0;
 }

@@ -241,9 +241,10 @@ static void look_at_delays(struct dalcs_audit_run *a, int k, double to) {
         return;
     }
     const double work = 2.0 * a->run->s->circuit.n_delayed * dalcs_audit_state_work(a, k);
-    const bool samples = a->run->options->audit == DALCS_AUDIT_FULL || dalcs_audit_may(a->audit, work);
-    if (dalcs_audit_delays_leave(&a->delays, a->audit, k, to, samples,
-                                 dalcs_audit_run_chance(a)) != DALCS_OK) {
+    const bool samples =
+        a->run->options->audit == DALCS_AUDIT_FULL || dalcs_audit_may(a->audit, work);
+    if (dalcs_audit_delays_leave(&a->delays, a->audit, k, to, samples, dalcs_audit_run_chance(a)) !=
+        DALCS_OK) {
         dalcs_audit_delays_finish(&a->delays);
     }
 }

@@ -115,10 +115,10 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
                                            struct dalcs_logic_run *logic) {
     struct dalcs_session *s = r->s;
     struct dalcs_network clamped;
-    DALCS_TRY(dalcs_network_build(&clamped, &s->circuit,
-                                  &(struct dalcs_network_options){.clamp_initial_conditions = true,
-                                                                  .at_rest = true},
-                                  &s->diag));
+    DALCS_TRY(dalcs_network_build(
+        &clamped, &s->circuit,
+        &(struct dalcs_network_options){.clamp_initial_conditions = true, .at_rest = true},
+        &s->diag));
     enum dalcs_status status = start_from(r, e, radau, logic, &clamped);
     dalcs_network_finish(&clamped);
     return status;

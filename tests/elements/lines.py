@@ -36,8 +36,6 @@ def lattice(source, ends, delay, t):
     arrives = 0.0
     while arrives <= t:
         near += factor * (source(t - arrives) - before) * (1 if arrives == 0 else (1 + 1 / back if back else 1))
-        if arrives == 0:
-            pass
         if t >= arrives + delay:
             far += factor * (1 + forth) * (source(t - arrives - delay) - before)
         if back == 0:
