@@ -107,9 +107,10 @@ struct dalcs_builder {
     size_t n_nodes_of_gates;
     const struct dalcs_logic_card *gate_card; /* the last of all, each points to the one before */
     const struct dalcs_oscillator
-        *oscillator;                     /* likewise: code models that wait for their control */
-    const struct dalcs_delay *delay;     /* likewise: delay() in formulas */
-    const struct dalcs_storage *storage; /* likewise: coils and capacitors that are no lines */
+        *oscillator;                      /* likewise: code models that wait for their control */
+    const struct dalcs_delay *delay;      /* likewise: delay() in formulas */
+    const struct dalcs_later_list *later; /* likewise: delayed sources */
+    const struct dalcs_storage *storage;  /* likewise: coils and capacitors that are no lines */
 
     const struct dalcs_token *pss;  /* so with .pss */
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */

@@ -6,8 +6,8 @@
 #include "card_table.h"
 
 #include "core.h"
+#include "later.h"
 #include "number.h"
-#include "pi.h"
 #include "rational.h"
 #include "slips.h"
 
@@ -101,11 +101,10 @@ static const char *refused_element(char letter) {
     case 'n':
         return "compiled models";
     case 'o':
-    case 't':
     case 'u':
     case 'y':
     case 'p':
-        return "transmission lines";
+        return "transmission lines with losses";
     default:
         return NULL;
     }
@@ -115,39 +114,14 @@ static const char *hint_of_element(char letter) {
     switch (letter) {
     case 'j':
         return "write an ideal switch S, with a diode D across it for a body diode";
+    case 'o':
+    case 'u':
+    case 'y':
+    case 'p':
+        return "Tname a b c d Z0=ohms TD=seconds is a line without losses";
     default:
         return NULL;
     }
-}
-
-/* The number behind a name=; 0: not there, or an expression. */
-static double number_behind(const struct dalcs_card *card, const char *name) {
-    struct dalcs_number number = {0};
-    for (int k = 1; k + 2 < card->n; k++) {
-        if (strcmp(card->token[k].text, name) == 0 &&
-            card->token[k + 1].kind == DALCS_TOKEN_EQUAL &&
-            dalcs_number_parse(card->token[k + 2].text, &number) != DALCS_NUMBER_OK) {
-            return 0;
-        }
-    }
-    return number.value;
-}
-
-/* A ladder carries what is well below n/(pi Td); ten sections, and numbers for them where the card has them. */
-static const char *hint_of_line(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    enum { SECTIONS = 10 };
-
-    const double ohms = number_behind(card, "z0");
-    const double delay = number_behind(card, "td");
-    if (!(ohms > 0 && delay > 0)) {
-        return "write n sections instead, each L = Z0*Td/n in series and C = Td/(n*Z0) behind it: "
-               "they carry what is well below the frequency n/(pi*Td)";
-    }
-    return dalcs_builder_hint(
-        builder,
-        "write ten sections instead, each L = %.4g in series and C = %.4g behind it: they carry "
-        "what is well below %.2g Hz, and more of them carry more",
-        ohms * delay / SECTIONS, delay / SECTIONS / ohms, SECTIONS / dalcs_pi / delay);
 }
 
 static const char CARDS[] =
@@ -274,7 +248,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_pairs += n_coils * (n_coils - 1) / 2;
         return DALCS_CARD_COUPLING;
     }
-    if (strchr("rlcviefghdswabmzq", letter) != NULL) {
+    if (strchr("rlcviefghdswabmzqt", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
         if (letter == 'v') {
             const size_t n_limits = (size_t)dalcs_current_limit_count(card);
@@ -288,6 +262,10 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_gates += n_delays;
         table->n_gate_inputs += n_delays;
         table->n_stimuli += dalcs_core_count(card);
+        if (letter == 't') {
+            table->n_inner += DALCS_LINE_DEVICES;
+            table->n_stimuli += 2;
+        }
         table->n_inner += is_load(card) ? 2 : 0;
         if (dalcs_card_is_logic(card)) {
             table->n_gates++;
@@ -327,8 +305,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     const char *what = refused_element(letter);
     builder->hidden |= DALCS_HIDDEN_ELEMENTS;
     if (what != NULL) {
-        dalcs_builder_error(builder, name,
-                            letter == 't' ? hint_of_line(builder, card) : hint_of_element(letter),
+        dalcs_builder_error(builder, name, hint_of_element(letter),
                             "%s are not supported yet ('%s')", what, name->text);
     } else {
         dalcs_builder_error(builder, name, "'*' starts a comment line, '+' continues a card",

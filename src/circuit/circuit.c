@@ -10,6 +10,8 @@
  *
  * Every pass goes on after an error, so that all errors are reported. */
 #include "card_table.h"
+#include "history.h"
+#include "later.h"
 #include "oscillator.h"
 #include "slips.h"
 #include "storage.h"
@@ -131,6 +133,9 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
         return;
     case 'b':
         dalcs_behavioural_parse(builder, card);
+        return;
+    case 't':
+        dalcs_line_parse(builder, card);
         return;
     default:
         dalcs_switch_parse(builder, card);
@@ -271,8 +276,9 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
  * looked for, all of it is one system. */
 static bool is_whole(const struct dalcs_builder *builder) {
     const struct dalcs_circuit *c = builder->circuit;
-    return c->n_gates > 0 && (builder->netlist->asks_steady || c->periodic.present ||
-                              c->transient.starts_steady || c->envelope.present);
+    return builder->later != NULL ||
+           (c->n_gates > 0 && (builder->netlist->asks_steady || c->periodic.present ||
+                               c->transient.starts_steady || c->envelope.present));
 }
 
 static enum dalcs_status build(struct dalcs_builder *builder) {
@@ -291,6 +297,8 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_transistor_resolve(builder);
     dalcs_behavioural_resolve(builder);
     dalcs_delay_resolve(builder);
+    dalcs_later_resolve(builder);
+    builder->circuit->is_whole = is_whole(builder);
     dalcs_logic_resolve(builder);
     dalcs_model_check(builder);
     check_presence(builder);
@@ -383,6 +391,9 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
 
 void dalcs_circuit_finish(struct dalcs_circuit *circuit) {
     struct dalcs_arena arena = circuit->arena;
+    for (int k = 0; k < circuit->n_delayed; k++) {
+        dalcs_history_finish(circuit->delayed[k].history);
+    }
     *circuit = (struct dalcs_circuit){0};
     dalcs_arena_finish(&arena);
 }

@@ -73,10 +73,12 @@ struct dalcs_device {
     double value;     /* ohm, H, F, or gain */
     double initial;   /* IC=: V for C, A for L */
     bool has_initial;
-    bool is_limit;       /* I: limits a current, and what it takes is lost as in a diode */
-    bool is_storage;     /* E, G: with its core, a capacitor or a coil that is no straight line */
-    bool is_transformer; /* E, F: of an ideal one, all of which together take no power */
-    bool initially_on;   /* S ... ON */
+    bool is_limit;   /* I: limits a current, and what it takes is lost as in a diode */
+    bool is_storage; /* E, G: with its core, a capacitor or a coil that is no straight line */
+    bool
+        is_delay; /* E: gain 0, and 1 at rest, where what a delayed source puts out is what it reads */
+    bool is_transformer;    /* E, F: of an ideal one, all of which together take no power */
+    bool initially_on;      /* S ... ON */
     bool has_initial_state; /* S carries ON or OFF */
     int stimulus;           /* V, I: index into circuit->stimulus, else -1 */
     int control;            /* F, H, W: index of the controlling V device, else -1 */
@@ -207,6 +209,14 @@ struct dalcs_periodic_card {
 
 enum { DALCS_MOST_DC = 2 };
 
+/* A source that puts out what a signal was (history.h). */
+struct dalcs_delayed {
+    const char *name;
+    int signal;                    /* which measured one */
+    double initial;                /* V, what it was until t = 0 with uic */
+    struct dalcs_history *history; /* of the present run; the circuit's */
+};
+
 struct dalcs_circuit {
     const char *title;
     int n_nodes; /* ground included */
@@ -230,6 +240,8 @@ struct dalcs_circuit {
     int smooth_stimulus; /* the constant 0, which stands for what they put out; -1: there are none */
     int n_gates;
     struct dalcs_logic_gate *gate;
+    int n_delayed;
+    struct dalcs_delayed *delayed;
     int n_comparators;
     int *comparator; /* [n_comparators] switches that nothing flows in: what gates read */
     int n_externals; /* sources that a program outside gives values (stimulus.h) */

@@ -1,10 +1,10 @@
 /* delay.c - delay(x, t) in a formula, LTspice's: x as it was t earlier.
  *
- * What waveforms were would have to be kept for that, and a loop through it has states without end. Two kinds of x need
- * neither: a V source is the same one later, and a signal of two values is a buffer with a delay, as gates have it.
- * Their sources are made when all formulas are compiled. */
+ * A V source is the same one later, and a signal of two values is a buffer with a delay, as gates have it. What any other
+ * one was is kept while a run goes on (later.h). The sources are made when all formulas are compiled. */
 #include "behaviour.h"
 #include "formula_writer.h"
+#include "later.h"
 #include "logic_parts.h"
 
 #include <math.h>
@@ -15,6 +15,7 @@ struct dalcs_delay {
     const struct dalcs_token *name;
     int input, output; /* nodes */
     double low, high, seconds;
+    bool is_later;  /* of what the input was */
     bool is_source; /* of this stimulus */
     struct dalcs_stimulus stimulus;
 };
@@ -166,7 +167,7 @@ static bool find_way(struct dalcs_compiler *c, const struct dalcs_formula *f,
                          form->affine.term[0].kind == DALCS_QUANTITY_VOLTAGE;
     delay->input = is_node ? form->affine.term[0].index : -1;
     const struct dalcs_delay *other = is_node ? delay_at(c->builder, delay->input) : NULL;
-    const bool has_other = other != NULL && !other->is_source;
+    const bool has_other = other != NULL && !other->is_source && !other->is_later;
     const struct dalcs_stimulus *s = other != NULL && other->is_source ? &other->stimulus
                                      : is_node                         ? source_of(c, delay->input)
                                                                        : NULL;
@@ -179,12 +180,10 @@ static bool find_way(struct dalcs_compiler *c, const struct dalcs_formula *f,
     if (!delay->is_source && !has_other &&
         !(s != NULL && find_gate_levels(c->builder->circuit, s, delay)) &&
         (form == NULL || !find_levels(c, x, form, delay))) {
-        (void)refuse(c, f, "write a line of coils and capacitors to delay any other signal",
-                     "delay() takes a V source to ground or a signal of two values");
-        return false;
+        delay->is_later = form != NULL && !c->failed;
     }
     int source;
-    if (!delay->is_source && !is_node) {
+    if (form != NULL && !delay->is_source && !is_node) {
         delay->input = dalcs_compiler_node_at(c, "undelayed", x, false, &source);
     }
     return !c->failed && (delay->is_source || delay->input >= 0);
@@ -249,6 +248,15 @@ static void add_source(struct dalcs_builder *builder, const struct dalcs_delay *
     }
 }
 
+static void add_later(struct dalcs_builder *builder, const struct dalcs_delay *delay) {
+    const struct dalcs_later later = {.name = delay->name,
+                                      .what = "later",
+                                      .input = delay->input,
+                                      .output = {delay->output, 0},
+                                      .seconds = delay->seconds};
+    dalcs_later_add(builder, &later);
+}
+
 static void add_buffer(struct dalcs_builder *builder, const struct dalcs_delay *delay) {
     struct dalcs_logic_card *of = dalcs_logic_start(builder, delay->name, 1);
     if (of == NULL) {
@@ -272,7 +280,9 @@ void dalcs_delay_resolve(struct dalcs_builder *builder) {
         if (!dalcs_builder_reserve_devices(builder, DALCS_GATE_DEVICES)) {
             return;
         }
-        if (d->is_source) {
+        if (d->is_later) {
+            add_later(builder, d);
+        } else if (d->is_source) {
             add_source(builder, d);
         } else {
             add_buffer(builder, d);

@@ -1,5 +1,6 @@
 /* resolve.c - sources with a formula, once all elements are known: each after those whose voltages it reads. */
 #include "behaviour.h"
+#include "later.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -185,7 +186,7 @@ static void resolve_all(struct dalcs_compiler *c, struct dalcs_potentials *poten
 static void take_stimuli(struct dalcs_compiler *c) {
     struct dalcs_circuit *circuit = c->builder->circuit;
     const size_t n = (size_t)circuit->n_stimuli;
-    const size_t n_more = dalcs_delay_pending(c->builder);
+    const size_t n_more = dalcs_delay_pending(c->builder) + dalcs_later_pending(c->builder);
     struct dalcs_stimulus *all =
         dalcs_arena_alloc(&circuit->arena, n + c->n_stimuli + n_more, sizeof *all);
     if (all == NULL) {

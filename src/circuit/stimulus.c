@@ -5,6 +5,7 @@
  * the same time within rounding form a cluster, whose left limit is the end of the segment before it
  * and whose right limit is the start of the segment after it, both exact values of the card. */
 #include "formula_stimulus.h"
+#include "history.h"
 #include "pi.h"
 #include "rounding.h"
 
@@ -351,6 +352,8 @@ double dalcs_stimulus_value(const struct dalcs_stimulus *s, double t, enum dalcs
         return exponential_value(s, t, side);
     case DALCS_STIMULUS_TONES:
         return tones_value(s, t, side);
+    case DALCS_STIMULUS_DELAYED:
+        return dalcs_history_value(s->u.history, t, side);
     case DALCS_STIMULUS_FORMULA:
         return dalcs_formula_stimulus_value(s, t, side);
     }
@@ -377,6 +380,8 @@ double dalcs_stimulus_next_edge(const struct dalcs_stimulus *s, double t) {
                     if_after(s->u.exponential.fall_delay, t, tolerance(t, 0)));
     case DALCS_STIMULUS_TONES:
         return if_after(s->u.tones.delay, t, tolerance(t, 0));
+    case DALCS_STIMULUS_DELAYED:
+        return dalcs_history_next_edge(s->u.history, t);
     case DALCS_STIMULUS_FORMULA:
         return dalcs_formula_stimulus_next_edge(s, t);
     }
@@ -384,6 +389,9 @@ double dalcs_stimulus_next_edge(const struct dalcs_stimulus *s, double t) {
 }
 
 bool dalcs_stimulus_jumps_at(const struct dalcs_stimulus *s, double t) {
+    if (s->kind == DALCS_STIMULUS_DELAYED) {
+        return dalcs_history_jumps_at(s->u.history, t);
+    }
     return dalcs_stimulus_value(s, t, DALCS_LEFT) != dalcs_stimulus_value(s, t, DALCS_RIGHT);
 }
 
@@ -461,6 +469,7 @@ int dalcs_stimulus_n_terms(const struct dalcs_stimulus *s) {
     case DALCS_STIMULUS_DC:
     case DALCS_STIMULUS_PULSE:
     case DALCS_STIMULUS_PWL:
+    case DALCS_STIMULUS_DELAYED:
         return 0;
     }
     return 0;
@@ -483,6 +492,9 @@ void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
         return;
     case DALCS_STIMULUS_FORMULA:
         dalcs_formula_stimulus_piece(s, t, piece);
+        return;
+    case DALCS_STIMULUS_DELAYED: /* a polynomial, of which this is where it begins */
+        piece->level = dalcs_history_value(s->u.history, t, DALCS_RIGHT);
         return;
     case DALCS_STIMULUS_DC:
     case DALCS_STIMULUS_PULSE:

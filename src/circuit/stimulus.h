@@ -11,14 +11,17 @@
 
 #include "piecewise.h"
 
+struct dalcs_history;
+
 enum dalcs_stimulus_kind {
     DALCS_STIMULUS_DC,
     DALCS_STIMULUS_SIN,
     DALCS_STIMULUS_PULSE,
     DALCS_STIMULUS_PWL,
     DALCS_STIMULUS_EXP,
-    DALCS_STIMULUS_TONES,  /* AM and SFFM */
-    DALCS_STIMULUS_FORMULA /* of others: decided.h */
+    DALCS_STIMULUS_TONES,   /* AM and SFFM */
+    DALCS_STIMULUS_DELAYED, /* what a signal was: history.h */
+    DALCS_STIMULUS_FORMULA  /* of others: decided.h */
 };
 
 /* Which limit to take at a discontinuity. */
@@ -89,6 +92,8 @@ struct dalcs_stimulus {
             int n; /* at most DALCS_STIMULUS_MOST_TERMS */
             const struct dalcs_tone *tone;
         } tones;
+
+        const struct dalcs_history *history;
 
         /* function(argument); its edges are those of the argument and where that passes a knot. A jump of the function
          * has its `value` while the argument rests on it. */

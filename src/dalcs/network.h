@@ -57,7 +57,8 @@ struct dalcs_network {
 /* Options that choose what the network is for. */
 struct dalcs_network_options {
     bool clamp_initial_conditions; /* hold .ic voltages: the operating point of a .tran */
-    bool silent;                   /* nothing that a person has not been told before */
+    bool at_rest; /* nothing has changed for ever: what is delayed is what it is now */
+    bool silent;  /* nothing that a person has not been told before */
     bool with_readout;
 };
 

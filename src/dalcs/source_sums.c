@@ -35,6 +35,8 @@ static bool same(const struct dalcs_stimulus *a, const struct dalcs_stimulus *b)
                a->u.tones.n == b->u.tones.n &&
                memcmp(a->u.tones.tone, b->u.tones.tone,
                       (size_t)a->u.tones.n * sizeof(*a->u.tones.tone)) == 0;
+    case DALCS_STIMULUS_DELAYED:
+        return a->u.history == b->u.history;
     default:
         return a->dc == b->dc;
     }

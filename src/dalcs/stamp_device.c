@@ -183,7 +183,8 @@ static enum dalcs_status stamp_voltage_branch(struct stamps *b, int device) {
         for (int k = 2; k < 4; k++) {
             DALCS_TRY(dalcs_stamp_reads(b, device, row, dalcs_stamp_node_column(l, d->node[k])));
         }
-        return dalcs_stamp_add_voltage(b, &b->A, row, d->node[2], d->node[3], -d->value);
+        return dalcs_stamp_add_voltage(b, &b->A, row, d->node[2], d->node[3],
+                                       d->is_delay && l->options->at_rest ? -1.0 : -d->value);
     default:
         return DALCS_OK;
     }

@@ -126,5 +126,7 @@ void dalcs_write_stimulus(FILE *f, const struct dalcs_stimulus *s) {
     case DALCS_STIMULUS_FORMULA:
         write_formula(f, s);
         break;
+    case DALCS_STIMULUS_DELAYED: /* refused before */
+        break;
     }
 }

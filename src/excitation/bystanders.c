@@ -15,7 +15,8 @@ static void join_row(int *parent, const struct dalcs_csr *a, int row, int to) {
 }
 
 /* Vertices are columns, then rows; the first state, or else pair, or else control stands for all. */
-static void find_blocks(const struct dalcs_system *s, int *parent) {
+static void find_blocks(const struct dalcs_circuit *circuit, const struct dalcs_system *s,
+                        int *parent) {
     int n_equations = dalcs_system_n_equations(s);
     int n_columns = dalcs_system_n_columns(s);
     int involved = n_columns + n_equations;
@@ -39,6 +40,15 @@ static void find_blocks(const struct dalcs_system *s, int *parent) {
         for (int j = 0; j < s->smooth[k].n; j++) {
             if (s->smooth[k].column[j] >= 0) {
                 dalcs_union_join(parent, s->smooth[k].column[j], involved);
+            }
+        }
+    }
+    for (int r = 0; r < n_equations;
+         r++) { /* what they read has to be known at the nodes of steps */
+        for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
+            const int stimulus = s->stimulus[s->E.j[k]];
+            if (stimulus >= 0 && circuit->stimulus[stimulus].kind == DALCS_STIMULUS_DELAYED) {
+                dalcs_union_join(parent, n_columns + r, involved);
             }
         }
     }
@@ -86,11 +96,11 @@ static enum dalcs_status solve(struct dalcs_bystanders *b, const struct dalcs_sy
  * saves. */
 enum { MOST_BYSTANDERS = 64 };
 
-static enum dalcs_status find(struct dalcs_bystanders *b, const struct dalcs_system *s, int *parent,
-                              int *place) {
+static enum dalcs_status find(struct dalcs_bystanders *b, const struct dalcs_circuit *circuit,
+                              const struct dalcs_system *s, int *parent, int *place) {
     int n_equations = dalcs_system_n_equations(s);
     int n_columns = dalcs_system_n_columns(s);
-    find_blocks(s, parent);
+    find_blocks(circuit, s, parent);
     int involved = dalcs_union_find(parent, n_columns + n_equations);
     b->column = dalcs_alloc((size_t)n_columns, sizeof(*b->column));
     b->row = dalcs_alloc((size_t)n_equations, sizeof(*b->row));
@@ -113,14 +123,16 @@ static enum dalcs_status find(struct dalcs_bystanders *b, const struct dalcs_sys
     return b->gain != NULL ? solve(b, s, place) : DALCS_E_NOMEM;
 }
 
-enum dalcs_status dalcs_bystanders_find(struct dalcs_bystanders *b, const struct dalcs_system *s) {
+enum dalcs_status dalcs_bystanders_find(struct dalcs_bystanders *b,
+                                        const struct dalcs_circuit *circuit,
+                                        const struct dalcs_system *s) {
     *b = (struct dalcs_bystanders){0};
     size_t n = (size_t)(dalcs_system_n_columns(s) + dalcs_system_n_equations(s)) + 1;
     int *parent = dalcs_alloc(n, sizeof(*parent));
     int *place = dalcs_alloc(n, sizeof(*place));
     enum dalcs_status status = DALCS_E_NOMEM;
     if (parent != NULL && place != NULL) {
-        status = find(b, s, parent, place);
+        status = find(b, circuit, s, parent, place);
     }
     free(parent);
     free(place);

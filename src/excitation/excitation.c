@@ -1,6 +1,8 @@
 /* excitation.c - the functions of time in a system's equations, and their coefficients. */
 #include "excitation.h"
 
+#include "history.h"
+
 #include "pi.h"
 #include "rounding.h"
 
@@ -67,14 +69,11 @@ static void add_wave(struct dalcs_excitation *excitation, int input,
     }
 }
 
-/* A function of columns, which is given by its values at the nodes of a step. */
-static void add_smooth(struct dalcs_excitation *excitation, int k,
-                       const struct dalcs_collocation *method) {
-    struct dalcs_excitation_wave *wave = &excitation->wave[excitation->n_waves++];
-    *wave = (struct dalcs_excitation_wave){.input = excitation->system->smooth[k].input,
-                                           .first = excitation->n_functions,
-                                           .is_curved = true,
-                                           .smooth = k};
+/* What is given by its values at the nodes of a step. */
+static void add_nodes(struct dalcs_excitation *excitation, struct dalcs_excitation_wave *wave,
+                      const struct dalcs_collocation *method) {
+    wave->first = excitation->n_functions;
+    wave->is_curved = true;
     wave->n_functions = method->s + 2;
     for (int node = 0; node <= method->s + 1; node++) {
         excitation->function[excitation->n_functions++] = (struct dalcs_excitation_function){
@@ -86,6 +85,28 @@ static void add_smooth(struct dalcs_excitation *excitation, int k,
     excitation->is_curved = true;
 }
 
+/* A function of columns. */
+static void add_smooth(struct dalcs_excitation *excitation, int k,
+                       const struct dalcs_collocation *method) {
+    struct dalcs_excitation_wave *wave = &excitation->wave[excitation->n_waves++];
+    *wave =
+        (struct dalcs_excitation_wave){.input = excitation->system->smooth[k].input, .smooth = k};
+    add_nodes(excitation, wave, method);
+}
+
+/* What a signal was. */
+static void add_delayed(struct dalcs_excitation *excitation, int input,
+                        const struct dalcs_stimulus *stimulus,
+                        const struct dalcs_collocation *method) {
+    struct dalcs_excitation_wave *wave = &excitation->wave[excitation->n_waves++];
+    *wave = (struct dalcs_excitation_wave){.input = input,
+                                           .stimulus = stimulus,
+                                           .is_delayed = true,
+                                           .smooth = -1,
+                                           .piece.to = dalcs_stimulus_next_edge(stimulus, 0.0)};
+    add_nodes(excitation, wave, method);
+}
+
 /* Room for all waves. */
 static enum dalcs_status allocate(struct dalcs_excitation *excitation,
                                   const struct dalcs_circuit *circuit,
@@ -94,17 +115,19 @@ static enum dalcs_status allocate(struct dalcs_excitation *excitation,
 
     size_t n = (size_t)system->n_inputs;
     size_t n_smooth = (size_t)system->n_smooth;
+    size_t n_delayed = 0;
     size_t n_terms = 0;
     int most = 0;
     for (int k = 1; k < system->n_inputs; k++) {
         int n_of_wave = dalcs_stimulus_n_terms(&circuit->stimulus[system->stimulus[k]]);
+        n_delayed += circuit->stimulus[system->stimulus[k]].kind == DALCS_STIMULUS_DELAYED;
         n_terms += (size_t)n_of_wave;
         most = n_of_wave > most ? n_of_wave : most;
     }
     excitation->wave = dalcs_arena_alloc(&excitation->arena, n, sizeof(*excitation->wave));
-    excitation->function =
-        dalcs_arena_alloc(&excitation->arena, 2 * n + 2 * n_terms + n_smooth * FUNCTIONS_OF_SMOOTH,
-                          sizeof(*excitation->function));
+    excitation->function = dalcs_arena_alloc(
+        &excitation->arena, 2 * n + 2 * n_terms + (n_smooth + n_delayed) * FUNCTIONS_OF_SMOOTH,
+        sizeof(*excitation->function));
     excitation->smooth =
         dalcs_arena_alloc(&excitation->arena, n_smooth * FUNCTIONS_OF_SMOOTH, sizeof(double));
     excitation->term =
@@ -125,7 +148,7 @@ enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
     *excitation = (struct dalcs_excitation){.system = system, .shortest_period = INFINITY};
     enum dalcs_status status = allocate(excitation, circuit, system);
     if (status == DALCS_OK) {
-        status = dalcs_bystanders_find(&excitation->bystanders, system);
+        status = dalcs_bystanders_find(&excitation->bystanders, circuit, system);
     }
     if (status != DALCS_OK) {
         dalcs_excitation_finish(excitation);
@@ -136,6 +159,8 @@ enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
         const struct dalcs_stimulus *stimulus = &circuit->stimulus[system->stimulus[k]];
         if (stimulus->kind == DALCS_STIMULUS_DC) {
             excitation->constant[k] = stimulus->dc;
+        } else if (stimulus->kind == DALCS_STIMULUS_DELAYED) {
+            add_delayed(excitation, k, stimulus, method);
         } else if (acts(excitation, k)) {
             add_wave(excitation, k, stimulus);
         }
@@ -190,6 +215,18 @@ static void find_terms(const struct dalcs_excitation_wave *wave, double t,
     }
 }
 
+/* out[s + 2]: the values at the nodes, and what the polynomial through them misses. */
+static void find_delayed(const struct dalcs_excitation *excitation,
+                         const struct dalcs_excitation_wave *wave, double t, double h,
+                         double *out) {
+    const struct dalcs_collocation *method = excitation->function[wave->first].method;
+    for (int k = 0; k <= method->s; k++) {
+        const enum dalcs_side side = k == 0 ? DALCS_RIGHT : DALCS_LEFT;
+        out[k] = dalcs_stimulus_value(wave->stimulus, t + h * method->node[k], side);
+    }
+    out[method->s + 1] = dalcs_history_missed(wave->stimulus->u.history, t, h, out);
+}
+
 void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, double t, double h,
                                    double *coefficient) {
     for (int k = 0; k < excitation->n_waves; k++) {
@@ -198,6 +235,10 @@ void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, do
         if (wave->smooth >= 0) {
             memcpy(out, excitation->smooth + wave->smooth * wave->n_functions,
                    (size_t)wave->n_functions * sizeof(*out));
+            continue;
+        }
+        if (wave->is_delayed) {
+            find_delayed(excitation, wave, t, h, out);
             continue;
         }
         if (wave->has_level) {
@@ -305,7 +346,7 @@ void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t
             inputs[wave->input] = 0.0;
         } else if (!wave->is_curved) {
             inputs[wave->input] = piece->level + piece->slope * ((t - wave->from) + tau);
-        } else if (isinf(piece->to)) {
+        } else if (wave->is_delayed || isinf(piece->to)) {
             inputs[wave->input] = dalcs_stimulus_value(wave->stimulus, t + tau, DALCS_RIGHT);
         } else {
             double since = (t - wave->from) + tau;

@@ -39,7 +39,8 @@ struct dalcs_excitation_wave {
     bool has_level, has_ramp; /* at any time */
     double from;              /* s, where `piece` was taken */
     struct dalcs_stimulus_piece piece;
-    int smooth; /* of the system's smooth sources; -1: it is a stimulus */
+    bool is_delayed; /* known at the nodes of a step */
+    int smooth;      /* of the system's smooth sources; -1: it is a stimulus */
 };
 
 struct dalcs_excitation {
@@ -65,7 +66,7 @@ struct dalcs_excitation {
 };
 
 /* Inputs that only command switches are left out, for commands have their own schedule; and those that only
- * bystanders see. method: of the steps; NULL where the system has no smooth sources. */
+ * bystanders see. method: of the steps; NULL where the system has neither smooth nor delayed sources. */
 enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
                                          const struct dalcs_circuit *circuit,
                                          const struct dalcs_system *system,

@@ -2,6 +2,7 @@
 #include "radau.h"
 
 #include "cycle.h"
+#include "delays.h"
 #include "guards.h"
 #include "magnitudes.h"
 #include "periodic.h"
@@ -148,6 +149,8 @@ static enum dalcs_status leave(struct dalcs_radau *r, struct dalcs_radau_part *p
         r->base->listener.observer->segment(r->base->listener.observer->user, part,
                                             part->work.after);
     }
+    DALCS_TRY(dalcs_delays_note(r, part)); /* before sources are looked at where it ends */
+    part->segment.anew = !goes_on;
     part->segment.t = part->segment.t_end;
     if (part->guards.n_crossed > 0) {
         dalcs_guards_flip(part);
@@ -158,6 +161,8 @@ static enum dalcs_status leave(struct dalcs_radau *r, struct dalcs_radau_part *p
         count_flurry(r, part);
     }
     *passage = (struct passage){repeats, enter_changes(r, part, goes_on)};
+    part->segment.anew =
+        part->segment.anew || passage->commanded || part->guards.bends || part->guards.leaps;
     part->waits = part->segment.t < r->options.stop;
     return DALCS_OK;
 }

@@ -1,6 +1,7 @@
 /* radau_setup.c - the parts of a run: what they are, their room, how exact they are to be. */
 #include "choice.h"
 #include "cycle.h"
+#include "delays.h"
 #include "dense_map.h"
 #include "guards.h"
 #include "magnitudes.h"
@@ -30,8 +31,8 @@ static double inner_tolerance_of(double tolerance) {
     return fmax(smallest_inner, fmin(dalcs_nothing, inner_part * tolerance));
 }
 
-static bool has_memory_or_sides(const struct dalcs_system *s) {
-    return s->n_x > 0 || s->n_pairs > 0;
+static bool has_memory_or_sides(const struct dalcs_circuit *c, const struct dalcs_system *s) {
+    return s->n_x > 0 || s->n_pairs > 0 || c->n_delayed > 0;
 }
 
 /* Inputs that probes of this system read. */
@@ -124,9 +125,9 @@ static double fit_rung(double promising) {
     return isinf(promising) ? 1.0 : floor(64.0 * frexp(paced, &exponent)) / 32.0;
 }
 
-/* What gates do, and what comes from outside, is not known to recur. */
+/* What gates do, what comes from outside, and what was before, is not known to recur. */
 static bool is_known(const struct dalcs_circuit *c) {
-    return c->n_gates == 0 && c->n_externals == 0;
+    return c->n_gates == 0 && c->n_externals == 0 && c->n_delayed == 0;
 }
 
 /* Steps with smooth sources are no maps of their states. */
@@ -138,7 +139,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
                                     const struct dalcs_osnsp_options *osnsp) {
     struct dalcs_component *c = part->component;
     c->osnsp.asks.is_passing = true;
-    bool steps = has_memory_or_sides(c->system);
+    bool steps = has_memory_or_sides(c->circuit, c->system);
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
     struct dalcs_conductances g = dalcs_conductances_find(c->system, r->options.stop);
     find_cross_scales(&g, part->scales.cross);
@@ -194,6 +195,7 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
     r->inner_tolerance = inner_tolerance_of(options->tolerance);
     r->besides[0] = 0.1 * options->vntol;
     r->besides[1] = 0.1 * options->abstol;
+    dalcs_delays_setup(r, base->circuit);
     r->part = dalcs_alloc((size_t)r->n_parts, sizeof(*r->part));
     enum dalcs_status status = r->part != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (int k = 0; k < r->n_parts && status == DALCS_OK; k++) {

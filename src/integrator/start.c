@@ -70,6 +70,7 @@ static void stand(struct dalcs_radau *r, struct dalcs_radau_part *part, const do
     (void)dalcs_radau_enter_edges(r, part, &jumps);
     dalcs_radau_obey_commands(part);
     part->guards.fresh = true;
+    part->segment.anew = true;
 }
 
 enum dalcs_status dalcs_radau_decide(struct dalcs_radau *r, double t) {

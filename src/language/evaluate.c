@@ -179,7 +179,7 @@ static enum dalcs_outcome draw(const struct run *r, const struct dalcs_operation
 
 static enum dalcs_outcome call(const struct run *r, const struct dalcs_operation *o) {
     struct dalcs_language *language = r->language;
-    struct dalcs_user_function *user = dalcs_scope_find_function(r->scope, o->u.name);
+    struct dalcs_user_function *user = dalcs_language_function(language, r->scope, o->u.name);
     bool is_random;
     dalcs_draw *drawn = dalcs_draw_find(o->u.name, o->count, &is_random);
     if (user != NULL) {

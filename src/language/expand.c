@@ -743,6 +743,7 @@ void dalcs_deck_finish(struct dalcs_deck *deck) {
     if (language != NULL) {
         dalcs_definition_finish(&language->root);
         dalcs_names_finish(&language->globals);
+        dalcs_language_finish_written(language);
         free(language->stack);
         free(language->sought);
         free(language->scope);

@@ -259,7 +259,7 @@ static void push_signal(struct work *w, const struct frame *f, const struct dalc
 static void check_call(struct work *w, const struct frame *f, const struct dalcs_operation *o) {
     int least;
     int most;
-    if (dalcs_scope_find_function(w->scope, o->u.name) != NULL ||
+    if (dalcs_language_function(w->language, w->scope, o->u.name) != NULL ||
         dalcs_function_is_noise(o->u.name) || dalcs_function_is_delay(o->u.name) ||
         dalcs_function_remembers(o->u.name, &least, &most)) {
         return;
@@ -313,7 +313,7 @@ static void call_memory(struct work *w, const struct frame *f, const struct dalc
 }
 
 static void call(struct work *w, const struct frame *f, const struct dalcs_operation *o) {
-    struct dalcs_user_function *user = dalcs_scope_find_function(w->scope, o->u.name);
+    struct dalcs_user_function *user = dalcs_language_function(w->language, w->scope, o->u.name);
     int least;
     int most;
     if (user != NULL) {

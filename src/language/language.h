@@ -128,6 +128,8 @@ struct dalcs_draw_place {
     uint32_t n; /* values drawn there */
 };
 
+enum { DALCS_WRITTEN_FUNCTIONS = 2 };
+
 struct dalcs_language {
     struct dalcs_deck *deck;
     const struct dalcs_netlist *netlist;
@@ -136,6 +138,7 @@ struct dalcs_language {
     struct dalcs_definition root;
     struct dalcs_scope *top;
     struct dalcs_names globals;
+    struct dalcs_user_function written[DALCS_WRITTEN_FUNCTIONS]; /* made when first named */
     size_t n_emitted;
     int depth;
     bool too_large;
@@ -223,6 +226,11 @@ struct dalcs_value *dalcs_scope_find_value(struct dalcs_scope *scope, const char
 
 /* The function that a name means in this scope, or NULL. */
 struct dalcs_user_function *dalcs_scope_find_function(struct dalcs_scope *scope, const char *name);
+
+/* The same, or one that is written in others for every netlist (written.c). NULL: there is none, or no memory. */
+struct dalcs_user_function *dalcs_language_function(struct dalcs_language *language,
+                                                    struct dalcs_scope *scope, const char *name);
+void dalcs_language_finish_written(struct dalcs_language *language);
 
 /* Is the item in a branch that counts? */
 bool dalcs_scope_is_active(const struct dalcs_scope *scope, int item);

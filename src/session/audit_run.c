@@ -142,6 +142,10 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         status =
             dalcs_audit_gates_start(&a->gates, &run->s->circuit, radau, run->s->network.readout);
     }
+    if (status == DALCS_OK) {
+        status =
+            dalcs_audit_delays_start(&a->delays, &run->s->circuit, radau, run->s->network.readout);
+    }
     status = status == DALCS_OK ? create(a) : status;
     for (int i = 0; i < a->n_stepped && status == DALCS_OK; i++) {
         a->part[a->stepped[i]].batch = dalcs_audit_batch_of(a->audit, a->stepped[i]);
@@ -172,6 +176,7 @@ void dalcs_audit_run_finish(struct dalcs_audit_run *a) {
     }
     dalcs_audit_destroy(a->audit);
     dalcs_audit_gates_finish(&a->gates);
+    dalcs_audit_delays_finish(&a->delays);
     dalcs_arena_finish(&a->arena);
     *a = (struct dalcs_audit_run){0};
 }
@@ -212,7 +217,8 @@ static inline bool gathers(struct dalcs_audit_run *a, int k) {
     const struct dalcs_part_segment *s = &part->segment;
     struct audit_members *m = &a->part[k];
     struct dalcs_audit_batch *batch = m->batch;
-    if (!batch->is_on || s->t_end > batch->last || !dalcs_audit_reader_repeats(part, m) ||
+    if (a->delays.delay != NULL /* what sources put out is not kept for so long (history.h) */ ||
+        !batch->is_on || s->t_end > batch->last || !dalcs_audit_reader_repeats(part, m) ||
         (s->late == NULL && !dalcs_audit_is_image(a->audit, k, s->in, s->out))) {
         return false;
     }
@@ -229,7 +235,22 @@ static inline bool gathers(struct dalcs_audit_run *a, int k) {
     return true;
 }
 
+/* One sample of each segment, as far as the budget goes. Without memory for it what is left is not asked. */
+static void look_at_delays(struct dalcs_audit_run *a, int k, double to) {
+    if (a->delays.delay == NULL) {
+        return;
+    }
+    const double work = 2.0 * a->run->s->circuit.n_delayed * dalcs_audit_state_work(a, k);
+    const bool samples =
+        a->run->options->audit == DALCS_AUDIT_FULL || dalcs_audit_may(a->audit, work);
+    if (dalcs_audit_delays_leave(&a->delays, a->audit, k, to, samples, dalcs_audit_run_chance(a)) !=
+        DALCS_OK) {
+        dalcs_audit_delays_finish(&a->delays);
+    }
+}
+
 static void leave(struct dalcs_audit_run *a, int k, double to) {
+    look_at_delays(a, k, to);
     const struct dalcs_part_segment *segment = &a->radau->part[k].segment;
     const struct audit_members *m = &a->part[k];
     const bool is_last = to >= a->radau->options.stop;

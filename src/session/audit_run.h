@@ -5,6 +5,7 @@
 #include "session_internal.h"
 
 #include "audit.h"
+#include "audit_delays.h"
 #include "audit_gates.h"
 #include "radau.h"
 #include "rows.h"
@@ -47,6 +48,7 @@ struct dalcs_audit_run {
     bool has_tried;      /* at least once */
     bool was_tried;      /* the next leap needs no trial */
     struct dalcs_audit_gates gates;
+    struct dalcs_audit_delays delays;
     uint64_t seed; /* of what is drawn besides by the auditor itself */
     struct dalcs_arena arena;
 };

@@ -200,6 +200,11 @@ static enum dalcs_status write_equations(struct whole *w, const struct dalcs_equ
 
 enum dalcs_status dalcs_session_equations(struct dalcs_session *session,
                                           const struct dalcs_equations_options *options) {
+    if (session->circuit.n_delayed > 0) {
+        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, NULL, "'%s' is a delay: a DALCS has none",
+                       session->circuit.delayed[0].name);
+        return DALCS_E_NETLIST;
+    }
     DALCS_TRY(dalcs_session_apply_values(session));
     const struct dalcs_equations_files files = {.user = options->user,
                                                 .file = options->file,

@@ -1,6 +1,7 @@
 /* operating_point.c - .op: one one-step problem, one row. */
 #include "pipeline.h"
 
+#include "delayed.h"
 #include "gates.h"
 #include "measures.h"
 
@@ -17,10 +18,10 @@ static enum dalcs_status measure_operating_point(struct dalcs_run *r, const doub
     return status;
 }
 
-enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
+static enum dalcs_status solve(struct dalcs_run *r, const struct dalcs_network *network) {
     struct dalcs_session *s = r->s;
     struct dalcs_euler e;
-    DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, 1.0, 1.0));
+    DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, network, &r->osnsp, 1.0, 1.0));
     e.listener.open_user = &r->undetermined;
     e.listener.on_open = dalcs_undetermined_at;
     struct dalcs_logic_run logic;
@@ -37,12 +38,12 @@ enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
         status = dalcs_undetermined_several(&r->undetermined, &e, 0.0);
         e.failure.at_operating_point = false;
     }
-    double *row = dalcs_alloc((size_t)s->network.n_outputs, sizeof(*row));
+    double *row = dalcs_alloc((size_t)network->n_outputs, sizeof(*row));
     if (status == DALCS_OK && row == NULL) {
         status = DALCS_E_NOMEM;
     }
     if (status == DALCS_OK) {
-        dalcs_recorder_evaluate(&s->network, &e, row);
+        dalcs_recorder_evaluate(network, &e, row);
         status = r->sink->row(r->sink->user, 0.0, row);
     }
     if (status == DALCS_OK) {
@@ -52,13 +53,29 @@ enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
         status = r->sink->end(r->sink->user);
     }
     if (status == DALCS_OK && !s->circuit.transient.present) {
-        dalcs_recorder_states(&s->network, &e, s->start);
-        dalcs_recorder_states(&s->network, &e, s->final);
+        dalcs_recorder_states(network, &e, s->start);
+        dalcs_recorder_states(network, &e, s->final);
     }
     free(row);
     status = dalcs_explain_failure(r, &e, status);
     dalcs_run_add_work(r, &e);
     dalcs_logic_run_finish(&logic);
     dalcs_euler_finish(&e);
+    return status;
+}
+
+enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
+    struct dalcs_session *s = r->s;
+    if (s->circuit.n_delayed == 0) {
+        return solve(r, &s->network);
+    }
+    struct dalcs_network at_rest;
+    dalcs_delayed_rest(&s->circuit);
+    DALCS_TRY(dalcs_network_build(
+        &at_rest, &s->circuit,
+        &(struct dalcs_network_options){.at_rest = true, .silent = true, .with_readout = true},
+        &s->diag));
+    const enum dalcs_status status = solve(r, &at_rest);
+    dalcs_network_finish(&at_rest);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "pipeline.h"
 #include "computed.h"
 #include "cosimulation.h"
+#include "delayed.h"
 
 #include "stroboscope.h"
 
@@ -209,6 +210,7 @@ static enum dalcs_status ignore_progress(void *user, double time, double stop) {
 static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis analysis) {
     const struct dalcs_circuit *circuit = &r->s->circuit;
     DALCS_TRY(dalcs_cosimulation_check(r, analysis));
+    DALCS_TRY(dalcs_delayed_check(r, analysis));
     switch (analysis) {
     case DALCS_OPERATING_POINT:
         return circuit->operating_point ? dalcs_operating_point_run(r) : DALCS_OK;

@@ -1,7 +1,9 @@
 /* transient_start.c - where a transient starts: initial conditions, held voltages, the operating point, an orbit. */
 #include "transient.h"
 
+#include "delayed.h"
 #include "gates.h"
+#include "history.h"
 #include "losses_run.h"
 #include "steady.h"
 
@@ -67,12 +69,25 @@ static enum dalcs_status rest_held(struct dalcs_run *r, struct dalcs_euler *e,
     return status;
 }
 
+/* What delayed sources put out first: their signals in the operating point; NULL: what the card says. */
+static void remember(const struct dalcs_circuit *c, const struct dalcs_euler *held) {
+    for (int k = 0; k < c->n_delayed; k++) {
+        const struct dalcs_delayed *d = &c->delayed[k];
+        const double before =
+            held != NULL
+                ? dalcs_gates_read_output(held, &held->network->output[c->measured[d->signal]])
+                : d->initial;
+        dalcs_history_start(d->history, before);
+    }
+}
+
 /* The operating point of `clamped`, in which .ic are held; its states start the transient. */
 static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
                                     struct dalcs_radau *radau, struct dalcs_logic_run *logic,
                                     const struct dalcs_network *clamped) {
     struct dalcs_session *s = r->s;
     struct dalcs_euler held;
+    dalcs_delayed_rest(&s->circuit);
     DALCS_TRY(dalcs_euler_setup(&held, &s->circuit, clamped, &r->osnsp, 1.0, 1.0));
     r->undetermined.clamped = clamped;
     held.listener.open_user = &r->undetermined;
@@ -83,6 +98,7 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
     status = dalcs_explain_failure(r, &held, status);
     dalcs_run_add_work(r, &held);
     if (status == DALCS_OK) {
+        remember(&s->circuit, &held);
         for (int k = 0; k < held.n_components; k++) {
             initial[k] = held.component[k].u; /* the same x: clamps add algebraic unknowns only */
         }
@@ -99,9 +115,10 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
                                            struct dalcs_logic_run *logic) {
     struct dalcs_session *s = r->s;
     struct dalcs_network clamped;
-    DALCS_TRY(dalcs_network_build(&clamped, &s->circuit,
-                                  &(struct dalcs_network_options){.clamp_initial_conditions = true},
-                                  &s->diag));
+    DALCS_TRY(dalcs_network_build(
+        &clamped, &s->circuit,
+        &(struct dalcs_network_options){.clamp_initial_conditions = true, .at_rest = true},
+        &s->diag));
     enum dalcs_status status = start_from(r, e, radau, logic, &clamped);
     dalcs_network_finish(&clamped);
     return status;
@@ -119,12 +136,13 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
         DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
     }
     if (c->transient.use_initial_conditions) {
+        remember(c, NULL);
         return start_at(e, radau, r->s->network.initial);
     }
     if (r->s->network.held != NULL) {
         return start_from(r, e, radau, logic, r->s->network.held);
     }
-    if (c->n_initial_conditions > 0) {
+    if (c->n_initial_conditions > 0 || c->n_delayed > 0) {
         return start_from_clamps(r, e, radau, logic);
     }
     DALCS_TRY(dalcs_gates_operating_point(e, logic, true));

@@ -139,6 +139,7 @@ const char *dalcs_spice_write_source(FILE *stream, const struct dalcs_stimulus *
     }
     case DALCS_STIMULUS_TONES:
     case DALCS_STIMULUS_FORMULA:
+    case DALCS_STIMULUS_DELAYED:
         break; /* an expression */
     }
     return NULL;

@@ -29,6 +29,7 @@ struct dalcs_part_segment {
     double t_end;
     enum dalcs_radau_end why;
     bool jumped;     /* at t, when the segment began */
+    bool anew;       /* something happened there: an event, an edge, a command */
     bool by_euler;   /* the segment is a step of implicit Euler, or is extrapolated from some */
     bool is_coarse;  /* then: nobody controls its error */
     bool open;       /* its mode leaves something open, and nobody was told */

@@ -11,7 +11,7 @@ static struct dalcs_bystanders b;
 static void start(const char *text) {
     build_good_network(&t, text);
     ck_assert_int_eq(t.network.n_systems, 1);
-    ck_assert_int_eq(dalcs_bystanders_find(&b, &t.network.system[0]), DALCS_OK);
+    ck_assert_int_eq(dalcs_bystanders_find(&b, &t.circuit, &t.network.system[0]), DALCS_OK);
 }
 
 static void finish(void) {
