@@ -250,8 +250,7 @@ def delays(checker):
     checker.measures(f"{wave}Bq q 0 V=v(a)>0\nRq q 0 1k\nBh h 0 V=v(q)>0.5 & delay(v(q),100u)>0.5 ? 10 : 0\nRh h 0 1k\n"
                      "Bl l 0 V=v(q)>0.5 | delay(v(q),100u)>0.5 ? 0 : 10\nRl l 0 1k\n.tran 10u 4m\n"
                      ".meas tran high avg v(h) from=1m to=4m\n.meas tran low avg v(l) from=1m to=4m", {"high": 4, "low": 4}, 1e-7)
-    for formula, words in (("delay(v(c), 1u)", "takes a V source"), ("delay(v(a)*v(c), 1u)", "takes a V source"), ("delay(v(a), -1)", "0 or more"),
-                           ("delay(v(a), v(c))", "0 or more")):
+    for formula, words in (("delay(v(a), -1)", "0 or more"), ("delay(v(a), v(c))", "0 or more")):
         done = checker.run(f"V1 a 0 SIN(0 1 1k)\nR1 a c 1k\nC1 c 0 1u\nB1 b 0 V={formula}\nR2 b 0 1k\n.tran 10u 1m", 3)
         checker.check(done is None or words in done.stderr, f"{formula}: {done and done.stderr}")
 

@@ -143,7 +143,7 @@ def tables(checker, program):
 
 def refused(checker, program):
     for card, text in (("b1 o 0 v=ddt(v(a),1)", "number of arguments"), ("b1 o 0 v=idt()", "number of arguments"),
-                       ("b1 o 0 v=idt(v(a),v(b))", "the initial value of"), ("b1 o 0 v=delay(v(o),1m)", "a line of coils and capacitors"),
+                       ("b1 o 0 v=idt(v(a),v(b))", "the initial value of"),
                        ("c1 o 0 q=ddt(x)", "B, E and G"), ("b1 o 0 v=eq0(v(a))", "single points"), ("i1 o 0 tbl=(1,1,0,2)", "must ascend"),
                        ("i1 o 0 tbl=(1,1,2)", "the y of a point"), (".param p={ddt(3)}", "is not a number"),
                        ("b1 o 0 v=v(a) laplace(exp(-s))", "a delay"), ("b1 o 0 v=v(a) laplace=sqrt(s)", "transfer function")):

@@ -195,7 +195,7 @@ MUTATIONS = {
         "excitation/excitation.c", "excitation->constant[k] = stimulus->dc;",
         "excitation->constant[k] = 1.00001 * stimulus->dc;", HYSTERESIS),
     "the gain of an E is too large by 1e-5": (
-        "dalcs/stamp_device.c", "d->node[2], d->node[3], -d->value)", "d->node[2], d->node[3], -1.00001 * d->value)",
+        "dalcs/stamp_device.c", "at_rest ? -1.0 : -d->value)", "at_rest ? -1.0 : -1.00001 * d->value)",
         CONTROLLED),
     "a capacitor is too large by 1e-5": (
         "dalcs/stamp_device.c", "e == 0 ? d->value : -d->value)", "(e == 0 ? d->value : -d->value) * 1.00001)", CONTROLLED),

@@ -126,9 +126,8 @@ MUTATIONS = {
     "the summary's rms values are of trapezoids": (
         "cli/measure.c", "(before * before + before * v + v * v) / 3.0", "(before * before + v * v) / 2.0", METER),
     "the summary's averages are over the time from 0": (
-        "cli/measure.c", "double duration = measure->last_time - measure->first_time;\n    const struct dalcs_measure_signal *s = "
-        "&measure->signal[signal];\n    return duration > 0.0 ? s->integral", "double duration = 2.0 * measure->last_time;\n"
-        "    const struct dalcs_measure_signal *s = &measure->signal[signal];\n    return duration > 0.0 ? s->integral", METER),
+        "cli/measure.c", "return duration > 0.0 ? s.integral / duration",
+        "return duration > 0.0 ? s.integral / (2.0 * measure->last_time)", METER),
     "volts and amperes change places in the summary": (
         "session/pipeline.c", "n->output[i].is_current ? DALCS_AMPERE", "!n->output[i].is_current ? DALCS_AMPERE", METER),
     "each row of a file has the values of the one before": (
