@@ -69,7 +69,7 @@ def main():
     for case in some_of([(rate, reader, volts, stop) for rate in RATES for reader in READERS for volts in VOLTS
                          for stop in STOPS if float(volts) / stop < MOST_RATE]):
         resting.look_at(*case)
-    for volts in VOLTS:
+    for volts in VOLTS[:-1]:
         for stop in STOPS[:2]:
             resting.look_beside(volts, stop)
     return resting.finish()
