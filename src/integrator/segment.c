@@ -255,26 +255,19 @@ static int cheapest_level(struct dalcs_radau_part *part) {
     return may_be_longer && is_let_go(part) ? level - 1 : level;
 }
 
-/* The map of a step of the mode at hand, if it is there already; NULL: not so. */
-static const struct dalcs_stage_entry *known_map(struct dalcs_radau_part *part, int level) {
-    const struct dalcs_stage_entry *entry = dalcs_stages_find(
-        &part->stages, part->component->osnsp.mode, dalcs_radau_ladder(part, level));
-    return entry != NULL && dalcs_stage_has_map(entry) ? entry : NULL;
-}
-
-/* Where something has died away at once, errors fall faster than the order of the method says, and each length on the
- * way back would have a map of its own, used once. To try a longer step whose map is there costs a hundredth of a new
- * map: the longest of them, and if it is refused the one that was planned. */
+/* Where something dies away at once, errors fall faster than the order of the method says, and the map of each length on
+ * the way back would be used once. To try a longer step whose map is there costs less than a hundredth of a map: the
+ * longest of them, and if it is refused the one that was planned. */
 static void propose_known_length(struct dalcs_radau_part *part, struct dalcs_search *search) {
     const bool has_grown = part->length.held_level > part->length.level && !part->length.grew;
-    if (part->guards.fresh || search->fixed || !has_grown || part->segment.rounding != 1.0 ||
-        known_map(part, search->first_level) != NULL) {
+    if (part->guards.fresh || search->fixed || !has_grown || part->segment.rounding != 1.0) {
         return;
     }
     const double most = dalcs_smaller(part->length.longest, part->length.longest_needed);
     for (int level = search->first_level - 1; dalcs_radau_ladder(part, level) <= most; level--) {
-        const struct dalcs_stage_entry *entry = known_map(part, level);
-        if (entry != NULL && dalcs_stage_n_clashes(entry) == 0 &&
+        const struct dalcs_stage_entry *entry = dalcs_stages_find(
+            &part->stages, part->component->osnsp.mode, dalcs_radau_ladder(part, level));
+        if (entry != NULL && dalcs_stage_has_map(entry) && dalcs_stage_n_clashes(entry) == 0 &&
             dalcs_stage_residual(entry) <= dalcs_nothing) {
             search->proposed = true;
             part->length.level = level;
