@@ -190,12 +190,6 @@ static bool spares_levered(const struct dalcs_radau_part *part, struct dalcs_sea
 enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        struct dalcs_search *search,
                                        const struct dalcs_step_quality *quality, bool *done) {
-    if (search->proposed) {
-        search->proposed = false;
-        part->length.level = search->first_level;
-        r->rejected++;
-        return DALCS_OK;
-    }
     if (!is_levered(part, quality)) {
         bool answered;
         DALCS_TRY(doubt_mode(r, part, search, quality, &answered));

@@ -38,8 +38,7 @@ struct dalcs_search {
     int stuck;
     double ratio_before;
     int level_before_stuck;
-    bool spared;   /* errors of states alone count */
-    bool proposed; /* a longer step than first_level is tried, for its map is there */
+    bool spared; /* errors of states alone count */
 };
 
 /* The error is too large for this step. */

@@ -255,26 +255,6 @@ static int cheapest_level(struct dalcs_radau_part *part) {
     return may_be_longer && is_let_go(part) ? level - 1 : level;
 }
 
-/* Where something dies away at once, errors fall faster than the order of the method says, and the map of each length on
- * the way back would be used once. To try a longer step whose map is there costs less than a hundredth of a map: the
- * longest of them, and if it is refused the one that was planned. */
-static void propose_known_length(struct dalcs_radau_part *part, struct dalcs_search *search) {
-    const bool has_grown = part->length.held_level > part->length.level && !part->length.grew;
-    if (part->guards.fresh || search->fixed || !has_grown || part->segment.rounding != 1.0) {
-        return;
-    }
-    const double most = dalcs_smaller(part->length.longest, part->length.longest_needed);
-    for (int level = search->first_level - 1; dalcs_radau_ladder(part, level) <= most; level--) {
-        const struct dalcs_stage_entry *entry = dalcs_stages_find(
-            &part->stages, part->component->osnsp.mode, dalcs_radau_ladder(part, level));
-        if (entry != NULL && dalcs_stage_has_map(entry) && dalcs_stage_n_clashes(entry) == 0 &&
-            dalcs_stage_residual(entry) <= dalcs_nothing) {
-            search->proposed = true;
-            part->length.level = level;
-        }
-    }
-}
-
 /* guessed: the mode is what followed the last time. */
 static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                           double limit, bool guessed) {
@@ -296,7 +276,6 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
     if (asks) { /* what the caller demands is no guess: the mode before does not replace it */
         DALCS_TRY(dalcs_search_ask(r, part, &search, false));
     }
-    propose_known_length(part, &search);
     bool done = false;
     while (!done) {
         DALCS_TRY(try_step(r, part, &search, &done));
