@@ -131,6 +131,7 @@ static bool is_expected(const char *text) {
                                            "linear region",
                                            "is an amplifier",
                                            "is a follower",
+                                           "is longer than a pulse",
                                            "division by 0",
                                            "is not finite",
                                            "is not a number",
