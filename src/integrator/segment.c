@@ -141,6 +141,10 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     }
     bool at_once;
     double theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
+    if (theta > 0.0 && theta <= end && !dalcs_stage_has_map(trial->entry)) {
+        dalcs_stages_settle(&part->stages, trial->entry, part->segment.out);
+        theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
+    }
     const double next = trial->next = dalcs_smaller(theta, end);
     bool is_remembered = search->guessed && !search->front;
     if (is_remembered && (part->guards.slips || dalcs_guards_overreach(part, q->unit))) {

@@ -6,8 +6,11 @@
 #include "stage_factors.h"
 
 #include "dense_map.h"
+#include "extremes.h"
 #include "stage_load.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 enum kind { STATES, WITHOUT_MEMORY, PAIRS };
@@ -257,4 +260,63 @@ void dalcs_stage_factors_currents(const struct dalcs_stages *stages,
         drift[k] = plan->work.missed[stages->levered[k]];
     }
     memset(plan->work.missed, 0, (size_t)plan->n_rows * sizeof(double));
+}
+
+/* The largest state in the balance of the real system. */
+static double largest_missed(const struct dalcs_stage_plan *plan,
+                             const struct dalcs_stage_factors *f) {
+    double largest = 0.0;
+    for (int x = 0; x < plan->stages->system->n_x; x++) {
+        largest = dalcs_larger(largest, fabs(plan->work.missed[x]) / f->column_scale[x]);
+    }
+    return largest;
+}
+
+/* Puts the other sides of open diodes and the watched voltages where a change of the columns moves them. */
+static void move_other_sides(const struct dalcs_stages *stages,
+                             const struct dalcs_stage_entry *entry, const double *change,
+                             double *columns) {
+    const struct dalcs_system *s = stages->system;
+    const int n_equations = dalcs_system_n_equations(s);
+    for (int d = 0; d < s->n_pairs; d++) {
+        if (!dalcs_stage_is_on(entry, d) && s->pair[d].kind == DALCS_PAIR_DIODE) {
+            columns[n_equations + d] += dalcs_csr_row_dot(&s->C, d, change);
+        }
+    }
+    for (int i = 0; i < stages->n_watched; i++) {
+        columns[dalcs_system_n_columns(s) + i] +=
+            dalcs_csr_row_dot(&s->control, stages->watched[i], change);
+    }
+}
+
+/* The states that the rest at the start goes with are off by the drift. With H for what implicit Euler takes away from a
+ * state, a solution of the real system adds what belongs to (1 - H) of that and leaves H of it. The first such solution
+ * is in the answer; the others are the rest of 1 + H + H^2 + ..., as long as that gains a digit of doubles each time. */
+void dalcs_stage_factors_settle(const struct dalcs_stages *stages,
+                                const struct dalcs_stage_entry *entry, double *out) {
+    const struct dalcs_stage_plan *plan = stages->plan;
+    const struct dalcs_stage_factors *f = entry->factors;
+    const int n_columns = dalcs_system_n_columns(stages->system);
+    double *change = plan->work.from;
+    memset(change, 0, (size_t)n_columns * sizeof(double));
+    for (int x = 0; x < stages->system->n_x; x++) {
+        plan->work.missed[x] = -out[stages->layout.drift + x];
+    }
+    double before = INFINITY;
+    double now = largest_missed(plan, f);
+    for (int round = 0; round < DBL_MANT_DIG && now > 0.0 && 2.0 * now <= before; round++) {
+        dalcs_stage_find_drive(plan, f, &plan->drive_of_states, plan->work.missed, 0.0);
+        dalcs_stage_solve_loaded(plan, f, 0, DALCS_SHARE_NONE);
+        put_states(plan, f, -1.0, plan->work.missed);
+        before = now;
+        now = largest_missed(plan, f);
+        if (round > 0 && 2.0 * now <= before) {
+            add_real(plan, entry, change);
+        }
+    }
+    memset(plan->work.missed, 0, (size_t)plan->n_rows * sizeof(double));
+    for (int c = 0; c < n_columns; c++) {
+        out[c] += change[c];
+    }
+    move_other_sides(stages, entry, change, out);
 }

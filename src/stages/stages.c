@@ -103,6 +103,13 @@ enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages, struct dalcs_s
     return DALCS_OK;
 }
 
+void dalcs_stages_settle(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                         double *out) {
+    if (entry->map == NULL && stages->system->n_x > 0) {
+        dalcs_stage_factors_settle(stages, entry, out);
+    }
+}
+
 void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
                                     const struct dalcs_stage_entry *entry, const double *in,
                                     double *drift) {

@@ -99,6 +99,13 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
                                     const double *in, double *out,
                                     struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
 
+/* Makes what has no memory agree with the states where an answer on factors begins: it goes with states that are off there by
+ * a part of their drift. Then it agrees wherever the polynomials of both are evaluated, for equations without derivatives
+ * are linear. Where an event is looked for that matters: what is a part of 1e-11 of a coil's current may be volts of a
+ * diode that opens. Maps have more stages. */
+void dalcs_stages_settle(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                         double *out);
+
 /* drift[n_levered], A and V: what goes with the drift of the states of stages->levered, in the step that was applied
  * last. */
 void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,

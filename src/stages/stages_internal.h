@@ -75,5 +75,7 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
                                             double *out) DALCS_MUST_CHECK;
 void dalcs_stage_factors_currents(const struct dalcs_stages *stages,
                                   const struct dalcs_stage_entry *entry, double *drift);
+void dalcs_stage_factors_settle(const struct dalcs_stages *stages,
+                                const struct dalcs_stage_entry *entry, double *out);
 
 #endif
