@@ -216,9 +216,10 @@ static enum dalcs_status move_in_order(struct dalcs_radau *r, struct dalcs_radau
 }
 
 enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       double limit, bool fixed, bool *moved) {
+                                       double limit, bool fixed, enum dalcs_projection *told) {
     double tried = part->segment.h;
-    *moved = false;
+    bool moved = false;
+    *told = DALCS_PROJECTION_BLIND;
     if (part->component->system->n_x == 0) {
         return DALCS_OK;
     }
@@ -231,9 +232,10 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
         status = try_projection(part, limit, &means_something);
     }
     if (means_something) {
-        status = move_in_order(r, part, &lengths, moved);
+        status = move_in_order(r, part, &lengths, &moved);
+        *told = moved ? DALCS_PROJECTION_MOVED : DALCS_PROJECTION_IN_PLACE;
     }
-    if (*moved) {
+    if (moved) {
         return status;
     }
     dalcs_radau_swap_out(part, &part->work.out_tried);

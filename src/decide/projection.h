@@ -7,10 +7,18 @@
 
 #include "radau_state.h"
 
+/* What a projecting step tells. */
+enum dalcs_projection {
+    DALCS_PROJECTION_BLIND,    /* nothing: the mode is not seen in so short a step */
+    DALCS_PROJECTION_IN_PLACE, /* the states are where the mode allows */
+    DALCS_PROJECTION_MOVED     /* they are now */
+};
+
 /* For a state that is off as interpolation leaves it at an event. If there is nothing to move, the step that was
  * tried before is there again. limit: s, up to which a step may go; fixed: the step is given. */
 enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       double limit, bool fixed, bool *moved) DALCS_MUST_CHECK;
+                                       double limit, bool fixed,
+                                       enum dalcs_projection *told) DALCS_MUST_CHECK;
 
 /* May it find anything to move? Not where all states move in a projecting step by much more than their drift
  * in the step that was tried, nor where that step's map tells that they are where the mode allows. It saves a map. */

@@ -25,8 +25,11 @@ enum {
 
 enum dalcs_status dalcs_search_project(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        struct dalcs_search *search, bool *moved) {
+    enum dalcs_projection told;
     search->projected = true;
-    return dalcs_projection_try(r, part, search->limit, search->fixed, moved);
+    enum dalcs_status status = dalcs_projection_try(r, part, search->limit, search->fixed, &told);
+    *moved = told == DALCS_PROJECTION_MOVED;
+    return status;
 }
 
 void dalcs_search_start_over(struct dalcs_radau_part *part, struct dalcs_search *search,

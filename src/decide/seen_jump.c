@@ -108,16 +108,17 @@ static enum dalcs_status place_on_nodes(struct dalcs_radau *r, struct dalcs_rada
     struct dalcs_osnsp *p = &part->component->osnsp;
     double *after = r->base->jump.after;
     const size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
-    bool moved;
+    enum dalcs_projection told;
     memcpy(part->work.mode_before, p->mode, bytes);
     memcpy(p->mode, part->work.mode_first, bytes);
     move_first(r, part);
     const struct dalcs_observer *observer = r->base->listener.observer;
     r->base->listener.observer = NULL; /* the whole jump is told, and nothing of this try */
     enum dalcs_status status = dalcs_projection_try(r, part, dalcs_radau_limit(r, part),
-                                                    r->options.fixed_step > 0.0, &moved);
+                                                    r->options.fixed_step > 0.0, &told);
     r->base->listener.observer = observer;
-    for (int x = 0; status == DALCS_OK && moved && x < p->system->n_x; x++) {
+    const bool sees = status == DALCS_OK && told != DALCS_PROJECTION_BLIND;
+    for (int x = 0; sees && x < p->system->n_x; x++) {
         double from = part->work.before[x];
         double scale = fmax(part->scales.unit[p->system->column_is_current[x]],
                             fmax(fabs(part->x[x]), fabs(from)));
