@@ -147,7 +147,8 @@ enum dalcs_status dalcs_take_seen_jump(struct dalcs_radau *r, struct dalcs_radau
     }
     if (status == DALCS_OK) {
         DALCS_TRY(dalcs_find_jump(r, part, 0.5 * last));
-        DALCS_TRY(r->base->jump.is_first ? place_on_nodes(r, part, is_near) : DALCS_OK);
+        const bool asks_nodes = r->base->jump.is_first || !is_near;
+        DALCS_TRY(asks_nodes ? place_on_nodes(r, part, is_near) : DALCS_OK);
         memcpy(part->x, part->work.before, bytes);
     }
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
