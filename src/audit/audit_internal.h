@@ -125,7 +125,8 @@ struct dalcs_audit {
         double defect, scale; /* the largest of each, in the law's own unit */
         double time;          /* s, of the defect */
         int part;
-    } * worst_of[DALCS_AUDIT_N_LAWS]; /* [dalcs_audit_n_of] */
+    } * worst_of[DALCS_AUDIT_N_LAWS], /* [dalcs_audit_n_of] */
+        *flux;                        /* [n_devices] of coils, in no time */
 
     struct audit_coarse {
         double defect, time; /* the worst of all, over its scale, at ends of coarse stretches */
@@ -249,6 +250,11 @@ double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *p
  * besides, is taken off. */
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time);
+
+/* The same of the flux of a coil across an instant. It has a scale of its own: what fluxes over an interval are held to
+ * grows with that, and with the largest voltage that has ever been: beside a spike of 1e10 V any jump would be nothing. */
+void audit_find_flux(struct dalcs_audit *audit, const struct audit_part *part, int device,
+                     double defect, double scale, double time);
 
 /* signals.c: a signal at a state, what it is held to, and what rounding made of it. It can be read. */
 struct audit_signal {
