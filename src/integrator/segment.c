@@ -127,6 +127,18 @@ static bool is_worth_projecting(struct dalcs_radau_part *part, const struct dalc
            dalcs_projection_sees(part, search->fixed);
 }
 
+/* On factors the second time where what has no memory agrees with the states: what conducts next does so from these. */
+static double find_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                              double end, const struct dalcs_trial *trial, bool *at_once) {
+    const double *unit = trial->quality.unit;
+    const double theta = dalcs_guards_first_fall(r, part, end, unit, at_once);
+    if (!(theta > 0.0 && theta <= end) || dalcs_stage_has_map(trial->entry)) {
+        return theta;
+    }
+    dalcs_stages_settle(&part->stages, trial->entry, part->segment.out);
+    return dalcs_guards_first_fall(r, part, end, unit, at_once);
+}
+
 /* The signs of an accurate step. trial->holds: the mode is right up to trial->next, where something crosses or the
  * step ends. Else what is found is answered in this order: a guess that went wrong, a wrong mode, a tie, a polynomial that
  * is not to be believed. */
@@ -140,11 +152,7 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
         dalcs_guards_arm(part, false, q->unit);
     }
     bool at_once;
-    double theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
-    if (theta > 0.0 && theta <= end && !dalcs_stage_has_map(trial->entry)) {
-        dalcs_stages_settle(&part->stages, trial->entry, part->segment.out);
-        theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
-    }
+    double theta = find_first_fall(r, part, end, trial, &at_once);
     const double next = trial->next = dalcs_smaller(theta, end);
     bool is_remembered = search->guessed && !search->front;
     if (is_remembered && (part->guards.slips || dalcs_guards_overreach(part, q->unit))) {
