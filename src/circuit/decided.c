@@ -2,8 +2,10 @@
  * and need no complementarity pairs.
  *
  * Decided are the voltages along V sources from ground, and along sources whose formula is decided itself: so are dead
- * times behind comparisons behind carriers. Not where .dc, .ac or a script may give a source another value than its
- * stimulus, which such a formula would not see; nor where the outputs of gates move with small signals. */
+ * times behind comparisons behind carriers. Not along what is written while a run goes on, by a gate or from outside: its
+ * times are not known before, and a formula has a copy of what stood there first. Not where .dc, .ac or a script may give
+ * a source another value than its stimulus, which such a formula would not see; nor where the outputs of gates move with
+ * small signals. */
 #include "behaviour.h"
 
 #include <stdlib.h>
@@ -21,7 +23,8 @@ static void spread(struct dalcs_potentials *p, const struct dalcs_circuit *c, in
                    int *queue) {
     for (int end = 0; end < 2 * c->n_devices; end++) {
         const struct dalcs_device *d = &c->device[end / 2];
-        if (d->kind == DALCS_VSOURCE && d->stimulus >= 0) {
+        const bool has_course = d->kind == DALCS_VSOURCE && d->stimulus >= 0;
+        if (has_course && !c->stimulus[d->stimulus].is_written) {
             next[end] = first[d->node[end % 2]];
             first[d->node[end % 2]] = end + 1;
         }

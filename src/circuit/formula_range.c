@@ -51,7 +51,7 @@ static struct dalcs_range source_range(const struct search *search, int device) 
     const struct dalcs_circuit *c = search->compiler->builder->circuit;
     const struct dalcs_stimulus *s = &c->stimulus[c->device[device].stimulus];
     struct dalcs_range r;
-    if (search->may_change || s->is_written || !dalcs_stimulus_bounds(s, &r.low, &r.high)) {
+    if (search->may_change || !dalcs_stimulus_bounds(s, &r.low, &r.high)) {
         return anything;
     }
     for (int k = 0; k < c->n_dc; k++) {

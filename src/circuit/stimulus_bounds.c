@@ -4,6 +4,9 @@
 #include <math.h>
 
 bool dalcs_stimulus_bounds(const struct dalcs_stimulus *s, double *low, double *high) {
+    if (s->is_written) {
+        return false;
+    }
     switch (s->kind) {
     case DALCS_STIMULUS_DC:
         *low = *high = s->dc;

@@ -3,6 +3,7 @@
 
 #include "cycle.h"
 #include "delays.h"
+#include "extremes.h"
 #include "guards.h"
 #include "magnitudes.h"
 #include "periodic.h"
@@ -15,18 +16,39 @@
 #include <math.h>
 #include <string.h>
 
-double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
+static void end_at(struct dalcs_radau_part *part, double t) {
+    dalcs_recurrence_complete(part);
+    part->segment.brief = NULL;
+    dalcs_segment_renew(part);
+    part->segment.end = (t - part->segment.t) / part->segment.h;
+    part->segment.t_end = t;
+}
+
+/* Gates decide once at an instant, by all that happens there. Edges of two clocks that differ by rounding are one: a gate
+ * of both would show for no time what it has between them, and a counter behind it would count that. */
+static void gather_ends(struct dalcs_radau *r, double t) {
+    for (int k = 0; k < r->n_parts; k++) {
+        struct dalcs_radau_part *part = &r->part[k];
+        const struct dalcs_part_segment *s = &part->segment;
+        if (part->kind == DALCS_PART_STEPPED && s->why != DALCS_END_OF_STEP && s->t < t &&
+            s->t_end > t && s->t_end <= t + r->resolution) {
+            end_at(part, t);
+        }
+    }
+}
+
+double dalcs_radau_next_stop(struct dalcs_radau *r, bool *happens) {
     double next = INFINITY;
     *happens = false;
     for (int k = 0; k < r->n_parts; k++) {
-        const struct dalcs_radau_part *part = &r->part[k];
-        bool event = part->segment.why != DALCS_END_OF_STEP;
-        if (part->segment.t_end < next) {
-            next = part->segment.t_end;
-            *happens = event;
-        } else if (part->segment.t_end == next) {
-            *happens = *happens || event;
-        }
+        next = dalcs_smaller(next, r->part[k].segment.t_end);
+    }
+    if (r->decider.decide != NULL) {
+        gather_ends(r, next);
+    }
+    for (int k = 0; k < r->n_parts; k++) {
+        const struct dalcs_part_segment *s = &r->part[k].segment;
+        *happens = *happens || (s->t_end == next && s->why != DALCS_END_OF_STEP);
     }
     return next;
 }
@@ -256,11 +278,7 @@ static enum dalcs_status begin_again(struct dalcs_radau *r, struct dalcs_radau_p
 }
 
 void dalcs_radau_cut(struct dalcs_radau_part *part, double t) {
-    dalcs_recurrence_complete(part);
-    part->segment.brief = NULL;
-    dalcs_segment_renew(part);
-    part->segment.end = (t - part->segment.t) / part->segment.h;
-    part->segment.t_end = t;
+    end_at(part, t);
     part->segment.why = DALCS_END_AT_EDGE;
     part->guards.n_crossed = 0;
 }

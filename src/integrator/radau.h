@@ -31,7 +31,7 @@ void dalcs_radau_start(struct dalcs_radau *r, double *const *initial);
 enum dalcs_status dalcs_radau_begin(struct dalcs_radau *r) DALCS_MUST_CHECK;
 
 /* The earliest end of a segment; INFINITY when nothing steps. *happens: not just the end of a step. */
-double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens);
+double dalcs_radau_next_stop(struct dalcs_radau *r, bool *happens);
 
 /* Ends all segments that end at t and starts the next ones. */
 enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) DALCS_MUST_CHECK;

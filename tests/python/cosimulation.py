@@ -47,6 +47,16 @@ R1 out 0 1k
 .end
 """
 
+READERS = """Formulas of nothing but what a program gives
+V1 in 0 EXTERNAL
+B1 double 0 V=2*v(in)
+B2 cut 0 V=limit(v(in)-1, 0, 3)
+B3 bit 0 V=v(in) > 2.5 ? 1 : 0
+R1 double 0 1k
+.tran 10u 1m
+.end
+"""
+
 
 class Hysteretic:
     """Below 5 V on, else off; the load steps in the middle. It notes what it gave."""
@@ -116,6 +126,17 @@ class Exchanges(unittest.TestCase):
         once = dalcs.run(FILTER, exchange=lambda time, _, inputs: inputs.update(v1=1.0))
         self.assertEqual(len(often), len(once))
         self.assertEqual(often.report["work"]["steps"], once.report["work"]["steps"])
+
+    def test_formulas_see_what_is_given(self):
+        for method in ("auto", "euler"):
+            found = dalcs.run(READERS, exchange=lambda time, _, inputs: inputs.update(v1=5e3 * time) or time + 1e-4,
+                              method=method)
+            given = np.asarray(found["v(in)"])
+            self.assertGreater(given[-1], 4.0)
+            np.testing.assert_allclose(found["v(double)"], 2 * given, rtol=0, atol=1e-9)
+            np.testing.assert_allclose(found["v(cut)"], np.clip(given - 1, 0, 3), rtol=0, atol=1e-9)
+            apart = np.abs(given - 2.5) > 1e-9
+            np.testing.assert_allclose(np.asarray(found["v(bit)"])[apart], (given > 2.5)[apart], rtol=0, atol=1e-9)
 
     def test_steps_are_the_same_run(self):
         program = Hysteretic(1e-5)
