@@ -1,5 +1,6 @@
 /* periodic_response.c - small signals through the pieces of a period. */
 #include "periodic_response.h"
+#include "periodic_rest.h"
 #include "pi.h"
 #include "polynomial_means.h"
 
@@ -174,6 +175,8 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
         begin_piece(r, piece, phase, dt);
         if (means) {
             add_means(r, map, phase, conj(turn(other, piece->t)));
+            r->resting =
+                r->resting == NULL ? dalcs_periodic_rest_look(r, piece, phase) : r->resting;
         }
         const struct dalcs_orbit_span *end = piece->end;
         dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;

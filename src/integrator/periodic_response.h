@@ -22,6 +22,8 @@ struct dalcs_periodic_response {
     double drive;                      /* 1: sources have their small signals; 0: none has */
     struct dalcs_periodic_gates gates; /* log is NULL: there are none */
     int *pivot;
+    const char *
+        resting; /* an element that small signals of a frequency so far leave no linear response (periodic_rest.h) */
     long stamp;
     struct dalcs_arena arena;
 };
