@@ -8,6 +8,10 @@
 #include <math.h>
 #include <string.h>
 
+/* Frequencies at which small signals are looked for at diodes that rest. What such a signal makes of a guard is analytic in the
+ * frequency: it is 0 at all of them, or at single ones. */
+enum { LOOKS = 2 };
+
 /* ---- Maps at a frequency ------------------------------------------------------------------------- */
 
 /* What sources make of an answer row by row, from states of 0 and at the phase 0 where a piece begins. */
@@ -175,8 +179,9 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
         begin_piece(r, piece, phase, dt);
         if (means) {
             add_means(r, map, phase, conj(turn(other, piece->t)));
-            r->resting =
-                r->resting == NULL ? dalcs_periodic_rest_look(r, piece, phase) : r->resting;
+        }
+        if (means && r->stamp <= r->last_look && r->resting == NULL) {
+            r->resting = dalcs_periodic_rest_look(r, piece, phase);
         }
         const struct dalcs_orbit_span *end = piece->end;
         dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;
@@ -298,6 +303,7 @@ enum dalcs_status dalcs_periodic_response_setup(struct dalcs_periodic_response *
     if (gates != NULL) {
         find_M(r);
     }
+    r->last_look = r->stamp + LOOKS;
     return DALCS_OK;
 }
 

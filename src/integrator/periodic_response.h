@@ -25,6 +25,7 @@ struct dalcs_periodic_response {
     const char *
         resting; /* an element that small signals of a frequency so far leave no linear response (periodic_rest.h) */
     long stamp;
+    long last_look; /* the stamp up to which it is looked for */
     struct dalcs_arena arena;
 };
 
