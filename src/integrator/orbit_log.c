@@ -2,6 +2,7 @@
 #include "orbit_log.h"
 
 #include "orbit_commands.h"
+#include "orbit_rest.h"
 #include "quads.h"
 #include "recurrence.h"
 #include "segments_observer.h"
@@ -164,6 +165,7 @@ static enum dalcs_status take_segment(struct dalcs_orbit_part *p) {
         DALCS_TRY(note_arguments(p, span));
     }
     p->log->is_exact = p->log->is_exact && !part->segment.by_euler;
+    DALCS_TRY(part->segment.by_euler ? DALCS_OK : dalcs_orbit_rest_note(p, span));
     if (p->log->gates != NULL && part->segment.why != DALCS_END_OF_STEP) {
         DALCS_TRY(end_at_gates(p, span));
     }
@@ -262,7 +264,7 @@ static enum dalcs_status close_part(struct dalcs_orbit_part *p, double T) {
     if (p->pending) {
         pass_end(p, p->f, p->y);
     }
-    return DALCS_OK;
+    return dalcs_orbit_rest_find(p, T);
 }
 
 enum dalcs_status dalcs_orbit_log_close(struct dalcs_orbit_log *log, double T) {
@@ -336,6 +338,7 @@ enum dalcs_status dalcs_orbit_log_setup(struct dalcs_orbit_log *log, struct dalc
 void dalcs_orbit_log_finish(struct dalcs_orbit_log *log) {
     for (int k = 0; log->part != NULL && k < log->n_parts; k++) {
         free(log->part[k].span);
+        dalcs_orbit_rest_finish(&log->part[k]);
     }
     if (log->gates != NULL) {
         dalcs_logic_watch_finish(&log->gates->watch);

@@ -26,7 +26,19 @@ struct dalcs_orbit_span {
     double (*argument)[2]; /* [n_nodes][n_smooth] what they read at its nodes */
     double *df;            /* [n_x] f- - f+; NULL: nothing moves where it ends */
     double *dy;            /* [n_columns] y- - y+ */
+    const uint64_t *
+        resting; /* [n_words] diodes with neither lambda nor w, all the time (orbit_rest.h); NULL: none */
     struct dalcs_orbit_instant *gates; /* NULL: they do nothing where it ends */
+};
+
+/* Part of a span, in which no source has an edge. */
+struct dalcs_orbit_stretch {
+    double from, to; /* s */
+    const uint64_t *mode;
+    long n;            /* segments */
+    double *largest;   /* [n_pairs] V or A: lambda or w of diodes */
+    double *moved;     /* [n_pairs] Vs or C: at most the same over the time */
+    uint64_t *resting; /* as of a span */
 };
 
 struct dalcs_orbit_part {
@@ -36,9 +48,19 @@ struct dalcs_orbit_part {
     size_t capacity;
     struct dalcs_orbit_span *span; /* [n] */
     bool pending;                  /* what lies behind the last one is not known yet */
-    bool jumped;                   /* behind the last one, in jump_mode */
-    uint64_t *jump_mode;           /* [n_words] */
-    double *f, *y; /* [n_x], [n_columns] where the period begins; y NULL: nothing was told */
+
+    struct dalcs_orbit_rest {
+        int n;
+        size_t capacity;
+        struct dalcs_orbit_stretch *stretch; /* [n] */
+        double *now;                         /* [n_pairs] work */
+        bool is_over;                        /* the last one */
+        bool any;                            /* of them has a diode that rests */
+    } rest;
+
+    bool jumped;         /* behind the last one, in jump_mode */
+    uint64_t *jump_mode; /* [n_words] */
+    double *f, *y;       /* [n_x], [n_columns] where the period begins; y NULL: nothing was told */
     double *work_f, *work_y;
 };
 

@@ -54,6 +54,7 @@ struct dalcs_flow_piece {
     const struct dalcs_flow_start *jump;  /* with that of these impulses; NULL: none, or the same */
     const double *behind;                 /* [n_x] as of the span */
     const struct dalcs_flow_start *start; /* NULL: the mode was there before */
+    const uint64_t *resting;              /* [n_words] as of the span */
     const struct dalcs_orbit_span
         *end; /* that ends with it, and something moves there; else NULL */
 };

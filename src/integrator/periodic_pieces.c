@@ -286,6 +286,9 @@ static enum dalcs_status cut_period(struct probe *p) {
         begin_span(p, start, span->from);
         const int first = flow->pieces.n;
         DALCS_TRY(cut_span(p, span));
+        for (int m = first; m < flow->pieces.n; m++) {
+            flow->pieces.piece[m].resting = span->resting;
+        }
         flow->pieces.piece[first].start = start;
         flow->pieces.piece[first].jump = jump;
         flow->pieces.piece[first].behind = jump != NULL ? span->behind : NULL;

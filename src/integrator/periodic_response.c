@@ -1,11 +1,16 @@
 /* periodic_response.c - small signals through the pieces of a period. */
 #include "periodic_response.h"
+#include "periodic_rest.h"
 #include "pi.h"
 #include "polynomial_means.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <string.h>
+
+/* Frequencies at which small signals are looked for at diodes that rest. What such a signal makes of a guard is analytic in the
+ * frequency: it is 0 at all of them, or at single ones. */
+enum { LOOKS = 2 };
 
 /* ---- Maps at a frequency ------------------------------------------------------------------------- */
 
@@ -175,6 +180,9 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
         if (means) {
             add_means(r, map, phase, conj(turn(other, piece->t)));
         }
+        if (means && r->stamp <= r->last_look && r->resting == NULL) {
+            r->resting = dalcs_periodic_rest_look(r, piece, phase);
+        }
         const struct dalcs_orbit_span *end = piece->end;
         dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;
         if (p == flow->pieces.n - 1 && r->gates.log != NULL) {
@@ -295,6 +303,7 @@ enum dalcs_status dalcs_periodic_response_setup(struct dalcs_periodic_response *
     if (gates != NULL) {
         find_M(r);
     }
+    r->last_look = r->stamp + LOOKS;
     return DALCS_OK;
 }
 

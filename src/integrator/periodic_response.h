@@ -22,7 +22,10 @@ struct dalcs_periodic_response {
     double drive;                      /* 1: sources have their small signals; 0: none has */
     struct dalcs_periodic_gates gates; /* log is NULL: there are none */
     int *pivot;
+    const char *
+        resting; /* an element that small signals of a frequency so far leave no linear response (periodic_rest.h) */
     long stamp;
+    long last_look; /* the stamp up to which it is looked for */
     struct dalcs_arena arena;
 };
 

@@ -315,7 +315,8 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool
         return DALCS_E_NOMEM;
     }
     *found = *endless = false;
-    while (!*found && !*endless && (s.total <= most_periods || (s.has_leapt && s.may_leap))) {
+    while (!*found && !*endless && !dalcs_steady_is_crowded(st, NULL) &&
+           (s.total <= most_periods || (s.has_leapt && s.may_leap))) {
         if (s.total > most_periods) {
             go_back(st, &s);
         }

@@ -65,6 +65,11 @@ struct dalcs_steady {
         long periods;
     } n;
 
+    struct dalcs_steady_crowd { /* steady_crowd.c */
+        bool is_limited;        /* while a search goes on */
+        double work;
+    } crowd;
+
     double residual; /* of the last pass, over the scales */
     double distance; /* how far the orbit is from there, likewise */
 
@@ -143,6 +148,17 @@ enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *
 enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
                                     const struct dalcs_logic_run *logic, double t,
                                     struct dalcs_orbit_point *point) DALCS_MUST_CHECK;
+
+/* ---- steady_crowd.c ---------------------------------------------------------------------------- */
+
+/* Is a search over, as steps of implicit Euler, so far and those of a run that goes on (NULL: none does), take too long? */
+bool dalcs_steady_is_crowded(const struct dalcs_steady *st, const struct dalcs_radau *radau);
+
+/* Behind a run. */
+void dalcs_steady_count_crowd(struct dalcs_steady *st, const struct dalcs_radau *radau);
+
+/* A message, and DALCS_NOT_CONVERGED. */
+enum dalcs_status dalcs_steady_tell_crowd(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
 /* ---- steady_newton.c --------------------------------------------------------------------------- */
 

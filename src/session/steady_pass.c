@@ -76,6 +76,7 @@ enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
 /* The state of a pass. */
 struct pass {
     struct dalcs_run *run;
+    const struct dalcs_steady *of; /* a search that it is part of; NULL: none */
     struct dalcs_euler *euler;
     struct dalcs_radau *radau;
     struct dalcs_logic_run logic;
@@ -138,6 +139,9 @@ static enum dalcs_status go(struct pass *p) {
         t = next_time(p);
         DALCS_TRY(pass_time(p, t));
         p->t = t;
+        if (p->of != NULL && dalcs_steady_is_crowded(p->of, p->radau)) {
+            return DALCS_NOT_CONVERGED;
+        }
         if (++n % interval == 0) {
             DALCS_TRY(dalcs_run_progress(r, t, stop));
         }
@@ -367,10 +371,12 @@ enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
     struct pass p;
     DALCS_TRY(engine_setup(r, &e, &radau, r->h, (double)n * st->period));
     enum dalcs_status status = pass_setup(&p, r, &e, &radau);
+    p.of = st;
     if (status == DALCS_OK) {
         status = run_periods(st, &p, asked);
         st->n.periods += n;
         r->s->report.work.steps += radau.steps;
+        dalcs_steady_count_crowd(st, &radau);
     }
     status = asked == DALCS_STEADY_M ? status : dalcs_explain_failure(r, &e, status);
     pass_finish(&p);

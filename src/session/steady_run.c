@@ -95,6 +95,15 @@ static enum dalcs_status take_repeats(struct dalcs_steady *st, bool uic) {
     return DALCS_OK;
 }
 
+/* From where any run starts, unless events crowd. */
+static enum dalcs_status search_within(struct dalcs_steady *st, bool *found, bool *endless) {
+    st->crowd.is_limited = true;
+    const enum dalcs_status status = dalcs_steady_search(st, found, endless);
+    const bool is_over = status >= DALCS_OK && !*found && dalcs_steady_is_crowded(st, NULL);
+    st->crowd.is_limited = false;
+    return is_over ? dalcs_steady_tell_crowd(st) : status;
+}
+
 /* From the orbit of a step before, if that leads to one; else from where any run starts. */
 static enum dalcs_status search(struct dalcs_steady *st, bool is_free, bool leaves,
                                 double n_periods) {
@@ -108,7 +117,7 @@ static enum dalcs_status search(struct dalcs_steady *st, bool is_free, bool leav
         st->period *= n_periods;
         return n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK;
     }
-    DALCS_TRY(found ? DALCS_OK : dalcs_steady_search(st, &found, &endless));
+    DALCS_TRY(found ? DALCS_OK : search_within(st, &found, &endless));
     if (!found && !endless) {
         DALCS_TRY(dalcs_steady_look_ahead(st, &found, &attractor));
         return found ? DALCS_OK : dalcs_steady_tell_failure(st, false, &attractor);

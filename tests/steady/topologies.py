@@ -51,6 +51,23 @@ def transformers():
                    SW, 20.0, 1e-3, 12e-6, "v(out)")
 
 
+def discontinuous():
+    """Coils whose currents come to 0 in each period."""
+    yield Topology("flyback, discontinuous", "Vin in 0 {S}\n" + gate(1, 10e-6, 0, 0.3) + "L1 in sw 40u\nL2 0 s 10u\nK1 L1 L2 0.98\n"
+                   "S1 sw 0 g1 0 sm\nDc sw c\nCc c in 10n\nRc c in 4.7k\nD1 s out\nC1 out 0 100u\nR1 out 0 30\n" + SW,
+                   100.0, 1e-2, 10e-6, "v(out)")
+    yield Topology("sepic, discontinuous", "Vin in 0 {S}\n" + gate(1, 4e-6, 0, 0.3) + "L1 in a 20u\nS1 a 0 g1 0 sm\nCs a b 10u\n"
+                   "Rx b xd 5\nCx xd a 47u\nL2 b 0 6u\nD1 b out\nC1 out 0 22u\nR1 out 0 60\n" + SW, 12.0, 5e-2, 4e-6, "v(out)")
+    yield Topology("cuk, discontinuous", "Vin in 0 {S}\n" + gate(1, 8e-6, 0, 0.25) + "L1 in a 60u\nS1 a 0 g1 0 sm\nCs a b 4.7u\n"
+                   "Rx b xd 10\nCx xd a 22u\nD1 b 0\nL2 b out 30u\nC1 out 0 22u\nR1 out 0 150\n" + SW, 24.0, 1e-1, 8e-6, "v(out)")
+    t = 1 / 60
+    lines = "".join(f"V{k} n{k} 0 SIN(0 170 60 0 0 {-120 * k})\nR{k} n{k} m{k} 0.1\nL{k} m{k} x{k} 0.5m\nD{k} x{k} p\nD{k + 3} q x{k}\n"
+                    for k in range(3))
+    yield Topology("three phases into a capacitor", lines + "Vin p r {S}\nC1 r q 1m\nRl r q 80\nRg q 0 100k\n", 0.0, 1e-1, t, "v(r,q)")
+    yield Topology("three phases, a capacitor behind a coil", lines + "Vin p r {S}\nLd r s 2m\nC1 s q 220u\nRl s q 25\nRg q 0 100k\n",
+                   0.0, 1e-1, t, "v(s,q)")
+
+
 def bridge_of_two(one, other, node):
     return f"S1{node} in {node} g{one} 0 sm\nS2{node} {node} 0 g{other} 0 sm\n"
 
@@ -248,6 +265,7 @@ def pumps():
                    ".model s0 SW(Ron=0 Vt=0)\n", 6.0, 1e-3, 20e-6, "v(out)")
 
 
-GROUPS = {"two_coils": two_coils, "transformers": transformers, "dual_active": dual_active, "resonant": resonant,
+GROUPS = {"two_coils": two_coils, "transformers": transformers,
+          "discontinuous": discontinuous, "dual_active": dual_active, "resonant": resonant,
           "phases": phases, "ladders": ladders, "controlled": controlled, "at_the_mains": at_the_mains,
           "floating": floating, "inverters": inverters, "free": free, "pumps": pumps}

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Diodes that have neither voltage nor current for a while: a small signal decides their sides itself.
+
+usage: resting.py PROGRAM
+
+Where it reaches one there is no linear response, and the program says so, with its name. That this is true a small sine
+shows: the component at twice its frequency falls with the amplitude, not with its square. Where it reaches none, as of a
+diode across a closed switch without resistance, the response is exact, and that of a small sine.
+"""
+
+import cmath
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "steady"))
+import dalcs_program  # pylint: disable=wrong-import-position,import-error
+from topologies import Topology, gate, square  # pylint: disable=wrong-import-position,import-error
+
+FRACTION = (3, 10)
+NEAR = 1e-6
+IDEAL = ".model s0 SW(Ron=0 Vt=0.5)\n"
+BUCK = "S1 in sw g1 0 s0\nD1 0 sw\nL1 sw out 47u\nC1 out 0 22u\nR1 out 0 4\n"
+
+
+def doubler(name, load, level=5.0, period=10e-6, store=100e-9, out="10u", edge=0.0):
+    return Topology(name, "Vin in 0 {S}\n" + square("ck", 0.0, level, period, 0.5, 0.0, edge) + f"D1 in a\nC1 ck a {store!r}\n"
+                    f"D2 a out\nC2 out 0 {out}\n{load}\n", level, 1e-4 * level, period, "v(out)")
+
+
+def reached():
+    """Topologies, and which diodes rest."""
+    yield doubler("doubler", "R1 out 0 10k"), "d1 d2"
+    yield doubler("doubler, load of a current", "I1 out 0 1m"), "d1 d2"
+    yield doubler("doubler, kilovolts", "R1 out 0 10meg", 2000.0, 1e-3, 10e-9, "33n"), "d1 d2"
+    yield doubler("doubler, picofarads", "I1 out 0 20n", 1.2, 50e-9, 1e-12, "3p"), "d1 d2"
+    yield doubler("doubler, edges of 10 ns", "R1 out 0 2k", edge=10e-9), "d1 d2"
+    yield doubler("doubler, a filter behind it", "R1 out f 10\nL1 f g 1m\nC3 g 0 4.7u\nR2 g 0 1k", out="1u"), "d1 d2"
+    yield Topology("Greinacher", "Vs s 0 {S}\nV1 in s PULSE(-5 5 0 0 0 5u 10u)\nC1 in a 100n\nD1 0 a\nD2 a out\nC2 out 0 1u\n"
+                   "R1 out 0 1k\n", 0.0, 1e-3, 10e-6, "v(out)"), "d1 d2"
+    yield Topology("Cockcroft-Walton", "Vs s 0 {S}\nV1 in s PULSE(-100 100 0 0 0 0.4m 1m)\nC1 in a 1u\nC2 a b 470n\nD1 0 a\n"
+                   "D2 a m\nD3 m b\nD4 b out\nC3 m 0 1u\nC4 out m 330n\nR1 out 0 100k\n", 0.0, 1e-2, 1e-3, "v(out)"), "d1 d2 d3 d4"
+    yield Topology("inverting pump", "Vin in 0 {S}\nB1 ck 0 V=v(in)*v(g)\nVg g 0 PULSE(0 1 0 0 0 0.4u 1u)\nC1 ck a 1u\nD1 a 0\n"
+                   "D2 b a\nC2 b 0 4.7u\nR1 b 0 150\n", 12.0, 1e-3, 1e-6, "v(b)"), "d1 d2"
+    yield Topology("two equal supplies", "Vin in 0 {S}\nVb b 0 24\n" + gate(1, 10e-6, 0, 0.4) + "D5 in x\nD6 b x\n" +
+                   BUCK.replace("S1 in", "S1 x") + IDEAL, 24.0, 1e-3, 10e-6, "v(out)"), "d5 d6"
+    # one mode all the time: it rests at the top of the pulse, and has 3 V beside it
+    yield Topology("peak detector", "Vin in 0 {S}\nVp p in PULSE(0 3 0 0 0 4u 10u)\nD1 p out\nC1 out 0 1u IC=8\nRx in x 1\nCx x 0 1u\n",
+                   5.0, 1e-3, 10e-6, "i(vin)"), "d1"
+    yield Topology("a rectifier of nothing", "Vz z 0 {S}\n" + square("ck", 0.0, 1.0, 1e-3) + "R9 ck 0 1\nD1 z out\nR1 out 0 1k\n",
+                   0.0, 1e-3, 1e-3, "v(out)"), "d1"
+
+
+def not_reached():
+    two = "Vin in 0 {S}\n" + gate(1, 10e-6, 0, 0.4) + gate(2, 10e-6, 0.4, 0.6)
+    yield Topology("diodes across switches", two + BUCK + "Ds sw in\nS2 sw 0 g2 0 s0\n" + IDEAL, 24.0, 1e-3, 10e-6, "v(out)")
+    yield Topology("a bridge of them", "Vin in 0 {S}\n" + gate(1, 20e-6, 0, 0.6) + gate(2, 20e-6, 0.6, 0.4) +
+                   "".join(f"S{k} {a} {b} g{g} 0 s0\nD{k} {b} {a}\n" for k, a, b, g in
+                           ((1, "in", "x", 1), (2, "x", "0", 2), (3, "in", "y", 2), (4, "y", "0", 1))) +
+                   "L1 x o 100u\nR1 o y 5\n" + IDEAL, 48.0, 1e-2, 20e-6, "i(l1)")
+    yield Topology("two diodes side by side", "Vin in 0 {S}\n" + gate(1, 10e-6, 0, 0.4) + BUCK + "D2 0 sw\n" + IDEAL,
+                   24.0, 1e-3, 10e-6, "v(out)")
+    yield Topology("a diode that nothing reaches", "Vin in 0 {S}\n" + gate(1, 10e-6, 0, 0.4) + BUCK + "Vz z 0 0\nD9 z y\nR8 y 0 1k\n" +
+                   IDEAL, 24.0, 1e-3, 10e-6, "v(out)")
+    yield Topology("supplies apart", "Vin in 0 {S}\nVb b 0 23\n" + gate(1, 10e-6, 0, 0.4) + "D5 in x\nD6 b x\n" +
+                   BUCK.replace("S1 in", "S1 x") + IDEAL, 24.0, 1e-3, 10e-6, "v(out)")
+    yield doubler("doubler with leakage", "R1 out 0 10k\nRa a out 20k")
+
+
+class Look:
+    def __init__(self, program, folder, checker):
+        self.program, self.folder, self.checker = program, folder, checker
+
+    def run(self, case, source, cards):
+        text = case.netlist.replace("{S}", source)
+        (self.folder / "c.cir").write_text(f"{case.name}\n{text}.save {case.signal}\n{cards}.end\n")
+        done = subprocess.run([self.program, "run", "c.cir", "-q", "-o", "c.csv", "--report", "c.json", "--tol", "1e-11"],
+                              cwd=self.folder, capture_output=True, text=True, check=False)
+        self.checker.check(done.returncode == 0, f"{case.name}: {done.stderr}")
+        return done.stderr, json.loads((self.folder / "c.json").read_text())
+
+    def response(self, case):
+        frequency = FRACTION[0] / FRACTION[1] / case.clock
+        said, report = self.run(case, f"DC {case.level!r} AC 1", f".pss uic\n.ac list {frequency!r}\n")
+        row = [float(v) for v in (self.folder / "c.csv").read_text().splitlines()[1].split(",")]
+        return said, report["response"]["exact"], complex(row[1], row[2])
+
+    def injected(self, case, amplitude):
+        """Components at the frequency of a sine, and at twice that."""
+        frequency = FRACTION[0] / FRACTION[1] / case.clock
+        _, report = self.run(case, f"SIN({case.level!r} {amplitude!r} {frequency!r})",
+                             f".pss {FRACTION[1] * case.clock!r} uic\n.four {frequency!r} 2 {case.signal}\n")
+        part = report["fourier"][0]
+        return [part["magnitude"][k] * cmath.exp(1j * math.radians(part["phase"][k])) / amplitude for k in (1, 2)]
+
+    def look_at_reached(self, case, names):
+        said, exact, _ = self.response(case)
+        self.checker.check(not exact, f"{case.name}: it is called exact")
+        self.checker.check("there is no linear response" in said and any(f"'{name}'" in said for name in names.split()),
+                           f"{case.name}: {said}")
+        if case.signal == "i(vin)":
+            return
+        twice = [abs(self.injected(case, case.amplitude / k)[1]) for k in (1, 4)]
+        self.checker.check(twice[1] > 0.5 * twice[0] > 1e-6, f"{case.name}: linear, {twice}")
+
+    def look_at_others(self, case):
+        said, exact, found = self.response(case)
+        self.checker.check(exact and "linear" not in said, f"{case.name}: {said}")
+        whole, half = self.injected(case, case.amplitude)[0], self.injected(case, case.amplitude / 2)[0]
+        away = abs(found - (4 * half - whole) / 3) / abs(found)
+        self.checker.check(away <= NEAR, f"{case.name}: {found} is off by {away:.2g}")
+
+
+def main():
+    checker = dalcs_program.Checker("diodes that rest")
+    with tempfile.TemporaryDirectory() as folder:
+        look = Look(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(folder), checker)
+        for case, names in reached():
+            look.look_at_reached(case, names)
+        for case in not_reached():
+            look.look_at_others(case)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
