@@ -55,6 +55,19 @@ static void multiply(struct dalcs_builder *builder, struct dalcs_device *device,
     device->model = dalcs_switch_add_model(builder, &model);
 }
 
+/* Xyce takes PSpice's ISWITCH for an S, too: thresholds are numbers, and what has the two nodes between them is volts. */
+static bool is_taken_for_volts(struct dalcs_builder *builder, const struct dalcs_token *name) {
+    const int index = dalcs_names_find(&builder->models, name->text);
+    if (index < 0 || strcmp(builder->model[index].type->text, "iswitch") != 0) {
+        return false;
+    }
+    dalcs_builder_warn(builder, name, "a VSWITCH has Von and Voff",
+                       "model '%s' is an ISWITCH, of amperes: this switch compares the voltage "
+                       "between its control nodes with them, in volts, as Xyce's does",
+                       name->text);
+    return true;
+}
+
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     const bool by_current = card->letter == 'w';
     const bool by_formula = !by_current && dalcs_formula_find_control(card) < card->n;
@@ -77,9 +90,10 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
         return;
     }
     device->model =
-        by_formula ? dalcs_model_find_switch(builder, model)
-                   : dalcs_model_find(builder, model,
-                                      by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
+        by_formula || (!by_current && is_taken_for_volts(builder, model))
+            ? dalcs_model_find_switch(builder, model)
+            : dalcs_model_find(builder, model,
+                               by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
     device->initially_on = dalcs_reader_take_word(&reader, "on");
     device->has_initial_state = device->initially_on || dalcs_reader_take_word(&reader, "off");
     if (device->model >= 0 && builder->circuit->switch_model[device->model].is_exchanged) {

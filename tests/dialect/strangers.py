@@ -270,6 +270,16 @@ def left_out(checker):
                      f".model sm switch(on={on + 1!r} onh={on!r} off={off - 1!r} offh={off!r} ron=0 roff=inf)\n.tran 10u 2m", {"v(out)": value})
 
 
+    # An S with a model of amperes compares volts with them.
+    for words, top, value in (("ion=10m ioff=0", 6e-3, 10), ("ion=10m ioff=0", 4e-3, 0), ("ion=2 ioff=1", 1.6, 10), ("ion=2 ioff=1", 1.4, 0),
+                              ("ion=0 ioff=10m", 4e-3, 10), ("ion=0 ioff=10m", 6e-3, 0), ("ihon=3 ihoff=1", 2.9, 0), ("ihon=3 ihoff=1", 3.1, 10)):
+        checker.ends(f"V1 a 0 10\nV2 c 0 PWL(0 0 1m {top!r})\nR2 c 0 1\nS1 a out c 0 sm\nR1 out 0 1k\n.model sm iswitch({words} ron=0 roff=inf)\n.tran 10u 1m",
+                     {"v(out)": value}, ["in volts, as Xyce's does"])
+    # How LTspice computes a source of a current, on either side of what lies across it.
+    for words in ("tripdt=1n", "Rpar=1k tripdt=1n", "tripdv=1 Rpar=1k", "Rpar=1k tripdv=1 tripdt=1n", "Rpar=1k Cpar=1p tripdt=1n"):
+        checker.ends(f"V1 a 0 1\nR1 a 0 1\nB1 0 out I=2m*v(a) {words}\nR2 out 0 1k\n.tran 10u 1m", {"v(out)": 1 if "Rpar" in words else 2})
+
+
 def limited_switches(checker):
     """Ilimit of a switch: Ron up to it, either way, and any larger voltage at it."""
     def circuit(source, behind, model, after="", switch="S1 a out g 0 sm"):
