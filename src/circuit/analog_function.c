@@ -35,8 +35,8 @@ static bool read_pins(struct dalcs_reader *reader, int *node) {
                                "this function does not use pin %d of '%s': it is ignored", pin + 1,
                                name->text);
         } else if (!is_wired && pin == PIN_OUTPUT && !is_optional) {
-            dalcs_builder_error(builder, &name[1 + pin], NULL, "pin %d of '%s' is not wired",
-                                pin + 1, name->text);
+            dalcs_builder_warn(builder, &name[1 + pin], NULL,
+                               "no output of '%s' is wired: the element is left out", name->text);
             return false;
         }
     }

@@ -226,7 +226,7 @@ void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_c
     struct dalcs_parasitics across = {0};
     if (!read_formula(&reader, &token) || !skip_temperature(&reader) ||
         (quantity != 'v' && !read_parallel(&reader, &m)) || !skip_temperature(&reader) ||
-        (quantity == 'i' && !read_across(&reader, &across))) {
+        (quantity == 'i' && !read_across(&reader, &across)) || !skip_temperature(&reader)) {
         return;
     }
     const struct dalcs_token *next = dalcs_reader_peek(&reader, 0);

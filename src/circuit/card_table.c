@@ -89,6 +89,9 @@ static const char NETWORK_PARAMETERS[] = ".net";
 /* LTspice's sound files, an output beside others. */
 static const char SOUND[] = ".wave";
 
+/* Xyce's values of formulas at the end of each step. */
+static const char RESULT[] = ".result";
+
 /* Analyses that this simulator will not have. */
 static const char *const NEVER[] = {".noise", ".pz",      ".disto", ".tf",    ".sp",
                                     ".hb",    ".machine", ".stab",  ".ferret"};
@@ -174,6 +177,9 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
     } else if (strcmp(name->text, SOUND) == 0) {
         dalcs_builder_warn(builder, name, "-o file.csv has the waveforms",
                            "sound files (.wave) are not written: the card is left out");
+    } else if (strcmp(name->text, RESULT) == 0) {
+        dalcs_builder_warn(builder, name, ".meas tran name FIND formula AT=time is one",
+                           "no file of results (.result) is written: the card is left out");
     } else if (dalcs_builder_is_one_of(name->text, NEVER, sizeof NEVER / sizeof NEVER[0])) {
         dalcs_builder_error(builder, name, "use .tran, .op, .dc or .ac",
                             "%s is not an analysis of ideal-diode circuits", name->text);
@@ -331,8 +337,8 @@ void dalcs_card_table_make_room(struct dalcs_card_table *table) {
         table->n_stimuli += table->n_switches;
     }
     if (table->has_limits) {
-        table->n_inner += 4 * table->n_diodes;
-        table->n_stimuli += 2 * table->n_diodes;
+        table->n_inner += 4 * (table->n_diodes + table->n_switches);
+        table->n_stimuli += 2 * (table->n_diodes + table->n_switches);
     }
 }
 

@@ -113,6 +113,7 @@ struct dalcs_switch_model {
     const char *name;
     double ron, roff, vt, vh; /* ohm, ohm, V or A, V or A */
     double lser, vser;        /* H, V; in series with each such switch, elements of their own */
+    double ilimit;            /* A, either way; INFINITY: none */
     bool is_inverted;
     bool is_exchanged; /* ON and OFF of a card mean open and closed */
 };

@@ -17,6 +17,7 @@ enum { DEEPEST = 4, MOST_NODES = 64 };
 static int add_model(struct dalcs_builder *builder) {
     return dalcs_switch_add_model(builder, &(struct dalcs_switch_model){.name = "commutation",
                                                                         .roff = (double)INFINITY,
+                                                                        .ilimit = (double)INFINITY,
                                                                         .vt = -0.5,
                                                                         .is_inverted = true});
 }

@@ -320,13 +320,14 @@ void dalcs_logic_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     bool ok = find_kind(builder, &c) && read_parameters(&reader, &c);
     if (ok) {
         take_limits(&c);
-        ok = check_parameters(builder, &c) && check_pins(builder, &c);
+        ok = check_parameters(builder, &c);
+        if (ok && !has_output(builder, &c)) {
+            return;
+        }
+        ok = ok && check_pins(builder, &c);
     }
     if (!ok) {
         builder->hidden |= DALCS_HIDDEN_ELEMENTS;
-        return;
-    }
-    if (!has_output(builder, &c)) {
         return;
     }
     take_parameters(&c);

@@ -25,6 +25,21 @@ static struct dalcs_parameter *find(const struct dalcs_logic_parameters *of, con
     return NULL;
 }
 
+/* parameter=value, or "vhigh 5" without the sign between them, which LTspice reads, too; NULL: neither. */
+static const struct dalcs_token *take_name(struct dalcs_reader *reader,
+                                           const struct dalcs_logic_parameters *of) {
+    const struct dalcs_token *signed_name = dalcs_reader_take_parameter(reader);
+    const struct dalcs_token *name = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *value = dalcs_reader_peek(reader, 1);
+    if (signed_name != NULL || name->kind != DALCS_TOKEN_WORD || value == NULL ||
+        !dalcs_reader_is_number(value) ||
+        (find(of, name->text) == NULL && !is_without_effect(name))) {
+        return signed_name;
+    }
+    reader->at++;
+    return name;
+}
+
 /* A word alone: a flag that is set. */
 static bool take_flag(struct dalcs_reader *reader, const struct dalcs_logic_parameters *of) {
     static const char *const flags[] = {"linear", "asym"};
@@ -62,7 +77,7 @@ bool dalcs_logic_read_parameters(struct dalcs_reader *reader,
                                  const struct dalcs_logic_parameters *of) {
     bool ok = true;
     while (ok && !dalcs_reader_at_end(reader)) {
-        const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
+        const struct dalcs_token *name = take_name(reader, of);
         struct dalcs_parameter *p = name != NULL ? find(of, name->text) : NULL;
         if (name == NULL) {
             ok = take_flag(reader, of);

@@ -59,8 +59,10 @@ void dalcs_sensitivity_parse(struct dalcs_builder *builder, const struct dalcs_c
         return;
     }
     if (builder->pss == NULL && !builder->netlist->asks_steady) {
-        dalcs_builder_error(builder, card->token, "write .pss beside it",
-                            ".sens differentiates a periodic steady state, and there is no .pss");
+        dalcs_builder_warn(
+            builder, card->token, "write .pss beside it",
+            ".sens differentiates a periodic steady state, and there is no .pss: the "
+            "card is left out");
         return;
     }
     sens->item = dalcs_arena_alloc(&builder->circuit->arena, (size_t)card->n, sizeof *sens->item);

@@ -51,7 +51,21 @@ static void multiply(struct dalcs_builder *builder, struct dalcs_device *device,
     model.ron /= m;
     model.roff /= m;
     model.lser /= m;
+    model.ilimit *= m;
     device->model = dalcs_switch_add_model(builder, &model);
+}
+
+/* Xyce takes PSpice's ISWITCH for an S, too: thresholds are numbers, and what has the two nodes between them is volts. */
+static bool is_taken_for_volts(struct dalcs_builder *builder, const struct dalcs_token *name) {
+    const int index = dalcs_names_find(&builder->models, name->text);
+    if (index < 0 || strcmp(builder->model[index].type->text, "iswitch") != 0) {
+        return false;
+    }
+    dalcs_builder_warn(builder, name, "a VSWITCH has Von and Voff",
+                       "model '%s' is an ISWITCH, of amperes: this switch compares the voltage "
+                       "between its control nodes with them, in volts, as Xyce's does",
+                       name->text);
+    return true;
 }
 
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -76,9 +90,10 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
         return;
     }
     device->model =
-        by_formula ? dalcs_model_find_switch(builder, model)
-                   : dalcs_model_find(builder, model,
-                                      by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
+        by_formula || (!by_current && is_taken_for_volts(builder, model))
+            ? dalcs_model_find_switch(builder, model)
+            : dalcs_model_find(builder, model,
+                               by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
     device->initially_on = dalcs_reader_take_word(&reader, "on");
     device->has_initial_state = device->initially_on || dalcs_reader_take_word(&reader, "off");
     if (device->model >= 0 && builder->circuit->switch_model[device->model].is_exchanged) {
@@ -98,7 +113,11 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
         multiply(builder, device, card->parallel);
     }
     if (device->model >= 0) {
+        const double most = builder->circuit->switch_model[device->model].ilimit;
         add_series(builder, card->token, device);
+        dalcs_current_limit_expand(
+            builder, card->token, device,
+            &(struct dalcs_current_limits){.forward = most, .reverse = most});
     }
 }
 
@@ -115,6 +134,7 @@ enum {
     OFF,
     HYSTERESIS_ON,
     HYSTERESIS_OFF,
+    ILIMIT,
     N_PARAMETERS
 };
 
@@ -132,33 +152,33 @@ static const struct form *form_of(const char *type) {
     static const struct form forms[] = {
         {"sw",
          "a switch model is: .model name SW [(Ron=ohms Roff=ohms Vt=volts Vh=volts)]",
-         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff"},
+         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff", "ilimit"},
          DALCS_VOLTAGE,
          "V",
          1},
         {"csw",
          "a current switch model is: .model name CSW [(Ron=ohms Roff=ohms It=amperes Ih=amperes)]",
-         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff"},
+         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff", "ilimit"},
          DALCS_CURRENT,
          "A",
          1e-3},
         {"vswitch",
          "a PSpice switch model is: .model name VSWITCH [(Ron=ohms Roff=ohms Von=volts "
          "Voff=volts)]",
-         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff"},
+         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff", "ilimit"},
          DALCS_VOLTAGE,
          "V",
          1},
         {"iswitch",
          "a PSpice current switch model is: .model name ISWITCH [(Ron=ohms Roff=ohms Ion=amperes "
          "Ioff=amperes)]",
-         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff"},
+         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff", "ilimit"},
          DALCS_CURRENT,
          "A",
          1e-3},
         {"switch",
          "a switch model of Xyce is: .model name SWITCH [(Ron=ohms Roff=ohms On=value Off=value)]",
-         {"ron", "roff", "vt", "vh", "lser", "vser", "on", "off", "hon", "hoff"},
+         {"ron", "roff", "vt", "vh", "lser", "vser", "on", "off", "onh", "offh", "ilimit"},
          DALCS_PLAIN,
          "of its control",
          1},
@@ -173,9 +193,8 @@ static const struct form *form_of(const char *type) {
 static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
     static const char *const ours[] = {"ron",  "roff",  "vt",  "vh",   "it",   "ih",
                                        "von",  "voff",  "ion", "ioff", "vhon", "vhoff",
-                                       "ihon", "ihoff", "on",  "off",  "hon",  "hoff"};
-    static const char *const later[] = {"vton", "vtoff",  "ilimit", "level",
-                                        "td",   "oneway", "epsilon"};
+                                       "ihon", "ihoff", "on",  "off",  "onh",  "offh"};
+    static const char *const later[] = {"vton", "vtoff", "level", "td", "oneway", "epsilon"};
     struct dalcs_builder *builder = reader->builder;
     if (dalcs_builder_is_one_of(name->text, later, sizeof later / sizeof later[0])) {
         dalcs_builder_error(builder, name, reader->usage, "'%s' of a switch is not supported yet",
@@ -199,6 +218,11 @@ static bool check_resistances(struct dalcs_builder *builder, const struct dalcs_
     }
     if (p[LSER].value < 0) {
         dalcs_builder_error(builder, p[LSER].place, NULL, "Lser cannot be negative");
+        return false;
+    }
+    if (p[ILIMIT].value <= 0) {
+        dalcs_builder_error(builder, p[ILIMIT].place, "leave it out for none",
+                            "Ilimit must be positive");
         return false;
     }
     if (p[ROFF].value <= 0) {
@@ -368,6 +392,7 @@ bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_to
         [HYSTERESIS_OFF] = {.quantity = form->quantity},
         [LSER] = {.quantity = DALCS_HENRY},
         [VSER] = {.quantity = DALCS_VOLTAGE},
+        [ILIMIT] = {.quantity = DALCS_CURRENT, .may_be_infinite = true, .value = (double)INFINITY},
     };
     for (int k = 0; k < N_PARAMETERS; k++) {
         parameter[k].name = form->name[k];
@@ -380,6 +405,7 @@ bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_to
     model->roff = parameter[ROFF].value;
     model->lser = parameter[LSER].value;
     model->vser = parameter[VSER].value;
+    model->ilimit = parameter[ILIMIT].value;
     if (!check_resistances(reader->builder, parameter)) {
         return false;
     }

@@ -170,10 +170,10 @@ static const struct dalcs_token *take_formula(struct dalcs_reader *reader, const
 
 /* Those of LTspice's own way with transfer functions, an impulse response: they mean nothing here. */
 static bool skip_words(struct dalcs_reader *reader) {
-    static const char *const words[] = {"window", "nfft", "mtol"};
+    static const char *const words[] = {"window", "nfft", "mtol", "cache"};
     const struct dalcs_token *name;
     while ((name = dalcs_reader_peek(reader, 0)) != NULL &&
-           dalcs_builder_is_one_of(name->text, words, 3) &&
+           dalcs_builder_is_one_of(name->text, words, sizeof words / sizeof words[0]) &&
            dalcs_reader_take_parameter(reader) != NULL) {
         dalcs_builder_note(reader->builder, name, NULL,
                            "'%s' has no meaning here and is ignored: the states of a transfer "

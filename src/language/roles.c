@@ -214,11 +214,12 @@ static bool is_one_of(const struct dalcs_token *token, const char *const *list, 
     return found;
 }
 
-/* Formulas of measurements, whose reader compiles them, and on cards that name signals. */
+/* Formulas of measurements, whose reader compiles them, on cards of others, which are left out, and on cards that name
+ * signals. */
 static void formula_roles(const struct dalcs_card *card, unsigned char *role) {
-    static const char *const measures[] = {".meas", ".measure"};
+    static const char *const measures[] = {".meas", ".measure", ".result", ".sens"};
     static const char *const signals[] = {".save", ".print", ".plot", ".probe", ".probe64"};
-    const bool is_measure = is_one_of(card->token, measures, 2);
+    const bool is_measure = is_one_of(card->token, measures, sizeof measures / sizeof measures[0]);
     for (int k = 1; k < card->n && (is_measure || is_one_of(card->token, signals,
                                                             sizeof signals / sizeof signals[0]));
          k++) {

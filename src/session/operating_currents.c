@@ -150,7 +150,7 @@ static enum dalcs_analysis telling_analysis(const struct dalcs_circuit *c) {
 static enum dalcs_status list_signals(struct dalcs_arena *arena, struct dalcs_circuit *c, int n) {
     const struct dalcs_signal *all = c->signal;
     const int *measured = c->measured;
-    const int n_measured = c->n_gates > 0 ? c->n_measured : 0;
+    const int n_measured = c->n_gates > 0 || c->n_delayed > 0 ? c->n_measured : 0;
     struct dalcs_signal *signal =
         dalcs_arena_alloc(arena, (size_t)(n + n_measured), sizeof *signal);
     int *place = dalcs_arena_alloc(arena, (size_t)n_measured, sizeof *place);

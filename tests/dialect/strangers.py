@@ -255,6 +255,54 @@ def delays(checker):
         checker.check(done is None or words in done.stderr, f"{formula}: {done and done.stderr}")
 
 
+# ---- Cards of others ----------------------------------------------------------------------------------------------
+
+def left_out(checker):
+    """What is an output of others beside a run, and how they compute it."""
+    for card in (".result {v(out)}", ".result v(out)", ".result {(v(out)+2)**2*1k}", ".RESULT {abs(v(in))-10}", ".sens objfunc={v(out)} param=R1:R",
+                 ".sens param=r1:r,r2:r objvars=out", ".sens v(out)"):
+        checker.ends(DIVIDER + card, {"v(out)": 5}, ["the card is left out"])
+    for words in ("cache=2", "mtol=10 cache=2", "window=1 nfft=1024 cache=8", "cache=1e3 mtol=1"):
+        checker.ends(f"V1 a 0 1\nE1 out 0 a 0 Laplace=1./(1+.0005*s)**3 {words}\nR1 out 0 1k\n.tran 10u 1m", {"v(out)": 1})
+    # Xyce's thresholds with hysteresis, of a control that rises to `top` and falls again.
+    for on, off, top, value in ((0.55, 0.25, 0.5, 0), (0.55, 0.25, 0.6, 10), (-0.1, -0.4, 0.05, 10), (3, 1, 2.9, 0)):
+        checker.ends(f"V1 a 0 10\nV2 c 0 PWL(0 -1 1m {top!r} 2m {0.5 * (off + min(top, on))!r})\nR2 c 0 1\nS1 a out sm control={{v(c)}}\nR1 out 0 1k\n"
+                     f".model sm switch(on={on + 1!r} onh={on!r} off={off - 1!r} offh={off!r} ron=0 roff=inf)\n.tran 10u 2m", {"v(out)": value})
+
+
+    # An S with a model of amperes compares volts with them.
+    for words, top, value in (("ion=10m ioff=0", 6e-3, 10), ("ion=10m ioff=0", 4e-3, 0), ("ion=2 ioff=1", 1.6, 10), ("ion=2 ioff=1", 1.4, 0),
+                              ("ion=0 ioff=10m", 4e-3, 10), ("ion=0 ioff=10m", 6e-3, 0), ("ihon=3 ihoff=1", 2.9, 0), ("ihon=3 ihoff=1", 3.1, 10)):
+        checker.ends(f"V1 a 0 10\nV2 c 0 PWL(0 0 1m {top!r})\nR2 c 0 1\nS1 a out c 0 sm\nR1 out 0 1k\n.model sm iswitch({words} ron=0 roff=inf)\n.tran 10u 1m",
+                     {"v(out)": value}, ["in volts, as Xyce's does"])
+    # How LTspice computes a source of a current, on either side of what lies across it.
+    for words in ("tripdt=1n", "Rpar=1k tripdt=1n", "tripdv=1 Rpar=1k", "Rpar=1k tripdv=1 tripdt=1n", "Rpar=1k Cpar=1p tripdt=1n"):
+        checker.ends(f"V1 a 0 1\nR1 a 0 1\nB1 0 out I=2m*v(a) {words}\nR2 out 0 1k\n.tran 10u 1m", {"v(out)": 1 if "Rpar" in words else 2})
+
+
+def limited_switches(checker):
+    """Ilimit of a switch: Ron up to it, either way, and any larger voltage at it."""
+    def circuit(source, behind, model, after="", switch="S1 a out g 0 sm"):
+        return f"V1 a 0 {source}\nVg g 0 1\nRg g 0 1\n{switch}\n{behind}\n.model sm {model}\n{after}.save v(out) i(S1)\n.tran 10u 1m"
+    for volts, ohms, limit, ron in ((10, 1, 2, 1), (10, 9, 2, 1), (-10, 1, 2, 1), (400, 0.1, 60, 1e-3), (1e-3, 1, 1e-4, 0), (1e4, 1e3, 3, 0.5), (-5, 4, 1, 1)):
+        amperes = math.copysign(min(abs(volts) / (ohms + ron), limit), volts)
+        checker.ends(circuit(volts, f"R1 out 0 {ohms!r}", f"sw(ron={ron!r} roff=1g vt=0.5 iLimit={limit!r}A)"), {"v(out)": amperes * ohms, "i(s1)": amperes})
+    for limit, volts in (("5m", 5), ("7m", 7), ("50m", 10)):  # a ramp
+        checker.ends(circuit(10, "C1 out 0 1u", f"sw(ron=1 vt=0.5 ilimit={limit})") + " uic", {"v(out)": volts})
+    checker.ends(circuit("SIN(0 10 250)", "L1 out b 1m\nR1 b 0 1u", "sw(ron=0 vt=0.5 ilimit=0.5)"), {"i(s1)": 0.5})
+    checker.ends(circuit(10, "R1 out 0 1", "sw(ron=0 vt=0.5 ilimit=2)", ".subckt s p q g\nS1 p q g 0 sm\n.ends\n", "X1 a out g s m=3")
+                 .replace(" i(S1)", ""), {"v(out)": 6})
+    checker.ends(circuit(10, "R1 out 0 1", "sw(ron=0 vt=0.5 ilimit=2 vser=1 lser=1n)"), {"v(out)": 2})
+    checker.ends(circuit(10, "R1 out 0 1", "csw(ron=0 it=0.5 ilimit=2)", switch="W1 a out Vg sm", after="").replace("i(S1)", "i(W1)").replace("Rg g 0 1", "Rg g 0 -1"),
+                 {"v(out)": 2})
+    checker.ends(circuit(10, "R1 out 0 1k", "sw(ron=0 roff=1meg vt=2 ilimit=2)"), {"v(out)": 10 / 1001})  # an open one
+    checker.measures(circuit("SIN(0 10 1k)", "R1 out 0 1", "sw(ron=0 vt=0.5 ilimit=5)", ".meas tran m avg abs(v(out))\n"),
+                     {"m": (10 * (1 - math.cos(math.pi / 6)) * 2 + 5 * (math.pi - math.pi / 3)) / math.pi}, 1e-6)
+    for limit in ("0", "-1"):
+        done = checker.run(circuit(10, "R1 out 0 1", f"sw(ron=0 vt=0.5 ilimit={limit})"), 3)
+        checker.check(done is None or "Ilimit must be positive" in done.stderr, f"{done and done.stderr}")
+
+
 def currents(checker):
     """F and H with value=, which are G and E."""
     circuit = "V1 a 0 10\nR1 a c 1k\nV2 c 0 0\nRb b 0 1k\n.op\n"
@@ -265,7 +313,7 @@ def currents(checker):
 
 def main():
     checker = Strangers("strangers")
-    for kind in (signals, measurements, parameters, others, noise, changing, delays, currents):
+    for kind in (signals, measurements, parameters, others, noise, changing, delays, left_out, limited_switches, currents):
         kind(checker)
     return checker.finish()
 

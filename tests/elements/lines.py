@@ -184,6 +184,44 @@ def delays(checker, program):
             checker.close(result.column("v(e)")[k], i[soon] * x[soon] if soon >= 0 else 0.0, 1e-10, f"v(e) at {k}")
 
 
+def exponential(checker, program):
+    """Tangents of exponential diodes are found by runs of their own, which have lines and delays, too: 0 = V - R i - n Vt ln."""
+    thermal = 1.380649e-23 * 300.15 / 1.602176634e-19
+    cards = [(ohms, delay, line) for ohms, delay, _ in SIZES
+             for line in ("t1 a 0 b 0 z0={0!r} td={1!r}", "b1 b 0 v=delay(v(a),{1!r})")]
+    for number, (ohms, delay, line) in enumerate(cards):
+        volts, saturation, emission = 0.9 + 3 * number, 10.0**(-16 + number), 1 + number / 10
+        text = (f"diode\nv1 a 0 {volts!r}\n{line.format(ohms, delay)}\nr1 b c {ohms!r}\nd1 c 0 dm\n"
+                f".model dm d(is={saturation!r} n={emission!r})\n.save v(c) i(d1)\n.tran {delay!r} {8 * delay!r}\n.end\n")
+        result = run(program, text, method=None)
+        name = f"exponential diode of {saturation:g} A, {line}"
+        if not checker.check(result.status == 0, f"{name}: {result.status}: {result.stderr}"):
+            continue
+        low, high = 0.0, volts
+        for _ in range(200):
+            v = 0.5 * (low + high)
+            too_much = saturation * math.expm1(v / (emission * thermal)) > (volts - v) / ohms if v < 50 * thermal * emission else True
+            low, high = (low, v) if too_much else (v, high)
+        checker.close(result.column("v(c)")[-1], low, 1e-4 * low, f"{name}: v(c)")
+        checker.close(result.column("i(d1)")[-1], (volts - low) / ohms, 1e-4 * volts / ohms, f"{name}: i(d1)")
+
+
+def echoes(checker, program):
+    """What went through a line and comes back is no rougher for it: steps do not get shorter from echo to echo."""
+    for ohms, delay, volts in SIZES:
+        for back, forth, behind in ((0.1, 9.0, ""), (7.0, 0.2, ""), (0.05, 30.0, "c2 b 0 {c!r}\n"), (0.3, 4.0, "d1 b c\nr3 c 0 {r!r}\n")):
+            added = behind.format(c=0.3 * delay / ohms, r=ohms)
+            steps = []
+            for n in (24, 96):
+                text = (f"echoes\nv1 s 0 sin(0 {volts!r} {0.21 / delay!r})\nr1 s a {back * ohms!r}\n"
+                        f"t1 a 0 b 0 z0={ohms!r} td={delay!r}\nr2 b 0 {forth * ohms!r}\n{added}"
+                        f".save v(b)\n.tran {delay!r} {n * delay!r}\n.end\n")
+                result = run(program, text, method=None)
+                if checker.check(result.status == 0, f"echoes: {result.status}: {result.stderr}"):
+                    steps.append(result.report["work"]["steps"])
+            checker.check(len(steps) == 2 and steps[1] <= 6 * steps[0], f"{back} {forth} {added}: {steps} steps for 24 and 96 delays")
+
+
 def refusals(checker, program):
     line = "t1 a 0 b 0 z0=50 td=1n"
     for card, analysis, message in (("t1 a 0 b 0 td=1n", ".tran 1n 10n", "Z0 above 0"),
@@ -200,7 +238,7 @@ def refusals(checker, program):
 
 def main():
     checker = Checker("lines")
-    for cases in (resistive, capacitive, diode_and_switch, others, delays, refusals):
+    for cases in (resistive, capacitive, diode_and_switch, others, delays, exponential, echoes, refusals):
         cases(checker, sys.argv[1])
     return checker.finish()
 

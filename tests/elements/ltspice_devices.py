@@ -230,20 +230,36 @@ def parameters(checker, program):
                 checker.check(done.status != 0 and f"parameter '{word.split('=')[0].lower()}'" in done.stderr, f"{card}: {done.stderr}")
 
 
+def without_signs(checker, program):
+    """Parameters with nothing between name and value are what they are with an equal sign."""
+    for function, words in (("AND", "vhigh 5V trise 1e-6 tfall 1e-6"), ("AND", "Vhigh=5 td 2u"), ("OR", "vlow -1 vhigh 3"), ("XOR", "ref 0.3 vhigh 2"),
+                            ("BUF", "td 1u vhigh {2*p}"), ("INV", "trise 3u"), ("SCHMITT", "vt 0.4 vh 0.1 vhigh 12"), ("SRFLOP", "td 1u vhigh 4"),
+                            ("COUNTER", "cycles 2 duty 0.5"), ("BUF", "tau 2u rout 5"), ("SAMPLEHOLD", "vhigh 0.6 vlow 0.1"), ("BUF", "tripdt 1n vhigh 2")):
+        found = []
+        for text in (words, " ".join(f"{n}={v}" for n, v in zip(words.replace("=", " ").split()[::2], words.replace("=", " ").split()[1::2]))):
+            card = f"a1 a 0 0 c 0 {'o 0' if function == 'INV' else '0 o'} 0 {function} {text}"
+            done = run_cards(program, card, [".param p=3", "v1 a 0 pulse(0 9 3u 5u 5u 8u 30u)", "v2 c 0 pulse(0 9 5u 1n 1n 7u 20u)", card, "r1 o 0 1k",
+                                             ".tran 1u 100u", ".save v(o)"])
+            found += [done.column("v(o)")] if checker.check(done.status == 0, f"{card}: {done.stderr}") else []
+        checker.check(len(found) == 2 and list(found[0]) == list(found[1]) and len(set(found[0])) > 1, f"{function} {words}")
+
+
 def refused(checker, program):
     cases = (("a1 a 0 0 0 0 0 o 0 BUF Tau=1u Trise=1u", "'tau' and 'trise' of one output"),
              ("a1 a 0 0 0 0 0 o 0 BUF Tau=1u Cout=1u", "'tau' and 'cout' of one output"),
              ("a1 a 0 0 0 0 0 o 0 BUF Tau=-1u", "'tau' cannot be negative"),
              ("a1 a b 0 0 0 0 o 0 VARISTOR Rclamp=-1", "'rclamp' cannot be negative"),
-             ("a1 a b 0 0 0 0 0 0 VARISTOR", "pin 7 of 'a1' is not wired"),
              ("a1 a b 0 0 0 0 o 0 MODULATE mark=1k", "space="),
-             ("a1 a b 0 0 0 0 0 0 MODULATE mark=1k space=1k", "pin 7 of 'a1' is not wired"),
              ("a1 a 0 0 0 0 0 o 0 MODULATE mark=1k space=1k Vlow=2", "Vhigh must be above Vlow"))
     for card, text in cases:
         done = run_cards(program, card, ["v1 a 0 1", "v2 b 0 1", card, "r1 o 0 1", ".tran 1 2"])
         checker.check(done.status != 0 and text in done.stderr, f"{card}: {done.stderr}")
     for card, text in (("a1 a b a 0 0 0 o 0 VARISTOR", "this function does not use pin 3 of 'a1': it is ignored"),
-                       ("a1 a b 0 0 a 0 o 0 MODULATE mark=1k space=1k", "this function does not use pin 5 of 'a1'")):
+                       ("a1 a b 0 0 a 0 o 0 MODULATE mark=1k space=1k", "this function does not use pin 5 of 'a1'"),
+                       *((f"a1 {pins} 0 0 0 {function}", "no output of 'a1' is wired: the element is left out")
+                         for pins in ("a b 0 0 0", "0 0 0 0 0") for function in (
+                             "VARISTOR", "MODULATE mark=1k space=1k", "AND", "OR vhigh=5", "XOR", "BUF", "INV", "DFLOP", "SRFLOP", "COUNTER cycles=3",
+                             "SCHMITT vt=1 vh=0.1", "SAMPLEHOLD"))):
         done = run_cards(program, card, ["v1 a 0 1", "v2 b 0 1", card, "r1 o 0 1", ".tran 1u 2u"])
         checker.check(done.status == 0 and text in done.stderr, f"{card}: {done.stderr}")
     done = run(program, "\n".join(["x", "v1 a 0 1", ".subckt s i o", "a1 i 0 0 0 0 0 o 0 BUF Tau={t}", ".ends", ".param t=1u", "x1 a o s",
@@ -254,7 +270,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("ltspice_devices")
-    for part in (outputs, varistors, modulators, quadratures, many, transconductors, limited_samples, parameters, refused):
+    for part in (outputs, varistors, modulators, quadratures, many, transconductors, limited_samples, parameters, without_signs, refused):
         part(checker, program)
     return checker.finish()
 
