@@ -123,12 +123,8 @@ struct dalcs_audit {
     } crossing;
 
     struct audit_worst {
-        struct audit_found {
-            double defect, scale; /* in the law's own unit; the scale at that time */
-            double time;          /* s */
-        } largest, beside_scale;  /* of all, and of all over their scales */
-
-        double scale; /* the largest of instants; 0: of charge, flux and energy */
+        double defect, scale; /* the largest of each, in the law's own unit */
+        double time;          /* s, of the defect */
         int part;
     } * worst_of[DALCS_AUDIT_N_LAWS]; /* [dalcs_audit_n_of] */
 
@@ -193,10 +189,6 @@ static inline double audit_earned(const struct dalcs_audit *audit, double work, 
     const double least = AUDIT_LEAST_SHARE * work;
     return left > least ? left : least;
 }
-
-/* doc/methods.md, "What the tolerance means": signals below this part of the largest of their unit are held to that one's
- * scale, and so is a signal to what it becomes. */
-#define AUDIT_SMALLEST_SCALE 1e-5
 
 /* Where nothing is, a value is as much as there is. */
 static inline double audit_ratio(double value, double scale) {

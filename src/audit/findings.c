@@ -31,12 +31,6 @@ static void find_coarse(struct dalcs_audit *audit, enum dalcs_audit_law law, int
     }
 }
 
-/* Of charge, flux and energy over an interval, whose scales are of its length and not of signals alone. */
-static bool is_of_storage(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index) {
-    return law == DALCS_AUDIT_ENERGY || (law == DALCS_AUDIT_KCL && audit->net.has_charge[index]) ||
-           (law == DALCS_AUDIT_BRANCH && audit->circuit->device[index].kind == DALCS_INDUCTOR);
-}
-
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time) {
     struct audit_worst *worst = &audit->worst_of[law][index];
@@ -44,32 +38,18 @@ void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum d
         find_coarse(audit, law, index, audit_ratio(defect, scale), time);
         return;
     }
-    const struct audit_found found = {isnan(defect) ? INFINITY : defect, scale, time};
     worst->part = (int)(part - audit->part);
-    worst->scale = is_of_storage(audit, law, index) ? 0.0 : fmax(worst->scale, scale);
-    if (!(defect <= worst->largest.defect)) { /* not a number is as wrong as can be */
-        worst->largest = found;
+    worst->scale = fmax(worst->scale, scale);
+    if (!(defect <= worst->defect)) { /* not a number is as wrong as can be */
+        worst->defect = isnan(defect) ? INFINITY : defect;
+        worst->time = time;
     }
-    const struct audit_found *b = &worst->beside_scale;
-    if (audit_ratio(found.defect, scale) > audit_ratio(b->defect, b->scale)) {
-        worst->beside_scale = found;
-    }
-}
-
-/* What is of a law while its signals are small is held to a part of what they become: so are signals beside large ones
- * (step_error.c). */
-static double over_scale(const struct audit_worst *worst, const struct audit_found *found) {
-    return audit_ratio(found->defect, fmax(found->scale, AUDIT_SMALLEST_SCALE * worst->scale));
 }
 
 struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audit,
                                                   enum dalcs_audit_law law, int index) {
     const struct audit_worst *worst = &audit->worst_of[law][index];
-    const double largest = over_scale(worst, &worst->largest);
-    const double beside_scale = over_scale(worst, &worst->beside_scale);
-    return beside_scale > largest
-               ? (struct dalcs_audit_finding){beside_scale, worst->beside_scale.time}
-               : (struct dalcs_audit_finding){largest, worst->largest.time};
+    return (struct dalcs_audit_finding){audit_ratio(worst->defect, worst->scale), worst->time};
 }
 
 struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit) {

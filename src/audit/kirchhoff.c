@@ -107,10 +107,8 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
      * that one's scale, and each unit vouches a millionth for the other through the conductances, of 1 S where there
      * are none. */
     const bool has_any = part->floor.most > 0.0;
-    part->floor.volt =
-        fmax(AUDIT_SMALLEST_SCALE * volt, 1e-6 / (has_any ? part->floor.most : 1.0) * ampere);
-    part->floor.ampere =
-        fmax(AUDIT_SMALLEST_SCALE * ampere, 1e-6 * (has_any ? part->floor.least : 1.0) * volt);
+    part->floor.volt = fmax(1e-5 * volt, 1e-6 / (has_any ? part->floor.most : 1.0) * ampere);
+    part->floor.ampere = fmax(1e-5 * ampere, 1e-6 * (has_any ? part->floor.least : 1.0) * volt);
 }
 
 /* What ideal branches hand on: an impedance of nothing is no barrier for a current that rounding makes. */
