@@ -115,6 +115,7 @@ static void take_up(struct audit_part *part, const struct dalcs_audit_stretch *s
     const double s = stretch->degree;
     part->at.is_coarse = stretch->rule == DALCS_AUDIT_COARSE;
     part->at.step = stretch->step;
+    part->at.span = stretch->to - stretch->from;
     part->at.slope = stretch->step > 0.0 ? 2.0 * s * s / stretch->step : 0.0;
 }
 
@@ -207,8 +208,10 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
     audit->now.side = DALCS_RIGHT;
     /* An event is early or late by what changes no value by more than the tolerance: that share of the stretch that it
      * ended, over which values change by their scales at most. A diode may have its signs that much later, and a switch
-     * its control. */
-    part->at.lateness = fmin(part->tolerance * past, stretch->to - stretch->from);
+     * its control. Where a run starts nothing came before, and what acts there does so within what is promised of times. */
+    const double least =
+        past > 0.0 ? part->tolerance * past : AUDIT_PROMISED * audit->options.resolution;
+    part->at.lateness = fmin(least, stretch->to - stretch->from);
     look(audit, stretch->part, &audit->now);
     if (part->is_open) {
         audit_check_crossing(audit, part, &audit->before, &audit->now);

@@ -41,6 +41,7 @@ struct audit_part {
 
     struct audit_at_hand { /* the stretch that is looked at */
         double step;       /* s */
+        double span;       /* s, from where it begins to where it ends; 0: there is none */
         double length;     /* s, of the stretch that was complete last */
         double past;       /* s, of the one before that */
         double lateness;   /* s, that an event may be early by, while its far side is looked at */

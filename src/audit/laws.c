@@ -74,15 +74,26 @@ double audit_control(const struct dalcs_audit *audit, const struct dalcs_audit_s
     return control - m->vt;
 }
 
-double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *part,
-                           const struct dalcs_audit_state *s, int device) {
-    const double moved = fmax(audit->options.resolution, part->at.lateness);
+/* By how much a control moves until another time, s later. */
+static double moves_by(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *s, int device, double later) {
     double half_width;
     audit->shifted.side = s->side;
-    audit->shifted.t = s->t + (s->side == DALCS_RIGHT ? 1.0 : -1.0) * moved;
+    audit->shifted.t = s->t + later;
     audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
     return fabs(audit_control(audit, &audit->shifted, device, &half_width) -
                 audit_control(audit, s, device, &half_width));
+}
+
+/* A stretch may be shorter than what times can be told apart by. Then an edge that it begins with may as well be behind
+ * its end: a diode opens 5e-20 s behind the edge that closes a switch. */
+double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *s, int device) {
+    const double moved = fmax(audit->options.resolution, part->at.lateness);
+    const double inwards = s->side == DALCS_RIGHT ? moved : -moved;
+    const double slack = moves_by(audit, part, s, device, inwards);
+    const bool is_all_near = part->at.span > 0.0 && part->at.span <= audit->options.resolution;
+    return is_all_near ? fmax(slack, moves_by(audit, part, s, device, -inwards)) : slack;
 }
 
 double audit_control_scale(const struct dalcs_audit *audit, const struct audit_part *part,

@@ -14,7 +14,7 @@ enum { AUDIT_MOST_NODES = 12 };
 enum { AUDIT_SCREEN_TIMES = 4 };
 
 /* Screens and images that are at hand: a converter has a few modes and lengths of steps in turn. */
-enum { AUDIT_LOG2_LANES = 4 };
+enum { AUDIT_LOG2_LANES = 6 };
 
 struct audit_watch {
     struct audit_screens {
