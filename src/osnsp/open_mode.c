@@ -5,11 +5,11 @@
  * which non-negative least squares decide (C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23).
  * What the reference of an island carries must be 0 as well: a source that reads the island may drive it, by as much as
  * is open. Where the circuit is passive the proximal iterates come to it; elsewhere every mode is tried. */
+#include "least_norm.h"
 #include "nonnegative.h"
 #include "osnsp_internal.h"
 #include "whole.h"
 
-#include <float.h>
 #include <math.h>
 
 struct open_mode {
@@ -19,6 +19,7 @@ struct open_mode {
     int n;                              /* directions that these see */
     double *direction;                  /* [n_choices][n_columns] */
     double *part;                       /* [n_choices][n_parts] V, by columns */
+    double *size;                       /* [n_choices] V, of which their rounding is */
     double *sign;                       /* [n_parts] b */
     struct dalcs_arena arena;
 };
@@ -65,26 +66,27 @@ static double size_of(const struct open_mode *m, const double *direction) {
     return largest;
 }
 
-/* Gram and Schmidt; a direction of which only rounding is left says nothing new to the parts. */
+/* Those that the parts see come first, orthogonal to each other and of length 1 to the parts. */
 static void find_directions(struct open_mode *m) {
-    for (int k = 0; k < m->whole->n_choices; k++) {
-        double *direction = m->direction + (size_t)m->n * m->n_columns;
-        double *part = m->part + (size_t)m->n * m->n_parts;
+    struct dalcs_least_norm open = {.n = m->whole->n_choices,
+                                    .n_columns = (int)m->n_columns,
+                                    .n_parts = (int)m->n_parts,
+                                    .vector = m->direction,
+                                    .part = m->part,
+                                    .size = m->size};
+    for (int k = 0; k < open.n; k++) {
+        double *direction = dalcs_least_norm_vector(&open, k);
         dalcs_whole_direction(m->whole, k, direction);
-        look_at_parts(m, direction, false, part);
-        double before = size_of(m, direction);
-        for (int j = 0; j < m->n; j++) {
-            const double *other = m->part + (size_t)j * m->n_parts;
-            double factor = product(part, other, m->n_parts);
-            add(part, -factor, other, m->n_parts);
-            add(direction, -factor, m->direction + (size_t)j * m->n_columns, m->n_columns);
-        }
+        look_at_parts(m, direction, false, dalcs_least_norm_part(&open, k));
+        m->size[k] = size_of(m, direction);
+    }
+    m->n = dalcs_least_norm_separate(&open);
+    for (int k = 0; k < m->n; k++) {
+        double *part = dalcs_least_norm_part(&open, k);
         double norm = sqrt(product(part, part, m->n_parts));
-        if (norm > (double)m->n_columns * DBL_EPSILON * before) {
-            add(part, 1.0 / norm - 1.0, part, m->n_parts);
-            add(direction, 1.0 / norm - 1.0, direction, m->n_columns);
-            m->n++;
-        }
+        add(part, 1.0 / norm - 1.0, part, m->n_parts);
+        add(dalcs_least_norm_vector(&open, k), 1.0 / norm - 1.0, dalcs_least_norm_vector(&open, k),
+            m->n_columns);
     }
 }
 
@@ -135,8 +137,10 @@ static enum dalcs_status allocate(struct open_mode *m) {
     m->n_parts = m->n_pairs + (size_t)m->p->lists.n_references;
     m->direction = dalcs_arena_alloc(&m->arena, n_choices * m->n_columns, sizeof(double));
     m->part = dalcs_arena_alloc(&m->arena, n_choices * m->n_parts, sizeof(double));
+    m->size = dalcs_arena_alloc(&m->arena, n_choices, sizeof(double));
     m->sign = dalcs_arena_alloc(&m->arena, m->n_parts, sizeof(double));
-    return m->direction != NULL && m->part != NULL && m->sign != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    bool complete = m->direction != NULL && m->part != NULL && m->size != NULL && m->sign != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 enum dalcs_status dalcs_open_mode_solve(struct dalcs_osnsp *p, const double *u, double *y) {
