@@ -163,7 +163,7 @@ double dalcs_doubt_about(const struct dalcs_radau_part *part, int guard, double 
 
 double dalcs_doubt_of_closed(const struct dalcs_radau_part *part, int pair, double scale) {
     double band = dalcs_doubt_band(part) * scale;
-    if (part->segment.entry == NULL || !dalcs_stage_has_map(part->segment.entry)) {
+    if (!dalcs_guard_has_map(part)) {
         return band;
     }
     int place = dalcs_system_n_equations(part->component->system) + pair;

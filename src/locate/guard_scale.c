@@ -19,13 +19,9 @@ double dalcs_guard_control_scale(const struct dalcs_radau_part *part, int guard,
     return fmax(size, fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
 }
 
-static bool has_map(const struct dalcs_radau_part *part) {
-    return part->segment.entry != NULL && dalcs_stage_has_map(part->segment.entry);
-}
-
 /* Of a guard by the map of the step; `most` where there is none. */
 static double rounding_by_map(const struct dalcs_radau_part *part, int place, double most) {
-    if (!has_map(part)) {
+    if (!dalcs_guard_has_map(part)) {
         return most;
     }
     return dalcs_smaller(most, dalcs_sum_rounded *
@@ -54,7 +50,7 @@ static double rounding_of_pair(const struct dalcs_radau_part *part, int guard, c
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
     most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0]
                  : part->laws.held_flux[guard] / part->segment.h * unit[1];
-    if (!has_map(part) && !is_on) {
+    if (!dalcs_guard_has_map(part) && !is_on) {
         most = dalcs_smaller(most, dalcs_pair_flux(part, guard) / part->segment.h);
     }
     return rounding_by_map(part, dalcs_system_n_equations(s) + guard, dalcs_sum_rounded * most);

@@ -64,10 +64,14 @@ static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *pa
                   : part->laws.held_flux[guard] * unit[1]);
 }
 
+/* Is the step a dense map, which tells what rounding of states and sources makes of anything? */
+static inline bool dalcs_guard_has_map(const struct dalcs_radau_part *part) {
+    return part->segment.entry != NULL && dalcs_stage_has_map(part->segment.entry);
+}
+
 /* Does what a map tells of rounding count, whatever is held beside a guard? */
 static inline bool dalcs_guard_may_read_rates(const struct dalcs_radau_part *part) {
-    return part->laws.reads_rates && part->segment.entry != NULL &&
-           dalcs_stage_has_map(part->segment.entry);
+    return part->laws.reads_rates && dalcs_guard_has_map(part);
 }
 
 /* What rounding makes of a pair that is 0 where its whole unit is, in V or A. Where nothing flows in an island that

@@ -33,7 +33,7 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
         part->laws.inductance == NULL) {
         return DALCS_E_NOMEM;
     }
-    dalcs_pair_laws_find(part);
+    DALCS_TRY(dalcs_pair_laws_find(part));
     return dalcs_stages_have_maps(&part->stages) ? DALCS_OK : dalcs_doubt_setup(part);
 }
 

@@ -70,27 +70,41 @@ static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equ
     }
 }
 
-/* Is a column that no state decides one of the algebraic columns by which a state's rate follows: a current into a
- * capacitor's node, a voltage at a coil? */
-static bool is_rate(const struct dalcs_system *s, int column) {
+/* The algebraic columns that a reader looks at. is_read[n_equations], false. */
+static void mark_read(const struct dalcs_system *s, bool *is_read) {
+    int n_equations = dalcs_system_n_equations(s);
+    for (int k = 0; s->reads.p != NULL && k < s->reads.p[s->reads.n_rows]; k++) {
+        int column = s->reads.j[k];
+        if (column >= s->n_x && column < n_equations) {
+            is_read[column] = true;
+        }
+    }
+}
+
+/* Is one of these a column by which a state's rate follows: a current into a capacitor's node, a voltage at a coil?
+ * Without readers a rate acts on what is next to it, and charges and fluxes there tell. */
+static bool reads_rates(const struct dalcs_system *s, const bool *is_read) {
     bool is = false;
-    for (int r = 0; r < s->n_x && column >= s->n_x && !is; r++) {
+    for (int r = 0; r < s->n_x && !is; r++) {
         for (int k = s->A.p[r]; k < s->A.p[r + 1] && !is; k++) {
-            is = s->A.j[k] == column && column < dalcs_system_n_equations(s) &&
+            int column = s->A.j[k];
+            is = column < dalcs_system_n_equations(s) && is_read[column] &&
                  s->column_is_current[column] == s->row_is_current[r];
         }
     }
     return is;
 }
 
-/* Without readers a rate acts on what is next to it, and charges and fluxes there tell. */
-static void find_read_rates(struct dalcs_radau_part *part) {
-    const struct dalcs_csr *reads = &part->component->system->reads;
-    part->laws.reads_rates = false;
-    for (int k = 0; reads->p != NULL && k < reads->p[reads->n_rows] && !part->laws.reads_rates;
-         k++) {
-        part->laws.reads_rates = is_rate(part->component->system, reads->j[k]);
+static enum dalcs_status find_read_rates(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    struct dalcs_arena work = {0};
+    bool *is_read = dalcs_arena_alloc(&work, (size_t)dalcs_system_n_equations(s), sizeof(*is_read));
+    if (is_read != NULL) {
+        mark_read(s, is_read);
+        part->laws.reads_rates = reads_rates(s, is_read);
     }
+    dalcs_arena_finish(&work);
+    return is_read != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 /* row < 0: ground. */
@@ -119,12 +133,12 @@ static struct dalcs_pair_law law_of_resistance(const struct dalcs_system *s, int
     return law;
 }
 
-void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
+enum dalcs_status dalcs_pair_laws_find(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     find_charges(part);
     double *inductance = part->laws.inductance;
     find_fluxes(part, inductance);
-    find_read_rates(part);
+    DALCS_TRY(find_read_rates(part));
     for (int d = 0; d < s->n_pairs; d++) {
         part->laws.law[DALCS_PAIR_LAWS * d] =
             law_of_node(s, part->laws.pair_row[2 * d], inductance);
@@ -132,6 +146,7 @@ void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
             law_of_node(s, part->laws.pair_row[2 * d + 1], inductance);
         part->laws.law[DALCS_PAIR_LAWS * d + 2] = law_of_resistance(s, d);
     }
+    return DALCS_OK;
 }
 
 /* By one of its laws; what other closed pairs carry away from its node is as well known as it is so far. */

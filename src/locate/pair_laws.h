@@ -26,7 +26,7 @@ struct dalcs_pair_rate {
 struct dalcs_pair_rate *dalcs_pair_rate_create(struct dalcs_arena *arena, int n_pairs, int n_words);
 
 /* Fills the part's data of its pairs: pair_row, held_charge, held_flux, pair_law. */
-void dalcs_pair_laws_find(struct dalcs_radau_part *part);
+enum dalcs_status dalcs_pair_laws_find(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 
 /* A of the current of a closed pair per V by which voltages are rounded, in the present step: by the law
  * that makes the least of them. */
