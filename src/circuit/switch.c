@@ -55,10 +55,12 @@ static void multiply(struct dalcs_builder *builder, struct dalcs_device *device,
     device->model = dalcs_switch_add_model(builder, &model);
 }
 
-/* Xyce takes PSpice's ISWITCH for an S, too: thresholds are numbers, and what has the two nodes between them is volts. */
+/* Xyce takes PSpice's ISWITCH for an S, too: thresholds are numbers, and what has the two nodes
+ * between them is volts. A model that was refused may have no type. */
 static bool is_taken_for_volts(struct dalcs_builder *builder, const struct dalcs_token *name) {
     const int index = dalcs_names_find(&builder->models, name->text);
-    if (index < 0 || strcmp(builder->model[index].type->text, "iswitch") != 0) {
+    if (index < 0 || builder->model[index].kind != DALCS_MODEL_CURRENT_SWITCH ||
+        strcmp(builder->model[index].type->text, "iswitch") != 0) {
         return false;
     }
     dalcs_builder_warn(builder, name, "a VSWITCH has Von and Voff",
