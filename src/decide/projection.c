@@ -5,11 +5,12 @@
 #include "magnitudes.h"
 #include "present.h"
 #include "step_error.h"
+#include "step_length.h"
 
 #include <math.h>
 
 /* A projecting step is this many rungs below: the first of these in which the mode can be seen. */
-enum { PROJECTIONS = 3 };
+enum { PROJECTIONS = 3, SHORTER = 10 };
 
 static const int projection[PROJECTIONS] = {30, 20, 10};
 
@@ -124,6 +125,49 @@ static enum dalcs_status try_projection(struct dalcs_radau_part *part, double li
     return status;
 }
 
+/* Do states that move begin elsewhere in the last step than in one before it, farther than the step goes? work.y1: where they began
+ * there. */
+static bool begins_elsewhere(const struct dalcs_radau_part *part) {
+    bool differs = false;
+    for (int x = 0; x < part->component->system->n_x && !differs; x++) {
+        double beginning = beginning_of(part, x);
+        differs = fabs(beginning - part->work.y1[x]) > 4.0 * part->work.y2[x];
+    }
+    return differs;
+}
+
+/* What each state does in the last step: where it begins and how far it goes. Does one move? */
+static bool note_beginnings(struct dalcs_radau_part *part) {
+    bool moves = false;
+    for (int x = 0; x < part->component->system->n_x; x++) {
+        part->work.y1[x] = beginning_of(part, x);
+        part->work.y2[x] = way_of(part, x, part->work.y1[x]);
+        moves = moves || has_moved(part, x, part->work.y1[x]);
+    }
+    return moves;
+}
+
+/* A jump is the same in a shorter step, and a transient faster than the step is less: of two lengths in which the mode is seen
+ * and that do not agree, the shorter one tells. */
+static enum dalcs_status look_shorter(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      double limit) {
+    bool differs = true;
+    while (differs && note_beginnings(part)) {
+        const double h = part->segment.h;
+        bool means_something = false;
+        part->segment.h = ldexp(h, -SHORTER);
+        if (part->segment.h >= dalcs_length_shortest(r)) {
+            DALCS_TRY(try_projection(part, limit, &means_something));
+        }
+        differs = means_something && begins_elsewhere(part);
+        if (!differs) {
+            part->segment.h = h;
+            return try_projection(part, limit, &means_something);
+        }
+    }
+    return DALCS_OK;
+}
+
 /* Are the states of blocks before `of` within their tolerance in a step? Nothing in them is faster. */
 static bool acts_slowly(const struct dalcs_radau_part *part, int of) {
     const double *drift = part->segment.out + part->stages.layout.drift;
@@ -232,6 +276,7 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
         status = try_projection(part, limit, &means_something);
     }
     if (means_something) {
+        DALCS_TRY(look_shorter(r, part, limit));
         status = move_in_order(r, part, &lengths, &moved);
         *told = moved ? DALCS_PROJECTION_MOVED : DALCS_PROJECTION_IN_PLACE;
     }
