@@ -4,6 +4,7 @@
 
 #include "radau_state.h"
 
+#include "formula_scale.h"
 #include "rounding.h"
 
 #include <float.h>
@@ -44,7 +45,9 @@ double dalcs_guard_control_scale(const struct dalcs_radau_part *part, int guard,
 static inline double dalcs_guard_scale(const struct dalcs_radau_part *part, int guard,
                                        const double *unit) {
     return guard < part->component->system->n_pairs
-               ? unit[dalcs_osnsp_is_on(&part->component->osnsp, guard) ? 1 : 0]
+               ? dalcs_formula_scale(
+                     part, guard, unit[dalcs_osnsp_is_on(&part->component->osnsp, guard) ? 1 : 0],
+                     unit)
                : dalcs_guard_control_scale(part, guard, unit);
 }
 

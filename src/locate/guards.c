@@ -34,6 +34,7 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
         return DALCS_E_NOMEM;
     }
     DALCS_TRY(dalcs_pair_laws_find(part));
+    DALCS_TRY(dalcs_formula_scale_setup(part));
     return dalcs_stages_have_maps(&part->stages) ? DALCS_OK : dalcs_doubt_setup(part);
 }
 
@@ -69,7 +70,7 @@ void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *
     bool *armed = part->guards.armed;
     for (int d = 0; d < n_pairs; d++) {
         if (p->lists.is_diode[d] && !(at_end && armed[d])) {
-            double scale = unit[dalcs_osnsp_is_on(p, d)];
+            double scale = dalcs_guard_scale(part, d, unit);
             armed[d] =
                 value[d] > band * scale || (value[d] > dalcs_tied_nothing(part, d, unit) &&
                                             ((!at_end && dalcs_guard_goes_on(part, d, value[d])) ||

@@ -104,6 +104,7 @@ struct dalcs_part_laws {
     double *held_charge, *held_flux; /* [n_pairs] F, H: storage next to a pair */
     struct dalcs_pair_law *law;      /* [n_pairs][3] what gives the current of a pair */
     struct dalcs_pair_rate *rate;
+    struct dalcs_formula_places *places; /* formula_scale.h; NULL: no formula has a kink */
     int *charging_row;  /* [n_equations] of the capacitor that a current charges, -1: none */
     int *pair_row;      /* [n_pairs][2] KCL rows that its current enters, -1: ground */
     double *inductance; /* [n_equations] H, at nodes; work */

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""Knees of formulas beside what is far larger: the formula's value against the formula of the rows.
+
+usage: knees_beside_kicks.py PROGRAM
+
+A coil that a switch of Roff cuts off throws a voltage of 1e7 to 1e10 V, and then a diode begins to conduct a leak, which a
+formula reads times a gain. Its knees are where the leak begins, so that the knee's argument grows from exactly 0: by less
+than the tolerance of the kick's volts, and by all of what the formula gives. A cable of 40 or 90 sections makes the part
+large, where steps are on factors and no map tells what a guard is off by.
+"""
+
+import sys
+
+import dalcs_program
+
+CASES = ((500, 50, 1e8, 84, 50, 1e-3, 0.25), (3000, 300, 1e7, 20, 400, 1e-2, 0.3), (12, 1, 1e9, 1e6, 1e4, 1e-6, 0.1),
+         (325, 10, 1e8, 1000, 50, 2e-3, 0.2))
+
+
+def limit(a, low, high):
+    return max(low, min(high, a))
+
+
+FORMULAS = {
+    "min(1,max(0,{k}*i(v5)))": lambda x, v: limit(x, 0, 1),
+    "abs({k}*i(v5))": lambda x, v: abs(x),
+    "limit({k}*i(v5),-1,2)*2": lambda x, v: 2 * limit(x, -1, 2),
+    "max(0,{k}*i(v5))-min(0,2*{k}*i(v5))": lambda x, v: max(0, x) - min(0, 2 * x),
+    "table({k}*i(v5),-1,-1,0,0,1,3)": lambda x, v: -1 if x < -1 else min(x, 0) + 3 * limit(x, 0, 1),
+    "max(0,1m*v(y))": lambda x, v: max(0, 1e-3 * v),
+    "1-min(1,max(0,{k}*i(v5)))+max(0,v(y)*0.1m)": lambda x, v: 1 - limit(x, 0, 1) + max(0, v * 1e-4),
+    "min(1,max(0,{k}*i(v5)-max(0,{k}*i(v5)-2)))": lambda x, v: limit(x - max(0, x - 2), 0, 1),
+}
+
+
+def cards(case, formula, sections):
+    volts, ohms, roff, gain, frequency, henries, load = case
+    period = 1 / frequency
+    cable = [f"RC{k} {'n1' if k == 0 else f'q{k - 1}'} q{k} 100" for k in range(sections)]
+    return ["a knee beside a kick", f"V1 in 0 SIN(0 {volts} {frequency})", f"R0 in n1 {ohms * 1e-3}", f"R1 n1 a {ohms}",
+            f"L1 a b {henries}", "S2 b 0 h 0 SK", f"Vh h 0 PULSE(1 0 {0.2 * period} 1n 1n {0.1 * period} {period})",
+            "V5 n1 x 0", "D1 x y D", "S1 y z g 0 SK", f"Rz z 0 {ohms * load}",
+            f"Vg g 0 PULSE(0 1 {1.8 * period} 1n 1n {0.01 * period} {period})", f"B1 k 0 V={{{formula.format(k=gain)}}}",
+            "R9 k 0 1k", *cable, f"CC q{sections - 1} 0 1n", ".model D D(ron=0)", f".model SK SW(ron=0 roff={roff} vt=0.5)",
+            ".save v(k) v(y) i(v5) v(b)", f".tran {period / 200} {3 * period}", ".end"]
+
+
+def main():
+    program = sys.argv[1]
+    checker = dalcs_program.Checker("knees_beside_kicks")
+    for number, case in enumerate(CASES):
+        for formula, value in FORMULAS.items():
+            for sections in (1, 40, 90):
+                what = f"{number}, {sections} sections: {formula}"
+                done = dalcs_program.run(program, "\n".join(cards(case, formula, sections)) + "\n", method=None)
+                if not checker.check(done.status == 0, f"{what}: {done.stderr}"):
+                    continue
+                rows = list(zip(done.column("v(k)"), done.column("i(v5)"), done.column("v(y)")))
+                largest = max(abs(row[0]) for row in rows)
+                worst = max(abs(given - value(case[3] * amperes, volts)) for given, amperes, volts in rows)
+                checker.check(worst <= 1e-6 * largest, f"{what}: off by {worst} of {largest}")
+                checker.check(max(map(abs, done.column("v(b)"))) > 1e4 * case[0], f"{what}: there is no kick")
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
