@@ -19,6 +19,7 @@ enum {
     LEVERED_STUCK = 2, /* of levered voltages alone */
     MOST_REFINED = 4,
     FALL_BACK_LEAST = 5,
+    LONGER_TRIES = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
     RIPPLE = 12     /* and are this many below the longest one where a switch goes to and fro */
 };
@@ -84,8 +85,15 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
         h = fmin(h, ripple_length(r, part));
     }
     part->length.tries++;
-    part->length.fell_back = fmin(h, limit - part->segment.t);
-    return dalcs_radau_euler_step(r, part, part->length.fell_back);
+    /* So short a step may have no certificate, as its states are rounded, and a longer one has. */
+    most = fmin(most, limit - part->segment.t);
+    enum dalcs_status status = DALCS_NOT_CONVERGED;
+    for (int k = 0; k < LONGER_TRIES && status == DALCS_NOT_CONVERGED; k++) {
+        part->length.fell_back = fmin(ldexp(h, 5 * k), most);
+        status = dalcs_radau_euler_step(r, part, part->length.fell_back);
+        k = part->length.fell_back < most ? k : LONGER_TRIES;
+    }
+    return status;
 }
 
 /* Where dalcs_search_project() cannot decide. */
