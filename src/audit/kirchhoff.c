@@ -145,6 +145,42 @@ double audit_rounding_around(struct dalcs_audit *audit, const struct audit_part 
     return sum;
 }
 
+/* How far a node that hangs on a source moves while times cannot be told apart, until audit->shifted.t. */
+static double source_moves(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *s, int node) {
+    bool hangs = false;
+    for (int k = 0; k < part->n_devices && node > 0 && !hangs; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        const bool is_source =
+            d->kind == DALCS_VSOURCE || d->kind == DALCS_VCVS || d->kind == DALCS_CCVS;
+        hangs = is_source &&
+                (audit->net.node_of[d->node[0]] == node || audit->net.node_of[d->node[1]] == node);
+    }
+    return hangs ? fabs(audit->shifted.v[node] - s->v[node]) : 0.0;
+}
+
+/* What rounding of time makes of the current that leaves a node. A source is what it is at a time, and what follows it is a
+ * polynomial of the time since a step began: on a steep flank two copies of one voltage differ, and a resistor between
+ * them carries that. */
+static double rounding_of_time(struct dalcs_audit *audit, const struct audit_part *part,
+                               const struct dalcs_audit_state *s, int node) {
+    const double away = audit->options.resolution;
+    audit->shifted.side = s->side;
+    audit->shifted.t = s->t + (s->side == DALCS_RIGHT ? away : -away);
+    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
+    double sum = 0.0;
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        const int a = audit->net.node_of[d->node[0]];
+        const int b = audit->net.node_of[d->node[1]];
+        if (d->kind == DALCS_RESISTOR && d->value != 0.0 && (a == node) != (b == node)) {
+            sum += (source_moves(audit, part, s, a) + source_moves(audit, part, s, b)) /
+                   fabs(d->value);
+        }
+    }
+    return sum;
+}
+
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s) {
     audit->count.instants++;
@@ -158,7 +194,8 @@ void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
             double off = fabs(audit->sums.current[node]) - audit->options.abstol;
             const double allowed =
                 audit->sums.rounding[node] + part->tolerance * audit->sums.scale[node];
-            off -= off > allowed ? audit_rounding_around(audit, part, s, node)
+            off -= off > allowed ? audit_rounding_around(audit, part, s, node) +
+                                       rounding_of_time(audit, part, s, node)
                                  : audit->sums.rounding[node];
             audit_find(audit, part, DALCS_AUDIT_KCL, node, off, audit->sums.scale[node], s->t);
         }
