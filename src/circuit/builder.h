@@ -576,6 +576,8 @@ void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token 
 void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* .nodeset: the same form, without an effect */
 void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* Leaves out the initial voltages that sources contradict, with a warning. When all elements and .ic cards are read. */
+void dalcs_initial_leave_held(struct dalcs_builder *builder);
 /* A note about initial conditions that do not count without uic. */
 void dalcs_initial_check(struct dalcs_builder *builder);
 /* .save, .print, .plot and .probe */

@@ -300,6 +300,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_later_resolve(builder);
     builder->circuit->is_whole = is_whole(builder);
     dalcs_logic_resolve(builder);
+    dalcs_initial_leave_held(builder);
     dalcs_model_check(builder);
     check_presence(builder);
     builder->names_signals =

@@ -74,6 +74,10 @@ static bool read_known(struct dalcs_reader *reader, struct dalcs_parameter *para
 
 /* `name = value`, or a blank for the equal sign, as in ngspice; NULL, nothing taken, when none follows. */
 static const struct dalcs_token *take_parameter(struct dalcs_reader *reader) {
+    const struct dalcs_token *behind = dalcs_reader_peek(reader, 1);
+    if (behind == NULL || behind->kind != DALCS_TOKEN_EQUAL) {
+        (void)dalcs_reader_take_word(reader, "noiseless"); /* LTspice; nothing has noise here */
+    }
     const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
     const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
     const struct dalcs_token *value = dalcs_reader_peek(reader, 1);

@@ -52,6 +52,13 @@ const struct dalcs_formula *dalcs_storage_formula_copy(struct dalcs_formula_writ
                                                        const struct dalcs_formula *argument,
                                                        bool keeps_others);
 
+/* ---- storage_integral.c -------------------------------------------------------------------------- */
+
+/* The integral over x of a formula of x, which is called time in it; any constant. NULL: it has none that is written
+ * with functions, or out of memory. */
+const struct dalcs_formula *dalcs_storage_integral(struct dalcs_formula_writer *w,
+                                                   const struct dalcs_formula *f);
+
 /* ---- storage_law.c ------------------------------------------------------------------------------- */
 
 /* The flux or charge as a function of one argument. */

@@ -106,6 +106,11 @@ static bool is_name(const struct dalcs_token *token, const struct dalcs_token *o
            (strcmp(text, "gnd") == 0 && strcmp(other->text, "0") == 0);
 }
 
+/* NULL: ground. */
+static bool is_same_node(const struct dalcs_token *a, const struct dalcs_token *b) {
+    return (a == NULL || b == NULL) ? a == b : strcmp(a->text, b->text) == 0;
+}
+
 /* The argument as a signal names it: 1, or -1 where it is turned around; 0: it is another. */
 static int direction_of(const struct copying *c, const struct dalcs_formula *f) {
     const struct dalcs_token *token = c->card->token;
@@ -118,6 +123,34 @@ static int direction_of(const struct copying *c, const struct dalcs_formula *f) 
     return is_name(f->signal[0], &token[1]) && is_name(f->signal[1], &token[2])   ? 1
            : is_name(f->signal[0], &token[2]) && is_name(f->signal[1], &token[1]) ? -1
                                                                                   : 0;
+}
+
+/* The same of a difference of two voltages, v(a) - v(b) or -v(b) + v(a), of one node each or beside one other. */
+static int direction_of_difference(const struct copying *c, const struct dalcs_formula *f) {
+    if (f->kind != DALCS_FORMULA_OPERATION || f->n != 2 || c->card == NULL ||
+        c->card->letter != 'c') {
+        return 0;
+    }
+    const struct dalcs_formula *a = f->argument[0];
+    const struct dalcs_formula *b = f->argument[1];
+    int sign = 1;
+    if (f->code == DALCS_ADD) {
+        sign = a->kind == DALCS_FORMULA_OPERATION && a->code == DALCS_NEGATE ? -1 : 1;
+        const struct dalcs_formula **turned = sign < 0 ? &a : &b;
+        if ((*turned)->kind != DALCS_FORMULA_OPERATION || (*turned)->code != DALCS_NEGATE) {
+            return 0;
+        }
+        *turned = (*turned)->argument[0];
+    } else if (f->code != DALCS_SUBTRACT) {
+        return 0;
+    }
+    if (a->kind != DALCS_FORMULA_VOLTAGE || b->kind != DALCS_FORMULA_VOLTAGE ||
+        !is_same_node(a->signal[1], b->signal[1])) {
+        return 0;
+    }
+    const struct dalcs_formula difference = {.kind = DALCS_FORMULA_VOLTAGE,
+                                             .signal = {a->signal[0], b->signal[0]}};
+    return sign * direction_of(c, &difference);
 }
 
 static bool is_time(const struct dalcs_formula *f) {
@@ -149,7 +182,9 @@ static const struct dalcs_formula *copy(struct copying *c, const struct dalcs_fo
     }
     const struct dalcs_formula *made = NULL;
     const bool is_signal = f->kind == DALCS_FORMULA_VOLTAGE || f->kind == DALCS_FORMULA_CURRENT;
-    const int direction = is_signal && c->card != NULL ? direction_of(c, f) : 0;
+    const int direction = c->card == NULL ? 0
+                          : is_signal     ? direction_of(c, f)
+                                          : direction_of_difference(c, f);
     if (f->kind == DALCS_FORMULA_TIME) {
         made = c->argument;
     } else if (is_time(f) && c->keeps_others) {
@@ -182,6 +217,9 @@ static bool reads_others(const struct copying *c, const struct dalcs_formula *f,
         return false;
     }
     seen[f->number_of] = true;
+    if (direction_of_difference(c, f) != 0) {
+        return false;
+    }
     const bool is_signal = f->kind == DALCS_FORMULA_VOLTAGE || f->kind == DALCS_FORMULA_CURRENT;
     bool reads = is_time(f) || (is_signal && direction_of(c, f) == 0);
     for (int k = 0; k < f->n && !reads; k++) {

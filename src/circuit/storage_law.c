@@ -251,11 +251,15 @@ static bool integrate(struct dalcs_builder *builder, struct dalcs_formula_writer
                       struct dalcs_storage_function *f) {
     struct dalcs_piecewise slope;
     if (!find_lines(builder, w->element, f->formula, &slope)) {
+        f->formula = dalcs_storage_integral(w, f->formula);
+        if (f->formula != NULL) {
+            return true;
+        }
         if (!builder->out_of_memory) {
             dalcs_builder_error(builder, place,
                                 *word->unit == 'A' ? "write Flux=, the integral of the inductance"
                                                    : "write Q=, the integral of the capacitance",
-                                "only straight lines of the %s can be integrated", word->of);
+                                "there is no integral here of this function of the %s", word->of);
         }
         return false;
     }

@@ -123,6 +123,18 @@ ELEMENTS = [
         "R1 a b 2k m=2 noiseless",
         "X1 a b s\n.subckt s p q\nR1 p q 1k noiseless\n.ends",
     ]),
+    Kind("noiseless of a model", "V1 a 0 10\nR1 a b 1k\n@\n.tran 1m\n", "R2 b 0 1k", "v(b)", 5.0, [
+        "D1 b 0 m\n.model m d(Ron=1k Roff=1T noiseless)",
+        "D1 b 0 m\n.model m d(noiseless Ron=1k Roff=1T)",
+        "D1 b 0 m\n.model m d(Ron=1k noiseless Roff=1T)",
+        "D1 b 0 m\n.model m d Ron=1k Roff=1T NOISELESS",
+        "D1 b 0 m\n.model m d(Ron={1k} Roff=1T noiseless)",
+        "D1 b 0 m\n.model m d(Ron=1k noiseless)\n",
+        "S1 b 0 a 0 m\n.model m sw(Ron=1k Roff=1T noiseless Vt=1)",
+        "S1 b 0 a 0 m\n.model m sw(Vt=1 Ron=1k Roff=1T noiseless)",
+        "X1 b s\n.subckt s p\nD1 p 0 m\n.model m d(Ron=1k Roff=1T noiseless)\n.ends",
+        "W1 b 0 v1 m\n.model m csw(noiseless Ron=1k Roff=1T It=-1)",
+    ], [("D1 b 0 m\n.model m d(Ron=1k noisles)", "not of the form")]),
     Kind("so many units", RISING, "C1 b 0 1m", "v(b)", 1 - math.exp(-1), [
         "C1 b 0 0.5m x2",
         "C1 b 0 0.5m X2",
