@@ -107,6 +107,19 @@ static double voltage_size(const struct dalcs_osnsp *p, const double *u, const d
     return dalcs_scales_own(p, terms, fmax(scale.volt, terms));
 }
 
+/* The scale of a pair's current, which is below 0: where what its own equations add up to does not excuse that, those of what is
+ * in series with it may. */
+static double current_size(struct dalcs_osnsp *p, const double *u, const double *y, int d,
+                           struct dalcs_scales scale) {
+    const double excess = -y[dalcs_system_n_equations(p->system) + d];
+    const double tolerance = p->options.certificate_tolerance;
+    const double norm = dalcs_scales_current_norm(p, d, scale);
+    const double own = dalcs_scales_own(p, dalcs_scales_current_terms(p, u, y, d), norm);
+    return excess > tolerance * own && excess <= tolerance * norm
+               ? dalcs_scales_own(p, dalcs_scales_series_terms(p, u, y, d), norm)
+               : own;
+}
+
 static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
                         struct dalcs_scales scale) {
     const struct dalcs_system *s = p->system;
@@ -124,9 +137,7 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
             p->w[d] = 0.0;
             p->signs.tied[d] = is_diode && lambda[d] <= tolerance * scale.ampere;
             if (is_diode && lambda[d] < 0.0) {
-                judge_sign(p, d, -lambda[d],
-                           dalcs_scales_own(p, dalcs_scales_current_terms(p, u, y, d),
-                                            dalcs_scales_current_norm(p, d, scale)));
+                judge_sign(p, d, -lambda[d], current_size(p, u, y, d, scale));
             }
         } else {
             p->w[d] = w;

@@ -86,8 +86,9 @@ struct dalcs_mode_cache {
 
 /* What is listed of the system once. */
 struct dalcs_osnsp_lists {
-    int *pair_rows_p, *pair_rows; /* rows of A that hold lambda_d */
-    int n_references;             /* columns that must vanish, and their rows */
+    int *column_rows_p,
+        *column_rows; /* rows of A that hold a current or lambda; none of other columns */
+    int n_references; /* columns that must vanish, and their rows */
     int *reference, *reference_row;
     int n_runs; /* columns of one unit side by side */
 
@@ -152,6 +153,8 @@ struct dalcs_osnsp_work {
     uint64_t *key;                  /* [n_words + 1] */
     uint64_t *regularised_mode;     /* [n_words] where the proximal method stands */
     uint64_t *met_mode;             /* [n_words] one that single pivots passed */
+    int *row, *row_seen; /* [n_x + n_z] rows of a search, and in which search they were seen */
+    int searches;
 };
 
 struct dalcs_osnsp {

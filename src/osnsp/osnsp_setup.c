@@ -14,26 +14,32 @@ struct dalcs_osnsp_options dalcs_osnsp_options_of(const struct dalcs_run_options
                                         .dense_limit = run->dense_limit};
 }
 
-static enum dalcs_status list_pair_rows(struct dalcs_osnsp *p) {
+/* Is it the current of a branch that is no state, or of a pair? */
+static bool is_carried(const struct dalcs_system *s, int column) {
+    return column >= dalcs_system_n_equations(s) ||
+           (column >= s->n_x && s->column_is_current[column]);
+}
+
+static enum dalcs_status list_column_rows(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
-    int n_equations = dalcs_system_n_equations(s);
-    p->lists.pair_rows_p = dalcs_arena_alloc(&p->arena, (size_t)s->n_pairs + 2, sizeof(int));
-    p->lists.pair_rows = dalcs_arena_alloc(&p->arena, (size_t)s->A.p[n_equations], sizeof(int));
-    if (p->lists.pair_rows_p == NULL || p->lists.pair_rows == NULL) {
+    const int n_equations = dalcs_system_n_equations(s);
+    const int n_columns = dalcs_system_n_columns(s);
+    int *first = p->lists.column_rows_p =
+        dalcs_arena_alloc(&p->arena, (size_t)n_columns + 2, sizeof(int));
+    p->lists.column_rows = dalcs_arena_alloc(&p->arena, (size_t)s->A.p[n_equations], sizeof(int));
+    if (first == NULL || p->lists.column_rows == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k < s->A.p[n_equations]; k++) {
-        if (s->A.j[k] >= n_equations) {
-            p->lists.pair_rows_p[s->A.j[k] - n_equations + 2]++;
-        }
+        first[s->A.j[k] + 2] += is_carried(s, s->A.j[k]) ? 1 : 0;
     }
-    for (int d = 0; d < s->n_pairs; d++) {
-        p->lists.pair_rows_p[d + 2] += p->lists.pair_rows_p[d + 1];
+    for (int c = 0; c < n_columns; c++) {
+        first[c + 2] += first[c + 1];
     }
     for (int r = 0; r < n_equations; r++) {
         for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-            if (s->A.j[k] >= n_equations) {
-                p->lists.pair_rows[p->lists.pair_rows_p[s->A.j[k] - n_equations + 1]++] = r;
+            if (is_carried(s, s->A.j[k])) {
+                p->lists.column_rows[first[s->A.j[k] + 1]++] = r;
             }
         }
     }
@@ -142,6 +148,8 @@ static enum dalcs_status make_room(struct dalcs_osnsp *p) {
     p->work.regularised_mode =
         dalcs_arena_alloc(&p->arena, words, sizeof(*p->work.regularised_mode));
     p->work.met_mode = dalcs_arena_alloc(&p->arena, words, sizeof(*p->work.met_mode));
+    p->work.row = dalcs_arena_alloc(&p->arena, n_columns, sizeof(int));
+    p->work.row_seen = dalcs_arena_alloc(&p->arena, n_columns, sizeof(int));
     p->w = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(double));
     p->cache.form = dalcs_arena_alloc(&p->arena, 33, sizeof(*p->cache.form));
     p->cache.form_id = dalcs_arena_alloc(&p->arena, 33, sizeof(*p->cache.form_id));
@@ -167,13 +175,13 @@ static enum dalcs_status make_room(struct dalcs_osnsp *p) {
     const bool complete =
         p->witness.ray != NULL && p->mode != NULL && p->work.key != NULL &&
         p->work.regularised_mode != NULL && p->work.met_mode != NULL && p->w != NULL &&
-        p->cache.form != NULL && p->cache.form_id != NULL && p->work.difference != NULL &&
-        p->lists.run != NULL && p->lists.w_ends != NULL && p->lists.is_diode != NULL &&
-        p->signs.violating != NULL && p->signs.tied != NULL && p->work.tied_mode != NULL &&
-        p->work.tied_answer != NULL && p->work.mapped != NULL && p->work.right != NULL &&
-        p->work.scaled != NULL && p->work.rhs != NULL && p->work.residual != NULL &&
-        p->work.centre != NULL && p->work.centre_w != NULL && p->work.step_before != NULL &&
-        p->work.step_now != NULL;
+        p->work.row != NULL && p->work.row_seen != NULL && p->cache.form != NULL &&
+        p->cache.form_id != NULL && p->work.difference != NULL && p->lists.run != NULL &&
+        p->lists.w_ends != NULL && p->lists.is_diode != NULL && p->signs.violating != NULL &&
+        p->signs.tied != NULL && p->work.tied_mode != NULL && p->work.tied_answer != NULL &&
+        p->work.mapped != NULL && p->work.right != NULL && p->work.scaled != NULL &&
+        p->work.rhs != NULL && p->work.residual != NULL && p->work.centre != NULL &&
+        p->work.centre_w != NULL && p->work.step_before != NULL && p->work.step_now != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -182,7 +190,7 @@ static enum dalcs_status build(struct dalcs_osnsp *p) {
     DALCS_TRY(make_room(p));
     list_runs(p);
     list_w_ends(p);
-    DALCS_TRY(list_pair_rows(p));
+    DALCS_TRY(list_column_rows(p));
     DALCS_TRY(list_references(p));
     DALCS_TRY(list_drives(p));
     return dalcs_osnsp_smooth_setup(p);

@@ -115,10 +115,16 @@ double dalcs_scales_own(const struct dalcs_osnsp *p, double terms, double norm) 
     return own > rounding * norm ? own : own + norm;
 }
 
+/* The first of the rows that hold a pair's lambda, and the one behind the last, in p->lists.column_rows. */
+static const int *rows_of(const struct dalcs_osnsp *p, int pair) {
+    return p->lists.column_rows_p + dalcs_system_n_equations(p->system) + pair;
+}
+
 double dalcs_scales_current_norm(const struct dalcs_osnsp *p, int pair, struct dalcs_scales scale) {
+    const int *first = rows_of(p, pair);
     double size = scale.ampere;
-    for (int k = p->lists.pair_rows_p[pair]; k < p->lists.pair_rows_p[pair + 1]; k++) {
-        int r = p->lists.pair_rows[k];
+    for (int k = first[0]; k < first[1]; k++) {
+        int r = p->lists.column_rows[k];
         size = fmax(size, dalcs_scales_norm(p->cache.form[0], scale, r));
     }
     return size;
@@ -137,20 +143,61 @@ double dalcs_scales_pair_terms(const struct dalcs_osnsp *p, const double *u, con
     return size;
 }
 
+static double terms_of(const struct dalcs_system *s, const double *u, const double *y, int r) {
+    double size = 0.0;
+    for (int i = s->A.p[r]; i < s->A.p[r + 1]; i++) {
+        size += fabs(s->A.x[i] * y[s->A.j[i]]);
+    }
+    for (int i = s->E.p[r]; i < s->E.p[r + 1]; i++) {
+        size += fabs(s->E.x[i] * u[s->n_x + s->E.j[i]]);
+    }
+    return size;
+}
+
 double dalcs_scales_current_terms(const struct dalcs_osnsp *p, const double *u, const double *y,
                                   int d) {
-    const struct dalcs_system *s = p->system;
+    const int *first = rows_of(p, d);
     double largest = 0.0;
-    for (int k = p->lists.pair_rows_p[d]; k < p->lists.pair_rows_p[d + 1]; k++) {
-        int r = p->lists.pair_rows[k];
-        double size = 0.0;
+    for (int k = first[0]; k < first[1]; k++) {
+        largest = fmax(largest, terms_of(p->system, u, y, p->lists.column_rows[k]));
+    }
+    return largest;
+}
+
+/* Is it a current that no voltage tells: of a closed pair, or one that stands in KCL alone, as that of a V source? */
+static bool leads_on(const struct dalcs_osnsp *p, int column) {
+    const int pair = column - dalcs_system_n_equations(p->system);
+    const int *first = p->lists.column_rows_p + column;
+    bool is_in_kcl = first[0] < first[1];
+    for (int k = first[0]; k < first[1] && is_in_kcl; k++) {
+        is_in_kcl = p->system->row_is_current[p->lists.column_rows[k]];
+    }
+    return is_in_kcl &&
+           (pair < 0 || (dalcs_osnsp_is_on(p, pair) && !p->system->pair[pair].is_formula));
+}
+
+static int add_rows(struct dalcs_osnsp *p, int column, int n) {
+    for (int k = p->lists.column_rows_p[column]; k < p->lists.column_rows_p[column + 1]; k++) {
+        const int r = p->lists.column_rows[k];
+        if (p->work.row_seen[r] != p->work.searches) {
+            p->work.row_seen[r] = p->work.searches;
+            p->work.row[n++] = r;
+        }
+    }
+    return n;
+}
+
+double dalcs_scales_series_terms(struct dalcs_osnsp *p, const double *u, const double *y, int d) {
+    const struct dalcs_system *s = p->system;
+    p->work.searches++;
+    int n = add_rows(p, dalcs_system_n_equations(s) + d, 0);
+    double largest = 0.0;
+    for (int k = 0; k < n; k++) {
+        const int r = p->work.row[k];
+        largest = fmax(largest, terms_of(s, u, y, r));
         for (int i = s->A.p[r]; i < s->A.p[r + 1]; i++) {
-            size += fabs(s->A.x[i] * y[s->A.j[i]]);
+            n = leads_on(p, s->A.j[i]) ? add_rows(p, s->A.j[i], n) : n;
         }
-        for (int i = s->E.p[r]; i < s->E.p[r + 1]; i++) {
-            size += fabs(s->E.x[i] * u[s->n_x + s->E.j[i]]);
-        }
-        largest = fmax(largest, size);
     }
     return largest;
 }

@@ -37,6 +37,10 @@ double dalcs_scales_current_terms(const struct dalcs_osnsp *p, const double *u, 
 double dalcs_scales_pair_terms(const struct dalcs_osnsp *p, const double *u, const double *y,
                                int pair);
 
+/* The same of the equations that hold what is in series with a closed pair, too: the currents of closed pairs and of V sources
+ * are known no better than the KCL where they end. An ammeter beside a diode changes nothing. */
+double dalcs_scales_series_terms(struct dalcs_osnsp *p, const double *u, const double *y, int pair);
+
 /* The norm of a pair's current: it is known no better than the KCL that it enters. */
 double dalcs_scales_current_norm(const struct dalcs_osnsp *p, int pair, struct dalcs_scales scale);
 
