@@ -51,12 +51,6 @@ void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double 
 bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
                             const double *scale, double *phi);
 
-/* Such a factor. Lines that are off by it cost three bits: at the nodes of a step the rounding of what they leave
- * counts 13 times (the Lebesgue constant of seven stages), and 13 eps is 1/350 of the least inner tolerance, 1e-12. The
- * other five bits are for voltages that are larger than what their difference drives. A tangent at an argument that is
- * still on its way is good enough if it is within the same. */
-static const double dalcs_smooth_steeper = 8.0;
-
 /* Lines as good as any before anything is known: of all functions, or of those that start on one, which say what flux
  * and charge are: for a given flux the current is in nothing but these. */
 void dalcs_smooth_nominal_tangents(const struct dalcs_system *system);

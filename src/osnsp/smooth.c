@@ -133,7 +133,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
         }
         is_last = agrees && is_done;
         bool stalls = step > 0 && is_done && !is_last && !n->limits; /* the digits do not suffice */
-        if (stalls && dalcs_osnsp_retangent(p, dalcs_smooth_steeper, y)) {
+        if (stalls && dalcs_osnsp_retangent(p, dalcs_beyond, y)) {
             continue;
         }
         DALCS_TRY(find_slope(p, p->smooth.given, y));
@@ -158,7 +158,7 @@ enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, 
         status = iterate(p, sigma, y, solve);
     }
     /* beside a line that is far steeper what is rounding would be any answer */
-    for (int k = 0; status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_smooth_steeper, y); k++) {
+    for (int k = 0; status == DALCS_OK && dalcs_osnsp_retangent(p, dalcs_beyond, y); k++) {
         status = k < MOST_STEEPER ? iterate(p, sigma, y, solve) : DALCS_NOT_CONVERGED;
     }
     return status;
