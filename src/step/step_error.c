@@ -15,10 +15,6 @@
 
 #include <math.h>
 
-/* Signals smaller than this part of the largest of their unit are held to that one's scale; the
- * current of a pair where it is slight beside it. */
-static const double smallest_scale = 1e-5;
-
 /* No column is known better than this part of what would balance the largest of the others. */
 static const double rounding_part = 2e-14;
 
@@ -62,11 +58,13 @@ struct allowance {
     double tolerance, least[3], besides[3];
 };
 
+/* Signals that are nothing beside the largest of their unit are held to that one's scale; the current of a pair where it
+ * is slight beside it. */
 static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                            const struct dalcs_step_quality *q, struct allowance *a) {
     a->tolerance = part->inner_tolerance;
-    a->least[0] = smallest_scale * q->unit[0];
-    a->least[1] = smallest_scale * q->unit[1];
+    a->least[0] = dalcs_nothing * q->unit[0];
+    a->least[1] = dalcs_nothing * q->unit[1];
     a->least[2] = dalcs_slight * q->unit[1];
     a->besides[0] = r->besides[0] + dalcs_step_crossed(part, 0, q->here);
     a->besides[1] = r->besides[1] + dalcs_step_crossed(part, 1, q->here);
@@ -80,7 +78,7 @@ double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const d
         return 0.0;
     }
     double least = pair >= 0 ? dalcs_slight * unit[1]
-                             : part->scales.kinds->leans[column] * smallest_scale *
+                             : part->scales.kinds->leans[column] * dalcs_nothing *
                                    unit[s->column_is_current[column] ? 1 : 0];
     return dalcs_larger(least,
                         dalcs_larger(part->scales.column[column], part->scales.magnitude[column]));
