@@ -144,7 +144,8 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
     memcpy(e->after, u, (size_t)s->n_x * sizeof(double));
     double limit[2];
     for (int unit = 0; unit < 2; unit++) {
-        limit[unit] = dalcs_alike * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
+        double here = fmax(largest_state(s, u, unit), largest_state(s, y, unit));
+        limit[unit] = fmax(dalcs_alike * here, dalcs_sum_rounded * c->scale[unit]);
     }
     if (!has_moved(s, u, y, limit)) {
         return DALCS_OK;
