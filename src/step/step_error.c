@@ -11,12 +11,10 @@
 #include "extremes.h"
 #include "magnitudes.h"
 #include "quads.h"
+#include "rounding.h"
 #include "wide_vectors.h"
 
 #include <math.h>
-
-/* No column is known better than this part of what would balance the largest of the others. */
-static const double rounding_part = 2e-14;
 
 static bool is_on(const struct dalcs_radau_part *part, int pair) {
     return dalcs_osnsp_is_on(&part->component->osnsp, pair);
@@ -29,6 +27,7 @@ static void cross_units(const struct dalcs_radau_part *part, double *unit) {
     unit[1] = dalcs_larger(unit[1], part->scales.cross[1] * volt);
 }
 
+/* No column is known better than a sum of what would balance the largest of the others, by ten of its roundings. */
 double dalcs_step_rounding(const struct dalcs_radau_part *part,
                            const struct dalcs_stage_entry *entry) {
     int n_equations = dalcs_system_n_equations(part->component->system);
@@ -41,7 +40,7 @@ double dalcs_step_rounding(const struct dalcs_radau_part *part,
             is_part == NULL || !is_part[c]; /* in no unit: what it adds elsewhere is there */
         balanced = counts ? dalcs_larger(balanced, fabs(final[c]) * inverse[c]) : balanced;
     }
-    return rounding_part * part->segment.rounding * balanced;
+    return dalcs_beyond * dalcs_sum_rounded * part->segment.rounding * balanced;
 }
 
 /* One more error, over what is allowed for it. Divisions cost time, and few columns are worse than all
@@ -68,7 +67,8 @@ static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau
     a->least[2] = dalcs_slight * q->unit[1];
     a->besides[0] = r->besides[0] + dalcs_step_crossed(part, 0, q->here);
     a->besides[1] = r->besides[1] + dalcs_step_crossed(part, 1, q->here);
-    a->besides[2] = rounding_part * part->segment.rounding * q->unit[1] + a->besides[1];
+    a->besides[2] =
+        dalcs_beyond * dalcs_sum_rounded * part->segment.rounding * q->unit[1] + a->besides[1];
 }
 
 double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const double *unit) {
