@@ -40,7 +40,13 @@ double dalcs_step_rounding(const struct dalcs_radau_part *part,
             is_part == NULL || !is_part[c]; /* in no unit: what it adds elsewhere is there */
         balanced = counts ? dalcs_larger(balanced, fabs(final[c]) * inverse[c]) : balanced;
     }
-    return dalcs_beyond * dalcs_sum_rounded * part->segment.rounding * balanced;
+    return dalcs_beyond * dalcs_sum_rounded * balanced;
+}
+
+/* On factors, errors are beyond what a sum has. No more than that is allowed: what a guard may be off by, two digits, would
+ * hide errors of a phase of 10 V beside a frequency of 6 MV, and of currents through what is open. */
+static double above_map(const struct dalcs_radau_part *part) {
+    return part->segment.rounding > 1.0 ? dalcs_beyond : 1.0;
 }
 
 /* One more error, over what is allowed for it. Divisions cost time, and few columns are worse than all
@@ -67,8 +73,7 @@ static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau
     a->least[2] = dalcs_slight * q->unit[1];
     a->besides[0] = r->besides[0] + dalcs_step_crossed(part, 0, q->here);
     a->besides[1] = r->besides[1] + dalcs_step_crossed(part, 1, q->here);
-    a->besides[2] =
-        dalcs_beyond * dalcs_sum_rounded * part->segment.rounding * q->unit[1] + a->besides[1];
+    a->besides[2] = dalcs_beyond * dalcs_sum_rounded * above_map(part) * q->unit[1] + a->besides[1];
 }
 
 double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const double *unit) {
@@ -183,7 +188,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
     find_allowance(r, part, q, &a);
     compare_all(part, &a, curved ? dalcs_system_n_columns(s) : s->n_x, s->n_x, drift, ripple, q);
     if (!(q->ratio <= 1.0)) { /* is it rounding? The test is needed for few steps. */
-        compare(part, &a, dalcs_stage_natural_units(entry), dalcs_step_rounding(part, entry), q);
+        compare(part, &a, dalcs_stage_natural_units(entry),
+                above_map(part) * dalcs_step_rounding(part, entry), q);
     }
     q->own = q->ratio;
     if (q->ratio <= 1.0) {
