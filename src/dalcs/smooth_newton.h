@@ -46,16 +46,10 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
 void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double (*x)[2]);
 
 /* Lines g that are those of the tangents at x[n_smooth][2], as far as these are finite, where one differs from the present
- * one by more than a factor, or rounding of the present one hides a function that is something beside scale[2], the largest
+ * one by a factor beyond ten, or rounding of the present one hides a function that is something beside scale[2], the largest
  * V and A: what was solved with the others is to be forgotten, phi[n_smooth] is those that go with x. */
-bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
+bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2],
                             const double *scale, double *phi);
-
-/* Such a factor. Lines that are off by it cost three bits: at the nodes of a step the rounding of what they leave
- * counts 13 times (the Lebesgue constant of seven stages), and 13 eps is 1/350 of the least inner tolerance, 1e-12. The
- * other five bits are for voltages that are larger than what their difference drives. A tangent at an argument that is
- * still on its way is good enough if it is within the same. */
-static const double dalcs_smooth_steeper = 8.0;
 
 /* Lines as good as any before anything is known: of all functions, or of those that start on one, which say what flux
  * and charge are: for a given flux the current is in nothing but these. */

@@ -71,30 +71,26 @@ void dalcs_smooth_take_rest(const struct dalcs_smooth_input *of, const double *x
 }
 
 /* Is rounding of the present line more than six digits of the function allow, where the function is something beside
- * `scale`, the largest of its unit, and its tangent is flatter by more than a factor? */
-static bool is_hidden(const struct dalcs_smooth_input *of, const double *x, double factor,
+ * `scale`, the largest of its unit, and the line that its tangent has is far flatter? */
+static bool is_hidden(const struct dalcs_smooth_input *of, const double *x, const double *line,
                       double scale) {
-    double gradient[2];
-    double line[2];
     double steeper = 0.0;
     const double f = fabs(dalcs_smooth_value(of->kind, x));
-    dalcs_smooth_finite_gradient(of, x, gradient);
-    find_lines(of, gradient, line);
     for (int j = 0; j < 2; j++) {
         const double present = fabs(dalcs_smooth_line(of, j));
-        steeper += present > factor * fabs(line[j]) ? present * fabs(x[j]) : 0.0;
+        steeper += present > dalcs_beyond * fabs(line[j]) ? present * fabs(x[j]) : 0.0;
     }
     return f > dalcs_nothing * scale && dalcs_answer_rounded * steeper > dalcs_nothing * f;
 }
 
-bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
+bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2],
                             const double *scale, double *phi) {
     double line[2];
     bool is_due = false;
     for (int k = 0; k < system->n_smooth && !is_due; k++) {
         const struct dalcs_smooth_input *of = &system->smooth[k];
-        is_due = find_tangent(of, x[k], line) > factor ||
-                 is_hidden(of, x[k], factor, scale[system->row_is_current[of->row]]);
+        is_due = find_tangent(of, x[k], line) > dalcs_beyond ||
+                 is_hidden(of, x[k], line, scale[system->row_is_current[of->row]]);
     }
     for (int k = 0; k < system->n_smooth && is_due; k++) {
         const struct dalcs_smooth_input *of = &system->smooth[k];

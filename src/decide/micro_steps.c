@@ -14,9 +14,6 @@
 /* A micro-step over the step of the ladder: 2^-MICRO. */
 enum { MICRO = 20 };
 
-/* States that move in the first micro-step by more than this many times the second have jumped. */
-static const double jump_ratio = 4.0;
-
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u, enum dalcs_status status) {
     struct dalcs_euler *e = r->base;
@@ -131,12 +128,12 @@ bool dalcs_micro_extrapolate(const struct dalcs_radau_part *part, double *after,
         double first = fabs(part->work.y1[x] - part->x[x]);
         double second = fabs(part->work.y2[x] - part->work.y1[x]);
         double scale = largest[s->column_is_current[x]];
-        bool moved = first > jump_ratio * second && first > nothing[s->column_is_current[x]];
+        bool moved = first > dalcs_beyond * second && first > nothing[s->column_is_current[x]];
         jumps = jumps || moved;
         *noticeable = *noticeable || (moved && first > smallest * scale);
         bool dies_away = !moved && second < (1.0 - dalcs_slight) * first;
         if (dies_away && first > smallest * scale) {
-            *closer = dalcs_micro_shorter;
+            *closer = dalcs_small;
         } else if (dies_away && first > dalcs_beyond * part->inner_tolerance * scale) {
             /* in a much shorter one an event's error would weigh more than what the circuit does */
             *closer = fmin(*closer, dalcs_slight);
@@ -173,7 +170,7 @@ double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_
     h = ldexp(h, 5 * longer);
     /* clear of the next edge: on the flank of a fast source more may happen than at t */
     double room = dalcs_radau_limit(r, part) - part->segment.t;
-    double most = fmin(0.25, ldexp(dalcs_micro_shorter, 5 * longer)) * room;
+    double most = fmin(0.25, ldexp(dalcs_small, 5 * longer)) * room;
     for (int k = 0; k < 8 && h > most; k++) {
         h *= 0.0625;
     }

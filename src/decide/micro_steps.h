@@ -4,9 +4,6 @@
 
 #include "radau_state.h"
 
-/* A micro-step over a longer one that it is compared with. */
-static const double dalcs_micro_shorter = 1.0 / 1024.0;
-
 /* Notes a failure at part->segment.t with the problem of sigma and u[n_x + n_inputs]; returns status. */
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u,

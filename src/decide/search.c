@@ -11,9 +11,6 @@
 
 #include <math.h>
 
-/* Defects of a state, over what is allowed, that interpolation may leave; more is a jump. */
-static const double most_projected = 1e4;
-
 enum {
     STUCK = 3,         /* smaller steps without a smaller error */
     LEVERED_STUCK = 2, /* of levered voltages alone */
@@ -96,6 +93,11 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
     return status;
 }
 
+/* Of errors over what is allowed: may interpolation leave so much? More is a jump. */
+static bool may_be_left(double ratio) {
+    return dalcs_small * ratio < 1.0;
+}
+
 /* Where dalcs_search_project() cannot decide. */
 static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                    struct dalcs_search *search, const double *unit) {
@@ -116,7 +118,7 @@ static bool is_worth_asking(const struct dalcs_radau_part *part, const struct da
     bool has_free_states =
         part->segment.rounding == 1.0 && search->states_free && part->component->system->n_x > 0;
     bool stays = has_free_states || (part->guards.bends && search->flips == 0);
-    bool may_jump = stays ? isinf(ratio) : !(ratio < most_projected);
+    bool may_jump = stays ? isinf(ratio) : !may_be_left(ratio);
     return search->fixed || search->stuck > 0 || may_jump;
 }
 
@@ -130,7 +132,7 @@ static bool is_shortest(const struct dalcs_radau *r, const struct dalcs_radau_pa
  * time at which one begins moves only sources. */
 static bool is_nearly_right(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                             const struct dalcs_step_quality *quality) {
-    return dalcs_small * quality->own < 1.0 &&
+    return may_be_left(quality->own) &&
            dalcs_radau_ladder(part, part->length.level) >= 8.0 * r->resolution;
 }
 
@@ -156,7 +158,7 @@ static void count_stuck(const struct dalcs_radau_part *part, struct dalcs_search
 static bool is_hopeless(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                         const struct dalcs_search *search,
                         const struct dalcs_step_quality *quality) {
-    bool wrong_flip = search->flips > 0 && !(quality->own < most_projected);
+    bool wrong_flip = search->flips > 0 && !may_be_left(quality->own);
     return search->fixed || wrong_flip ||
            (is_shortest(r, part) && !is_nearly_right(r, part, quality));
 }
@@ -181,7 +183,7 @@ static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_pa
     bool asked = search->restarts > 0 || !part->guards.fresh;
     bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
     *answered = false;
-    return quality->own < most_projected && may_project && dalcs_projection_sees(part, false)
+    return may_be_left(quality->own) && may_project && dalcs_projection_sees(part, false)
                ? dalcs_search_project(r, part, search, answered)
                : DALCS_OK;
 }

@@ -2,6 +2,7 @@
 #include "euler_internal.h"
 
 #include "magnitudes.h"
+#include "power_of_step.h"
 #include "rounding.h"
 
 #include <math.h>
@@ -11,14 +12,6 @@
  * passive may have widely different gains). Two of them, extrapolated, leave an error of the square.
  * None reaches more than half of the way to the next edge. */
 static const double micro_part[] = {1e-6, 1e-3, 1.0};
-
-/* A quantity jumps when its change survives extrapolation to a step of 0 (regular changes halve with
- * the micro-step, impulsive ones do not) and is more than rounding. */
-static const double jump_part = 0.5;
-
-/* Where vanishing steps have a limit, half a micro-step moves the state as far as a whole one, or half
- * as far; with the derivative of an impulse it moves it twice as far. */
-static const double runaway = 1.5;
 
 static double largest_state(const struct dalcs_system *s, const double *y, bool currents) {
     double largest = 0.0;
@@ -63,7 +56,8 @@ static void find_noise(struct dalcs_euler *e, int k, const double *before) {
     }
 }
 
-/* What two micro-steps, y of length h and the component's scratch of half of it, say of a jump. */
+/* What two micro-steps, y of length h and the component's scratch of half of it, say of a jump: a change that does not
+ * halve with the micro-step and is more than rounding. */
 static bool extrapolate(struct dalcs_euler *e, int k, const double *u, const double *y,
                         const double *limit) {
     const struct dalcs_component *c = &e->component[k];
@@ -71,9 +65,9 @@ static bool extrapolate(struct dalcs_euler *e, int k, const double *u, const dou
     bool jumps = false;
     for (int x = 0; x < s->n_x; x++) {
         double whole = y[x] - u[x];
-        double limit_of_0 = 2.0 * (c->scratch[x] - u[x]) - whole;
-        jumps = jumps || (fabs(limit_of_0) > jump_part * fabs(whole) &&
-                          fabs(limit_of_0) > limit[s->column_is_current[x]]);
+        double half = c->scratch[x] - u[x];
+        jumps = jumps || (dalcs_power_of_step(whole, half) <= 0.0 &&
+                          fabs(2.0 * half - whole) > limit[s->column_is_current[x]]);
     }
     for (int x = 0; x < s->n_x && jumps; x++) {
         e->after[x] = 2.0 * c->scratch[x] - y[x];
@@ -89,31 +83,28 @@ static void extrapolate_impulses(struct dalcs_euler *e, int k, double h) {
     const double *lambda = c->scratch + dalcs_system_n_equations(c->system);
     bool differ = false;
     for (int d = 0; d < c->system->n_pairs; d++) {
-        double charge = h * lambda[d] - e->charge[d];
-        double flux = h * c->osnsp.w[d] - e->flux[d];
-        differ =
-            differ || (c->osnsp.lists.is_diode[d] && (charge < -jump_part * fabs(e->charge[d]) ||
-                                                      flux < -jump_part * fabs(e->flux[d])));
+        bool is_less = dalcs_power_of_step(e->charge[d], 0.5 * h * lambda[d]) > 1.0 ||
+                       dalcs_power_of_step(e->flux[d], 0.5 * h * c->osnsp.w[d]) > 1.0;
+        differ = differ || (c->osnsp.lists.is_diode[d] && is_less);
     }
     for (int d = 0; d < c->system->n_pairs; d++) {
         double *impulse[2] = {&e->charge[d], &e->flux[d]};
         double half[2] = {0.5 * h * lambda[d], 0.5 * h * c->osnsp.w[d]};
         for (int i = 0; i < 2; i++) {
-            double limit_of_0 = 2.0 * half[i] - *impulse[i];
-            bool impulsive = fabs(limit_of_0) > jump_part * fabs(*impulse[i]);
-            *impulse[i] = !impulsive ? 0.0 : differ ? half[i] : limit_of_0;
+            bool impulsive = dalcs_power_of_step(*impulse[i], half[i]) <= 0.0;
+            *impulse[i] = !impulsive ? 0.0 : differ ? half[i] : 2.0 * half[i] - *impulse[i];
         }
     }
 }
 
-/* A state that moves twice as far in half the time has no limit. */
+/* A state that moves twice as far in half the time has no limit: the derivative of an impulse moves it. */
 static bool runs_away(const struct dalcs_component *c, const double *u, const double *y,
                       const double *limit) {
     bool away = false;
     for (int x = 0; x < c->system->n_x && !away; x++) {
         double whole = fabs(y[x] - u[x]);
         away = whole > limit[c->system->column_is_current[x]] &&
-               fabs(c->scratch[x] - u[x]) > runaway * whole;
+               dalcs_power_of_step(whole, c->scratch[x] - u[x]) < 0.0;
     }
     return away;
 }
@@ -153,7 +144,8 @@ enum dalcs_status dalcs_euler_look_after(struct dalcs_euler *e, int k, const dou
     memcpy(e->after, u, (size_t)s->n_x * sizeof(double));
     double limit[2];
     for (int unit = 0; unit < 2; unit++) {
-        limit[unit] = dalcs_alike * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
+        double here = fmax(largest_state(s, u, unit), largest_state(s, y, unit));
+        limit[unit] = fmax(dalcs_alike * here, dalcs_sum_rounded * c->scale[unit]);
     }
     if (!has_moved(s, u, y, limit)) {
         return DALCS_OK;

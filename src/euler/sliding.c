@@ -1,6 +1,8 @@
 /* sliding.c - between the two sides of a switch that opens what closes it and closes what opens it. */
 #include "sliding_internal.h"
 
+#include "power_of_step.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -39,12 +41,11 @@ void dalcs_sliding_note_gaps(struct dalcs_positions *p, const double *y) {
     }
 }
 
-/* A gap halves with the step where what is read goes on through the event, and nearly stays where that jumps with it. */
-static const double staying = 0.75;
-
+/* A gap halves with the step where what is read goes on through the event, and stays where that jumps with it. */
 void dalcs_sliding_compare_gaps(struct dalcs_positions *p, const double *y) {
     for (int i = 0; i < dalcs_turning_n(p); i++) {
-        p->follows[i] = turns(p, i) && p->gap[i] > staying * fabs(there(p, i) - here(p, i, y));
+        p->follows[i] =
+            turns(p, i) && dalcs_power_of_step(there(p, i) - here(p, i, y), p->gap[i]) <= 0.0;
     }
 }
 

@@ -10,10 +10,6 @@
 
 #include <math.h>
 
-/* A remembered first step gets longer the next time if its error, over the signal, is below this: for
- * a row more at each event waveforms would be worse than they need. */
-static const double fine = 3e-11;
-
 /* All of a step of the ladder: a longer one may be as good. */
 static bool is_whole(const struct dalcs_radau_part *part, double theta) {
     return theta == 1.0 && part->segment.h == dalcs_radau_ladder(part, part->length.level);
@@ -22,9 +18,8 @@ static bool is_whole(const struct dalcs_radau_part *part, double theta) {
 /* What began after pairs changed sides. */
 static enum dalcs_status learn(struct dalcs_radau_part *part, const struct dalcs_search *search,
                                double theta, double error) {
-    double ratio = error * fmax(1.0, part->inner_tolerance / fine);
     bool longer = !search->fixed && is_whole(part, theta) && part->guards.n_crossed == 0 &&
-                  dalcs_length_rungs_promised(part, ratio) > 1.0 &&
+                  dalcs_length_rungs_promised(part, error) > 1.0 &&
                   dalcs_radau_ladder(part, part->length.level - 1) <=
                       dalcs_smaller(part->length.longest, part->length.longest_needed);
     int spare = longer ? 1 : 0; /* rungs that the first step may have more the next time */

@@ -124,7 +124,7 @@ double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, d
     }
     /* where nothing else flows, a current is still a difference of those that flow elsewhere */
     double local = dalcs_doubt_noise(part) * spread_about(part, guard, unit);
-    return dalcs_smaller(noise, dalcs_larger(local, dalcs_control_rounded * scale));
+    return dalcs_smaller(noise, dalcs_larger(local, dalcs_beyond * dalcs_sum_rounded * scale));
 }
 
 /* What errors of all that a guard is made of come to, with noise that is a part of `of_noise`. */

@@ -13,11 +13,6 @@
 
 #include <math.h>
 
-/* Falls this near to each other, in steps, are one event if the later one is no more than its doubt above 0 at the first.
- * Any value from 1e-11 to 1e-9 is right: without the rule opposite diodes of a bridge open 64 ns apart (together.py), and
- * what opens by itself does so later by more. */
-static const double same_by_value = 1e-10;
-
 /* A guard that is looked at, up to `end`, in steps. */
 struct look {
     int guard;
@@ -129,10 +124,12 @@ static double doubt_of(struct dalcs_radau_part *part, const struct look *a) {
 }
 
 /* Does a guard that falls at `theta` or later do so at an event that is no farther before than errors move it? Diodes
- * in series open together, whichever has a rounding more: leaks alone would take that down, late. */
+ * in series open together, whichever has a rounding more: leaks alone would take that down, late. Falls are alike, in
+ * steps, if the later guard is no more than its doubt above 0 at the first: without that opposite diodes of a bridge open
+ * 64 ns apart (together.py), and what opens by itself does so later by more. */
 static bool falls_with(const struct dalcs_radau_part *part, int guard, double event, double theta,
                        const double *unit) {
-    if (!part->guards.armed[guard] || theta - event > same_by_value) {
+    if (!part->guards.armed[guard] || theta - event > dalcs_alike) {
         return false;
     }
     double work[DALCS_MAX_NODES];

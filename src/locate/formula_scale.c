@@ -143,7 +143,7 @@ static double noise_of_argument(const struct dalcs_radau_part *part, int pair, c
             size += fabs(s->C.x[k]) * dalcs_step_scale(part, c, unit);
         }
     }
-    return dalcs_larger(dalcs_doubt_noise(part), dalcs_control_rounded) * size;
+    return dalcs_larger(dalcs_doubt_noise(part), dalcs_beyond * dalcs_sum_rounded) * size;
 }
 
 /* What lambda or w of a pair is known to: by its argument, and by those of the kinks that it reads or bounds. */

@@ -5,14 +5,8 @@
 #include "radau_state.h"
 
 #include "formula_scale.h"
+#include "magnitudes.h"
 #include "rounding.h"
-
-#include <float.h>
-
-/* Where the voltage or current that moves a switch is small beside others, the answer that it is a part of is still
- * right to so many digits of those: elimination of n unknowns leaves a small multiple of n of them (Higham, theorem 9.3),
- * 4 for each of 64. A dense map tells what they make of it. */
-static const double dalcs_control_rounded = 256.0 * DBL_EPSILON;
 
 static inline int dalcs_guards_number(const struct dalcs_radau_part *part) {
     return part->component->system->n_pairs + part->stages.n_watched;
@@ -57,8 +51,9 @@ static inline double dalcs_guard_scale(const struct dalcs_radau_part *part, int 
 static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *part, int guard,
                                                const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    if (guard >= s->n_pairs) {
-        return dalcs_control_rounded *
+    if (guard >=
+        s->n_pairs) { /* small beside others it is as exact as the sums that these are in */
+        return dalcs_beyond * dalcs_sum_rounded *
                unit[dalcs_system_control_is_current(s, dalcs_guard_pair(part, guard))];
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);

@@ -19,9 +19,6 @@
  * nothing (cycle.h). In vain it is waited for twice as many the next time. */
 enum { OFTEN = 4, MOST_PATIENCE = 64 };
 
-/* States within this many times their scale need no new one. */
-static const double most_growth = 4.0;
-
 static void wait_longer(struct dalcs_recurring *recurring) {
     recurring->patience =
         recurring->patience < MOST_PATIENCE ? 2 * recurring->patience : MOST_PATIENCE;
@@ -71,14 +68,15 @@ static enum dalcs_status find_map(struct dalcs_radau_part *part, double h, bool 
     return DALCS_OK;
 }
 
-/* Errors as in step_error.c, of the states, beside no more than their own scales. */
+/* Errors as in step_error.c, of the states, beside no more than their own scales. A state that stays within a multiple
+ * of its scale needs no new one. */
 void dalcs_recurrence_limits(const struct dalcs_radau_part *part,
                              const struct dalcs_stage_brief *step, int x, double *most_last,
                              double *most_drift) {
     bool states_free = dalcs_stage_frees_states(step->entry);
     double allowed = (states_free ? 1.0 : dalcs_slight) * part->inner_tolerance;
     double of_unit = part->scales.unit[part->component->system->column_is_current[x] ? 1 : 0];
-    *most_last = dalcs_larger(most_growth * part->scales.column[x], of_unit);
+    *most_last = dalcs_larger(dalcs_beyond * part->scales.column[x], of_unit);
     *most_drift = allowed * part->scales.column[x];
 }
 

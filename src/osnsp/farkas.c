@@ -136,7 +136,7 @@ bool dalcs_claim_is_refuted(const struct dalcs_claim *claim, double *v, double *
                      : has_sign                    ? at_least_0(total)
                                                    : fabs(total);
         /* A coefficient that nothing cancels is left whole, be it as small as it may, and so is what it could carry. */
-        if (!(off <= dalcs_weight_rounded * sum[3 * c + 2])) {
+        if (!(off <= dalcs_weight_rounded(sum[3 * c + 2]))) {
             return false;
         }
         missed += off * claim->reach[s->column_is_current[c]];

@@ -12,6 +12,8 @@
 
 #include "system.h"
 
+#include <math.h>
+
 /* What is said of a pair. */
 enum dalcs_side_claim {
     DALCS_EITHER_SIDE, /* a diode: lambda >= 0 and w >= 0, not one of them 0; a switch: nothing */
@@ -30,8 +32,10 @@ struct dalcs_claim {
 /* Digits that weights are given: those that are the same are then the same to the last one, and cancel. */
 enum { DALCS_WEIGHT_BITS = 36 };
 
-/* A weight, or a sum of products of weights, over the largest of its terms, that is 0: the last of those digits. */
-static const double dalcs_weight_rounded = 0x1p-36;
+/* A weight, or a sum of products of weights, of which the largest term is so large, that is 0: the last of those digits. */
+static inline double dalcs_weight_rounded(double largest) {
+    return ldexp(largest, -DALCS_WEIGHT_BITS);
+}
 
 static inline int dalcs_claim_n_rows(const struct dalcs_system *s) {
     return dalcs_system_n_equations(s) + 2 * s->n_pairs;

@@ -200,9 +200,9 @@ enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u,
                                      double *y) DALCS_MUST_CHECK;
 
 /* The lines of smooth sources become those of their tangents at the arguments that newton->x holds, where one differs by
- * more than this factor from what it is, or where rounding of a line hides a function that is something beside the largest
+ * a factor beyond ten from what it is, or where rounding of a line hides a function that is something beside the largest
  * of y[n_columns] (NULL: not looked at). Then all that was factored is forgotten. */
-bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, double factor, const double *y);
+bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, const double *y);
 
 /* After an answer y to u that may be one of several: p->signs.tied becomes all diodes whose current and
  * voltage no more than rounding tells from 0, and scale the size of what rounding is measured by (V, A).

@@ -162,7 +162,7 @@ static bool is_refuted(struct dalcs_refutation *r) {
         most = fmax(most, fabs(r->least.rest[row]));
     }
     for (int row = 0; row < r->n_rows; row++) {
-        bool is_zero = !(fabs(r->least.rest[row]) > dalcs_weight_rounded * most);
+        bool is_zero = !(fabs(r->least.rest[row]) > dalcs_weight_rounded(most));
         r->v[row] = r->row_scale[row] * r->least.rest[row];
         r->clean[row] = is_zero ? 0.0 : r->v[row];
         largest = fmax(largest, fabs(r->clean[row]));

@@ -1,12 +1,10 @@
 /* stage_shift.c - by two very short steps of implicit Euler. */
 #include "stage_shift.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 #include <string.h>
-
-/* A step in which states move so little by themselves that what they move is what the mode does not allow, as in the
- * shortest steps of projection.c. */
-static const double at_once = 0x1p-30;
 
 /* What is kept without its rates, with its right-hand sides, by rows. */
 static void fill_moment(const struct dalcs_stage_workshop *b, double *to) {
@@ -35,7 +33,8 @@ static bool solve_moment(const struct dalcs_stage_workshop *b, double h, double 
     return dalcs_dense_solve(b->kept.n_kept, b->n_rhs, moment) > 0.0;
 }
 
-/* The limit of what such a step adds to the states as it gets shorter, from two by extrapolation. What goes on by itself
+/* The limit of what a very short step adds to the states as it gets shorter, from two by extrapolation: in so short a step
+ * states that move by themselves are alike, and what moves them is what the mode does not allow. What goes on by itself
  * moves states in proportion to the step, and cancels. */
 void dalcs_stage_shift_find(struct dalcs_stage_workshop *b) {
     const int width = dalcs_dense_row(b->kept.n_kept, b->n_rhs);
@@ -43,8 +42,8 @@ void dalcs_stage_shift_find(struct dalcs_stage_workshop *b) {
     double *all = half + b->kept.n_kept * width;
     fill_moment(b, half);
     memcpy(all, half, (size_t)(b->kept.n_kept * width) * sizeof(*all));
-    bool is_regular = solve_moment(b, 0.5 * at_once * b->entry->h, half);
-    is_regular = solve_moment(b, at_once * b->entry->h, all) && is_regular;
+    bool is_regular = solve_moment(b, 0.5 * dalcs_alike * b->entry->h, half);
+    is_regular = solve_moment(b, dalcs_alike * b->entry->h, all) && is_regular;
     for (int j = 0; j < b->n_rhs; j++) {
         for (int x = 0; x < b->n_x; x++) {
             int at = x * width + b->kept.n_kept + j;

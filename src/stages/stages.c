@@ -1,12 +1,10 @@
 /* stages.c - what all entries of a system have in common, and a step on any of them. */
 #include "stage_update.h"
 
+#include "magnitudes.h"
+
 #include <stdlib.h>
 #include <string.h>
-
-/* Roundings of a step on factors over one on a map: stages in double precision cancel, and so do states against sources in
- * currents of capacitors. Any value from 50 to 500 is right. */
-static const double factors_rounding = 50.0;
 
 /* Is it KCL of a node without capacitors at which a resistor ends? */
 static bool has_conductance(const struct dalcs_system *s, int row) {
@@ -166,6 +164,8 @@ const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry) {
     return entry->natural;
 }
 
+/* Stages in double precision cancel, and so do states against sources in currents of capacitors: two digits of those that
+ * a map has, which is solved for in extended precision. */
 double dalcs_stage_rounding(const struct dalcs_stage_entry *entry) {
-    return entry->map != NULL ? 1.0 : factors_rounding;
+    return entry->map != NULL ? 1.0 : 1.0 / dalcs_slight;
 }

@@ -9,9 +9,6 @@
  * be to 1e-11 of the run. choose_stages() says it in words, too. */
 static const double aimed = 1e-9;
 
-/* Where the number of stages of a large part without a sine changes. */
-static const double loose = 1e-4;
-
 /* Unknowns up to which a step is a dense map, over the limit of the OSNSP's maps: factors are cheaper
  * from about three dozen on, but a map is as exact as doubles can be, which tight tolerances need where
  * conductances spread by so much: random converters lose digits on factors from 1e7 on. With few stages
@@ -112,9 +109,8 @@ static int choose_stages(double tolerance, bool does_better, const struct dalcs_
     }
     if (n > dense_limit) {
         bool few = is_pulsed(c) || !is_swinging(c);
-        bool fewer = few && tolerance >= loose;
-        *because = fewer ? "large, loose tolerance" : few ? "large" : "large, sine";
-        return fewer ? 3 : few ? 5 : 7;
+        *because = few ? "large" : "large, sine";
+        return few ? 5 : 7;
     }
     bool many = tolerance < dalcs_nothing && n <= (int)(very_small * dense_limit) &&
                 c->system->monotone && !is_pulsed(c);

@@ -116,8 +116,7 @@ static double rounding_of(const struct dalcs_radau_part *part,
  * all columns. */
 static double balanced_rounding(const struct dalcs_radau_part *part,
                                 const struct dalcs_stage_entry *entry) {
-    return dalcs_stage_has_map(entry) ? 0.0
-                                      : dalcs_step_rounding(part, entry) / part->segment.rounding;
+    return dalcs_stage_has_map(entry) ? 0.0 : dalcs_step_rounding(part, entry);
 }
 
 void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,

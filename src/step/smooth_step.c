@@ -224,10 +224,9 @@ static enum dalcs_status solve(struct dalcs_radau_part *part, struct dalcs_stage
 
 enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
                                           struct dalcs_stage_entry **entry) {
-    (void)dalcs_osnsp_retangent(&part->component->osnsp, dalcs_smooth_steeper, NULL);
+    (void)dalcs_osnsp_retangent(&part->component->osnsp, NULL);
     enum dalcs_status status = solve(part, entry);
-    if (status > DALCS_OK &&
-        dalcs_osnsp_retangent(&part->component->osnsp, dalcs_smooth_steeper, NULL)) {
+    if (status > DALCS_OK && dalcs_osnsp_retangent(&part->component->osnsp, NULL)) {
         status = solve(part, entry);
     }
     if (status == DALCS_OK) {

@@ -11,16 +11,10 @@
 #include "extremes.h"
 #include "magnitudes.h"
 #include "quads.h"
+#include "rounding.h"
 #include "wide_vectors.h"
 
 #include <math.h>
-
-/* Signals smaller than this part of the largest of their unit are held to that one's scale; the
- * current of a pair where it is slight beside it. */
-static const double smallest_scale = 1e-5;
-
-/* No column is known better than this part of what would balance the largest of the others. */
-static const double rounding_part = 2e-14;
 
 static bool is_on(const struct dalcs_radau_part *part, int pair) {
     return dalcs_osnsp_is_on(&part->component->osnsp, pair);
@@ -33,6 +27,7 @@ static void cross_units(const struct dalcs_radau_part *part, double *unit) {
     unit[1] = dalcs_larger(unit[1], part->scales.cross[1] * volt);
 }
 
+/* No column is known better than a sum of what would balance the largest of the others, by ten of its roundings. */
 double dalcs_step_rounding(const struct dalcs_radau_part *part,
                            const struct dalcs_stage_entry *entry) {
     int n_equations = dalcs_system_n_equations(part->component->system);
@@ -45,7 +40,13 @@ double dalcs_step_rounding(const struct dalcs_radau_part *part,
             is_part == NULL || !is_part[c]; /* in no unit: what it adds elsewhere is there */
         balanced = counts ? dalcs_larger(balanced, fabs(final[c]) * inverse[c]) : balanced;
     }
-    return rounding_part * part->segment.rounding * balanced;
+    return dalcs_beyond * dalcs_sum_rounded * balanced;
+}
+
+/* On factors, errors are beyond what a sum has. No more than that is allowed: what a guard may be off by, two digits, would
+ * hide errors of a phase of 10 V beside a frequency of 6 MV, and of currents through what is open. */
+static double above_map(const struct dalcs_radau_part *part) {
+    return part->segment.rounding > 1.0 ? dalcs_beyond : 1.0;
 }
 
 /* One more error, over what is allowed for it. Divisions cost time, and few columns are worse than all
@@ -62,15 +63,17 @@ struct allowance {
     double tolerance, least[3], besides[3];
 };
 
+/* Signals that are nothing beside the largest of their unit are held to that one's scale; the current of a pair where it
+ * is slight beside it. */
 static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                            const struct dalcs_step_quality *q, struct allowance *a) {
     a->tolerance = part->inner_tolerance;
-    a->least[0] = smallest_scale * q->unit[0];
-    a->least[1] = smallest_scale * q->unit[1];
+    a->least[0] = dalcs_nothing * q->unit[0];
+    a->least[1] = dalcs_nothing * q->unit[1];
     a->least[2] = dalcs_slight * q->unit[1];
     a->besides[0] = r->besides[0] + dalcs_step_crossed(part, 0, q->here);
     a->besides[1] = r->besides[1] + dalcs_step_crossed(part, 1, q->here);
-    a->besides[2] = rounding_part * part->segment.rounding * q->unit[1] + a->besides[1];
+    a->besides[2] = dalcs_beyond * dalcs_sum_rounded * above_map(part) * q->unit[1] + a->besides[1];
 }
 
 double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const double *unit) {
@@ -80,7 +83,7 @@ double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const d
         return 0.0;
     }
     double least = pair >= 0 ? dalcs_slight * unit[1]
-                             : part->scales.kinds->leans[column] * smallest_scale *
+                             : part->scales.kinds->leans[column] * dalcs_nothing *
                                    unit[s->column_is_current[column] ? 1 : 0];
     return dalcs_larger(least,
                         dalcs_larger(part->scales.column[column], part->scales.magnitude[column]));
@@ -185,7 +188,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
     find_allowance(r, part, q, &a);
     compare_all(part, &a, curved ? dalcs_system_n_columns(s) : s->n_x, s->n_x, drift, ripple, q);
     if (!(q->ratio <= 1.0)) { /* is it rounding? The test is needed for few steps. */
-        compare(part, &a, dalcs_stage_natural_units(entry), dalcs_step_rounding(part, entry), q);
+        compare(part, &a, dalcs_stage_natural_units(entry),
+                above_map(part) * dalcs_step_rounding(part, entry), q);
     }
     q->own = q->ratio;
     if (q->ratio <= 1.0) {

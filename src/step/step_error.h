@@ -34,7 +34,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
                       struct dalcs_stage_entry *entry, double end,
                       struct dalcs_step_quality *quality);
 
-/* What a column of 1 in balanced units (dalcs_stage_natural_units) may be off by rounding in this step. */
+/* What a column of 1 in balanced units (dalcs_stage_natural_units) may be off by rounding in this step if it has no more
+ * than a map has. */
 double dalcs_step_rounding(const struct dalcs_radau_part *part,
                            const struct dalcs_stage_entry *entry);
 

@@ -6,14 +6,13 @@
 #include "extremes.h"
 #include "pi.h"
 #include "present.h"
+#include "rounding.h"
 
 /* The error estimate may be this much smaller than what is allowed before the step is doubled. */
 static const double safety = 0.8;
 
-/* An error below this, over the signal, is rounding: the true one may be far smaller, and the step grows
- * by at least so many powers of 2 to see. */
-static const double unseen = 1e-15;
-static const double rungs_unseen = 3.0;
+/* Rungs of a long move. */
+enum { LONG_MOVE = 3 };
 
 /* Steps until a longer one is tried to see, at most. */
 enum { MOST_PATIENCE = 4096 };
@@ -120,7 +119,8 @@ void dalcs_length_shorten(struct dalcs_radau_part *part, double ratio, int stuck
     part->length.level += down > 1 ? down : 1;
     if (stuck > 0) { /* something much faster than the step has to die away */
         int far = stuck == 1 ? 2 : 5;
-        part->length.level = shared_rung(part->length.level + (far > down ? far - down : 0), 3);
+        part->length.level =
+            shared_rung(part->length.level + (far > down ? far - down : 0), LONG_MOVE);
     }
     int patience = part->length.grew ? 2 * part->length.patience : part->length.patience;
     part->length.patience = patience < MOST_PATIENCE ? patience : MOST_PATIENCE;
@@ -130,7 +130,8 @@ void dalcs_length_shorten(struct dalcs_radau_part *part, double ratio, int stuck
 
 double dalcs_length_rungs_promised(const struct dalcs_radau_part *part, double ratio) {
     double rungs = log2(safety / ratio) / (double)(part->stages.method->s + 1);
-    return ratio * part->inner_tolerance < unseen ? dalcs_larger(rungs, rungs_unseen) : rungs;
+    /* where the error is rounding of the signal the true one may be far smaller */
+    return ratio * part->inner_tolerance < dalcs_rounded ? dalcs_larger(rungs, LONG_MOVE) : rungs;
 }
 
 void dalcs_length_lengthen(struct dalcs_radau_part *part, double ratio) {
@@ -151,8 +152,8 @@ void dalcs_length_lengthen(struct dalcs_radau_part *part, double ratio) {
         part->length.held_back += is_held_back ? 1 : 0;
         return;
     }
-    int level =
-        up < 2 ? part->length.level - 1 : shared_rung(part->length.level - up, up < 3 ? 2 : 3);
+    int level = up < 2 ? part->length.level - 1
+                       : shared_rung(part->length.level - up, up < LONG_MOVE ? 2 : LONG_MOVE);
     bool is_far = level < part->length.level - 1;
     if (!is_far &&
         !(promising ? part->length.waited > 1 : part->length.waited > part->length.patience)) {
