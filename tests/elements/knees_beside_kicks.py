@@ -9,9 +9,11 @@ than the tolerance of the kick's volts, and by all of what the formula gives. A 
 large, where steps are on factors and no map tells what a guard is off by.
 """
 
+import pathlib
 import sys
 
-import dalcs_program
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import dalcs_program  # noqa: E402
 
 CASES = ((500, 50, 1e8, 84, 50, 1e-3, 0.25), (3000, 300, 1e7, 20, 400, 1e-2, 0.3), (12, 1, 1e9, 1e6, 1e4, 1e-6, 0.1),
          (325, 10, 1e8, 1000, 50, 2e-3, 0.2))
