@@ -541,31 +541,6 @@ int dalcs_formula_find_control(const struct dalcs_card *card) {
     return k;
 }
 
-/* LAPLACE {formula} = {expression}, LAPLACE=expression; behind the formula of a B the same. */
-bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n) {
-    static const char *const word[] = {"laplace"};
-    bool is_table;
-    int k = 3;
-    while (k < card->n && !is_word(&card->token[k], word, 1)) {
-        k++;
-    }
-    if (strchr("beg", card->letter) == NULL || card->letter == '\0' || k >= card->n) {
-        return false;
-    }
-    const int formula = card->letter == 'b' ? card->n : start_of_controlled(card, &is_table);
-    k = formula < card->n ? formula + 1 : k + 1;
-    k += is_kind(card, k, DALCS_TOKEN_EQUAL);
-    *first = k;
-    while (k < card->n && !(k > *first && dalcs_assignment_starts(card, k))) {
-        if (card->token[k].kind == DALCS_TOKEN_BAD) {
-            return false;
-        }
-        k++;
-    }
-    *n = k - *first;
-    return *n > 0;
-}
-
 static bool is_of_name(char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
            (c != '\0' && strchr("_.$#@", c) != NULL);
@@ -689,5 +664,42 @@ bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n) {
         end++;
     }
     *n = end - *first;
+    return *n > 0;
+}
+
+/* Where the transfer function of a card begins: behind the formula of LAPLACE {formula} = {expression}, and behind the
+ * word of LAPLACE=expression, which a formula may stand before but never holds. card->n when there is none. */
+static int start_of_transfer(const struct dalcs_card *card) {
+    static const char *const word[] = {"laplace"};
+    int formula;
+    int n_formula;
+    int k = 3;
+    if (dalcs_formula_find(card, &formula, &n_formula)) {
+        const int before = formula - (is_kind(card, formula - 1, DALCS_TOKEN_EQUAL) ? 2 : 1);
+        k = formula + n_formula;
+        if (is_word(&card->token[before], word, 1)) {
+            return k;
+        }
+    }
+    while (k < card->n && !is_word(&card->token[k], word, 1)) {
+        k++;
+    }
+    return k < card->n ? k + 1 : k;
+}
+
+bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n) {
+    if (strchr("beg", card->letter) == NULL || card->letter == '\0') {
+        return false;
+    }
+    int k = start_of_transfer(card);
+    k += is_kind(card, k, DALCS_TOKEN_EQUAL);
+    *first = k;
+    while (k < card->n && !(k > *first && dalcs_assignment_starts(card, k))) {
+        if (card->token[k].kind == DALCS_TOKEN_BAD) {
+            return false;
+        }
+        k++;
+    }
+    *n = k - *first;
     return *n > 0;
 }

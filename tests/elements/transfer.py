@@ -160,11 +160,11 @@ def behind(checker, program):
         cards = ["v1 a 0 pulse(-1 2 0.1m 0.2m 0.1m 1m 3m)", ".param t1=0.1m", f"b1 o 0 V=2*v(a) laplace={ratio}", f"b2 0 p I=1m*v(a) LAPLACE={{{ratio}}}",
                  "r2 p 0 2k", f"b3 q 0 V=v(a)*v(a) Laplace={ratio} window=1m nfft=64 mtol=1", f"e1 e 0 LAPLACE {{2*v(a)}} = {{{ratio}}}", "b4 z 0 V=v(a)*v(a)",
                  f"e2 f 0 z 0 Laplace={ratio}", "xs a s filter", ".subckt filter i o t2={t1}", f"b1 o 0 V=v(i)*2 laplace={ratio.replace('t1', 't2')}", ".ends",
-                 f".tran 10u 5m{word}", ".save v(o) v(p) v(q) v(e) v(f) v(s)"]
+                 f"e3 b 0 LAPLACE v(a)*2 = {ratio}", f".tran 10u 5m{word}", ".save v(o) v(p) v(q) v(e) v(f) v(s) v(b)"]
         done = run_cards(program, ratio, cards)
         if runs(checker, done, ratio):
             size = max(map(abs, done.column("v(e)")))
-            for name, other in (("v(o)", "v(e)"), ("v(p)", "v(e)"), ("v(s)", "v(e)"), ("v(q)", "v(f)")):
+            for name, other in (("v(o)", "v(e)"), ("v(p)", "v(e)"), ("v(s)", "v(e)"), ("v(b)", "v(e)"), ("v(q)", "v(f)")):
                 worst = max(abs(x - y) for x, y in zip(done.column(name), done.column(other)))
                 checker.check(worst <= 1e-8 * max(size, 1), f"{ratio}: {name} differs from {other} by {worst}")
     cards = ["v1 a 0 pulse(0 1 0 0 0 1 2)", "b1 0 q I=1m*v(a) m=2 rpar={r} cpar=0.5u", ".param r=2k", "b2 x 0 V=v(a) tripdv=1 tripdt=1n", ".tran 0.1m 3m"]
