@@ -148,7 +148,7 @@ static void parse_transfer(const struct dalcs_block_card *c) {
     static const char *const names[] = {"in_offset", "gain",   "num_coeff",        "den_coeff",
                                         "out_ic",    "int_ic", "denormalized_freq"};
     static const char usage[] = "a transfer function is: Aname in out model";
-    struct dalcs_rational r;
+    struct dalcs_rational r = {.delay = 0};
     if (!dalcs_block_has_only(c, names, 7) || !dalcs_block_has_ports(c, 2, 0, usage) ||
         !dalcs_block_has_nodes(c, usage) || !starts_at_rest(c)) {
         return;

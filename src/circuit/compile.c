@@ -108,9 +108,13 @@ static const struct dalcs_form *compare(struct dalcs_compiler *c, const struct d
     return dalcs_form_to_logic(c, result);
 }
 
+/* As a condition: what is not 0, and in LTspice what is above 0.5 (its help, of conversion to Boolean). */
 static const struct dalcs_form *to_logic(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                          const struct dalcs_form *a) {
-    const struct dalcs_form *logic = dalcs_form_to_logic(c, a);
+    const bool is_above_half =
+        c->builder->netlist->dialect.name == DALCS_DIALECT_LTSPICE && a != NULL && a->height != 1;
+    const struct dalcs_form *logic =
+        is_above_half ? compare(c, a, dalcs_form_number(c, 0.5), 0) : dalcs_form_to_logic(c, a);
     if (logic == NULL) {
         return refuse(c, f, "write a comparison, such as v(a) > 0",
                       "a condition that is true unless a quantity is exactly 0");

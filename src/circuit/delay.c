@@ -29,7 +29,8 @@ static int count(const struct dalcs_formula *f, bool *seen) {
         return 0;
     }
     seen[f->number_of] = true;
-    int n = dalcs_delay_is(f) ? 1 : 0;
+    const bool is_factor = f->kind == DALCS_FORMULA_CALL && strcmp(f->function, "exp") == 0;
+    int n = dalcs_delay_is(f) || is_factor ? 1 : 0; /* exp(-s*t) of a transfer function is one */
     for (int k = 0; k < f->n; k++) {
         n += count(f->argument[k], seen);
     }

@@ -1,4 +1,4 @@
-/* rational.c - sums, products, quotients and whole powers of s, multiplied out. */
+/* rational.c - sums, products, quotients and whole powers of s, multiplied out; exp(-s T) as a factor of all. */
 #include "rational.h"
 
 #include <math.h>
@@ -61,14 +61,15 @@ static bool add(const struct dalcs_rational *a, double sign, const struct dalcs_
     }
     x.degree = x.degree > y.degree ? x.degree : y.degree;
     trim(&x);
-    *sum = (struct dalcs_rational){x, below};
+    *sum = (struct dalcs_rational){x, below, is_zero(&a->above) ? b->delay : a->delay};
     return true;
 }
 
 static bool fail(struct work *w, const struct dalcs_formula *f, const char *what) {
-    dalcs_builder_error_at(w->builder, &f->where,
-                           "a transfer function is a ratio of polynomials in s",
-                           "%s is not supported in a transfer function", what);
+    dalcs_builder_error_at(
+        w->builder, &f->where,
+        "a transfer function is a ratio of polynomials in s, or exp(-s*T) times one",
+        "%s is not supported in a transfer function", what);
     return false;
 }
 
@@ -96,8 +97,9 @@ static bool power(struct work *w, const struct dalcs_formula *f, struct dalcs_ra
         }
     }
     if (exponent->number < 0) {
-        *r = (struct dalcs_rational){r->below, r->above};
+        *r = (struct dalcs_rational){r->below, r->above, 0};
     }
+    r->delay = exponent->number * base.delay;
     return !is_zero(&r->below) || fail(w, f, "a division by 0");
 }
 
@@ -108,16 +110,40 @@ static bool quotient(struct work *w, const struct dalcs_formula *f, struct dalcs
     if (!make(w, f->argument[0], &a) || !make(w, f->argument[1], &b)) {
         return false;
     }
+    r->delay = a.delay + (divides ? -b.delay : b.delay);
     if (divides && is_zero(&b.above)) {
         return fail(w, f, "a division by 0");
     }
     if (divides && is_same(&a.below, &b.below)) { /* of one denominator nothing is left */
-        *r = (struct dalcs_rational){a.above, b.above};
+        *r = (struct dalcs_rational){a.above, b.above, r->delay};
         return true;
     }
     return (multiply(&a.above, divides ? &b.below : &b.above, &r->above) &&
             multiply(&a.below, divides ? &b.above : &b.below, &r->below)) ||
            fail(w, f, "a degree above 20");
+}
+
+/* Terms of one delay, or one of them 0. */
+static bool sum(struct work *w, const struct dalcs_formula *f, const struct dalcs_rational *a,
+                const struct dalcs_rational *b, struct dalcs_rational *r) {
+    if (a->delay != b->delay && !is_zero(&a->above) && !is_zero(&b->above)) {
+        return fail(w, f, "a sum of terms that are delayed by different times");
+    }
+    return add(a, f->code == DALCS_ADD ? 1 : -1, b, r) || fail(w, f, "a degree above 20");
+}
+
+/* exp(c - s T) */
+static bool exponential(struct work *w, const struct dalcs_formula *f, struct dalcs_rational *r) {
+    struct dalcs_rational a;
+    if (!make(w, f->argument[0], &a)) {
+        return false;
+    }
+    if (a.below.degree > 0 || a.above.degree > 1 || a.delay != 0) {
+        return fail(w, f, "exp() of anything but a number times s, which is a delay,");
+    }
+    *r = number(exp(a.above.c[0] / a.below.c[0]));
+    r->delay = a.above.degree > 0 ? -a.above.c[1] / a.below.c[0] : 0;
+    return true;
 }
 
 static bool operation(struct work *w, const struct dalcs_formula *f, struct dalcs_rational *r) {
@@ -129,8 +155,7 @@ static bool operation(struct work *w, const struct dalcs_formula *f, struct dalc
         return make(w, f->argument[0], &b) && add(&a, -1, &b, r);
     case DALCS_ADD:
     case DALCS_SUBTRACT:
-        return make(w, f->argument[0], &a) && make(w, f->argument[1], &b) &&
-               (add(&a, f->code == DALCS_ADD ? 1 : -1, &b, r) || fail(w, f, "a degree above 20"));
+        return make(w, f->argument[0], &a) && make(w, f->argument[1], &b) && sum(w, f, &a, &b, r);
     case DALCS_MULTIPLY:
     case DALCS_DIVIDE:
         return quotient(w, f, r);
@@ -162,9 +187,8 @@ static bool make(struct work *w, const struct dalcs_formula *f, struct dalcs_rat
     case DALCS_FORMULA_CALL:
         ok = (strcmp(f->function, "pow") == 0 || strcmp(f->function, "pwr") == 0) && f->n == 2
                  ? power(w, f, r)
-                 : fail(w, f,
-                        strcmp(f->function, "exp") == 0 ? "exp() of s, which is a delay,"
-                                                        : "a function of s");
+             : strcmp(f->function, "exp") == 0 ? exponential(w, f, r)
+                                               : fail(w, f, "a function of s");
         break;
     default:
         ok = fail(w, f, "a voltage or a current");
@@ -177,5 +201,9 @@ static bool make(struct work *w, const struct dalcs_formula *f, struct dalcs_rat
 bool dalcs_rational_make(struct dalcs_builder *builder, const struct dalcs_formula *formula,
                          struct dalcs_rational *r) {
     struct work w = {.builder = builder};
-    return make(&w, formula, r);
+    if (!make(&w, formula, r)) {
+        return false;
+    }
+    r->delay = is_zero(&r->above) ? 0 : r->delay;
+    return r->delay >= 0 || fail(&w, formula, "exp(s T) with T > 0, which comes before its cause,");
 }

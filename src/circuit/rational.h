@@ -1,4 +1,4 @@
-/* rational.h - a formula of s as a ratio of two polynomials. */
+/* rational.h - a formula of s as a ratio of two polynomials, and a delay. */
 #ifndef DALCS_RATIONAL_H
 #define DALCS_RATIONAL_H
 
@@ -13,6 +13,7 @@ struct dalcs_polynomial {
 
 struct dalcs_rational {
     struct dalcs_polynomial above, below;
+    double delay; /* s, T of exp(-s T) times the ratio; never below 0 of one that was made */
 };
 
 /* s is what a formula calls time; false when an error was reported: it is no such ratio. */

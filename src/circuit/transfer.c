@@ -1,4 +1,5 @@
-/* transfer.c - LAPLACE: a transfer function of s as states, each a capacitor that a source charges.
+/* transfer.c - LAPLACE: a transfer function of s as states, each a capacitor that a source charges. A factor exp(-s T) is
+ * a delay of the input (delay.c).
  *
  *     Ename a b LAPLACE {formula} = {expression of s}
  *     Ename a b control control Laplace=expression of s        Bname a b V=formula Laplace=expression of s
@@ -10,12 +11,15 @@
  * of their size anyhow (Householder 1970, ch. 3): so no A_k is above 1, whatever the units and the spread of poles. */
 #include "rational.h"
 
+#include "formula_writer.h"
+
 #include <math.h>
 
 struct transfer {
     struct dalcs_builder *builder;
     const struct dalcs_token *name;
     int n;
+    double delay;                       /* s, of the input */
     double rate[DALCS_RATIONAL_DEGREE]; /* 1/s, of each state */
     double a[DALCS_RATIONAL_DEGREE + 1], b[DALCS_RATIONAL_DEGREE + 1];
     int input[2];
@@ -49,6 +53,7 @@ static void normalize(const struct dalcs_rational *r, struct transfer *t) {
         first++;
     }
     t->n = below->degree;
+    t->delay = r->delay;
     height[t->n] = log(fabs(below->c[t->n]));
     find_polygon(below, first, height);
     for (int k = first - 1; k >= 0; k--) {
@@ -206,6 +211,33 @@ static bool read_ratio(struct dalcs_reader *reader, struct transfer *t) {
     return true;
 }
 
+/* The node of the input, which is a formula, as it was the delay before; -1 after an error. */
+static int add_input(const struct transfer *t, const struct dalcs_token *input) {
+    struct dalcs_formula_writer w;
+    if (t->delay > 0) {
+        if (!dalcs_formula_writer_start(&w, t->builder, t->name)) {
+            return -1;
+        }
+        w.n = input->formula->number_of + 1;
+        const struct dalcs_formula *seconds = dalcs_formula_number(&w, t->delay);
+        input = dalcs_formula_token(
+            &w, dalcs_formula_call(&w, "delay", 2,
+                                   (const struct dalcs_formula *const[]){input->formula, seconds}));
+    }
+    return input != NULL ? dalcs_behavioural_add_readout(t->builder, input, "input", t->name) : -1;
+}
+
+/* The same of two nodes of a card. */
+static int add_input_of_nodes(const struct transfer *t, const struct dalcs_token *node) {
+    struct dalcs_formula_writer w;
+    if (!dalcs_formula_writer_start(&w, t->builder, t->name)) {
+        return -1;
+    }
+    const struct dalcs_token *input = dalcs_formula_token(
+        &w, dalcs_formula_signal(&w, DALCS_FORMULA_VOLTAGE, &node[0], &node[1]));
+    return input != NULL ? add_input(t, input) : -1;
+}
+
 void dalcs_transfer_parse_behind(struct dalcs_reader *reader, struct dalcs_device *device,
                                  const struct dalcs_token *formula, double m) {
     struct transfer t = {.builder = reader->builder, .name = reader->card->token};
@@ -213,7 +245,7 @@ void dalcs_transfer_parse_behind(struct dalcs_reader *reader, struct dalcs_devic
                     "polynomials in s";
     reader->at++;
     if (read_ratio(reader, &t)) {
-        t.input[0] = dalcs_behavioural_add_readout(reader->builder, formula, "input", t.name);
+        t.input[0] = add_input(&t, formula);
         if (t.input[0] >= 0) {
             (void)expand(&t, device, m);
         }
@@ -232,12 +264,15 @@ void dalcs_transfer_parse(struct dalcs_reader *reader, struct dalcs_device *devi
     if ((!has_control && input == NULL) || !read_ratio(reader, &t)) {
         return;
     }
-    if (has_control) {
+    if (has_control && t.delay > 0) {
+        t.input[0] = add_input_of_nodes(&t, &reader->card->token[3]);
+        device->node[2] = device->node[3] = 0;
+    } else if (has_control) {
         t.input[0] = device->node[2];
         t.input[1] = device->node[3];
         device->node[2] = device->node[3] = 0;
     } else {
-        t.input[0] = dalcs_behavioural_add_readout(builder, input, "input", t.name);
+        t.input[0] = add_input(&t, input);
     }
     const double m = device->kind == DALCS_VCCS ? dalcs_parallel_of(reader->card) : 1;
     if (t.input[0] >= 0) {

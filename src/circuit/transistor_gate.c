@@ -1,4 +1,4 @@
-/* transistor_gate.c - what voltage sources say of a transistor's gate.
+/* transistor_gate.c - what voltage sources, and outputs of logic, say of a transistor's gate.
  *
  * The gate against the source, or both against ground where V sources or nothing but resistors hold the source; gate
  * resistors are passed over. */
@@ -38,11 +38,24 @@ static struct dalcs_gate_range minus(const struct dalcs_gate_range *a,
                                      a->high - b->low};
 }
 
+/* What a gate puts out lies between its levels, also on its way; of a sample it is what was taken. */
+static bool is_of_gate(const struct dalcs_circuit *c, int stimulus, struct dalcs_gate_range *r) {
+    for (int k = 0; k < c->n_gates && !r->is_known; k++) {
+        const struct dalcs_logic_gate *g = &c->gate[k];
+        if (g->kind != DALCS_GATE_SAMPLE &&
+            (g->output[0] == stimulus || g->output[1] == stimulus)) {
+            *r = between(g->low, g->high);
+        }
+    }
+    return r->is_known;
+}
+
 /* Of the V source that an end of a device is; from there to its other end. */
 static struct dalcs_gate_range across(const struct dalcs_circuit *c, const struct dalcs_device *d,
                                       int end) {
     struct dalcs_gate_range r = {0};
-    r.is_known = dalcs_stimulus_bounds(&c->stimulus[d->stimulus], &r.low, &r.high);
+    r.is_known = is_of_gate(c, d->stimulus, &r) ||
+                 dalcs_stimulus_bounds(&c->stimulus[d->stimulus], &r.low, &r.high);
     return end == 0 ? r : (struct dalcs_gate_range){r.is_known, -r.high, -r.low};
 }
 

@@ -60,17 +60,28 @@ void dalcs_component_finish(struct dalcs_component *c) {
     *c = (struct dalcs_component){0};
 }
 
+/* This near to the end of a piece, over the time, the source itself is asked: only it knows whether a time that is a rounding
+ * before or behind an edge means that edge, and where it says that the next one is follows from that. */
+static const double near_edge = 0x1p-40;
+
+static bool is_at_end(const struct dalcs_input_piece *piece, double t) {
+    return fabs(t - piece->to) <= near_edge * t;
+}
+
 /* Time only moves forward: from piece to piece, over the edges between. */
 static double sample_linear(const struct dalcs_stimulus *s, struct dalcs_input_piece *piece,
                             double t, enum dalcs_side side) {
-    while (t > piece->to || (t == piece->to && side == DALCS_RIGHT)) {
+    while (t > piece->to && !is_at_end(piece, t)) {
         piece->from = piece->to < 0.0 ? 0.0 : piece->to;
         piece->to = dalcs_stimulus_next_edge(s, piece->from);
         piece->first = dalcs_stimulus_value(s, piece->from, DALCS_RIGHT);
         piece->last =
             isfinite(piece->to) ? dalcs_stimulus_value(s, piece->to, DALCS_LEFT) : piece->first;
     }
-    if (t == piece->to || piece->first == piece->last) {
+    if (is_at_end(piece, t)) {
+        return dalcs_stimulus_value(s, t, side);
+    }
+    if (piece->first == piece->last) {
         return piece->last;
     }
     double part = (t - piece->from) / (piece->to - piece->from);

@@ -15,8 +15,7 @@ static void join_row(int *parent, const struct dalcs_csr *a, int row, int to) {
 }
 
 /* Vertices are columns, then rows; the first state, or else pair, or else control stands for all. */
-static void find_blocks(const struct dalcs_circuit *circuit, const struct dalcs_system *s,
-                        int *parent) {
+static void find_blocks(const struct dalcs_system *s, int *parent) {
     int n_equations = dalcs_system_n_equations(s);
     int n_columns = dalcs_system_n_columns(s);
     int involved = n_columns + n_equations;
@@ -40,15 +39,6 @@ static void find_blocks(const struct dalcs_circuit *circuit, const struct dalcs_
         for (int j = 0; j < s->smooth[k].n; j++) {
             if (s->smooth[k].column[j] >= 0) {
                 dalcs_union_join(parent, s->smooth[k].column[j], involved);
-            }
-        }
-    }
-    for (int r = 0; r < n_equations;
-         r++) { /* what they read has to be known at the nodes of steps */
-        for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
-            const int stimulus = s->stimulus[s->E.j[k]];
-            if (stimulus >= 0 && circuit->stimulus[stimulus].kind == DALCS_STIMULUS_DELAYED) {
-                dalcs_union_join(parent, n_columns + r, involved);
             }
         }
     }
@@ -100,7 +90,7 @@ static enum dalcs_status find(struct dalcs_bystanders *b, const struct dalcs_cir
                               const struct dalcs_system *s, int *parent, int *place) {
     int n_equations = dalcs_system_n_equations(s);
     int n_columns = dalcs_system_n_columns(s);
-    find_blocks(circuit, s, parent);
+    find_blocks(s, parent);
     int involved = dalcs_union_find(parent, n_columns + n_equations);
     b->column = dalcs_alloc((size_t)n_columns, sizeof(*b->column));
     b->row = dalcs_alloc((size_t)n_equations, sizeof(*b->row));
@@ -113,7 +103,8 @@ static enum dalcs_status find(struct dalcs_bystanders *b, const struct dalcs_cir
             b->column[b->n++] = c;
         }
     }
-    if (b->n == 0 || b->n > MOST_BYSTANDERS) {
+    /* what delayed sources read, whatever it is, has to be known at the nodes of steps */
+    if (b->n == 0 || b->n > MOST_BYSTANDERS || circuit->n_delayed > 0) {
         return DALCS_SINGULAR;
     }
     for (int r = 0; r < n_equations; r++) {

@@ -72,13 +72,15 @@ def main():
         if meetings == 0:
             continue
         met += 1
-        outcome = run(sys.argv[1], netlist(seconds, gate, periods, clocks), method=None, report=False)
-        if not checker.check(outcome.status == 0, f"{seed}: exit {outcome.status}\n{outcome.stderr}"):
-            continue
-        shown = outcome.column("v(k)")
-        counted = sum((a > 0.5) != (b > 0.5) for a, b in zip(shown, shown[1:]))
-        checker.check(counted == rises, f"{seed}: {gate} of clocks that meet {meetings} times has risen {rises} times, "
-                                        f"{counted} were counted")
+        for method, step in ((None, None), ("euler", seconds / 1000.0)):
+            name = f"{seed}, {method or 'auto'}"
+            outcome = run(sys.argv[1], netlist(seconds, gate, periods, clocks), method=method, step=step, report=False)
+            if not checker.check(outcome.status == 0, f"{name}: exit {outcome.status}\n{outcome.stderr}"):
+                continue
+            shown = outcome.column("v(k)")
+            counted = sum((a > 0.5) != (b > 0.5) for a, b in zip(shown, shown[1:]))
+            checker.check(counted == rises, f"{name}: {gate} of clocks that meet {meetings} times has risen {rises} times, "
+                                            f"{counted} were counted")
     checker.check(met > 0, "no clocks meet")
     return checker.finish()
 

@@ -146,7 +146,7 @@ def refused(checker, program):
                        ("b1 o 0 v=idt(v(a),v(b))", "the initial value of"),
                        ("c1 o 0 q=ddt(x)", "B, E and G"), ("b1 o 0 v=eq0(v(a))", "single points"), ("i1 o 0 tbl=(1,1,0,2)", "must ascend"),
                        ("i1 o 0 tbl=(1,1,2)", "the y of a point"), (".param p={ddt(3)}", "is not a number"),
-                       ("b1 o 0 v=v(a) laplace(exp(-s))", "a delay"), ("b1 o 0 v=v(a) laplace=sqrt(s)", "transfer function")):
+                       ("b1 o 0 v=v(a) laplace(exp(s))", "before its cause"), ("b1 o 0 v=v(a) laplace=sqrt(s)", "transfer function")):
         done = run_cards(program, card, ["v1 a 0 1", "v2 b 0 1", card, "r1 o 0 1", ".tran 1 2"])
         checker.check(done.status == 3 and text in done.stderr and ":4:" in done.stderr, f"{card}: {done.stderr}")
     done = run_cards(program, "no equal sign", ["v1 a 0 1", "b1 o 0 v=v(a)  LAPLACE(1/(1+s*1m))", "b2 p 0 v=2*v(a) laplace 1/(1+s*1m)", "r1 o 0 1", "r2 p 0 1",

@@ -112,6 +112,45 @@ def rest(checker, program):
                           f"over frequency: {f}: {got}, not {wanted}")
 
 
+# A pulse from 0 to 2 V is answered by gain (1 - exp(-t/tau)) of it, so long after its edges; tau 0: at once.
+DELAYS = (
+    ("e1 o 0 LAPLACE {v(a)} = {exp(-s*0.5)}", 1, 0, 0.5), ("e1 o 0 a 0 Laplace=exp(-s*td)/(1+s*0.2)", 1, 0.2, 0.7),
+    ("e1 o 0 a 0 Laplace=3*exp(-s/4)**2/(1+s/10)", 3, 0.1, 0.5), ("e1 o 0 LAPLACE {v(a)/2} {1/(exp(s*td)*(1+s))}", 0.5, 1, 0.7),
+    ("b1 o 0 V=v(a) laplace=exp(-s*0.1)*exp(-s*0.2)/(2+s)", 0.5, 0.5, 0.3),
+    ("g1 0 o a 0 Laplace=1m*exp(1-s*0.25)", math.e, 0, 0.25), ("e1 o 0 0 a Laplace=-exp(-s*td)*(1/(1+s)+0*s/(1+s))", 1, 1, 0.7),
+    ("e1 o 0 a 0 Laplace=exp(-s*td)/(1+s)+exp(-s*td)*s/(1+s)", 1, 0, 0.7),
+    ("xs a o lag td={td}\n.subckt lag i o td=1\ne1 o 0 i 0 Laplace=exp(-s*td)/(1+s*td)\n.ends", 1, 0.7, 0.7),
+    ("e1 o 0 LAPLACE {2*v(a)-v(c)} = {exp(-s*0.6)/(1+s*0.3)}\ne2 c 0 a 0 1", 1, 0.3, 0.6),
+    ("e1 o 0 a 0 Laplace=pow(exp(-s*0.2), 3)", 1, 0, 0.6), ("e1 o 0 a 0 Laplace=0*exp(s*1u)+exp(-s*0.4)", 1, 0, 0.4),
+)
+
+
+def delays(checker, program):
+    """A factor exp(-s T), at scales of seconds and nanoseconds; and fed back, where the answer is a polynomial in pieces."""
+    for unit in (1.0, 1e-9):
+        for card, gain, tau, delay in DELAYS:
+            scaled = card.replace("s*", f"{unit!r}*s*").replace("*s}", f"*{unit!r}*s}}").replace("s/", f"{unit!r}*s/")
+            scaled = scaled.replace("+s)", f"+{unit!r}*s)")
+            cards = ["v1 a 0 pulse(0 2 {} 0 0 {} {})".format(0.3 * unit, 1.1 * unit, 9 * unit), ".param td=0.7",
+                     *scaled.split("\n"), "r1 o 0 1k", f".tran {0.01 * unit!r} {4 * unit!r}"]
+            done = run_cards(program, "a delay", cards)
+            if not runs(checker, done, f"{scaled} at {unit}"):
+                continue
+            worst = 0
+            for t, v in zip(done.time, done.column("v(o)")):
+                def answer(x):
+                    return 0 if x < 0 else 1 if tau == 0 else 1 - math.exp(-x / tau)
+                since = t / unit - 0.3 - delay
+                near = min(abs(since), abs(since - 1.1)) < 1e-9
+                worst = worst if near else max(worst, abs(v - 2 * gain * (answer(since) - answer(since - 1.1))))
+            checker.check(worst <= 1e-8 * gain, f"{scaled} at {unit}: off by {worst}")
+    done = run_cards(program, "fed back", ["c1 x 0 1m ic=1", "g1 x 0 LAPLACE {v(x)} = {1m*exp(-s*0.5)}", ".tran 0.01 3 uic"])
+    if runs(checker, done, "fed back"):
+        for t, v in zip(done.time, done.column("v(x)")):
+            wanted = sum((-1) ** k * (t - 0.5 * k) ** k / math.factorial(k) for k in range(7) if t >= 0.5 * k)
+            checker.close(v, wanted, 1e-9, f"fed back at {t}")
+
+
 def behind(checker, program):
     """The same behind a formula of B, V and I, of a product too, against E and G; in a subcircuit, and what LTspice adds."""
     ratios = ("1/(1+s*0.5m)", "s/(1+s*2m)", "5/(s^2/1e7+s*0.4/3162+1)", "(1+s/3k)/((1+s/1k)*(1+s/30k))", "-3", "1/(1+s*1u)^3",
@@ -137,7 +176,12 @@ def behind(checker, program):
 def refused(checker, program):
     cases = (("e1 o 0 a 0 Laplace=s", "improper: of degree 1 over 0, it differentiates"),
              ("e1 o 0 a 0 Laplace=s^3/(1+s)^2", "improper: of degree 3 over 2"),
-             ("e1 o 0 a 0 Laplace=exp(-s*1u)", "exp() of s, which is a delay, is not supported"),
+             ("e1 o 0 a 0 Laplace=exp(s*1u)", "exp(s T) with T > 0, which comes before its cause"),
+             ("e1 o 0 a 0 Laplace=1/exp(-s*1u)", "exp(s T) with T > 0, which comes before its cause"),
+             ("e1 o 0 a 0 Laplace=(1-exp(-s*1u))/(1+s)", "a sum of terms that are delayed by different times"),
+             ("e1 o 0 a 0 Laplace=exp(-s*s)", "exp() of anything but a number times s"),
+             ("e1 o 0 a 0 Laplace=exp(-1/(1+s))", "exp() of anything but a number times s"),
+             ("e1 o 0 a 0 Laplace=s*exp(-s)", "improper: of degree 1 over 0"),
              ("e1 o 0 a 0 Laplace=1/sqrt(1+s)", "a function of s is not supported"),
              ("e1 o 0 a 0 Laplace=1/(1+s)^0.5", "no small whole number"),
              ("e1 o 0 a 0 Laplace=1/(1+s)^21", "a power that is no small whole number"),
@@ -159,7 +203,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("transfer")
-    for part in (steps, rest, behind, refused):
+    for part in (steps, rest, delays, behind, refused):
         part(checker, program)
     return checker.finish()
 

@@ -304,10 +304,43 @@ def typical(checker, program):
         checker.check(done.status == 3 and words in done.stderr, f"{lines}: {done.status} {done.stderr}")
 
 
+# What drives the gate, the level it is on at against the source, what the card may be; on at 3 us.
+CLOCK = "vc c 0 pulse(0 1 1u 1n 1n 4u 10u)\n"
+LOGIC_DRIVES = (
+    ("a1 c 0 0 0 0 0 g 0 buf vhigh=5 ref=0.5", 5, "nmos(level=1 kp=2 vto=2)"),
+    ("a1 c 0 0 0 0 g 0 0 buf vhigh=12 vlow=-3 ref=1.5", 12, "nmos(level=1 kp=2 vto=2)"),
+    ("a1 c 0 0 0 0 0 gg 0 and vhigh=15 ref=0.5\nrg gg g 10", 15, "nmos(level=1 kp=0.3 vto=4)"),
+    ("a1 c 0 0 0 0 0 g 0 schmitt vt=0.5 vh=0.1 vhigh=3.3 trise=20n", 3.3, "nmos(level=1 kp=9 vto=1)"),
+    ("vd dd 0 1\na1 dd 0 c 0 0 0 g 0 dflop vhigh=4.5 ref=0.5", 4.5, "nmos(level=1 kp=5 vto=1.5)"),
+    ("a1 c 0 0 0 0 0 g 0 buf vhigh=6 ref=0.5 rout=100\nrp g 0 1meg", 6, "vdmos(kp=10 vto=2)"),
+    ("a1 c 0 0 0 0 0 gg 0 buf vhigh=8 ref=0.5\nrg gg g2 5\nrg2 g2 g 5", 8, "vdmos(kp=10 vto=2 rd=10m)"),
+    ("a1 [c] [q] ad\na2 [q] [g] da\n.model ad adc_bridge(in_low=0.5 in_high=0.5)\n"
+     ".model da dac_bridge(out_low=0 out_high=5)", 5, "nmos(level=1 kp=2 vto=2)"),
+    ("a1 [c] [q] ad\na2 q nq inv\na3 nq nnq inv\na4 [nnq] [g] da\n.model ad adc_bridge(in_low=0.5 in_high=0.5)\n"
+     ".model inv d_inverter(rise_delay=1n fall_delay=1n)\n.model da dac_bridge(out_low=-2 out_high=7)", 7,
+     "nmos(level=1 kp=2 vto=2)"),
+    ("a1 c 0 0 0 0 0 g 0 buf vhigh=48 ref=0.5 trise=10n tfall=10n", 48, "nmos(level=1 kp=0.1 vto=5)"),
+)
+
+
+def logic_drives(checker, program):
+    """The level of the gate is what the output of a gate gives, and the resistance follows it."""
+    for drive, level, card in LOGIC_DRIVES:
+        text = f"behind logic\nv1 in 0 12\nr1 in d 10\n{CLOCK}{drive}\nm1 d g 0 0 x\n.model x {card}\n" \
+               ".tran 0.1u 20u\n.meas tran v find v(d) at=3u\n.end\n"
+        done = run_at(program, text, quiet=False)
+        if checker.check(done.status == 0, f"{drive}: {done.stderr}"):
+            k = {p.split("=")[0]: float(p.split("=")[1].replace("10m", "0.01"))
+                 for p in card[card.index("(") + 1:-1].split()}
+            ohms = 1 / (k["kp"] * (level - k["vto"])) + k.get("rd", 0)
+            checker.close(value_of(done, "v"), 12 * ohms / (10 + ohms), 1e-9, drive)
+            checker.check(f"at {level:g} V" in done.stderr, f"{drive}: {done.stderr}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("transistors")
-    for part in (cards, circuits, saturations, igbts, bipolars, refusals, typical):
+    for part in (cards, circuits, saturations, igbts, bipolars, refusals, typical, logic_drives):
         part(checker, program)
     return checker.finish()
 
