@@ -175,9 +175,14 @@ static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_pa
     bool asked = search->restarts > 0 || !part->guards.fresh;
     bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
     *answered = false;
-    return may_be_left(quality->own) && may_project && dalcs_projection_sees(part, false)
-               ? dalcs_search_project(r, part, search, answered)
-               : DALCS_OK;
+    if (!(may_be_left(quality->own) && may_project && dalcs_projection_sees(part, false))) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_search_project(r, part, search, answered));
+    if (*answered && search->stuck > 0) { /* steps are short for what the state was off by */
+        dalcs_search_start_over(part, search, search->level_before_stuck);
+    }
+    return DALCS_OK;
 }
 
 /* Do shorter steps see the same in voltages that states are levered up to? Then errors of states alone count from now on. */
