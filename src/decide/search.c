@@ -4,6 +4,7 @@
 #include "blocks.h"
 #include "doubt.h"
 #include "magnitudes.h"
+#include "power_of_step.h"
 #include "present.h"
 #include "projection.h"
 #include "restart.h"
@@ -143,11 +144,12 @@ static bool is_levered(const struct dalcs_radau_part *part,
     return part->segment.rounding > 1.0 && quality->own <= 1.0;
 }
 
-/* An error that does not shrink with the step is what the state is off by: a smaller step would not mend it, and
- * rounding is all it is. */
+/* An error that shrinks no faster than the step, be it halved or shorter, is what the state is off by, or what dies away at
+ * once: errors of a method go with a higher power of the step. A smaller one would not mend it. */
 static void count_stuck(const struct dalcs_radau_part *part, struct dalcs_search *search,
                         const struct dalcs_step_quality *quality) {
-    search->stuck = quality->ratio > 0.3 * search->ratio_before ? search->stuck + 1 : 0;
+    bool is_stuck = dalcs_power_of_step(search->ratio_before, quality->ratio) <= 1.0;
+    search->stuck = is_stuck ? search->stuck + 1 : 0;
     search->ratio_before = quality->ratio;
     if (search->stuck == 0) {
         search->level_before_stuck = part->length.level;
@@ -183,9 +185,14 @@ static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_pa
     bool asked = search->restarts > 0 || !part->guards.fresh;
     bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
     *answered = false;
-    return may_be_left(quality->own) && may_project && dalcs_projection_sees(part, false)
-               ? dalcs_search_project(r, part, search, answered)
-               : DALCS_OK;
+    if (!(may_be_left(quality->own) && may_project && dalcs_projection_sees(part, false))) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_search_project(r, part, search, answered));
+    if (*answered && search->stuck > 0) { /* steps are short for what the state was off by */
+        dalcs_search_start_over(part, search, search->level_before_stuck);
+    }
+    return DALCS_OK;
 }
 
 /* Do shorter steps see the same in voltages that states are levered up to? Then errors of states alone count from now on. */

@@ -4,6 +4,9 @@
 
 #include "radau_state.h"
 
+#include "magnitudes.h"
+#include "rounding.h"
+
 /* What is known of a step that has been solved. */
 struct dalcs_step_quality {
     double ratio;   /* estimated error over what is allowed; NaN when the step means nothing */
@@ -14,11 +17,11 @@ struct dalcs_step_quality {
 };
 
 /* A voltage that is 0 is no better than what rounding of this step's currents drives through the
- * largest conductance of the circuit, nor a current than rounding of the voltages through the least:
- * 2e-14 of them, over what find_cross_scales counts as nothing. V or A; of: 0 of a voltage, 1 of a current. */
+ * largest conductance of the circuit, nor a current than rounding of the voltages through the least: ten roundings of a
+ * sum, as scales.cross has a millionth of them. V or A; of: 0 of a voltage, 1 of a current. */
 static inline double dalcs_step_crossed(const struct dalcs_radau_part *part, int of,
                                         const double unit[2]) {
-    return 2e-8 * part->scales.cross[of] * unit[1 - of];
+    return dalcs_beyond * dalcs_sum_rounded / dalcs_nothing * part->scales.cross[of] * unit[1 - of];
 }
 
 /* Of a part that is otherwise set up. */

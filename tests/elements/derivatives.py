@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker  # noqa: E402
+from dalcs_program import Checker, run  # noqa: E402
 from logic import run_cards, runs  # noqa: E402
 
 
@@ -36,6 +36,23 @@ def of_sources(checker, program):
                 "v(d)": (lambda t: v * math.cos(w * t), v), "v(i)": (lambda t: v * (1 - math.cos(w * t)), v),
                 "v(j)": (lambda t: -v - 2 * v * (1 - math.cos(w * t)), 5 * v), "v(k)": (lambda t: v * (w * t - math.sin(w * t)), 13 * v),
                 "v(m)": (lambda t: v * math.sin(2 * w * t), v), "v(n)": (lambda t: f * t * v * math.sin(w * t), 2 * v)}, 1e-6)
+
+
+def tight(checker, program):
+    """At tolerances near what steps on factors are rounded to, states are off by so much that derivatives show it, the more
+    the shorter the step. They are put where they belong, and steps are long again, where they once became steps of Euler."""
+    for f, v in ((61, 325), (2e3, 5), (1e-3, 3)):
+        w = 2 * math.pi * f
+        for tolerance in (3e-11, 5e-11, 1e-10):
+            cards = [f"v1 a 0 sin(0 {v!r} {f!r})", f"b1 d 0 v={1 / w!r}*ddt(v(a))", f"b2 i 0 v={w!r}*idt(v(a))",
+                     f"b3 j 0 v=-{w!r}*idt(2*v(a), {v / w!r})", f"b4 k 0 v={w * w!r}*sdt(idt(v(a)))", f"b5 m 0 v=ddt(v(a)*v(a))*{1 / (w * v)!r}",
+                     f"b6 n 0 v={f!r}*idt(1)*v(a)", *(f"r{x} {x} 0 1k" for x in "dijkmn"), f".tran {0.02 / f!r} {2 / f!r}"]
+            what = f"a sine of {v} V at {f} Hz, {tolerance}"
+            done = run(program, "\n".join([what, *cards, ".end", ""]), method=None, tolerance=tolerance)
+            if runs(checker, done, what):
+                checker.check(done.report["work"]["euler_steps"] == 0, f"{what}: {done.report['work']['euler_steps']} steps of Euler")
+                for t, found in zip(done.time, done.column("v(d)")):
+                    checker.close(found, v * math.cos(w * t), 1e-9 * v, f"{what}: the derivative at {t}")
 
 
 def of_circuits(checker, program):
@@ -165,7 +182,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("derivatives")
-    for part in (of_sources, of_circuits, resets, wraps, tables, refused):
+    for part in (of_sources, tight, of_circuits, resets, wraps, tables, refused):
         part(checker, program)
     return checker.finish()
 
