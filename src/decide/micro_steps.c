@@ -133,7 +133,7 @@ bool dalcs_micro_extrapolate(const struct dalcs_radau_part *part, double *after,
         *noticeable = *noticeable || (moved && first > smallest * scale);
         bool dies_away = !moved && second < (1.0 - dalcs_slight) * first;
         if (dies_away && first > smallest * scale) {
-            *closer = dalcs_small;
+            *closer = ldexp(1.0, -DALCS_FAR_SHORTER);
         } else if (dies_away && first > dalcs_beyond * part->inner_tolerance * scale) {
             /* in a much shorter one an event's error would weigh more than what the circuit does */
             *closer = fmin(*closer, dalcs_slight);
@@ -170,7 +170,7 @@ double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_
     h = ldexp(h, 5 * longer);
     /* clear of the next edge: on the flank of a fast source more may happen than at t */
     double room = dalcs_radau_limit(r, part) - part->segment.t;
-    double most = fmin(0.25, ldexp(dalcs_small, 5 * longer)) * room;
+    double most = fmin(0.25, ldexp(1.0, 5 * longer - DALCS_FAR_SHORTER)) * room;
     for (int k = 0; k < 8 && h > most; k++) {
         h *= 0.0625;
     }

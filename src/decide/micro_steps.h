@@ -4,6 +4,10 @@
 
 #include "radau_state.h"
 
+/* Steps that are told from each other by their length differ by so many rungs of the ladder: a thousandth, of lengths whose
+ * factors other steps have. */
+enum { DALCS_FAR_SHORTER = 10 };
+
 /* Notes a failure at part->segment.t with the problem of sigma and u[n_x + n_inputs]; returns status. */
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u,

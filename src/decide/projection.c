@@ -3,6 +3,7 @@
 
 #include "extremes.h"
 #include "magnitudes.h"
+#include "micro_steps.h"
 #include "present.h"
 #include "step_error.h"
 #include "step_length.h"
@@ -10,7 +11,7 @@
 #include <math.h>
 
 /* A projecting step is this many rungs below: the first of these in which the mode can be seen. */
-enum { PROJECTIONS = 3, SHORTER = 10 };
+enum { PROJECTIONS = 3 };
 
 static const int projection[PROJECTIONS] = {30, 20, 10};
 
@@ -155,7 +156,7 @@ static enum dalcs_status look_shorter(struct dalcs_radau *r, struct dalcs_radau_
     while (differs && note_beginnings(part)) {
         const double h = part->segment.h;
         bool means_something = false;
-        part->segment.h = ldexp(h, -SHORTER);
+        part->segment.h = ldexp(h, -DALCS_FAR_SHORTER);
         if (part->segment.h >= dalcs_length_shortest(r)) {
             DALCS_TRY(try_projection(part, limit, &means_something));
         }

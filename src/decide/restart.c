@@ -29,7 +29,7 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
     bool jumps = false;
     bool runs_away = false;
     memcpy(longer, part->work.y1, (size_t)s->n_x * sizeof(double));
-    DALCS_TRY(dalcs_micro_steps(r, part, dalcs_small * h));
+    DALCS_TRY(dalcs_micro_steps(r, part, ldexp(h, -DALCS_FAR_SHORTER)));
     dalcs_micro_largest(part, largest);
     dalcs_micro_raise(s, longer, s->n_x, largest);
     for (int x = 0; x < s->n_x; x++) {
@@ -90,7 +90,7 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         if (!e->jump.is_covered) {
             return dalcs_take_seen_jump(r, part, h);
         }
-        bool is_last = dalcs_small * h < dalcs_length_shortest(r);
+        bool is_last = ldexp(h, -DALCS_FAR_SHORTER) < dalcs_length_shortest(r);
         bool is_whole = e->jump.is_known ? dalcs_jumps_agree(s, part->x, part->work.after,
                                                              part->work.y1, e->jump.after)
                                          : is_last;
@@ -103,14 +103,14 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         if (is_last) {
             break;
         }
-        enum dalcs_status status = dalcs_micro_steps(r, part, dalcs_small * h);
+        enum dalcs_status status = dalcs_micro_steps(r, part, ldexp(h, -DALCS_FAR_SHORTER));
         if (status > DALCS_OK) { /* too short for a certificate: the last ones have to do */
             DALCS_TRY(dalcs_micro_steps(r, part, h));
             moves = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
             break;
         }
         DALCS_TRY(status);
-        h *= dalcs_small;
+        h = ldexp(h, -DALCS_FAR_SHORTER);
         moves = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
     }
     *moves_little = moves;

@@ -56,10 +56,11 @@ static enum dalcs_status find_limit(struct dalcs_radau *r, struct dalcs_radau_pa
     double length = *h;
     enum dalcs_status status = see_jump(r, part, length, is_seen, &left);
     const enum dalcs_status first = status;
-    while (status == DALCS_OK && left > 1.0 && dalcs_small * length >= dalcs_length_shortest(r)) {
+    while (status == DALCS_OK && left > 1.0 &&
+           ldexp(length, -DALCS_FAR_SHORTER) >= dalcs_length_shortest(r)) {
         *h = left < least ? length : *h;
         least = fmin(left, least);
-        length *= dalcs_small;
+        length = ldexp(length, -DALCS_FAR_SHORTER);
         status = see_jump(r, part, length, is_seen, &left);
     }
     if (status == DALCS_OK && left < least) {
