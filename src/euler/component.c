@@ -1,6 +1,8 @@
 /* component.c - sampling the sources and commanding the switches around one OSNSP. */
 #include "component.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 
 enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
@@ -60,12 +62,10 @@ void dalcs_component_finish(struct dalcs_component *c) {
     *c = (struct dalcs_component){0};
 }
 
-/* This near to the end of a piece, over the time, the source itself is asked: only it knows whether a time that is a rounding
- * before or behind an edge means that edge, and where it says that the next one is follows from that. */
-static const double near_edge = 0x1p-40;
-
+/* Here the source itself is asked: only it knows whether a time that is a rounding before or behind an edge means that edge,
+ * and where it says that the next one is follows from that. Farther away that is as right, and slower. */
 static bool is_at_end(const struct dalcs_input_piece *piece, double t) {
-    return fabs(t - piece->to) <= near_edge * t;
+    return fabs(t - piece->to) <= dalcs_alike * t;
 }
 
 /* Time only moves forward: from piece to piece, over the edges between. */
