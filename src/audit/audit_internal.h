@@ -115,11 +115,12 @@ struct dalcs_audit {
     struct audit_sums sums;
 
     struct audit_crossing {
-        int *cluster;                /* [n_nodes] work of crossing.c */
-        double *offset;              /* [n_nodes] likewise */
-        double *stored;              /* [n_devices] V, A: of capacitors and coils, before */
-        bool *is_firm, *has_impulse; /* [n_nodes] impulses.c */
-        bool coils_jump;             /* and E, G or a formula may read the voltage across one */
+        int *cluster;   /* [n_nodes] work of crossing.c */
+        double *offset; /* [n_nodes] likewise */
+        double *stored; /* [n_devices] V, A: of capacitors and coils, before */
+        int *tie; /* [n_nodes] impulses.c: whose impulse of voltage it has; 0: ground's, none */
+        bool *has_impulse; /* [n_nodes] likewise */
+        bool coils_jump;   /* and E, G or a formula may read the voltage across one */
     } crossing;
 
     struct audit_worst {

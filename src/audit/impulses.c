@@ -17,7 +17,7 @@ static bool reads_voltage(const struct dalcs_device *d) {
 }
 
 static bool is_loose(const struct dalcs_audit *audit, int node) {
-    return !audit->crossing.is_firm[audit->net.node_of[node]];
+    return audit->crossing.tie[audit->net.node_of[node]] != 0;
 }
 
 /* Of a node that is read: where a coil jumps each that nothing ties may have one. */
@@ -25,10 +25,17 @@ static bool may_have(const struct dalcs_audit *audit, int node) {
     return has(audit, node) || (audit->crossing.coils_jump && is_loose(audit, node));
 }
 
+/* Of what E and G read. Two nodes that a capacitor or a source ties have the same one. */
+static bool control_may_have(const struct dalcs_audit *audit, const struct dalcs_device *d) {
+    const int plus = audit->net.node_of[d->node[2]];
+    const int minus = audit->net.node_of[d->node[3]];
+    return (may_have(audit, plus) || may_have(audit, minus)) &&
+           audit->crossing.tie[plus] != audit->crossing.tie[minus];
+}
+
 bool audit_has_impulse(const struct dalcs_audit *audit, const struct dalcs_device *d) {
     return has(audit, d->node[0]) || has(audit, d->node[1]) ||
-           (d->kind == DALCS_VCCS && reads_voltage(d) &&
-            (may_have(audit, d->node[2]) || may_have(audit, d->node[3])));
+           (d->kind == DALCS_VCCS && reads_voltage(d) && control_may_have(audit, d));
 }
 
 /* Clusters with a capacitor that jumped, in offset[] of their roots: in all that joins their nodes an impulse may be. */
@@ -101,8 +108,7 @@ static bool acts_by_voltage(const struct dalcs_audit *audit, const struct audit_
                             const struct dalcs_device *d) {
     struct reading r = {.audit = audit, .part = part};
     dalcs_behaviour_visit(d->behaviour, note_term, &r);
-    return r.voltage ||
-           (reads_voltage(d) && (may_have(audit, d->node[2]) || may_have(audit, d->node[3])));
+    return r.voltage || (reads_voltage(d) && control_may_have(audit, d));
 }
 
 /* The ends of a device that are not firm get it; whether one had none. */
@@ -110,7 +116,7 @@ static bool spread(struct dalcs_audit *audit, const struct dalcs_device *d) {
     bool is_new = false;
     for (int e = 0; e < 2; e++) {
         const int node = audit->net.node_of[d->node[e]];
-        if (!audit->crossing.is_firm[node] && !audit->crossing.has_impulse[node]) {
+        if (audit->crossing.tie[node] != 0 && !audit->crossing.has_impulse[node]) {
             audit->crossing.has_impulse[node] = is_new = true;
         }
     }
@@ -179,10 +185,10 @@ void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *par
         return;
     }
     audit_find_clusters(audit, part, before, after, is_tie);
-    audit->crossing.is_firm[0] = true;
+    audit->crossing.tie[0] = 0;
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
-        audit->crossing.is_firm[node] = dalcs_union_find(audit->crossing.cluster, node) == 0;
+        audit->crossing.tie[node] = dalcs_union_find(audit->crossing.cluster, node);
     }
     audit->crossing.coils_jump = by_coils;
     for (int k = 0; by_currents && k < part->n_devices; k++) {

@@ -218,9 +218,9 @@ static enum dalcs_status make_sums(struct dalcs_audit *audit) {
     audit->scale.lambda =
         dalcs_arena_alloc(&audit->arena, (size_t)audit->net.n_lambdas, sizeof(double));
     audit->crossing.cluster = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
-    audit->crossing.is_firm = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    audit->crossing.tie = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
     audit->crossing.has_impulse = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
-    complete = complete && audit->crossing.is_firm != NULL && audit->crossing.has_impulse != NULL;
+    complete = complete && audit->crossing.tie != NULL && audit->crossing.has_impulse != NULL;
     return complete && audit->scale.lambda != NULL && audit->crossing.cluster != NULL
                ? DALCS_OK
                : DALCS_E_NOMEM;

@@ -62,9 +62,8 @@ void dalcs_component_finish(struct dalcs_component *c) {
     *c = (struct dalcs_component){0};
 }
 
-/* This near to the end of a piece, over the time, the source itself is asked: only it knows whether a time that is a rounding
- * before or behind an edge means that edge, and where it says that the next one is follows from that. Its answer is right
- * anywhere, so any distance is that is more than rounding. */
+/* Here the source itself is asked: only it knows whether a time that is a rounding before or behind an edge means that edge,
+ * and where it says that the next one is follows from that. Farther away that is as right, and slower. */
 static bool is_at_end(const struct dalcs_input_piece *piece, double t) {
     return fabs(t - piece->to) <= dalcs_alike * t;
 }

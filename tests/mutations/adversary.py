@@ -42,6 +42,24 @@ vg g 0 PULSE(1 0 1m 0 0 0.5m 1m)
 .tran 20u 5m
 """
 
+TIED = """a switch opens and puts two coils in series, and E reads a capacitor on the node between them
+v1 in 0 10
+r1 in a 10
+l1 a m 1m
+s1 m 0 g 0 sw
+l2 m b 3m
+r2 b 0 5
+vg g 0 PULSE(1 0 1m 0 0 0.5m 1m)
+cm m x 1u
+rx x y 1k
+ly y m 2m
+e1 e 0 m x 2
+re e f 1k
+cf f 0 1u
+.model sw SW(vt=0.5)
+.tran 20u 5m
+"""
+
 CONTROLLER = """a thyristor with a holding current on a coil, beside a latch that its current turns
 v1 a 0 SIN(0 325 50)
 vg g 0 PULSE(0 2 3m 0 0 0.2m 20m)
@@ -155,6 +173,9 @@ MUTATIONS = {
         "    part->segment.in[s->n_x] = 1.0;\n    part->segment.in[1] *= 1.0 + 1e-6;\n", SMALL),
     "a diode is kept open in one leg of twelve": (
         "locate/first_fall.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 7 && ", STRINGS),
+    "a capacitor jumps behind what reads a finite voltage between nodes with impulses": (
+        "decide/take_jump.c", "    memcpy(part->x, e->jump.after, ",
+        "    e->jump.after[1] += 0.3;\n    memcpy(part->x, e->jump.after, ", TIED),
     "a jump is shared out wrongly among coils": (
         "decide/take_jump.c", "    memcpy(part->x, e->jump.after, ",
         "    e->jump.after[0] *= 1.01;\n    e->jump.after[1] *= 1.01;\n    memcpy(part->x, e->jump.after, ", SHARED),
