@@ -7,14 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* What the stages miss at the start is put right by the filter, implicit Euler. With H for what that takes away from a state,
- * what has no memory is then that of states which are off by H of what was missed: so what is added goes with 1 + H + H^2 +
- * ... of it. A state that the stages follow has an H below 1/2, for then the step is shorter than lambda of its time
- * constants: each term gains a digit of doubles and more. One that dies away has an H near 1, and each term adds L / h of
- * what a coil is off by. So they are a few, and as many in every column, for what dies away may be a difference of
- * columns. */
-enum { TERMS = 8 };
-
 /* Adds factor times a row of lanes. */
 static inline void add_lanes(double *to, double factor, const double *from) {
     for (int i = 0; i < DALCS_LANES; i += DALCS_QUAD) {
@@ -155,19 +147,6 @@ static struct dalcs_extended filtered(const struct dalcs_stage_workshop *b, int 
                                  b->eq.column_scale[r]);
 }
 
-/* One term of 1 + H + ... more of what is missed in the first n rows, into b->column.missed, from the last one, b->column.left.
- * The first tells the defect. */
-static void add_left(struct dalcs_stage_workshop *b, int n, bool is_first) {
-    struct dalcs_workshop_column *c = &b->column;
-    filter(b, n, is_first ? c->missed : c->left, 0, b->n_x);
-    for (int x = 0; x < b->n_x; x++) {
-        const struct dalcs_extended defect = filtered(b, x);
-        c->defect[x] = is_first ? defect : c->defect[x];
-        c->left[x] = (struct dalcs_extended){-defect.high, -defect.low};
-        c->missed[x] = dalcs_extended_plus(c->missed[x], c->left[x]);
-    }
-}
-
 /* The start and what sources do between the nodes into b->column.lanes, and the defect at the start after the
  * filter into b->column.defect. */
 static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_column,
@@ -186,11 +165,14 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
         b->column.missed[x] =
             (struct dalcs_extended){-b->column.start[x].high, -b->column.start[x].low};
     }
-    for (int term = 1; term <= TERMS; term++) {
-        add_left(b, term == 1 ? n_missed : n_x, term == 1);
-    }
+    filter(b, n_missed, b->column.missed, 0, n_x);
+    /* What is added to the others goes with states that are off by their defects: less that. */
     for (int x = 0; x < n_x; x++) {
         b->column.lanes[x * DALCS_LANES] = x == column ? 1.0 : 0.0;
+        b->column.defect[x] = filtered(b, x);
+        b->column.missed[x] = dalcs_extended_plus(
+            b->column.missed[x],
+            (struct dalcs_extended){-b->column.defect[x].high, -b->column.defect[x].low});
     }
     filter(b, n_missed, b->column.missed, n_x, n);
     for (int r = n_x; r < n; r++) {

@@ -58,7 +58,6 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->column.of_missed = dalcs_carve(storage, &used, n_x + 1, sizeof(int));
     b->column.filtered = dalcs_carve(storage, &used, 2 * b->solved.room, sizeof(double));
     b->column.defect = dalcs_carve(storage, &used, n_x, sizeof(*b->column.defect));
-    b->column.left = dalcs_carve(storage, &used, n_x, sizeof(*b->column.left));
     b->column.lasting = dalcs_carve(storage, &used, n_x, sizeof(*b->column.lasting));
     b->solved.moment =
         dalcs_carve(storage, &used, dalcs_stage_shift_room((int)n, b->n_rhs), sizeof(double));

@@ -60,7 +60,6 @@ struct dalcs_workshop_column {
     int *of_missed;   /* [n_x + 1] and in which rows of `real` that goes in */
     double *filtered; /* [2][room] what these make of it */
     struct dalcs_extended *defect;  /* [n_x] that of the states */
-    struct dalcs_extended *left;    /* [n_x] what the filter has left of what is missed */
     struct dalcs_extended *lasting; /* [n_x] and what they make of that */
     double *guard;                  /* [n_pairs][lanes] */
     double *residual;               /* [n] */
