@@ -102,7 +102,7 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
 /* Makes what has no memory agree with the states where an answer on factors begins: it goes with states that are off there by
  * a part of their drift. Then it agrees wherever the polynomials of both are evaluated, for equations without derivatives
  * are linear. Where an event is looked for that matters: what is a part of 1e-11 of a coil's current may be volts of a
- * diode that opens. Maps have that in them (stage_column.c). */
+ * diode that opens. Maps have more stages. */
 void dalcs_stages_settle(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                          double *out);
 
