@@ -83,13 +83,16 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
         h = fmin(h, ripple_length(r, part));
     }
     part->length.tries++;
-    /* So short a step may have no certificate, as its states are rounded, and a longer one has. */
     most = fmin(most, limit - part->segment.t);
-    enum dalcs_status status = DALCS_NOT_CONVERGED;
-    for (int k = 0; k < LONGER_TRIES && status == DALCS_NOT_CONVERGED; k++) {
+    part->length.fell_back = fmin(h, most);
+    enum dalcs_status status = dalcs_radau_euler_step(r, part, part->length.fell_back);
+    /* So short a step may have no certificate, as its states are rounded, and a longer one has. Of smooth functions it is that
+     * nothing leads on. */
+    for (int k = 1; k < LONGER_TRIES && status == DALCS_NOT_CONVERGED && part->smooth == NULL &&
+                    part->length.fell_back < most;
+         k++) {
         part->length.fell_back = fmin(ldexp(h, 5 * k), most);
         status = dalcs_radau_euler_step(r, part, part->length.fell_back);
-        k = part->length.fell_back < most ? k : LONGER_TRIES;
     }
     return status;
 }
