@@ -90,8 +90,10 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
                                           : is_part            ? fabs(newton->x[first + k][j])
                                                                : volt;
         }
-        newton->x[first + k][0] = dalcs_smooth_held(of->kind, newton->x[first + k],
-                                                    dalcs_alike * newton->terms[first + k][0]);
+        /* What a kink leaves of 0 has no terms but itself: it is known to the rounding of the voltages. */
+        const double off =
+            dalcs_larger(dalcs_alike * newton->terms[first + k][0], dalcs_rounded * volt);
+        newton->x[first + k][0] = dalcs_smooth_held(of->kind, newton->x[first + k], off);
     }
 }
 
