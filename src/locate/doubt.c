@@ -78,7 +78,7 @@ static bool are_parallel(const struct dalcs_radau_part *part, int a, int b) {
                             (of_a[0] == of_b[1] && of_a[1] == of_b[0]));
 }
 
-static double ohms_of(const struct dalcs_system *s, int pair) {
+double dalcs_pair_slope(const struct dalcs_system *s, int pair) {
     double ohms = 0.0;
     for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
         ohms = s->C.j[k] == dalcs_system_n_equations(s) + pair ? fabs(s->C.x[k]) : ohms;
@@ -94,7 +94,8 @@ static double spread_of_voltage(const struct dalcs_radau_part *part, int pair, c
     for (int k = 0; k < s->n_pairs; k++) {
         if (k != pair && dalcs_osnsp_is_on(&part->component->osnsp, k) &&
             are_parallel(part, pair, k)) {
-            spread = dalcs_smaller(spread, ohms_of(s, k) * spread_of_current(part, k, unit));
+            spread =
+                dalcs_smaller(spread, dalcs_pair_slope(s, k) * spread_of_current(part, k, unit));
         }
     }
     return spread;

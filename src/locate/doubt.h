@@ -17,6 +17,9 @@ static inline double dalcs_doubt_noise(const struct dalcs_radau_part *part) {
     return dalcs_answer_rounded * part->segment.rounding;
 }
 
+/* The entry of a pair's lambda in its own w: ohms, or the slope of a kink; 0: it is ideal. */
+double dalcs_pair_slope(const struct dalcs_system *s, int pair);
+
 /* Finds the capacitors of a part that may step on factors: part->charging_row. */
 enum dalcs_status dalcs_doubt_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 

@@ -89,16 +89,6 @@ static double scale_of_equation(const struct dalcs_radau_part *part, int row) {
     return size;
 }
 
-/* The entry of pair e's lambda in the argument of pair d. */
-static double entry_of(const struct dalcs_system *s, int d, int e) {
-    for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
-        if (s->C.j[k] == dalcs_system_n_equations(s) + e) {
-            return fabs(s->C.x[k]);
-        }
-    }
-    return 0.0;
-}
-
 static double scale_of_argument(const struct dalcs_radau_part *part, int pair, int depth);
 
 /* Of a lambda: by all that it goes to; INFINITY: nothing tells. */
@@ -119,7 +109,7 @@ static double scale_of_output(const struct dalcs_radau_part *part, int pair, int
 /* Of a w: what it is off by is an error of its lambda, over the slope, or, of a bound, of the lambda that it bounds. */
 static double scale_of_argument(const struct dalcs_radau_part *part, int pair, int depth) {
     const struct dalcs_system *s = part->component->system;
-    const double slope = entry_of(s, pair, pair);
+    const double slope = dalcs_pair_slope(s, pair);
     if (slope > 0.0) {
         return slope * scale_of_output(part, pair, depth + 1);
     }
@@ -150,7 +140,7 @@ static double noise_of_argument(const struct dalcs_radau_part *part, int pair, c
 static double noise_of(const struct dalcs_radau_part *part, int pair, bool is_on,
                        const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    const double slope = entry_of(s, pair, pair);
+    const double slope = dalcs_pair_slope(s, pair);
     double noise = noise_of_argument(part, pair, unit);
     for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
         const int e = s->C.j[k] - dalcs_system_n_equations(s);
@@ -158,7 +148,7 @@ static double noise_of(const struct dalcs_radau_part *part, int pair, bool is_on
             continue;
         }
         const double of_argument = noise_of_argument(part, e, unit);
-        const double of_slope = entry_of(s, e, e);
+        const double of_slope = dalcs_pair_slope(s, e);
         const bool is_argument = is_on && slope == 0.0;
         if (is_argument) {
             noise += of_argument / fabs(s->C.x[k]);
