@@ -91,10 +91,11 @@ static double choose_tolerance(const struct dalcs_radau_options *o, int n, int d
     return n <= dense_limit && is_free ? fmin(o->tolerance, aimed) : o->tolerance;
 }
 
-/* Without a pair there is one mode, whose factors serve for all steps of a length. So stages cost no more than in
- * proportion, and steps of nine are longer by more than that: nothing but an edge ends them. */
-static bool has_one_mode(const struct dalcs_component *c) {
-    return c->system->n_pairs == 0 && c->system->monotone;
+/* Fewer modes than unknowns, as a line has that ends at a diode: one of n unknowns moves at n rates at most, and each is
+ * followed for many steps on the factors of few modes. So stages cost no more than in proportion, and steps of nine are
+ * longer by more than that. */
+static bool has_few_modes(const struct dalcs_component *c, int n) {
+    return c->system->monotone && ldexp(1.0, c->system->n_pairs) < n;
 }
 
 /* Small parts pay little for more stages, mostly as dense maps, and save steps and maps. Nine are
@@ -103,8 +104,8 @@ static bool has_one_mode(const struct dalcs_component *c) {
  * stage with a factorisation in some new modes, and save steps where a sine sets their length. */
 static int choose_stages(double tolerance, bool does_better, const struct dalcs_component *c, int n,
                          int dense_limit, const char **because) {
-    if (n > dense_limit && has_one_mode(c)) {
-        *because = "large, one mode";
+    if (n > dense_limit && has_few_modes(c, n)) {
+        *because = "large, few modes";
         return 9;
     }
     if (n > dense_limit) {
