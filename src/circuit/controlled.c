@@ -1,5 +1,7 @@
 /* controlled.c - linear controlled sources: E and G by a voltage, F and H by the current of a V. */
-#include "builder.h"
+
+#include "element_cards.h"
+#include "reader.h"
 
 #include <string.h>
 
@@ -75,7 +77,7 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
         if (!dalcs_reader_name(&reader, "the name of a voltage source", &source)) {
             return;
         }
-        builder->control_token[device - builder->circuit->device] = source;
+        builder->elements.control_token[device - builder->circuit->device] = source;
     }
     if (dalcs_reader_number(&reader, DALCS_PLAIN, "a gain", &device->value)) {
         device->value *= kind == DALCS_VCCS ? dalcs_parallel_of(card) : 1;
@@ -101,8 +103,8 @@ static void resolve(struct dalcs_builder *builder, struct dalcs_device *device,
 
 void dalcs_controlled_resolve(struct dalcs_builder *builder) {
     for (int k = 0; k < builder->circuit->n_devices; k++) {
-        if (builder->control_token[k] != NULL) {
-            resolve(builder, &builder->circuit->device[k], builder->control_token[k]);
+        if (builder->elements.control_token[k] != NULL) {
+            resolve(builder, &builder->circuit->device[k], builder->elements.control_token[k]);
         }
     }
 }
