@@ -83,8 +83,23 @@ static enum dalcs_status recover_residual(struct dalcs_radau *r, struct dalcs_ra
     return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
 }
 
-/* One step in the present mode, with its errors. trial->holds: they are no more than allowed; if not, the next try is
- * another one, or implicit Euler has taken its place. */
+/* The errors of the step from its start to `end`, in steps; INFINITY where it means nothing. trial->holds: they are no more
+ * than allowed. */
+static void judge(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                  const struct dalcs_search *search, double end, struct dalcs_trial *trial) {
+    struct dalcs_step_quality *q = &trial->quality;
+    dalcs_step_judge(r, part, trial->entry, end, q);
+    q->ratio = search->spared ? q->own : q->ratio;
+    if (q->ratio != q->ratio || dalcs_step_clashes(part, trial->entry, end, q->unit)) {
+        q->ratio = q->own = INFINITY;
+    }
+    bool is_first = part->guards.fresh && search->restarts == 0;
+    bool controlled = !search->fixed || is_first;
+    trial->holds = controlled ? q->ratio <= 1.0 : q->ratio < INFINITY;
+}
+
+/* One step in the present mode, with its errors. Where it does not hold, the next try is another one, or implicit Euler has
+ * taken its place. */
 static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                           struct dalcs_search *search, struct dalcs_trial *trial) {
     struct dalcs_step_quality *q = &trial->quality;
@@ -99,24 +114,30 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
     if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= dalcs_nothing)) {
         return recover_residual(r, part, search, is_first, &trial->done);
     }
-    bool means_something = status == DALCS_OK;
-    if (means_something) {
-        double end = end_of(part, search);
-        dalcs_step_judge(r, part, entry, end, q);
-        q->ratio = search->spared ? q->own : q->ratio;
-        means_something = q->ratio == q->ratio && !dalcs_step_clashes(part, entry, end, q->unit);
+    if (status == DALCS_OK) {
+        judge(r, part, search, end_of(part, search), trial);
         if (is_first && !search->fixed && !part->guards.bends && is_outsized(part, q)) {
             q->ratio = q->own = INFINITY;
+            trial->holds = false;
         }
+    } else {
+        q->ratio = INFINITY;
     }
-    bool controlled = !search->fixed || is_first;
-    if (!means_something || (controlled && !(q->ratio <= 1.0))) {
-        q->ratio = means_something ? q->ratio : INFINITY;
-        q->own = means_something ? q->own : INFINITY;
-        return dalcs_search_recover(r, part, search, q, &trial->done);
+    return trial->holds ? DALCS_OK : dalcs_search_recover(r, part, search, q, &trial->done);
+}
+
+/* What lies beyond an event says nothing of how large signals are: there the output of a comparator runs away, which
+ * turns at its rail. So a step that an event cuts is judged once more, up to there. */
+static enum dalcs_status judge_what_is_left(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                            struct dalcs_search *search,
+                                            struct dalcs_trial *trial) {
+    if (!(trial->next < end_of(part, search))) {
+        return DALCS_OK;
     }
-    trial->holds = true;
-    return DALCS_OK;
+    judge(r, part, search, trial->next, trial);
+    part->segment.ratio = dalcs_smaller(1.0, trial->quality.ratio);
+    return trial->holds ? DALCS_OK
+                        : dalcs_search_recover(r, part, search, &trial->quality, &trial->done);
 }
 
 /* May the state be off by what interpolation left of it? */
@@ -224,6 +245,9 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         part->segment.entry = trial.entry;
         part->segment.ratio = dalcs_smaller(1.0, trial.quality.ratio);
         DALCS_TRY(look_at_signs(r, part, search, &trial));
+    }
+    if (trial.holds) {
+        DALCS_TRY(judge_what_is_left(r, part, search, &trial));
     }
     if (trial.holds) {
         part->segment.open =

@@ -16,6 +16,16 @@ static bool has_conductance(const struct dalcs_system *s, int row) {
     return has;
 }
 
+/* The voltages of nodes: a controlled source may have any gain. */
+static void list_voltages(struct dalcs_stages *stages) {
+    const struct dalcs_system *s = stages->system;
+    for (int c = s->n_x; c < dalcs_system_n_equations(s); c++) {
+        if (!s->column_is_current[c] && (s->is_part == NULL || !s->is_part[c])) {
+            stages->levered[stages->n_levered++] = c;
+        }
+    }
+}
+
 /* Branch currents without memory, and voltages that resistors make of what currents of coils differ by. */
 static void list_levered(struct dalcs_stages *stages) {
     const struct dalcs_system *s = stages->system;
@@ -29,6 +39,10 @@ static void list_levered(struct dalcs_stages *stages) {
         }
     }
     stages->n_levered = stages->n_currents;
+    if (!s->monotone) {
+        list_voltages(stages);
+        return;
+    }
     for (int r = s->n_x; has_coil && r < dalcs_system_n_equations(s); r++) {
         int c = s->dual[r];
         if (c >= s->n_x && !s->column_is_current[c] && has_conductance(s, r)) {
