@@ -249,7 +249,7 @@ MUTATIONS = {
         "rows/rows.c", "        sum->group[g] += value;\n", "        sum->group[g] += 1.00001 * value;\n", CHARGED),
 
     "the error of a step is taken for a millionth of it": (
-        "integrator/segment.c", "        q->ratio = search->spared ? q->own : q->ratio;\n",
+        "integrator/segment.c", "    q->ratio = search->spared ? q->own : q->ratio;\n",
         "        q->ratio = 1e-6 * (search->spared ? q->own : q->ratio);\n", STRINGS),
     "a guard has the wrong sign": (
         "locate/first_fall.c", "    return part->guards.n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;\n",
