@@ -124,11 +124,10 @@ struct dalcs_audit {
     } crossing;
 
     struct audit_worst {
-        double defect, scale; /* the largest of each, in the law's own unit */
-        double time;          /* s, of the defect */
+        double defect; /* the largest, over the scale that it was held to */
+        double time;   /* s, of it */
         int part;
-    } * worst_of[DALCS_AUDIT_N_LAWS], /* [dalcs_audit_n_of] */
-        *flux;                        /* [n_devices] of coils, in no time */
+    } * worst_of[DALCS_AUDIT_N_LAWS]; /* [dalcs_audit_n_of] */
 
     struct audit_coarse {
         double defect, time; /* the worst of all, over its scale, at ends of coarse stretches */
@@ -248,15 +247,9 @@ double audit_control_scale(const struct dalcs_audit *audit, const struct audit_p
 double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *s, int device);
 
-/* A defect and its scale, in one unit for each law and index. What rounding explains, and what is allowed
- * besides, is taken off. */
+/* A defect and its scale by then, in one unit. What rounding explains, and what is allowed besides, is taken off. */
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time);
-
-/* The same of the flux of a coil across an instant. It has a scale of its own: what fluxes over an interval are held to
- * grows with that, and with the largest voltage that has ever been: beside a spike of 1e10 V any jump would be nothing. */
-void audit_find_flux(struct dalcs_audit *audit, const struct audit_part *part, int device,
-                     double defect, double scale, double time);
 
 /* signals.c: a signal at a state, what it is held to, and what rounding made of it. It can be read. */
 struct audit_signal {

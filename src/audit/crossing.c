@@ -283,8 +283,8 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
             audit->crossing.offset[a] = over;
             audit->sums.scale[b] += audit->sums.scale[a] + scale;
         } else {
-            audit_find_flux(audit, part, device, fabs(over) - AUDIT_ROUNDING * scale,
-                            scale + audit->sums.scale[a], after->t);
+            audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
+                       fabs(over) - AUDIT_ROUNDING * scale, scale + audit->sums.scale[a], after->t);
         }
     }
 }

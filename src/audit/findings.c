@@ -21,62 +21,33 @@ int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law) 
     }
 }
 
-static void find_coarse(struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
-                        double defect, double time) {
-    if (!(defect <= audit->coarse.defect)) {
-        audit->coarse.defect = isnan(defect) ? INFINITY : defect;
-        audit->coarse.time = time;
-        audit->coarse.law = law;
-        audit->coarse.index = index;
-    }
-}
-
-static void note(struct audit_worst *worst, double defect, double scale, double time) {
-    worst->scale = fmax(worst->scale, scale);
-    if (!(defect <= worst->defect)) { /* not a number is as wrong as can be */
-        worst->defect = isnan(defect) ? INFINITY : defect;
-        worst->time = time;
+/* At ends of coarse stretches the worst of all. */
+static void find_coarse(struct audit_coarse *coarse, enum dalcs_audit_law law, int index,
+                        double ratio, double time) {
+    if (!(ratio <= coarse->defect)) {
+        *coarse = (struct audit_coarse){isnan(ratio) ? INFINITY : ratio, time, law, index};
     }
 }
 
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time) {
+    const double ratio = audit_ratio(defect, scale);
     if (part->at.is_coarse) {
-        find_coarse(audit, law, index, audit_ratio(defect, scale), time);
+        find_coarse(&audit->coarse, law, index, ratio, time);
         return;
     }
-    audit->worst_of[law][index].part = (int)(part - audit->part);
-    note(&audit->worst_of[law][index], defect, scale, time);
-}
-
-void audit_find_flux(struct dalcs_audit *audit, const struct audit_part *part, int device,
-                     double defect, double scale, double time) {
-    if (part->at.is_coarse) {
-        find_coarse(audit, DALCS_AUDIT_BRANCH, device, audit_ratio(defect, scale), time);
-        return;
+    struct audit_worst *worst = &audit->worst_of[law][index];
+    worst->part = (int)(part - audit->part);
+    if (!(ratio <= worst->defect)) { /* not a number is as wrong as can be */
+        worst->defect = isnan(ratio) ? INFINITY : ratio;
+        worst->time = time;
     }
-    audit->worst_of[DALCS_AUDIT_BRANCH][device].part = (int)(part - audit->part);
-    note(&audit->flux[device], defect, scale, time);
-}
-
-/* Of what a coil's flux jumped by where it should not; its scale is that of the largest current so far. */
-static struct dalcs_audit_finding finding_of_flux(const struct dalcs_audit *audit, int device) {
-    const struct audit_worst *worst = &audit->flux[device];
-    const struct audit_part *part = &audit->part[audit->worst_of[DALCS_AUDIT_BRANCH][device].part];
-    const double scale =
-        worst->defect > 0.0 ? fmax(worst->scale, audit_flux_scale(audit, part, device)) : 0.0;
-    return (struct dalcs_audit_finding){audit_ratio(worst->defect, scale), worst->time};
 }
 
 struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audit,
                                                   enum dalcs_audit_law law, int index) {
     const struct audit_worst *worst = &audit->worst_of[law][index];
-    struct dalcs_audit_finding found = {audit_ratio(worst->defect, worst->scale), worst->time};
-    if (law == DALCS_AUDIT_BRANCH) {
-        const struct dalcs_audit_finding of_flux = finding_of_flux(audit, index);
-        found = of_flux.defect > found.defect ? of_flux : found;
-    }
-    return found;
+    return (struct dalcs_audit_finding){worst->defect, worst->time};
 }
 
 struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit) {
