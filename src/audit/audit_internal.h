@@ -42,8 +42,10 @@ struct audit_part {
     struct audit_at_hand { /* the stretch that is looked at */
         double step;       /* s */
         double span;       /* s, from where it begins to where it ends; 0: there is none */
+        double to;         /* s, where it ends */
         double length;     /* s, of the stretch that was complete last */
         double past;       /* s, of the one before that */
+        double duration;   /* s, of the interval that is looked at; 0: none is */
         double lateness;   /* s, that an event may be early by, while its far side is looked at */
         double slope;      /* 1/s: most that a derivative in it may be of what it is of */
         bool is_coarse;
@@ -73,6 +75,7 @@ struct audit_sums {
     double *current;             /* [n_nodes] A that leaves, or C */
     double *scale;               /* [n_nodes] of what was added up */
     double *rounding;            /* [n_nodes] that is in it */
+    double largest_volt;         /* V, of the state that is looked at */
     double volts, amperes;       /* ... from the fluxes of coils, and the charges of capacitors */
     double *flux;                /* [n_devices] Wb, of coils */
     double energy, energy_scale; /* J, or W */
@@ -124,8 +127,13 @@ struct dalcs_audit {
     } crossing;
 
     struct audit_worst {
-        double defect; /* the largest, over the scale that it was held to */
-        double time;   /* s, of it */
+        struct audit_found {
+            double defect, scale; /* in the law's own unit; the scale by then */
+            double time;          /* s */
+            double duration;      /* s, that a charge, flux or energy is over */
+        } largest, beside_scale;  /* of all, and of all over their scales */
+
+        double scale; /* the largest */
         int part;
     } * worst_of[DALCS_AUDIT_N_LAWS]; /* [dalcs_audit_n_of] */
 
@@ -191,6 +199,12 @@ static inline double audit_earned(const struct dalcs_audit *audit, double work, 
     return left > least ? left : least;
 }
 
+/* The part of the largest of a unit that a signal is at least held to. */
+#define AUDIT_NOTHING 1e-5
+
+/* The same of currents of diodes and switches. */
+#define AUDIT_SLIGHT 1e-2
+
 /* Where nothing is, a value is as much as there is. */
 static inline double audit_ratio(double value, double scale) {
     return value == 0.0 ? 0.0 : value / fmax(scale, 0x1p-1022);
@@ -221,6 +235,11 @@ static inline bool audit_can_tell_times(const struct audit_part *part, double le
 static inline double audit_volts(const struct dalcs_audit *audit, const struct audit_part *part,
                                  int a, int b) {
     return fmax(fmax(audit->scale.v[a], audit->scale.v[b]), part->floor.volt);
+}
+
+/* A: of the current of a diode or a switch at least. */
+static inline double audit_slight_amperes(const struct audit_part *part) {
+    return AUDIT_SLIGHT / AUDIT_NOTHING * part->floor.ampere;
 }
 
 static inline double audit_amperes(const struct dalcs_audit *audit, const struct audit_part *part,
@@ -288,9 +307,29 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
 void audit_round_storage(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *s);
 
+/* ... what the current of a branch in it is held to. */
+double audit_branch_amperes(const struct dalcs_audit *audit, const struct audit_part *part,
+                            int device);
+
+/* ... of a state: audit->sums.largest_volt. */
+void audit_see_volts(struct dalcs_audit *audit, const struct audit_part *part,
+                     const struct dalcs_audit_state *s);
+
+/* ... what rounding of these voltages makes of the current of a branch, in A. */
+double audit_branch_rounding(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                             int device, double current);
+
+/* S, of a resistor, or a switch or diode that conducts; 0: it is ideal, does not, or is something else. */
+double audit_conductance(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                         int device);
+
 /* ... and what all nodes that ideal branches join with one have of that. Overwrites audit->crossing.cluster. */
 double audit_rounding_around(struct dalcs_audit *audit, const struct audit_part *part,
                              const struct dalcs_audit_state *s, int node);
+
+/* ... and what a current of any node may have, in A, where one cannot be told from rounding. */
+double audit_rounding_of_part(struct dalcs_audit *audit, const struct audit_part *part,
+                              const struct dalcs_audit_state *s);
 
 /* V and A that the two branches of a diode are held to. */
 void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
@@ -306,6 +345,19 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
 
 /* Wb: what the currents that make a coil's flux are held to. */
 double audit_flux_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device);
+
+/* leaks.c: A that a coil's current may be off by, as leaks alone feed it; 0: they do not, or a step follows them. */
+double audit_leak_of(const struct dalcs_audit *audit, const struct audit_part *part,
+                     const struct dalcs_audit_state *s, int coil);
+/* ... of all coils at a node. */
+double audit_leaks_at(const struct dalcs_audit *audit, const struct audit_part *part,
+                      const struct dalcs_audit_state *s, int node);
+
+/* intervals.c: is a law of charge, flux or energy over an interval, or over none? Its scale is of that, too, and this is what
+ * it is with the largest values so far. */
+bool audit_is_of_storage(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index);
+double audit_storage_scale(const struct dalcs_audit *audit, const struct audit_part *part,
+                           enum dalcs_audit_law law, int index, double duration);
 
 /* intervals.c: what holds between two times in one stretch. */
 void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,
@@ -333,7 +385,7 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
                          const struct dalcs_audit_state *after);
 
 /* start.c: does the part begin as the netlist says? `stored`: of the step that begins there; NULL: there is none. */
-void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
+void audit_check_start(struct dalcs_audit *audit, struct audit_part *part,
                        const struct dalcs_audit_state *first,
                        const struct dalcs_audit_polynomials *stored);
 

@@ -29,25 +29,55 @@ static void find_coarse(struct audit_coarse *coarse, enum dalcs_audit_law law, i
     }
 }
 
+static void keep_if_worse(struct audit_found *kept, const struct audit_found *found, double is,
+                          double was) {
+    if (is > was) {
+        *kept = *found;
+    }
+}
+
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time) {
-    const double ratio = audit_ratio(defect, scale);
+    const double off = isnan(defect) || isnan(scale) ? INFINITY : defect; /* as wrong as can be */
+    const double ratio = audit_ratio(off, scale);
     if (part->at.is_coarse) {
         find_coarse(&audit->coarse, law, index, ratio, time);
         return;
     }
+    const struct audit_found found = {off, scale, time, part->at.duration};
     struct audit_worst *worst = &audit->worst_of[law][index];
     worst->part = (int)(part - audit->part);
-    if (!(ratio <= worst->defect)) { /* not a number is as wrong as can be */
-        worst->defect = isnan(ratio) ? INFINITY : ratio;
-        worst->time = time;
-    }
+    worst->scale = fmax(worst->scale, scale);
+    keep_if_worse(&worst->largest, &found, off, worst->largest.defect);
+    keep_if_worse(&worst->beside_scale, &found, ratio,
+                  audit_ratio(worst->beside_scale.defect, worst->beside_scale.scale));
+}
+
+/* A signal below this part of the largest of its unit is held to that (doc/methods.md, "What the tolerance means"), and so is
+ * one to what it becomes. At the very start transients that are shorter than any step are taken at once: leaks behind coils,
+ * above all. What that makes is held to what becomes of it. */
+static double over_scale(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
+                         const struct audit_found *found) {
+    const struct audit_worst *worst = &audit->worst_of[law][index];
+    const double becomes =
+        audit_is_of_storage(audit, law, index)
+            ? audit_storage_scale(audit, &audit->part[worst->part], law, index, found->duration)
+            : worst->scale;
+    const double least = found->time == 0.0 ? 1.0 : AUDIT_NOTHING;
+    return audit_ratio(found->defect, fmax(found->scale, least * becomes));
 }
 
 struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audit,
                                                   enum dalcs_audit_law law, int index) {
     const struct audit_worst *worst = &audit->worst_of[law][index];
-    return (struct dalcs_audit_finding){worst->defect, worst->time};
+    if (!(worst->largest.defect > 0.0)) {
+        return (struct dalcs_audit_finding){0.0, worst->largest.time};
+    }
+    const double largest = over_scale(audit, law, index, &worst->largest);
+    const double beside_scale = over_scale(audit, law, index, &worst->beside_scale);
+    return beside_scale > largest
+               ? (struct dalcs_audit_finding){beside_scale, worst->beside_scale.time}
+               : (struct dalcs_audit_finding){largest, worst->largest.time};
 }
 
 struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit) {
