@@ -82,14 +82,37 @@ static double size_of(const struct dalcs_variation_part *v, const dalcs_four *a,
     return sqrt(largest_of(&square, &which));
 }
 
-/* Does the mode allow the sums, but for what the run may be off by? A column is taken as it is there (variation.c). */
-static bool is_allowed(const struct dalcs_variation_part *v, double size) {
-    return size_of(v, v->four.begin, v->four.states) <= v->part->tolerance * size;
+/* The least column that is more than rounding, in the units of the sums. */
+DALCS_TWICE(double, least_column, (const struct dalcs_variation_part *v, double rounding),
+            (v, rounding)) {
+    double least = INFINITY;
+    for (int k = 0; k < v->n_columns; k++) {
+        const double *column = v->v + (size_t)k * (size_t)v->n_x;
+        dalcs_four square = {0.0};
+        for (int x = 0; x < v->n_x; x++) {
+            const double at = v->rates.unit[x] * column[x];
+            square[x % DALCS_COLUMNS] += at * at;
+        }
+        const double size =
+            sqrt(square[0] + square[1] + square[2] + square[3]) / v->rates.unit[k];
+        least = size > rounding ? fmin(least, size) : least;
+    }
+    return least;
 }
 
-/* y, four vectors, less their parts in the directions q. */
-static void take_out(int n_x, const dalcs_four *q, dalcs_four *y) {
-    for (int l = 0; l < DALCS_COLUMNS; l++) {
+/* Does a new mode allow every column, but for what the run may be off by? variation.c takes larger parts of one, and only
+ * these, out of it. Sums have what is not allowed of all columns. */
+static bool is_allowed(const struct dalcs_variation_part *v, double rounding) {
+    const double off = size_of(v, v->four.begin, v->four.states);
+    return off <= rounding || off <= v->part->tolerance * least_column(v, rounding);
+}
+
+/* y, four vectors, less their parts in the directions of fours. */
+DALCS_TWICE(void, take_out, (int n_x, int n_fours, const dalcs_four *basis, dalcs_four *y),
+            (n_x, n_fours, basis, y)) {
+    for (int k = 0; k < n_fours * DALCS_COLUMNS; k++) {
+        const dalcs_four *q = basis + (size_t)(k / DALCS_COLUMNS) * (size_t)n_x;
+        const int l = k % DALCS_COLUMNS;
         dalcs_four part = {0.0};
         for (int x = 0; x < n_x; x++) {
             part += q[x][l] * y[x];
@@ -100,12 +123,16 @@ static void take_out(int n_x, const dalcs_four *q, dalcs_four *y) {
     }
 }
 
-/* Directions of y that are longer, into q: the longest first. Returns how many. */
-static int add_directions(int n_x, dalcs_four *y, double rounding, dalcs_four *q) {
+/* One more four of the basis, behind n_fours: directions of y that are longer than rounding, the longest first. Returns how
+ * many. What a short one has left of the long ones is taken out once more (L. Giraud, J. Langou, M. Rozloznik and J. van
+ * den Eshof, Numer. Math. 101, 2005): it would count these twice. */
+static int add_directions(int n_x, int n_fours, dalcs_four *basis, dalcs_four *y, double rounding) {
+    dalcs_four *q = basis + (size_t)n_fours * (size_t)n_x;
     memset(q, 0, (size_t)n_x * sizeof *q);
     for (int n = 0; n < DALCS_COLUMNS; n++) {
         dalcs_four part = {0.0};
         int which;
+        take_out(n_x, n_fours + 1, basis, y);
         for (int x = 0; x < n_x; x++) {
             part += y[x] * y[x];
         }
@@ -113,13 +140,17 @@ static int add_directions(int n_x, dalcs_four *y, double rounding, dalcs_four *q
         if (!(length > rounding)) {
             return n;
         }
-        memset(&part, 0, sizeof part);
         for (int x = 0; x < n_x; x++) {
-            q[x][n] = y[x][which] / length;
-            part += q[x][n] * y[x];
+            y[x] /= length;
+        }
+        take_out(n_x, n_fours + 1, basis, y);
+        double again = 0.0;
+        for (int x = 0; x < n_x; x++) {
+            again += y[x][which] * y[x][which];
         }
         for (int x = 0; x < n_x; x++) {
-            y[x] -= q[x][n] * part;
+            q[x][n] = y[x][which] / sqrt(again);
+            y[x] *= length;
         }
     }
     return DALCS_COLUMNS;
@@ -136,16 +167,13 @@ static int find_basis(struct dalcs_variation_part *v, const struct dalcs_stage_e
         const double size = size_of(v, v->four.states, NULL);
         rounding = fmax(rounding, v->n_x * DBL_EPSILON * size);
         dalcs_stage_columns_apply(&v->part->stages, entry, &v->four);
-        if (is_new && !is_allowed(v, size)) {
+        if (is_new && !is_allowed(v, rounding)) {
             return 0;
         }
         for (int x = 0; x < v->n_x; x++) {
             y[x] = v->rates.unit[x] * (y[x] - v->four.states[x]);
         }
-        for (int before = 0; before < 2 * g; before++) { /* twice, for rounding */
-            take_out(v->n_x, v->rank.basis + (size_t)(before % g) * (size_t)v->n_x, y);
-        }
-        *n_last = add_directions(v->n_x, y, rounding, v->rank.basis + (size_t)g * (size_t)v->n_x);
+        *n_last = add_directions(v->n_x, g, v->rank.basis, y, rounding);
         if (*n_last < DALCS_COLUMNS) {
             return g + 1;
         }
