@@ -11,7 +11,7 @@
 #include "gate_variation.h"
 #include "stage_columns.h"
 
-struct dalcs_variation_rank { /* variation_rank.c */
+struct dalcs_variation_rank {   /* variation_rank.c */
     dalcs_four *basis, *weight; /* [fours of directions][n_x] Q, W */
     dalcs_four *other;          /* [n_x] work */
     long failed, wait;          /* segments */

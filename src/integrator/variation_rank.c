@@ -47,7 +47,7 @@ static void draw_signs(uint64_t *random, dalcs_four *sign) {
 }
 
 /* Sums of the columns, energies being alike. */
-DALCS_TWICE(void, draw, (struct dalcs_variation_part *v, uint64_t *random), (v, random)) {
+DALCS_TWICE(void, draw, (struct dalcs_variation_part * v, uint64_t *random), (v, random)) {
     dalcs_four *z = v->four.states;
     memset(z, 0, (size_t)v->n_x * sizeof *z);
     for (int k = 0; k < v->n_columns; k++) {
@@ -93,8 +93,7 @@ DALCS_TWICE(double, least_column, (const struct dalcs_variation_part *v, double 
             const double at = v->rates.unit[x] * column[x];
             square[x % DALCS_COLUMNS] += at * at;
         }
-        const double size =
-            sqrt(square[0] + square[1] + square[2] + square[3]) / v->rates.unit[k];
+        const double size = sqrt(square[0] + square[1] + square[2] + square[3]) / v->rates.unit[k];
         least = size > rounding ? fmin(least, size) : least;
     }
     return least;

@@ -298,8 +298,7 @@ static void load_update_back(const struct dalcs_stage_factors *f, int system, da
     for (int i = 0; i < u->n_changes; i++) {
         const struct dalcs_stage_change *c = u->change[i];
         if (i < u->n_closed) {
-            rhs[f->n - f->n_pairs + c->pair] +=
-                c->row_scale * x[(f->lu[system].n + i) * stride];
+            rhs[f->n - f->n_pairs + c->pair] += c->row_scale * x[(f->lu[system].n + i) * stride];
         } else {
             x[c->row_at[system] * stride] = (dalcs_four){0.0};
         }
