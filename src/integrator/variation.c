@@ -8,6 +8,7 @@
 #include "smooth_step.h"
 #include "step_error.h"
 #include "variation_columns.h"
+#include "variation_rank.h"
 
 #include <math.h>
 #include <string.h>
@@ -145,7 +146,9 @@ static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row, b
         DALCS_TRY(dalcs_smooth_step_vary_begin(part, entry));
     }
     if (dalcs_variation_shares(v, entry)) {
-        dalcs_variation_pass_columns(v, entry, weight, row, is_new);
+        if (!dalcs_variation_pass_rank(v, entry, weight, row, is_new)) {
+            dalcs_variation_pass_columns(v, entry, weight, row, is_new);
+        }
         return DALCS_OK;
     }
     for (int k = 0; k < v->n_columns; k++) {

@@ -11,6 +11,12 @@
 #include "gate_variation.h"
 #include "stage_columns.h"
 
+struct dalcs_variation_rank {   /* variation_rank.c */
+    dalcs_four *basis, *weight; /* [fours of directions][n_x] Q, W */
+    dalcs_four *other;          /* [n_x] work */
+    long failed, wait;          /* segments */
+};
+
 struct dalcs_variation_part {
     struct dalcs_radau_part *part;
     int n_x;
@@ -19,6 +25,7 @@ struct dalcs_variation_part {
     double *v;                          /* [n_columns][n_x] column after column */
     double *in, *out, *guard;           /* of one column; [n_columns] of a guard, then dt */
     struct dalcs_stage_columns four;    /* of four columns; work is NULL: steps are dense maps */
+    struct dalcs_variation_rank rank;   /* with them */
     struct dalcs_orbit_rates rates;
     double *before, *after; /* [n_x] f- and f+ */
     double *y;              /* work */

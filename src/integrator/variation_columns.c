@@ -1,6 +1,8 @@
 /* variation_columns.c - columns of V through a segment, four at once. */
 #include "variation_columns.h"
 
+#include "variation_rank.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -20,7 +22,7 @@ enum dalcs_status dalcs_variation_columns_setup(struct dalcs_variation_part *v,
                                            .end = storage + n_x,
                                            .begin = storage + 2 * n_x,
                                            .work = storage + 3 * n_x};
-    return DALCS_OK;
+    return dalcs_variation_rank_setup(v, arena);
 }
 
 bool dalcs_variation_shares(const struct dalcs_variation_part *v,

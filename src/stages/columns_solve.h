@@ -10,4 +10,8 @@
 void dalcs_columns_solve(const struct dalcs_stage_factors *f, int system, const dalcs_four *rhs,
                          dalcs_four *solved);
 
+/* rhs += the transposed of that times `solved`, of which nothing is left. */
+void dalcs_columns_solve_back(const struct dalcs_stage_factors *f, int system, dalcs_four *solved,
+                              dalcs_four *rhs);
+
 #endif

@@ -166,9 +166,8 @@ static void begin(const struct walk *w) {
     }
 }
 
-void dalcs_stage_columns_apply(const struct dalcs_stages *stages,
-                               const struct dalcs_stage_entry *entry,
-                               struct dalcs_stage_columns *c) {
+static struct walk walk_of(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                           struct dalcs_stage_columns *c) {
     const int n_rows = stages->plan->n_rows;
     struct walk w = {.stages = stages,
                      .entry = entry,
@@ -178,14 +177,130 @@ void dalcs_stage_columns_apply(const struct dalcs_stages *stages,
                      .solved = c->work + n_rows,
                      .missed = c->work + n_rows + 2 * (n_rows + DALCS_LU_SPARE)};
     set_weights(&w);
+    return w;
+}
+
+/* Does the guard read what the states miss at the start? */
+static bool reads_start(const struct walk *w) {
+    return w->guard.n > 0 && w->c->weight[0] != 0.0;
+}
+
+static int first_part(int system) {
+    return system > 0 ? 2 * system - 1 : 0;
+}
+
+void dalcs_stage_columns_apply(const struct dalcs_stages *stages,
+                               const struct dalcs_stage_entry *entry,
+                               struct dalcs_stage_columns *c) {
+    const struct walk w = walk_of(stages, entry, c);
     begin(&w);
     find_drive(&w, c->states);
     for (int q = 0; q < entry->factors->n_systems; q++) {
         dalcs_columns_solve(entry->factors, q, w.rhs, w.solved);
-        put_states(&w, q, q > 0 ? 2 * q - 1 : 0);
-        put_guard(&w, q, q > 0 ? 2 * q - 1 : 0);
+        put_states(&w, q, first_part(q));
+        put_guard(&w, q, first_part(q));
     }
-    if (w.guard.n > 0 && c->weight[0] != 0.0) {
+    if (reads_start(&w)) {
         correct_start(&w);
     }
+}
+
+/* ---- Transposed ---------------------------------------------------------------------------------------- */
+
+/* w->solved += c->guard times what add_to_guard reads. */
+static void take_of_guard(const struct walk *w, int system, int part, bool states, double factor) {
+    const struct dalcs_stage_factors *f = w->entry->factors;
+    const int n_x = w->stages->system->n_x;
+    const int n_equations = f->n - f->n_pairs;
+    const int stride = system > 0 ? 2 : 1;
+    for (int k = 0; k < w->guard.n; k++) {
+        const int u = dalcs_stage_unknown(f, guard_column(&w->guard, k));
+        if (u < 0 || (u < n_x) != states) {
+            continue;
+        }
+        const int pair = u - n_equations;
+        const struct dalcs_stage_order *o = &f->order[system];
+        const int at = pair >= 0 ? o->of_pair[pair] : o->position[u];
+        const double scale = pair >= 0 ? f->pair_scale[pair] : f->column_scale[u];
+        w->solved[at * stride + part] += w->guard.coefficient[k] * factor * scale * w->c->guard;
+    }
+}
+
+static void clear_solved(const struct walk *w) {
+    memset(w->solved, 0,
+           2 * (size_t)(w->stages->plan->n_rows + DALCS_LU_SPARE) * sizeof *w->solved);
+}
+
+/* states += the transposed drive of w->rhs. */
+DALCS_TWICE(void, drive_back, (const struct walk *w, dalcs_four *states), (w, states)) {
+    const struct dalcs_csr *a = &w->stages->plan->drive_of_states;
+    for (int r = 0; r < a->n_rows; r++) {
+        for (int k = a->p[r]; k < a->p[r + 1]; k++) {
+            states[a->j[k]] += a->x[k] * w->rhs[r];
+        }
+    }
+}
+
+static void clear_rhs(const struct walk *w) {
+    memset(w->rhs, 0, (size_t)w->stages->plan->n_rows * sizeof *w->rhs);
+}
+
+/* w->missed = how the guard depends on it. */
+static void correct_start_back(const struct walk *w) {
+    const struct dalcs_stage_factors *f = w->entry->factors;
+    const int n_x = w->stages->system->n_x;
+    const double weight = w->c->weight[0];
+    for (int pass = 0; pass < 2; pass++) {
+        clear_solved(w);
+        take_of_guard(w, 0, 0, false, weight);
+        for (int x = 0; x < n_x && pass > 0; x++) {
+            w->solved[f->order[0].position[x]] -= f->column_scale[x] * w->missed[x];
+        }
+        clear_rhs(w);
+        dalcs_columns_solve_back(f, 0, w->solved, w->rhs);
+        memset(w->missed, 0, (size_t)n_x * sizeof *w->missed);
+        drive_back(w, w->missed);
+    }
+}
+
+/* w->solved = how what is asked depends on the answer of a system. */
+static void ask_of_states(const struct walk *w, int system, int first) {
+    const struct dalcs_stage_factors *f = w->entry->factors;
+    const double *to_start = w->stages->plan->to[0];
+    const int n_parts = system > 0 ? 2 : 1;
+    clear_solved(w);
+    for (int part = 0; part < n_parts; part++) {
+        const double end = w->end[first + part];
+        const double start = to_start[first + part];
+        for (int x = 0; x < w->stages->system->n_x; x++) {
+            w->solved[f->order[system].position[x] * n_parts + part] =
+                f->column_scale[x] * (end * w->c->end[x] - start * w->missed[x]);
+        }
+        take_of_guard(w, system, part, true, end);
+        take_of_guard(w, system, part, false, end + w->c->weight[0] * start);
+    }
+}
+
+void dalcs_stage_columns_apply_back(const struct dalcs_stages *stages,
+                                    const struct dalcs_stage_entry *entry,
+                                    struct dalcs_stage_columns *c) {
+    const struct walk w = walk_of(stages, entry, c);
+    const int n_x = stages->system->n_x;
+    memset(w.missed, 0, (size_t)n_x * sizeof *w.missed);
+    if (reads_start(&w)) {
+        correct_start_back(&w);
+    }
+    memcpy(c->states, c->end, (size_t)n_x * sizeof *c->states);
+    for (int k = 0; k < w.guard.n; k++) {
+        const int u = guard_column(&w.guard, k);
+        if (u < n_x) {
+            c->states[u] += w.guard.coefficient[k] * c->guard;
+        }
+    }
+    clear_rhs(&w);
+    for (int q = 0; q < entry->factors->n_systems; q++) {
+        ask_of_states(&w, q, first_part(q));
+        dalcs_columns_solve_back(entry->factors, q, w.solved, w.rhs);
+    }
+    drive_back(&w, c->states);
 }

@@ -34,4 +34,10 @@ void dalcs_stage_columns_apply(const struct dalcs_stages *stages,
                                const struct dalcs_stage_entry *entry,
                                struct dalcs_stage_columns *columns);
 
+/* The transposed: `states` become how the sum of `end` times what is in it, and of `guard` times what is in that, depends
+ * on states at the start. `end` is lost. */
+void dalcs_stage_columns_apply_back(const struct dalcs_stages *stages,
+                                    const struct dalcs_stage_entry *entry,
+                                    struct dalcs_stage_columns *columns);
+
 #endif

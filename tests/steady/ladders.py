@@ -97,12 +97,32 @@ def look_at(checker, program, folder, name, body, formula):
     print(name, steady["newton"], "steps", steady["periods"], "periods", largest)
 
 
+# Beside a gate the columns of M go through segments one by one, without variation_rank.c.
+IDLE_GATE = "Vidle idle 0 0\nAidle idle 0 0 0 0 off 0 0 SCHMITT Vt=1 Vh=0 Td=1p\nRidle off 0 1\n"
+COMPARED = ("a source with a resistance", "two sides")
+
+
+def compare_ways(checker, program, folder, name, body):
+    """The same multipliers, whichever way M takes."""
+    sizes = []
+    for gate in ("", IDLE_GATE):
+        done, report = run(program, folder, f"{name}\n{body}{gate}.pss uic\n.end\n", "steady")
+        if not checker.check(done.returncode == 0, f"{name}: {done.stderr}"):
+            return
+        sizes.append(sorted((math.hypot(m["re"], m["im"]) for m in report["steady"]["multipliers"]), reverse=True))
+    worst = max(abs(a - b) for a, b in zip(*sizes))
+    checker.check(worst <= 2e-8, f"{name}: multipliers differ by {worst:.2g} beside an idle gate")
+    print(name, "multipliers differ by", worst)
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("ladders")
     with tempfile.TemporaryDirectory() as folder:
         for name, body, formula in dalcs_program.some_of(CASES):
             look_at(checker, program, pathlib.Path(folder), name, body, formula)
+            if name in COMPARED:
+                compare_ways(checker, program, pathlib.Path(folder), name, body)
     return checker.finish()
 
 
