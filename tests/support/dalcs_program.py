@@ -12,6 +12,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NETLISTS = ROOT / "netlists"
+IS_LONG = os.environ.get("DALCS_TEST_LONG") == "1"  # tools/test --long
 
 
 class Run:
@@ -134,10 +135,10 @@ def run(program, netlist, step=None, at=None, options=(), report=True, environme
                    json.loads(saved_report.read_text()) if saved_report.exists() else None)
 
 
-def some_of(cases):
-    """Every n-th of cases that differ by numbers alone, where DALCS_TEST_SOME=n is set as .ci/run does for sanitizers:
-    what these look for shows in few of them as in all."""
-    return list(cases)[::int(os.environ.get("DALCS_TEST_SOME", "1"))]
+def some_of(cases, n=1):
+    """Of cases that differ by numbers alone every n-th, or all in the long run; and where DALCS_TEST_SOME is larger, as
+    in .ci/run for sanitizers, every one of so many: what these look for shows in few of them as in all."""
+    return list(cases)[::max(1 if IS_LONG else n, int(os.environ.get("DALCS_TEST_SOME", "1")))]
 
 
 class Checker:
