@@ -3,7 +3,7 @@
  *     check_netlist FILE [NAME]     with NAME: as text, which messages call NAME
  *     check_netlist --each FILE...  one after the other
  *
- * Exit status 0, 3 for a netlist with errors, 4 for a file that cannot be read, as the program; of --each the largest. */
+ * Exit status 0, 3 for a netlist with errors, 4 for a file that cannot be read, as the program. With --each errors of netlists are none. */
 #include "dalcs.h"
 #include "memory.h"
 
@@ -59,10 +59,11 @@ int main(int argc, char **argv) {
     if (strcmp(argv[1], "--each") != 0) {
         return check_netlist(argv[1], argc > 2 ? argv[2] : NULL);
     }
-    int worst = 0;
     for (int k = 2; k < argc; k++) {
         int status = check_netlist(argv[k], NULL);
-        worst = status > worst ? status : worst;
+        if (status != 0 && status != 3) {
+            return status;
+        }
     }
-    return worst;
+    return 0;
 }

@@ -4,13 +4,17 @@
 # `meson test` closes with one line for each outcome; what passed is Ok and Expected Fail, what
 # failed is Fail (errors are in it), Unexpected Pass and Timeout.
 
-# run_suites BUILD [arguments of meson test]: sets suites_passed and suites_failed. Tests in Python need Debian's, whose
+# run_suites BUILD [arguments of meson test]: sets suites_passed and suites_failed. The run is a short one, unless
+# DALCS_TEST_LONG=1 (some_of in dalcs_program.py). Tests in Python need Debian's, whose
 # packages tools/packages.sh installs, whatever other comes first in PATH.
 run_suites() {
     local build=$1 log scratch
     shift
     log=$(mktemp)
     scratch=$(scratch_folder)
+    if [[ ${DALCS_TEST_LONG:-} != 1 ]]; then
+        export DALCS_TEST_SHORT=1
+    fi
     PATH=/usr/bin:$PATH TMPDIR=$scratch meson test -C "$build" --no-rebuild --print-errorlogs "$@" </dev/null 2>&1 | tee "$log" || true
     # shellcheck disable=SC2034 # for the caller
     suites_passed=$(sum_of_lines '^(Ok|Expected Fail):' "$log")
