@@ -20,7 +20,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker  # noqa: E402
+from dalcs_program import Checker, some_of  # noqa: E402
 
 SKIPPED = 77
 
@@ -452,7 +452,7 @@ def run_all(mutations, suite):
         return SKIPPED
     checker = Checker(suite)
     sound = functools.cache(lambda netlist: verdict_of(build / "dalcs", netlist))
-    for name, (file, old, new, netlist) in mutations.items():
+    for name, (file, old, new, netlist) in some_of(mutations.items(), 2):
         if sys.argv[3:] and name not in sys.argv[3:]:
             continue
         with tempfile.TemporaryDirectory() as directory:
