@@ -16,7 +16,7 @@ packages_of() {
         wasm) echo emscripten dpkg-dev ;;
         crosscheck) echo lepton-eda libngspice0-dev ngspice python3 ;;
         kicad) echo kicad kicad-demos openbox xdotool xvfb ;;
-        ci) echo clang libclang-rt-14-dev llvm valgrind clang-format codespell cppcheck python3-proselint shellcheck fish zsh ;;
+        ci) echo clang libclang-rt-14-dev lld llvm valgrind clang-format codespell cppcheck python3-proselint shellcheck fish zsh ;;
         *)
             echo "packages.sh: no package group '$1'" >&2
             return 1

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Makes each kind of allocation of a run fail, one after the other, and then all from there on.
 
-usage: every_allocation.py PROGRAM LIBRARY CASE METHOD
+usage: every_allocation.py PROGRAM LIBRARY CASE:METHOD ...
 
+A path of calls that an earlier case has failed is left to it, unless the run is a long one (tools/test --long).
 Whatever fails, the program ends by itself with a status of 1 to 4 and a message, or with the right
 output if it could do without that memory; the output's final name never holds half a result.
 """
@@ -13,8 +14,8 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "support")]
-from dalcs_program import Checker  # noqa: E402
-from preload import calls_to_fail, run_preloaded  # noqa: E402
+from dalcs_program import IS_LONG, Checker  # noqa: E402
+from preload import DEPTH, FROM_THERE, ONCE, paths_of_calls, refused_runs  # noqa: E402
 
 CASES = {  # netlist and status without a failure
     "system": ("""dalcs-system 2 Everything that a system file may have
@@ -648,7 +649,6 @@ class Case:
         (self.folder / "circuit.cir").write_text(netlist)
         for file, text in FILES.items():
             (self.folder / file).write_text(text)
-        self.output = self.folder / "out.csv"
         self.command = [program, "run", "circuit.cir", "--method", method, "-o", "out.csv"]
         if name != "leaps":  # the report has a ledger of energies, which needs every segment
             self.command += ["--report", "report.json"]
@@ -659,58 +659,61 @@ class Case:
                             "-o", "out.csv"]
         self.checker = Checker(f"{name} with {method}")
 
-    def prepared(self):
-        if not self.output.exists() or self.output.read_bytes() != OLD:
-            self.output.write_bytes(OLD)  # of thousands of runs few touch it
-        return self.command
-
-    def run(self, **variables):
-        return run_preloaded(self.library, self.prepared(), self.folder, **variables)
-
-    def judge(self, done, tally, wanted, where):
-        """Checks one run in which tally.refused allocations failed."""
+    def judge(self, run, wanted):
+        """Checks one run in which allocations failed."""
         check = self.checker.check
-        error = done.stderr.decode(errors="replace")
-        if not check(done.returncode >= 0, f"{where}: signal {-done.returncode}\n{error}"):
+        where = f"{'only' if run.way == ONCE else 'from'} allocation {run.number}"
+        output = (run.folder / "out.csv").read_bytes()
+        error = run.stderr.decode(errors="replace")
+        check(run.tally.refused > 0, f"{where}: nothing was refused")
+        if not check(run.returncode >= 0, f"{where}: signal {-run.returncode}\n{error}"):
             return
-        if done.returncode == 0:
-            check(self.output.read_bytes() == wanted, f"{where}: status 0 but another output")
+        if run.returncode == 0:
+            check(output == wanted, f"{where}: status 0 but another output")
         else:
-            check(1 <= done.returncode <= 4, f"{where}: status {done.returncode}")
-            check(self.output.read_bytes() == OLD, f"{where}: failed, yet touched the output")
-            check(tally.refused == 0 or error.strip(), f"{where}: failed without a word")
+            check(1 <= run.returncode <= 4, f"{where}: status {run.returncode}")
+            check(output == OLD, f"{where}: failed, yet touched the output")
+            check(error.strip(), f"{where}: failed without a word")
 
-    def every(self):
-        done, whole, first, both = calls_to_fail(self.library, self.prepared(), self.folder)
+    def points(self, known):
+        """Runs without a failure; returns the output and what is to fail: of each path of calls that is not known the first
+        allocation, in the long run also the last, and of every third path all from the first one on."""
+        output = self.folder / "out.csv"
+        output.write_bytes(OLD)
+        done, whole, first, last = paths_of_calls(self.library, self.command, self.folder, depth=DEPTH)
         error = done.stderr.decode(errors="replace")
-        if not self.checker.check(done.returncode == self.status and whole.refused == 0,
-                                  f"status {done.returncode}, not {self.status}:\n{error}"):
-            return
-        wanted = self.output.read_bytes()
+        wanted = output.read_bytes()
+        self.checker.check(done.returncode == self.status and whole.refused == 0,
+                           f"status {done.returncode}, not {self.status}:\n{error}")
         self.checker.check((wanted == OLD) == (self.status != 0), "the output was not as expected")
-        for variable, numbers in ("DALCS_FAIL_AT", both), ("DALCS_FAIL_FROM", first[::3]):
-            self.refuse(variable, numbers, wanted)
-            _, tally = self.run(**{variable: whole.calls + 1})
-            self.checker.check(tally.refused == 0, "another run has more allocations")
-            print(f"{variable}: {len(numbers)} of {whole.calls} allocations")
+        output.write_bytes(OLD)
+        new = sorted(number for path, number in first.items() if path not in known)
+        ends = {number for path, number in last.items() if path not in known} if IS_LONG else set()
+        print(f"{self.checker.name}: {whole.calls} allocations by {len(first)} paths of calls, {len(new)} of them new")
+        known.update(first)
+        return wanted, [(n, ONCE) for n in {*new, *ends}] + [(n, FROM_THERE) for n in new[::3]]
 
-    def refuse(self, variable, numbers, wanted):
-        failed = 0
-        for number in numbers:
-            done, tally = self.run(**{variable: number})
-            self.checker.check(tally.refused > 0, f"{variable}={number}: another run has fewer allocations")
-            self.judge(done, tally, wanted, f"{variable}={number}")
-            failed += done.returncode != 0
-        self.checker.check(failed > len(numbers) // 2 or self.status != 0,
-                           f"only {failed} of {len(numbers)} failures were noticed")
+    def every(self, known):
+        wanted, points = self.points(known)
+        noticed = 0
+        for run in refused_runs(self.library, self.command, self.folder, points) if points else []:
+            self.judge(run, wanted)
+            noticed += run.returncode != 0
+        self.checker.check(noticed > len(points) // 2 or self.status != 0 or not points,
+                           f"only {noticed} of {len(points)} failures were noticed")
 
 
 def main():
-    program, library, name, method = sys.argv[1:]
-    with tempfile.TemporaryDirectory() as folder:
-        case = Case(program, library, name, method, folder)
-        case.every()
-        return case.checker.finish()
+    program, library, *cases = sys.argv[1:]
+    known = set()
+    status = 0
+    for case in cases:
+        name, method = case.split(":")
+        with tempfile.TemporaryDirectory() as folder:
+            run = Case(program, library, name, method, folder)
+            run.every(set() if IS_LONG else known)
+            status |= run.checker.finish()
+    return status
 
 
 if __name__ == "__main__":

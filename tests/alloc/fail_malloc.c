@@ -3,13 +3,18 @@
  * DALCS_FAIL_AT=N   the N-th allocation returns NULL (N >= 1)
  * DALCS_FAIL_FROM=N that one and all later ones return NULL
  * DALCS_TALLY=FILE  a file that receives struct tally, up to date at every moment
- * DALCS_PATHS=FILE  a file that receives 64 bits for each allocation, in order: equal where the calls that led to it are
+ * DALCS_POINTS=FILE, DALCS_BRANCHES=FOLDER
+ *                   at each of these allocations a child goes on where it fails (branch.h); its tally is FOLDER/N.WAY/tally
+ * DALCS_PATHS=FILE  a file that receives 64 bits for each allocation, in order: equal where the innermost calls that led to it are
+ * DALCS_DEPTH=N     of how many, this library's three among them; 12 without it
  *
  * Allocations are counted from the first call in main: what the constructors of other libraries do
  * without memory, such as Fortran's, is not the program's to answer for. Programs that this one starts are neither
  * counted nor made to fail. Not for threads.
  */
 #define _GNU_SOURCE
+#include "branch.h"
+
 #include <dlfcn.h>
 #include <errno.h>
 #include <execinfo.h>
@@ -41,7 +46,10 @@ static struct tally here;
 static struct tally *tally = &here;
 static int64_t fail_at, fail_from;
 static int paths = -1; /* file descriptor */
+static int depth;
 static int counting;
+
+enum { MOST_FRAMES = 12 };
 
 static int64_t number_from(const char *name) {
     const char *text = getenv(name);
@@ -51,44 +59,59 @@ static int64_t number_from(const char *name) {
 /* The first backtrace loads a library and allocates: it is made before anything is counted. */
 static void start_paths(const char *path) {
     void *frame;
+    const int64_t wanted = number_from("DALCS_DEPTH");
+    depth = wanted > 0 && wanted < MOST_FRAMES ? (int)wanted : MOST_FRAMES;
     if (path != NULL) {
         paths = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
         backtrace(&frame, 1);
     }
 }
 
-/* FNV-1a over the innermost return addresses: three are of this library, and who is further out sees no more than an
- * error that was passed on. */
+/* FNV-1a over the innermost return addresses, each from the start of its program or library: three are of this one, and
+ * who is further out sees no more than an error that was passed on. Where code was loaded does not matter. */
 static void write_path(void) {
-    void *frames[12];
+    void *frames[MOST_FRAMES];
     uint64_t hash = 14695981039346656037u;
-    int count = backtrace(frames, 12);
+    int count = backtrace(frames, depth);
     for (int k = 0; k < count; k++) {
-        hash = (hash ^ (uint64_t)(uintptr_t)frames[k]) * 1099511628211u;
+        Dl_info place;
+        const uintptr_t start = dladdr(frames[k], &place) != 0 ? (uintptr_t)place.dli_fbase : 0;
+        hash = (hash ^ (uint64_t)((uintptr_t)frames[k] - start)) * 1099511628211u;
     }
     if (write(paths, &hash, sizeof hash) != (ssize_t)sizeof hash) {
         abort(); /* a path that is missing would shift all others */
     }
 }
 
+/* Goes on in a file with what was counted so far. */
+static void share_tally(const char *path) {
+    int file = open(path, O_RDWR | O_CREAT, 0600);
+    if (file >= 0 && ftruncate(file, sizeof *tally) == 0) {
+        void *shared = mmap(NULL, sizeof *tally, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+        if (shared != MAP_FAILED) {
+            here = *tally; /* what other constructors took before */
+            tally = shared;
+            *tally = here;
+        }
+    }
+    if (file >= 0) {
+        close(file);
+    }
+}
+
 __attribute__((constructor)) static void start(void) {
-    const char *path = getenv("DALCS_TALLY");
+    const char *path = getenv("DALCS_TALLY"), *points = getenv("DALCS_POINTS");
     fail_at = number_from("DALCS_FAIL_AT");
     fail_from = number_from("DALCS_FAIL_FROM");
     start_paths(getenv("DALCS_PATHS"));
     if (path != NULL) {
-        int file = open(path, O_RDWR | O_CREAT, 0600);
-        if (file >= 0 && ftruncate(file, sizeof *tally) == 0) {
-            void *shared = mmap(NULL, sizeof *tally, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-            if (shared != MAP_FAILED) {
-                tally = shared;
-                *tally = here; /* what other constructors took before */
-            }
-        }
-        if (file >= 0) {
-            close(file);
-        }
+        share_tally(path);
     }
+    if (points != NULL) {
+        branch_start(points, getenv("DALCS_BRANCHES"));
+    }
+    unsetenv("DALCS_POINTS");
+    unsetenv("DALCS_BRANCHES");
     unsetenv("DALCS_TALLY");
     unsetenv("DALCS_FAIL_AT");
     unsetenv("DALCS_FAIL_FROM");
@@ -128,6 +151,18 @@ __attribute__((destructor)) static void stop(void) {
     }
 }
 
+/* In a child of branch.h: a tally of its own, and what fails. Nothing is counted while the child is made. */
+static void take_branch(int64_t call) {
+    counting = 0;
+    const enum branch_way way = branch_at(call);
+    if (way != BRANCH_GOES_ON) {
+        share_tally("tally");
+        fail_at = way == BRANCH_FAILS_ONCE ? call : 0;
+        fail_from = way == BRANCH_FAILS_FROM_HERE ? call : 0;
+    }
+    counting = 1;
+}
+
 /* Counts one allocation and says whether it must fail. */
 static int refuse(void) {
     if (!counting) {
@@ -137,6 +172,7 @@ static int refuse(void) {
     if (paths >= 0) {
         write_path();
     }
+    take_branch(tally->calls);
     if (tally->calls != fail_at && (fail_from == 0 || tally->calls < fail_from)) {
         return 0;
     }

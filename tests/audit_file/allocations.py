@@ -12,7 +12,7 @@ from audit_program import dalcs_program, simulate
 from formats import BRIDGE, NESTED, ltspice
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "alloc"))
-from preload import calls_to_fail, run_preloaded  # noqa: E402
+from preload import ONCE, calls_to_fail, refused_runs  # noqa: E402
 
 
 def main(program, library):
@@ -29,14 +29,14 @@ def main(program, library):
             (folder / "circuit.cir").write_text(netlist)
             (folder / "waves").write_bytes(ltspice(table) if as_raw else table.csv().encode())
             command = [program, "audit", "circuit.cir", "waves", "--json"]
-            done, _, _, numbers = calls_to_fail(library, command, folder)
+            done, _, numbers = calls_to_fail(library, command, folder)
             checker.check(done.returncode == 0, f"{name}: {done.returncode} {done.stderr}")
-            for number in numbers:
-                again, tally = run_preloaded(library, command, folder, DALCS_FAIL_AT=number)
-                checker.check(tally.refused > 0, f"{name} at {number}: nothing was refused")
+            for again in refused_runs(library, command, folder, [(number, ONCE) for number in numbers]):
+                where = f"{name} at {again.number}"
+                checker.check(again.tally.refused > 0, f"{where}: nothing was refused")
                 good = again.returncode == 0 and again.stdout == done.stdout or \
                     1 <= again.returncode <= 4 and again.stderr.strip()
-                checker.check(good, f"{name} at {number}: {again.returncode} {again.stderr}")
+                checker.check(good, f"{where}: {again.returncode} {again.stderr}")
     return checker.finish()
 
 

@@ -11,6 +11,9 @@ import tempfile
 
 import jsonschema
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import some_of  # noqa: E402
+
 DI = ".model di D(Ron=0 Vfwd=0)\n"
 
 # netlist of netlists/: what each question is answered, or the elements that are named. With GLPK.
@@ -201,7 +204,7 @@ class Cases:
 def main(program, root, has_glpk):
     root = pathlib.Path(root)
     cases = Cases(program, json.loads((root / "doc" / "check.schema.json").read_text()))
-    for netlist in sorted(root.glob("netlists/*/*.cir")):
+    for netlist in some_of(sorted(root.glob("netlists/*/*.cir"))):
         name = str(netlist.relative_to(root / "netlists").with_suffix(""))
         result = cases.read(name, netlist)
         if result is not None and has_glpk:

@@ -23,7 +23,7 @@ import degenerate  # noqa: E402
 import random_circuits  # noqa: E402
 import random_netlists  # noqa: E402
 from circuits import write  # noqa: E402
-from dalcs_program import Checker  # noqa: E402
+from dalcs_program import Checker, some_of  # noqa: E402
 
 STEPS_OF_EULER = 1000
 NOT_SOLVED = "no solution exists", "none was found", "could be certified"
@@ -98,12 +98,12 @@ def main():
         folder = pathlib.Path(name)
         paths = [path for word in map(pathlib.Path, words)
                  for path in (sorted(word.rglob("*.cir")) if word.is_dir() else [word])]
-        for path in paths:
+        for path in some_of(paths):
             try:
                 look(program, checker, path, path.resolve(), folder)
             except subprocess.TimeoutExpired:
                 print(f"{path}: takes too long, not asked")
-        for seed in range(first, first + count):
+        for seed in some_of(range(first, first + count)):
             path = folder / "random.cir"
             path.write_text(random_text(seed))
             try:

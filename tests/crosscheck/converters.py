@@ -27,7 +27,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.path.insert(0, sys.argv[3])
 import ngspice_batch  # noqa: E402
 import waveform_difference  # noqa: E402
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import IS_LONG, Checker, run  # noqa: E402
 
 SKIPPED = 77  # what meson takes for "skipped"
 MODES = {"plain": [], "lt": ["-D", "ngbehavior=lta"], "ps": ["-D", "ngbehavior=psa"]}
@@ -144,6 +144,8 @@ def compare(checker, name, ours, theirs, scale, free):
 def main():
     program, writer, netlist = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[4])
     way, *words = sys.argv[5].split(",")
+    if "long" in words and not IS_LONG:
+        return SKIPPED
     settings = {"tmax": None, "reltol": RELTOL, **dict(word.split("=") for word in words if "=" in word)}
     checker = Checker(netlist.stem)
     ours = run(program, netlist, method=None, report=False)

@@ -138,6 +138,7 @@ def main():
                 if path.suffix in (".cir", ".dalcs")]
     netlists += [] if sys.argv[3:] else sorted(pathlib.Path(__file__).parent.glob("*.cir"))
     read = 0
+    netlists = netlists if sys.argv[3:] else dalcs_program.some_of(netlists)
     for netlist in netlists:
         with tempfile.TemporaryDirectory() as folder:
             read += (read_back_reduced(program, checker, netlist, folder) if kinds == ["lcs"] else

@@ -15,7 +15,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import converter_netlists  # noqa: E402
 from curves import error_at  # noqa: E402
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 ALLOWED = 1e-6
 GAPS = 1500
@@ -51,7 +51,7 @@ def check_seed(checker, program, seed):
 
 def main():
     checker = Checker("between_rows")
-    for seed in sys.argv[2:]:
+    for seed in some_of(sys.argv[2:]):
         check_seed(checker, sys.argv[1], int(seed))
     return checker.finish()
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Power converters drawn at random, with parasitics from 1 pF and 1 nH on, against a much smaller tolerance.
 
-usage: converters.py PROGRAM SEED...    with FIRST-LAST for all the seeds from FIRST to LAST, SEED@STOP up to STOP
+usage: converters.py PROGRAM SEED... [and SEED...]    with FIRST-LAST for all the seeds from FIRST to LAST, SEED@STOP up
+                                      to STOP; those behind `and` run in a short run, too
        converters.py show SEED          prints the netlist of a seed
 
 Nobody chose these circuits to be easy: diodes and switches with and without resistance, coils coupled with 1,
@@ -27,7 +28,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import converter_netlists  # noqa: E402
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 TOLERANCES = 1e-6, 1e-9
 REFERENCE = 1e-11
@@ -165,7 +166,8 @@ def main():
         print(__doc__, file=sys.stderr)
         return 2
     checker = Checker("converters")
-    for seed, stop in seeds_of(sys.argv[2:]):
+    words, _, failed_once = " ".join(sys.argv[2:]).partition("and")
+    for seed, stop in [*some_of(seeds_of(words.split())), *seeds_of(failed_once.split())]:
         check_seed(sys.argv[1], checker, seed, stop)
     return checker.finish()
 

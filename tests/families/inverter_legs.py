@@ -18,7 +18,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import IS_LONG, Checker, run  # noqa: E402
 
 SUPPLY, DEPTH, PERIOD, OF_SINE, STOP = 600.0, 0.8, 1e-4, 50.0, 8e-3
 RESISTANCE, INDUCTANCE = 10.0, 5e-3
@@ -147,7 +147,7 @@ def check_filters(checker, program, switches, models):
 
 def main():
     program = sys.argv[1]
-    most = int(sys.argv[2]) if sys.argv[2:] else 36
+    most = int(sys.argv[2]) if sys.argv[2:] else 36 if IS_LONG else 12
     checker = Checker("inverter legs")
     for models in MODELS:
         for switches in (n for n in (2, 6, 12, 36) if n <= most):

@@ -189,9 +189,8 @@ def check_case(program, checker, name, tolerance):
 
 def main():
     checker = Checker("periodic")
-    for name in some_of(CASES):
-        for tolerance in sys.argv[2:] or TOLERANCES:
-            check_case(sys.argv[1], checker, name, tolerance)
+    for name, tolerance in some_of([(name, tolerance) for name in CASES for tolerance in sys.argv[2:] or TOLERANCES], 4):
+        check_case(sys.argv[1], checker, name, tolerance)
     return checker.finish()
 
 

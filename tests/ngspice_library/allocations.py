@@ -59,17 +59,16 @@ def main():
         calls = pathlib.Path(folder) / "calls"
         calls.write_text(CALLS)
         command = [client, library]
-        done, tally, _, numbers = preload.calls_to_fail(fail_malloc, command, folder, calls)
+        done, tally, numbers = preload.calls_to_fail(fail_malloc, command, folder, calls)
         failed = 0
         wanted = dict(RUN.findall(done.stdout.decode()))
         checker.check(done.returncode == 0 and len(wanted) == 3 and b": 1\n" not in done.stdout, f"{done.stdout}")
-        for at in dalcs_program.some_of(numbers):
-            done, _ = preload.run_preloaded(fail_malloc, command, folder, calls, DALCS_FAIL_AT=at)
-            where = f"allocation {at} of {tally.calls}"
-            text = done.stdout.decode(errors="replace")
+        for run in preload.runs_apart(fail_malloc, command, folder, dalcs_program.some_of(numbers), calls):
+            where = f"allocation {run.number} of {tally.calls}"
+            text = run.stdout.decode(errors="replace")
             if "init " not in text:
                 continue  # the loader and constructors of other libraries: none of the library's functions was called
-            if not checker.check(done.returncode == 0, f"{where}: ends with {done.returncode} {done.stderr}"):
+            if not checker.check(run.returncode == 0, f"{where}: ends with {run.returncode} {run.stderr}"):
                 continue
             if ": 1\n" in text or "circ 1" in text:
                 failed += 1

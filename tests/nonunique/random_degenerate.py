@@ -16,7 +16,7 @@ from fractions import Fraction
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 from every_mode import INFINITY, Network  # noqa: E402
 
 TOGETHER = 20         # networks in a netlist
@@ -168,7 +168,7 @@ def compare_pick(checker, result, case, prefix, cards, worst):
 
 def main():
     program = sys.argv[1]
-    count = int(sys.argv[2]) if len(sys.argv) > 2 else 1000
+    count = len(some_of(range(int(sys.argv[2]) if len(sys.argv) > 2 else 1000)))
     random_ = random.Random(int(sys.argv[3]) if len(sys.argv) > 3 else 1)
     checker = Checker("random_degenerate")
     worst = {"interval": 0.0, "pick": 0.0}

@@ -12,6 +12,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NETLISTS = ROOT / "netlists"
+IS_LONG = os.environ.get("DALCS_TEST_SHORT") != "1"  # as by hand and with tools/test --long
 
 
 class Run:
@@ -134,10 +135,12 @@ def run(program, netlist, step=None, at=None, options=(), report=True, environme
                    json.loads(saved_report.read_text()) if saved_report.exists() else None)
 
 
-def some_of(cases):
-    """Every n-th of cases that differ by numbers alone, where DALCS_TEST_SOME=n is set as .ci/run does for sanitizers:
-    what these look for shows in few of them as in all."""
-    return list(cases)[::int(os.environ.get("DALCS_TEST_SOME", "1"))]
+def some_of(cases, n=3):
+    """Of cases that differ by numbers alone one in n, spread evenly whatever period the order of the cases has, and the
+    first; all in a long run, and by hand. Where DALCS_TEST_SOME is larger, as in .ci/run for sanitizers, one in so many: what these
+    look for shows in few of them as in all."""
+    part = 1.0 / max(1 if IS_LONG else n, int(os.environ.get("DALCS_TEST_SOME", "1")))
+    return [case for k, case in enumerate(cases) if k * 0.6180339887498949 % 1.0 < part]  # the golden section
 
 
 class Checker:

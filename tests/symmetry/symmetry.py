@@ -20,7 +20,7 @@ import random_netlists
 import random_power
 import shrinking
 from agreement import Reference
-from dalcs_program import NETLISTS
+from dalcs_program import NETLISTS, some_of
 from reading import read
 from transformations import all_of_them
 from values import Unsupported
@@ -46,9 +46,9 @@ def shortened(circuit):
 def netlists(arguments):
     """Name and circuit of all that is to be transformed; a word instead of what cannot be."""
     if not arguments.files and arguments.seeds is None and arguments.power is None:
-        paths = sorted(NETLISTS.rglob("*.cir"))
-        seeds = SHORT_SEEDS if not arguments.long else range(10 * len(random_netlists.KINDS))
-        power = SHORT_POWER if not arguments.long else range(10 * len(random_power.KINDS))
+        paths = some_of(sorted(NETLISTS.rglob("*.cir")))
+        seeds = some_of(SHORT_SEEDS, 2) if not arguments.long else range(10 * len(random_netlists.KINDS))
+        power = some_of(SHORT_POWER, 2) if not arguments.long else range(10 * len(random_power.KINDS))
         paths, seeds = ([], ()) if arguments.of == "power" else (paths, seeds)
         power = () if arguments.of == "tree" else power
     else:
