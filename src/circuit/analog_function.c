@@ -4,8 +4,11 @@
  *     Aname frequency amplitude 0 0 0 cos sin com MODULATE mark=hertz space=hertz [Vhigh=1 Vlow=-1]
  *
  * A varistor is two ideal diodes, each before a source of the voltage that it breaks down at. */
+#include "element_cards.h"
 #include "logic_parts.h"
+#include "model_cards.h"
 #include "oscillator.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>

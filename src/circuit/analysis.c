@@ -1,5 +1,7 @@
 /* analysis.c - .tran and .op: what is to be computed. */
-#include "builder.h"
+
+#include "analysis_cards.h"
+#include "reader.h"
 
 #include <math.h>
 
@@ -83,7 +85,7 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
         return true;
     }
     if (dalcs_reader_take_word(reader, "startup")) {
-        builder->startup = token;
+        builder->analyses.startup = token;
         return true;
     }
     if (dalcs_reader_take_word(reader, "steady") || dalcs_reader_take_word(reader, "step")) {
@@ -97,7 +99,7 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_transient *transient = &builder->circuit->transient;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, TRAN_USAGE);
-    if (!dalcs_analysis_is_first(builder, card, &builder->tran)) {
+    if (!dalcs_analysis_is_first(builder, card, &builder->analyses.tran)) {
         return;
     }
     transient->where = dalcs_builder_keep_location(builder, card->token);
@@ -185,7 +187,7 @@ static bool read_pss_word(struct dalcs_reader *reader, struct dalcs_periodic_car
 void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_periodic_card *periodic = &builder->circuit->periodic;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, PSS_USAGE);
-    if (!dalcs_analysis_is_first(builder, card, &builder->pss)) {
+    if (!dalcs_analysis_is_first(builder, card, &builder->analyses.pss)) {
         return;
     }
     bool ok = true;
@@ -264,7 +266,7 @@ void dalcs_analysis_parse_env(struct dalcs_builder *builder, const struct dalcs_
     struct dalcs_transient *transient = &builder->circuit->transient;
     struct dalcs_envelope_card *envelope = &builder->circuit->envelope;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, ENV_USAGE);
-    if (!dalcs_analysis_is_first(builder, card, &builder->tran)) {
+    if (!dalcs_analysis_is_first(builder, card, &builder->analyses.tran)) {
         return;
     }
     transient->where = dalcs_builder_keep_location(builder, card->token);
@@ -290,7 +292,7 @@ void dalcs_analysis_parse_env(struct dalcs_builder *builder, const struct dalcs_
 
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, ".op takes no values");
-    if (dalcs_analysis_is_first(builder, card, &builder->op)) {
+    if (dalcs_analysis_is_first(builder, card, &builder->analyses.op)) {
         builder->circuit->operating_point = dalcs_reader_end(&reader);
     }
 }

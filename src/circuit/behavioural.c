@@ -1,6 +1,8 @@
 /* behavioural.c - sources with a formula: B with V= or I=, E and G with VALUE or TABLE. */
 #include "behaviour.h"
+#include "element_cards.h"
 #include "formula_writer.h"
+#include "reader.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,12 +12,12 @@ static const char USAGE[] =
 
 static struct dalcs_formula_source *add_source(struct dalcs_builder *builder,
                                                const struct dalcs_device *device) {
-    if (dalcs_grow(&builder->formula, &builder->formula_capacity, builder->n_formulas + 1,
-                   sizeof *builder->formula) != DALCS_OK) {
+    if (dalcs_grow(&builder->formulas.source, &builder->formulas.capacity, builder->formulas.n + 1,
+                   sizeof *builder->formulas.source) != DALCS_OK) {
         builder->out_of_memory = true;
         return NULL;
     }
-    struct dalcs_formula_source *source = &builder->formula[builder->n_formulas++];
+    struct dalcs_formula_source *source = &builder->formulas.source[builder->formulas.n++];
     *source = (struct dalcs_formula_source){.device = (int)(device - builder->circuit->device)};
     return source;
 }

@@ -5,6 +5,7 @@
 #include "block.h"
 
 #include "number.h"
+#include "reader.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef DALCS_BLOCK_H
 #define DALCS_BLOCK_H
 
-#include "builder.h"
+#include "reader.h"
 
 /* The contents of a .model card: names and lists of numbers. Their meaning depends on the type. */
 struct dalcs_block {

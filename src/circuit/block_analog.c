@@ -3,7 +3,10 @@
  * int is a capacitor that a source charges, between two ideal diodes where it has limits: at a limit it stays, and it
  * leaves as soon as its input turns. hyst is one table of the input, which a switch shifts. d_dt is the current of a
  * capacitor that follows the input. slew is a source whose current is limited, into a capacitor. */
+#include "analysis_cards.h"
 #include "block_parts.h"
+#include "element_cards.h"
+#include "model_cards.h"
 
 #include <math.h>
 #include <string.h>

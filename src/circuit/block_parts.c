@@ -1,5 +1,7 @@
 /* block_parts.c - sources, tables and limits of analog code models. */
 #include "block_parts.h"
+#include "element_cards.h"
+#include "model_cards.h"
 
 #include <math.h>
 
@@ -154,7 +156,7 @@ bool dalcs_block_read_limits(const struct dalcs_block_card *c, double *low, doub
 
 static const struct dalcs_token *name_of(struct dalcs_formula_writer *w, int node) {
     return dalcs_formula_name(w->builder, w->element,
-                              node == 0 ? "0" : w->builder->node_name[node]);
+                              node == 0 ? "0" : w->builder->elements.node_name[node]);
 }
 
 const struct dalcs_formula *dalcs_block_line(struct dalcs_formula_writer *w,

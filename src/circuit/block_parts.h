@@ -5,6 +5,7 @@
 #include "behaviour.h"
 #include "block.h"
 #include "formula_writer.h"
+#include "model_cards.h"
 
 /* A device from a to b; what NULL: it has the element's name. NULL: out of memory. */
 struct dalcs_device *dalcs_block_add(const struct dalcs_block_card *c, enum dalcs_device_kind kind,

@@ -1,5 +1,6 @@
 /* block_pulse.c - XSPICE's oneshot, a monostable: a pulse behind a clock, as long as a table of its control says. */
 #include "block_parts.h"
+#include "element_cards.h"
 #include "logic_parts.h"
 
 #include <math.h>

@@ -149,27 +149,27 @@ struct dalcs_location dalcs_builder_keep_location(struct dalcs_builder *builder,
                                                   const struct dalcs_token *token) {
     struct dalcs_arena *arena = &builder->circuit->arena;
     const struct dalcs_source *source = token->line->source;
-    if (builder->kept_source != source) {
-        builder->kept_source = source;
-        builder->kept_file = dalcs_arena_copy(arena, source->name, strlen(source->name));
-        builder->kept_included = keep_chain(builder, source->included);
-        note_memory(builder, builder->kept_file != NULL);
+    if (builder->kept.source != source) {
+        builder->kept.source = source;
+        builder->kept.file = dalcs_arena_copy(arena, source->name, strlen(source->name));
+        builder->kept.included = keep_chain(builder, source->included);
+        note_memory(builder, builder->kept.file != NULL);
     }
-    if (builder->kept_origin != token->line->instance) {
-        builder->kept_origin = token->line->instance;
-        builder->kept_instance = keep_chain(builder, token->line->instance);
+    if (builder->kept.origin != token->line->instance) {
+        builder->kept.origin = token->line->instance;
+        builder->kept.instance = keep_chain(builder, token->line->instance);
     }
-    if (builder->kept_line != token->line) {
+    if (builder->kept.line != token->line) {
         const char *text = token->line->text;
-        builder->kept_line = token->line;
-        builder->kept_text = dalcs_arena_copy(arena, text, strlen(text));
-        note_memory(builder, builder->kept_text != NULL);
+        builder->kept.line = token->line;
+        builder->kept.text = dalcs_arena_copy(arena, text, strlen(text));
+        note_memory(builder, builder->kept.text != NULL);
     }
     struct dalcs_location where = dalcs_token_location(token);
-    where.file = builder->kept_file;
-    where.source_line = builder->kept_text;
-    where.included = builder->kept_included;
-    where.instance = builder->kept_instance;
+    where.file = builder->kept.file;
+    where.source_line = builder->kept.text;
+    where.included = builder->kept.included;
+    where.instance = builder->kept.instance;
     return where;
 }
 
@@ -185,14 +185,16 @@ static int add_node(struct dalcs_builder *builder, const char *name,
     const int node = builder->circuit->n_nodes;
     const size_t need = (size_t)node + 1;
     if (!note_memory(builder, name != NULL &&
-                                  dalcs_grow(&builder->node_name, &builder->node_name_capacity,
-                                             need, sizeof *builder->node_name) == DALCS_OK &&
-                                  dalcs_grow(&builder->node_token, &builder->node_token_capacity,
-                                             need, sizeof *builder->node_token) == DALCS_OK)) {
+                                  dalcs_grow(&builder->elements.node_name,
+                                             &builder->elements.node_name_capacity, need,
+                                             sizeof *builder->elements.node_name) == DALCS_OK &&
+                                  dalcs_grow(&builder->elements.node_token,
+                                             &builder->elements.node_token_capacity, need,
+                                             sizeof *builder->elements.node_token) == DALCS_OK)) {
         return -1;
     }
-    builder->node_name[node] = name;
-    builder->node_token[node] = token;
+    builder->elements.node_name[node] = name;
+    builder->elements.node_token[node] = token;
     builder->circuit->n_nodes++;
     return node;
 }
@@ -203,8 +205,8 @@ int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *
     }
     int node;
     const int next = builder->circuit->n_nodes;
-    if (!note_memory(builder, dalcs_names_find_or_add(&builder->nodes, token->text, next, &node) ==
-                                  DALCS_OK)) {
+    if (!note_memory(builder, dalcs_names_find_or_add(&builder->elements.nodes, token->text, next,
+                                                      &node) == DALCS_OK)) {
         return -1;
     }
     return node < next ? node
@@ -242,11 +244,11 @@ static int find_alias(struct dalcs_builder *builder, const char *name) {
     }
     const char *port = dalcs_deck_port(builder->deck, dotted);
     const char *known = port != NULL ? port : dotted;
-    return is_ground(known) ? 0 : dalcs_names_find(&builder->nodes, known);
+    return is_ground(known) ? 0 : dalcs_names_find(&builder->elements.nodes, known);
 }
 
 int dalcs_builder_look_up_node(struct dalcs_builder *builder, const char *name) {
-    const int node = is_ground(name) ? 0 : dalcs_names_find(&builder->nodes, name);
+    const int node = is_ground(name) ? 0 : dalcs_names_find(&builder->elements.nodes, name);
     return node < 0 ? find_alias(builder, name) : node;
 }
 
@@ -257,7 +259,7 @@ int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_to
         if ((builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
             dalcs_builder_error(
                 builder, token,
-                dalcs_builder_suggest(builder, &builder->nodes, token->text, "nodes"),
+                dalcs_builder_suggest(builder, &builder->elements.nodes, token->text, "nodes"),
                 "no element is connected to a node '%s'", token->text);
         }
     }
@@ -272,21 +274,21 @@ static int find_device_alias(struct dalcs_builder *builder, const char *name) {
         return -1;
     }
     const char *dotted = with_dots(builder, name);
-    const int device = dotted != NULL ? dalcs_names_find(&builder->devices, dotted) : -1;
+    const int device = dotted != NULL ? dalcs_names_find(&builder->elements.devices, dotted) : -1;
     if (dotted == NULL || device >= 0 || dotted[1] != '.' || strrchr(dotted, '.')[1] != dotted[0]) {
         return device;
     }
-    return dalcs_names_find(&builder->devices, dotted + 2);
+    return dalcs_names_find(&builder->elements.devices, dotted + 2);
 }
 
 int dalcs_builder_look_up_device(struct dalcs_builder *builder, const char *name) {
-    const int device = dalcs_names_find(&builder->devices, name);
+    const int device = dalcs_names_find(&builder->elements.devices, name);
     return device < 0 ? find_device_alias(builder, name) : device;
 }
 
 int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {
     const int device = dalcs_builder_look_up_device(builder, token->text);
-    if (device >= 0 && device < builder->n_device_cards) {
+    if (device >= 0 && device < builder->elements.n_device_cards) {
         return device;
     }
     builder->failed = true;
@@ -296,7 +298,7 @@ int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_
     } else if ((builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
         dalcs_builder_error(
             builder, token,
-            dalcs_builder_suggest(builder, &builder->devices, token->text, "elements"),
+            dalcs_builder_suggest(builder, &builder->elements.devices, token->text, "elements"),
             "there is no element '%s'", token->text);
     }
     return -1;
@@ -305,14 +307,14 @@ int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_
 void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_token *name,
                             int value) {
     int first;
-    if (!note_memory(builder, dalcs_names_find_or_add(&builder->devices, name->text, value,
+    if (!note_memory(builder, dalcs_names_find_or_add(&builder->elements.devices, name->text, value,
                                                       &first) == DALCS_OK) ||
         first == value) {
         return;
     }
     dalcs_builder_error(builder, name, "give it another name",
                         "there are two elements '%s', the first at %s", name->text,
-                        dalcs_builder_place(builder, builder->device_token[first]));
+                        dalcs_builder_place(builder, builder->elements.device_token[first]));
 }
 
 char dalcs_builder_letter(const struct dalcs_token *name) {
@@ -333,8 +335,8 @@ static struct dalcs_device *add_device(struct dalcs_builder *builder, enum dalcs
     if (!note_memory(builder, device->name != NULL)) {
         return NULL;
     }
-    builder->current_of[circuit->n_devices] = circuit->n_devices;
-    builder->device_token[circuit->n_devices] = token;
+    builder->elements.current_of[circuit->n_devices] = circuit->n_devices;
+    builder->elements.device_token[circuit->n_devices] = token;
     circuit->n_devices++;
     return device;
 }
@@ -370,7 +372,7 @@ bool dalcs_builder_add_terminal(struct dalcs_builder *builder, const struct dalc
     }
     terminal->node[0] = device->node[0];
     terminal->node[1] = device->node[0] = inside;
-    builder->current_of[device - builder->circuit->device] =
+    builder->elements.current_of[device - builder->circuit->device] =
         (int)(terminal - builder->circuit->device);
     return true;
 }

@@ -11,6 +11,7 @@
 #include "rational.h"
 #include "slips.h"
 
+#include "element_cards.h"
 #include "formula.h"
 
 #include <string.h>

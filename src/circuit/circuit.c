@@ -9,10 +9,14 @@
  *     checks     of the whole
  *
  * Every pass goes on after an error, so that all errors are reported. */
+#include "analysis_cards.h"
 #include "card_table.h"
+#include "element_cards.h"
 #include "history.h"
 #include "later.h"
+#include "model_cards.h"
 #include "oscillator.h"
+#include "result_cards.h"
 #include "slips.h"
 #include "storage.h"
 
@@ -36,35 +40,36 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     const size_t n_devices = count[DALCS_CARD_ELEMENT] + table.n_inner;
     const size_t n_cards = count[DALCS_CARD_MODEL];
     /* and those that diodes name and the table knows, of which there are fewer than this */
-    builder->gate_capacity = table.n_gates;
-    builder->comparator_capacity = table.n_gate_inputs;
+    builder->logic.gate_capacity = table.n_gates;
+    builder->logic.comparator_capacity = table.n_gate_inputs;
     const size_t n_models = n_cards + (table.n_diodes < 512 ? table.n_diodes : 512);
-    builder->n_device_cards = (int)n_devices;
-    builder->device_capacity = n_devices;
-    builder->model_capacity = (int)n_models;
-    builder->switch_model_capacity = n_cards;
+    builder->elements.n_device_cards = (int)n_devices;
+    builder->elements.device_capacity = n_devices;
+    builder->models.capacity = (int)n_models;
+    builder->models.switch_capacity = n_cards;
     circuit->device = dalcs_arena_alloc(arena, n_devices, sizeof *circuit->device);
     circuit->stimulus = dalcs_arena_alloc(arena, table.n_stimuli, sizeof *circuit->stimulus);
     circuit->coupling = dalcs_arena_alloc(arena, table.n_pairs, sizeof *circuit->coupling);
     circuit->diode_model =
         dalcs_arena_alloc(arena, n_models + 1 + table.n_scaled, sizeof *circuit->diode_model);
     circuit->switch_model = dalcs_arena_alloc(arena, n_cards, sizeof *circuit->switch_model);
-    builder->model = dalcs_arena_alloc(&builder->scratch, n_models, sizeof *builder->model);
-    builder->device_token = dalcs_arena_alloc(&builder->scratch, n_devices + n_couplings,
-                                              sizeof *builder->device_token);
-    builder->control_token =
-        dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->control_token);
-    builder->current_of =
-        dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->current_of);
+    builder->models.model =
+        dalcs_arena_alloc(&builder->scratch, n_models, sizeof *builder->models.model);
+    builder->elements.device_token = dalcs_arena_alloc(&builder->scratch, n_devices + n_couplings,
+                                                       sizeof *builder->elements.device_token);
+    builder->elements.control_token =
+        dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->elements.control_token);
+    builder->elements.current_of =
+        dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->elements.current_of);
     const bool ok = circuit->device != NULL && circuit->stimulus != NULL &&
                     circuit->coupling != NULL && circuit->diode_model != NULL &&
-                    circuit->switch_model != NULL && builder->model != NULL &&
-                    builder->device_token != NULL && builder->control_token != NULL &&
-                    builder->current_of != NULL;
+                    circuit->switch_model != NULL && builder->models.model != NULL &&
+                    builder->elements.device_token != NULL &&
+                    builder->elements.control_token != NULL && builder->elements.current_of != NULL;
     if (dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE)) {
-        builder->default_rser =
-            dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->default_rser);
-        return ok && builder->default_rser != NULL ? DALCS_OK : DALCS_E_NOMEM;
+        builder->elements.default_rser =
+            dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->elements.default_rser);
+        return ok && builder->elements.default_rser != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     return ok ? DALCS_OK : DALCS_E_NOMEM;
 }
@@ -72,8 +77,8 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
 /* XSPICE's, by the model that the last word names; NULL: it is none of them. */
 static const struct dalcs_block *block_of(const struct dalcs_builder *builder,
                                           const struct dalcs_card *card) {
-    const int index = dalcs_names_find(&builder->models, card->token[card->n - 1].text);
-    return index >= 0 ? builder->model[index].block : NULL;
+    const int index = dalcs_names_find(&builder->models.names, card->token[card->n - 1].text);
+    return index >= 0 ? builder->models.model[index].block : NULL;
 }
 
 static void read_element(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -202,13 +207,14 @@ static void check_presence(struct dalcs_builder *builder) {
     if (has_errors(builder)) {
         return;
     }
-    if (builder->n_device_cards == 0 && (builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
+    if (builder->elements.n_device_cards == 0 && (builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
         dalcs_builder_error_at(builder, &where, "the first line is the title, never an element",
                                "the netlist has no elements");
     }
-    const bool asks = builder->tran != NULL || builder->op != NULL || builder->dc != NULL ||
-                      builder->ac != NULL || builder->pss != NULL ||
-                      builder->netlist->n_script_lines > 0 || builder->netlist->asks_steady;
+    const bool asks = builder->analyses.tran != NULL || builder->analyses.op != NULL ||
+                      builder->analyses.dc != NULL || builder->analyses.ac != NULL ||
+                      builder->analyses.pss != NULL || builder->netlist->n_script_lines > 0 ||
+                      builder->netlist->asks_steady;
     if (!asks && (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
         dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
                                "the netlist has no analysis: no .tran, .op, .dc or .ac");
@@ -217,8 +223,8 @@ static void check_presence(struct dalcs_builder *builder) {
 
 static enum dalcs_status collect_prints(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
-    const size_t n = builder->n_prints;
-    const size_t n_columns = builder->n_print_columns;
+    const size_t n = builder->results.n_prints;
+    const size_t n_columns = builder->results.n_print_columns;
     struct dalcs_print_column *column =
         dalcs_arena_alloc(&circuit->arena, n_columns, sizeof *column);
     circuit->print = dalcs_arena_alloc(&circuit->arena, n, sizeof *circuit->print);
@@ -226,11 +232,11 @@ static enum dalcs_status collect_prints(struct dalcs_builder *builder) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n_columns; k++) {
-        column[k] = builder->print_column[k];
+        column[k] = builder->results.print_column[k];
     }
     circuit->n_prints = (int)n;
     for (size_t k = 0; k < n; k++) {
-        circuit->print[k] = builder->print[k];
+        circuit->print[k] = builder->results.print[k];
         circuit->print[k].column = column;
         column += circuit->print[k].n;
     }
@@ -243,10 +249,10 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
     struct dalcs_arena *arena = &circuit->arena;
     const size_t n_nodes = (size_t)circuit->n_nodes;
     circuit->node_name = dalcs_arena_alloc(arena, n_nodes, sizeof *circuit->node_name);
-    circuit->signal =
-        dalcs_arena_alloc(arena, builder->n_signals + builder->n_measured, sizeof *circuit->signal);
-    circuit->initial_condition =
-        dalcs_arena_alloc(arena, builder->n_initial_conditions, sizeof *circuit->initial_condition);
+    circuit->signal = dalcs_arena_alloc(arena, builder->signals.n + builder->signals.n_measured,
+                                        sizeof *circuit->signal);
+    circuit->initial_condition = dalcs_arena_alloc(arena, builder->analyses.n_initial_conditions,
+                                                   sizeof *circuit->initial_condition);
     circuit->title =
         dalcs_arena_copy(arena, builder->netlist->title, strlen(builder->netlist->title));
     if (circuit->node_name == NULL || circuit->signal == NULL ||
@@ -255,16 +261,16 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
     }
     circuit->node_name[0] = "0";
     for (size_t k = 1; k < n_nodes; k++) {
-        circuit->node_name[k] = builder->node_name[k];
+        circuit->node_name[k] = builder->elements.node_name[k];
     }
-    circuit->n_signals = (int)builder->n_signals;
+    circuit->n_signals = (int)builder->signals.n;
     circuit->n_shown = circuit->n_named = circuit->n_signals;
-    for (size_t k = 0; k < builder->n_signals; k++) {
-        circuit->signal[k] = builder->signal[k];
+    for (size_t k = 0; k < builder->signals.n; k++) {
+        circuit->signal[k] = builder->signals.signal[k];
     }
-    circuit->n_initial_conditions = (int)builder->n_initial_conditions;
-    for (size_t k = 0; k < builder->n_initial_conditions; k++) {
-        circuit->initial_condition[k] = builder->initial_condition[k];
+    circuit->n_initial_conditions = (int)builder->analyses.n_initial_conditions;
+    for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {
+        circuit->initial_condition[k] = builder->analyses.initial_condition[k];
     }
     DALCS_TRY(dalcs_monte_carlo_collect(builder));
     DALCS_TRY(dalcs_worst_case_collect(builder));
@@ -276,7 +282,7 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
  * looked for, all of it is one system. */
 static bool is_whole(const struct dalcs_builder *builder) {
     const struct dalcs_circuit *c = builder->circuit;
-    return builder->later != NULL ||
+    return builder->formulas.later != NULL ||
            (c->n_gates > 0 && (builder->netlist->asks_steady || c->periodic.present ||
                                c->transient.starts_steady || c->envelope.present));
 }
@@ -303,12 +309,13 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_initial_leave_held(builder);
     dalcs_model_check(builder);
     check_presence(builder);
-    builder->names_signals =
-        builder->names_signals || builder->saves_currents; /* the defaults have some of them */
-    if (builder->n_signals == 0) {
+    builder->signals.are_named =
+        builder->signals.are_named ||
+        builder->signals.saves_currents; /* the defaults have some of them */
+    if (builder->signals.n == 0) {
         dalcs_signals_add_default(builder);
     }
-    if (builder->saves_currents) {
+    if (builder->signals.saves_currents) {
         dalcs_signals_add_currents(builder);
     }
     dalcs_losses_collect(builder);
@@ -344,8 +351,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
                                     .netlist = netlist,
                                     .deck = &deck,
                                     .diag = diag,
-                                    .ideal_diode = -1,
-                                    .diode_current = 1};
+                                    .models = {.ideal_diode = -1, .diode_current = 1}};
     *circuit = (struct dalcs_circuit){.n_nodes = 1};
 
     enum dalcs_status status = dalcs_deck_expand(&deck, netlist, diag);
@@ -361,28 +367,28 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
     }
     dalcs_diag_sort(diag);
 
-    dalcs_names_finish(&builder.nodes);
-    dalcs_names_finish(&builder.devices);
-    dalcs_names_finish(&builder.models);
-    dalcs_names_finish(&builder.comparators);
-    dalcs_names_finish(&builder.pairs);
-    dalcs_names_finish(&builder.initial_pairs);
-    dalcs_names_finish(&builder.signals);
-    dalcs_names_finish(&builder.measure_names);
-    dalcs_names_finish(&builder.measured_keys);
+    dalcs_names_finish(&builder.elements.nodes);
+    dalcs_names_finish(&builder.elements.devices);
+    dalcs_names_finish(&builder.models.names);
+    dalcs_names_finish(&builder.logic.comparators);
+    dalcs_names_finish(&builder.elements.pairs);
+    dalcs_names_finish(&builder.analyses.initial_pairs);
+    dalcs_names_finish(&builder.signals.names);
+    dalcs_names_finish(&builder.results.measure_names);
+    dalcs_names_finish(&builder.signals.measured_keys);
     dalcs_arena_finish(&builder.scratch);
-    free(builder.node_name);
-    free(builder.node_token);
-    free(builder.signal);
-    free(builder.measured);
-    free(builder.measure);
-    free(builder.print);
-    free(builder.print_column);
-    free(builder.computed);
-    free(builder.fourier);
-    free(builder.initial_condition);
-    free(builder.formula);
-    dalcs_drivers_finish(&builder.drivers);
+    free(builder.elements.node_name);
+    free(builder.elements.node_token);
+    free(builder.signals.signal);
+    free(builder.signals.measured);
+    free(builder.results.measure);
+    free(builder.results.print);
+    free(builder.results.print_column);
+    free(builder.signals.computed);
+    free(builder.results.fourier);
+    free(builder.analyses.initial_condition);
+    free(builder.formulas.source);
+    dalcs_drivers_finish(&builder.formulas.drivers);
     dalcs_deck_finish(&deck);
     if (status != DALCS_OK) {
         dalcs_circuit_finish(circuit);

@@ -6,6 +6,7 @@
  * In both the source gives no power. No complementarity pair does that: the height of a jump of pairs
  * is a number. The switch changes sides where L passes one half, and both are parts of the card. */
 #include "behaviour.h"
+#include "model_cards.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -48,7 +48,7 @@ static const struct dalcs_form *current(struct dalcs_compiler *c, const struct d
         c->failed = true;
         return NULL;
     }
-    const int of = c->builder->current_of[device];
+    const int of = c->builder->elements.current_of[device];
     const struct dalcs_affine i = dalcs_affine_of(c, DALCS_QUANTITY_CURRENT, of);
     return dalcs_form_affine(c, &i);
 }

@@ -2,7 +2,8 @@
  *
  * The formula, whose names are those of the flat netlist, becomes steps as a measurement has them. The signals in it
  * are recorded as measured ones are: they are in no result by themselves. */
-#include "builder.h"
+
+#include "result_cards.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -46,7 +47,7 @@ static void put_named(struct steps *s, const struct dalcs_formula *f) {
     if (f->kind == DALCS_FORMULA_CURRENT) {
         const int device = dalcs_builder_find_device(builder, name[0]);
         signal.kind = DALCS_SIGNAL_CURRENT;
-        signal.device = device >= 0 ? builder->current_of[device] : -1;
+        signal.device = device >= 0 ? builder->elements.current_of[device] : -1;
         s->failed = s->failed || device < 0;
         signal.name = dalcs_arena_printf(arena, "i(%s)", name[0]->text);
     } else {
@@ -168,7 +169,7 @@ bool dalcs_computed_power(struct dalcs_builder *builder, int device,
                                              .node = {d->node[0], d->node[1]}});
     put_signal(&steps, (struct dalcs_signal){.name = dalcs_arena_printf(arena, "i(%s)", d->name),
                                              .kind = DALCS_SIGNAL_CURRENT,
-                                             .device = builder->current_of[device]});
+                                             .device = builder->elements.current_of[device]});
     put(&steps, (struct dalcs_signal_formula_step){.code = DALCS_MULTIPLY}, -1);
     return finish(&steps, formula);
 }

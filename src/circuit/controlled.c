@@ -1,5 +1,7 @@
 /* controlled.c - linear controlled sources: E and G by a voltage, F and H by the current of a V. */
-#include "builder.h"
+
+#include "element_cards.h"
+#include "reader.h"
 
 #include <string.h>
 
@@ -75,7 +77,7 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
         if (!dalcs_reader_name(&reader, "the name of a voltage source", &source)) {
             return;
         }
-        builder->control_token[device - builder->circuit->device] = source;
+        builder->elements.control_token[device - builder->circuit->device] = source;
     }
     if (dalcs_reader_number(&reader, DALCS_PLAIN, "a gain", &device->value)) {
         device->value *= kind == DALCS_VCCS ? dalcs_parallel_of(card) : 1;
@@ -105,21 +107,21 @@ static void resolve(struct dalcs_builder *builder, int k, const struct dalcs_tok
         return;
     }
     const enum dalcs_device_kind kind = builder->circuit->device[control].kind;
-    const bool is_coil = kind == DALCS_INDUCTOR && builder->current_of[control] == control;
+    const bool is_coil = kind == DALCS_INDUCTOR && builder->elements.current_of[control] == control;
     if (kind != DALCS_VSOURCE && kind != DALCS_VCVS && kind != DALCS_CCVS && !is_coil) {
         dalcs_builder_error(builder, name, "put a source of 0 V in series and name that",
                             "'%s' is %s: a control current is that of a voltage source", name->text,
                             dalcs_builder_kind_text(kind));
         return;
     }
-    control = is_coil ? add_ammeter(builder, control, builder->device_token[k]) : control;
+    control = is_coil ? add_ammeter(builder, control, builder->elements.device_token[k]) : control;
     builder->circuit->device[k].control = control;
 }
 
 void dalcs_controlled_resolve(struct dalcs_builder *builder) {
     for (int k = 0; k < builder->circuit->n_devices; k++) {
-        if (builder->control_token[k] != NULL) {
-            resolve(builder, k, builder->control_token[k]);
+        if (builder->elements.control_token[k] != NULL) {
+            resolve(builder, k, builder->elements.control_token[k]);
         }
     }
 }

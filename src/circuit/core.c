@@ -10,7 +10,9 @@
  * (Madelung's rules), where Chan's are moved branches. */
 #include "core.h"
 
+#include "element_cards.h"
 #include "quantity.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>

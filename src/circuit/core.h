@@ -2,6 +2,7 @@
 #ifndef DALCS_CORE_H
 #define DALCS_CORE_H
 
+#include "reader.h"
 #include "storage.h"
 
 enum { DALCS_CORE_PARAMETERS = 8 };

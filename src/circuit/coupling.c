@@ -1,6 +1,8 @@
 /* coupling.c - K: mutual inductance k sqrt(L1 L2) of two coils, or of every two of several.
  *
  * Whether three or more coils can be coupled like this is for the equations to say (inductance.c). */
+#include "element_cards.h"
+#include "reader.h"
 #include "storage.h"
 
 #include <math.h>
@@ -44,15 +46,15 @@ static bool is_new_pair(struct dalcs_builder *builder, const struct dalcs_token 
     if (pair == NULL) {
         return false;
     }
-    const int first = dalcs_names_find(&builder->pairs, pair);
+    const int first = dalcs_names_find(&builder->elements.pairs, pair);
     if (first >= 0) {
         dalcs_builder_error(
             builder, card_name, NULL, "'%s' and '%s' are coupled twice, first at %s",
             builder->circuit->device[inductor[0]].name, builder->circuit->device[inductor[1]].name,
-            dalcs_builder_place(builder, builder->device_token[first]));
+            dalcs_builder_place(builder, builder->elements.device_token[first]));
         return false;
     }
-    if (dalcs_names_add(&builder->pairs, pair, place) != DALCS_OK) {
+    if (dalcs_names_add(&builder->elements.pairs, pair, place) != DALCS_OK) {
         builder->out_of_memory = true;
         return false;
     }
@@ -126,8 +128,8 @@ void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     struct dalcs_coupling coupling = {.where = dalcs_builder_keep_location(builder, card->token)};
-    const int place = builder->n_device_cards + builder->n_couplings_seen++;
-    builder->device_token[place] = card->token;
+    const int place = builder->elements.n_device_cards + builder->elements.n_couplings_seen++;
+    builder->elements.device_token[place] = card->token;
     dalcs_builder_add_name(builder, card->token, place);
     coupling.name = dalcs_arena_copy(&circuit->arena, card->token->text, strlen(card->token->text));
     if (coupling.name == NULL) {

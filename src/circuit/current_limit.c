@@ -8,19 +8,22 @@
  * cone (V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, 2008, sec. 2.5: relays,
  * Coulomb's friction), written as two complementarity pairs, whose mode is the answer's: were one diode to block
  * with the other, the current would have both limits, so one conducts at all times. */
-#include "builder.h"
+
+#include "element_cards.h"
+#include "model_cards.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>
 
 int dalcs_diode_ideal_model(struct dalcs_builder *builder) {
-    if (builder->ideal_diode < 0) {
+    if (builder->models.ideal_diode < 0) {
         struct dalcs_circuit *circuit = builder->circuit;
-        builder->ideal_diode = circuit->n_diode_models++;
-        circuit->diode_model[builder->ideal_diode] = (struct dalcs_diode_model){
+        builder->models.ideal_diode = circuit->n_diode_models++;
+        circuit->diode_model[builder->models.ideal_diode] = (struct dalcs_diode_model){
             .name = "ideal", .roff = (double)INFINITY, .vrev = (double)INFINITY};
     }
-    return builder->ideal_diode;
+    return builder->models.ideal_diode;
 }
 
 /* Limits the current from `from` to `to` to `limit`. */
@@ -80,7 +83,7 @@ void dalcs_current_limit_make_load(struct dalcs_builder *builder, const struct d
     bypass->node[0] = device->node[1];
     valve->model = bypass->model = dalcs_diode_ideal_model(builder);
     device->node[0] = node;
-    builder->current_of[device - builder->circuit->device] =
+    builder->elements.current_of[device - builder->circuit->device] =
         (int)(valve - builder->circuit->device);
 }
 

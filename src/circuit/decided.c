@@ -14,8 +14,9 @@
 /* ---- Potentials --------------------------------------------------------------------------------- */
 
 static bool is_free(const struct dalcs_builder *builder) {
-    return builder->dc != NULL || builder->ac != NULL || builder->netlist->n_script_lines > 0 ||
-           builder->netlist->asks_response || builder->circuit->is_whole;
+    return builder->analyses.dc != NULL || builder->analyses.ac != NULL ||
+           builder->netlist->n_script_lines > 0 || builder->netlist->asks_response ||
+           builder->circuit->is_whole;
 }
 
 /* Breadth first along V sources: end e of device i has the number 2 i + e, and 1. */

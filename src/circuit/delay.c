@@ -3,6 +3,7 @@
  * A V source is the same one later, and a signal of two values is a buffer with a delay, as gates have it. What any other
  * one was is kept while a run goes on (later.h). The sources are made when all formulas are compiled. */
 #include "behaviour.h"
+#include "element_cards.h"
 #include "formula_writer.h"
 #include "later.h"
 #include "logic_parts.h"
@@ -76,7 +77,7 @@ static const struct dalcs_stimulus *source_of(struct dalcs_compiler *c, int node
 /* .dc sweeps it, or .ac needs a phase that no source has. */
 static bool may_be_another(const struct dalcs_compiler *c, const struct dalcs_stimulus *s) {
     return c->builder->circuit->n_dc > 0 ||
-           (c->builder->ac != NULL && (s->ac_real != 0 || s->ac_imaginary != 0));
+           (c->builder->analyses.ac != NULL && (s->ac_real != 0 || s->ac_imaginary != 0));
 }
 
 /* The same later; before, its first value. False: its kind cannot be delayed. */
@@ -140,7 +141,7 @@ static bool find_levels(struct dalcs_compiler *c, const struct dalcs_formula *x,
 
 /* The delay whose output this node is. */
 static const struct dalcs_delay *delay_at(const struct dalcs_builder *builder, int node) {
-    const struct dalcs_delay *d = builder->delay;
+    const struct dalcs_delay *d = builder->formulas.delay;
     while (d != NULL && d->output != node) {
         d = d->before;
     }
@@ -220,8 +221,8 @@ const struct dalcs_form *dalcs_delay_form(struct dalcs_compiler *c, const struct
         delay->name = name != NULL ? dalcs_formula_name(builder, c->element, name) : NULL;
         builder->out_of_memory = builder->out_of_memory || delay->name == NULL;
         c->failed = c->failed || builder->out_of_memory;
-        delay->before = builder->delay;
-        builder->delay = delay;
+        delay->before = builder->formulas.delay;
+        builder->formulas.delay = delay;
         *node = delay->output;
     }
     const struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, *node);
@@ -230,7 +231,7 @@ const struct dalcs_form *dalcs_delay_form(struct dalcs_compiler *c, const struct
 
 size_t dalcs_delay_pending(const struct dalcs_builder *builder) {
     size_t n = 0;
-    for (const struct dalcs_delay *d = builder->delay; d != NULL; d = d->before) {
+    for (const struct dalcs_delay *d = builder->formulas.delay; d != NULL; d = d->before) {
         n++;
     }
     return n;
@@ -276,8 +277,8 @@ static void add_buffer(struct dalcs_builder *builder, const struct dalcs_delay *
 }
 
 void dalcs_delay_resolve(struct dalcs_builder *builder) {
-    for (const struct dalcs_delay *d = builder->delay; d != NULL && !builder->out_of_memory;
-         d = d->before) {
+    for (const struct dalcs_delay *d = builder->formulas.delay;
+         d != NULL && !builder->out_of_memory; d = d->before) {
         if (!dalcs_builder_reserve_devices(builder, DALCS_GATE_DEVICES)) {
             return;
         }

@@ -2,7 +2,10 @@
  *
  * m= diodes in parallel and n= in series are LTspice's, of exponential ones too (the cells of a solar
  * panel); the area is that of SPICE's exponential diode. A diode with one of these has a model of its own. What limits its current: current_limit.c. */
-#include "builder.h"
+
+#include "element_cards.h"
+#include "model_cards.h"
+#include "reader.h"
 
 #include <string.h>
 
@@ -84,7 +87,8 @@ static void scale_model(struct dalcs_builder *builder, const struct dalcs_diode_
     if (card->is_berkeley) {
         struct dalcs_diode_card cells = *card;
         dalcs_diode_cells(&cells, scale->series);
-        dalcs_diode_model_map(&cells, builder->diode_current, scale->area * scale->parallel, model);
+        dalcs_diode_model_map(&cells, builder->models.diode_current, scale->area * scale->parallel,
+                              model);
     } else if (scale->area != 1) {
         dalcs_builder_warn(builder, scale->place, NULL,
                            "the area of a piecewise linear diode is ignored");
@@ -117,7 +121,7 @@ static void read_model(struct dalcs_reader *reader, struct dalcs_device *device)
         scale.place = scale.place != NULL ? scale.place : name;
     }
     const struct dalcs_diode_card *card =
-        &builder->model[dalcs_names_find(&builder->models, name->text)].diode;
+        &builder->models.model[dalcs_names_find(&builder->models.names, name->text)].diode;
     if (scale.place != NULL) {
         scale_model(builder, card, device, &scale);
     }
@@ -172,10 +176,10 @@ static void refuse_block(struct dalcs_builder *builder, const struct dalcs_card 
 
 void dalcs_diode_parse_block(struct dalcs_builder *builder, const struct dalcs_card *card) {
     const struct dalcs_token *last = &card->token[card->n - 1];
-    const int index = dalcs_names_find(&builder->models, last->text);
-    if (index < 0 || builder->model[index].type == NULL ||
-        strcmp(builder->model[index].type->text, "sidiode") != 0) {
-        refuse_block(builder, card, index >= 0 ? builder->model[index].type : NULL);
+    const int index = dalcs_names_find(&builder->models.names, last->text);
+    if (index < 0 || builder->models.model[index].type == NULL ||
+        strcmp(builder->models.model[index].type->text, "sidiode") != 0) {
+        refuse_block(builder, card, index >= 0 ? builder->models.model[index].type : NULL);
         return;
     }
     struct dalcs_reader reader =

@@ -7,8 +7,9 @@
  * An exponential diode (Berkeley) becomes one of these, its tangent at one current: with
  * V = N Vt ln(1 + I/IS) + RS I, Ron is dV/dI and Vfwd what is left of V there. What changes by any of
  * this is said in a note, in numbers. */
-#include "builder.h"
 #include "diode_parts.h"
+#include "model_cards.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>
@@ -243,7 +244,7 @@ bool dalcs_diode_take_part(struct dalcs_builder *builder, const struct dalcs_tok
                                       .breakdown = part.breakdown,
                                       .breakdown_current = part.at,
                                       .back_emission = 1};
-    dalcs_diode_model_map(card, builder->diode_current, 1, model);
+    dalcs_diode_model_map(card, builder->models.diode_current, 1, model);
     const bool is_zener = part.junction == DALCS_JUNCTION_ZENER;
     dalcs_builder_warn(
         builder, name, dalcs_builder_hint(builder, "add a line: .model %s D(...)", name->text),
@@ -260,8 +261,8 @@ static void note_bare(struct dalcs_builder *builder, const struct dalcs_token *p
     dalcs_builder_note(builder, place, "D(IS=1e-14) is SPICE's, D(Ron=0) this one",
                        "a model without parameters is exactly ideal here; SPICE's default diode "
                        "would drop %.4g V at %g A",
-                       dalcs_exponential_voltage(&spice, builder->diode_current),
-                       builder->diode_current);
+                       dalcs_exponential_voltage(&spice, builder->models.diode_current),
+                       builder->models.diode_current);
 }
 
 bool dalcs_diode_take_default(struct dalcs_builder *builder, const struct dalcs_token *name,
@@ -326,7 +327,7 @@ static void note_mapping(struct dalcs_reader *reader, const struct dalcs_token *
                          const struct dalcs_diode_card *card, const struct dalcs_diode_model *model,
                          const char *ignored) {
     struct dalcs_builder *builder = reader->builder;
-    const double at = builder->diode_current;
+    const double at = builder->models.diode_current;
     const struct dalcs_exponential diode = {.saturation = card->saturation,
                                             .voltage = card->emission * THERMAL_VOLTAGE,
                                             .series = card->resistance};
@@ -392,7 +393,7 @@ static bool set_berkeley(struct dalcs_reader *reader, const struct dalcs_token *
     card->breakdown = p[BV].value;
     card->breakdown_current = p[IBV].value;
     card->back_emission = p[NBV].place != NULL ? p[NBV].value : p[N].value;
-    dalcs_diode_model_map(card, builder->diode_current, 1, model);
+    dalcs_diode_model_map(card, builder->models.diode_current, 1, model);
     note_mapping(reader, place, card, model, ignored_text(builder, reader->card, p, false));
     return true;
 }

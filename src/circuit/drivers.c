@@ -13,7 +13,7 @@ static bool make_room(struct dalcs_drivers *d, size_t n_nodes, size_t n_devices)
 }
 
 int dalcs_drivers_first(struct dalcs_builder *builder, int node) {
-    struct dalcs_drivers *d = &builder->drivers;
+    struct dalcs_drivers *d = &builder->formulas.drivers;
     const struct dalcs_circuit *c = builder->circuit;
     if (!make_room(d, (size_t)c->n_nodes, (size_t)c->n_devices)) {
         builder->out_of_memory = true;
@@ -32,7 +32,7 @@ int dalcs_drivers_first(struct dalcs_builder *builder, int node) {
 }
 
 int dalcs_drivers_next(const struct dalcs_builder *builder, int device) {
-    return builder->drivers.next[device] - 1;
+    return builder->formulas.drivers.next[device] - 1;
 }
 
 void dalcs_drivers_finish(struct dalcs_drivers *d) {

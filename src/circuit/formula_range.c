@@ -108,7 +108,7 @@ static struct dalcs_range node_range(struct search *search, int node) {
 }
 
 static struct dalcs_range voltage_range(struct search *search, const struct dalcs_token *name) {
-    const struct dalcs_names *nodes = &search->compiler->builder->nodes;
+    const struct dalcs_names *nodes = &search->compiler->builder->elements.nodes;
     return name != NULL ? node_range(search, dalcs_names_find(nodes, name->text)) : between(0, 0);
 }
 

@@ -1,5 +1,7 @@
 /* fourier_card.c - .four frequency [harmonics [periods]] formula ... */
-#include "builder.h"
+
+#include "reader.h"
+#include "result_cards.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,12 +31,12 @@ static bool next_is_number(const struct dalcs_reader *reader) {
 }
 
 static void add(struct dalcs_builder *builder, const struct dalcs_fourier_card *fourier) {
-    if (dalcs_grow(&builder->fourier, &builder->fourier_capacity, builder->n_fouriers + 1,
-                   sizeof *builder->fourier) != DALCS_OK) {
+    if (dalcs_grow(&builder->results.fourier, &builder->results.fourier_capacity,
+                   builder->results.n_fouriers + 1, sizeof *builder->results.fourier) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
-    builder->fourier[builder->n_fouriers++] = *fourier;
+    builder->results.fourier[builder->results.n_fouriers++] = *fourier;
 }
 
 /* The end of the signal that starts at token k: what stands behind its parenthesis. */
@@ -80,7 +82,8 @@ void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_reader_missing(&reader, "a signal");
         return;
     }
-    if (builder->tran == NULL && builder->pss == NULL && !builder->netlist->asks_steady) {
+    if (builder->analyses.tran == NULL && builder->analyses.pss == NULL &&
+        !builder->netlist->asks_steady) {
         dalcs_builder_note(builder, card->token, NULL,
                            "there is no .tran and no .pss: this is left out");
         return;

@@ -4,6 +4,7 @@
  * between its jumps. A switch without hysteresis is on above Vt alone, and so off at a value that is Vt
  * itself: with Vt half way to the next value above it does the same, and rounding no longer decides. */
 #include "behaviour.h"
+#include "model_cards.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,8 +5,8 @@
  * and where they give another value that is said. With uic it is the voltage of capacitors, as in SPICE. Nodes that
  * sources join are a tree, with a voltage of each against its root (Tarjan 1975, union by offsets). What gates and
  * formulas put out is not known before the start: such a source stays in contradiction, as an error. */
-#include "builder.h"
 
+#include "analysis_cards.h"
 #include "rounding.h"
 #include "stimulus.h"
 
@@ -66,8 +66,8 @@ static bool make(struct dalcs_builder *builder, struct held *h) {
 
 static void tell(struct dalcs_builder *builder, const struct dalcs_initial_condition *ic,
                  double held) {
-    const char *a = builder->node_name[ic->node[0]];
-    const char *b = ic->node[1] != 0 ? builder->node_name[ic->node[1]] : NULL;
+    const char *a = builder->elements.node_name[ic->node[0]];
+    const char *b = ic->node[1] != 0 ? builder->elements.node_name[ic->node[1]] : NULL;
     dalcs_diag_add(
         builder->diag, DALCS_WARNING, &ic->where,
         "initial voltages are of nodes that nothing holds but what is stored",
@@ -78,13 +78,13 @@ static void tell(struct dalcs_builder *builder, const struct dalcs_initial_condi
 void dalcs_initial_leave_held(struct dalcs_builder *builder) {
     struct held h;
     size_t n = 0;
-    if (builder->n_initial_conditions == 0 || builder->failed ||
+    if (builder->analyses.n_initial_conditions == 0 || builder->failed ||
         builder->circuit->transient.use_initial_conditions ||
         builder->circuit->periodic.use_initial_conditions || !make(builder, &h)) {
         return;
     }
-    for (size_t k = 0; k < builder->n_initial_conditions; k++) {
-        const struct dalcs_initial_condition ic = builder->initial_condition[k];
+    for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {
+        const struct dalcs_initial_condition ic = builder->analyses.initial_condition[k];
         double above[2];
         const bool is_held = find(&h, ic.node[0], &above[0]) == find(&h, ic.node[1], &above[1]);
         const double held = above[0] - above[1];
@@ -93,8 +93,8 @@ void dalcs_initial_leave_held(struct dalcs_builder *builder) {
             tell(builder, &ic, held);
         }
         if (!is_held) {
-            builder->initial_condition[n++] = ic;
+            builder->analyses.initial_condition[n++] = ic;
         }
     }
-    builder->n_initial_conditions = n;
+    builder->analyses.n_initial_conditions = n;
 }

@@ -2,6 +2,8 @@
  *
  * i(l1)=value is the inductor's IC=. Saying two values for one thing is an error, for there is no
  * telling which was meant. */
+#include "analysis_cards.h"
+#include "reader.h"
 #include "storage.h"
 
 #include <string.h>
@@ -19,13 +21,13 @@ static void add_voltage(struct dalcs_builder *builder, const struct dalcs_token 
     /* v(a,b) and v(b,a) are one voltage. */
     const char *key = node[0] < node[1] ? dalcs_builder_hint(builder, "%d %d", node[0], node[1])
                                         : dalcs_builder_hint(builder, "%d %d", node[1], node[0]);
-    const int place_of_new = (int)builder->n_initial_conditions;
+    const int place_of_new = (int)builder->analyses.n_initial_conditions;
     if (key == NULL) {
         return;
     }
-    const int first = dalcs_names_find(&builder->initial_pairs, key);
+    const int first = dalcs_names_find(&builder->analyses.initial_pairs, key);
     if (first >= 0) {
-        const struct dalcs_initial_condition *known = &builder->initial_condition[first];
+        const struct dalcs_initial_condition *known = &builder->analyses.initial_condition[first];
         const bool same = known->value == (known->node[0] == node[0] ? value : -value);
         if (!same) {
             dalcs_builder_error(builder, place, NULL,
@@ -34,15 +36,17 @@ static void add_voltage(struct dalcs_builder *builder, const struct dalcs_token 
         }
         return;
     }
-    if (dalcs_grow(&builder->initial_condition, &builder->initial_condition_capacity,
-                   builder->n_initial_conditions + 1,
-                   sizeof *builder->initial_condition) != DALCS_OK ||
-        dalcs_names_add(&builder->initial_pairs, key, place_of_new) != DALCS_OK) {
+    if (dalcs_grow(&builder->analyses.initial_condition,
+                   &builder->analyses.initial_condition_capacity,
+                   builder->analyses.n_initial_conditions + 1,
+                   sizeof *builder->analyses.initial_condition) != DALCS_OK ||
+        dalcs_names_add(&builder->analyses.initial_pairs, key, place_of_new) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
-    builder->initial_condition[builder->n_initial_conditions++] = (struct dalcs_initial_condition){
-        {node[0], node[1]}, value, dalcs_builder_keep_location(builder, place)};
+    builder->analyses.initial_condition[builder->analyses.n_initial_conditions++] =
+        (struct dalcs_initial_condition){
+            {node[0], node[1]}, value, dalcs_builder_keep_location(builder, place)};
 }
 
 void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place, int node,
@@ -113,7 +117,8 @@ static bool read_current(struct dalcs_reader *reader, const struct dalcs_token *
     }
     device->has_initial = true;
     device->initial = value;
-    builder->initial_state = builder->initial_state != NULL ? builder->initial_state : place;
+    builder->analyses.initial_state =
+        builder->analyses.initial_state != NULL ? builder->analyses.initial_state : place;
     return true;
 }
 
@@ -169,9 +174,9 @@ void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dal
 /* Voltages that .ic names, and integrals, which a .tran begins at their first values. */
 static void tell_not_held(struct dalcs_builder *builder) {
     bool told[2] = {false, false};
-    for (size_t k = 0; k < builder->n_initial_conditions; k++) {
-        const struct dalcs_initial_condition *ic = &builder->initial_condition[k];
-        const bool is_integral = dalcs_names_is_inner(builder->node_name[ic->node[0]]);
+    for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {
+        const struct dalcs_initial_condition *ic = &builder->analyses.initial_condition[k];
+        const bool is_integral = dalcs_names_is_inner(builder->elements.node_name[ic->node[0]]);
         if (!told[is_integral]) {
             dalcs_diag_add(builder->diag, DALCS_NOTE, &ic->where,
                            is_integral ? "with a .tran it begins at its first value" : NULL, "%s",
@@ -189,8 +194,8 @@ void dalcs_initial_check(struct dalcs_builder *builder) {
         builder->circuit->periodic.use_initial_conditions) {
         return;
     }
-    if (builder->initial_state != NULL) {
-        dalcs_builder_note(builder, builder->initial_state,
+    if (builder->analyses.initial_state != NULL) {
+        dalcs_builder_note(builder, builder->analyses.initial_state,
                            transient->present ? "write 'uic' on .tran to start from it" : NULL,
                            "IC= and .ic i(...) count only with 'uic' on .tran; the states here are "
                            "those of the operating point");

@@ -8,7 +8,7 @@
 bool dalcs_builder_reserve_devices(struct dalcs_builder *builder, size_t n_more) {
     struct dalcs_circuit *circuit = builder->circuit;
     const size_t n = (size_t)circuit->n_devices;
-    if (n + n_more <= builder->device_capacity) {
+    if (n + n_more <= builder->elements.device_capacity) {
         return true;
     }
     const size_t most = 2 * (n + n_more);
@@ -23,14 +23,14 @@ bool dalcs_builder_reserve_devices(struct dalcs_builder *builder, size_t n_more)
         return false;
     }
     memcpy(device, circuit->device, n * sizeof *device);
-    memcpy(token, builder->device_token, n * sizeof(const struct dalcs_token *));
-    memcpy(control, builder->control_token, n * sizeof(const struct dalcs_token *));
-    memcpy(current_of, builder->current_of, n * sizeof *current_of);
+    memcpy(token, builder->elements.device_token, n * sizeof(const struct dalcs_token *));
+    memcpy(control, builder->elements.control_token, n * sizeof(const struct dalcs_token *));
+    memcpy(current_of, builder->elements.current_of, n * sizeof *current_of);
     circuit->device = device;
-    builder->device_token = token;
-    builder->control_token = control;
-    builder->current_of = current_of;
-    builder->device_capacity = most;
+    builder->elements.device_token = token;
+    builder->elements.control_token = control;
+    builder->elements.current_of = current_of;
+    builder->elements.device_capacity = most;
     return true;
 }
 

@@ -3,6 +3,7 @@
 #include "later.h"
 
 #include "history.h"
+#include "result_cards.h"
 
 #include <string.h>
 
@@ -17,13 +18,13 @@ void dalcs_later_add(struct dalcs_builder *builder, const struct dalcs_later *la
         builder->out_of_memory = true;
         return;
     }
-    *list = (struct dalcs_later_list){.before = builder->later, .item = *later};
-    builder->later = list;
+    *list = (struct dalcs_later_list){.before = builder->formulas.later, .item = *later};
+    builder->formulas.later = list;
 }
 
 size_t dalcs_later_pending(const struct dalcs_builder *builder) {
     size_t n = 0;
-    for (const struct dalcs_later_list *l = builder->later; l != NULL; l = l->before) {
+    for (const struct dalcs_later_list *l = builder->formulas.later; l != NULL; l = l->before) {
         n++;
     }
     return n;
@@ -85,8 +86,8 @@ void dalcs_later_resolve(struct dalcs_builder *builder) {
     circuit->delayed = dalcs_arena_alloc(&circuit->arena, n, sizeof *circuit->delayed);
     builder->out_of_memory = builder->out_of_memory || circuit->delayed == NULL ||
                              !dalcs_builder_reserve_devices(builder, n * DALCS_LATER_DEVICES);
-    for (const struct dalcs_later_list *l = builder->later; l != NULL && !builder->out_of_memory;
-         l = l->before) {
+    for (const struct dalcs_later_list *l = builder->formulas.later;
+         l != NULL && !builder->out_of_memory; l = l->before) {
         add_one(builder, &l->item);
     }
 }

@@ -7,6 +7,7 @@
  * (Branin, Proc. IEEE 55, 1967). So each port is a resistor of Z0 and a delayed source, and what is delayed is the sum of
  * the port's voltage and the resistor's. At rest the two sources read each other: v1 = v2, i1 = -i2. */
 #include "later.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>

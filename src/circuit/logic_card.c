@@ -4,7 +4,10 @@
  *
  * A pin that is tied to com is not there. */
 #include "block_parts.h"
+#include "element_cards.h"
 #include "logic_parts.h"
+#include "model_cards.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,7 @@
 /* logic_parameters.c - what stands behind the function of one of LTspice's A elements: parameter=value, and flags. */
 #include "logic_parts.h"
+#include "model_cards.h"
+#include "reader.h"
 
 #include <string.h>
 

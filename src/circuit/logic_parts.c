@@ -4,6 +4,9 @@
  * from an inner node with a resistor to ground, so that its control, its threshold and its events are those of all
  * switches. Gates that read the same against the same threshold have one comparator, for their inputs change together. */
 #include "logic_parts.h"
+#include "element_cards.h"
+#include "model_cards.h"
+#include "result_cards.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,9 +16,10 @@ struct dalcs_logic_card *dalcs_logic_start(struct dalcs_builder *builder,
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_arena *arena = &circuit->arena;
     if (circuit->gate == NULL) {
-        circuit->gate = dalcs_arena_alloc(arena, builder->gate_capacity, sizeof *circuit->gate);
-        circuit->comparator =
-            dalcs_arena_alloc(arena, builder->comparator_capacity, sizeof *circuit->comparator);
+        circuit->gate =
+            dalcs_arena_alloc(arena, builder->logic.gate_capacity, sizeof *circuit->gate);
+        circuit->comparator = dalcs_arena_alloc(arena, builder->logic.comparator_capacity,
+                                                sizeof *circuit->comparator);
     }
     struct dalcs_logic_card *of = dalcs_arena_alloc(&builder->scratch, 1, sizeof *of);
     struct dalcs_logic_pin *pin =
@@ -224,8 +228,8 @@ static bool add_outputs(struct dalcs_builder *builder, const struct dalcs_logic_
 void dalcs_logic_add(struct dalcs_builder *builder, struct dalcs_logic_card *of) {
     if (add_outputs(builder, of)) {
         builder->circuit->n_gates++;
-        of->before = builder->gate_card;
-        builder->gate_card = of;
+        of->before = builder->logic.gate_card;
+        builder->logic.gate_card = of;
     }
 }
 
@@ -266,8 +270,8 @@ static int find_comparator(struct dalcs_builder *builder, const struct dalcs_log
     const char *key =
         dalcs_builder_hint(builder, "%d %d %a %a", pin->node, pin->reference, of->on, of->off);
     int place;
-    if (key == NULL || dalcs_names_find_or_add(&builder->comparators, key, circuit->n_comparators,
-                                               &place) != DALCS_OK) {
+    if (key == NULL || dalcs_names_find_or_add(&builder->logic.comparators, key,
+                                               circuit->n_comparators, &place) != DALCS_OK) {
         builder->out_of_memory = true;
         return -1;
     }
@@ -310,7 +314,7 @@ static void resolve_input(struct dalcs_builder *builder,
     }
     const int by = driver_of(builder, driver, of, pin);
     if (by >= 0) {
-        builder->read_by_gates[pin->node] = true;
+        builder->logic.read_by_gates[pin->node] = true;
         *input =
             (struct dalcs_logic_input){DALCS_GATE_GATE, by / 2, (by % 2 != 0) != pin->is_inverted};
         return;
@@ -322,8 +326,8 @@ static void resolve_input(struct dalcs_builder *builder,
 }
 
 static void measure_sample(struct dalcs_builder *builder, const struct dalcs_logic_card *of) {
-    builder->read_by_gates[of->sampled.node] = true;
-    builder->read_by_gates[of->sampled.reference] = true;
+    builder->logic.read_by_gates[of->sampled.node] = true;
+    builder->logic.read_by_gates[of->sampled.reference] = true;
     of->gate->sampled = dalcs_signals_measure(
         builder, (struct dalcs_signal){.name = of->gate->name,
                                        .kind = DALCS_SIGNAL_VOLTAGE,
@@ -332,30 +336,32 @@ static void measure_sample(struct dalcs_builder *builder, const struct dalcs_log
 }
 
 void dalcs_logic_resolve(struct dalcs_builder *builder) {
-    if (builder->gate_card == NULL) {
+    if (builder->logic.gate_card == NULL) {
         return;
     }
     const size_t n_nodes = (size_t)builder->circuit->n_nodes;
     const struct dalcs_logic_card **driver =
         dalcs_arena_alloc(&builder->scratch, n_nodes, sizeof(const struct dalcs_logic_card *));
-    builder->read_by_gates = dalcs_arena_alloc(&builder->scratch, n_nodes, sizeof(bool));
-    if (driver == NULL || builder->read_by_gates == NULL) {
+    builder->logic.read_by_gates = dalcs_arena_alloc(&builder->scratch, n_nodes, sizeof(bool));
+    if (driver == NULL || builder->logic.read_by_gates == NULL) {
         builder->out_of_memory = true;
         return;
     }
     /* Parts of formulas may have taken the room that was counted for them. */
-    if (!dalcs_builder_reserve_devices(builder, 2 * builder->comparator_capacity)) {
+    if (!dalcs_builder_reserve_devices(builder, 2 * builder->logic.comparator_capacity)) {
         return;
     }
-    builder->n_nodes_of_gates = n_nodes;
-    for (const struct dalcs_logic_card *of = builder->gate_card; of != NULL; of = of->before) {
+    builder->logic.n_nodes_of_gates = n_nodes;
+    for (const struct dalcs_logic_card *of = builder->logic.gate_card; of != NULL;
+         of = of->before) {
         for (int k = 0; k < 2; k++) {
             if (of->node[k] >= 0) {
                 driver[of->node[k]] = of;
             }
         }
     }
-    for (const struct dalcs_logic_card *of = builder->gate_card; of != NULL; of = of->before) {
+    for (const struct dalcs_logic_card *of = builder->logic.gate_card; of != NULL;
+         of = of->before) {
         for (int k = 0; k < of->gate->n_inputs; k++) {
             resolve_input(builder, driver, of, k);
         }

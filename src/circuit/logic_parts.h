@@ -2,7 +2,8 @@
 #ifndef DALCS_LOGIC_PARTS_H
 #define DALCS_LOGIC_PARTS_H
 
-#include "builder.h"
+#include "model_cards.h"
+#include "reader.h"
 
 struct dalcs_logic_card {
     const struct dalcs_logic_card *before;

@@ -1,5 +1,7 @@
 /* losses_card.c - .losses [from=t] [to=t] [in=element,...] [out=element,...] */
-#include "builder.h"
+
+#include "reader.h"
+#include "result_cards.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -63,7 +65,8 @@ static bool read_time(struct dalcs_reader *reader, const char *name, double *tim
 
 /* Is there a waveform whose losses may be asked for? */
 static bool has_waveform(const struct dalcs_builder *builder) {
-    return builder->tran != NULL || builder->pss != NULL || builder->netlist->asks_steady;
+    return builder->analyses.tran != NULL || builder->analyses.pss != NULL ||
+           builder->netlist->asks_steady;
 }
 
 /* Of a window within the run. */
@@ -72,7 +75,7 @@ static void check_window(struct dalcs_builder *builder, const struct dalcs_token
     const struct dalcs_losses_card *card = builder->circuit->losses;
     const double stop = builder->circuit->transient.stop;
     const struct dalcs_token *either = from != NULL ? from : to;
-    if (builder->tran == NULL && either != NULL) {
+    if (builder->analyses.tran == NULL && either != NULL) {
         dalcs_builder_error(builder, either, "leave from= and to= out",
                             "there is no .tran for this window: the losses of a steady state are "
                             "those of its whole orbit");
@@ -165,7 +168,7 @@ static bool take_request(struct dalcs_builder *builder) {
         return false;
     }
     losses->present = true;
-    if (request->has_window && builder->tran == NULL) {
+    if (request->has_window && builder->analyses.tran == NULL) {
         const struct dalcs_location where = {.file = builder->netlist->name};
         dalcs_builder_error_at(builder, &where, "write --losses",
                                "--losses: there is no .tran for a window: the losses of a steady "
@@ -198,8 +201,8 @@ void dalcs_losses_collect(struct dalcs_builder *builder) {
         return;
     }
     if (circuit->losses == NULL || !circuit->losses->present) {
-        if (builder->switchloss != NULL) {
-            dalcs_builder_note(builder, builder->switchloss,
+        if (builder->results.switchloss != NULL) {
+            dalcs_builder_note(builder, builder->results.switchloss,
                                "add a line .losses, or run with --losses",
                                "no losses are computed: this card has no effect");
         }

@@ -2,7 +2,9 @@
  *
  * Formulas end where the next word is a keyword: AVG v(a)*i(r1) FROM=1m. Their text is taken as it
  * stands, so that tokens are only looked at to find the keywords. */
-#include "builder.h"
+
+#include "reader.h"
+#include "result_cards.h"
 
 #include <math.h>
 #include <string.h>
@@ -139,7 +141,7 @@ static bool read_time(struct reading *r, double *time, struct dalcs_signal_formu
     const struct dalcs_signal_formula_rules rules = {
         .variable = "",
         .no_signals = "a time is made of numbers, parameters and earlier measurements",
-        .results = &r->builder->measure_names};
+        .results = &r->builder->results.measure_names};
     struct dalcs_signal_formula formula;
     if (!read_formula(r, false, "a time", &rules, &formula)) {
         return false;
@@ -419,7 +421,7 @@ static bool read_measurement(struct reading *r) {
         const struct dalcs_signal_formula_rules rules = {
             .variable = "",
             .no_signals = "PARAM is computed from measurements; FIND takes signals",
-            .results = &r->builder->measure_names};
+            .results = &r->builder->results.measure_names};
         dalcs_reader_take(&r->reader, DALCS_TOKEN_EQUAL);
         return read_formula(r, false, "a formula", &rules, &m->formula) && read_bounds(r);
     }
@@ -456,26 +458,26 @@ static enum dalcs_measured_analysis read_analysis(struct reading *r) {
             return (enum dalcs_measured_analysis)k;
         }
     }
-    return r->builder->tran != NULL  ? DALCS_MEASURED_TRAN
-           : r->builder->op != NULL  ? DALCS_MEASURED_OP
-           : r->builder->pss != NULL ? DALCS_MEASURED_PSS
-           : r->builder->ac != NULL  ? DALCS_MEASURED_AC
-           : r->builder->dc != NULL  ? DALCS_MEASURED_DC
-                                     : DALCS_MEASURED_TRAN;
+    return r->builder->analyses.tran != NULL  ? DALCS_MEASURED_TRAN
+           : r->builder->analyses.op != NULL  ? DALCS_MEASURED_OP
+           : r->builder->analyses.pss != NULL ? DALCS_MEASURED_PSS
+           : r->builder->analyses.ac != NULL  ? DALCS_MEASURED_AC
+           : r->builder->analyses.dc != NULL  ? DALCS_MEASURED_DC
+                                              : DALCS_MEASURED_TRAN;
 }
 
 static bool is_run(const struct dalcs_builder *builder, enum dalcs_measured_analysis analysis) {
     switch (analysis) {
     case DALCS_MEASURED_TRAN:
-        return builder->tran != NULL;
+        return builder->analyses.tran != NULL;
     case DALCS_MEASURED_OP:
-        return builder->op != NULL;
+        return builder->analyses.op != NULL;
     case DALCS_MEASURED_DC:
-        return builder->dc != NULL;
+        return builder->analyses.dc != NULL;
     case DALCS_MEASURED_PSS:
-        return builder->pss != NULL || builder->netlist->asks_steady;
+        return builder->analyses.pss != NULL || builder->netlist->asks_steady;
     default:
-        return builder->ac != NULL;
+        return builder->analyses.ac != NULL;
     }
 }
 
@@ -513,7 +515,7 @@ void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card 
         .where = dalcs_builder_keep_location(builder, name)};
     r.measure = &measure;
     r.rules.variable = analysis == DALCS_MEASURED_AC ? "frequency" : "time";
-    r.rules.results = &builder->measure_names;
+    r.rules.results = &builder->results.measure_names;
     if (measure.name == NULL || !read_measurement(&r)) {
         builder->out_of_memory = builder->out_of_memory || measure.name == NULL;
         return;
@@ -525,12 +527,12 @@ void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card 
         return;
     }
     /* Of two with one name both are printed, and the second counts for those after it, as in ngspice. */
-    if (dalcs_names_set(&builder->measure_names, measure.name, (int)builder->n_measures) !=
-            DALCS_OK ||
-        dalcs_grow(&builder->measure, &builder->measure_capacity, builder->n_measures + 1,
-                   sizeof *builder->measure) != DALCS_OK) {
+    if (dalcs_names_set(&builder->results.measure_names, measure.name,
+                        (int)builder->results.n_measures) != DALCS_OK ||
+        dalcs_grow(&builder->results.measure, &builder->results.measure_capacity,
+                   builder->results.n_measures + 1, sizeof *builder->results.measure) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
-    builder->measure[builder->n_measures++] = measure;
+    builder->results.measure[builder->results.n_measures++] = measure;
 }

@@ -1,5 +1,6 @@
 /* measured.c - the signals that .meas and .four name, among those that are shown or behind them. */
-#include "builder.h"
+
+#include "result_cards.h"
 
 #include <stdlib.h>
 
@@ -80,11 +81,13 @@ static int place_of(const struct dalcs_circuit *circuit, const struct shown *sho
 enum dalcs_status dalcs_measured_collect(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_arena *arena = &circuit->arena;
-    const size_t n = builder->n_measured;
+    const size_t n = builder->signals.n_measured;
     circuit->n_measured = (int)n;
     circuit->measured = dalcs_arena_alloc(arena, n, sizeof *circuit->measured);
-    circuit->measure = dalcs_arena_alloc(arena, builder->n_measures, sizeof *circuit->measure);
-    circuit->fourier = dalcs_arena_alloc(arena, builder->n_fouriers, sizeof *circuit->fourier);
+    circuit->measure =
+        dalcs_arena_alloc(arena, builder->results.n_measures, sizeof *circuit->measure);
+    circuit->fourier =
+        dalcs_arena_alloc(arena, builder->results.n_fouriers, sizeof *circuit->fourier);
     if (circuit->measured == NULL || circuit->measure == NULL || circuit->fourier == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -93,31 +96,32 @@ enum dalcs_status dalcs_measured_collect(struct dalcs_builder *builder) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {
-        int place = place_of(circuit, &shown, &builder->measured[k]);
+        int place = place_of(circuit, &shown, &builder->signals.measured[k]);
         if (place < 0) {
             place = circuit->n_signals++;
-            circuit->signal[place] = builder->measured[k];
+            circuit->signal[place] = builder->signals.measured[k];
         }
         circuit->measured[k] = place;
     }
-    circuit->computed = dalcs_arena_alloc(arena, builder->n_computed, sizeof *circuit->computed);
+    circuit->computed =
+        dalcs_arena_alloc(arena, builder->signals.n_computed, sizeof *circuit->computed);
     if (circuit->computed == NULL) {
         return DALCS_E_NOMEM;
     }
-    circuit->n_computed = (int)builder->n_computed;
-    for (size_t k = 0; k < builder->n_computed; k++) {
-        circuit->computed[k] = builder->computed[k];
+    circuit->n_computed = (int)builder->signals.n_computed;
+    for (size_t k = 0; k < builder->signals.n_computed; k++) {
+        circuit->computed[k] = builder->signals.computed[k];
     }
-    if (builder->n_computed > 0) {
+    if (builder->signals.n_computed > 0) {
         circuit->n_shown = circuit->n_signals; /* what they are computed from is in the rows */
     }
-    circuit->n_measures = (int)builder->n_measures;
-    for (size_t k = 0; k < builder->n_measures; k++) {
-        circuit->measure[k] = builder->measure[k];
+    circuit->n_measures = (int)builder->results.n_measures;
+    for (size_t k = 0; k < builder->results.n_measures; k++) {
+        circuit->measure[k] = builder->results.measure[k];
     }
-    circuit->n_fouriers = (int)builder->n_fouriers;
-    for (size_t k = 0; k < builder->n_fouriers; k++) {
-        circuit->fourier[k] = builder->fourier[k];
+    circuit->n_fouriers = (int)builder->results.n_fouriers;
+    for (size_t k = 0; k < builder->results.n_fouriers; k++) {
+        circuit->fourier[k] = builder->results.fourier[k];
     }
     return DALCS_OK;
 }

@@ -1,7 +1,9 @@
 /* memory_parts.c - ddt(x), idt(x) and sdt(x) in a formula: the current of a capacitor that follows x, and the voltage of
  * one that x charges. What idt() begins at is added behind the capacitor, whose voltage is held at 0 where the run
  * starts; while a condition holds, a switch across it brings it back there. */
+#include "analysis_cards.h"
 #include "behaviour.h"
+#include "model_cards.h"
 
 #include <math.h>
 #include <string.h>

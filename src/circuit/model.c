@@ -2,7 +2,9 @@
  *
  * Models are read before the elements, so they may stand anywhere in the netlist. */
 #include "block.h"
+#include "model_cards.h"
 #include "number.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>
@@ -260,20 +262,20 @@ void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     if (!dalcs_reader_name(&reader, "the name of the model", &name)) {
         return;
     }
-    const int first = dalcs_names_find(&builder->models, name->text);
+    const int first = dalcs_names_find(&builder->models.names, name->text);
     if (first >= 0) {
-        report_second(builder, &builder->model[first], card);
+        report_second(builder, &builder->models.model[first], card);
         return;
     }
-    struct dalcs_model *model = &builder->model[builder->n_models];
+    struct dalcs_model *model = &builder->models.model[builder->models.n];
     model->kind = DALCS_MODEL_WRONG;
     model->name = name;
     model->card = card;
-    if (dalcs_names_add(&builder->models, name->text, builder->n_models) != DALCS_OK) {
+    if (dalcs_names_add(&builder->models.names, name->text, builder->models.n) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
-    builder->n_models++;
+    builder->models.n++;
     if (!dalcs_reader_name(&reader, "the type of the model", &type)) {
         return;
     }
@@ -293,8 +295,8 @@ void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *c
 }
 
 void dalcs_model_check(struct dalcs_builder *builder) {
-    for (int k = 0; k < builder->n_models; k++) {
-        const struct dalcs_model *model = &builder->model[k];
+    for (int k = 0; k < builder->models.n; k++) {
+        const struct dalcs_model *model = &builder->models.model[k];
         if (model->kind == DALCS_MODEL_OTHER && !model->was_refused) {
             dalcs_builder_warn(builder, model->type, NULL,
                                "%s models are not supported: '%s' is ignored",
@@ -317,12 +319,12 @@ bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter,
         (next != NULL && next->kind == DALCS_TOKEN_EQUAL)) {
         return true;
     }
-    const int index = dalcs_names_find(&reader->builder->models, name->text);
-    if (index < 0 || reader->builder->model[index].kind != DALCS_MODEL_PASSIVE ||
-        !is_type_of(&reader->builder->model[index], letter)) {
+    const int index = dalcs_names_find(&reader->builder->models.names, name->text);
+    if (index < 0 || reader->builder->models.model[index].kind != DALCS_MODEL_PASSIVE ||
+        !is_type_of(&reader->builder->models.model[index], letter)) {
         return true;
     }
-    const struct dalcs_model *model = &reader->builder->model[index];
+    const struct dalcs_model *model = &reader->builder->models.model[index];
     reader->at++;
     if (model->beyond != NULL) {
         dalcs_builder_error(
@@ -341,7 +343,7 @@ static const char *wanted_type(enum dalcs_model_kind kind) {
 /* A model that nothing defines, from the table of diodes, or D; -1: it is neither. */
 static int add_part(struct dalcs_builder *builder, const struct dalcs_token *name) {
     struct dalcs_circuit *circuit = builder->circuit;
-    struct dalcs_model *model = &builder->model[builder->n_models];
+    struct dalcs_model *model = &builder->models.model[builder->models.n];
     const char *own = dalcs_arena_copy(&circuit->arena, name->text, strlen(name->text));
     struct dalcs_diode_card diode;
     struct dalcs_diode_model *lines = &circuit->diode_model[circuit->n_diode_models];
@@ -357,24 +359,25 @@ static int add_part(struct dalcs_builder *builder, const struct dalcs_token *nam
                                   .type = name,
                                   .diode = diode};
     lines->name = own;
-    if (dalcs_names_add(&builder->models, own, builder->n_models) != DALCS_OK) {
+    if (dalcs_names_add(&builder->models.names, own, builder->models.n) != DALCS_OK) {
         builder->out_of_memory = true;
         return -1;
     }
-    return builder->n_models++;
+    return builder->models.n++;
 }
 
 int dalcs_model_find_switch(struct dalcs_builder *builder, const struct dalcs_token *name) {
-    const int index = dalcs_names_find(&builder->models, name->text);
-    const bool by_current = index >= 0 && builder->model[index].kind == DALCS_MODEL_CURRENT_SWITCH;
+    const int index = dalcs_names_find(&builder->models.names, name->text);
+    const bool by_current =
+        index >= 0 && builder->models.model[index].kind == DALCS_MODEL_CURRENT_SWITCH;
     return dalcs_model_find(builder, name,
                             by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
 }
 
 int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *name,
                      enum dalcs_model_kind kind) {
-    int index = dalcs_names_find(&builder->models, name->text);
-    if (index < 0 && kind == DALCS_MODEL_DIODE && builder->n_models < builder->model_capacity &&
+    int index = dalcs_names_find(&builder->models.names, name->text);
+    if (index < 0 && kind == DALCS_MODEL_DIODE && builder->models.n < builder->models.capacity &&
         (builder->hidden & DALCS_HIDDEN_MODELS) == 0) {
         index = add_part(builder, name);
     }
@@ -386,8 +389,8 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
                 builder->netlist->missing_library != NULL
                     ? dalcs_builder_hint(builder, "it may be in '%s', which was not found",
                                          builder->netlist->missing_library)
-                : builder->n_models > 0
-                    ? dalcs_builder_suggest(builder, &builder->models, name->text, "models")
+                : builder->models.n > 0
+                    ? dalcs_builder_suggest(builder, &builder->models.names, name->text, "models")
                     : dalcs_builder_hint(builder, "add a line: .model %s %s", name->text,
                                          kind == DALCS_MODEL_DIODE    ? "D"
                                          : kind == DALCS_MODEL_SWITCH ? "SW(Vt=0.5)"
@@ -396,7 +399,7 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
         }
         return -1;
     }
-    struct dalcs_model *model = &builder->model[index];
+    struct dalcs_model *model = &builder->models.model[index];
     if (model->kind == DALCS_MODEL_WRONG) {
         return -1;
     }

@@ -4,7 +4,8 @@
  * SFFM is infinitely many (Jacobi and Anger; Abramowitz and Stegun 9.1.42-45),
  *     sin(c + i sin m) = sum over all n of J_n(i) sin(c + n m),
  * but beyond |n| = i the J_n vanish faster than any power: those left out are below 1e-17 each. */
-#include "builder.h"
+
+#include "element_cards.h"
 
 #include <math.h>
 

@@ -3,9 +3,10 @@
  *     .mc runs [seed=number]
  *
  * PSpice's card goes on with an analysis and what to look at there, which .meas does here. */
-#include "builder.h"
 
+#include "analysis_cards.h"
 #include "draws.h"
+#include "reader.h"
 
 #include <string.h>
 

@@ -3,7 +3,9 @@
  * Options of other simulators that steer what does not exist here are accepted with a note each, so
  * that netlists need no change; a name that no simulator knows is probably a spelling mistake, and
  * silently ignoring those has cost people days. */
-#include "builder.h"
+
+#include "analysis_cards.h"
+#include "reader.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -193,7 +195,7 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
         return true;
     }
     if (strcmp(name, "savecurrents") == 0) { /* likewise: all currents besides what is recorded */
-        reader->builder->saves_currents = true;
+        reader->builder->signals.saves_currents = true;
         return true;
     }
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
@@ -220,10 +222,11 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     }
     if (strcmp(name, "diodecurrent") == 0) {
         options->has_diode_current = true;
-        return read_positive(reader, DALCS_CURRENT, &reader->builder->diode_current);
+        return read_positive(reader, DALCS_CURRENT, &reader->builder->models.diode_current);
     }
     if (strcmp(name, "bjt") == 0) {
-        return read_either(reader, name, "switch", "refuse", &reader->builder->bipolar_is_switch);
+        return read_either(reader, name, "switch", "refuse",
+                           &reader->builder->models.bipolar_is_switch);
     }
     if (strcmp(name, "seed") == 0) {
         return dalcs_monte_carlo_read_seed(reader);

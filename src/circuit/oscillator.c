@@ -8,7 +8,9 @@
 #include "oscillator.h"
 #include "pi.h"
 
+#include "element_cards.h"
 #include "logic_parts.h"
+#include "model_cards.h"
 
 #include <math.h>
 
@@ -48,7 +50,7 @@ static bool is_constant(const struct dalcs_oscillator *o, double *value) {
     if (control->node == control->reference) {
         return true;
     }
-    for (int k = 0; k < circuit->n_devices && builder->startup == NULL; k++) {
+    for (int k = 0; k < circuit->n_devices && builder->analyses.startup == NULL; k++) {
         const struct dalcs_device *d = &circuit->device[k];
         if (d->kind == DALCS_VSOURCE && d->node[0] == control->node &&
             d->node[1] == control->reference &&
@@ -295,12 +297,13 @@ void dalcs_oscillator_add(const struct dalcs_oscillator *o) {
         return;
     }
     *waits = *o;
-    waits->before = builder->oscillator;
-    builder->oscillator = waits;
+    waits->before = builder->formulas.oscillator;
+    builder->formulas.oscillator = waits;
 }
 
 void dalcs_oscillator_put_all(struct dalcs_builder *builder) {
-    for (const struct dalcs_oscillator *o = builder->oscillator; o != NULL; o = o->before) {
+    for (const struct dalcs_oscillator *o = builder->formulas.oscillator; o != NULL;
+         o = o->before) {
         double control;
         if (!dalcs_builder_reserve_devices(builder, MOST_DEVICES)) {
             return;

@@ -8,8 +8,8 @@
  * "Own" is meant as the circuit has it: nodes that shorts join are one, and a current is one's own if it
  * flows through all elements between, each behind the other at nodes where nothing else ends (there
  * Kirchhoff's law has two terms). */
-#include "builder.h"
 
+#include "element_cards.h"
 #include "union_find.h"
 
 #include <math.h>

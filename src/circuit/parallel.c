@@ -3,7 +3,8 @@
  * With the same voltages all currents are m times as large: R/m, L/m, C m, I m, G m, a switch's Ron/m. A V and
  * an E of voltages stay what they are. What reads a current of the inside would read m of them: it is
  * refused. */
-#include "builder.h"
+
+#include "element_cards.h"
 
 #include <string.h>
 

@@ -7,7 +7,9 @@
  * Each becomes a device of its own, on nodes that no card can name, and costs nothing where it is not
  * given. With Rpar or Cpar the current of the element is that of its terminal a: a short there
  * measures it, and is an unknown only if it is read. */
-#include "builder.h"
+
+#include "element_cards.h"
+#include "reader.h"
 
 #include <string.h>
 

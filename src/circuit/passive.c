@@ -3,7 +3,10 @@
  * R = 0 is a short. An inductor of 0 H is one too and becomes a resistor of 0 ohm; a capacitor of
  * 0 F is open and becomes a current source of 0 A: neither has a state. */
 #include "core.h"
+#include "element_cards.h"
+#include "model_cards.h"
 #include "number.h"
+#include "reader.h"
 
 #include <string.h>
 
@@ -140,7 +143,8 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
         }
         const bool is_inductor = device->kind == DALCS_INDUCTOR;
         device->has_initial = true;
-        builder->initial_state = builder->initial_state != NULL ? builder->initial_state : name;
+        builder->analyses.initial_state =
+            builder->analyses.initial_state != NULL ? builder->analyses.initial_state : name;
         return dalcs_reader_number(reader, is_inductor ? DALCS_CURRENT : DALCS_VOLTAGE,
                                    is_inductor ? "a current" : "a voltage", &device->initial);
     }
@@ -336,9 +340,10 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     if (card->parallel > 0) {
         values.multiplier = (values.multiplier > 0 ? values.multiplier : 1) * card->parallel;
     }
-    if (builder->default_rser != NULL && kind == DALCS_INDUCTOR && values.law.formula == NULL &&
-        values.core.first == NULL && !dalcs_parasitic_has_rser(&values.parasitics)) {
-        builder->default_rser[device - builder->circuit->device] =
+    if (builder->elements.default_rser != NULL && kind == DALCS_INDUCTOR &&
+        values.law.formula == NULL && values.core.first == NULL &&
+        !dalcs_parasitic_has_rser(&values.parasitics)) {
+        builder->elements.default_rser[device - builder->circuit->device] =
             LTSPICE_RSER / (values.multiplier > 0 ? values.multiplier : 1);
     }
     if (values.multiplier > 0) {
@@ -359,19 +364,19 @@ void dalcs_passive_add_default_rser(struct dalcs_builder *builder) {
     const int n_devices = circuit->n_devices;
     int n = 0;
     const struct dalcs_token *first = NULL;
-    if (builder->default_rser == NULL) {
+    if (builder->elements.default_rser == NULL) {
         return;
     }
     for (int k = 0; k < circuit->n_couplings; k++) {
-        builder->default_rser[circuit->coupling[k].inductor[0]] = 0;
-        builder->default_rser[circuit->coupling[k].inductor[1]] = 0;
+        builder->elements.default_rser[circuit->coupling[k].inductor[0]] = 0;
+        builder->elements.default_rser[circuit->coupling[k].inductor[1]] = 0;
     }
     for (int k = 0; k < n_devices && !builder->out_of_memory; k++) {
         struct dalcs_device *device = &builder->circuit->device[k];
-        if (builder->default_rser[k] > 0 && device->kind == DALCS_INDUCTOR) {
-            first = n++ == 0 ? builder->device_token[k] : first;
-            dalcs_parasitic_add_rser(builder, builder->device_token[k], device,
-                                     builder->default_rser[k]);
+        if (builder->elements.default_rser[k] > 0 && device->kind == DALCS_INDUCTOR) {
+            first = n++ == 0 ? builder->elements.device_token[k] : first;
+            dalcs_parasitic_add_rser(builder, builder->elements.device_token[k], device,
+                                     builder->elements.default_rser[k]);
         }
     }
     if (n > 0) {

@@ -6,7 +6,10 @@
  * pin 7 while `up` is set, into it while `down` is, and nothing else does. An ideal diode each keeps the output between
  * Vlow and Vhigh. */
 #include "block_parts.h"
+#include "element_cards.h"
 #include "logic_parts.h"
+#include "model_cards.h"
+#include "reader.h"
 
 enum { N_PINS = 8, PIN_OUTPUT = 6, PIN_COMMON };
 

@@ -5,6 +5,8 @@
  * Each term is a device of its own: the voltages of E and H in series, the currents of F and G side
  * by side behind a short, which is an unknown only if a signal is the sum. Products are in poly_products.c. */
 #include "poly.h"
+#include "element_cards.h"
+#include "reader.h"
 
 #include <string.h>
 
@@ -91,7 +93,7 @@ static void set_control(struct poly *p, struct dalcs_device *device, int k) {
         device->node[2] = p->node[2 * k];
         device->node[3] = p->node[2 * k + 1];
     } else {
-        builder->control_token[device - builder->circuit->device] = p->source[k];
+        builder->elements.control_token[device - builder->circuit->device] = p->source[k];
     }
 }
 

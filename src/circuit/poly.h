@@ -2,7 +2,7 @@
 #ifndef DALCS_POLY_H
 #define DALCS_POLY_H
 
-#include "builder.h"
+#include "reader.h"
 
 struct poly {
     struct dalcs_reader *reader;

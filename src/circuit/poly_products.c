@@ -32,7 +32,7 @@ static int control_node(const struct poly *p, int k) {
         source->node[2] = p->node[2 * k];
         source->node[3] = p->node[2 * k + 1];
     } else {
-        builder->control_token[source - builder->circuit->device] = p->source[k];
+        builder->elements.control_token[source - builder->circuit->device] = p->source[k];
     }
     return source->node[0];
 }

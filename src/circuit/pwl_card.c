@@ -6,9 +6,10 @@
  *
  * A block that is repeated counts its times from where it begins. What ends is written out; what
  * does not end is written out twice, and the second course repeats. */
-#include "builder.h"
+#include "element_cards.h"
 #include "number.h"
 #include "number_file.h"
+#include "reader.h"
 
 #include <math.h>
 #include <stdlib.h>

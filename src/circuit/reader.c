@@ -2,7 +2,7 @@
  *
  * Every function reports a missing or wrong token, at its place. Numbers
  * whose suffix is often meant otherwise (1M of resistance, 1F of capacitance) get a warning. */
-#include "builder.h"
+#include "reader.h"
 #include "number.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 /* resolve.c - sources with a formula, once all elements are known: each after those whose voltages it reads. */
 #include "behaviour.h"
+#include "element_cards.h"
 #include "later.h"
 
 #include <stdlib.h>
@@ -29,14 +30,14 @@ static const struct dalcs_form *input_of(struct dalcs_compiler *c,
 const struct dalcs_formula *dalcs_behavioural_formula_of(const struct dalcs_builder *builder,
                                                          int device) {
     size_t low = 0;
-    size_t high = builder->n_formulas;
+    size_t high = builder->formulas.n;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        const bool is_before = builder->formula[middle].device < device;
+        const bool is_before = builder->formulas.source[middle].device < device;
         *(is_before ? &low : &high) = is_before ? middle + 1 : middle;
     }
     const struct dalcs_formula_source *source =
-        low < builder->n_formulas ? &builder->formula[low] : NULL;
+        low < builder->formulas.n ? &builder->formulas.source[low] : NULL;
     const bool is_one = source != NULL && source->device == device && source->token != NULL;
     return is_one && !source->has_table ? source->token->formula : NULL;
 }
@@ -81,7 +82,7 @@ static void resolve(struct dalcs_compiler *c, struct dalcs_formula_source *sourc
     c->n_nodes = 0;
     c->is_of_storage = c->builder->circuit->device[source->device].is_storage;
     c->start = c->builder->circuit->device[source->device].initial;
-    c->element = c->builder->device_token[source->device];
+    c->element = c->builder->elements.device_token[source->device];
     const struct dalcs_form *form = form_of(c, source);
     /* products may have moved it */
     struct dalcs_device *device = &c->builder->circuit->device[source->device];
@@ -122,7 +123,8 @@ static void resolve_read(struct resolving *r, const struct dalcs_formula *f, boo
     seen[f->number_of] = true;
     for (int k = 0; f->kind == DALCS_FORMULA_VOLTAGE && k < 2; k++) {
         if (f->signal[k] != NULL) {
-            resolve_node(r, dalcs_names_find(&r->compiler->builder->nodes, f->signal[k]->text));
+            resolve_node(
+                r, dalcs_names_find(&r->compiler->builder->elements.nodes, f->signal[k]->text));
         }
     }
     for (int k = 0; k < f->n; k++) {
@@ -159,7 +161,7 @@ static void resolve_in_order(struct resolving *r, struct dalcs_formula_source *s
 
 static void resolve_node(struct resolving *r, int node) {
     if (node > 0 && node < r->n_nodes && r->driver[node] > 0) {
-        resolve_in_order(r, &r->compiler->builder->formula[r->driver[node] - 1]);
+        resolve_in_order(r, &r->compiler->builder->formulas.source[r->driver[node] - 1]);
     }
 }
 
@@ -171,14 +173,14 @@ static void resolve_all(struct dalcs_compiler *c, struct dalcs_potentials *poten
                           .driver = calloc((size_t)circuit->n_nodes, sizeof *r.driver),
                           .n_nodes = circuit->n_nodes};
     builder->out_of_memory = builder->out_of_memory || r.driver == NULL;
-    for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
-        const struct dalcs_device *device = &circuit->device[builder->formula[k].device];
+    for (size_t k = 0; k < builder->formulas.n && !builder->out_of_memory; k++) {
+        const struct dalcs_device *device = &circuit->device[builder->formulas.source[k].device];
         if (device->kind == DALCS_VCVS) {
             r.driver[device->node[0]] = (int)k + 1;
         }
     }
-    for (size_t k = 0; k < builder->n_formulas; k++) {
-        resolve_in_order(&r, &builder->formula[k]);
+    for (size_t k = 0; k < builder->formulas.n; k++) {
+        resolve_in_order(&r, &builder->formulas.source[k]);
     }
     free(r.driver);
 }
@@ -212,15 +214,15 @@ static void add_smooth_stimulus(struct dalcs_compiler *c) {
 void dalcs_behavioural_resolve(struct dalcs_builder *builder) {
     struct dalcs_compiler c = {.builder = builder, .arena = &builder->scratch};
     struct dalcs_potentials potentials = {0};
-    if (builder->n_formulas > 0) {
+    if (builder->formulas.n > 0) {
         dalcs_potentials_find(&potentials, builder);
         resolve_all(&c, &potentials);
         dalcs_potentials_finish(&potentials);
     }
     struct dalcs_gate_readers readers = {0};
-    for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
-        if (builder->formula[k].gate != NULL) {
-            dalcs_gate_settle(builder, &readers, builder->formula[k].gate);
+    for (size_t k = 0; k < builder->formulas.n && !builder->out_of_memory; k++) {
+        if (builder->formulas.source[k].gate != NULL) {
+            dalcs_gate_settle(builder, &readers, builder->formulas.source[k].gate);
         }
     }
     dalcs_gate_readers_finish(&readers);

@@ -1,7 +1,8 @@
 /* sens_card.c - .sens: the values by which measurements of the steady state are differentiated. */
-#include "builder.h"
 
+#include "analysis_cards.h"
 #include "override.h"
+#include "reader.h"
 
 #include <string.h>
 
@@ -55,10 +56,10 @@ static void take_all(struct dalcs_builder *builder, struct dalcs_sensitivity_car
 void dalcs_sensitivity_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_sensitivity_card *sens = &builder->circuit->sensitivity;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, SENS_USAGE);
-    if (!dalcs_analysis_is_first(builder, card, &builder->sens)) {
+    if (!dalcs_analysis_is_first(builder, card, &builder->analyses.sens)) {
         return;
     }
-    if (builder->pss == NULL && !builder->netlist->asks_steady) {
+    if (builder->analyses.pss == NULL && !builder->netlist->asks_steady) {
         dalcs_builder_warn(
             builder, card->token, "write .pss beside it",
             ".sens differentiates a periodic steady state, and there is no .pss: the "

@@ -1,4 +1,6 @@
 /* signal_card.c - .save, .print, .plot and .probe: the signals that a card names, and of .print and .plot a table. */
+#include "reader.h"
+#include "result_cards.h"
 #include "signals.h"
 
 #include <string.h>
@@ -34,12 +36,12 @@ static void skip_limits(struct dalcs_reader *reader) {
 
 /* The table of a .print: of one analysis, or of all. */
 static bool start_print(struct dalcs_builder *builder, int analysis) {
-    if (dalcs_grow(&builder->print, &builder->print_capacity, builder->n_prints + 1,
-                   sizeof *builder->print) != DALCS_OK) {
+    if (dalcs_grow(&builder->results.print, &builder->results.print_capacity,
+                   builder->results.n_prints + 1, sizeof *builder->results.print) != DALCS_OK) {
         builder->out_of_memory = true;
         return false;
     }
-    struct dalcs_print_card *print = &builder->print[builder->n_prints++];
+    struct dalcs_print_card *print = &builder->results.print[builder->results.n_prints++];
     *print = (struct dalcs_print_card){0};
     for (int k = 0; k <= DALCS_MEASURED_AC; k++) {
         print->is_of[k] = analysis < 0 || k == analysis;
@@ -56,7 +58,7 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
                                         "hb_ic", "homotopy", "hb_startup"};
     struct dalcs_reader reader = dalcs_reader_start(builder, card, DALCS_SIGNALS_USAGE);
     const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
-    builder->names_signals = true;
+    builder->signals.are_named = true;
     const char *name = card->token->text;
     const bool takes_options = strcmp(name, ".print") == 0;
     const bool has_type = strcmp(name, ".save") != 0;
@@ -87,10 +89,10 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
     if (is_print && !start_print(builder, analysis)) {
         return;
     }
-    builder->is_print = is_print;
+    builder->results.is_print = is_print;
     while (!dalcs_reader_at_end(&reader)) {
-        builder->print_before = NULL;
-        builder->print_part = DALCS_PART_PLAIN;
+        builder->results.print_before = NULL;
+        builder->results.print_part = DALCS_PART_PLAIN;
         if (!dalcs_signals_read(&reader)) {
             break;
         }
@@ -99,5 +101,5 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
             skip_print_options(&reader);
         }
     }
-    builder->is_print = false;
+    builder->results.is_print = false;
 }

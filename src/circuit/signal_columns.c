@@ -1,4 +1,7 @@
 /* signal_columns.c - formulas and powers among the signals: columns that are computed from others. */
+#include "element_cards.h"
+#include "reader.h"
+#include "result_cards.h"
 #include "signals.h"
 
 #include <string.h>
@@ -48,20 +51,21 @@ static const char *formula_name(struct dalcs_builder *builder, const struct dalc
 /* A column that is computed, once for each name. */
 static void add_computed(struct dalcs_builder *builder, const char *name,
                          const struct dalcs_signal_formula *formula) {
-    if (builder->is_print) {
+    if (builder->results.is_print) {
         dalcs_signals_add_column(builder, name);
     }
-    if (dalcs_names_find(&builder->signals, name) >= 0) {
+    if (dalcs_names_find(&builder->signals.names, name) >= 0) {
         return;
     }
-    if (dalcs_names_add(&builder->signals, name, 0) != DALCS_OK ||
-        dalcs_grow(&builder->computed, &builder->computed_capacity, builder->n_computed + 1,
-                   sizeof *builder->computed) != DALCS_OK) {
+    if (dalcs_names_add(&builder->signals.names, name, 0) != DALCS_OK ||
+        dalcs_grow(&builder->signals.computed, &builder->signals.computed_capacity,
+                   builder->signals.n_computed + 1,
+                   sizeof *builder->signals.computed) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
-    builder->computed[builder->n_computed++] =
-        (struct dalcs_computed){name, (int)builder->n_signals, *formula};
+    builder->signals.computed[builder->signals.n_computed++] =
+        (struct dalcs_computed){name, (int)builder->signals.n, *formula};
 }
 
 /* w(r1) or p(r1), of an element that has one. */
@@ -77,12 +81,12 @@ void dalcs_signals_add_power(struct dalcs_builder *builder, char letter, int dev
 
 void dalcs_signals_note_power(struct dalcs_builder *builder, const struct dalcs_token *token,
                               const char *argument) {
-    if (!builder->noted_power) {
+    if (!builder->noted.power) {
         dalcs_builder_note(
             builder, token, "{v(a,b)*i(x)} is that of two terminals",
             "a power that is not one voltage times one current is not recorded: %s%s is left out",
             token->text, argument);
-        builder->noted_power = true;
+        builder->noted.power = true;
     }
 }
 
@@ -111,7 +115,7 @@ static void add_formula(struct dalcs_builder *builder, const struct dalcs_token 
     *named = *token;
     named->kind = DALCS_TOKEN_WORD;
     named->text = name;
-    const bool is_known = dalcs_names_find(&builder->signals, name) >= 0;
+    const bool is_known = dalcs_names_find(&builder->signals.names, name) >= 0;
     const int node = is_known ? 0 : dalcs_behavioural_add_readout(builder, token, "readout", named);
     if (node >= 0) {
         dalcs_signals_add(
@@ -136,7 +140,7 @@ bool dalcs_signals_is_formula(const struct dalcs_reader *reader) {
     const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
     const char first = token->text[0]; /* KiCad's nodes may begin with a slash */
     const bool is_operator = first != '\0' && strchr("+-*/", first) != NULL &&
-                             dalcs_names_find(&reader->builder->nodes, token->text) < 0;
+                             dalcs_names_find(&reader->builder->elements.nodes, token->text) < 0;
     if (next != NULL && next->kind == DALCS_TOKEN_EQUAL && dalcs_reader_peek(reader, 2) != NULL) {
         token = dalcs_reader_peek(reader, 2); /* name=formula */
         next = dalcs_reader_peek(reader, 3);
@@ -197,7 +201,7 @@ bool dalcs_signals_read_power(struct dalcs_reader *reader) {
         close->kind != DALCS_TOKEN_CLOSE) {
         return false;
     }
-    const int device = dalcs_names_find(&builder->devices, name->text);
+    const int device = dalcs_names_find(&builder->elements.devices, name->text);
     if (device < 0 || !dalcs_signal_formula_has_power(builder, device)) {
         return false;
     }

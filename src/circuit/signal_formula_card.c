@@ -4,6 +4,7 @@
  * netlist can have, so that all places stay what they are. */
 #include "signal_formula_card.h"
 
+#include "result_cards.h"
 #include "signal_names.h"
 
 #include <string.h>
@@ -73,7 +74,7 @@ int dalcs_signal_compilation_find(struct dalcs_signal_compilation *c, bool is_cu
         const int device = dalcs_builder_find_device(builder, first);
         found = device >= 0;
         signal.kind = DALCS_SIGNAL_CURRENT;
-        signal.device = found ? builder->current_of[device] : -1;
+        signal.device = found ? builder->elements.current_of[device] : -1;
     } else {
         signal.node[0] = dalcs_builder_find_node(builder, first);
         signal.node[1] = second != NULL ? dalcs_builder_find_node(builder, second) : 0;
@@ -216,10 +217,12 @@ static bool find_with_function(const struct dalcs_signal_compilation *c, int k,
 /* The voltage across an element and the current through it; -1 when an error was reported. */
 bool dalcs_signal_formula_has_power(const struct dalcs_builder *builder, int k) {
     const struct dalcs_device *device = &builder->circuit->device[k];
-    bool has_two = strchr("rlcvidsw", device->letter) != NULL && builder->current_of[k] == k;
+    bool has_two =
+        strchr("rlcvidsw", device->letter) != NULL && builder->elements.current_of[k] == k;
     for (int end = 0; end < 2; end++) { /* other parts of the element are behind an inner node */
         const int node = device->node[end];
-        has_two = has_two && (node == 0 || !dalcs_names_is_inner(builder->node_name[node]));
+        has_two =
+            has_two && (node == 0 || !dalcs_names_is_inner(builder->elements.node_name[node]));
     }
     return has_two;
 }
@@ -353,8 +356,8 @@ bool dalcs_signal_formula_compile(struct dalcs_builder *builder, const struct da
     const struct dalcs_expression_context context = {.arena = scratch,
                                                      .diag = builder->diag,
                                                      .dialect = builder->netlist->dialect,
-                                                     .noted_caret = &builder->noted_caret,
-                                                     .noted_log = &builder->noted_log};
+                                                     .noted_caret = &builder->noted.caret,
+                                                     .noted_log = &builder->noted.log};
     struct dalcs_expression_text masked = c.text;
     masked.text = c.masked;
     const struct dalcs_expression *e = dalcs_expression_parse(&context, &masked);

@@ -2,7 +2,7 @@
 #ifndef DALCS_SIGNAL_FORMULA_CARD_H
 #define DALCS_SIGNAL_FORMULA_CARD_H
 
-#include "builder.h"
+#include "result_cards.h"
 
 #include <stdarg.h>
 

@@ -2,6 +2,7 @@
  *
  * Functions of the netlist are written out where they are called: their arguments are on the stack
  * then, and how high it is there is known. */
+#include "result_cards.h"
 #include "signal_formula_card.h"
 
 #include <stdlib.h>
@@ -44,10 +45,10 @@ static const char *hint_for_name(const struct dalcs_signal_compilation *c, const
     if (nearest != NULL) {
         return dalcs_builder_hint(builder, "did you mean '%s'?", nearest);
     }
-    if (dalcs_names_find(&builder->nodes, name) >= 0) {
+    if (dalcs_names_find(&builder->elements.nodes, name) >= 0) {
         return dalcs_builder_hint(builder, "write v(%s)", name);
     }
-    if (dalcs_names_find(&builder->devices, name) >= 0) {
+    if (dalcs_names_find(&builder->elements.devices, name) >= 0) {
         return dalcs_builder_hint(builder, "write i(%s)", name);
     }
     return results != NULL

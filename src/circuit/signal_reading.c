@@ -1,4 +1,6 @@
 /* signal_reading.c - one signal of a card: v(node), i(element), a part of one, a formula, a power. */
+#include "reader.h"
+#include "result_cards.h"
 #include "signals.h"
 
 #include <string.h>
@@ -18,7 +20,7 @@ static void leave_out_unknown(struct dalcs_builder *builder, const struct dalcs_
 static int find_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
     const int node = dalcs_builder_look_up_node(builder, token->text);
     if (node < 0) {
-        leave_out_unknown(builder, token, &builder->nodes, "nodes",
+        leave_out_unknown(builder, token, &builder->elements.nodes, "nodes",
                           "no element is connected to a node '%s': it is left out");
     }
     return node;
@@ -26,11 +28,11 @@ static int find_node(struct dalcs_builder *builder, const struct dalcs_token *to
 
 static int find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {
     const int device = dalcs_builder_look_up_device(builder, token->text);
-    if (device >= builder->n_device_cards) {
+    if (device >= builder->elements.n_device_cards) {
         return dalcs_builder_find_device(builder, token); /* a coupling, with a message */
     }
     if (device < 0) {
-        leave_out_unknown(builder, token, &builder->devices, "elements",
+        leave_out_unknown(builder, token, &builder->elements.devices, "elements",
                           "there is no element '%s': it is left out");
     }
     return device;
@@ -39,7 +41,7 @@ static int find_device(struct dalcs_builder *builder, const struct dalcs_token *
 /* gnucap's v(nodes). */
 static bool is_every_node(const struct dalcs_builder *builder, const char *name) {
     return strcmp(name, "*") == 0 ||
-           (strcmp(name, "nodes") == 0 && dalcs_names_find(&builder->nodes, name) < 0);
+           (strcmp(name, "nodes") == 0 && dalcs_names_find(&builder->elements.nodes, name) < 0);
 }
 
 /* After `v (`: a node or two, and the closing parenthesis. */
@@ -114,20 +116,20 @@ static bool is_look(const struct dalcs_card *card, const struct dalcs_token *tok
 static bool read_plain_node(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
-    const int node = dalcs_names_find(&builder->nodes, token->text);
+    const int node = dalcs_names_find(&builder->elements.nodes, token->text);
     if (node >= 0) {
         reader->at++;
         dalcs_signals_add_voltage(builder, node, 0, false);
         return true;
     }
     const char *hint = DALCS_SIGNALS_USAGE;
-    const char *nearest = dalcs_names_nearest(&builder->nodes, token->text);
+    const char *nearest = dalcs_names_nearest(&builder->elements.nodes, token->text);
     if (is_value(builder, token->text)) {
         reader->at++;
         leave_out(builder, token);
         return true;
     }
-    if (dalcs_names_find(&builder->devices, token->text) >= 0) {
+    if (dalcs_names_find(&builder->elements.devices, token->text) >= 0) {
         hint = dalcs_builder_hint(builder, "write i(%s)", token->text);
     } else if (nearest != NULL) {
         hint = dalcs_builder_hint(builder, "did you mean 'v(%s)'?", nearest);
@@ -289,8 +291,8 @@ bool dalcs_signals_read(struct dalcs_reader *reader) {
     if (part != NULL) {
         reader->at += 2;
         if (part->part != DALCS_PART_PLAIN) {
-            builder->print_part = part->part;
-            builder->print_before = token->text;
+            builder->results.print_part = part->part;
+            builder->results.print_before = token->text;
         }
         return token->text[0] == 'v' ? read_voltage(reader) : read_current(reader);
     }
@@ -302,8 +304,8 @@ bool dalcs_signals_read(struct dalcs_reader *reader) {
     if (function != NULL) {
         reader->at += 2;
         const struct dalcs_token *inner = dalcs_reader_peek(reader, 0);
-        builder->print_part = function->part;
-        builder->print_before = dalcs_builder_hint(builder, "%s(", token->text);
+        builder->results.print_part = function->part;
+        builder->results.print_before = dalcs_builder_hint(builder, "%s(", token->text);
         if (inner == NULL || part_of(inner->text) == NULL) {
             dalcs_reader_missing(reader, "v(node) or i(element)");
             return false;

@@ -3,51 +3,54 @@
  * The default is every node voltage and the currents of V, L, D, S, W, E, H and B with V=. Naming signals replaces it,
  * `all` adds it. */
 #include "signals.h"
+#include "result_cards.h"
 
 #include <string.h>
 
 /* A column of the .print that is being read. */
 void dalcs_signals_add_column(struct dalcs_builder *builder, const char *name) {
-    const char *before = builder->print_before;
+    const char *before = builder->results.print_before;
     const bool is_function = before != NULL && strchr(before, '(') != NULL;
     const char *title =
         before == NULL ? name
                        : dalcs_arena_printf(&builder->circuit->arena, "%s%s%s", before,
                                             is_function ? name : name + 1, is_function ? ")" : "");
     if (title == NULL ||
-        dalcs_grow(&builder->print_column, &builder->print_column_capacity,
-                   builder->n_print_columns + 1, sizeof *builder->print_column) != DALCS_OK) {
+        dalcs_grow(&builder->results.print_column, &builder->results.print_column_capacity,
+                   builder->results.n_print_columns + 1,
+                   sizeof *builder->results.print_column) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
-    builder->print_column[builder->n_print_columns++] =
-        (struct dalcs_print_column){name, title, builder->print_part};
-    builder->print[builder->n_prints - 1].n++;
+    builder->results.print_column[builder->results.n_print_columns++] =
+        (struct dalcs_print_column){name, title, builder->results.print_part};
+    builder->results.print[builder->results.n_prints - 1].n++;
 }
 
 /* Adds a signal; `name` is in the circuit's arena or NULL when memory ran out. The defaults alone
  * hold nothing twice, and a million names are better not looked up. */
 void dalcs_signals_add(struct dalcs_builder *builder, const char *name,
                        struct dalcs_signal signal) {
-    const bool may_repeat = builder->names_signals;
-    if (name != NULL && builder->is_print) {
+    const bool may_repeat = builder->signals.are_named;
+    if (name != NULL && builder->results.is_print) {
         dalcs_signals_add_column(builder, name);
     }
-    if (name != NULL && may_repeat && dalcs_names_find(&builder->signals, name) >= 0) {
+    if (name != NULL && may_repeat && dalcs_names_find(&builder->signals.names, name) >= 0) {
         return;
     }
     signal.name = name;
-    if (name == NULL || (may_repeat && dalcs_names_add(&builder->signals, name, 0) != DALCS_OK) ||
-        dalcs_grow(&builder->signal, &builder->signal_capacity, builder->n_signals + 1,
-                   sizeof *builder->signal) != DALCS_OK) {
+    if (name == NULL ||
+        (may_repeat && dalcs_names_add(&builder->signals.names, name, 0) != DALCS_OK) ||
+        dalcs_grow(&builder->signals.signal, &builder->signals.capacity, builder->signals.n + 1,
+                   sizeof *builder->signals.signal) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
-    builder->signal[builder->n_signals++] = signal;
+    builder->signals.signal[builder->signals.n++] = signal;
 }
 
 static const char *node_text(const struct dalcs_builder *builder, int node) {
-    return node == 0 ? "0" : builder->node_name[node];
+    return node == 0 ? "0" : builder->elements.node_name[node];
 }
 
 /* "v(out)" or "i(r1)"; a million of them by printf take as long as to read their netlist. */
@@ -76,11 +79,11 @@ void dalcs_signals_add_voltage(struct dalcs_builder *builder, int a, int b, bool
 void dalcs_signals_add_current(struct dalcs_builder *builder, int device) {
     const struct dalcs_device *d = &builder->circuit->device[device];
     const bool is_bend = d->is_storage && dalcs_names_is_inner(d->name); /* of a coil */
-    const int named = is_bend ? builder->current_of[device] : device;
+    const int named = is_bend ? builder->elements.current_of[device] : device;
     const char *name = signal_name(builder, 'i', builder->circuit->device[named].name);
-    dalcs_signals_add(
-        builder, name,
-        (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = builder->current_of[device]});
+    dalcs_signals_add(builder, name,
+                      (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT,
+                                            .device = builder->elements.current_of[device]});
 }
 
 /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
@@ -93,7 +96,7 @@ static bool has_default(const struct dalcs_device *d) {
 
 void dalcs_signals_add_voltages(struct dalcs_builder *builder) {
     for (int k = 1; k < builder->circuit->n_nodes; k++) {
-        if (!dalcs_names_is_inner(builder->node_name[k])) {
+        if (!dalcs_names_is_inner(builder->elements.node_name[k])) {
             dalcs_signals_add_voltage(builder, k, 0, false);
         }
     }
@@ -101,12 +104,12 @@ void dalcs_signals_add_voltages(struct dalcs_builder *builder) {
 
 void dalcs_signals_add_default(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
-    size_t need = builder->n_signals + (size_t)circuit->n_nodes - 1;
+    size_t need = builder->signals.n + (size_t)circuit->n_nodes - 1;
     for (int k = 0; k < circuit->n_devices; k++) {
         need += has_default(&circuit->device[k]);
     }
-    if (dalcs_grow(&builder->signal, &builder->signal_capacity, need, sizeof *builder->signal) !=
-        DALCS_OK) {
+    if (dalcs_grow(&builder->signals.signal, &builder->signals.capacity, need,
+                   sizeof *builder->signals.signal) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
@@ -131,17 +134,18 @@ int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal sig
     const char *key = signal.kind == DALCS_SIGNAL_CURRENT
                           ? dalcs_builder_hint(builder, "%d", signal.device)
                           : dalcs_builder_hint(builder, "%d %d", signal.node[0], signal.node[1]);
-    const int next = (int)builder->n_measured;
+    const int next = (int)builder->signals.n_measured;
     int place;
     if (signal.name == NULL || key == NULL ||
-        dalcs_names_find_or_add(&builder->measured_keys, key, next, &place) != DALCS_OK ||
-        dalcs_grow(&builder->measured, &builder->measured_capacity, builder->n_measured + 1,
-                   sizeof *builder->measured) != DALCS_OK) {
+        dalcs_names_find_or_add(&builder->signals.measured_keys, key, next, &place) != DALCS_OK ||
+        dalcs_grow(&builder->signals.measured, &builder->signals.measured_capacity,
+                   builder->signals.n_measured + 1,
+                   sizeof *builder->signals.measured) != DALCS_OK) {
         builder->out_of_memory = true;
         return -1;
     }
     if (place == next) {
-        builder->measured[builder->n_measured++] = signal;
+        builder->signals.measured[builder->signals.n_measured++] = signal;
     }
     return place;
 }

@@ -2,7 +2,7 @@
 #ifndef DALCS_SIGNALS_H
 #define DALCS_SIGNALS_H
 
-#include "builder.h"
+#include "reader.h"
 
 #define DALCS_SIGNALS_USAGE "signals are: v(node) v(a,b) i(element) all"
 

@@ -1,6 +1,7 @@
 /* source.c - independent sources V and I: a DC value and at most one function of time, AC magnitude and phase. */
-#include "builder.h"
+#include "element_cards.h"
 #include "pi.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,8 @@
 /* source_check.c - what is said of sources when all cards are read, for it needs .tran: periods, pulses, a start from 0.
  *
  * The frequency that a SIN may leave out is 1/tstop, as in SPICE. */
-#include "builder.h"
+
+#include "element_cards.h"
 
 #include <math.h>
 
@@ -92,13 +93,13 @@ static void start_up(struct dalcs_builder *builder) {
             first = device->name;
         }
     }
-    dalcs_builder_note(builder, builder->startup, NULL,
+    dalcs_builder_note(builder, builder->analyses.startup, NULL,
                        "%d source%s of a constant value rise%s from 0 in the first 20 us, as in "
                        "LTspice; those with a function start as they are",
                        n_risen, n_risen == 1 ? "" : "s", n_risen == 1 ? "s" : "");
     if (first != NULL) {
         dalcs_builder_warn(
-            builder, builder->startup, NULL,
+            builder, builder->analyses.startup, NULL,
             "source '%s' has a function that does not start at 0: LTspice would ramp it up too",
             first);
     }
@@ -106,19 +107,20 @@ static void start_up(struct dalcs_builder *builder) {
 
 void dalcs_source_check(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
-    if (builder->startup != NULL) {
+    if (builder->analyses.startup != NULL) {
         start_up(builder);
     }
     for (int k = 0; k < circuit->n_devices; k++) {
         const struct dalcs_device *device = &circuit->device[k];
         if (device->stimulus >= 0) {
-            dalcs_stimulus_check(builder, builder->device_token[k],
+            dalcs_stimulus_check(builder, builder->elements.device_token[k],
                                  &circuit->stimulus[device->stimulus]);
         }
         if (device->stimulus >= 0 && circuit->stimulus[device->stimulus].is_ac_alone &&
             circuit->transient.present && circuit->ac.n == 0) {
             dalcs_builder_warn(
-                builder, builder->device_token[k], "SIN(0 12 60) is a sine of 12 and 60 Hz",
+                builder, builder->elements.device_token[k],
+                "SIN(0 12 60) is a sine of 12 and 60 Hz",
                 "source '%s' has an AC value alone, which .tran does not use: it is 0",
                 device->name);
         }

@@ -11,6 +11,7 @@
 #include "storage.h"
 
 #include "behaviour.h"
+#include "element_cards.h"
 #include "formula_writer.h"
 
 #include <math.h>
@@ -39,9 +40,10 @@ static const char *core_name(struct dalcs_builder *builder, enum dalcs_device_ki
 /* A node by name, which formulas find it by from now on. */
 static const struct dalcs_token *node_token(struct dalcs_builder *builder,
                                             const struct dalcs_token *element, int node) {
-    const char *name = node == 0 ? "0" : builder->node_name[node];
+    const char *name = node == 0 ? "0" : builder->elements.node_name[node];
     int first;
-    if (node != 0 && dalcs_names_find_or_add(&builder->nodes, name, node, &first) != DALCS_OK) {
+    if (node != 0 &&
+        dalcs_names_find_or_add(&builder->elements.nodes, name, node, &first) != DALCS_OK) {
         builder->out_of_memory = true;
     }
     return dalcs_formula_name(builder, element, name);
@@ -53,7 +55,7 @@ static struct dalcs_device *add_core(struct dalcs_builder *builder,
                                      double unit) {
     const bool is_coil = device->kind == DALCS_INDUCTOR;
     const int index = (int)(device - builder->circuit->device);
-    if (is_coil && builder->current_of[index] == index &&
+    if (is_coil && builder->elements.current_of[index] == index &&
         !dalcs_builder_add_terminal(builder, element, device)) {
         return NULL;
     }
@@ -63,7 +65,7 @@ static struct dalcs_device *add_core(struct dalcs_builder *builder,
         dalcs_builder_add_inner_device(builder, device->kind, core_what(device->kind), element);
     const char *name = core_name(builder, device->kind, element);
     if (inside < 0 || core == NULL || name == NULL ||
-        dalcs_names_add(&builder->devices, name, (int)(core - builder->circuit->device)) !=
+        dalcs_names_add(&builder->elements.devices, name, (int)(core - builder->circuit->device)) !=
             DALCS_OK) {
         builder->out_of_memory = true;
         return NULL;
@@ -72,7 +74,8 @@ static struct dalcs_device *add_core(struct dalcs_builder *builder,
     core->node[1] = inside;
     core->value = unit;
     if (is_coil) { /* the terminal has the whole current, and the name */
-        struct dalcs_device *terminal = &builder->circuit->device[builder->current_of[index]];
+        struct dalcs_device *terminal =
+            &builder->circuit->device[builder->elements.current_of[index]];
         terminal->name = device->name;
         terminal->letter = device->letter;
         device->name = dalcs_arena_printf(&builder->circuit->arena, "bend(%s)", element->text);
@@ -193,7 +196,7 @@ bool dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card
     }
     *s = (struct dalcs_storage){.device = (int)(device - builder->circuit->device),
                                 .balance = -1,
-                                .before = builder->storage};
+                                .before = builder->formulas.storage};
     if (!dalcs_storage_function_make(builder, card, device, law, m, &s->f)) {
         return false;
     }
@@ -206,7 +209,7 @@ bool dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card
         return false;
     }
     s->core = (int)(core - builder->circuit->device);
-    builder->storage = s;
+    builder->formulas.storage = s;
     if (s->f.formula == NULL) {
         put_lines(builder, card->token, device, core, &s->f);
     } else {
@@ -265,16 +268,16 @@ bool dalcs_storage_is(const struct dalcs_builder *builder, int device) {
 /* The voltage of a node against ground by .ic, 0: none. */
 static double initial_voltage(const struct dalcs_builder *builder, int node) {
     double v = 0;
-    for (size_t k = 0; k < builder->n_initial_conditions; k++) {
-        const struct dalcs_initial_condition *ic = &builder->initial_condition[k];
+    for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {
+        const struct dalcs_initial_condition *ic = &builder->analyses.initial_condition[k];
         v = node != 0 && ic->node[0] == node && ic->node[1] == 0 ? ic->value : v;
     }
     return v;
 }
 
 static double initial_difference(const struct dalcs_builder *builder, int a, int b) {
-    for (size_t k = 0; k < builder->n_initial_conditions; k++) {
-        const struct dalcs_initial_condition *ic = &builder->initial_condition[k];
+    for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {
+        const struct dalcs_initial_condition *ic = &builder->analyses.initial_condition[k];
         const bool is_same = ic->node[0] == a && ic->node[1] == b;
         if (is_same || (ic->node[0] == b && ic->node[1] == a)) {
             return is_same ? ic->value : -ic->value;
@@ -284,7 +287,7 @@ static double initial_difference(const struct dalcs_builder *builder, int a, int
 }
 
 void dalcs_storage_resolve(struct dalcs_builder *builder) {
-    for (const struct dalcs_storage *s = builder->storage; s != NULL; s = s->before) {
+    for (const struct dalcs_storage *s = builder->formulas.storage; s != NULL; s = s->before) {
         struct dalcs_device *device = &builder->circuit->device[s->device];
         struct dalcs_device *core = &builder->circuit->device[s->core];
         const double x = device->has_initial ? device->initial
@@ -293,9 +296,9 @@ void dalcs_storage_resolve(struct dalcs_builder *builder) {
                              : 0;
         const double state = dalcs_storage_function_at(builder, &s->f, x);
         if (!isfinite(state)) {
-            dalcs_builder_error(builder, builder->device_token[s->device], NULL,
+            dalcs_builder_error(builder, builder->elements.device_token[s->device], NULL,
                                 "'%s' has no %s at %g %s, where it begins",
-                                builder->device_token[s->device]->text,
+                                builder->elements.device_token[s->device]->text,
                                 core->kind == DALCS_INDUCTOR ? "flux" : "charge", x,
                                 core->kind == DALCS_INDUCTOR ? "A" : "V");
             continue;

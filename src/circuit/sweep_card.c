@@ -6,7 +6,9 @@
  *
  * An item is an element, `param name`, a model's parameter `D name(parameter)` or `temp`. The first
  * sweep is the innermost. */
+#include "analysis_cards.h"
 #include "number_file.h"
+#include "reader.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -80,10 +82,11 @@ static void set_temperature(struct dalcs_builder *builder, const struct dalcs_to
 
 static bool set_model(struct dalcs_builder *builder, const struct dalcs_token *model,
                       const char *field, struct dalcs_sweep *sweep) {
-    if (dalcs_names_find(&builder->models, model->text) < 0) {
-        dalcs_builder_error(builder, model,
-                            dalcs_builder_suggest(builder, &builder->models, model->text, "models"),
-                            "there is no model '%s'", model->text);
+    if (dalcs_names_find(&builder->models.names, model->text) < 0) {
+        dalcs_builder_error(
+            builder, model,
+            dalcs_builder_suggest(builder, &builder->models.names, model->text, "models"),
+            "there is no model '%s'", model->text);
         return false;
     }
     sweep->target = DALCS_SWEEP_MODEL;
@@ -98,7 +101,7 @@ static bool set_model(struct dalcs_builder *builder, const struct dalcs_token *m
  * is none. */
 static bool is_model(const struct dalcs_reader *reader, int *at) {
     const struct dalcs_token *first = dalcs_reader_peek(reader, 0);
-    const bool is_element = dalcs_names_find(&reader->builder->devices, first->text) >= 0;
+    const bool is_element = dalcs_names_find(&reader->builder->elements.devices, first->text) >= 0;
     for (*at = 0; *at <= (is_element ? 0 : 1); ++*at) {
         const struct dalcs_token *word = dalcs_reader_peek(reader, *at);
         const struct dalcs_token *open = dalcs_reader_peek(reader, *at + 1);
@@ -139,7 +142,7 @@ bool dalcs_sweep_read_item(struct dalcs_reader *reader, const char *letters,
         set_temperature(builder, token, sweep);
         return true;
     }
-    if (dalcs_names_find(&builder->devices, token->text) < 0 &&
+    if (dalcs_names_find(&builder->elements.devices, token->text) < 0 &&
         dalcs_deck_has_parameter(builder->deck, token->text)) {
         return set_parameter(builder, token, sweep);
     }
@@ -298,7 +301,7 @@ static bool take_spacing(struct dalcs_reader *reader, enum dalcs_spacing *spacin
 void dalcs_sweep_parse_dc(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, DC_USAGE);
-    if (!dalcs_analysis_is_first(builder, card, &builder->dc)) {
+    if (!dalcs_analysis_is_first(builder, card, &builder->analyses.dc)) {
         return;
     }
     int n = 0;
@@ -410,7 +413,7 @@ static bool read_orbit_words(struct dalcs_reader *reader) {
 void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_sweep *f = &builder->circuit->ac;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, AC_USAGE);
-    if (!dalcs_analysis_is_first(builder, card, &builder->ac)) {
+    if (!dalcs_analysis_is_first(builder, card, &builder->analyses.ac)) {
         return;
     }
     f->where = dalcs_builder_keep_location(builder, card->token);

@@ -3,8 +3,10 @@
  * A switch is a wire or a cut (Ron = 0, Roff infinite) unless its model says otherwise. It closes
  * when the control rises through Vt + Vh and opens when it falls through Vt - Vh. The switches of
  * PSpice and LTspice that change over smoothly do it at once here, half way. */
-#include "builder.h"
+#include "element_cards.h"
 #include "formula.h"
+#include "model_cards.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>
@@ -58,9 +60,9 @@ static void multiply(struct dalcs_builder *builder, struct dalcs_device *device,
 /* Xyce takes PSpice's ISWITCH for an S, too: thresholds are numbers, and what has the two nodes
  * between them is volts. A model that was refused may have no type. */
 static bool is_taken_for_volts(struct dalcs_builder *builder, const struct dalcs_token *name) {
-    const int index = dalcs_names_find(&builder->models, name->text);
-    if (index < 0 || builder->model[index].kind != DALCS_MODEL_CURRENT_SWITCH ||
-        strcmp(builder->model[index].type->text, "iswitch") != 0) {
+    const int index = dalcs_names_find(&builder->models.names, name->text);
+    if (index < 0 || builder->models.model[index].kind != DALCS_MODEL_CURRENT_SWITCH ||
+        strcmp(builder->models.model[index].type->text, "iswitch") != 0) {
         return false;
     }
     dalcs_builder_warn(builder, name, "a VSWITCH has Von and Voff",
@@ -85,7 +87,7 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
     }
     if (by_current &&
         !dalcs_reader_name(&reader, "the name of a voltage source",
-                           &builder->control_token[device - builder->circuit->device])) {
+                           &builder->elements.control_token[device - builder->circuit->device])) {
         return;
     }
     if (!dalcs_reader_name(&reader, "the name of a model", &model)) {
@@ -260,7 +262,7 @@ static void exchange(struct dalcs_builder *builder, const struct dalcs_token *pl
 int dalcs_switch_add_model(struct dalcs_builder *builder, const struct dalcs_switch_model *model) {
     struct dalcs_circuit *circuit = builder->circuit;
     const size_t n = (size_t)circuit->n_switch_models;
-    if (n == builder->switch_model_capacity) {
+    if (n == builder->models.switch_capacity) {
         const size_t most = 2 * n + 4;
         struct dalcs_switch_model *all = dalcs_arena_alloc(&circuit->arena, most, sizeof *all);
         if (all == NULL) {
@@ -271,7 +273,7 @@ int dalcs_switch_add_model(struct dalcs_builder *builder, const struct dalcs_swi
             memcpy(all, circuit->switch_model, n * sizeof *all);
         }
         circuit->switch_model = all;
-        builder->switch_model_capacity = most;
+        builder->models.switch_capacity = most;
     }
     circuit->switch_model[n] = *model;
     return circuit->n_switch_models++;

@@ -2,7 +2,9 @@
  *
  * name is a switch or diode, or a model of such: then it is meant for all that have it and no card of
  * their own. Collected once all elements are known. */
-#include "builder.h"
+
+#include "reader.h"
+#include "result_cards.h"
 
 #include <string.h>
 
@@ -91,7 +93,7 @@ static bool read_table(struct dalcs_reader *reader, struct dalcs_loss_table *tab
 
 /* A switch or a diode, by itself; -1: it is neither, or a model's name. */
 static int device_of(const struct dalcs_builder *builder, const char *name) {
-    const int k = dalcs_names_find(&builder->devices, name);
+    const int k = dalcs_names_find(&builder->elements.devices, name);
     return k >= 0 && k < builder->circuit->n_devices ? k : -1;
 }
 
@@ -161,8 +163,8 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
 
 void dalcs_switchloss_collect(struct dalcs_builder *builder) {
     struct dalcs_losses_card *losses = builder->circuit->losses;
-    losses->table =
-        dalcs_arena_alloc(&builder->circuit->arena, builder->n_switchlosses, sizeof *losses->table);
+    losses->table = dalcs_arena_alloc(&builder->circuit->arena, builder->results.n_switchlosses,
+                                      sizeof *losses->table);
     if (losses->table == NULL) {
         builder->out_of_memory = true;
         return;
@@ -178,6 +180,7 @@ void dalcs_switchloss_collect(struct dalcs_builder *builder) {
 }
 
 void dalcs_switchloss_count(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    builder->switchloss = builder->switchloss == NULL ? card->token : builder->switchloss;
-    builder->n_switchlosses++;
+    builder->results.switchloss =
+        builder->results.switchloss == NULL ? card->token : builder->results.switchloss;
+    builder->results.n_switchlosses++;
 }

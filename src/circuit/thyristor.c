@@ -23,7 +23,10 @@
  * current of the other to fall to Ioff would close where that is a millionth of what it was, and there no sign can be
  * told from rounding. Formulas that only read are in no loop with what they read: the circuit stays passive
  * (theory.md, section 10). */
+#include "element_cards.h"
 #include "formula_writer.h"
+#include "model_cards.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>
@@ -298,8 +301,8 @@ static bool expand_back(struct dalcs_builder *builder, const struct dalcs_token 
 }
 
 bool dalcs_thyristor_is(const struct dalcs_builder *builder, const struct dalcs_card *card) {
-    const int index = dalcs_names_find(&builder->models, card->token[card->n - 1].text);
-    return index >= 0 && builder->model[index].kind == DALCS_MODEL_THYRISTOR;
+    const int index = dalcs_names_find(&builder->models.names, card->token[card->n - 1].text);
+    return index >= 0 && builder->models.model[index].kind == DALCS_MODEL_THYRISTOR;
 }
 
 void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -316,7 +319,8 @@ void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_car
         return;
     }
     const struct dalcs_model *model =
-        &builder->model[dalcs_names_find(&builder->models, card->token[card->n - 1].text)];
+        &builder->models
+             .model[dalcs_names_find(&builder->models.names, card->token[card->n - 1].text)];
     const struct dalcs_token *token = card->token;
     const struct places places = {
         &token[1], &token[2], &token[3], n_nodes == 4 ? &token[4] : &token[2], token, 1};

@@ -1,7 +1,8 @@
 /* topology_check.c - warnings about the network as a whole: loose ends and loops of one element.
  *
  * None of these is an error: such circuits have solutions. They are what a slip of the pen leaves. */
-#include "builder.h"
+
+#include "element_cards.h"
 
 #include <stdlib.h>
 
@@ -35,13 +36,13 @@ static void check_nodes(struct dalcs_builder *builder, const struct touch *touch
     for (int k = 1; k < circuit->n_nodes; k++) {
         const struct touch *t = &touch[k];
         if (t->n_terminals == 0) {
-            dalcs_builder_warn(builder, builder->node_token[k],
+            dalcs_builder_warn(builder, builder->elements.node_token[k],
                                "it is taken for 0 V: connect what drives it, or ground",
                                "node '%s' only controls '%s': nothing sets its voltage",
                                circuit->node_name[k], circuit->device[t->device].name);
         } else if (t->n_terminals + t->n_controls == 1 &&
                    !dalcs_names_is_inner(circuit->node_name[k])) {
-            dalcs_builder_warn(builder, builder->node_token[k], NULL,
+            dalcs_builder_warn(builder, builder->elements.node_token[k], NULL,
                                "node '%s' has one connection only, '%s'", circuit->node_name[k],
                                circuit->device[t->device].name);
         }
@@ -69,13 +70,13 @@ void dalcs_topology_check(struct dalcs_builder *builder) {
         struct reading reading = {touch, k};
         dalcs_behaviour_visit(dalcs_device_written(device), touch_term, &reading);
         if (device->node[0] == device->node[1]) {
-            dalcs_builder_warn(builder, builder->device_token[k], NULL,
+            dalcs_builder_warn(builder, builder->elements.device_token[k], NULL,
                                "both ends of '%s' are on node '%s'", device->name,
                                circuit->node_name[device->node[0]]);
         }
     }
-    for (size_t k = 0; k < builder->n_nodes_of_gates; k++) {
-        touch[k].n_controls += builder->read_by_gates[k];
+    for (size_t k = 0; k < builder->logic.n_nodes_of_gates; k++) {
+        touch[k].n_controls += builder->logic.read_by_gates[k];
     }
     check_nodes(builder, touch);
     free(touch);

@@ -5,7 +5,10 @@
  * It puts out Iout tanh(G (v - Ref)/Iout), or with `linear` G (v - Ref), where v is v(plus,minus), times v(plus2,minus2)
  * if pins 3 and 4 are wired. Rout and Cout lie across the output. An ideal diode each keeps that between Vlow and Vhigh. */
 #include "block_parts.h"
+#include "element_cards.h"
 #include "logic_parts.h"
+#include "model_cards.h"
+#include "reader.h"
 
 #include <math.h>
 

@@ -11,7 +11,9 @@
  * of their size anyhow (Householder 1970, ch. 3): so no A_k is above 1, whatever the units and the spread of poles. */
 #include "rational.h"
 
+#include "element_cards.h"
 #include "formula_writer.h"
+#include "reader.h"
 
 #include <math.h>
 

@@ -8,6 +8,7 @@
  * current source takes n_k/n_1 times its current. Together they add a skew-symmetric matrix, so that a circuit is as
  * passive as it is without them. */
 #include "block.h"
+#include "reader.h"
 
 static const char USAGE[] =
     "a transformer is: Aname a1 b1 a2 b2 ... model, two nodes for each of its turns=[n1 n2 ...]";

@@ -8,7 +8,10 @@
  * gate's drive: transistor_drive.c, when all elements are known. */
 #include "transistor.h"
 
+#include "element_cards.h"
 #include "language.h"
+#include "model_cards.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,17 +48,17 @@ static struct dalcs_transistor *take_part(struct dalcs_builder *builder,
                                              .breakdown = (double)INFINITY,
                                              .breakdown_current = 1}};
     const bool is_listed = dalcs_transistor_part_find(name->text, t);
-    if (builder->n_models >= builder->model_capacity ||
+    if (builder->models.n >= builder->models.capacity ||
         (!is_listed && builder->netlist->missing_library == NULL)) {
         return NULL;
     }
-    builder->model[builder->n_models] = (struct dalcs_model){
+    builder->models.model[builder->models.n] = (struct dalcs_model){
         .kind = DALCS_MODEL_TRANSISTOR, .name = name, .type = name, .transistor = t};
-    if (dalcs_names_add(&builder->models, name->text, builder->n_models) != DALCS_OK) {
+    if (dalcs_names_add(&builder->models.names, name->text, builder->models.n) != DALCS_OK) {
         builder->out_of_memory = true;
         return NULL;
     }
-    builder->n_models++;
+    builder->models.n++;
     if (is_listed) {
         dalcs_builder_warn(
             builder, name,
@@ -84,7 +87,7 @@ static void report_missing(struct dalcs_builder *builder, const struct dalcs_tok
 /* NULL when an error was reported. */
 static struct dalcs_transistor *find_model(struct dalcs_builder *builder,
                                            const struct dalcs_token *name, char letter) {
-    const int index = dalcs_names_find(&builder->models, name->text);
+    const int index = dalcs_names_find(&builder->models.names, name->text);
     if (index < 0) {
         struct dalcs_transistor *part = letter == 'm' ? take_part(builder, name) : NULL;
         if (part == NULL && !builder->out_of_memory) {
@@ -92,7 +95,7 @@ static struct dalcs_transistor *find_model(struct dalcs_builder *builder,
         }
         return part;
     }
-    struct dalcs_model *model = &builder->model[index];
+    struct dalcs_model *model = &builder->models.model[index];
     const enum dalcs_transistor_kind wanted = letter == 'm'   ? DALCS_MOSFET
                                               : letter == 'z' ? DALCS_IGBT
                                                               : DALCS_BIPOLAR;
@@ -176,7 +179,7 @@ static bool add_diode(struct dalcs_builder *builder, struct dalcs_transistor_use
                                             .vrev = INFINITY};
     } else {
         /* a base has milliamperes */
-        const double at = use->of->kind == DALCS_BIPOLAR ? 1e-3 : builder->diode_current;
+        const double at = use->of->kind == DALCS_BIPOLAR ? 1e-3 : builder->models.diode_current;
         dalcs_diode_model_map(&use->of->diode, at, use->parallel, lines);
         lines->exponential = (struct dalcs_exponential){0}; /* the line stays where it is */
     }
@@ -241,7 +244,7 @@ static bool is_bulk_right(struct dalcs_builder *builder, const struct dalcs_card
 
 void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, usage_of(card->letter));
-    if (card->letter == 'q' && !builder->bipolar_is_switch) {
+    if (card->letter == 'q' && !builder->models.bipolar_is_switch) {
         dalcs_builder_error(builder, card->token,
                             ".options bjt=switch treats it as a switch that is saturated or off",
                             "'%s' is a bipolar transistor, which need not be a switch",
@@ -280,9 +283,9 @@ void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_ca
                                          .length = t->length,
                                          .parallel = 1,
                                          .diode = -1,
-                                         .before = builder->transistor};
+                                         .before = builder->models.last_transistor};
     if (read_rest(&reader, use) &&
         (n_nodes == 3 || is_bulk_right(builder, card, node[3], node[2])) && expand(builder, use)) {
-        builder->transistor = use;
+        builder->models.last_transistor = use;
     }
 }

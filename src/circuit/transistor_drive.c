@@ -9,6 +9,7 @@
  *     10 V, or 5 V above the threshold where that is more.
  * An amplifier is refused where sources alone show that the gate moves without turning it off, that the closed switch
  * would open itself (a follower), or that gate and drain are one node. */
+#include "element_cards.h"
 #include "transistor.h"
 
 #include <math.h>
@@ -122,7 +123,7 @@ static void note_saturation(struct dalcs_builder *builder, const struct dalcs_tr
     const double sign = t->is_p ? -1 : 1;
     c->saturation[c->n_saturations++] =
         (struct dalcs_saturation){.name = c->device[use->device].name,
-                                  .device = builder->current_of[use->device],
+                                  .device = builder->elements.current_of[use->device],
                                   .current = sign * 0.5 * t->saturating * use->width / use->length *
                                              over * over * use->parallel,
                                   .level = sign * over + t->threshold,
@@ -184,11 +185,11 @@ static struct dalcs_transistor_use *in_order(struct dalcs_transistor_use *last) 
 
 void dalcs_transistor_resolve(struct dalcs_builder *builder) {
     struct dalcs_gate_links links;
-    if (builder->transistor == NULL || builder->out_of_memory ||
+    if (builder->models.last_transistor == NULL || builder->out_of_memory ||
         !dalcs_gate_list_links(builder, &links)) {
         return;
     }
-    struct dalcs_transistor_use *first = in_order(builder->transistor);
+    struct dalcs_transistor_use *first = in_order(builder->models.last_transistor);
     size_t n = 0;
     for (const struct dalcs_transistor_use *use = first; use != NULL; use = use->before) {
         n++;

@@ -2,6 +2,8 @@
  *
  * Read: what says when one is on, what it is then, and its diode. All else on such cards is of the linear region, of
  * charges or of noise, and passed over. Defaults are those of ngspice. */
+#include "model_cards.h"
+#include "reader.h"
 #include "transistor.h"
 
 #include <math.h>

@@ -3,7 +3,9 @@
  * Parentheses and commas are optional, as in SPICE. Values that are left out: PULSE edges are of
  * zero width, its width and period infinite; an EXP time constant is 0 (a jump), its fall never
  * comes. SPICE would put print steps there; here nothing depends on those. */
-#include "builder.h"
+
+#include "element_cards.h"
+#include "reader.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,9 @@
  *     .wcase [vary dev|lot|both] [corners=yes|no]
  *
  * PSpice's card goes on with an analysis and what to look at there, which .meas does here. */
-#include "builder.h"
+
+#include "analysis_cards.h"
+#include "reader.h"
 
 #include <string.h>
 

@@ -6,6 +6,7 @@
  * round it is read: the wrapped share is `share`, or 1 - share while it falls. A change of the sign of x turns the way
  * round itself, and thereby the end that comes next. */
 #include "behaviour.h"
+#include "model_cards.h"
 
 #include <math.h>
 

@@ -1,4 +1,5 @@
 /* read_columns.c - the cards of a system file that name columns, rows and multipliers. */
+#include "reader.h"
 #include "reading.h"
 
 #include <math.h>

@@ -1,4 +1,6 @@
 /* read_inputs.c - `input` cards: source functions, and formulas of them. */
+#include "element_cards.h"
+#include "reader.h"
 #include "reading.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
 /* read_matrices.c - the cards `matrix NAME ...`: rows of numbers, entries, or a Matrix Market file. */
+#include "reader.h"
 #include "reading.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 /* read_networks.c - the systems of a network, and its outputs, when its cards are read. */
+#include "reader.h"
 #include "reading.h"
 
 #include <stdlib.h>

@@ -3,6 +3,7 @@
  *     output NAME [V|A] [in SYSTEM] column value column value ... [minus [in SYSTEM] column value ...]
  *
  * A column is a name, #N (its number), @N (an input's) or w(NAME). */
+#include "reader.h"
 #include "reading.h"
 
 #include <math.h>

@@ -8,6 +8,9 @@
  *     output, element             what is recorded
  *
  * dalcs_description_read_text at the end is the table of contents. */
+#include "analysis_cards.h"
+#include "element_cards.h"
+#include "reader.h"
 #include "reading.h"
 
 #include <stdlib.h>
@@ -174,7 +177,7 @@ static bool check_request(struct dalcs_reading *r) {
         dalcs_builder_error_at(&r->builder, &where, "columns are: state, unknown, pair, ...",
                                "the file has no system");
     }
-    if (!r->builder.failed && r->builder.tran == NULL && r->builder.op == NULL) {
+    if (!r->builder.failed && r->builder.analyses.tran == NULL && r->builder.analyses.op == NULL) {
         dalcs_builder_error_at(&r->builder, &where, "add a line such as: .tran 10u 20m",
                                "the file has no analysis: no .tran and no .op");
     }

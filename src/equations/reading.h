@@ -6,8 +6,8 @@
 #ifndef DALCS_READING_H
 #define DALCS_READING_H
 
-#include "builder.h"
 #include "description.h"
+#include "reader.h"
 
 /* A state, an unknown or a row. */
 struct dalcs_described_column {
