@@ -96,6 +96,7 @@ struct dalcs_compiler {
 
     bool is_silent;     /* a formula is only asked what it is */
     bool is_of_storage; /* of flux or charge */
+    double start;       /* then its argument at the start */
     bool failed;
 };
 

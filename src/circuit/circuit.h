@@ -71,7 +71,7 @@ struct dalcs_device {
     char letter;      /* 'd': of the name in its own subcircuit */
     int node[4];      /* terminals, then controlling nodes for E, G, S */
     double value;     /* ohm, H, F, or gain */
-    double initial;   /* IC=: V for C, A for L */
+    double initial;   /* IC=: V for C, A for L; of a balance in storage.c, its x */
     bool has_initial;
     bool is_limit;   /* I: limits a current, and what it takes is lost as in a diode */
     bool is_storage; /* E, G: with its core, a capacitor or a coil that is no straight line */

@@ -85,26 +85,43 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
     }
 }
 
-static void resolve(struct dalcs_builder *builder, struct dalcs_device *device,
-                    const struct dalcs_token *name) {
-    const int control = dalcs_builder_find_device(builder, name);
+/* A source of 0 V before a coil, whose current LTspice reads, too; -1: out of memory. */
+static int add_ammeter(struct dalcs_builder *builder, int coil, const struct dalcs_token *reader) {
+    const int inside = dalcs_builder_inner_node(builder, "ammeter", reader);
+    struct dalcs_device *ammeter =
+        inside >= 0 && dalcs_builder_reserve_devices(builder, 1)
+            ? dalcs_builder_add_inner_device(builder, DALCS_VCVS, "ammeter", reader)
+            : NULL;
+    if (ammeter == NULL) {
+        return -1;
+    }
+    struct dalcs_device *device = &builder->circuit->device[coil];
+    ammeter->node[0] = device->node[0];
+    ammeter->node[1] = device->node[0] = inside;
+    return (int)(ammeter - builder->circuit->device);
+}
+
+static void resolve(struct dalcs_builder *builder, int k, const struct dalcs_token *name) {
+    int control = dalcs_builder_find_device(builder, name);
     if (control < 0) {
         return;
     }
     const enum dalcs_device_kind kind = builder->circuit->device[control].kind;
-    if (kind != DALCS_VSOURCE && kind != DALCS_VCVS && kind != DALCS_CCVS) {
+    const bool is_coil = kind == DALCS_INDUCTOR && builder->elements.current_of[control] == control;
+    if (kind != DALCS_VSOURCE && kind != DALCS_VCVS && kind != DALCS_CCVS && !is_coil) {
         dalcs_builder_error(builder, name, "put a source of 0 V in series and name that",
                             "'%s' is %s: a control current is that of a voltage source", name->text,
                             dalcs_builder_kind_text(kind));
         return;
     }
-    device->control = control;
+    control = is_coil ? add_ammeter(builder, control, builder->elements.device_token[k]) : control;
+    builder->circuit->device[k].control = control;
 }
 
 void dalcs_controlled_resolve(struct dalcs_builder *builder) {
     for (int k = 0; k < builder->circuit->n_devices; k++) {
         if (builder->elements.control_token[k] != NULL) {
-            resolve(builder, &builder->circuit->device[k], builder->elements.control_token[k]);
+            resolve(builder, k, builder->elements.control_token[k]);
         }
     }
 }

@@ -42,6 +42,7 @@ bool dalcs_compiler_start_inner(struct dalcs_compiler *c, struct dalcs_compiler 
                                      .n_forms = n_forms,
                                      .is_silent = c->is_silent,
                                      .is_of_storage = c->is_of_storage,
+                                     .start = c->start,
                                      .depth = c->depth + 1,
                                      .n_nodes = c->n_nodes,
                                      .smooth_node = c->smooth_node,

@@ -44,6 +44,7 @@ struct dalcs_smooth {
     double number[2]; /* that number */
     int source[2]; /* the device that puts an argument out at its node for this alone; -1: none */
     bool is_of_storage; /* it says what flux or charge is */
+    double start[2];    /* then its arguments at the start */
 };
 
 /* The function of this name with n arguments; false: it is no smooth one. */

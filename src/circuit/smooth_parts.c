@@ -1,6 +1,7 @@
 /* smooth_parts.c - products and smooth functions in a formula, each a voltage source between a node of its own and
  * ground that reads nodes. An argument that is not the voltage of a node is put out at one by a source, too. */
 #include "behaviour.h"
+#include "storage.h"
 
 #include <string.h>
 
@@ -107,6 +108,8 @@ static void point_at(const struct dalcs_formula *f, struct dalcs_device *device)
 static int add_smooth(struct dalcs_compiler *c, const struct dalcs_formula *f,
                       struct dalcs_smooth *smooth, const struct dalcs_form **argument) {
     for (int k = 0; k < smooth->n && !c->failed; k++) {
+        smooth->start[k] =
+            c->is_of_storage ? dalcs_storage_formula_at(c->builder, f->argument[k], c->start) : 0.0;
         smooth->node[k] = smooth->source[k] = -1;
         if (dalcs_form_is_number(argument[k])) {
             smooth->number[k] = argument[k]->affine.constant;

@@ -20,6 +20,7 @@
 
 struct dalcs_storage {
     int device, core;
+    int balance; /* the source that has no current where a smooth law agrees; -1: none */
     struct dalcs_storage_function f;
     const struct dalcs_storage *before;
 };
@@ -155,7 +156,8 @@ static const struct dalcs_formula *write_state(struct dalcs_formula_writer *w,
 /* x as the voltage of a node, at which dalcs_charging (f(x)/unit - state) is no current. */
 static void put_smooth(struct dalcs_builder *builder, const struct dalcs_token *element,
                        struct dalcs_device *device, const struct dalcs_device *core,
-                       const struct dalcs_storage_function *f) {
+                       struct dalcs_storage *s) {
+    const struct dalcs_storage_function *f = &s->f;
     const int node = dalcs_builder_inner_node(builder, "argument", element);
     struct dalcs_formula_writer w;
     if (node < 0 || !dalcs_formula_writer_start(&w, builder, element)) {
@@ -179,6 +181,7 @@ static void put_smooth(struct dalcs_builder *builder, const struct dalcs_token *
     if (balance != NULL) {
         balance->node[0] = node;
         balance->is_storage = true;
+        s->balance = (int)(balance - builder->circuit->device);
         dalcs_behavioural_add_formula(builder, balance, dalcs_formula_token(&w, law));
     }
 }
@@ -192,6 +195,7 @@ bool dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card
         return false;
     }
     *s = (struct dalcs_storage){.device = (int)(device - builder->circuit->device),
+                                .balance = -1,
                                 .before = builder->formulas.storage};
     if (!dalcs_storage_function_make(builder, card, device, law, m, &s->f)) {
         return false;
@@ -209,7 +213,7 @@ bool dalcs_storage_expand(struct dalcs_builder *builder, const struct dalcs_card
     if (s->f.formula == NULL) {
         put_lines(builder, card->token, device, core, &s->f);
     } else {
-        put_smooth(builder, card->token, device, core, &s->f);
+        put_smooth(builder, card->token, device, core, s);
     }
     return true;
 }
@@ -302,5 +306,8 @@ void dalcs_storage_resolve(struct dalcs_builder *builder) {
         core->initial = state;
         core->has_initial = true;
         device->has_initial = false;
+        if (s->balance >= 0) {
+            builder->circuit->device[s->balance].initial = x;
+        }
     }
 }

@@ -36,7 +36,8 @@ void dalcs_storage_resolve(struct dalcs_builder *builder);
 
 struct dalcs_formula_writer;
 
-/* The value at x of a formula of x, which is called time in it; NAN: it has none. */
+/* The value at x of a formula of x, which is called time in it, or is the one voltage that it reads; NAN: it has
+ * none. */
 double dalcs_storage_formula_at(const struct dalcs_builder *builder, const struct dalcs_formula *f,
                                 double x);
 

@@ -72,6 +72,7 @@ double dalcs_storage_formula_at(const struct dalcs_builder *builder, const struc
     case DALCS_FORMULA_NUMBER:
         return f->number;
     case DALCS_FORMULA_TIME:
+    case DALCS_FORMULA_VOLTAGE:
         return x;
     case DALCS_FORMULA_OPERATION:
         a = dalcs_storage_formula_at(builder, f->argument[0], x);

@@ -52,9 +52,10 @@ bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)
                             const double *scale, double *phi);
 
 /* Lines as good as any before anything is known: of all functions, or of those that start on one, which say what flux
- * and charge are: for a given flux the current is in nothing but these. */
+ * and charge are: for a given flux the current is in nothing but these. Those are the tangents where they begin, and x and
+ * phi become what they are there. */
 void dalcs_smooth_nominal_tangents(const struct dalcs_system *system);
-void dalcs_smooth_starting_tangents(const struct dalcs_system *system);
+void dalcs_smooth_starting_tangents(const struct dalcs_system *system, double (*x)[2], double *phi);
 bool dalcs_smooth_starts_on_lines(const struct dalcs_system *system);
 
 /* All lines times a factor, and phi that go with x then. */

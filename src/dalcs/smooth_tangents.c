@@ -5,6 +5,7 @@
 #include "rounding.h"
 
 #include <math.h>
+#include <string.h>
 
 double dalcs_smooth_line(const struct dalcs_smooth_input *of, int j) {
     return of->entry[j] != NULL ? -*of->entry[j] : 0.0;
@@ -124,10 +125,17 @@ bool dalcs_smooth_starts_on_lines(const struct dalcs_system *system) {
     return starts;
 }
 
-void dalcs_smooth_starting_tangents(const struct dalcs_system *system) {
+void dalcs_smooth_starting_tangents(const struct dalcs_system *system, double (*x)[2],
+                                    double *phi) {
+    double line[2];
     for (int k = 0; k < system->n_smooth; k++) {
-        if (system->smooth[k].starts_on_line) {
-            put_nominal_line(&system->smooth[k]);
+        const struct dalcs_smooth_input *of = &system->smooth[k];
+        if (of->starts_on_line) {
+            put_nominal_line(of);
+            (void)find_tangent(of, of->start, line);
+            put_lines(of, line);
+            memcpy(x[k], of->start, sizeof(of->start));
+            dalcs_smooth_take_rest(of, x[k], &phi[k]);
         }
     }
 }

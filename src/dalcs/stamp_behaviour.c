@@ -143,6 +143,7 @@ static enum dalcs_status stamp_smooth(struct stamps *b, int device) {
                                       .kind = smooth->kind,
                                       .n = smooth->n,
                                       .starts_on_line = smooth->is_of_storage,
+                                      .start = {smooth->start[0], smooth->start[1]},
                                       .element = name};
     for (int k = 0; k < smooth->n; k++) {
         of->column[k] = smooth->node[k] > 0 ? dalcs_stamp_node_column(l, smooth->node[k]) : -1;

@@ -81,6 +81,7 @@ struct dalcs_smooth_input {
     double number[2]; /* that number */
     int row_of[2]; /* the equation that gives an argument which is not read elsewhere; -1: none */
     bool starts_on_line; /* no other equation fixes its argument */
+    double start[2];     /* then its arguments where it begins, on that branch of its law */
     double *entry
         [2]; /* in A, of -g: the equations have g x, the input is the rest of the function. 0 but while a problem
                          is being solved. NULL: none */

@@ -74,10 +74,23 @@ static const char *suggest_name(struct dalcs_language *language, struct dalcs_sc
     return dalcs_language_suggest(language, &scope->definition->parameters, name, "parameters");
 }
 
+/* What a call gives may be said with what it gives besides, as in LTspice: X1 a b PWM Tdead=1u step=0.1*Tdead. */
+static struct dalcs_value *find_beside(const struct run *r, const char *name) {
+    const struct dalcs_language *language = r->language;
+    const struct dalcs_value *now =
+        language->n_sought > 0 ? language->sought[language->n_sought - 1] : NULL;
+    const bool is_of_call = now != NULL && now->owner != NULL && now->where == r->scope;
+    struct dalcs_value *value = is_of_call ? dalcs_scope_find_given(now->owner, name) : NULL;
+    return value != now ? value : NULL;
+}
+
 static enum dalcs_outcome push_name(const struct run *r, const struct dalcs_operation *o) {
     struct dalcs_language *language = r->language;
     struct dalcs_value *value = dalcs_scope_find_value(r->scope, o->u.name);
     double constant;
+    if (value == NULL && !dalcs_constant_find(o->u.name, &constant)) {
+        value = find_beside(r, o->u.name);
+    }
     if (value != NULL) {
         value->is_used = true;
         if (value->state == DALCS_VALUE_KNOWN) {

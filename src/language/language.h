@@ -224,6 +224,9 @@ struct dalcs_definition *dalcs_scope_find_subcircuit(struct dalcs_scope *scope, 
 /* The parameter that a name means in this scope, or NULL. */
 struct dalcs_value *dalcs_scope_find_value(struct dalcs_scope *scope, const char *name);
 
+/* The parameter of this name that the call of a scope gives; NULL: none. */
+struct dalcs_value *dalcs_scope_find_given(struct dalcs_scope *scope, const char *name);
+
 /* The function that a name means in this scope, or NULL. */
 struct dalcs_user_function *dalcs_scope_find_function(struct dalcs_scope *scope, const char *name);
 

@@ -27,6 +27,18 @@ struct dalcs_value *dalcs_scope_find_value(struct dalcs_scope *scope, const char
     return NULL;
 }
 
+struct dalcs_value *dalcs_scope_find_given(struct dalcs_scope *scope, const char *name) {
+    const int slot = dalcs_names_find(&scope->definition->parameters, name);
+    if (slot >= 0) {
+        return scope->value[slot].is_given ? &scope->value[slot] : NULL;
+    }
+    struct dalcs_value *found = NULL;
+    for (int k = 0; k < scope->n_extra && found == NULL; k++) {
+        found = strcmp(scope->extra[k].name->text, name) == 0 ? &scope->extra[k] : NULL;
+    }
+    return found;
+}
+
 struct dalcs_user_function *dalcs_scope_find_function(struct dalcs_scope *scope, const char *name) {
     for (struct dalcs_scope *s = scope; s != NULL; s = s->caller) {
         const int first = dalcs_names_find(&s->definition->functions, name);

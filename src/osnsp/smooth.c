@@ -28,8 +28,10 @@ enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     if (p->smooth.newton == NULL || p->smooth.given == NULL) {
         return DALCS_E_NOMEM;
     }
-    dalcs_smooth_starting_tangents(p->system);
-    return dalcs_smooth_newton_setup(p->smooth.newton, p->system, 1, &p->arena);
+    struct dalcs_smooth_newton *n = p->smooth.newton;
+    DALCS_TRY(dalcs_smooth_newton_setup(n, p->system, 1, &p->arena));
+    dalcs_smooth_starting_tangents(p->system, n->x, n->phi);
+    return DALCS_OK;
 }
 
 void dalcs_osnsp_smooth_finish(const struct dalcs_osnsp *p) {
@@ -154,6 +156,7 @@ enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, 
         forget(p);
         memset(p->smooth.newton->phi, 0, (size_t)p->smooth.newton->n * sizeof(double));
         memset(p->smooth.newton->x, 0, (size_t)p->smooth.newton->n * sizeof(*p->smooth.newton->x));
+        dalcs_smooth_starting_tangents(s, p->smooth.newton->x, p->smooth.newton->phi);
         status = iterate(p, sigma, y, solve);
     }
     /* beside a line that is far steeper what is rounding would be any answer */
