@@ -116,7 +116,6 @@ static void take_up(struct audit_part *part, const struct dalcs_audit_stretch *s
     part->at.is_coarse = stretch->rule == DALCS_AUDIT_COARSE;
     part->at.step = stretch->step;
     part->at.span = stretch->to - stretch->from;
-    part->at.to = stretch->to;
     part->at.slope = stretch->step > 0.0 ? 2.0 * s * s / stretch->step : 0.0;
 }
 

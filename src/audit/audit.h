@@ -12,8 +12,8 @@
  *     loops of coils that no impulse of voltage is in keep their flux,
  *     and that over an interval what is stored is what was delivered (Tellegen).
  *
- * A defect is over the scale of what it is in: the largest value up to then of each voltage and current that the law adds
- * up, but at least 1e-5 of what that becomes. What rounding alone makes of these sums is no defect. */
+ * A defect is over the scale of what it is in: the largest value in the whole run of each voltage and current
+ * that the law adds up. What rounding alone makes of these sums is no defect. */
 #ifndef DALCS_AUDIT_H
 #define DALCS_AUDIT_H
 

@@ -42,10 +42,8 @@ struct audit_part {
     struct audit_at_hand { /* the stretch that is looked at */
         double step;       /* s */
         double span;       /* s, from where it begins to where it ends; 0: there is none */
-        double to;         /* s, where it ends */
         double length;     /* s, of the stretch that was complete last */
         double past;       /* s, of the one before that */
-        double duration;   /* s, of the interval that is looked at; 0: none is */
         double lateness;   /* s, that an event may be early by, while its far side is looked at */
         double slope;      /* 1/s: most that a derivative in it may be of what it is of */
         bool is_coarse;
@@ -75,7 +73,6 @@ struct audit_sums {
     double *current;             /* [n_nodes] A that leaves, or C */
     double *scale;               /* [n_nodes] of what was added up */
     double *rounding;            /* [n_nodes] that is in it */
-    double largest_volt;         /* V, of the state that is looked at */
     double volts, amperes;       /* ... from the fluxes of coils, and the charges of capacitors */
     double *flux;                /* [n_devices] Wb, of coils */
     double energy, energy_scale; /* J, or W */
@@ -127,15 +124,11 @@ struct dalcs_audit {
     } crossing;
 
     struct audit_worst {
-        struct audit_found {
-            double defect, scale; /* in the law's own unit; the scale by then */
-            double time;          /* s */
-            double duration;      /* s, that a charge, flux or energy is over */
-        } largest, beside_scale;  /* of all, and of all over their scales */
-
-        double scale; /* the largest */
+        double defect, scale; /* the largest of each, in the law's own unit */
+        double time;          /* s, of the defect */
         int part;
-    } * worst_of[DALCS_AUDIT_N_LAWS]; /* [dalcs_audit_n_of] */
+    } * worst_of[DALCS_AUDIT_N_LAWS], /* [dalcs_audit_n_of] */
+        *flux;                        /* [n_devices] of coils, in no time */
 
     struct audit_coarse {
         double defect, time; /* the worst of all, over its scale, at ends of coarse stretches */
@@ -199,12 +192,6 @@ static inline double audit_earned(const struct dalcs_audit *audit, double work, 
     return left > least ? left : least;
 }
 
-/* The part of the largest of a unit that a signal is at least held to. */
-#define AUDIT_NOTHING 1e-5
-
-/* The same of currents of diodes and switches. */
-#define AUDIT_SLIGHT 1e-2
-
 /* Where nothing is, a value is as much as there is. */
 static inline double audit_ratio(double value, double scale) {
     return value == 0.0 ? 0.0 : value / fmax(scale, 0x1p-1022);
@@ -237,11 +224,6 @@ static inline double audit_volts(const struct dalcs_audit *audit, const struct a
     return fmax(fmax(audit->scale.v[a], audit->scale.v[b]), part->floor.volt);
 }
 
-/* A: of the current of a diode or a switch at least. */
-static inline double audit_slight_amperes(const struct audit_part *part) {
-    return AUDIT_SLIGHT / AUDIT_NOTHING * part->floor.ampere;
-}
-
 static inline double audit_amperes(const struct dalcs_audit *audit, const struct audit_part *part,
                                    int device) {
     return fmax(audit->scale.i[device], part->floor.ampere);
@@ -266,9 +248,15 @@ double audit_control_scale(const struct dalcs_audit *audit, const struct audit_p
 double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *s, int device);
 
-/* A defect and its scale by then, in one unit. What rounding explains, and what is allowed besides, is taken off. */
+/* A defect and its scale, in one unit for each law and index. What rounding explains, and what is allowed
+ * besides, is taken off. */
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time);
+
+/* The same of the flux of a coil across an instant. It has a scale of its own: what fluxes over an interval are held to
+ * grows with that, and with the largest voltage that has ever been: beside a spike of 1e10 V any jump would be nothing. */
+void audit_find_flux(struct dalcs_audit *audit, const struct audit_part *part, int device,
+                     double defect, double scale, double time);
 
 /* signals.c: a signal at a state, what it is held to, and what rounding made of it. It can be read. */
 struct audit_signal {
@@ -307,6 +295,14 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
 void audit_round_storage(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *s);
 
+/* ... and what all nodes that ideal branches join with one have of that. Overwrites audit->crossing.cluster. */
+double audit_rounding_around(struct dalcs_audit *audit, const struct audit_part *part,
+                             const struct dalcs_audit_state *s, int node);
+
+/* V and A that the two branches of a diode are held to. */
+void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
+                       double scale[2]);
+
 /* kirchhoff.c: all that holds at one time. */
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s);
@@ -314,6 +310,9 @@ void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
 /* Raises scales to what the state has. */
 void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
                        const struct dalcs_audit_state *s);
+
+/* Wb: what the currents that make a coil's flux are held to. */
+double audit_flux_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device);
 
 /* intervals.c: what holds between two times in one stretch. */
 void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,
@@ -341,10 +340,8 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
                          const struct dalcs_audit_state *after);
 
 /* start.c: does the part begin as the netlist says? `stored`: of the step that begins there; NULL: there is none. */
-void audit_check_start(struct dalcs_audit *audit, struct audit_part *part,
+void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *first,
                        const struct dalcs_audit_polynomials *stored);
-
-#include "audit_held.h"
 
 #endif

@@ -147,6 +147,19 @@ static void gather_charge(struct dalcs_audit *audit, const struct dalcs_device *
     audit->sums.scale[cluster] += scale;
 }
 
+static double conductance_of(const struct dalcs_audit *audit, const struct dalcs_audit_state *first,
+                             int device) {
+    const struct dalcs_circuit *c = audit->circuit;
+    const struct dalcs_device *d = &c->device[device];
+    if (d->kind == DALCS_SWITCH && first->is_closed[device]) {
+        return 1.0 / c->switch_model[d->model].ron;
+    }
+    if (d->kind == DALCS_DIODE && first->i[device] != 0.0) {
+        return 1.0 / c->diode_model[d->model].ron;
+    }
+    return d->kind == DALCS_RESISTOR ? fabs(1.0 / d->value) : 0.0;
+}
+
 struct audit_hanging audit_find_hanging(const struct dalcs_audit *audit,
                                         const struct audit_part *part,
                                         const struct dalcs_audit_state *at, audit_has_node *has,
@@ -155,8 +168,8 @@ struct audit_hanging audit_find_hanging(const struct dalcs_audit *audit,
     for (int k = 0; k < part->n_devices; k++) {
         const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
         if (has(audit, d->node[0], root) != has(audit, d->node[1], root)) {
-            const double siemens = audit_conductance(audit, at, part->device[k]);
-            on.siemens = fmax(on.siemens, siemens);
+            const double siemens = conductance_of(audit, at, part->device[k]);
+            on.siemens = isfinite(siemens) ? fmax(on.siemens, siemens) : on.siemens;
             on.farad += d->kind == DALCS_CAPACITOR ? d->value : 0.0;
         }
     }
@@ -243,21 +256,6 @@ static void sum_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
     }
 }
 
-/* Where a diode or a switch changes over, coils are left with the sum of what diodes and switches still carried, which is
- * known as that is. */
-static bool has_changed(const struct dalcs_audit *audit, const struct audit_part *part,
-                        const struct dalcs_audit_state *before,
-                        const struct dalcs_audit_state *after) {
-    bool has = false;
-    for (int k = 0; k < part->n_devices && !has; k++) {
-        const int device = part->device[k];
-        const enum dalcs_device_kind kind = audit->circuit->device[device].kind;
-        has = (kind == DALCS_SWITCH || kind == DALCS_DIODE) &&
-              audit_conductance(audit, before, device) != audit_conductance(audit, after, device);
-    }
-    return has;
-}
-
 static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *before,
                        const struct dalcs_audit_state *after) {
@@ -268,7 +266,6 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
         audit->crossing.cluster[node] = dalcs_union_find(audit->crossing.cluster, node);
         audit->crossing.offset[node] = audit->sums.scale[node] = 0.0;
     }
-    const double left = has_changed(audit, part, before, after) ? audit_slight_amperes(part) : 0.0;
     audit->sums.scale[0] = 0.0; /* here of what was added up in the tree of a root */
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
@@ -280,14 +277,14 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
         const int a = find_root(audit, audit->net.node_of[d->node[0]], &flux[0]);
         const int b = find_root(audit, audit->net.node_of[d->node[1]], &flux[1]);
         const double over = audit->sums.flux[device] - (flux[0] - flux[1]);
-        const double scale = fmax(audit_flux_scale(audit, part, device), d->value * left);
+        const double scale = audit_flux_scale(audit, part, device);
         if (a != b) {
             audit->crossing.cluster[a] = b;
             audit->crossing.offset[a] = over;
             audit->sums.scale[b] += audit->sums.scale[a] + scale;
         } else {
-            audit_find(audit, part, DALCS_AUDIT_BRANCH, device, fabs(over) - AUDIT_ROUNDING * scale,
-                       scale + audit->sums.scale[a], after->t);
+            audit_find_flux(audit, part, device, fabs(over) - AUDIT_ROUNDING * scale,
+                            scale + audit->sums.scale[a], after->t);
         }
     }
 }

@@ -21,63 +21,62 @@ int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law) 
     }
 }
 
-/* At ends of coarse stretches the worst of all. */
-static void find_coarse(struct audit_coarse *coarse, enum dalcs_audit_law law, int index,
-                        double ratio, double time) {
-    if (!(ratio <= coarse->defect)) {
-        *coarse = (struct audit_coarse){isnan(ratio) ? INFINITY : ratio, time, law, index};
+static void find_coarse(struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
+                        double defect, double time) {
+    if (!(defect <= audit->coarse.defect)) {
+        audit->coarse.defect = isnan(defect) ? INFINITY : defect;
+        audit->coarse.time = time;
+        audit->coarse.law = law;
+        audit->coarse.index = index;
     }
 }
 
-static void keep_if_worse(struct audit_found *kept, const struct audit_found *found, double is,
-                          double was) {
-    if (is > was) {
-        *kept = *found;
+static void note(struct audit_worst *worst, double defect, double scale, double time) {
+    worst->scale = fmax(worst->scale, scale);
+    if (!(defect <= worst->defect)) { /* not a number is as wrong as can be */
+        worst->defect = isnan(defect) ? INFINITY : defect;
+        worst->time = time;
     }
 }
 
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time) {
-    const double off = isnan(defect) || isnan(scale) ? INFINITY : defect; /* as wrong as can be */
-    const double ratio = audit_ratio(off, scale);
     if (part->at.is_coarse) {
-        find_coarse(&audit->coarse, law, index, ratio, time);
+        find_coarse(audit, law, index, audit_ratio(defect, scale), time);
         return;
     }
-    const struct audit_found found = {off, scale, time, part->at.duration};
-    struct audit_worst *worst = &audit->worst_of[law][index];
-    worst->part = (int)(part - audit->part);
-    worst->scale = fmax(worst->scale, scale);
-    keep_if_worse(&worst->largest, &found, off, worst->largest.defect);
-    keep_if_worse(&worst->beside_scale, &found, ratio,
-                  audit_ratio(worst->beside_scale.defect, worst->beside_scale.scale));
+    audit->worst_of[law][index].part = (int)(part - audit->part);
+    note(&audit->worst_of[law][index], defect, scale, time);
 }
 
-/* A signal below this part of the largest of its unit is held to that (doc/methods.md, "What the tolerance means"), and so is
- * one to what it becomes. At the very start transients that are shorter than any step are taken at once: leaks behind coils,
- * above all. What that makes is held to what becomes of it. */
-static double over_scale(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
-                         const struct audit_found *found) {
-    const struct audit_worst *worst = &audit->worst_of[law][index];
-    const double becomes =
-        audit_is_of_storage(audit, law, index)
-            ? audit_storage_scale(audit, &audit->part[worst->part], law, index, found->duration)
-            : worst->scale;
-    const double least = found->time == 0.0 ? 1.0 : AUDIT_NOTHING;
-    return audit_ratio(found->defect, fmax(found->scale, least * becomes));
+void audit_find_flux(struct dalcs_audit *audit, const struct audit_part *part, int device,
+                     double defect, double scale, double time) {
+    if (part->at.is_coarse) {
+        find_coarse(audit, DALCS_AUDIT_BRANCH, device, audit_ratio(defect, scale), time);
+        return;
+    }
+    audit->worst_of[DALCS_AUDIT_BRANCH][device].part = (int)(part - audit->part);
+    note(&audit->flux[device], defect, scale, time);
+}
+
+/* Of what a coil's flux jumped by where it should not; its scale is that of the largest current so far. */
+static struct dalcs_audit_finding finding_of_flux(const struct dalcs_audit *audit, int device) {
+    const struct audit_worst *worst = &audit->flux[device];
+    const struct audit_part *part = &audit->part[audit->worst_of[DALCS_AUDIT_BRANCH][device].part];
+    const double scale =
+        worst->defect > 0.0 ? fmax(worst->scale, audit_flux_scale(audit, part, device)) : 0.0;
+    return (struct dalcs_audit_finding){audit_ratio(worst->defect, scale), worst->time};
 }
 
 struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audit,
                                                   enum dalcs_audit_law law, int index) {
     const struct audit_worst *worst = &audit->worst_of[law][index];
-    if (!(worst->largest.defect > 0.0)) {
-        return (struct dalcs_audit_finding){0.0, worst->largest.time};
+    struct dalcs_audit_finding found = {audit_ratio(worst->defect, worst->scale), worst->time};
+    if (law == DALCS_AUDIT_BRANCH) {
+        const struct dalcs_audit_finding of_flux = finding_of_flux(audit, index);
+        found = of_flux.defect > found.defect ? of_flux : found;
     }
-    const double largest = over_scale(audit, law, index, &worst->largest);
-    const double beside_scale = over_scale(audit, law, index, &worst->beside_scale);
-    return beside_scale > largest
-               ? (struct dalcs_audit_finding){beside_scale, worst->beside_scale.time}
-               : (struct dalcs_audit_finding){largest, worst->largest.time};
+    return found;
 }
 
 struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit) {

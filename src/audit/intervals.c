@@ -33,7 +33,6 @@ static void leave(const struct dalcs_audit *audit, const struct dalcs_device *d,
 /* Currents and voltages at one time, for so long. */
 static void add_flow(struct dalcs_audit *audit, const struct audit_part *part,
                      const struct dalcs_audit_state *s, double duration) {
-    audit_see_volts(audit, part, s);
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
@@ -42,9 +41,11 @@ static void add_flow(struct dalcs_audit *audit, const struct audit_part *part,
         }
         const double v = audit_voltage(s, d);
         const double i = audit_current(audit, s, device);
-        const double amperes = audit_branch_amperes(audit, part, device);
+        const double amperes = audit_amperes(audit, part, device);
+        const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
+        const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
         leave(audit, d, i * duration, amperes * duration,
-              audit_branch_rounding(audit, s, device, i) * duration);
+              AUDIT_ROUNDING * (g * volts + fabs(i)) * duration);
         if (d->kind == DALCS_INDUCTOR) {
             audit->sums.flux[device] -= v * duration;
         } else {
@@ -104,55 +105,6 @@ double audit_flux_scale(const struct dalcs_audit *audit, const struct audit_part
     return scale;
 }
 
-/* ---- What it is held to -------------------------------------------------------------------------- */
-
-bool audit_is_of_storage(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index) {
-    return law == DALCS_AUDIT_ENERGY || (law == DALCS_AUDIT_KCL && audit->net.has_charge[index]) ||
-           (law == DALCS_AUDIT_BRANCH && audit->circuit->device[index].kind == DALCS_INDUCTOR);
-}
-
-static double charge_scale(const struct dalcs_audit *audit, const struct audit_part *part, int node,
-                           double duration) {
-    double sum = 0.0;
-    for (int k = 0; k < part->n_devices; k++) {
-        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
-        const int ends[2] = {audit->net.node_of[d->node[0]], audit->net.node_of[d->node[1]]};
-        if (ends[0] == node || ends[1] == node) {
-            sum += d->kind == DALCS_CAPACITOR
-                       ? d->value * audit_volts(audit, part, d->node[0], d->node[1])
-                       : audit_branch_amperes(audit, part, part->device[k]) * duration;
-        }
-    }
-    return sum;
-}
-
-static double flux_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
-                         double duration) {
-    const struct dalcs_device *d = &audit->circuit->device[device];
-    return audit_flux_scale(audit, part, device) +
-           audit_volts(audit, part, d->node[0], d->node[1]) * duration;
-}
-
-double audit_storage_scale(const struct dalcs_audit *audit, const struct audit_part *part,
-                           enum dalcs_audit_law law, int index, double duration) {
-    if (law == DALCS_AUDIT_KCL) {
-        return charge_scale(audit, part, index, duration);
-    }
-    if (law == DALCS_AUDIT_BRANCH) {
-        return flux_scale(audit, part, index, duration);
-    }
-    double sum = 0.0;
-    for (int k = 0; k < part->n_devices; k++) {
-        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
-        const double volts = audit_volts(audit, part, d->node[0], d->node[1]);
-        const double amperes = audit_branch_amperes(audit, part, part->device[k]);
-        sum += d->kind == DALCS_CAPACITOR  ? 0.5 * d->value * volts * volts
-               : d->kind == DALCS_INDUCTOR ? 0.5 * d->value * amperes * amperes
-                                           : volts * amperes * duration;
-    }
-    return sum;
-}
-
 static void judge(struct dalcs_audit *audit, const struct audit_part *part, double duration,
                   double time) {
     for (int k = 0; k < part->n_nodes; k++) {
@@ -161,8 +113,7 @@ static void judge(struct dalcs_audit *audit, const struct audit_part *part, doub
             double off = fabs(audit->sums.current[node]) - audit->options.abstol * duration;
             const double allowed =
                 audit->sums.rounding[node] + part->tolerance * audit->sums.scale[node];
-            off -= off > allowed ? audit_rounding_around(audit, part, &audit->later, node) +
-                                       audit_rounding_of_part(audit, part, &audit->later) * duration
+            off -= off > allowed ? audit_rounding_around(audit, part, &audit->later, node)
                                  : audit->sums.rounding[node];
             audit_find(audit, part, DALCS_AUDIT_KCL, node, off, audit->sums.scale[node], time);
         }
@@ -171,13 +122,12 @@ static void judge(struct dalcs_audit *audit, const struct audit_part *part, doub
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
         if (d->kind == DALCS_INDUCTOR) {
-            const double scale = flux_scale(audit, part, device, duration);
-            double off = fabs(audit->sums.flux[device]) - AUDIT_ROUNDING * scale -
-                         audit->options.vntol * duration;
-            off -= off > part->tolerance * scale
-                       ? d->value * audit_leak_of(audit, part, &audit->later, device)
-                       : 0.0;
-            audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off, scale, time);
+            const double scale = audit_flux_scale(audit, part, device) +
+                                 audit_volts(audit, part, d->node[0], d->node[1]) * duration;
+            audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
+                       fabs(audit->sums.flux[device]) - AUDIT_ROUNDING * scale -
+                           audit->options.vntol * duration,
+                       scale, time);
         }
     }
 }
@@ -200,9 +150,7 @@ void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, do
     s->t = to;
     audit->reader.read(audit->reader.user, index, s);
     add_storage(audit, part, s, 1.0);
-    part->at.duration = to - from;
     judge(audit, part, to - from, to);
     audit_find(audit, part, DALCS_AUDIT_ENERGY, index, fabs(audit->sums.energy),
                audit->sums.energy_scale, to);
-    part->at.duration = 0.0;
 }

@@ -35,46 +35,11 @@ void audit_round_storage(struct dalcs_audit *audit, const struct audit_part *par
     }
 }
 
-double audit_conductance(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
-                         int device) {
-    const struct dalcs_circuit *c = audit->circuit;
-    const struct dalcs_device *d = &c->device[device];
-    double ohm = INFINITY;
-    if (d->kind == DALCS_SWITCH) {
-        ohm = s->is_closed[device] ? c->switch_model[d->model].ron : INFINITY;
-    } else if (d->kind == DALCS_DIODE) {
-        const struct dalcs_diode_model *m = &c->diode_model[d->model];
-        ohm = s->i[device] > 0.0 ? m->ron : s->i[device] < 0.0 ? m->rrev : INFINITY;
-    } else if (d->kind == DALCS_RESISTOR) {
-        ohm = fabs(d->value);
-    }
-    return ohm > 0.0 ? 1.0 / ohm : 0.0;
-}
-
-void audit_see_volts(struct dalcs_audit *audit, const struct audit_part *part,
-                     const struct dalcs_audit_state *s) {
-    audit->sums.largest_volt = 0.0;
-    for (int k = 0; k < part->n_nodes; k++) {
-        audit->sums.largest_volt = fmax(audit->sums.largest_volt, fabs(s->v[part->node[k]]));
-    }
-}
-
-/* A voltage is known to a rounding of the largest one in the same equations (J. H. Wilkinson, Rounding errors in algebraic
- * processes, 1963), and what conducts makes a current of it, which small resistances let be large. A value between the
- * nodes of a step is a sum of those at the nodes: where it passes through 0 it has the rounding of these. */
-double audit_branch_rounding(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
-                             int device, double current) {
-    const struct dalcs_device *d = &audit->circuit->device[device];
-    const double *v = audit->scale.v;
-    const double volts = v[d->node[0]] + v[d->node[1]];
-    const double g = audit_conductance(audit, s, device);
-    return AUDIT_ROUNDING * (g * fmax(volts, audit->sums.largest_volt) + fabs(current));
-}
-
-/* What rounding of the voltages at a device makes of its current, of a charge over a step, or over a step of a flux. */
+/* What rounding of the voltages at a device makes of its current, of a charge over a step, or over a step of a flux. A value
+ * between the nodes of a step is a sum of those at the nodes: where it passes through 0 it has the rounding of these. */
 static double rounding_of(const struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *s, int device, double current) {
-    const struct dalcs_device *d = &audit->circuit->device[device];
+                          const struct dalcs_audit_state *s, const struct dalcs_device *d,
+                          double current) {
     const double *v = audit->scale.v;
     const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
     if (d->kind == DALCS_CAPACITOR) {
@@ -92,16 +57,9 @@ static double rounding_of(const struct dalcs_audit *audit, const struct audit_pa
         return AUDIT_ROUNDING * fabs(current) +
                STORED_ROUNDING * fmax(volts, part->floor.largest_volt) * part->at.step / d->value;
     }
-    const double g = d->kind == DALCS_RESISTOR ? audit_conductance(audit, s, device) : 0.0;
-    return audit_branch_rounding(audit, s, device, current) + 2.0 * g * audit->sums.volts;
-}
-
-double audit_branch_amperes(const struct dalcs_audit *audit, const struct audit_part *part,
-                            int device) {
-    const enum dalcs_device_kind kind = audit->circuit->device[device].kind;
-    const bool is_pair = kind == DALCS_DIODE || kind == DALCS_SWITCH;
-    const double amperes = audit_amperes(audit, part, device);
-    return is_pair ? fmax(amperes, audit_slight_amperes(part)) : amperes;
+    const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
+    const double at_nodes = v[d->node[0]] + v[d->node[1]];
+    return AUDIT_ROUNDING * (g * at_nodes + fabs(current)) + 2.0 * g * audit->sums.volts;
 }
 
 void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
@@ -110,15 +68,14 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
         const int node = part->node[k];
         audit->sums.current[node] = audit->sums.scale[node] = audit->sums.rounding[node] = 0.0;
     }
-    audit_see_volts(audit, part, s);
     audit_round_storage(audit, part, s);
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
         const bool is_charge = d->kind == DALCS_CAPACITOR;
         const double current = is_charge ? 0.0 : audit_current(audit, s, device);
-        const double scale = is_charge ? 0.0 : audit_branch_amperes(audit, part, device);
-        const double rounding = rounding_of(audit, part, s, device, current);
+        const double scale = is_charge ? 0.0 : audit_amperes(audit, part, device);
+        const double rounding = rounding_of(audit, part, s, d, current);
         leave(audit, d->node[0], current, scale, rounding);
         leave(audit, d->node[1], -current, scale, rounding);
     }
@@ -150,10 +107,8 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
      * that one's scale, and each unit vouches a millionth for the other through the conductances, of 1 S where there
      * are none. */
     const bool has_any = part->floor.most > 0.0;
-    part->floor.volt =
-        fmax(AUDIT_NOTHING * volt, 1e-6 / (has_any ? part->floor.most : 1.0) * ampere);
-    part->floor.ampere =
-        fmax(AUDIT_NOTHING * ampere, 1e-6 * (has_any ? part->floor.least : 1.0) * volt);
+    part->floor.volt = fmax(1e-5 * volt, 1e-6 / (has_any ? part->floor.most : 1.0) * ampere);
+    part->floor.ampere = fmax(1e-5 * ampere, 1e-6 * (has_any ? part->floor.least : 1.0) * volt);
 }
 
 /* What ideal branches hand on: an impedance of nothing is no barrier for a current that rounding makes. */
@@ -226,24 +181,6 @@ static double rounding_of_time(struct dalcs_audit *audit, const struct audit_par
     return sum;
 }
 
-/* The equations of a part are solved together, and elimination hands rounding on: no current is known better than to one of
- * what the largest conductance that conducts makes of the largest voltage. Values in a step are sums of those at its nodes,
- * of which the last one stands for all. */
-double audit_rounding_of_part(struct dalcs_audit *audit, const struct audit_part *part,
-                              const struct dalcs_audit_state *s) {
-    double most = 0.0;
-    for (int k = 0; k < part->n_devices; k++) {
-        most = fmax(most, audit_conductance(audit, s, part->device[k]));
-    }
-    audit->shifted.side = DALCS_LEFT;
-    audit->shifted.t = part->at.to;
-    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
-    const double here = audit->sums.largest_volt;
-    audit_see_volts(audit, part, &audit->shifted);
-    audit->sums.largest_volt = fmax(audit->sums.largest_volt, here);
-    return AUDIT_ROUNDING * most * audit->sums.largest_volt;
-}
-
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s) {
     audit->count.instants++;
@@ -258,8 +195,6 @@ void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
             const double allowed =
                 audit->sums.rounding[node] + part->tolerance * audit->sums.scale[node];
             off -= off > allowed ? audit_rounding_around(audit, part, s, node) +
-                                       audit_rounding_of_part(audit, part, s) +
-                                       audit_leaks_at(audit, part, s, node) +
                                        rounding_of_time(audit, part, s, node)
                                  : audit->sums.rounding[node];
             audit_find(audit, part, DALCS_AUDIT_KCL, node, off, audit->sums.scale[node], s->t);

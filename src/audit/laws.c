@@ -35,7 +35,8 @@ static void diode_defects(const struct dalcs_audit *audit, const struct dalcs_au
 void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
                        double scale[2]) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    const double amperes = fmax(audit_amperes(audit, part, device), audit_slight_amperes(part));
+    /* currents of pairs are held to 1e-2 of the largest, others to 1e-5 (doc/methods.md) */
+    const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->floor.ampere);
     /* what is within rounding of 0 is nothing: it is over a scale that is not less */
     scale[0] = audit->sums.volts / part->tolerance +
                audit_volts(audit, part, d->node[0], d->node[1]) +
@@ -142,7 +143,7 @@ static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
         const double v = audit_voltage(s, d);
         const double own = s->i[device] - (isfinite(m->roff) ? v / m->roff : 0.0);
-        const double amperes = fmax(audit_amperes(audit, part, device), audit_slight_amperes(part));
+        const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->floor.ampere);
         audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
                    v - m->vfwd - m->ron * own - audit->options.vntol,
                    audit_volts(audit, part, d->node[0], d->node[1]) + m->ron * amperes, s->t);

@@ -213,6 +213,8 @@ static enum dalcs_status make_sums(struct dalcs_audit *audit) {
             &audit->arena, (size_t)dalcs_audit_n_of(audit, law), sizeof(*audit->worst_of[law]));
         complete = complete && audit->worst_of[law] != NULL;
     }
+    audit->flux = dalcs_arena_alloc(&audit->arena, n_devices, sizeof(*audit->flux));
+    complete = complete && audit->flux != NULL;
     audit->scale.lambda =
         dalcs_arena_alloc(&audit->arena, (size_t)audit->net.n_lambdas, sizeof(double));
     audit->crossing.cluster = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));

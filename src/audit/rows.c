@@ -10,9 +10,9 @@ static const double joins = 0.125;
 /* ... over a scale that may be that of its unit, as those of diodes that block are; of a current also what the largest
  * conductance makes of a voltage. */
 static double largest_of_unit(const struct audit_part *part, const struct dalcs_signal *signal) {
-    return signal->kind == DALCS_SIGNAL_VOLTAGE ? part->floor.largest_volt
-                                                : fmax(part->floor.ampere / AUDIT_NOTHING,
-                                                       part->floor.most * part->floor.largest_volt);
+    return signal->kind == DALCS_SIGNAL_VOLTAGE
+               ? part->floor.largest_volt
+               : fmax(part->floor.ampere / 1e-5, part->floor.most * part->floor.largest_volt);
 }
 
 static void check_signal(struct dalcs_audit *audit, int index, double value, bool may_be_joined) {

@@ -87,7 +87,7 @@ static void add_to_clusters(struct dalcs_audit *audit, const struct audit_part *
     }
 }
 
-static void check_currents(struct dalcs_audit *audit, struct audit_part *part,
+static void check_currents(struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *first, double reach) {
     struct audit_sums *sums = &audit->sums;
     sum_later_currents(audit, part, first);
@@ -103,13 +103,10 @@ static void check_currents(struct dalcs_audit *audit, struct audit_part *part,
             if (off > part->tolerance * sums->scale[node]) {
                 const struct audit_hanging on =
                     audit_find_hanging(audit, part, first, audit_is_in_cluster, node);
-                off -= behind_transient(audit, part, &on, later, reach) +
-                       audit_rounding_of_part(audit, part, first);
+                off -= behind_transient(audit, part, &on, later, reach);
             }
-            part->at.duration = duration;
             audit_find(audit, part, DALCS_AUDIT_KCL, node, off * duration,
                        sums->scale[node] * duration, first->t);
-            part->at.duration = 0.0;
         }
     }
 }
@@ -126,7 +123,7 @@ static bool has_moving_current(const struct dalcs_audit *audit, const struct aud
     return has;
 }
 
-static void check_coils(struct dalcs_audit *audit, struct audit_part *part,
+static void check_coils(struct dalcs_audit *audit, const struct audit_part *part,
                         const struct dalcs_audit_state *first, double reach) {
     bool is_read = false;
     for (int k = 0; k < part->n_devices; k++) {
@@ -143,15 +140,13 @@ static void check_coils(struct dalcs_audit *audit, struct audit_part *part,
                 fabs(audit_voltage(&audit->shifted, d) - audit_voltage(first, d)) / part->at.step;
             const double off = fabs(audit_voltage(first, d)) - 2.0 * audit->sums.volts -
                                audit->options.vntol - reach * slope * d->value * part->floor.least;
-            part->at.duration = part->at.step;
             audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off * part->at.step,
                        audit_volts(audit, part, d->node[0], d->node[1]) * part->at.step, first->t);
-            part->at.duration = 0.0;
         }
     }
 }
 
-void audit_check_start(struct dalcs_audit *audit, struct audit_part *part,
+void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *first,
                        const struct dalcs_audit_polynomials *stored) {
     if (audit->options.origin == DALCS_AUDIT_FROM_INITIAL) {

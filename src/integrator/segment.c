@@ -127,17 +127,21 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
 }
 
 /* What lies beyond an event says nothing of how large signals are: there the output of a comparator runs away, which
- * turns at its rail. So a step that an event cuts is judged once more, up to there. */
-static enum dalcs_status judge_what_is_left(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                            struct dalcs_search *search,
-                                            struct dalcs_trial *trial) {
-    if (!(trial->next < end_of(part, search))) {
-        return DALCS_OK;
+ * turns at its rail. So a step that an event cuts is judged once more, up to there. Mode and state have been found right:
+ * only its length is in question. */
+static void judge_what_is_left(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                               const struct dalcs_search *search, struct dalcs_trial *trial) {
+    if (search->fixed || !(trial->next < end_of(part, search))) {
+        return;
     }
     judge(r, part, search, trial->next, trial);
     part->segment.ratio = dalcs_smaller(1.0, trial->quality.ratio);
-    return trial->holds ? DALCS_OK
-                        : dalcs_search_recover(r, part, search, &trial->quality, &trial->done);
+    if (!trial->holds && part->segment.h >= 2.0 * dalcs_length_shortest(r)) {
+        r->rejected++;
+        dalcs_length_shorten(part, trial->quality.ratio, 0);
+    } else {
+        trial->holds = true;
+    }
 }
 
 /* May the state be off by what interpolation left of it? */
@@ -247,7 +251,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         DALCS_TRY(look_at_signs(r, part, search, &trial));
     }
     if (trial.holds) {
-        DALCS_TRY(judge_what_is_left(r, part, search, &trial));
+        judge_what_is_left(r, part, search, &trial);
     }
     if (trial.holds) {
         part->segment.open =
