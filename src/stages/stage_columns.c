@@ -61,22 +61,30 @@ static int guard_column(const struct guard *g, int k) {
     return g->index != NULL ? g->index[k] : g->one;
 }
 
+/* Where the k-th of the guard's unknowns is in w->solved, of a part, and its scale; NULL: it is none, or not one of the
+ * states, or of the unknowns without memory, that are asked for. */
+static dalcs_four *place_in_guard(const struct walk *w, int system, int part, bool states, int k,
+                                  double *scale) {
+    const struct dalcs_stage_factors *f = w->entry->factors;
+    const int u = dalcs_stage_unknown(f, guard_column(&w->guard, k));
+    if (u < 0 || (u < w->stages->system->n_x) != states) {
+        return NULL;
+    }
+    const int pair = u - (f->n - f->n_pairs);
+    const struct dalcs_stage_order *o = &f->order[system];
+    const int at = pair >= 0 ? o->of_pair[pair] : o->position[u];
+    *scale = pair >= 0 ? f->pair_scale[pair] : f->column_scale[u];
+    return &w->solved[at * (system > 0 ? 2 : 1) + part];
+}
+
 /* c->guard += sum of the guard's unknowns without memory, or of its states, in w->solved, of a part. */
 static void add_to_guard(const struct walk *w, int system, int part, bool states, double factor) {
-    const struct dalcs_stage_factors *f = w->entry->factors;
-    const int n_x = w->stages->system->n_x;
-    const int n_equations = f->n - f->n_pairs;
-    const int stride = system > 0 ? 2 : 1;
+    double scale;
     for (int k = 0; k < w->guard.n; k++) {
-        const int u = dalcs_stage_unknown(f, guard_column(&w->guard, k));
-        if (u < 0 || (u < n_x) != states) {
-            continue;
+        const dalcs_four *at = place_in_guard(w, system, part, states, k, &scale);
+        if (at != NULL) {
+            w->c->guard += w->guard.coefficient[k] * factor * scale * *at;
         }
-        const int pair = u - n_equations;
-        const struct dalcs_stage_order *o = &f->order[system];
-        const int at = pair >= 0 ? o->of_pair[pair] : o->position[u];
-        const double scale = pair >= 0 ? f->pair_scale[pair] : f->column_scale[u];
-        w->c->guard += w->guard.coefficient[k] * factor * scale * w->solved[at * stride + part];
     }
 }
 
@@ -209,20 +217,12 @@ void dalcs_stage_columns_apply(const struct dalcs_stages *stages,
 
 /* w->solved += c->guard times what add_to_guard reads. */
 static void take_of_guard(const struct walk *w, int system, int part, bool states, double factor) {
-    const struct dalcs_stage_factors *f = w->entry->factors;
-    const int n_x = w->stages->system->n_x;
-    const int n_equations = f->n - f->n_pairs;
-    const int stride = system > 0 ? 2 : 1;
+    double scale;
     for (int k = 0; k < w->guard.n; k++) {
-        const int u = dalcs_stage_unknown(f, guard_column(&w->guard, k));
-        if (u < 0 || (u < n_x) != states) {
-            continue;
+        dalcs_four *at = place_in_guard(w, system, part, states, k, &scale);
+        if (at != NULL) {
+            *at += w->guard.coefficient[k] * factor * scale * w->c->guard;
         }
-        const int pair = u - n_equations;
-        const struct dalcs_stage_order *o = &f->order[system];
-        const int at = pair >= 0 ? o->of_pair[pair] : o->position[u];
-        const double scale = pair >= 0 ? f->pair_scale[pair] : f->column_scale[u];
-        w->solved[at * stride + part] += w->guard.coefficient[k] * factor * scale * w->c->guard;
     }
 }
 
