@@ -65,10 +65,13 @@ def system(r, spoilt):
     return "\n".join(lines + [".tran 1m 1", ".end", ""])
 
 
+FEWEST = 40  # among so many is a witness of each kind
+
+
 def main(program, count, seed):
     tally = {"passive": 0, "found": 0, "spoilt": 0, "P": 0, "Z": 0, "motion": 0, "rates": 0}
     failures = n = 0
-    count = len(some_of(range(count)))
+    count = max(len(some_of(range(count))), min(count, FEWEST))
     while n < count:
         n += 1
         r = random.Random(f"{seed}.{n}")
