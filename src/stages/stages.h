@@ -50,7 +50,8 @@ struct dalcs_stages {
     struct dalcs_stage_layout layout;
     int n_currents; /* branch currents without memory */
     int n_levered,
-        *levered; /* [n_levered] their columns, then those of voltages that resistors make of coils */
+        *levered; /* [n_levered] their columns, then those of voltages that resistors make of coils; where
+                     sources are controlled, of all */
     int n_watched;
     int *watched; /* [n_watched] pairs: switches that follow a voltage, or a source along a curve */
     int n_in;     /* n_x + 1 + functions: (x_0, 1, coefficients) */

@@ -3,8 +3,8 @@
  *
  * 400 V that feed 100 uF through 1 mohm: a millivolt is an ampere, so that a state well within its
  * tolerance can make a current of 40 A wrong. And 0.1 A of two coils that meet at 70 kohm are 7 kV, so that a
- * ten millionth of them is a millivolt. Of other voltages nothing like it is asked: a coil cut off by
- * 10 Mohm has transients of 10 ps, which nobody wants to wait for. In most circuits no state has such a
+ * ten millionth of them is a millivolt. The output of an amplifier is its gain times a state. Of other voltages
+ * nothing like it is asked: a coil cut off by 10 Mohm has transients of 10 ps, which nobody wants to wait for. In most circuits no state has such a
  * lever; by maps that is looked up now and then, and costs them nothing else. Factors do not tell it: there all
  * voltages count that resistors make of coils, and search.c lets those pass that no shorter step mends. */
 #include "current_error.h"
