@@ -253,10 +253,12 @@ DALCS_TWICE(void, read_response,
 static void find_missed_back(const struct dalcs_stage_update *u, int system, int j,
                              const dalcs_four (*nu)[2], dalcs_four *missed) {
     const int n = u->n_changes;
+    const bool is_complex = system > 0;
+    const long double *re = u->inverse[system] + j;
     memset(missed, 0, 2 * sizeof *missed);
     for (int i = 0; i < n; i++) {
-        const double a = (double)u->inverse[system][i * n + j];
-        const double b = system > 0 ? (double)u->inverse[system][i * n + j + n * n] : 0.0;
+        const double a = (double)re[i * n];
+        const double b = is_complex ? (double)re[i * n + n * n] : 0.0;
         missed[0] += a * nu[i][0] + b * nu[i][1];
         missed[1] += a * nu[i][1] - b * nu[i][0];
     }
