@@ -137,8 +137,8 @@ def run(program, netlist, step=None, at=None, options=(), report=True, environme
 
 def some_of(cases, n=3):
     """Of cases that differ by numbers alone one in n, spread evenly whatever period the order of the cases has, and the
-    first; all in a long run, and by hand. Where DALCS_TEST_SOME is larger, as in .ci/run for sanitizers, one in so many: what these
-    look for shows in few of them as in all."""
+    first; all in a long run, and by hand. Where DALCS_TEST_SOME is larger, as in .ci/run for sanitizers, one in so
+    many: what these look for shows in few of them as in all."""
     part = 1.0 / max(1 if IS_LONG else n, int(os.environ.get("DALCS_TEST_SOME", "1")))
     return [case for k, case in enumerate(cases) if k * 0.6180339887498949 % 1.0 < part]  # the golden section
 
