@@ -200,9 +200,9 @@ MUTATIONS = {
     "a thyristor turns off above its holding current": (
         "dalcs/stamp_device.c", ".turn_off = m->vt - m->vh}", ".turn_off = m->vt - 0.9 * m->vh}", CONTROLLER),
     "a latch is set where both inputs are high": (
-        "integrator/logic_network.c", "return !reset && (set || q);", "return set || (!reset && q);", GATES),
+        "logic/logic_network.c", "return !reset && (set || q);", "return set || (!reset && q);", GATES),
     "an edge comes 1 ns after its delay": (
-        "integrator/logic_run.c", "l->now + (next->is", "l->now + 1e-9 + (next->is", GATES),
+        "logic/logic_run.c", "l->now + (next->is", "l->now + 1e-9 + (next->is", GATES),
     "a corner of many is left out": (
         "circuit/stimulus.c", "    *piece = (struct dalcs_stimulus_piece){.to = dalcs_stimulus_next_edge(s, t),",
         "    double to_ = dalcs_stimulus_next_edge(s, t);\n"

@@ -331,24 +331,24 @@ MUTATIONS = {
     "a state jumps against a diode": (
         "integrator/segment.c", "!guessed && !asks &&", "!guessed &&", VIENNA),
     "an AND is an OR": (
-        "integrator/logic_network.c", "DALCS_GATE_AND   ? n_high == n", "DALCS_GATE_AND   ? n_high > 0", GATES),
+        "logic/logic_network.c", "DALCS_GATE_AND   ? n_high == n", "DALCS_GATE_AND   ? n_high > 0", GATES),
     "a latch is reset by nothing": (
-        "integrator/logic_network.c", "return !reset && (set || q);", "return (reset || true) && (set || q);", GATES),
+        "logic/logic_network.c", "return !reset && (set || q);", "return (reset || true) && (set || q);", GATES),
     "a flip-flop falls through": (
-        "integrator/logic_network.c", "        state->q = next(l, g, state->q);", "        state->q = !next(l, g, state->q);", GATES),
+        "logic/logic_network.c", "        state->q = next(l, g, state->q);", "        state->q = !next(l, g, state->q);", GATES),
     "a counter counts one too many": (
-        "integrator/logic_network.c", "state->count % g->cycles + 1", "state->count % (g->cycles + 1) + 1", GATES),
+        "logic/logic_network.c", "state->count % g->cycles + 1", "state->count % (g->cycles + 1) + 1", GATES),
     "one sample of many takes a hundredth more": (
-        "integrator/logic_outputs.c", "        l->changed[g->output[0]] = true;\n",
+        "logic/logic_outputs.c", "        l->changed[g->output[0]] = true;\n",
         "        l->changed[g->output[0]] = true;\n        " + once(17, "", "l->taken[k] *= 1.01;") + "\n", GATES),
     "a sample forgets what it let through": (
-        "integrator/logic_network.c", "(state->q && !tracks && !l->rests)", "false", GATES),
+        "logic/logic_network.c", "(state->q && !tracks && !l->rests)", "false", GATES),
     "a delay is a tenth longer": (
-        "integrator/logic_run.c", "l->now + (next->is", "l->now + 1.1 * (next->is", GATES),
+        "logic/logic_run.c", "l->now + (next->is", "l->now + 1.1 * (next->is", GATES),
     "a JK flip-flop turns over too often": (
-        "integrator/logic_network.c", "(q ? !reset : data)", "(q ? !reset && !data : data)", GATES),
+        "logic/logic_network.c", "(q ? !reset : data)", "(q ? !reset && !data : data)", GATES),
     "one output of many shows the other level": (
-        "integrator/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
+        "logic/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
         "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
     "a smooth function is too steep by 1e-5": (
         "dalcs/smooth_tangents.c", "return dalcs_smooth_value(of->kind, x) - dalcs_smooth_line(of, 0)",

@@ -22,9 +22,9 @@ SKIPPED = 77
 NEAR = 1e-9
 
 MUTATIONS = {
-    "events move nothing": ("integrator/variation.c", "    v->pending = true;\n",
+    "events move nothing": ("orbit/variation.c", "    v->pending = true;\n",
                             "    v->pending = false;\n"),
-    "events move states the other way": ("integrator/variation.c", "v->guard[k] *= -1.0 / rate;",
+    "events move states the other way": ("orbit/variation.c", "v->guard[k] *= -1.0 / rate;",
                                          "v->guard[k] *= 1.0 / rate;"),
     "the derivative is too large by 1 %": ("session/steady_pass.c", "    st->is_exact = true;\n",
                                            "    st->is_exact = true;\n    double wrong = 1.01;\n"
