@@ -32,7 +32,7 @@ extern "C" {
     ENTRY(DALCS_SINGULAR, 1, "singular matrix")                                                    \
     ENTRY(DALCS_NOT_CONVERGED, 2, "no certified solution of the one-step problem was found")       \
     ENTRY(DALCS_INFEASIBLE, 3, "the one-step problem has no solution")                             \
-    ENTRY(DALCS_REFUTED, 4, "the audit finds a law broken in the waveform")                        \
+    ENTRY(DALCS_REFUTED, 4, "the audit finds a law broken")                                        \
     ENTRY(DALCS_E_NOMEM, -1, "out of memory")                                                      \
     ENTRY(DALCS_E_IO, -2, "input/output error")                                                    \
     ENTRY(DALCS_E_NETLIST, -3, "error in the netlist")                                             \
@@ -378,8 +378,9 @@ struct dalcs_run_options {
                               see doc/output.md); this and the bound may change the last bits of
                               results */
     size_t max_events;  /* events and jumps kept when recording, 1e6 */
-    enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_REFUTED */
-    const char *dump_path;       /* where to write an OSNSP that failed; NULL: nowhere */
+    enum dalcs_audit_mode
+        audit; /* of .tran, .op and .dc; a defect above the tolerance is DALCS_REFUTED */
+    const char *dump_path; /* where to write an OSNSP that failed; NULL: nowhere */
 
     bool steady; /* the periodic steady state and nothing else, as if .pss were the only analysis */
     double period; /* s, of it; 0: that of .pss, else it follows from the sources */
@@ -759,14 +760,14 @@ struct dalcs_report {
                               be as large as the tolerance */
     } certificate;
 
-    /* Of .tran: laws of the netlist's devices, checked on the finished waveform. */
+    /* Of .tran: laws of the netlist's devices, checked on the finished waveform; of .op and .dc at rest. */
     struct {
-        const char *mode;      /* "sample" or "full"; NULL: nothing was audited */
-        long instants;         /* at which laws were checked */
-        long segments;         /* between two events or ends of steps, of all parts */
-        long audited;          /* of them, those that were looked into */
-        long screened;         /* those of which all linear laws were checked at once */
-        long positions;        /* of switches, compared with their controls */
+        const char *mode; /* "sample" or "full"; NULL: nothing was audited */
+        long instants;    /* at which laws were checked, operating points among them */
+        long segments;    /* between two events or ends of steps, of all parts; 0: points alone */
+        long audited;     /* of them, those that were looked into */
+        long screened;    /* those of which all linear laws were checked at once */
+        long positions;   /* of switches, compared with their controls */
         double worst, allowed; /* the worst defect over its scale, and what it was held to */
         double time;           /* s, of that */
         const char *where;     /* "d1", "i(d1)", "KCL at out", "position of s1", "Tellegen" */

@@ -5,9 +5,6 @@
 
 #include <stdlib.h>
 
-/* SPICE's own reltol: what a simulator that was not asked for more promises of each signal. */
-static const double default_tolerance = 1e-3;
-
 /* ---- Room --------------------------------------------------------------------------------------- */
 
 static bool make(struct file_audit *a, void *array, size_t n, size_t size) {
@@ -29,6 +26,7 @@ static bool make_row(struct file_audit *a, struct file_row *row) {
 static bool make_for_nodes(struct file_audit *a) {
     const size_t n = (size_t)a->circuit->n_nodes;
     return make(a, &a->node_of, n, sizeof *a->node_of) &&
+           make(a, &a->fed_from, n, sizeof *a->fed_from) &&
            make(a, &a->first_branch, n + 1, sizeof *a->first_branch) &&
            make(a, &a->potential, n, sizeof *a->potential) &&
            make(a, &a->potential_of, n, sizeof *a->potential_of) &&
@@ -81,13 +79,20 @@ static enum dalcs_status make_room(struct file_audit *a) {
 static void merge_shorts(struct file_audit *a) {
     const struct dalcs_circuit *c = a->circuit;
     dalcs_union_reset(a->node_of, c->n_nodes);
+    dalcs_union_reset(a->fed_from, c->n_nodes);
     for (int d = 0; d < c->n_devices; d++) {
-        if (dalcs_device_is_short(&c->device[d])) {
-            dalcs_union_join(a->node_of, c->device[d].node[0], c->device[d].node[1]);
+        const struct dalcs_device *device = &c->device[d];
+        const bool is_short = dalcs_device_is_short(device);
+        if (is_short) {
+            dalcs_union_join(a->node_of, device->node[0], device->node[1]);
+        }
+        if (is_short || device->kind == DALCS_VSOURCE) {
+            dalcs_union_join(a->fed_from, device->node[0], device->node[1]);
         }
     }
     for (int n = 0; n < c->n_nodes; n++) {
         a->node_of[n] = dalcs_union_find(a->node_of, n);
+        a->fed_from[n] = dalcs_union_find(a->fed_from, n);
     }
 }
 
@@ -158,7 +163,7 @@ static void check_row(struct file_audit *a, size_t k) {
     struct file_row *now = &a->row[k % 4];
     file_check_branches(a, now);
     file_check_nodes(a, now);
-    if (k == 0) {
+    if (k == 0 && !a->is_at_rest) {
         file_check_start(a, now, &a->row[3]);
     }
     struct file_row *const around[4] = {k >= 3 ? &a->row[(k - 3) % 4] : NULL,
@@ -233,16 +238,15 @@ static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
 }
 
 enum dalcs_status dalcs_file_audit(const struct dalcs_circuit *circuit,
-                                   const struct dalcs_wave_table *table, double tolerance,
+                                   const struct dalcs_wave_table *table,
+                                   const struct dalcs_file_promise *promise,
                                    struct dalcs_arena *arena, struct dalcs_diag *diag,
                                    struct dalcs_table_audit *result) {
     struct file_audit *a = dalcs_alloc(1, sizeof *a);
     if (a == NULL) {
         return DALCS_E_NOMEM;
     }
-    *a = (struct file_audit){.circuit = circuit,
-                             .table = table,
-                             .tolerance = tolerance > 0.0 ? tolerance : default_tolerance};
+    *a = (struct file_audit){.circuit = circuit, .table = table, .promise = *promise};
     enum dalcs_status status = audit(a, diag);
     if (status == DALCS_OK) {
         status = file_report(a, arena, result);

@@ -9,9 +9,18 @@
 
 #include "dalcs.h"
 
+/* What the table promises of each signal. */
+struct dalcs_file_promise {
+    double tolerance;     /* over its largest value */
+    double vntol, abstol; /* V, A; besides */
+    bool
+        remembers; /* rows before the first one have left switches with hysteresis where they are */
+};
+
 /* The answer's texts are in `arena`. DALCS_E_OPTION comes with a message. */
 enum dalcs_status dalcs_file_audit(const struct dalcs_circuit *circuit,
-                                   const struct dalcs_wave_table *table, double tolerance,
+                                   const struct dalcs_wave_table *table,
+                                   const struct dalcs_file_promise *promise,
                                    struct dalcs_arena *arena, struct dalcs_diag *diag,
                                    struct dalcs_table_audit *result) DALCS_MUST_CHECK;
 

@@ -5,6 +5,8 @@
  * An argument a has lambdas of earlier pairs only. */
 #include "file_internal.h"
 
+#include "rounding.h"
+
 static struct file_number term_value(const struct file_audit *a, const struct file_row *row,
                                      const struct dalcs_affine_term *term) {
     switch (term->kind) {
@@ -20,15 +22,19 @@ static struct file_number term_value(const struct file_audit *a, const struct fi
     }
 }
 
-/* Without the lambdas from `first_left_out` on. */
+/* Without the lambdas from `first_left_out` on. What cancels leaves its rounding: 5 V - 5 V of a saturation. */
 static struct file_number evaluate(const struct file_audit *a, const struct file_row *row,
                                    const struct dalcs_affine *f, int first_left_out) {
     struct file_number sum = file_exactly(f->constant);
+    double sizes = fabs(f->constant);
     for (int k = 0; k < f->n; k++) {
         if (f->term[k].kind != DALCS_QUANTITY_PAIR || f->term[k].index < first_left_out) {
-            sum = file_add(sum, f->term[k].coefficient, term_value(a, row, &f->term[k]));
+            const struct file_number term = term_value(a, row, &f->term[k]);
+            sum = file_add(sum, f->term[k].coefficient, term);
+            sizes += fabs(f->term[k].coefficient * term.value);
         }
     }
+    sum.error += dalcs_sum_rounded * sizes;
     return sum;
 }
 
@@ -44,7 +50,7 @@ static double tolerance_of(const struct file_audit *a, const struct file_row *ro
                              : term->kind == DALCS_QUANTITY_PAIR
                                  ? 0.0 /* in its error */
                                  : fabs(term_value(a, row, term).value);
-        sum += a->tolerance * fabs(term->coefficient) * scale;
+        sum += a->promise.tolerance * fabs(term->coefficient) * scale;
     }
     return sum;
 }

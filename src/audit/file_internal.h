@@ -87,12 +87,14 @@ enum { FILE_LAWS = DALCS_AUDIT_ENERGY + 1 };
 struct file_audit {
     const struct dalcs_circuit *circuit;
     const struct dalcs_wave_table *table;
-    double tolerance;
+    struct dalcs_file_promise promise;
     bool is_at_rest; /* an operating point: no charge and no flux changes */
     bool
         is_before; /* ... the one that a .tran begins at, where sources may have other values than DC */
     double ramp; /* s; a jump of a source may take so long in the file */
     int *node_of;
+    int *
+        fed_from; /* [n_nodes] likewise, V sources taken for shorts: what differs by sources alone */
     int *first_branch, *branch; /* devices at each node, no shorts and loops */
     int n_potentials;
     struct file_potential *potential; /* in an order in which each base comes before */

@@ -50,19 +50,27 @@ static int find_node(const struct finder *f, const char *name) {
                : dalcs_names_find(&f->node, name);
 }
 
+/* The current of an element that has parts beside it, as Rpar of a coil, is that of its terminal. */
+static int find_named(const struct finder *f, const char *name) {
+    char terminal[NAME_SIZE + sizeof "terminal()"];
+    snprintf(terminal, sizeof terminal, "terminal(%s)", name);
+    const int found = dalcs_names_find(&f->device, terminal);
+    return found >= 0 ? found : dalcs_names_find(&f->device, name);
+}
+
 /* x1.d1 is d.x1.d1 in ngspice, and d:x1:1 or x1:d1 in LTspice. */
 static int find_device(const struct finder *f, const char *name) {
-    int found = dalcs_names_find(&f->device, name);
+    int found = find_named(f, name);
     const char *last = strrchr(name, '.');
     if (found >= 0 || last == NULL || name[1] != '.') {
         return found;
     }
-    found = dalcs_names_find(&f->device, name + 2);
+    found = find_named(f, name + 2);
     if (found < 0) {
         char other[NAME_SIZE + 1];
         snprintf(other, sizeof other, "%.*s.%c%s", (int)(last - name - 2 > 0 ? last - name - 2 : 0),
                  name + 2, name[0], last + 1);
-        found = dalcs_names_find(&f->device, other);
+        found = find_named(f, other);
     }
     return found;
 }

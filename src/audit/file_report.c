@@ -206,7 +206,7 @@ enum dalcs_status file_report(struct file_audit *a, struct dalcs_arena *arena,
                               struct dalcs_table_audit *result) {
     const struct dalcs_wave_table *t = a->table;
     *result = (struct dalcs_table_audit){
-        .tolerance = a->tolerance,
+        .tolerance = a->promise.tolerance,
         .from = t->n_rows > 0 ? t->value[0] : 0.0,
         .to = t->n_rows > 0 ? t->value[(t->n_rows - 1) * t->n_columns] : 0.0,
         .n_rows = t->n_rows};

@@ -33,7 +33,7 @@ static double control_tolerance(const struct file_audit *a, int device) {
     const struct dalcs_switch_model *m = &a->circuit->switch_model[d->model];
     const double signal = d->control >= 0 ? a->i_scale[d->control]
                                           : fmax(a->v_scale[d->node[2]], a->v_scale[d->node[3]]);
-    return a->tolerance * fmax(signal, fabs(m->vt) + fabs(m->vh));
+    return a->promise.tolerance * fmax(signal, fabs(m->vt) + fabs(m->vh));
 }
 
 static double time_at(const struct file_audit *a, long k) {
@@ -55,6 +55,16 @@ static double bend_at(const struct file_audit *a, const struct file_row *row, in
                : 0.0;
 }
 
+/* Within its hysteresis a switch is where it began, if nothing has moved it before: what was before is known, or at an
+ * operating point sources alone command it. */
+static bool knows_start(const struct file_audit *a, const struct file_row *row,
+                        const struct dalcs_device *d) {
+    const bool is_commanded = d->control < 0 && a->fed_from[d->node[2]] == a->fed_from[d->node[3]];
+    const bool is_start =
+        a->is_at_rest ? is_commanded : a->circuit->transient.use_initial_conditions;
+    return row->t == 0.0 && (is_start || row->is_left) && !a->promise.remembers;
+}
+
 unsigned char file_position(const struct file_audit *a, const struct file_row *row,
                             const struct file_row *before, int device) {
     const struct dalcs_device *d = &a->circuit->device[device];
@@ -67,9 +77,8 @@ unsigned char file_position(const struct file_audit *a, const struct file_row *r
     }
     const double margin = now.error + control_tolerance(a, device);
     unsigned char position = d->initially_on ? FILE_CLOSED : FILE_OPEN;
-    const bool is_start = a->is_at_rest || a->circuit->transient.use_initial_conditions;
-    if (before == NULL && (row->t > 0.0 || !(is_start || row->is_left))) {
-        position = FILE_OPEN | FILE_CLOSED; /* what the control did before is not in the file */
+    if (before == NULL && !knows_start(a, row, d)) {
+        position = FILE_OPEN | FILE_CLOSED;
     }
     double low = now.value;
     double high = low;

@@ -78,18 +78,16 @@ struct file_number file_stimulus(const struct file_audit *a, const struct file_r
  * one's scale, currents of diodes and switches below 1e-2. */
 static const double least_signal = 1e-5, least_of_pair = 1e-2;
 
-/* V, A: where nothing is, SPICE's vntol and abstol. */
-static const double vntol = 1e-6, abstol = 1e-12;
-
 double file_volts(const struct file_audit *a, int device) {
-    return a->tolerance * fmax(a->u_scale[device], least_signal * a->volts) + vntol;
+    return a->promise.tolerance * fmax(a->u_scale[device], least_signal * a->volts) +
+           a->promise.vntol;
 }
 
 double file_amperes(const struct file_audit *a, int device) {
     const enum dalcs_device_kind kind = a->circuit->device[device].kind;
     const bool is_pair = kind == DALCS_DIODE || kind == DALCS_SWITCH;
     const double least = is_pair ? least_of_pair : least_signal;
-    return a->tolerance * fmax(a->i_scale[device], least * a->amperes) + abstol;
+    return a->promise.tolerance * fmax(a->i_scale[device], least * a->amperes) + a->promise.abstol;
 }
 
 /* ---- Columns ------------------------------------------------------------------------------------ */

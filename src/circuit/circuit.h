@@ -342,6 +342,11 @@ static inline bool dalcs_circuit_has_waves(const struct dalcs_circuit *circuit) 
     return circuit->transient.present || circuit->periodic.present;
 }
 
+/* Has an analysis answers that the audit reads? */
+static inline bool dalcs_circuit_is_audited(const struct dalcs_circuit *circuit) {
+    return dalcs_circuit_has_waves(circuit) || circuit->operating_point || circuit->n_dc > 0;
+}
+
 /* A resistor of 0 ohm: its two nodes are one, unless its current is a signal. */
 static inline bool dalcs_device_is_short(const struct dalcs_device *device) {
     return device->kind == DALCS_RESISTOR && device->value == 0.0;

@@ -9,7 +9,8 @@ static enum dalcs_status check_interrupt(const struct dalcs_run *run) {
 
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct dalcs_run *run = user;
-    run->progress.counts = plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
+    run->is_timeless = run->progress.counts =
+        plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
     if (plot->analysis == DALCS_TRANSIENT && plot->step == 0 && run->n_rows > 0.0) {
         DALCS_TRY(dalcs_row_volume_tell(run->cli, &run->outputs, plot, run->n_rows, run->quiet));
     }

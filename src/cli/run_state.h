@@ -17,9 +17,10 @@ struct dalcs_run {
     struct dalcs_measures_file measures;
     struct dalcs_print_table printed;
     struct dalcs_progress progress;
-    double time;     /* s, how far the run has come */
-    bool has_script; /* a .control block says what is run */
-    double n_rows;   /* of .tran in each step at least; 0: not known */
+    double time;      /* s, how far the run has come */
+    bool is_timeless; /* ... or not: its rows are points */
+    bool has_script;  /* a .control block says what is run */
+    double n_rows;    /* of .tran in each step at least; 0: not known */
     bool quiet;
     bool is_collected;
     struct dalcs_bifurcation_chart bifurcation;

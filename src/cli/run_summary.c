@@ -36,8 +36,13 @@ void dalcs_run_tell(const struct dalcs_run *run, const struct dalcs_arguments *a
     dalcs_bode_lines_write(out, report);
     if (status != DALCS_OK && !dalcs_run_is_whole(report, status)) {
         char text[DALCS_QUANTITY_SIZE];
-        fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
-                dalcs_status_text(status));
+        if (run->is_timeless) { /* its rows have no time */
+            fprintf(out, "  stopped   after %zu row%s: %s\n", run->outputs.n_rows,
+                    run->outputs.n_rows == 1 ? "" : "s", dalcs_status_text(status));
+        } else {
+            fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
+                    dalcs_status_text(status));
+        }
     }
     dalcs_summary_write_sides(out, report);
 

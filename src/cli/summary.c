@@ -133,11 +133,14 @@ static void write_work(FILE *out, const struct dalcs_report *report) {
 static void write_audit(FILE *out, const struct dalcs_report *report) {
     char text[DALCS_QUANTITY_SIZE];
     const long instants = report->audit.screened + report->audit.instants; /* sums, and each law */
-    fprintf(out, "  proof     audited at %ld instant%s: worst defect %.2g", instants,
-            plural(instants), report->audit.worst);
+    fprintf(out, "  proof     audited at %ld %s%s: worst defect %.2g", instants,
+            report->audit.segments > 0 ? "instant" : "operating point", plural(instants),
+            report->audit.worst);
     if (report->audit.worst > 0.0) {
-        fprintf(out, " of %s at %s", report->audit.where,
-                dalcs_quantity_write(text, report->audit.time, "s", DIGITS));
+        fprintf(out, " of %s", report->audit.where);
+    }
+    if (report->audit.worst > 0.0 && report->audit.segments > 0) { /* points have no time */
+        fprintf(out, " at %s", dalcs_quantity_write(text, report->audit.time, "s", DIGITS));
     }
     const bool is_wrong = report->audit.worst > report->audit.allowed;
     if (report->audit.positions > 0 && !is_wrong) {
@@ -152,7 +155,7 @@ static void write_audit(FILE *out, const struct dalcs_report *report) {
 
 static void write_certificate(FILE *out, const struct dalcs_report *report) {
     char text[DALCS_QUANTITY_SIZE];
-    if (report->audit.mode != NULL) {
+    if (report->audit.mode != NULL && (report->audit.segments > 0 || report->work.steps == 0)) {
         write_audit(out, report);
         return;
     }

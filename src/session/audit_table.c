@@ -5,6 +5,9 @@
 
 #include <math.h>
 
+/* SPICE's own reltol, vntol and abstol: what a simulator that was not asked for more promises of each signal. */
+static const struct dalcs_file_promise spice = {.tolerance = 1e-3, .vntol = 1e-6, .abstol = 1e-12};
+
 static enum dalcs_status refuse(struct dalcs_session *s, const char *what) {
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL, "%s", what);
     return DALCS_E_OPTION;
@@ -45,8 +48,9 @@ enum dalcs_status dalcs_session_audit_table(struct dalcs_session *s,
     if (audit == NULL) {
         return DALCS_E_NOMEM;
     }
-    DALCS_TRY(
-        dalcs_file_audit(&s->circuit, table, options->tolerance, &s->audited, &s->diag, audit));
+    struct dalcs_file_promise promise = spice;
+    promise.tolerance = options->tolerance > 0.0 ? options->tolerance : spice.tolerance;
+    DALCS_TRY(dalcs_file_audit(&s->circuit, table, &promise, &s->audited, &s->diag, audit));
     audit->netlist = s->name;
     audit->title =
         s->circuit.title != NULL ? dalcs_arena_printf(&s->audited, "%s", s->circuit.title) : NULL;

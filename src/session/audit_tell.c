@@ -1,4 +1,5 @@
 /* audit_tell.c - what the audit found, for the report and in words. */
+#include "audit_points.h"
 #include "audit_reader.h"
 
 #include "quantity.h"
@@ -164,6 +165,7 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
     if (s->report.audit.where == NULL) {
         return DALCS_E_NOMEM;
     }
+    dalcs_audit_add_points(a->run);
     DALCS_TRY(report_laws(a));
     tell_coarse(a);
     return found.is_broken && !a->ends_at_pole ? tell_broken(a, &found, name) : DALCS_OK;

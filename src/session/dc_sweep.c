@@ -3,7 +3,10 @@
  * Where sources alone are swept, one engine goes through all points: only its inputs change, and each
  * point starts in the mode of the one before. For anything else the circuit is built again at each
  * point, and the mode is handed on where the pairs are the same. */
+#include "audit_points.h"
 #include "gates.h"
+#include "idle_sources.h"
+#include "kept_modes.h"
 #include "measures.h"
 
 #include "quantity.h"
@@ -11,8 +14,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Operating points between calls of the sink's progress. */
-enum { PROGRESS_POINTS = 64 };
+enum {
+    PROGRESS_POINTS = 64, /* operating points between calls of the sink's progress */
+    AUDITED_POINTS = 64,  /* the first of them, all of which are audited */
+    POINTS_TO_AUDIT =
+        1024, /* of which one is drawn behind those: a look takes what 30 points take of one engine */
+};
 
 struct sweep {
     struct dalcs_run *run;
@@ -23,8 +30,10 @@ struct sweep {
     double *row;                 /* [n_dc - 1 + n_outputs] */
     size_t n_outputs, n_shown;
     struct dalcs_measures measures;
-    uint64_t **mode; /* [n_systems] of the last point, where the circuit is built again */
-    int *n_words, n_systems;
+    struct dalcs_idle_sources idle;
+    long pivots;                   /* of the engine, up to the point before */
+    uint64_t seed;                 /* of what is drawn */
+    struct dalcs_kept_modes modes; /* of the last point, where a network is built again */
 };
 
 static enum dalcs_unit unit_of(const struct dalcs_circuit *circuit,
@@ -90,9 +99,23 @@ static void blame_point(const struct sweep *s) {
                    is_nested ? " = " : "", is_nested ? text[1] : "");
 }
 
+/* The first points, the last one, those where the mode changes, and others that are drawn. */
+static bool is_audited(struct sweep *s, const struct dalcs_euler *e) {
+    long pivots = 0;
+    for (int i = 0; i < e->n_components; i++) {
+        pivots += e->component[i].osnsp.counters.pivots;
+    }
+    const bool has_changed = pivots != s->pivots;
+    s->pivots = pivots;
+    s->seed = s->seed * 6364136223846793005u + 1442695040888963407u; /* Knuth, TAOCP 2, 3.3.4 */
+    return has_changed || s->run->options->audit == DALCS_AUDIT_FULL || s->k < AUDITED_POINTS ||
+           s->k + 1 == s->n || (s->seed >> 33) % POINTS_TO_AUDIT == 0;
+}
+
 /* The operating point of e, as a row. */
 static enum dalcs_status solve_point(struct sweep *s, struct dalcs_euler *e,
                                      struct dalcs_logic_run *logic,
+                                     const struct dalcs_circuit *circuit,
                                      const struct dalcs_network *network) {
     struct dalcs_run *r = s->run;
     const size_t n_outer = (size_t)s->n_dc - 1;
@@ -108,6 +131,13 @@ static enum dalcs_status solve_point(struct sweep *s, struct dalcs_euler *e,
     dalcs_recorder_evaluate(network, e, s->row + n_outer);
     dalcs_measures_row(&s->measures, s->value[0], s->row + n_outer);
     DALCS_TRY(r->sink->row(r->sink->user, s->value[0], s->row));
+    if (is_audited(s, e)) {
+        status = dalcs_audit_point(r, circuit, network, e, s->row + n_outer, s->k > 0);
+        if (status == DALCS_REFUTED) {
+            blame_point(s);
+        }
+        DALCS_TRY(status);
+    }
     if ((s->k + 1) % PROGRESS_POINTS == 0) {
         DALCS_TRY(dalcs_run_progress(r, (double)(s->k + 1), (double)s->n));
     }
@@ -131,6 +161,35 @@ static struct dalcs_stimulus *stimulus_of(struct dalcs_circuit *circuit,
     return sweep->device < 0 ? NULL : &circuit->stimulus[circuit->device[sweep->device].stimulus];
 }
 
+/* A network of the circuit with the values of this point, and an engine that begins in the mode before. */
+static enum dalcs_status solve_network(struct sweep *s, struct dalcs_circuit *circuit,
+                                       const struct dalcs_network *network) {
+    struct dalcs_euler e;
+    DALCS_TRY(dalcs_euler_setup(&e, circuit, network, &s->run->osnsp, 1.0, 1.0));
+    struct dalcs_logic_run logic;
+    dalcs_kept_modes_hand_on(&s->modes, &e);
+    enum dalcs_status status = dalcs_logic_run_setup(&logic, circuit, &e, NULL);
+    status = status == DALCS_OK ? solve_point(s, &e, &logic, circuit, network) : status;
+    dalcs_logic_run_finish(&logic);
+    if (status == DALCS_OK) {
+        status = dalcs_kept_modes_take(&s->modes, &e);
+    }
+    dalcs_run_add_work(s->run, &e);
+    dalcs_euler_finish(&e);
+    return status;
+}
+
+/* Sources that agree in a loop elsewhere do not agree at this point, or the other way round. */
+static enum dalcs_status solve_on_its_own(struct sweep *s) {
+    struct dalcs_session *session = s->run->s;
+    const struct dalcs_network_options options = {.silent = true, .with_readout = true};
+    struct dalcs_network network;
+    DALCS_TRY(dalcs_network_build(&network, &session->circuit, &options, &session->diag));
+    const enum dalcs_status status = solve_network(s, &session->circuit, &network);
+    dalcs_network_finish(&network);
+    return status;
+}
+
 static enum dalcs_status walk(struct sweep *s, struct dalcs_euler *e,
                               struct dalcs_logic_run *logic) {
     struct dalcs_session *session = s->run->s;
@@ -143,7 +202,10 @@ static enum dalcs_status walk(struct sweep *s, struct dalcs_euler *e,
                 source->has_dc = true;
             }
         }
-        DALCS_TRY(solve_point(s, e, logic, &session->network));
+        bool differ;
+        DALCS_TRY(dalcs_idle_sources_compare(&s->idle, &session->circuit, &differ));
+        DALCS_TRY(differ ? solve_on_its_own(s)
+                         : solve_point(s, e, logic, &session->circuit, &session->network));
     }
     return DALCS_OK;
 }
@@ -163,10 +225,14 @@ static enum dalcs_status run_sources(struct sweep *s) {
     struct dalcs_logic_run logic;
     enum dalcs_status status = dalcs_logic_run_setup(&logic, circuit, &e, NULL);
     if (status == DALCS_OK) {
+        status = dalcs_idle_sources_find(&s->idle, circuit);
+    }
+    if (status == DALCS_OK) {
         status = walk(s, &e, &logic);
         dalcs_warn_of_restless_gates(r, &logic);
     }
     dalcs_logic_run_finish(&logic);
+    dalcs_idle_sources_finish(&s->idle);
     for (int i = 0; i < s->n_dc; i++) {
         struct dalcs_stimulus *source = stimulus_of(circuit, &s->dc[i]);
         if (source != NULL) {
@@ -180,56 +246,12 @@ static enum dalcs_status run_sources(struct sweep *s) {
 
 /* ---- Anything -------------------------------------------------------------------------------- */
 
-static void forget_modes(struct sweep *s) {
-    for (int i = 0; i < s->n_systems; i++) {
-        free(s->mode[i]);
-    }
-    free(s->mode);
-    free(s->n_words);
-    s->mode = NULL;
-    s->n_words = NULL;
-    s->n_systems = 0;
-}
-
-static enum dalcs_status keep_modes(struct sweep *s, const struct dalcs_euler *e) {
-    forget_modes(s);
-    s->mode = dalcs_alloc((size_t)e->n_components, sizeof *s->mode);
-    s->n_words = dalcs_alloc((size_t)e->n_components, sizeof *s->n_words);
-    if (s->mode == NULL || s->n_words == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    for (int i = 0; i < e->n_components; i++) {
-        const struct dalcs_osnsp *p = &e->component[i].osnsp;
-        s->mode[i] = dalcs_alloc((size_t)p->n_words, sizeof(uint64_t));
-        if (s->mode[i] == NULL) {
-            return DALCS_E_NOMEM;
-        }
-        memcpy(s->mode[i], p->mode, (size_t)p->n_words * sizeof(uint64_t));
-        s->n_words[i] = p->system->n_pairs;
-        s->n_systems = i + 1;
-    }
-    return DALCS_OK;
-}
-
-/* A first guess: the answer is verified again. Switches with hysteresis keep their sides by it. */
-static void hand_modes_on(const struct sweep *s, struct dalcs_euler *e) {
-    bool same = s->n_systems == e->n_components;
-    for (int i = 0; i < e->n_components && same; i++) {
-        same = s->n_words[i] == e->component[i].system->n_pairs;
-    }
-    for (int i = 0; i < e->n_components && same; i++) {
-        struct dalcs_osnsp *p = &e->component[i].osnsp;
-        memcpy(p->mode, s->mode[i], (size_t)p->n_words * sizeof(uint64_t));
-    }
-}
-
 static enum dalcs_status run_point(struct sweep *s) {
     struct dalcs_run *r = s->run;
     struct dalcs_override override[DALCS_MOST_DC];
     size_t n_overrides = 0;
     struct dalcs_circuit circuit;
     struct dalcs_network network;
-    struct dalcs_euler e;
     for (int i = 0; i < s->n_dc; i++) {
         n_overrides += dalcs_override_of(&s->dc[i], s->value[i], &override[n_overrides]) ? 1 : 0;
     }
@@ -244,19 +266,7 @@ static enum dalcs_status run_point(struct sweep *s) {
         blame_point(s);
         status = DALCS_E_NETLIST;
     } else {
-        status = dalcs_euler_setup(&e, &circuit, &network, &r->osnsp, 1.0, 1.0);
-        if (status == DALCS_OK) {
-            struct dalcs_logic_run logic;
-            hand_modes_on(s, &e);
-            status = dalcs_logic_run_setup(&logic, &circuit, &e, NULL);
-            status = status == DALCS_OK ? solve_point(s, &e, &logic, &network) : status;
-            dalcs_logic_run_finish(&logic);
-            if (status == DALCS_OK) {
-                status = keep_modes(s, &e);
-            }
-            dalcs_run_add_work(r, &e);
-            dalcs_euler_finish(&e);
-        }
+        status = solve_network(s, &circuit, &network);
     }
     dalcs_network_finish(&network);
     dalcs_circuit_finish(&circuit);
@@ -269,7 +279,6 @@ static enum dalcs_status run_circuits(struct sweep *s) {
         take_point(s, k);
         status = run_point(s);
     }
-    forget_modes(s);
     return status;
 }
 
@@ -312,6 +321,7 @@ enum dalcs_status dalcs_dc_sweep_run(struct dalcs_run *r) {
         status = dalcs_measures_report(&s.measures, r, DALCS_OK);
     }
     dalcs_measures_finish(&s.measures);
+    dalcs_kept_modes_finish(&s.modes);
     free(s.row);
     return status == DALCS_OK ? r->sink->end(r->sink->user) : status;
 }

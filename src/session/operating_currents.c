@@ -188,7 +188,7 @@ static enum dalcs_status make_shadow(struct dalcs_session *s, int n, struct dalc
     c->transient.step = 0; /* no more rows than are asked for */
     c->transient.start = 0;
     const struct dalcs_network_options options = {.silent = true,
-                                                  .with_readout = dalcs_circuit_has_waves(c)};
+                                                  .with_readout = dalcs_circuit_is_audited(c)};
     const enum dalcs_status status =
         dalcs_network_build(&shadow->network, c, &options, &shadow->diag);
     shadow->has_network = status == DALCS_OK;
@@ -310,7 +310,7 @@ static void note(struct dalcs_session *s, int n, int n_passes) {
 
 static enum dalcs_status rebuild_network(struct dalcs_session *s) {
     const struct dalcs_network_options options = {
-        .silent = true, .with_readout = dalcs_circuit_has_waves(&s->circuit)};
+        .silent = true, .with_readout = dalcs_circuit_is_audited(&s->circuit)};
     dalcs_network_finish(&s->network);
     const enum dalcs_status status =
         dalcs_network_build(&s->network, &s->circuit, &options, &s->diag);

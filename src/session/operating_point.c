@@ -1,6 +1,7 @@
 /* operating_point.c - .op: one one-step problem, one row. */
 #include "pipeline.h"
 
+#include "audit_points.h"
 #include "delayed.h"
 #include "gates.h"
 #include "measures.h"
@@ -45,6 +46,9 @@ static enum dalcs_status solve(struct dalcs_run *r, const struct dalcs_network *
     if (status == DALCS_OK) {
         dalcs_recorder_evaluate(network, &e, row);
         status = r->sink->row(r->sink->user, 0.0, row);
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_audit_point(r, &s->circuit, network, &e, row, false);
     }
     if (status == DALCS_OK) {
         status = measure_operating_point(r, row);

@@ -2,6 +2,8 @@
  *
  * dalcs_session_run at the end is the table of contents. */
 #include "pipeline.h"
+
+#include "audit_points.h"
 #include "computed.h"
 #include "cosimulation.h"
 #include "delayed.h"
@@ -262,6 +264,9 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
     for (size_t k = 0; k < n && status == DALCS_OK; k++) {
         status =
             atomic_load(&session->is_cancelled) ? DALCS_E_CANCELLED : run_analysis(&r, analysis[k]);
+    }
+    if (session->report.audit.mode == NULL) {
+        dalcs_audit_add_points(&r);
     }
     dalcs_steady_forget(&r);
     dalcs_names_finish(&r.interrupting);

@@ -130,7 +130,7 @@ static enum dalcs_status build(struct dalcs_session *s, struct dalcs_netlist *ne
     if (status == DALCS_OK) {
         status = dalcs_network_build(
             &s->network, &s->circuit,
-            &(struct dalcs_network_options){.with_readout = dalcs_circuit_has_waves(&s->circuit)},
+            &(struct dalcs_network_options){.with_readout = dalcs_circuit_is_audited(&s->circuit)},
             &s->diag);
         s->has_network = status == DALCS_OK;
     }

@@ -115,6 +115,13 @@ enum dalcs_method {
     DALCS_METHOD_EULER
 };
 
+/* What the audit has found at operating points. */
+struct dalcs_audited_points {
+    long n, positions;
+    double worst, allowed;
+    const char *where; /* NULL: nothing was audited */
+};
+
 struct dalcs_run {
     struct dalcs_session *s;
     const struct dalcs_run_options *options;
@@ -141,7 +148,8 @@ struct dalcs_run {
 
     struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */
     double *result;                        /* [n_measures] NAN: could not be measured */
-    const struct dalcs_plot *step;         /* its step and parameters; NULL without .step */
+    struct dalcs_audited_points points;
+    const struct dalcs_plot *step; /* its step and parameters; NULL without .step */
     const char *
         *name; /* [n_outputs] of the network: rows have the first n_shown, messages may name any */
     enum dalcs_unit *unit;

@@ -147,7 +147,7 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
         if (status == DALCS_OK) {
             const struct dalcs_network_options options = {
                 .silent = true,
-                .with_readout = dalcs_circuit_has_waves(circuit) || session->asks_steady};
+                .with_readout = dalcs_circuit_is_audited(circuit) || session->asks_steady};
             status = dalcs_network_build(network, circuit, &options, &diag);
         }
         if (status != DALCS_OK) {

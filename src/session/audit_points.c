@@ -1,0 +1,243 @@
+/* audit_points.c - an operating point as a table of one row, and what the audit says of it.
+ *
+ * The table has the voltages of the row that is written, and beside them every voltage and every current that the engine
+ * knows, so that no law has to be left out. A certified answer may be off by the rounding that the certificate allows. */
+#include "audit_points.h"
+
+#include "file_audit.h"
+#include "names.h"
+#include "rounding.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Columns of one row, and the arena that all of it is in. */
+struct point {
+    const struct dalcs_circuit *circuit;
+    const struct dalcs_readout *readout;
+    const struct dalcs_euler *euler;
+    struct dalcs_wave_table table;
+    struct dalcs_names there; /* of its columns */
+    const char **name;
+    double *value, *relative, *absolute;
+    struct dalcs_arena arena;
+};
+
+static enum dalcs_status make_room(struct point *p, size_t n_outputs) {
+    const size_t most = 1 + n_outputs + (size_t)p->circuit->n_nodes + (size_t)p->circuit->n_devices;
+    p->name = dalcs_arena_alloc(&p->arena, most, sizeof *p->name);
+    p->value = dalcs_arena_alloc(&p->arena, most, sizeof(double));
+    p->relative = dalcs_arena_alloc(&p->arena, most, sizeof(double));
+    p->absolute = dalcs_arena_alloc(&p->arena, most, sizeof(double));
+    if (p->name == NULL || p->value == NULL || p->relative == NULL || p->absolute == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    p->name[0] = "time";
+    p->table = (struct dalcs_wave_table){.n_columns = 1,
+                                         .n_rows = 1,
+                                         .name = p->name,
+                                         .value = p->value,
+                                         .relative = p->relative,
+                                         .absolute = p->absolute};
+    return DALCS_OK;
+}
+
+/* One more column, unless one of that name is there; `size` is what its value is a sum of. */
+static enum dalcs_status add(struct point *p, const char *name, double value, double size) {
+    const size_t c = p->table.n_columns;
+    int found;
+    if (name == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_names_find_or_add(&p->there, name, (int)c, &found));
+    if (found == (int)c) {
+        p->name[c] = name;
+        p->value[c] = value;
+        p->absolute[c] = dalcs_answer_rounded * size;
+        p->table.n_columns++;
+    }
+    return DALCS_OK;
+}
+
+static double size_of(const struct point *p, const struct dalcs_probe *probe) {
+    double size = 0.0;
+    for (int k = 0; probe->system >= 0 && k < probe->n_terms + probe->n_inputs; k++) {
+        const struct dalcs_component *c = &p->euler->component[probe->system];
+        const double *from = k < probe->n_terms ? c->y : c->u + c->system->n_x;
+        size += fabs(probe->term[k].coefficient * from[probe->term[k].index]);
+    }
+    return size;
+}
+
+/* The voltages that are written. A current may be that of several elements, of a coil and its Rpar. */
+static enum dalcs_status add_row(struct point *p, const struct dalcs_network *network,
+                                 const double *row) {
+    for (int k = 0; k < network->n_outputs; k++) {
+        const struct dalcs_output *output = &network->output[k];
+        const double size = size_of(p, &output->plus) + size_of(p, &output->minus);
+        if (!output->is_current) {
+            DALCS_TRY(add(p, output->name, row[k], size));
+        }
+    }
+    return DALCS_OK;
+}
+
+/* The nodes that a device hangs on have columns in its system. */
+static enum dalcs_status add_nodes(struct point *p, int device, bool *is_there) {
+    const struct dalcs_device *d = &p->circuit->device[device];
+    for (int k = 0; k < 4; k++) {
+        const int node = d->node[k];
+        const int column = node > 0 ? p->readout->node_column[node] : -1;
+        if (column >= 0 && !is_there[node]) {
+            is_there[node] = true;
+            const char *name = dalcs_arena_printf(&p->arena, "v(%s)", p->circuit->node_name[node]);
+            const double v = p->euler->component[p->readout->device_system[device]].y[column];
+            DALCS_TRY(add(p, name, v, fabs(v)));
+        }
+    }
+    return DALCS_OK;
+}
+
+/* The current of a device. One whose element has a terminal (file_names.c) follows by Kirchhoff's law. */
+static enum dalcs_status add_current(struct point *p, int device) {
+    const struct dalcs_readout *r = p->readout;
+    const char *of = p->circuit->device[device].name;
+    const char *name = dalcs_arena_printf(&p->arena, "i(%s)", of);
+    const char *terminal = dalcs_arena_printf(&p->arena, "i(terminal(%s))", of);
+    const double *y = p->euler->component[r->device_system[device]].y;
+    double current = 0.0;
+    double size = 0.0;
+    if (terminal == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = r->start[device]; k < r->start[device + 1]; k++) {
+        const double term = r->term[k].coefficient * y[r->term[k].column];
+        current += term;
+        size += fabs(term);
+    }
+    return r->start[device + 1] > r->start[device] && dalcs_names_find(&p->there, terminal) < 0
+               ? add(p, name, current, size)
+               : DALCS_OK;
+}
+
+static bool is_inner(const struct dalcs_device *d) {
+    return dalcs_names_is_inner(d->name);
+}
+
+/* Terminals and other inner devices first. */
+static enum dalcs_status fill(struct point *p) {
+    const struct dalcs_circuit *c = p->circuit;
+    bool *is_there = dalcs_arena_alloc(&p->arena, (size_t)c->n_nodes, sizeof(bool));
+    if (is_there == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int d = 0; d < 2 * c->n_devices; d++) {
+        const int device = d % c->n_devices;
+        const bool is_now = is_inner(&c->device[device]) == (d < c->n_devices);
+        if (p->readout->device_system[device] >= 0 && is_now) {
+            DALCS_TRY(add_nodes(p, device, is_there));
+            DALCS_TRY(add_current(p, device));
+        }
+    }
+    return DALCS_OK;
+}
+
+/* Of a part without an operating point a warning has told already: a switch in it is left as it stood. */
+static bool is_excused(const struct point *p, const struct dalcs_table_law *law) {
+    bool is = false;
+    for (int d = 0; d < p->circuit->n_devices && strcmp(law->law, "POSITION") == 0; d++) {
+        const int of = p->readout->device_system[d];
+        is = is || (of >= 0 && p->euler->component[of].commands.restless != NULL &&
+                    strcmp(p->circuit->device[d].name, law->where) == 0);
+    }
+    return is;
+}
+
+/* The worst law that counts; NULL: there is none. */
+static const struct dalcs_table_law *worst_of(const struct point *p,
+                                              const struct dalcs_table_audit *found) {
+    const struct dalcs_table_law *worst = NULL;
+    for (size_t k = 0; k < found->n_laws && worst == NULL; k++) {
+        worst = is_excused(p, &found->law[k]) ? NULL : &found->law[k];
+    }
+    return worst;
+}
+
+void dalcs_audit_add_points(struct dalcs_run *r) {
+    struct dalcs_report *report = &r->s->report;
+    const struct dalcs_audited_points *points = &r->points;
+    if (points->where == NULL) {
+        return;
+    }
+    const bool is_worse = report->audit.mode == NULL || points->worst > report->audit.worst;
+    report->audit.mode = r->options->audit == DALCS_AUDIT_FULL ? "full" : "sample";
+    report->audit.instants += points->n;
+    report->audit.positions += points->positions;
+    if (is_worse) {
+        report->audit.worst = points->worst;
+        report->audit.allowed = points->allowed;
+        report->audit.where = points->where;
+        report->audit.time = 0.0;
+    }
+}
+
+/* The worst law over its scale, and how many positions there were. */
+static enum dalcs_status fold(struct dalcs_run *r, const struct dalcs_table_audit *found,
+                              const struct dalcs_table_law *worst) {
+    struct dalcs_audited_points *points = &r->points;
+    const double defect = worst == NULL || worst->defect == 0.0
+                              ? 0.0
+                              : found->tolerance * worst->defect / worst->allowed;
+    points->n++;
+    points->allowed = found->tolerance;
+    for (size_t k = 0; k < found->n_laws; k++) {
+        points->positions += strcmp(found->law[k].law, "POSITION") == 0 ? 1 : 0;
+    }
+    if (points->where == NULL || defect > points->worst) {
+        const bool is_node = worst != NULL && strcmp(worst->law, "KCL") == 0;
+        points->worst = defect;
+        points->where = dalcs_arena_printf(&r->s->arena, "%s%s", is_node ? "KCL at " : "",
+                                           worst == NULL ? "" : worst->where);
+    }
+    return points->where != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static enum dalcs_status judge(struct dalcs_run *r, struct point *p, bool remembers) {
+    const struct dalcs_file_promise promise = {
+        .tolerance = r->tolerance, .vntol = r->vntol, .abstol = r->abstol, .remembers = remembers};
+    struct dalcs_table_audit found;
+    DALCS_TRY(dalcs_file_audit(p->circuit, &p->table, &promise, &p->arena, &r->s->diag, &found));
+    const struct dalcs_table_law *law = worst_of(p, &found);
+    DALCS_TRY(fold(r, &found, law));
+    if (law == NULL || !(law->defect > law->allowed)) {
+        return DALCS_OK;
+    }
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, "please report this netlist",
+                   "the operating point seems wrong: the audit finds %s of %s off by %.3g %s, and "
+                   "%.2g %s is allowed",
+                   law->law, law->where, law->defect, law->unit, law->allowed, law->unit);
+    return DALCS_REFUTED;
+}
+
+enum dalcs_status dalcs_audit_point(struct dalcs_run *r, const struct dalcs_circuit *circuit,
+                                    const struct dalcs_network *network,
+                                    const struct dalcs_euler *e, const double *row,
+                                    bool remembers) {
+    if (r->options->audit == DALCS_AUDIT_OFF || network->readout == NULL) {
+        return DALCS_OK;
+    }
+    struct point p = {.circuit = circuit, .readout = network->readout, .euler = e};
+    enum dalcs_status status = make_room(&p, (size_t)network->n_outputs);
+    if (status == DALCS_OK) {
+        status = add_row(&p, network, row);
+    }
+    if (status == DALCS_OK) {
+        status = fill(&p);
+    }
+    if (status == DALCS_OK && p.table.n_columns > 1) {
+        status = judge(r, &p, remembers);
+    }
+    dalcs_names_finish(&p.there);
+    dalcs_arena_finish(&p.arena);
+    return status;
+}

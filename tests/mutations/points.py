@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""Operating points and .dc sweeps, broken on purpose: the default audit has to find it.
+
+usage: points.py BUILD SOURCE [NAME...]
+"""
+
+import sys
+
+from mutations import run_all
+
+CIRCUIT = """elements of all kinds at rest
+v1 a 0 10
+i1 0 b 1m
+r1 a b 1k
+d1 b c di
+l1 c d 1m
+r2 d 0 470
+c1 d 0 1u
+s1 a e b 0 sw
+r3 e 0 220
+e1 f 0 d 0 2.5
+r4 f g 1k
+g1 g 0 e 0 1m
+r5 g 0 330
+h1 h 0 v1 50
+r6 h 0 1k
+d2 0 h dz
+b1 k 0 V={limit(3*v(d),-4,4)}
+r7 k 0 1k
+l2 m 0 1m
+l3 n 0 4m
+k1 l2 l3 1
+r8 a m 1k
+r9 n 0 1k
+s2 a q p 0 sw
+r10 q 0 100
+v2 p 0 PULSE(0 5 1u 1n 1n 5u 10u)
+.model di D(vfwd=0.7 ron=0.1 roff=1meg)
+.model dz D(vfwd=0.7 ron=0.1 vrev=5.1)
+.model sw SW(vt=2 vh=0.5 ron=0.1 roff=1meg)
+"""
+
+POINT = CIRCUIT + ".op\n"
+SWEEP = CIRCUIT + ".dc v1 -10 10 0.1\n"
+
+# name: (file, what to replace, by what, netlist)
+MUTATIONS = {
+    "a constant is 1e-4 too large": (
+        "euler/component.c", "    inputs[0] = 1.0;\n    for (int k = 1; k < s->n_inputs; k++) {\n"
+        "        inputs[k] = dalcs_stimulus_operating_value(",
+        "    inputs[0] = 1.0001;\n    for (int k = 1; k < s->n_inputs; k++) {\n"
+        "        inputs[k] = dalcs_stimulus_operating_value(", POINT),
+    "sources have the values of their waveforms at a later time": (
+        "euler/component.c", "        inputs[k] = dalcs_stimulus_operating_value(&c->circuit->stimulus[s->stimulus[k]],\n"
+        "                                                   transient_follows);\n",
+        "        inputs[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], 2e-6 + 0.0 * transient_follows,\n"
+        "                                         DALCS_RIGHT);\n", POINT),
+    "every second point of a sweep has the sources of the one before": (
+        "euler/euler.c", "        dalcs_component_sample_operating(c, transient_follows, c->u);\n",
+        "        static int n_; if (n_++ % 2 == 0) dalcs_component_sample_operating(c, transient_follows, c->u);\n", SWEEP),
+    "switches do not obey sources": (
+        "euler/component.c", "        if (wants != is_on) {\n            dalcs_osnsp_command(&c->osnsp, d, wants);\n",
+        "        if (wants != is_on && d < 0) {\n            dalcs_osnsp_command(&c->osnsp, d, wants);\n",
+        POINT.replace("PULSE(0 5", "PULSE(5 0")),
+    "a threshold is half a volt too high": (
+        "dalcs/stamp_device.c", ".turn_on = m->vt + m->vh,", ".turn_on = m->vt + m->vh + 0.5,",
+        CIRCUIT + ".dc v2 2.4 3.2 0.2\n"),
+    "resistances are 1e-5 too large": (
+        "dalcs/stamp_device.c", "dalcs_stamp_conductance(b, d, 1.0 / d->value)",
+        "dalcs_stamp_conductance(b, d, 1.0 / (1.00001 * d->value))", POINT),
+    "no leakage of switches": (
+        "dalcs/stamp_device.c", "        stamp_pair(b, d->node[0], d->node[1], 0.0, dalcs_stamp_series_part(m->ron, m->roff), pair));\n"
+        "    return isfinite(m->roff)", "        stamp_pair(b, d->node[0], d->node[1], 0.0, dalcs_stamp_series_part(m->ron, m->roff), pair));\n"
+        "    return m->roff < 1.0", POINT),
+    "diodes conduct 0.1 mV later": (
+        "dalcs/stamp_device.c", "m->vfwd, m->ron, pair)", "m->vfwd + 1e-4, m->ron, pair)", POINT),
+    "no breakdown": (
+        "dalcs/stamp_device.c", "    if (isfinite(m->vrev)) {", "    if (m->vrev < 0.0) {", SWEEP),
+    "a gain is 1e-5 too large": (
+        "dalcs/stamp_device.c", "d->is_delay && l->options->at_rest ? -1.0 : -d->value)",
+        "d->is_delay && l->options->at_rest ? -1.0 : -1.00001 * d->value)", POINT),
+    "a transconductance has the other sign": (
+        "dalcs/stamp_device.c", "d->node[2], d->node[3],\n                                            d->value);",
+        "d->node[2], d->node[3],\n                                            -d->value);", POINT),
+    "a row has the other sign": (
+        "waveform/recorder.c", "value[i] = dalcs_recorder_signal(network, e, i);",
+        "value[i] = -dalcs_recorder_signal(network, e, i);", POINT),
+}
+
+if __name__ == "__main__":
+    sys.exit(run_all(MUTATIONS, "points"))

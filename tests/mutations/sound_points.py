@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Right operating points: the audit finds nothing in them. Each netlist with .op in the place of its analyses, and with a
+sweep of its first source.
+
+usage: sound_points.py PROGRAM SOURCE
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker  # noqa: E402
+
+ANALYSES = re.compile(r"\.(tran|pss|env|ac|dc|op|four|meas|measure|losses|step|save|print|plot|wcase|mc|options|end)\b", re.I)
+AT_LEAST = 70  # netlists with an operating point
+
+
+def at_rest(text, card):
+    """The netlist without its analyses, and with `card`; a continued card goes with its first line."""
+    kept, keeps, is_script = [], True, False
+    for line in text.splitlines():
+        is_script = is_script or line.strip().lower().startswith(".control")
+        if not line.startswith("+"):
+            keeps = not is_script and not ANALYSES.match(line.strip())
+        is_script = is_script and not line.strip().lower().startswith(".endc")
+        if keeps:
+            kept.append(line)
+    return "\n".join([*kept, card, ".end", ""])
+
+
+def run(program, path, text, directory):
+    """Runs beside the netlist, whose includes are named from there."""
+    netlist = directory / path.name
+    netlist.write_text(text)
+    return subprocess.run([program, "run", netlist, "-o", directory / "out.csv", "--audit", "full"], cwd=path.parent,
+                          capture_output=True, text=True, timeout=100)
+
+
+def main():
+    program, source = sys.argv[1], pathlib.Path(sys.argv[2])
+    checker = Checker("sound_points")
+    n = 0
+    with tempfile.TemporaryDirectory() as name:
+        for path in sorted(source.glob("netlists/**/*.cir")):
+            text = path.read_text()
+            cards = [".op"]
+            first = re.search(r"^(v\w+)\s", text, re.I | re.M)
+            cards += [f".dc {first.group(1)} -10 10 1"] if first else []
+            for card in cards:
+                ran = run(program, path, at_rest(text, card), pathlib.Path(name))
+                n += card == ".op" and ran.returncode == 0
+                if ran.returncode == 1:
+                    checker.check("the audit finds" not in ran.stderr, f"{path.name} {card}: {ran.stderr}")
+                elif ran.returncode == 0:
+                    checker.check("audited at" in ran.stdout, f"{path.name} {card}: {ran.stdout}")
+    checker.check(n >= AT_LEAST, f"only {n} netlists have an operating point")
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
