@@ -40,7 +40,7 @@ def run(program, path, text, directory):
 
 
 def main():
-    program, source = sys.argv[1], pathlib.Path(sys.argv[2])
+    program, source = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
     checker = Checker("sound_points")
     n = 0
     with tempfile.TemporaryDirectory() as name:
