@@ -4,8 +4,6 @@
 #include "current.h"
 #include "stamp.h"
 
-#include <stdlib.h>
-
 /* Is its current a column of an equation? The currents of others follow from voltages; only formulas read that of a
  * capacitor. */
 static bool has_own_current(const struct dalcs_layout *l, int device) {
@@ -27,45 +25,48 @@ static bool has_own_current(const struct dalcs_layout *l, int device) {
     }
 }
 
-struct terms {
-    struct dalcs_readout_term *term; /* heap */
-    size_t n, capacity;
-    struct dalcs_arena arena; /* work */
-};
+/* Devices whose currents are in the work arena at a time, and bytes for each, which most need. */
+enum { DEVICES_AT_A_TIME = 4096, BYTES_EACH = 64 };
 
-static enum dalcs_status add_current(const struct dalcs_layout *l,
-                                     const struct dalcs_network *network, int device,
-                                     struct terms *all) {
-    const int system = l->topology.device_component[device];
-    if (system < 0 || !has_own_current(l, device)) {
-        return DALCS_OK;
+/* Counts the terms of each current into r->start or, where r->term is there, lists them. */
+static enum dalcs_status go_through(struct dalcs_readout *r, const struct dalcs_network *network,
+                                    const struct dalcs_layout *l) {
+    struct dalcs_arena work = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int d = 0; d < r->n_devices && status == DALCS_OK; d++) {
+        if (d % DEVICES_AT_A_TIME == 0) {
+            const int n =
+                r->n_devices - d < DEVICES_AT_A_TIME ? r->n_devices - d : DEVICES_AT_A_TIME;
+            dalcs_arena_finish(&work);
+            status = dalcs_arena_reserve(&work, (size_t)n * BYTES_EACH);
+        }
+        struct dalcs_current current = {0};
+        const int system = l->topology.device_component[d];
+        if (status == DALCS_OK && system >= 0 && has_own_current(l, d)) {
+            status = dalcs_layout_current(l, &network->system[system], d, &work, &current);
+        }
+        r->start[d + 1] = r->start[d] + current.n_terms;
+        for (int k = 0; k < current.n_terms && r->term != NULL && status == DALCS_OK; k++) {
+            r->term[r->start[d] + k] =
+                (struct dalcs_readout_term){current.term[k].index, current.term[k].coefficient};
+        }
     }
-    struct dalcs_current current = {0};
-    enum dalcs_status status =
-        dalcs_layout_current(l, &network->system[system], device, &all->arena, &current);
-    if (status == DALCS_OK) {
-        status = dalcs_grow(&all->term, &all->capacity, all->n + (size_t)current.n_terms,
-                            sizeof *all->term);
-    }
-    for (int k = 0; k < current.n_terms && status == DALCS_OK; k++) {
-        all->term[all->n++] =
-            (struct dalcs_readout_term){current.term[k].index, current.term[k].coefficient};
-    }
+    dalcs_arena_finish(&work);
     return status;
 }
 
 static enum dalcs_status fill(struct dalcs_readout *r, const struct dalcs_network *network,
-                              const struct dalcs_layout *l, struct terms *all) {
+                              const struct dalcs_layout *l, struct dalcs_arena *arena) {
     for (int n = 0; n < r->n_nodes; n++) {
         r->node_column[n] = dalcs_stamp_node_column(l, n);
     }
     for (int d = 0; d < r->n_devices; d++) {
         r->device_system[d] = l->topology.device_component[d];
         r->first_pair[d] = l->pair[d];
-        DALCS_TRY(add_current(l, network, d, all));
-        r->start[d + 1] = (int)all->n;
     }
-    return DALCS_OK;
+    DALCS_TRY(go_through(r, network, l));
+    r->term = dalcs_arena_alloc(arena, (size_t)r->start[r->n_devices], sizeof(*r->term));
+    return r->term != NULL ? go_through(r, network, l) : DALCS_E_NOMEM;
 }
 
 enum dalcs_status dalcs_readout_build(struct dalcs_network *network,
@@ -86,17 +87,7 @@ enum dalcs_status dalcs_readout_build(struct dalcs_network *network,
         r->start == NULL) {
         return DALCS_E_NOMEM;
     }
-    struct terms all = {0};
-    enum dalcs_status status = fill(r, network, layout, &all);
-    if (status == DALCS_OK) {
-        r->term = dalcs_arena_alloc(arena, all.n, sizeof(*r->term));
-        status = r->term != NULL ? DALCS_OK : DALCS_E_NOMEM;
-    }
-    for (size_t k = 0; k < all.n && status == DALCS_OK; k++) {
-        r->term[k] = all.term[k];
-    }
-    free(all.term);
-    dalcs_arena_finish(&all.arena);
+    const enum dalcs_status status = fill(r, network, layout, arena);
     network->readout = status == DALCS_OK ? r : NULL;
     return status;
 }

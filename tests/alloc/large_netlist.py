@@ -51,8 +51,9 @@ def measure(program, library, name, cards, n):
 def main():
     program, library = sys.argv[1:]
     checker = Checker("large_netlist")
-    # By element: bytes at the peak, with blocks that are not full, and allocations.
-    for name, cards, bytes_each, calls_each in (("elements", elements, 760, 0),
+    # By element: bytes at the peak, with blocks that are not full, and allocations. Of the first 80 are the columns by
+    # which the audit reads the operating point.
+    for name, cards, bytes_each, calls_each in (("elements", elements, 850, 0),
                                                 ("calls", calls, 1900, 1)):
         small, large = [measure(program, library, name, cards, n) for n in SIZES]
         checker.check(large.peak <= bytes_each * SIZES[1],
