@@ -5,6 +5,7 @@
 #include "guard_scale.h"
 #include "present.h"
 #include "restart.h"
+#include "rounding.h"
 #include "slide_try.h"
 #include "sliding.h"
 #include "step_error.h"
@@ -81,15 +82,31 @@ static enum dalcs_status put_on_threshold(struct dalcs_radau *r, struct dalcs_ra
     return DALCS_OK;
 }
 
+/* Of the errors of pairs, twice what rounding is known to make, for it is not the same each time. */
+static bool are_rounding(const struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
+    return of->pairs <= 2.0 * part->length.slide_rounding;
+}
+
+/* A try with an error of pairs, behind a longer one with pairs_before: rounding makes it where it does not shrink with the
+ * step, and is no more than sums over the sequences make of the rounding of one mean. */
+static void find_rounding(struct dalcs_radau_part *part, const struct dalcs_slide_try *of,
+                          double pairs_before) {
+    const double noise = of->noise / part->inner_tolerance;
+    const double most = of->rounding / dalcs_sum_rounded * noise / (1.0 + noise);
+    if (of->slides && of->pairs > 0.5 * pairs_before && of->pairs <= most) {
+        part->length.slide_rounding = of->pairs;
+    }
+}
+
 /* What is known of lengths behind a try. The estimate is of the order of what is extrapolated less one, over a segment; what
  * rounding makes is less in a longer one. */
 static void note(struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
     struct dalcs_part_length *l = &part->length;
-    const double of_length =
-        fmax(of->states, of->pairs) / (1.0 + of->noise / part->inner_tolerance);
+    const double error = are_rounding(part, of) ? of->states : fmax(of->states, of->pairs);
+    const double of_length = error / (1.0 + of->noise / part->inner_tolerance);
     if (!of->slides) {
         l->slide_until = part->segment.t + of->h;
-    } else if (fmax(of->states, of->pairs) > 1.0) {
+    } else if (error > 1.0) {
         l->slide = 0.5 * of->h;
     } else if (of->h >= l->slide) {
         const double longer = ldexp(of_length, DALCS_SLIDE_ORDER);
@@ -98,8 +115,10 @@ static void note(struct dalcs_radau_part *part, const struct dalcs_slide_try *of
 }
 
 /* Is the try exact enough? Currents that jump where a diode turns, or are rounded, do not even shrink as the step does. */
-static bool is_exact(const struct dalcs_slide_try *of, double pairs_before) {
-    return of->slides && of->states <= 1.0 && (of->pairs <= 1.0 || of->pairs > 0.5 * pairs_before);
+static bool is_exact(const struct dalcs_radau_part *part, const struct dalcs_slide_try *of,
+                     double pairs_before) {
+    return of->slides && of->states <= 1.0 &&
+           (of->pairs <= 1.0 || of->pairs > 0.5 * pairs_before || are_rounding(part, of));
 }
 
 /* Where a slide ends the flow of one side is along the threshold, and what is left of it is so short that its square is
@@ -147,10 +166,12 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
         DALCS_TRY(dalcs_slide_attempt(r, part, of));
         bool is_last =
             r->options.fixed_step > 0.0 || 0.5 * of->h < (of->slides ? least : least_end);
-        *slides = of->slides && (is_last || is_exact(of, pairs_before));
+        find_rounding(part, of, pairs_before);
+        *slides = of->slides && (is_last || is_exact(part, of, pairs_before));
         note(part, of);
         if (*slides) {
-            part->length.slide = is_last || of->pairs > 1.0 ? before : part->length.slide;
+            bool is_of_length = of->pairs <= 1.0 || are_rounding(part, of);
+            part->length.slide = is_last || !is_of_length ? before : part->length.slide;
             accept(r, part, of);
             return DALCS_OK;
         }
@@ -166,6 +187,7 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
 enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double limit, bool starts, bool *slides) {
     part->length.slide_until = starts ? INFINITY : part->length.slide_until;
+    part->length.slide_rounding = starts ? 0.0 : part->length.slide_rounding;
     prepare_positions(part);
     struct dalcs_slide_try of =
         dalcs_slide_try_of(part->stages.method, length_to_try(r, part, limit));

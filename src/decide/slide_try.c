@@ -15,6 +15,9 @@
 
 enum { ORDER = DALCS_SLIDE_ORDER };
 
+/* All step sizes of a segment come again in the next one, as long or half as long. */
+_Static_assert(2 * ORDER * DALCS_MAX_STAGES < DALCS_MOST_FORMS, "their forms and factors stay");
+
 /* weight[j - 1] of the sequence with j steps, in the value at step 0 of the polynomial through those from `first` on
  * (Aitken and Neville). */
 static void find_weights(int first, double *weight) {

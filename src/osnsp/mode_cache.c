@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Step sizes remembered: the regular step, the pieces of a few edges, the micro-steps. */
-enum { MAX_FORMS = 32 };
+/* Step sizes remembered whatever they hold: the regular step, the pieces of a few edges, the micro-steps. */
+enum { FEW_FORMS = 32 };
 
 static void unlink_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
     *(e->newer != NULL ? &e->newer->older : &p->cache.newest) = e->older;
@@ -63,8 +63,20 @@ static void remove_form(struct dalcs_osnsp *p, int k) {
         }
         e = next;
     }
+    p->cache.form_bytes -= dalcs_step_form_bytes(p->cache.form[k]);
     dalcs_step_form_finish(p->cache.form[k]);
     free(p->cache.form[k]);
+}
+
+/* For one more form. */
+static void make_room_for_form(struct dalcs_osnsp *p, size_t bytes) {
+    struct dalcs_mode_cache *c = &p->cache;
+    while (c->n_forms == DALCS_MOST_FORMS ||
+           (c->n_forms >= FEW_FORMS &&
+            c->form_bytes + bytes + c->entry_bytes > p->options.cache_bytes)) {
+        remove_form(p, --c->n_forms);
+    }
+    c->form_bytes += bytes;
 }
 
 enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) {
@@ -88,9 +100,7 @@ enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) {
             return status;
         }
         id = p->cache.next_form_id++;
-        if (p->cache.n_forms == MAX_FORMS) {
-            remove_form(p, --p->cache.n_forms);
-        }
+        make_room_for_form(p, dalcs_step_form_bytes(form));
         k = p->cache.n_forms++;
     }
     memmove(p->cache.form + 1, p->cache.form, (size_t)k * sizeof(*p->cache.form));

@@ -67,6 +67,10 @@ struct dalcs_mode_entry;
 struct dalcs_ordered_blocks;
 struct dalcs_smooth_newton;
 
+/* Step sizes remembered, at most: those of which somebody goes through all again and again, in one order, have to stay all at
+ * once. Slides do so (slide_try.c). */
+enum { DALCS_MOST_FORMS = 128 };
+
 /* Condensed forms by sigma, and factors by (mode, sigma). */
 struct dalcs_mode_cache {
     klu_common klu;
@@ -77,7 +81,7 @@ struct dalcs_mode_cache {
     uint32_t next_form_id;
     struct dalcs_mode_entry *entries; /* uthash */
     struct dalcs_mode_entry *newest, *oldest;
-    size_t entry_bytes;
+    size_t entry_bytes, form_bytes;
     int *
         matched_row; /* [n_matched] of the columns (equations, pairs) in the large modes so far, or -1;
                          NULL without any */

@@ -131,7 +131,7 @@ static enum dalcs_status list_references(struct dalcs_osnsp *p) {
 
 /* Bytes that are kept for the run, with something to spare. */
 static size_t room(const struct dalcs_system *system) {
-    enum { FOR_ALL = 2048, FOR_A_COLUMN = 256 };
+    enum { FOR_ALL = 3584, FOR_A_COLUMN = 256 };
 
     return FOR_ALL + FOR_A_COLUMN * (size_t)dalcs_system_n_columns(system);
 }
@@ -151,8 +151,8 @@ static enum dalcs_status make_room(struct dalcs_osnsp *p) {
     p->work.row = dalcs_arena_alloc(&p->arena, n_columns, sizeof(int));
     p->work.row_seen = dalcs_arena_alloc(&p->arena, n_columns, sizeof(int));
     p->w = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(double));
-    p->cache.form = dalcs_arena_alloc(&p->arena, 33, sizeof(*p->cache.form));
-    p->cache.form_id = dalcs_arena_alloc(&p->arena, 33, sizeof(*p->cache.form_id));
+    p->cache.form = dalcs_arena_alloc(&p->arena, DALCS_MOST_FORMS, sizeof(*p->cache.form));
+    p->cache.form_id = dalcs_arena_alloc(&p->arena, DALCS_MOST_FORMS, sizeof(*p->cache.form_id));
     p->work.difference = dalcs_arena_alloc(
         &p->arena, (size_t)(system->n_x + system->n_inputs) + n_columns, sizeof(double));
     p->lists.run = dalcs_arena_alloc(&p->arena, n_columns, sizeof(*p->lists.run));

@@ -313,6 +313,18 @@ enum dalcs_status dalcs_step_form_build(struct dalcs_step_form *form,
     return status;
 }
 
+static size_t bytes_of(const struct dalcs_csr *a) {
+    const size_t entries = a->p != NULL ? (size_t)a->p[a->n_rows] : 0;
+    return ((size_t)a->n_rows + 1) * sizeof(*a->p) + entries * (sizeof(*a->j) + sizeof(*a->x));
+}
+
+size_t dalcs_step_form_bytes(const struct dalcs_step_form *form) {
+    const size_t n_rows = (size_t)form->n + (size_t)form->n_pairs;
+    return sizeof(*form) + n_rows * (4 * sizeof(double) + 2 * sizeof(int)) + bytes_of(&form->K) +
+           bytes_of(&form->W) + bytes_of(&form->R) + bytes_of(&form->state.X) +
+           bytes_of(&form->state.Xu) + bytes_of(&form->checks.form);
+}
+
 void dalcs_step_form_finish(struct dalcs_step_form *form) {
     dalcs_arena_finish(&form->arena);
     dalcs_csr_finish(&form->K);

@@ -59,6 +59,9 @@ enum dalcs_status dalcs_step_form_build(struct dalcs_step_form *form,
                                         const struct dalcs_system *system,
                                         double sigma) DALCS_MUST_CHECK;
 
+/* What it holds. */
+size_t dalcs_step_form_bytes(const struct dalcs_step_form *form);
+
 void dalcs_step_form_finish(struct dalcs_step_form *form);
 
 #endif

@@ -62,8 +62,10 @@ struct dalcs_part_length {
     int tries;                /* falls back to implicit Euler in a row */
     double fell_back;         /* s, length of the last */
     double slide;             /* s, of a step along a threshold; 0: none so far */
-    double slide_until;       /* s, a time that the present slide does not reach */
-    long held_back;           /* steps that would have been longer, had the longest one been */
+    double
+        slide_rounding; /* of currents of pairs in it, over what is allowed: shorter ones have as much */
+    double slide_until; /* s, a time that the present slide does not reach */
+    long held_back;     /* steps that would have been longer, had the longest one been */
 };
 
 /* The scales of signals, and the errors of currents by rounding: step_error.h, current_error.h. */
