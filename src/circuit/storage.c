@@ -275,7 +275,11 @@ static double initial_voltage(const struct dalcs_builder *builder, int node) {
     return v;
 }
 
-static double initial_difference(const struct dalcs_builder *builder, int a, int b) {
+/* Of a capacitor's card: no current flows in front of a run, and none of it is across its Rser and Lser. */
+static double initial_difference(const struct dalcs_builder *builder,
+                                 const struct dalcs_device *device, int first) {
+    const int a = device->before_series != 0 ? device->before_series : first;
+    const int b = device->node[1];
     for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {
         const struct dalcs_initial_condition *ic = &builder->analyses.initial_condition[k];
         const bool is_same = ic->node[0] == a && ic->node[1] == b;
@@ -292,7 +296,7 @@ void dalcs_storage_resolve(struct dalcs_builder *builder) {
         struct dalcs_device *core = &builder->circuit->device[s->core];
         const double x = device->has_initial ? device->initial
                          : core->kind == DALCS_CAPACITOR
-                             ? initial_difference(builder, core->node[0], device->node[1])
+                             ? initial_difference(builder, device, core->node[0])
                              : 0;
         const double state = dalcs_storage_function_at(builder, &s->f, x);
         if (!isfinite(state)) {
