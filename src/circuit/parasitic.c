@@ -86,7 +86,8 @@ void dalcs_parasitic_expand(struct dalcs_builder *builder, const struct dalcs_to
                             "'rlshunt' lies across 'lser', which is not there");
         return;
     }
-    int from = device->node[0];
+    const int terminal = device->node[0];
+    int from = terminal;
     if (value[RPAR] > 0 || value[CPAR] > 0) {
         if (!dalcs_builder_add_terminal(builder, element, device)) {
             return;
@@ -113,6 +114,7 @@ void dalcs_parasitic_expand(struct dalcs_builder *builder, const struct dalcs_to
         }
         from = next;
     }
+    device->before_series = from != terminal ? terminal : 0;
     device->node[0] = from;
 }
 

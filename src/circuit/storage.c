@@ -13,6 +13,7 @@
 #include "behaviour.h"
 #include "element_cards.h"
 #include "formula_writer.h"
+#include "union_find.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -265,34 +266,61 @@ bool dalcs_storage_is(const struct dalcs_builder *builder, int device) {
     return builder->circuit->device[device].is_storage;
 }
 
+/* Nodes that resistors of 0 ohm join are one for .ic, as they are in the equations; NULL: no memory. */
+static int *join_nodes(struct dalcs_builder *builder) {
+    const struct dalcs_circuit *c = builder->circuit;
+    int *joined = dalcs_arena_alloc(&builder->scratch, (size_t)c->n_nodes + 1, sizeof *joined);
+    if (joined == NULL) {
+        builder->out_of_memory = true;
+        return NULL;
+    }
+    dalcs_union_reset(joined, c->n_nodes);
+    for (int k = 0; k < c->n_devices; k++) {
+        if (dalcs_device_is_short(&c->device[k])) {
+            (void)dalcs_union_join(joined, c->device[k].node[0], c->device[k].node[1]);
+        }
+    }
+    return joined;
+}
+
 /* The voltage of a node against ground by .ic, 0: none. */
-static double initial_voltage(const struct dalcs_builder *builder, int node) {
+static double initial_voltage(const struct dalcs_builder *builder, int *joined, int node) {
     double v = 0;
     for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {
         const struct dalcs_initial_condition *ic = &builder->analyses.initial_condition[k];
-        v = node != 0 && ic->node[0] == node && ic->node[1] == 0 ? ic->value : v;
+        const bool is_there = dalcs_union_find(joined, ic->node[0]) == node &&
+                              dalcs_union_find(joined, ic->node[1]) == 0;
+        v = node != 0 && is_there ? ic->value : v;
     }
     return v;
 }
 
-static double initial_difference(const struct dalcs_builder *builder, int a, int b) {
+/* Of a capacitor's card: no current flows before a run, so nothing is across its Rser and Lser. */
+static double initial_difference(const struct dalcs_builder *builder, int *joined,
+                                 const struct dalcs_device *device, int first) {
+    const int a =
+        dalcs_union_find(joined, device->before_series != 0 ? device->before_series : first);
+    const int b = dalcs_union_find(joined, device->node[1]);
     for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {
         const struct dalcs_initial_condition *ic = &builder->analyses.initial_condition[k];
-        const bool is_same = ic->node[0] == a && ic->node[1] == b;
-        if (is_same || (ic->node[0] == b && ic->node[1] == a)) {
-            return is_same ? ic->value : -ic->value;
+        const int end[2] = {dalcs_union_find(joined, ic->node[0]),
+                            dalcs_union_find(joined, ic->node[1])};
+        if ((end[0] == a && end[1] == b) || (end[0] == b && end[1] == a)) {
+            return end[0] == a ? ic->value : -ic->value;
         }
     }
-    return initial_voltage(builder, a) - initial_voltage(builder, b);
+    return initial_voltage(builder, joined, a) - initial_voltage(builder, joined, b);
 }
 
 void dalcs_storage_resolve(struct dalcs_builder *builder) {
-    for (const struct dalcs_storage *s = builder->formulas.storage; s != NULL; s = s->before) {
+    int *joined = builder->formulas.storage != NULL ? join_nodes(builder) : NULL;
+    for (const struct dalcs_storage *s = builder->formulas.storage; s != NULL && joined != NULL;
+         s = s->before) {
         struct dalcs_device *device = &builder->circuit->device[s->device];
         struct dalcs_device *core = &builder->circuit->device[s->core];
         const double x = device->has_initial ? device->initial
                          : core->kind == DALCS_CAPACITOR
-                             ? initial_difference(builder, core->node[0], device->node[1])
+                             ? initial_difference(builder, joined, device, core->node[0])
                              : 0;
         const double state = dalcs_storage_function_at(builder, &s->f, x);
         if (!isfinite(state)) {

@@ -39,11 +39,13 @@ static enum dalcs_status stamp_capacitor(struct stamps *b, int device, int fores
         DALCS_TRY(dalcs_stamp_branch_current(b, d, column, 1.0));
     }
     l->state_column[device] = x;
+    /* .ic says it of the terminals: before the start nothing flows through what is in series */
     const int *node_of = l->topology.node_of;
+    const int first = d->before_series != 0 ? d->before_series : d->node[0];
     b->initial[x] = d->has_initial
                         ? d->initial
                         : dalcs_initial_voltages_between(&l->initial_voltages, l->circuit, node_of,
-                                                         node_of[d->node[0]], node_of[d->node[1]]);
+                                                         node_of[first], node_of[d->node[1]]);
     return dalcs_stamp_add(&b->storage, x, x, d->value);
 }
 

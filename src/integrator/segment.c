@@ -89,6 +89,13 @@ static void judge(struct dalcs_radau *r, struct dalcs_radau_part *part,
                   const struct dalcs_search *search, double end, struct dalcs_trial *trial) {
     struct dalcs_step_quality *q = &trial->quality;
     dalcs_step_judge(r, part, trial->entry, end, q);
+    if (part->smooth != NULL && q->ratio > 1.0) { /* is it what Newton's method has left? */
+        if (dalcs_smooth_step_refine(part, &trial->entry) == DALCS_OK) {
+            dalcs_step_judge(r, part, trial->entry, end, q);
+        } else {
+            q->ratio = q->own = INFINITY;
+        }
+    }
     q->ratio = search->spared ? q->own : q->ratio;
     if (q->ratio != q->ratio || dalcs_step_clashes(part, trial->entry, end, q->unit)) {
         q->ratio = q->own = INFINITY;

@@ -39,6 +39,16 @@ struct asked {
     bool is_sine;
 };
 
+/* What the rounding of a time makes of a value: two ways to it have the time of a node to one rounding only, and in a
+ * stretch of a few roundings that is all of it. */
+static double doubt_of_time(const struct asked *q, double at, double value) {
+    const struct dalcs_stretch *s = &q->m->stretch;
+    const double off = DBL_EPSILON * fabs(at);
+    const double before = fabs(dalcs_stretch_value_near(s, q->formula, at, -off) - value);
+    const double after = fabs(dalcs_stretch_value_near(s, q->formula, at, off) - value);
+    return fmax(before, after); /* of a side that has no value the other one */
+}
+
 static double value_of(void *user, double t, double *doubt) {
     const struct asked *q = user;
     const struct dalcs_stretch *s = &q->m->stretch;
@@ -52,6 +62,9 @@ static double value_of(void *user, double t, double *doubt) {
         if (doubt != NULL) { /* of Clenshaw's sum of as many terms */
             *doubt = 16.0 * DALCS_STRETCH_NODES * DBL_EPSILON * fmax(q->scale, fabs(value));
         }
+    }
+    if (doubt != NULL) {
+        *doubt += doubt_of_time(q, at, dalcs_stretch_value(s, q->formula, at));
     }
     q->a->credit -= q->reads ? state_work : stretch_work;
     if (q->omega != 0.0) {

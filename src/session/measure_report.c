@@ -81,6 +81,28 @@ static bool check_instant(struct result *r, const struct dalcs_instant *i) {
     return false;
 }
 
+/* Of an operating point all are its value. Of one point of a sweep nothing is between two. */
+static void tell_point(struct result *r) {
+    const double value = r->item->value;
+    const bool is_swept = r->measuring->analysis != DALCS_MEASURED_OP;
+    switch (r->item->card->kind) {
+    case DALCS_MEASURE_MIN_AT:
+    case DALCS_MEASURE_MAX_AT:
+        give(r, is_swept ? r->measuring->start : value);
+        return;
+    case DALCS_MEASURE_RMS:
+        give(r, is_swept ? fabs(value) : value);
+        return;
+    case DALCS_MEASURE_PEAK_TO_PEAK:
+    case DALCS_MEASURE_INTEGRAL:
+        give(r, is_swept ? 0.0 : value);
+        return;
+    default:
+        give(r, value);
+        return;
+    }
+}
+
 /* Sums and extremes. */
 static void tell_statistic(struct result *r) {
     const struct dalcs_measured *item = r->item;
@@ -89,8 +111,8 @@ static void tell_statistic(struct result *r) {
     char a[DALCS_QUANTITY_SIZE];
     char b[DALCS_QUANTITY_SIZE];
     double length = item->end - item->begin;
-    if (r->measuring->analysis == DALCS_MEASURED_OP) {
-        give(r, item->value);
+    if (item->has_value) { /* of one point */
+        tell_point(r);
         return;
     }
     if (trig->card->kind != DALCS_INSTANT_NONE) {

@@ -17,6 +17,8 @@ struct dalcs_sensitivities {
     double *value[N_ORBITS];                 /* [n_results] */
     double *image[N_ORBITS]; /* [n_x] where a period leads to; of AT_VALUE that is the start */
     double *step;            /* [n_x] work */
+    struct looked *looked;   /* [n_results] of the value in hand */
+    bool may_differ;         /* the modes of orbits with another value */
     struct dalcs_orbit_point beside; /* work */
     struct dalcs_arena arena;
 };

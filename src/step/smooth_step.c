@@ -164,11 +164,10 @@ static enum dalcs_status add_missed(struct dalcs_radau_part *part,
     return DALCS_OK;
 }
 
-/* From the values that are there at t. */
-static enum dalcs_status iterate(struct dalcs_radau_part *part, struct dalcs_stage_entry **entry) {
+/* Until the values are the functions to so much of themselves, or to rounding. */
+static enum dalcs_status iterate(struct dalcs_radau_part *part, double tolerance,
+                                 struct dalcs_stage_entry **entry) {
     struct dalcs_smooth_newton *n = &part->smooth->newton;
-    const double tolerance = dalcs_larger(part->component->osnsp.options.certificate_tolerance,
-                                          dalcs_slight * part->inner_tolerance);
     for (int step = 0; step < MOST_STEPS; step++) {
         bool repeats;
         bool is_done;
@@ -205,6 +204,12 @@ static void take_tangents(struct dalcs_radau_part *part) {
     }
 }
 
+static void forget_missed(struct dalcs_radau_part *part) {
+    for (int k = 0; k < part->smooth->newton.system->n_smooth; k++) {
+        *value_at(part, k, part->stages.method->s + 1) = 0.0;
+    }
+}
+
 /* From what was there at the end of the segment before, or of a micro-step. */
 static enum dalcs_status solve(struct dalcs_radau_part *part, struct dalcs_stage_entry **entry) {
     struct dalcs_smooth_newton *n = &part->smooth->newton;
@@ -215,10 +220,10 @@ static enum dalcs_status solve(struct dalcs_radau_part *part, struct dalcs_stage
         n->phi[q] = now->phi[q % n_smooth];
     }
     dalcs_smooth_newton_begin(n, now->x);
-    for (int k = 0; k < n_smooth; k++) {
-        *value_at(part, k, part->stages.method->s + 1) = 0.0;
-    }
-    enum dalcs_status status = iterate(part, entry);
+    forget_missed(part);
+    const double tolerance = dalcs_larger(part->component->osnsp.options.certificate_tolerance,
+                                          dalcs_slight * part->inner_tolerance);
+    enum dalcs_status status = iterate(part, tolerance, entry);
     return status == DALCS_OK ? add_missed(part, entry) : status;
 }
 
@@ -233,6 +238,14 @@ enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
         part->segment.rounding = dalcs_stage_rounding(*entry);
     }
     return status;
+}
+
+enum dalcs_status dalcs_smooth_step_refine(struct dalcs_radau_part *part,
+                                           struct dalcs_stage_entry **entry) {
+    part->smooth->newton.defect = INFINITY;
+    forget_missed(part);
+    const enum dalcs_status status = iterate(part, 0.0, entry);
+    return status == DALCS_OK ? add_missed(part, entry) : status;
 }
 
 void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta) {

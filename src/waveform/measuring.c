@@ -293,12 +293,21 @@ static void measure_at_point(const struct dalcs_measuring *m, struct dalcs_measu
         }
         return;
     }
+    const struct dalcs_measure_instant *instant = &card->instant[0];
+    const bool is_found = card->kind == DALCS_MEASURE_FIND && instant->kind == DALCS_INSTANT_AT &&
+                          item->instant[0].at == m->stretch.from;
+    const bool is_inside = m->analysis == DALCS_MEASURED_OP ||
+                           (item->from <= m->stretch.from && m->stretch.from <= item->to);
     if (card->analysis == m->analysis && card->formula.n > 0 && card->kind != DALCS_MEASURE_PARAM &&
-        card->instant[0].kind == DALCS_INSTANT_NONE) {
+        (is_found || instant->kind == DALCS_INSTANT_NONE)) {
         item->value = dalcs_stretch_value(&m->stretch, &card->formula, m->stretch.from);
         item->has_no_value = isnan(item->value);
-        item->has_value = m->analysis == DALCS_MEASURED_OP && !item->has_no_value;
+        item->has_value = dalcs_measuring_has_one_point(m) && is_inside && !item->has_no_value;
     }
+}
+
+bool dalcs_measuring_has_one_point(const struct dalcs_measuring *m) {
+    return m->analysis == DALCS_MEASURED_OP || (!has_time(m->analysis) && m->start == m->stop);
 }
 
 /* At a single point, as an operating point is. */

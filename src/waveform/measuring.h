@@ -54,6 +54,9 @@ struct dalcs_measuring {
 bool dalcs_measuring_is_wanted(const struct dalcs_circuit *circuit,
                                enum dalcs_measured_analysis analysis);
 
+/* Is there one point alone: an operating point, or a sweep of one value? Then values, means and extremes are those there. */
+bool dalcs_measuring_has_one_point(const struct dalcs_measuring *m);
+
 /* From start to stop, in s or in the unit of what is swept. */
 enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
                                         const struct dalcs_circuit *circuit,

@@ -160,6 +160,15 @@ double dalcs_stretch_value(const struct dalcs_stretch *stretch,
     return evaluate(stretch, formula, -1, place_of(stretch, time));
 }
 
+double dalcs_stretch_value_near(const struct dalcs_stretch *stretch,
+                                const struct dalcs_signal_formula *formula, double time,
+                                double off) {
+    const struct place place = {stretch, -1, place_of(stretch, time + off)};
+    const struct dalcs_signal_formula_point point = {
+        .time = time + off, .user = &place, .signal = signal_at, .result = stretch->result};
+    return dalcs_signal_formula_value(formula, &point);
+}
+
 /* ---- Spans ------------------------------------------------------------------------------------ */
 
 struct visit {

@@ -61,6 +61,11 @@ bool dalcs_stretch_visit(const struct dalcs_stretch *stretch,
 double dalcs_stretch_value(const struct dalcs_stretch *stretch,
                            const struct dalcs_signal_formula *formula, double time);
 
+/* The same so far off, where what the formula says of `time` itself goes on beyond the ends of the stretch. */
+double dalcs_stretch_value_near(const struct dalcs_stretch *stretch,
+                                const struct dalcs_signal_formula *formula, double time,
+                                double off);
+
 /* Part of a span: x from a to b. */
 void dalcs_span_cut(const struct dalcs_stretch_rule *rule, const struct dalcs_span *span, double a,
                     double b, struct dalcs_span *part);

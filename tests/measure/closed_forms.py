@@ -462,6 +462,29 @@ def decibels(program, checker):
                   "the largest of vdb")
 
 
+def one_point(program, checker):
+    """Sweeps of one value have what is there."""
+    half = 1 / math.hypot(1, 2 * PI * 0.1)
+    for analysis, card, at, signal, wanted in (("ac", ".ac list 100", 100, "mag(v(b))", half),
+                                               ("ac", ".ac lin 1 100 100", 100, "mag(v(b))", half),
+                                               ("ac", ".ac dec 10 100 100", 100, "mag(v(b))", half),
+                                               ("dc", ".dc v1 -5 -5 1", -5, "v(b)", -5),
+                                               ("dc", ".dc v1 list -5", -5, "v(b)", -5)):
+        kinds = "MAX", "MIN", "AVG", "RMS", "PP", "INTEG", "MAX_AT"
+        text = (f"one point: {card}\nV1 a 0 AC 1\nR1 a b 1k\nC1 b 0 1u\n{card}\n"
+                + "".join(f".meas {analysis} {kind.lower()} {kind} {signal}\n" for kind in kinds)
+                + f".meas {analysis} there FIND {signal} AT={at}\n.meas {analysis} twice PARAM='2*there'\n"
+                + f".meas {analysis} beside FIND {signal} AT={at + 1}\n.meas {analysis} out AVG {signal} from={at + 1}\n.end\n")
+        r = Results(program, checker, text)
+        for name, value in (("max", wanted), ("min", wanted), ("avg", wanted), ("rms", abs(wanted)), ("there", wanted),
+                            ("twice", 2 * wanted), ("max_at", at)):
+            r.close(name, value)
+        for name in ("pp", "integ"):
+            r.close(name, 0, scale=1)
+        for name in ("beside", "out"):
+            checker.check(r.of.get(name, {}).get("value") is None, f"{card}: {name} is {r.of.get(name)}")
+
+
 def powers(program, checker):
     """w(x) and p(x): a resistor, a coil, a source, a diode and a switch; of a subcircuit's element; in a function, and
     where the netlist has a function of that name."""
@@ -589,7 +612,7 @@ def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
     for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels,
-                 powers, windows, rounding, thresholds):
+                 one_point, powers, windows, rounding, thresholds):
         test(program, checker)
     return checker.finish()
 

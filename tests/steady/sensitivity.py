@@ -462,6 +462,51 @@ def check_words(checker, program, folder):
     checker.check(done.returncode == 2 and "an option of 'dalcs steady'" in done.stderr, f"run: {done.stderr}")
 
 
+def check_corner_beside(checker, program, folder):
+    """The lowest of two dips, of which another value makes the other one the lowest: the corner is beside this one."""
+    for beside in (3e-3, 1.7e-3, 1.2e-3, 8e-4, 3e-4, 1.1e-4, 2e-5, -1.5e-3, -2e-4):
+        other = 1 + beside
+        done, report = run(program, folder, f"""Two dips
+.param dip=1
+V1 a 0 PULSE(0 {{-dip}} 0 0 0 2u 10u)
+V2 b a PULSE(0 {-other!r} 5u 0 0 2u 10u)
+R1 b c 1k
+C1 c 0 1n
+.pss uic
+.meas pss low min v(b)
+.sens param dip
+""")
+        by = derivatives(report)["measurement", "low", None][1] if report else {}
+        wanted = 0 if beside > 0 else -1
+        checker.check(done.returncode == 0 and abs(by.get("dip", math.nan) - wanted) < 1e-6,
+                      f"a corner {beside} beside: {by} {done.stderr}")
+
+
+def check_tied(checker, program, folder):
+    """A ladder of equal capacitors: its diodes share their events, and do not where one capacitor differs."""
+    text = """Cockcroft and Walton
+V1 a 0 SIN(0 100 10k)
+C1 a b 100n
+C2 b c {c2!r}
+C3 0 f 100n
+C4 f o 100n
+D1 0 b
+D2 b f
+D3 f c
+D4 c o
+R1 o 0 1Meg
+.pss uic
+.meas pss mean avg v(o)
+"""
+    done, report = run(program, folder, text.format(c2=100e-9) + ".sens c2\n")
+    by = derivatives(report)["measurement", "mean", None][1] if report else {}
+    mean = [results(run(program, folder, text.format(c2=100e-9 * (1 + d)))[1])["measurement", "mean", None]
+            for d in (-1e-3, 1e-3)]
+    own = (mean[1] - mean[0]) / 2e-10
+    checker.check(done.returncode == 0 and abs(by.get("c2", math.nan) - own) < 1e-4 * own,
+                  f"tied: {by} for {own} {done.stderr}")
+
+
 def check_corner(checker, program, folder):
     """A half-wave rectifier whose battery is just as high as the sine: above, nothing flows."""
     text = CLOSED[4][1].replace("Vb b 0 4", "Vb b 0 10").replace(".sens vb r1", ".sens vb")
@@ -481,6 +526,8 @@ def main():
             check_runs(checker, program, folder, case)
         check_words(checker, program, folder)
         check_corner(checker, program, folder)
+        check_corner_beside(checker, program, folder)
+        check_tied(checker, program, folder)
     return checker.finish()
 
 
