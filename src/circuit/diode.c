@@ -7,6 +7,7 @@
 #include "model_cards.h"
 #include "reader.h"
 
+#include <math.h>
 #include <string.h>
 
 static const char USAGE[] =
@@ -124,6 +125,14 @@ static void read_model(struct dalcs_reader *reader, struct dalcs_device *device)
         &builder->models.model[dalcs_names_find(&builder->models.names, name->text)].diode;
     if (scale.place != NULL) {
         scale_model(builder, card, device, &scale);
+    }
+    const struct dalcs_diode_model *model = &builder->circuit->diode_model[device->model];
+    if (model->vrev == 0) { /* and Vfwd = 0, and one resistance both ways (diode_model.c) */
+        device->kind = DALCS_RESISTOR;
+        device->value = isfinite(model->roff)
+                            ? model->ron * (model->roff / (model->ron + model->roff))
+                            : model->ron;
+        device->model = -1;
     }
     const struct dalcs_current_limits limits = {.forward = card->ilimit * scale.parallel,
                                                 .reverse = card->revilimit * scale.parallel};
