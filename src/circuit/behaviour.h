@@ -335,6 +335,7 @@ const struct dalcs_form *dalcs_staircase_form(struct dalcs_compiler *c,
 
 /* steps (quantity - less); less NULL: nothing. A condition is 1 where it is not 0. */
 struct dalcs_commutation {
+    const struct dalcs_formula *of; /* the choice; NULL: a product */
     const struct dalcs_formula *steps, *quantity, *less;
     bool is_condition; /* of a choice: 0 where it is false, 1 where it is true */
     bool is_opposite;  /* or the other way round */
@@ -355,5 +356,9 @@ const struct dalcs_formula *dalcs_behavioural_formula_of(const struct dalcs_buil
 /* The value of a formula; NULL when an error was reported or out of memory. */
 const struct dalcs_form *dalcs_compile(struct dalcs_compiler *c,
                                        const struct dalcs_formula *formula);
+
+/* As a condition: what is not 0, and in LTspice what is above 0.5 (its help, of conversion to Boolean). NULL: it is true
+ * unless a quantity is exactly 0. */
+const struct dalcs_form *dalcs_compile_truth(struct dalcs_compiler *c, const struct dalcs_form *a);
 
 #endif

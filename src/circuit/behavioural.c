@@ -43,14 +43,20 @@ static bool read_formula(struct dalcs_reader *reader, const struct dalcs_token *
 
 /* tc1=, temp= and the like behind a formula: nothing depends on a temperature. And what LTspice's steps are told there. */
 static bool skip_temperature(struct dalcs_reader *reader) {
-    static const char *const names[] = {"tc",    "tc1",        "tc2",    "temp",
-                                        "dtemp", "reciproctc", "tripdv", "tripdt"};
+    static const char *const names[] = {"tc",         "tc1",    "tc2",    "temp", "dtemp",
+                                        "reciproctc", "tripdv", "tripdt", "ic"};
     const struct dalcs_token *name;
     while ((name = dalcs_reader_peek(reader, 0)) != NULL &&
            dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]) &&
            dalcs_reader_take_parameter(reader) != NULL) {
-        dalcs_builder_note(reader->builder, name, NULL, "'%s' has no meaning here and is ignored",
-                           name->text);
+        if (strcmp(name->text, "ic") == 0) {
+            dalcs_builder_warn(
+                reader->builder, name, NULL,
+                "'ic' is left out: the formula says what the source is at the start");
+        } else {
+            dalcs_builder_note(reader->builder, name, NULL,
+                               "'%s' has no meaning here and is ignored", name->text);
+        }
         do {
             if (!dalcs_reader_skip_value(reader)) {
                 return false;

@@ -76,6 +76,10 @@ static const struct dot_card DOT_CARDS[] = {
      "write agauss, aunif, ... in expressions, and .mc with the number of runs", NOTHING, NULL},
     {".embeddedsampling", DALCS_CARD_NONE, "Xyce's samplings",
      "write agauss, aunif, ... in expressions, and .mc with the number of runs", NOTHING, NULL},
+    {".machine", DALCS_CARD_NONE, "state machines",
+     "A elements with SRFLOP, DFLOP or COUNTER are flip-flops and counters", ELEMENTS,
+     ".endmachine"},
+    {".endmachine", DALCS_CARD_NONE, "state machines", NULL, NOTHING, NULL},
     {".alter", DALCS_CARD_NONE, "altered runs", "write .step, or alter in a .control block",
      NOTHING, NULL},
 };
@@ -94,8 +98,8 @@ static const char SOUND[] = ".wave";
 static const char RESULT[] = ".result";
 
 /* Analyses that this simulator will not have. */
-static const char *const NEVER[] = {".noise", ".pz",      ".disto", ".tf",    ".sp",
-                                    ".hb",    ".machine", ".stab",  ".ferret"};
+static const char *const NEVER[] = {".noise", ".pz", ".disto", ".tf",
+                                    ".sp",    ".hb", ".stab",  ".ferret"};
 
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {

@@ -118,7 +118,7 @@ static const struct dalcs_levels *steps_of(struct dalcs_compiler *c,
     const struct dalcs_form *form =
         steps != NULL && what->is_over ? dalcs_form_reciprocal(c, steps) : steps;
     if (what->is_condition) {
-        const struct dalcs_form *logic = dalcs_form_to_logic(c, form);
+        const struct dalcs_form *logic = dalcs_compile_truth(c, form);
         return dalcs_levels_of(c, logic != NULL && what->is_opposite ? dalcs_form_negated(c, logic)
                                                                      : logic);
     }
@@ -187,8 +187,21 @@ static int add_node(struct dalcs_compiler *c, const struct dalcs_commutation *wh
     return node[1];
 }
 
+/* Choices inside choices are compiled again in the compilers of the outer ones' parts: a choice has one node in all of
+ * them, so that n of them, each in the last branch of another, have n nodes and not 2^n. */
+static int *known_node(struct dalcs_compiler *c, const struct dalcs_commutation *what) {
+    return what->of == NULL || c->is_silent || c->smooth_node == NULL
+               ? NULL
+               : &c->smooth_node[what->of->number_of];
+}
+
 const struct dalcs_form *dalcs_commutate(struct dalcs_compiler *c,
                                          const struct dalcs_commutation *what) {
+    int *known = known_node(c, what);
+    if (known != NULL && *known > 0 && !c->failed) {
+        const struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, *known);
+        return dalcs_form_affine(c, &v);
+    }
     if (c->depth >= DEEPEST || c->failed) {
         return NULL;
     }
@@ -207,6 +220,9 @@ const struct dalcs_form *dalcs_commutate(struct dalcs_compiler *c,
         }
         const struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, node);
         sum = dalcs_form_add(c, sum, levels->level[k].height, dalcs_form_affine(c, &v));
+        if (known != NULL && levels->n == 1 && levels->base == 0 && levels->level[0].height == 1) {
+            *known = node;
+        }
     }
     return sum;
 }

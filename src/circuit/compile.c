@@ -108,13 +108,15 @@ static const struct dalcs_form *compare(struct dalcs_compiler *c, const struct d
     return dalcs_form_to_logic(c, result);
 }
 
-/* As a condition: what is not 0, and in LTspice what is above 0.5 (its help, of conversion to Boolean). */
-static const struct dalcs_form *to_logic(struct dalcs_compiler *c, const struct dalcs_formula *f,
-                                         const struct dalcs_form *a) {
+const struct dalcs_form *dalcs_compile_truth(struct dalcs_compiler *c, const struct dalcs_form *a) {
     const bool is_above_half =
         c->builder->netlist->dialect.name == DALCS_DIALECT_LTSPICE && a != NULL && a->height != 1;
-    const struct dalcs_form *logic =
-        is_above_half ? compare(c, a, dalcs_form_number(c, 0.5), 0) : dalcs_form_to_logic(c, a);
+    return is_above_half ? compare(c, a, dalcs_form_number(c, 0.5), 0) : dalcs_form_to_logic(c, a);
+}
+
+static const struct dalcs_form *to_logic(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                         const struct dalcs_form *a) {
+    const struct dalcs_form *logic = dalcs_compile_truth(c, a);
     if (logic == NULL) {
         return refuse(c, f, "write a comparison, such as v(a) > 0",
                       "a condition that is true unless a quantity is exactly 0");
@@ -213,7 +215,8 @@ static const struct dalcs_form *choice(struct dalcs_compiler *c, const struct da
         return NULL;
     }
     if (dalcs_form_multiply(c, logic, difference, &product) != DALCS_PRODUCT_IS) {
-        const struct dalcs_commutation what = {.steps = f->argument[0],
+        const struct dalcs_commutation what = {.of = f,
+                                               .steps = f->argument[0],
                                                .quantity = f->argument[is_opposite ? 2 : 1],
                                                .less = f->argument[is_opposite ? 1 : 2],
                                                .is_condition = true,

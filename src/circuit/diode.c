@@ -7,6 +7,7 @@
 #include "model_cards.h"
 #include "reader.h"
 
+#include <math.h>
 #include <string.h>
 
 static const char USAGE[] =
@@ -125,6 +126,14 @@ static void read_model(struct dalcs_reader *reader, struct dalcs_device *device)
     if (scale.place != NULL) {
         scale_model(builder, card, device, &scale);
     }
+    const struct dalcs_diode_model *model = &builder->circuit->diode_model[device->model];
+    if (model->vrev == 0) { /* and Vfwd = 0, and one resistance both ways (diode_model.c) */
+        device->kind = DALCS_RESISTOR;
+        device->value = isfinite(model->roff)
+                            ? model->ron * (model->roff / (model->ron + model->roff))
+                            : model->ron;
+        device->model = -1;
+    }
     const struct dalcs_current_limits limits = {.forward = card->ilimit * scale.parallel,
                                                 .reverse = card->revilimit * scale.parallel};
     dalcs_current_limit_expand(builder, reader->card->token, device, &limits);
@@ -143,6 +152,16 @@ void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     read_model(&reader, device);
 }
 
+/* The function or model of an A element: the last word before parameters, whose values are words, too. */
+static const struct dalcs_token *function_of(const struct dalcs_card *card) {
+    int k = 1;
+    while (k + 1 < card->n && card->token[k + 1].kind != DALCS_TOKEN_EQUAL) {
+        k++;
+    }
+    const bool is_parameter = k + 1 < card->n && k > 1;
+    return card->n < 2 ? card->token : &card->token[is_parameter ? k - 1 : k];
+}
+
 /* An A element that is neither logic nor a block nor a diode. */
 static void refuse_block(struct dalcs_builder *builder, const struct dalcs_card *card,
                          const struct dalcs_token *type) {
@@ -151,7 +170,7 @@ static void refuse_block(struct dalcs_builder *builder, const struct dalcs_card 
                                             "samplehold", "counter", "modulate"};
     const size_t n = sizeof functions / sizeof functions[0];
     const char *name = card->token->text;
-    const struct dalcs_token *last = &card->token[card->n - 1];
+    const struct dalcs_token *last = function_of(card);
     builder->hidden |= DALCS_HIDDEN_ELEMENTS;
     if (type != NULL) {
         dalcs_builder_error(

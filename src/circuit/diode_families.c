@@ -37,7 +37,8 @@ enum form {
     CODED,     /* a digit and the number of a voltage: 107 */
     LETTERED,  /* a digit and a letter for a voltage: 2d */
     CARBIDE_5, /* two digits and three, the first of which may be 1p7: 10060 */
-    SINGLE     /* a digit and one or two: 24, 310 */
+    SINGLE,    /* a digit and one or two: 24, 310 */
+    VOLTS_FIRST /* two or three digits, then two that are tenths of amperes, then letters: 3010bea, 10020elr */
 };
 
 static const struct family {
@@ -54,6 +55,11 @@ static const struct family {
     {"mbr", DIGITS, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
     {"mbrb", SPLIT, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
     {"mbr", SPLIT, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
+    {"mbrm", DIGITS, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
+    {"pds", DIGITS, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
+    {"dfls", DIGITS, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
+    {"cmsh", SPLIT, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
+    {"pmeg", VOLTS_FIRST, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
     {"sb", DIGITS, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
     {"sr", DIGITS, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
     {"b", DIGITS, 1, DALCS_JUNCTION_SCHOTTKY, SCHOTTKY},
@@ -176,6 +182,12 @@ static bool read_single(const char *text, size_t n, double unit, double *rated) 
            set(text[0] - '0', value_of(text + 1, n - 1) * unit, rated);
 }
 
+static bool read_volts_first(const char *text, size_t n, double *rated) {
+    const size_t digits = count_digits(text, n);
+    return (digits == 4 || digits == 5) && n - digits <= 4 &&
+           set(value_of(text + digits - 2, 2) / 10, value_of(text, digits - 2), rated);
+}
+
 /* rated: A and V */
 static bool read_rating(const struct family *f, const char *text, size_t n, double *rated) {
     switch (f->form) {
@@ -191,6 +203,8 @@ static bool read_rating(const struct family *f, const char *text, size_t n, doub
         return read_carbide(text, n, f->unit, rated);
     case SINGLE:
         return read_single(text, n, f->unit, rated);
+    case VOLTS_FIRST:
+        return read_volts_first(text, n, rated);
     }
     return false;
 }

@@ -78,6 +78,12 @@ static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_tok
 
 /* ---- The idealised diode ------------------------------------------------------------------- */
 
+/* Conducts both ways alike from 0 V on, as macromodels of LTspice have it to limit a current: a resistor. */
+static bool is_resistor(const struct dalcs_parameter *p) {
+    return p[VREV].value == 0 && p[VFWD].value == 0 && p[RON].value == p[RREV].value &&
+           p[EPSILON].value == 0 && p[REVEPSILON].value == 0;
+}
+
 static bool check_ideal(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
     if (p[RON].value < 0) {
         dalcs_builder_error(builder, p[RON].place, NULL, "Ron cannot be negative");
@@ -88,13 +94,13 @@ static bool check_ideal(struct dalcs_builder *builder, const struct dalcs_parame
                             "Roff must be positive");
         return false;
     }
-    if (p[VREV].value <= 0) {
+    if (p[VREV].value <= 0 && !is_resistor(p)) {
         dalcs_builder_error(builder, p[VREV].place,
                             "Vrev is the magnitude of the breakdown voltage; leave it out for none",
                             "Vrev must be positive");
         return false;
     }
-    if (p[VFWD].value <= -p[VREV].value) {
+    if (p[VFWD].value <= -p[VREV].value && !is_resistor(p)) {
         dalcs_builder_error(builder, p[VFWD].place, NULL,
                             "Vfwd is not above the breakdown at -Vrev");
         return false;

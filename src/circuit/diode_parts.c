@@ -141,6 +141,13 @@ static const struct line LINES[] = {
     {"bas70 bas70-04 bas70-05 bas70-06 1n5711 1n6263", DALCS_JUNCTION_SCHOTTKY, 1e-3, 0.38, 15e-3,
      0.80, 70},
     {"bas40 bas40-04 bas40-05 bas40-06", DALCS_JUNCTION_SCHOTTKY, 1e-3, 0.33, 40e-3, 0.80, 40},
+    {"cmdsh-3", DALCS_JUNCTION_SCHOTTKY, 0.01, 0.33, 0.1, 0.50, 30},
+    {"cmdsh2-3", DALCS_JUNCTION_SCHOTTKY, 0.01, 0.31, 0.2, 0.48, 30},
+    {"rb218t150nz", DALCS_JUNCTION_SCHOTTKY, 1, 0.62, 10, 0.80, 150},
+    {"upsc600", DALCS_JUNCTION_SCHOTTKY, 0.1, 0.95, 1, 1.50, 600},
+    {"rfn60ts6d", DALCS_JUNCTION_SILICON, 3, 0.90, 30, 1.30, 600},
+    {"rr1lam6s", DALCS_JUNCTION_SILICON, 0.1, 0.78, 1, 0.93, 600},
+    {"rr2l6s", DALCS_JUNCTION_SILICON, 0.2, 0.80, 2, 0.95, 600},
     {"1n34 1n34a 1n60 1n270 aa112 aa119 oa90 oa91", DALCS_JUNCTION_GERMANIUM, 1e-4, 0.16, 5e-3,
      0.75, 60},
     {"led led_red red_led ledred red", DALCS_JUNCTION_LED, 1e-3, 1.60, 20e-3, 1.90, 5},
@@ -197,9 +204,10 @@ static const double HALF_WATT[] = {2.4, 2.5, 2.7, 2.8, 3.0, 3.3, 3.6, 3.9, 4.3, 
 static const double OLD[] = {3.3, 3.6, 3.9, 4.3, 4.7, 5.1, 5.6, 6.2, 6.8, 7.5, 8.2, 9.1, 10, 12};
 static const double OLDER[] = {6.8, 7.5, 8.2, 9.1, 10, 11, 12, 13, 15,
                                16,  18,  20,  22,  24, 27, 30, 33};
-static const double FIVE_WATTS[] = {3.3, 3.6, 3.9, 4.3, 4.7, 5.1, 5.6, 6.0, 6.2, 6.8, 7.5, 8.2, 8.7,
-                                    9.1, 10,  11,  12,  13,  14,  15,  16,  17,  18,  19,  20,  22,
-                                    24,  25,  27,  28,  30,  33,  36,  39,  43,  47,  51};
+static const double FIVE_WATTS[] = {3.3, 3.6, 3.9, 4.3, 4.7, 5.1, 5.6, 6.0, 6.2, 6.8, 7.5, 8.2,
+                                    8.7, 9.1, 10,  11,  12,  13,  14,  15,  16,  17,  18,  19,
+                                    20,  22,  24,  25,  27,  28,  30,  33,  36,  39,  43,  47,
+                                    51,  56,  60,  62,  68,  75,  82,  87,  91,  100};
 
 #define SERIES(prefix, first, volts, power, current)                                               \
     { prefix, first, (int)(sizeof(volts) / sizeof(volts)[0]), volts, power, current }
@@ -288,9 +296,10 @@ bool dalcs_diode_part_find(const char *name, struct dalcs_diode_part *part) {
     /* Of PSpice's and of a maker's libraries; and suffixes for housings and tapes. */
     static const char *const prefixes[] = {"", "d", "di_", "d_", "diode_"};
     static const char *const suffixes[] = {
-        "",    "a",     "b",    "w",    "ws", "wt", "g",   "l",  "rl",   "rlg",   "t1", "t1g",
-        "t3g", "lt1",   "lt1g", "lt3g", "-t", "tr", "-tp", "s",  "-7-f", "-13-f", "bg", "-e3",
-        "_f",  "w-7-f", "vl",   "ct",   "wt", "pt", "g2",  "d1", "e",    "c",     "t"};
+        "",     "a",     "b",   "w",   "ws",   "wt",    "g",  "l",   "rl",  "rlg",
+        "t1",   "t1g",   "t3g", "lt1", "lt1g", "lt3g",  "-t", "tr",  "-tp", "s",
+        "-7-f", "-13-f", "bg",  "-e3", "_f",   "w-7-f", "vl", "vly", "ly",  "wj",
+        "ct",   "wt",    "pt",  "g2",  "d1",   "e",     "c",  "t"};
     const size_t n = strlen(name);
     for (size_t k = 0; k < sizeof prefixes / sizeof prefixes[0]; k++) {
         const size_t before = strlen(prefixes[k]);

@@ -62,7 +62,10 @@ REFUSED = [
 # The names of UniversalOpamp2 before and after LTspice 24: a follower.
 OPAMP = "V1 p 0 5\nV2 n 0 -5\nV3 a 0 2\nX1 a b p n b {} Avol=1Meg\nR1 b 0 1k\n.save v(b)\n.op\n.end\n"
 OPAMPS = [("UniversalOpamps2.sub", ("level.1", "level.2", "level.3a", "level.3b")),
-          ("UniversalOpAmp2.lib", ("level1", "level2", "level3a", "level3b", "level.2"))]
+          ("UniversalOpAmp2.lib", ("level1", "level2", "level3a", "level3b", "level.2")),
+          ("UniversalOpAmp1.lib", ("level1",)), ("UniversalOpAmp3a.lib", ("level3a",)),
+          ("C:\\Users\\me\\AppData\\Local\\LTspice\\lib\\sub\\UniversalOpAmp3b.lib", ("level3b",)),
+          ("UniversalOpAmp1.lib\n.lib UniversalOpAmp2.lib\n.lib UniversalOpAmp3a.lib", ("level1", "level3a"))]
 
 
 def attempt(program, card, body, file=None, libraries="/nowhere"):
