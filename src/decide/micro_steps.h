@@ -8,6 +8,10 @@
  * factors other steps have. */
 enum { DALCS_FAR_SHORTER = 10 };
 
+/* Steps of implicit Euler without a certificate get longer so many times: a step so short may have none, as its states are
+ * rounded. */
+enum { DALCS_LONGER_TRIES = 4 };
+
 /* Notes a failure at part->segment.t with the problem of sigma and u[n_x + n_inputs]; returns status. */
 enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double sigma, const double *u,

@@ -15,9 +15,6 @@ enum { PROJECTIONS = 3 };
 
 static const int projection[PROJECTIONS] = {30, 20, 10};
 
-/* States that move by so many times their drift in a projecting step hide in it what they are off by. */
-static const double hidden = 16.0;
-
 /* What steps are tried for a projection. */
 struct lengths {
     double tried; /* s, the step before them */
@@ -58,7 +55,7 @@ bool dalcs_projection_sees(struct dalcs_radau_part *part, bool fixed) {
     bool sees = false;
     for (int x = 0; x < part->component->system->n_x && !sees; x++) {
         double regular = fabs(first[x] - part->x[x]) * part_of_span;
-        sees = drift[x] != 0.0 && !(hidden * fabs(drift[x]) < regular);
+        sees = drift[x] != 0.0 && !(dalcs_beyond * fabs(drift[x]) < regular);
     }
     return sees && !is_in_place(part);
 }
@@ -84,15 +81,15 @@ static double way_of(const struct dalcs_radau_part *part, int x, double beginnin
     return fabs(end[x] - beginning);
 }
 
-/* Is it elsewhere than the state, farther than the step goes? */
+/* Is it elsewhere than the state, beyond what the step goes? */
 static bool has_moved(const struct dalcs_radau_part *part, int x, double beginning) {
-    return fabs(beginning - part->x[x]) > 4.0 * way_of(part, x, beginning);
+    return fabs(beginning - part->x[x]) > dalcs_beyond * way_of(part, x, beginning);
 }
 
 /* Does the state go from node to node as rounding does? What it is off by may hide in that. */
 static bool is_rough(const struct dalcs_radau_part *part, int x, double beginning) {
     const double *drift = part->segment.out + part->stages.layout.drift;
-    return !(hidden * fabs(drift[x]) < way_of(part, x, beginning));
+    return !(dalcs_beyond * fabs(drift[x]) < way_of(part, x, beginning));
 }
 
 /* Of states in other blocks than `of` work.after is where they are. *moves: not so of one in it. */
@@ -132,7 +129,7 @@ static bool begins_elsewhere(const struct dalcs_radau_part *part) {
     bool differs = false;
     for (int x = 0; x < part->component->system->n_x && !differs; x++) {
         double beginning = beginning_of(part, x);
-        differs = fabs(beginning - part->work.y1[x]) > 4.0 * part->work.y2[x];
+        differs = fabs(beginning - part->work.y1[x]) > dalcs_beyond * part->work.y2[x];
     }
     return differs;
 }

@@ -16,9 +16,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Micro-steps without a certificate get longer so many times. */
-enum { LONGER_TRIES = 4 };
-
 /* Where a component is not passive, a state may jump although another one runs away, the farther the
  * shorter the micro-step: the derivative of an impulse. */
 static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -146,7 +143,7 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         memcpy(part->work.mode_before, part->component->osnsp.mode,
                (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
     }
-    for (int k = 0; k < LONGER_TRIES && status > DALCS_OK; k++) {
+    for (int k = 0; k < DALCS_LONGER_TRIES && status > DALCS_OK; k++) {
         h = dalcs_radau_micro_length(r, part, longer + k);
         status = dalcs_micro_steps(r, part, h);
     }

@@ -4,6 +4,7 @@
 #include "blocks.h"
 #include "doubt.h"
 #include "magnitudes.h"
+#include "micro_steps.h"
 #include "power_of_step.h"
 #include "present.h"
 #include "projection.h"
@@ -17,7 +18,6 @@ enum {
     LEVERED_STUCK = 2, /* of levered voltages alone */
     MOST_REFINED = 4,
     FALL_BACK_LEAST = 5,
-    LONGER_TRIES = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
     RIPPLE = 12     /* and are this many below the longest one where a switch goes to and fro */
 };
@@ -88,7 +88,7 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
     enum dalcs_status status = dalcs_radau_euler_step(r, part, part->length.fell_back);
     /* So short a step may have no certificate, as its states are rounded, and a longer one has. Of smooth functions it is that
      * nothing leads on. */
-    for (int k = 1; k < LONGER_TRIES && status == DALCS_NOT_CONVERGED && part->smooth == NULL &&
+    for (int k = 1; k <= DALCS_LONGER_TRIES && status == DALCS_NOT_CONVERGED && part->smooth == NULL &&
                     part->length.fell_back < most;
          k++) {
         part->length.fell_back = fmin(ldexp(h, 5 * k), most);
