@@ -198,8 +198,9 @@ static int *known_node(struct dalcs_compiler *c, const struct dalcs_commutation 
 const struct dalcs_form *dalcs_commutate(struct dalcs_compiler *c,
                                          const struct dalcs_commutation *what) {
     int *known = known_node(c, what);
-    if (known != NULL && *known > 0 && !c->failed) {
-        const struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, *known);
+    const int sign = what->is_opposite ? -1 : 1; /* it is kept with that of its node */
+    if (known != NULL && sign * *known > 0 && !c->failed) {
+        const struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, sign * *known);
         return dalcs_form_affine(c, &v);
     }
     if (c->depth >= DEEPEST || c->failed) {
@@ -221,7 +222,7 @@ const struct dalcs_form *dalcs_commutate(struct dalcs_compiler *c,
         const struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, node);
         sum = dalcs_form_add(c, sum, levels->level[k].height, dalcs_form_affine(c, &v));
         if (known != NULL && levels->n == 1 && levels->base == 0 && levels->level[0].height == 1) {
-            *known = node;
+            *known = sign * node;
         }
     }
     return sum;

@@ -104,7 +104,7 @@ def without_a_clock(program, checker):
 def main():
     program, names = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:]
     checker = dalcs_program.Checker("gates")
-    for circuit in gate_circuits.CIRCUITS:
+    for circuit in dalcs_program.kinds_of(gate_circuits.CIRCUITS):
         if not names or circuit[0] in names:
             try:
                 check(program, checker, circuit)

@@ -9,6 +9,7 @@ than the tolerance of the kick's volts, and by all of what the formula gives. A 
 large, where steps are on factors and no map tells what a guard is off by.
 """
 
+import itertools
 import pathlib
 import sys
 
@@ -50,18 +51,17 @@ def cards(case, formula, sections):
 def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("knees_beside_kicks")
-    for number, case in enumerate(CASES):
-        for formula, value in FORMULAS.items():
-            for sections in (1, 40, 90):
-                what = f"{number}, {sections} sections: {formula}"
-                done = dalcs_program.run(program, "\n".join(cards(case, formula, sections)) + "\n", method=None)
-                if not checker.check(done.status == 0, f"{what}: {done.stderr}"):
-                    continue
-                rows = list(zip(done.column("v(k)"), done.column("i(v5)"), done.column("v(y)")))
-                largest = max(abs(row[0]) for row in rows)
-                worst = max(abs(given - value(case[3] * amperes, volts)) for given, amperes, volts in rows)
-                checker.check(worst <= 1e-6 * largest, f"{what}: off by {worst} of {largest}")
-                checker.check(max(map(abs, done.column("v(b)"))) > 1e4 * case[0], f"{what}: there is no kick")
+    every = itertools.product(enumerate(CASES), FORMULAS.items(), (1, 40, 90))
+    for (number, case), (formula, value), sections in dalcs_program.some_of(list(every), 1):
+        what = f"{number}, {sections} sections: {formula}"
+        done = dalcs_program.run(program, "\n".join(cards(case, formula, sections)) + "\n", method=None)
+        if not checker.check(done.status == 0, f"{what}: {done.stderr}"):
+            continue
+        rows = list(zip(done.column("v(k)"), done.column("i(v5)"), done.column("v(y)")))
+        largest = max(abs(row[0]) for row in rows)
+        worst = max(abs(given - value(case[3] * amperes, volts)) for given, amperes, volts in rows)
+        checker.check(worst <= 1e-6 * largest, f"{what}: off by {worst} of {largest}")
+        checker.check(max(map(abs, done.column("v(b)"))) > 1e4 * case[0], f"{what}: there is no kick")
     return checker.finish()
 
 

@@ -155,7 +155,7 @@ def differentiate(function, values, name):
 
 
 def check_closed(checker, program, folder):
-    for name, text, values, (kind, of, *harmonic), function in CLOSED:
+    for name, text, values, (kind, of, *harmonic), function in dalcs_program.kinds_of(CLOSED):
         done, report = run(program, folder, text)
         if not checker.check(done.returncode == 0, f"{name}: {done.stderr}"):
             continue
@@ -522,7 +522,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         check_closed(checker, program, folder)
-        for case in sys.argv[2:] or RUNS:
+        for case in sys.argv[2:] or dalcs_program.kinds_of(RUNS):
             check_runs(checker, program, folder, case)
         check_words(checker, program, folder)
         check_corner(checker, program, folder)

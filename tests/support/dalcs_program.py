@@ -138,9 +138,18 @@ def run(program, netlist, step=None, at=None, options=(), report=True, environme
 def some_of(cases, n=3):
     """Of cases that differ by numbers alone one in n, spread evenly whatever period the order of the cases has, and the
     first; all in a long run, and by hand. Where DALCS_TEST_SOME is larger, as in .ci/run for sanitizers, one in so
-    many: what these look for shows in few of them as in all."""
+    many: what these look for shows in few of them as in all. With n = 1 these alone take fewer."""
     part = 1.0 / max(1 if IS_LONG else n, int(os.environ.get("DALCS_TEST_SOME", "1")))
     return [case for k, case in enumerate(cases) if k * 0.6180339887498949 % 1.0 < part]  # the golden section
+
+
+def kinds_of(cases):
+    """Of cases of different kinds all; one in four where DALCS_TEST_SOME is set, as in .ci/run for sanitizers, which
+    run each test at one commit in four: DALCS_TEST_TURN, the number of commits, says which."""
+    cases = list(cases)
+    if len(cases) < 4 or "DALCS_TEST_SOME" not in os.environ:
+        return cases
+    return cases[int(os.environ.get("DALCS_TEST_TURN", "0")) // 4 % 4::4]
 
 
 class Checker:
