@@ -88,8 +88,8 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
     enum dalcs_status status = dalcs_radau_euler_step(r, part, part->length.fell_back);
     /* So short a step may have no certificate, as its states are rounded, and a longer one has. Of smooth functions it is that
      * nothing leads on. */
-    for (int k = 1; k <= DALCS_LONGER_TRIES && status == DALCS_NOT_CONVERGED && part->smooth == NULL &&
-                    part->length.fell_back < most;
+    for (int k = 1; k <= DALCS_LONGER_TRIES && status == DALCS_NOT_CONVERGED &&
+                    part->smooth == NULL && part->length.fell_back < most;
          k++) {
         part->length.fell_back = fmin(ldexp(h, 5 * k), most);
         status = dalcs_radau_euler_step(r, part, part->length.fell_back);
