@@ -70,7 +70,8 @@ static struct file_number output_of(struct file_audit *a, const struct file_row 
     if (d->behaviour != NULL) {
         return file_formula(a, row, device);
     }
-    return file_add(file_exactly(0.0), d->value,
+    const double gain = d->is_delay && a->is_at_rest ? 1.0 : d->value;
+    return file_add(file_exactly(0.0), gain,
                     file_add(row->v[d->node[2]], -1.0, row->v[d->node[3]]));
 }
 

@@ -142,16 +142,16 @@ START_TEST(test_handful) {
 END_TEST
 
 /* Step sizes are bounded too, and take their factors along. */
-START_TEST(test_forms) {
-    setup((size_t)1 << 30);
-    for (int k = 1; k <= 100; k++) {
+static void check_forms(size_t bytes, int most) {
+    setup(bytes);
+    for (int k = 1; k <= 3 * most; k++) {
         ck_assert_int_eq(dalcs_forms_get(&p, 1e3 * k), DALCS_OK);
         ck_assert_double_eq(p.cache.form[0]->sigma, 1e3 * k);
         get(1, DALCS_PLAIN);
         get(2, DALCS_PLAIN);
-        ck_assert_int_le(p.cache.n_forms, 32);
-        ck_assert_uint_le(HASH_COUNT(p.cache.entries), 64);
-        /* The first of the hundred is used throughout and stays. */
+        ck_assert_int_le(p.cache.n_forms, most);
+        ck_assert_uint_le(HASH_COUNT(p.cache.entries), 2 * (unsigned)most);
+        /* The first of them is used throughout and stays. */
         const struct dalcs_step_form *first = NULL;
         ck_assert_int_eq(dalcs_forms_get(&p, 1e3), DALCS_OK);
         first = k == 1 ? p.cache.form[0] : first;
@@ -160,11 +160,23 @@ START_TEST(test_forms) {
         ck_assert_int_eq(p.counters.factorizations, before);
         ck_assert(first == NULL || p.cache.form[0] == first);
     }
+    ck_assert_int_eq(p.cache.n_forms, most);
     check_books();
     finish();
+}
+
+START_TEST(test_forms) {
+    check_forms((size_t)1 << 30, DALCS_MOST_FORMS);
+}
+
+END_TEST
+
+/* Beyond the cache's bytes a few stay: forms are of what a step always needs. */
+START_TEST(test_few_forms) {
+    check_forms(1, 32);
 }
 
 END_TEST
 
 RUN_TESTS("mode_cache", test_recurring, test_bounded, test_least_recently_used, test_handful,
-          test_forms)
+          test_forms, test_few_forms)
