@@ -1,6 +1,7 @@
 /* table_audit.c - rows of the summary's table added up again, and a row of each file read again. */
 #include "table_audit.h"
 
+#include "congruential.h"
 #include "memory.h"
 #include "rounding.h"
 
@@ -23,8 +24,7 @@ enum { PIECE = 1 << 14 };
 /* ---- Rows ---------------------------------------------------------------------------------------- */
 
 static double draw(struct dalcs_table_audit_sums *a) {
-    a->seed = a->seed * 6364136223846793005u + 1442695040888963407u; /* Knuth, TAOCP 2, 3.3.4 */
-    return (double)(a->seed >> 11) * 0x1p-53;
+    return dalcs_congruential_chance(&a->seed);
 }
 
 enum dalcs_status dalcs_table_audit_begin(struct dalcs_table_audit_sums *a,

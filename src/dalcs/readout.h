@@ -18,6 +18,16 @@ struct dalcs_readout {
     } * term;
 };
 
+/* The current of a device from the columns y of its system. */
+static inline double dalcs_readout_current(const struct dalcs_readout *r, int device,
+                                           const double *y) {
+    double current = 0.0;
+    for (int k = r->start[device]; k < r->start[device + 1]; k++) {
+        current += r->term[k].coefficient * y[r->term[k].column];
+    }
+    return current;
+}
+
 struct dalcs_layout;
 struct dalcs_network;
 

@@ -4,6 +4,7 @@
  * No fsync: results can be computed again, a power cut is not worth the wait. */
 #include "atomic_file.h"
 
+#include "congruential.h"
 #include "memory.h"
 
 #include <errno.h>
@@ -55,8 +56,7 @@ static void name_temporary(char *text, size_t size, const char *path, unsigned a
     uint64_t seed = ((uint64_t)now.tv_nsec << 20) ^ ((uint64_t)getpid() << 4) ^ attempt;
     char suffix[7] = "";
     for (int i = 0; i < 6; i++) {
-        seed = seed * 6364136223846793005u + 1442695040888963407u;
-        suffix[i] = letter[(seed >> 33) % (sizeof letter - 1)];
+        suffix[i] = letter[(dalcs_congruential_next(&seed) >> 33) % (sizeof letter - 1)];
     }
     snprintf(text, size, "%s.partial-%s", path, suffix);
 }

@@ -105,23 +105,16 @@ static enum dalcs_status add_current(struct point *p, int device) {
     const char *name = dalcs_arena_printf(&p->arena, "i(%s)", of);
     const char *terminal = dalcs_arena_printf(&p->arena, "i(terminal(%s))", of);
     const double *y = p->euler->component[r->device_system[device]].y;
-    double current = 0.0;
     double size = 0.0;
     if (terminal == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int k = r->start[device]; k < r->start[device + 1]; k++) {
-        const double term = r->term[k].coefficient * y[r->term[k].column];
-        current += term;
-        size += fabs(term);
+        size += fabs(r->term[k].coefficient * y[r->term[k].column]);
     }
     return r->start[device + 1] > r->start[device] && dalcs_names_find(&p->there, terminal) < 0
-               ? add(p, name, current, size)
+               ? add(p, name, dalcs_readout_current(r, device, y), size)
                : DALCS_OK;
-}
-
-static bool is_inner(const struct dalcs_device *d) {
-    return dalcs_names_is_inner(d->name);
 }
 
 /* Terminals and other inner devices first. */
@@ -133,7 +126,7 @@ static enum dalcs_status fill(struct point *p) {
     }
     for (int d = 0; d < 2 * c->n_devices; d++) {
         const int device = d % c->n_devices;
-        const bool is_now = is_inner(&c->device[device]) == (d < c->n_devices);
+        const bool is_now = dalcs_names_is_inner(c->device[device].name) == (d < c->n_devices);
         if (p->readout->device_system[device] >= 0 && is_now) {
             DALCS_TRY(add_nodes(p, device, is_there));
             DALCS_TRY(add_current(p, device));

@@ -40,11 +40,7 @@ static void copy_answer(const struct dalcs_audit_run *a, int index, const double
     }
     for (int k = 0; k < m->n_devices; k++) {
         const int d = m->device[k];
-        double current = 0.0;
-        for (int j = readout->start[d]; j < readout->start[d + 1]; j++) {
-            current += readout->term[j].coefficient * y[readout->term[j].column];
-        }
-        s->i[d] = current;
+        s->i[d] = dalcs_readout_current(readout, d, y);
         s->is_mean[d] = is_mean(a, c, d);
         if (a->run->s->circuit.device[d].kind == DALCS_SWITCH) {
             s->is_closed[d] = dalcs_mode_has(mode, readout->first_pair[d]);

@@ -1,6 +1,7 @@
 /* audit_run.c - which segments are handed to the auditor, and when. */
 #include "audit_reader.h"
 
+#include "congruential.h"
 #include "transient.h"
 
 #include <math.h>
@@ -157,8 +158,7 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
 }
 
 double dalcs_audit_run_chance(struct dalcs_audit_run *a) {
-    a->seed = a->seed * 6364136223846793005u + 1442695040888963407u; /* Knuth, TAOCP 2, 3.3.4 */
-    return (double)(a->seed >> 11) * 0x1p-53;
+    return dalcs_congruential_chance(&a->seed);
 }
 
 void dalcs_audit_run_settle(struct dalcs_audit_run *a, int k) {

@@ -9,6 +9,7 @@
 #include "kept_modes.h"
 #include "measures.h"
 
+#include "congruential.h"
 #include "quantity.h"
 
 #include <stdlib.h>
@@ -107,9 +108,9 @@ static bool is_audited(struct sweep *s, const struct dalcs_euler *e) {
     }
     const bool has_changed = pivots != s->pivots;
     s->pivots = pivots;
-    s->seed = s->seed * 6364136223846793005u + 1442695040888963407u; /* Knuth, TAOCP 2, 3.3.4 */
+    const bool is_drawn = (dalcs_congruential_next(&s->seed) >> 33) % POINTS_TO_AUDIT == 0;
     return has_changed || s->run->options->audit == DALCS_AUDIT_FULL || s->k < AUDITED_POINTS ||
-           s->k + 1 == s->n || (s->seed >> 33) % POINTS_TO_AUDIT == 0;
+           s->k + 1 == s->n || is_drawn;
 }
 
 /* The operating point of e, as a row. */
