@@ -63,7 +63,7 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("cases")
     with tempfile.TemporaryDirectory() as name:
-        for case in ("bridge", "buck_ccm", "buck_dcm", "buck_pcm", "buck_vm", "llc"):
+        for case in dalcs_program.kinds_of(("bridge", "buck_ccm", "buck_dcm", "buck_pcm", "buck_vm", "llc")):
             look_at(checker, program, pathlib.Path(name), case)
     return checker.finish()
 

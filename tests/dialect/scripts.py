@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker  # noqa: E402
+from dalcs_program import Checker, kinds_of  # noqa: E402
 
 
 def run(program, text, suffix="csv"):
@@ -330,7 +330,8 @@ def drawings(c):
 
 def main():
     checks = Checks(pathlib.Path(sys.argv[1]).resolve())
-    for part in (alters, loops, dowhiles, elements, drawings, measurements, frequencies, second_analyses, printed_formulas):
+    for part in kinds_of((alters, loops, dowhiles, elements, drawings, measurements, frequencies, second_analyses,
+                          printed_formulas)):
         part(checks)
     return checks.finish()
 

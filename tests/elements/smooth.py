@@ -12,7 +12,7 @@ import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker, run, some_of  # noqa: E402
+from dalcs_program import Checker, kinds_of, run, some_of  # noqa: E402
 
 EXACT = 2e-8
 
@@ -276,12 +276,8 @@ def main():
     checker = Checker("smooth")
     for name, scale in some_of([(name, scale) for name in list(EQUATIONS)[::step] for scale in SCALES]):
         check_equation(checker, program, method, name, scale)
-    check_functions(checker, program, method)
-    check_loops(checker, program, method)
-    check_many(checker, program, method)
-    check_switched(checker, program, method)
-    check_polynomials(checker, program, method)
-    check_refusals(checker, program, method)
+    for check in kinds_of((check_functions, check_loops, check_many, check_switched, check_polynomials, check_refusals)):
+        check(checker, program, method)
     check_places(checker, program)
     return checker.finish()
 

@@ -78,9 +78,9 @@ def check_bridge(checker, program, values, options):
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
     checker = dalcs_program.Checker("bridges that slide")
-    for values in BRIDGES:
-        for options in ([], ["--tol", "1e-10"], ["--method", "lobatto"]):
-            check_bridge(checker, program, values, options)
+    ways = [], ["--tol", "1e-10"], ["--method", "lobatto"]
+    for values, options in dalcs_program.kinds_of((values, options) for values in BRIDGES for options in ways):
+        check_bridge(checker, program, values, options)
     return checker.finish()
 
 

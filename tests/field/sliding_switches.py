@@ -14,7 +14,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
-from dalcs_program import Checker, run, some_of  # noqa: E402
+from dalcs_program import Checker, kinds_of, run, some_of  # noqa: E402
 
 SIZES = (("a regulator", 0.5, 5.0, 10e-6), ("kiloamperes", 5e3, 5e3, 1e-3), ("microamperes", 5e-6, 5.0, 1.0),
          ("hours", 5.0, 10.0, 36000.0))
@@ -257,15 +257,11 @@ def ripple(c):
 
 def main():
     c = Sliding("sliding_switches")
-    for size in some_of(SIZES):
-        current_limit(c, *size)
-        complementary(c, *size)
-        moving_threshold(c, *size)
-    for name, volts, seconds in some_of((("volts", 5.0, 1e-3), ("kilovolts", 5e3, 1e3), ("microvolts", 5e-6, 1e-9))):
-        thermostat(c, name, volts, seconds)
-        inverter(c, name, volts, seconds)
-        leaves(c, name, volts, seconds)
-    ripple(c)
+    units = (("volts", 5.0, 1e-3), ("kilovolts", 5e3, 1e3), ("microvolts", 5e-6, 1e-9))
+    looks = [(look, size) for size in some_of(SIZES) for look in (current_limit, complementary, moving_threshold)]
+    looks += [(look, unit) for unit in some_of(units) for look in (thermostat, inverter, leaves)]
+    for look, of in kinds_of([*looks, (ripple, ())]):
+        look(c, *of)
     return c.finish()
 
 

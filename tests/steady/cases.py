@@ -149,8 +149,8 @@ def main():
     checker = dalcs_program.Checker("cases")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for case in ("bridge", "buck_ccm", "buck_dcm", "buck_pcm", "buck_vm", "floating_charge",
-                     "llc"):
+        for case in dalcs_program.kinds_of(("bridge", "buck_ccm", "buck_dcm", "buck_pcm", "buck_vm", "floating_charge",
+                                            "llc")):
             look_at(checker, program, folder, case, (CASES / f"{case}.cir").read_text(),
                     json.loads((CASES / f"{case}.json").read_text()))
         slopes(checker, program, folder)

@@ -215,7 +215,7 @@ def main():
         print(f"{case.name}\n{case.netlist}.pss uic\n.end")
         return 0
     checker = dalcs_program.Checker("random converters")
-    for seed in seeds_of(sys.argv[2:]):
+    for seed in dalcs_program.some_of(seeds_of(sys.argv[2:]), 1):
         case = drawn.drawn(seed)
         with tempfile.TemporaryDirectory() as folder:
             found = Look(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(folder), checker, case).look()
