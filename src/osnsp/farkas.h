@@ -41,10 +41,10 @@ static inline int dalcs_claim_n_rows(const struct dalcs_system *s) {
     return dalcs_system_n_equations(s) + 2 * s->n_pairs;
 }
 
-/* Does a voltage or current of the circuit itself move this switch? */
+/* Does a voltage or current of the circuit itself move this switch? Those of a block are told where they are. */
 static inline bool dalcs_claim_follows(const struct dalcs_system *s, int pair) {
     return s->pair[pair].kind == DALCS_PAIR_SWITCH && !s->pair[pair].is_direct &&
-           s->control.p[pair] < s->control.p[pair + 1];
+           s->control.p != NULL && s->control.p[pair] < s->control.p[pair + 1];
 }
 
 /* The right-hand side of a row of the claim, and the sum of its terms' magnitudes. */

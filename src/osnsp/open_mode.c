@@ -8,6 +8,7 @@
 #include "least_norm.h"
 #include "nonnegative.h"
 #include "osnsp_internal.h"
+#include "rounding.h"
 #include "whole.h"
 
 #include <math.h>
@@ -98,7 +99,8 @@ static double wrong_by(const struct open_mode *m, size_t part) {
 
 /* Least |t| with V t >= -b: of |E q - f| with E = (V'; -b') and f = (0, ..., 0, 1), q >= 0, free for what must be 0, the
  * rest r = f - E q is 0 where there is none, and else t = -r / r_last. As r is perpendicular to E q, r_last = |r|^2, but
- * for rounding, which is all that is left of r where that is not so. The unit is what is most wrong. */
+ * for rounding, which is all that is left of r where that is not so, and where r is no more than rounding of f. The unit is
+ * what is most wrong. */
 static enum dalcs_status move(struct open_mode *m, double *y) {
     struct dalcs_nonnegative least;
     DALCS_TRY(dalcs_nonnegative_setup(&least, &m->arena, m->n + 1, (int)m->n_parts));
@@ -120,9 +122,10 @@ static enum dalcs_status move(struct open_mode *m, double *y) {
     }
     least.b[m->n] = 1.0;
     dalcs_nonnegative_solve(&least, n);
-    double last = least.rest[m->n];
-    bool is_rounding =
-        !(last > 0.0 && 2.0 * product(least.rest, least.rest, (size_t)least.m) > last);
+    const double last = least.rest[m->n];
+    const double square = product(least.rest, least.rest, (size_t)least.m);
+    const bool is_rounding =
+        !(last > 0.0 && 2.0 * square > last) || square <= dalcs_sum_rounded * dalcs_sum_rounded;
     for (int k = 0; k < m->n && !is_rounding; k++) {
         double t = -unit * least.rest[k] / last;
         add(y, t, m->direction + (size_t)k * m->n_columns, m->n_columns);

@@ -2,6 +2,7 @@
  * weights, by Lemke's method where pivots get nowhere; and for small systems that are not passive every mode. */
 #include "in_order.h"
 #include "magnitudes.h"
+#include "refute.h"
 
 #include <string.h>
 
@@ -83,8 +84,8 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     if (e->map != NULL && !by_factors) {
         dalcs_step_map_apply(p, e, u, y);
         dalcs_certificate_evaluate(p, u, y, sources_clash);
-        if (p->signs.n_violating > 0 || (p->certificate.worst <= tolerance && !*sources_clash)) {
-            return DALCS_OK;
+        if (p->signs.n_violating == 0 && p->certificate.worst <= tolerance && !*sources_clash) {
+            return DALCS_OK; /* a sign may be wrong by the rounding of a map, which the factors have not */
         }
     }
     if (e->singular) {
@@ -154,6 +155,13 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, const double *u, double *y
     return DALCS_NOT_CONVERGED;
 }
 
+/* Blocks of which each has one answer at most, if those before it are answered. Where one leaves something open the next
+ * may bear another choice than the one that was made. */
+static bool blocks_decide(const struct dalcs_osnsp *p) {
+    return dalcs_osnsp_is_monotone(p) && !p->least_norm &&
+           p->cache.form[0]->answers == DALCS_UNIQUE;
+}
+
 /* By pivoting on the whole, as most problems are solved; where that finds no answer, or one of several, block by
  * block: *is_done where that decides. The blocks begin with the sides that were there. */
 static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, const double *u,
@@ -180,7 +188,7 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
     }
     *is_done = status < DALCS_OK ||
                (p->partition.n_blocks > 1 &&
-                (status == DALCS_OK || (status == DALCS_INFEASIBLE && dalcs_osnsp_is_monotone(p))));
+                (status == DALCS_OK || (status == DALCS_INFEASIBLE && blocks_decide(p))));
     if (!*is_done) { /* pivoting goes on where it ended */
         memcpy(p->mode, p->work.regularised_mode, bytes);
     }
@@ -203,9 +211,11 @@ static bool is_undecided(enum dalcs_status status) {
     return status == DALCS_NOT_CONVERGED || status == DALCS_SINGULAR;
 }
 
-/* A ray may be no more than C/h beside a stray, and proves nothing where the circuit is not passive. */
-static bool is_proof(const struct dalcs_osnsp *p) {
-    return p->system->monotone && p->cache.form[0]->sigma == 0.0;
+/* Where the circuit is not passive a ray proves nothing, and iterates that have far to go look like one. */
+static enum dalcs_status prove(struct dalcs_osnsp *p, double sigma, const double *u,
+                               bool *is_proof) {
+    *is_proof = false;
+    return p->system->monotone ? dalcs_refute_by_ray(p, sigma, u, is_proof) : DALCS_OK;
 }
 
 /* With given sources. */
@@ -219,8 +229,13 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
     if (is_done) {
         return status;
     }
+    const bool is_open = status == DALCS_INFEASIBLE; /* after what blocks have chosen */
     status = solve_somehow(p, u, y);
-    if (is_undecided(status) || (status == DALCS_INFEASIBLE && !is_proof(p))) {
+    bool is_proof = false;
+    if (status == DALCS_INFEASIBLE) {
+        DALCS_TRY(prove(p, sigma, u, &is_proof));
+    }
+    if (is_undecided(status) || (status == DALCS_INFEASIBLE && !is_proof)) {
         enum dalcs_status otherwise = dalcs_scattering_solve(p, u, y);
         status = otherwise <= DALCS_OK ? otherwise : status;
     }
@@ -230,7 +245,7 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
         p->asks.insists = false;
         status = insisted <= DALCS_OK ? insisted : status;
     }
-    if (status > DALCS_OK && !dalcs_osnsp_is_monotone(p)) {
+    if (status > DALCS_OK && (is_open || !dalcs_osnsp_is_monotone(p))) {
         status = dalcs_enumerate(p, u, y);
         if (status == DALCS_INFEASIBLE) {
             dalcs_witness_from_modes(p);

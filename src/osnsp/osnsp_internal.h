@@ -249,6 +249,8 @@ double dalcs_witness_weight(const struct dalcs_witness *w, const struct dalcs_sy
 /* p->weighed. Of weights v[dalcs_claim_n_rows()] that refute a problem (farkas.h): whose equations and signs they are. Of
  * a problem of which several cases are refuted: its pairs. */
 void dalcs_witness_from_weights(struct dalcs_osnsp *p, const double *v);
+/* Likewise of a passive problem, into p->witness: they are a ray. */
+void dalcs_witness_from_passive_weights(struct dalcs_osnsp *p, const double *v);
 void dalcs_witness_from_cases(struct dalcs_osnsp *p);
 
 /* What it names becomes what p->witness names; the ray is not copied. */

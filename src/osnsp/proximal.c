@@ -13,6 +13,7 @@
 #include "magnitudes.h"
 #include "rounding.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -245,16 +246,28 @@ static enum dalcs_status try_exactly(struct dalcs_osnsp *p, const double *u, dou
     return status;
 }
 
+/* In balanced units no regular matrix makes of what drives it more than 1/eps of it. Iterates that have run so far away
+ * satisfy all equations to rounding, which hides what drives them. */
+static bool is_driven(const struct dalcs_osnsp *p) {
+    const struct dalcs_step_form *f = p->cache.form[0];
+    double drive = 0.0;
+    for (int i = 0; i < f->n + f->n_pairs; i++) {
+        drive = fmax(drive, fabs(p->work.right[i]));
+    }
+    return drive >= DBL_EPSILON * largest_unknown(p);
+}
+
 /* Evaluates p->work.scaled as the answer y; true: it is certified. *sources_clash: a reference of a floating island would
  * have to carry current. */
 static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool *sources_clash) {
     double *lambda = y + dalcs_system_n_equations(p->system);
+    const bool counts = is_driven(p);
     dalcs_osnsp_unscale(p, y);
     for (int d = 0; d < p->system->n_pairs; d++) {
         lambda[d] = dalcs_osnsp_is_on(p, d) ? lambda[d] : 0.0;
     }
     dalcs_certificate_evaluate(p, u, y, sources_clash);
-    return dalcs_certificate_holds(p, *sources_clash);
+    return counts && dalcs_certificate_holds(p, *sources_clash);
 }
 
 static void restart(struct dalcs_osnsp *p) {

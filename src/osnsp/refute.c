@@ -124,11 +124,27 @@ static enum dalcs_status setup(struct dalcs_refutation *r, struct dalcs_osnsp *p
     return find_reach(p, sigma, u, r->claim.reach);
 }
 
-static enum dalcs_status refute(struct dalcs_refutation *r, bool *is_certain) {
-    for (int side = 0; side < 2 && r->p->witness.has_ray && !*is_certain; side++) {
+/* Is the ray that was found a contradiction? */
+static bool is_refuted_by_ray(struct dalcs_refutation *r) {
+    bool is_refuted = false;
+    for (int side = 0; side < 2 && r->p->witness.has_ray && !is_refuted; side++) {
         weigh_by_ray(r, side == 0 ? 1.0 : -1.0);
-        *is_certain = dalcs_claim_is_refuted(&r->claim, r->v, r->sum);
+        is_refuted = dalcs_claim_is_refuted(&r->claim, r->v, r->sum);
     }
+    return is_refuted;
+}
+
+enum dalcs_status dalcs_refute_by_ray(struct dalcs_osnsp *p, double sigma, const double *u,
+                                      bool *is_certain) {
+    struct dalcs_refutation r;
+    enum dalcs_status status = setup(&r, p, sigma, u);
+    *is_certain = status == DALCS_OK && is_refuted_by_ray(&r);
+    dalcs_arena_finish(&r.work);
+    return status;
+}
+
+static enum dalcs_status refute(struct dalcs_refutation *r, bool *is_certain) {
+    *is_certain = is_refuted_by_ray(r);
     if (*is_certain || r->n_rows + r->n_columns > MOST_SIZE) {
         return DALCS_OK;
     }
@@ -172,12 +188,37 @@ static enum dalcs_status runs_away(struct dalcs_osnsp *p, double sigma, const do
     return status < DALCS_OK ? status : DALCS_OK;
 }
 
+/* Weights that all nodes of an island have alike say nothing, unless its sources clash: without them what is left may be
+ * small beside them. */
+static const double *without_common(struct dalcs_refutation *r) {
+    const struct dalcs_system *s = r->claim.system;
+    if (r->p->lists.n_references != 1) {
+        return r->proof;
+    }
+    const int held = s->A.j[s->A.p[r->p->lists.reference_row[0]]]; /* the node that is at 0 V */
+    double common = 0.0;
+    for (int row = 0; row < dalcs_system_n_equations(s); row++) {
+        common = s->dual[row] == held ? r->proof[row] : common;
+    }
+    for (int row = 0; row < r->n_rows; row++) {
+        const bool is_node = row < dalcs_system_n_equations(s) && s->row_is_current[row] &&
+                             s->column[s->dual[row]].kind == DALCS_LABEL_NODE;
+        const double own = r->proof[row] - (is_node ? common : 0.0);
+        const bool is_rounding = is_node && fabs(own) <= dalcs_weight_rounded(fabs(common));
+        r->right[row] = is_rounding ? 0.0 : own;
+    }
+    return dalcs_claim_is_refuted(&r->claim, r->right, r->sum) ? r->right : r->proof;
+}
+
 /* A ray of a system that is not passive tells of another problem, the transposed one, and names nothing for certain; the
- * weights do where there is but one case. Of several, each has its own. Without states and pairs they are a ray. */
-static void keep_weights(struct dalcs_osnsp *p, const struct dalcs_refutation *r) {
+ * weights do where there is but one case. Of several, each has its own. Of a passive system, and without states and pairs,
+ * weights are a ray. */
+static void keep_weights(struct dalcs_osnsp *p, struct dalcs_refutation *r) {
     const struct dalcs_system *s = p->system;
     const double *v = r->proof;
-    if (!s->monotone && r->n_cases == 1) {
+    if (s->monotone && r->n_cases == 1) {
+        dalcs_witness_from_passive_weights(p, without_common(r));
+    } else if (!s->monotone && r->n_cases == 1) {
         dalcs_witness_from_weights(p, v);
     } else if (!s->monotone) {
         dalcs_witness_from_cases(p);

@@ -11,4 +11,8 @@
 enum dalcs_status dalcs_osnsp_refute(struct dalcs_osnsp *p, double sigma, const double *u,
                                      bool *is_certain) DALCS_MUST_CHECK;
 
+/* The same, of nothing but the ray that p->witness has. */
+enum dalcs_status dalcs_refute_by_ray(struct dalcs_osnsp *p, double sigma, const double *u,
+                                      bool *is_certain) DALCS_MUST_CHECK;
+
 #endif

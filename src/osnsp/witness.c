@@ -27,6 +27,10 @@ static void add_element(struct dalcs_witness *w, const char *name) {
     w->element[w->n_elements++] = name;
 }
 
+static double but_rounding(double entry, double largest) {
+    return fabs(entry) > dalcs_nothing * largest ? entry : 0.0;
+}
+
 /* Sources that do work along d[n + n_pairs] (balanced). Where a row sums the KCL of a tree of
  * capacitors, the other rows of the tree are paired with voltages relative to its root. */
 static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) {
@@ -41,22 +45,18 @@ static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) 
                 int root = s->forest_root[f->column_of[i]] - s->n_x;
                 along -= d[root] * f->scale[root] / f->scale[i];
             }
+            along = but_rounding(along, largest) * f->scale[i] / f->row_scale[i];
             for (int k = f->R.p[i]; k < f->R.p[i + 1]; k++) {
                 if (f->R.j[k] == s->n_x + input) {
-                    double push = f->R.x[k] * f->scale[i] / f->row_scale[i];
-                    work += push * along;
-                    size += fabs(push);
+                    work += f->R.x[k] * along;
+                    size += fabs(f->R.x[k] * along);
                 }
             }
         }
-        if (fabs(work) > dalcs_nothing * largest * size) {
+        if (fabs(work) > dalcs_nothing * size) {
             add_element(&p->witness, s->input_element[input]);
         }
     }
-}
-
-static double but_rounding(double entry, double largest) {
-    return fabs(entry) > dalcs_nothing * largest ? entry : 0.0;
 }
 
 /* The direction in volts and amperes, of the states as well. */
@@ -135,15 +135,11 @@ static enum dalcs_witness_kind kind_of_ray(const struct dalcs_osnsp *p, const do
     return current >= voltage ? DALCS_WITNESS_LOOP : DALCS_WITNESS_CUTSET;
 }
 
-bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
+/* A ray, with what it makes of the pairs' w behind it, and its names. */
+static void take_ray(struct dalcs_osnsp *p, const double *d, double largest) {
     const struct dalcs_system *s = p->system;
     const struct dalcs_step_form *f = p->cache.form[0];
-    const double *d = p->work.step_now;
     const double *d_w = d + f->n + f->n_pairs;
-    double largest;
-    if (!is_ray(p, d, &largest)) {
-        return false;
-    }
     p->witness.n_elements = 0;
     keep_ray(p, d, largest);
     p->witness.kind = kind_of_ray(p, d);
@@ -161,7 +157,52 @@ bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
             add_element(&p->witness, s->pair[k].element);
         }
     }
-    return true;
+}
+
+bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
+    double largest;
+    const bool is = is_ray(p, p->work.step_now, &largest);
+    if (is) {
+        take_ray(p, p->work.step_now, largest);
+    }
+    return is;
+}
+
+/* The ray whose weights dalcs_witness_weight() tells. */
+static void find_ray(const struct dalcs_osnsp *p, const double *v, double *ray) {
+    const struct dalcs_system *s = p->system;
+    const int n_equations = dalcs_system_n_equations(s);
+    for (int pass = 0; pass < 2; pass++) { /* roots first */
+        for (int row = 0; row < n_equations; row++) {
+            const int c = s->dual[row];
+            const int root = s->forest_root[c];
+            if ((root == c) == (pass == 0)) {
+                ray[c] = v[row] + (root == c ? 0.0 : ray[root]);
+            }
+        }
+    }
+    memcpy(ray + n_equations, v + n_equations, (size_t)s->n_pairs * sizeof(double));
+}
+
+void dalcs_witness_from_passive_weights(struct dalcs_osnsp *p, const double *v) {
+    const struct dalcs_system *s = p->system;
+    const struct dalcs_step_form *f = p->cache.form[0];
+    const int n_equations = dalcs_system_n_equations(s);
+    double *ray = p->witness.ray;
+    double *d = p->work.step_now;
+    double largest = 0.0;
+    find_ray(p, v, ray);
+    for (int i = 0; i < f->n; i++) {
+        d[i] = ray[f->column_of[i]] / f->scale[i];
+    }
+    for (int k = 0; k < f->n_pairs; k++) {
+        d[f->n + k] = ray[n_equations + k] / f->scale[f->n + k];
+        d[f->n + f->n_pairs + k] = f->row_scale[f->n + k] * dalcs_csr_row_dot(&s->C, k, ray);
+    }
+    for (int i = 0; i < f->n + 2 * f->n_pairs; i++) {
+        largest = fmax(largest, fabs(d[i]));
+    }
+    take_ray(p, d, largest);
 }
 
 void dalcs_witness_from_clash(struct dalcs_osnsp *p) {

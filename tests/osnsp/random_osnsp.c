@@ -2,6 +2,7 @@
  *
  *     random_osnsp [CIRCUITS [FIRST_SEED]]     circuits of each family; prints what it found
  *     random_osnsp FAMILY SEED                 one circuit, with its netlist
+ *     random_osnsp FAMILY SEED... [FAMILY SEED...]...
  *
  * Circuits of 2 to 7 nodes and up to 9 diodes go the whole way from text. Every problem that has a
  * solution must be solved with a residual, recomputed here, of at most 2e-13; every other must be
@@ -450,14 +451,36 @@ static void check_circuit(enum sketch_family family, unsigned long seed, struct 
     text_network_finish(&twin);
 }
 
+/* SKETCH_N_FAMILIES: none has this name. */
+static int family_of(const char *name) {
+    int f = 0;
+    while (f < SKETCH_N_FAMILIES && strcmp(name, family_name[f]) != 0) {
+        f++;
+    }
+    return f;
+}
+
+/* The circuits of a command line that begins with a family. */
+static int check_given(int argc, char **argv) {
+    struct count count = {0};
+    int family = SKETCH_N_FAMILIES;
+    for (int k = 1; k < argc; k++) {
+        const int f = family_of(argv[k]);
+        if (f < SKETCH_N_FAMILIES) {
+            family = f;
+        } else {
+            check_circuit((enum sketch_family)family, strtoul(argv[k], NULL, 10), &count,
+                          argc == 3);
+        }
+    }
+    printf("random_osnsp: %d problems, %d failed\n", count.problems, count.failures + count.missed);
+    return count.failures + count.missed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
 int main(int argc, char **argv) {
     static const int share[] = {600, 300, 300, 100}; /* circuits of each family */
-    for (int f = 0; argc == 3 && f < SKETCH_N_FAMILIES; f++) {
-        if (strcmp(argv[1], family_name[f]) == 0) {
-            struct count count = {0};
-            check_circuit((enum sketch_family)f, strtoul(argv[2], NULL, 10), &count, true);
-            return count.failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
-        }
+    if (argc > 2 && family_of(argv[1]) < SKETCH_N_FAMILIES) {
+        return check_given(argc, argv);
     }
     int n_circuits = argc > 1 ? atoi(argv[1]) : 0;
     unsigned long first = argc > 2 ? strtoul(argv[2], NULL, 10) : 1;
