@@ -75,7 +75,7 @@ struct audit_sums {
     double *rounding;            /* [n_nodes] that is in it */
     double volts, amperes;       /* ... from the fluxes of coils, and the charges of capacitors */
     double *flux;                /* [n_devices] Wb, of coils */
-    double energy, energy_scale; /* J, or W */
+    double energy, energy_scale, energy_rounding; /* J, or W */
 };
 
 struct dalcs_audit {
