@@ -254,6 +254,12 @@ static void find_residual_of_choices(const struct dalcs_whole *whole, const doub
     }
 }
 
+static void add_correction(const struct dalcs_whole *whole, double *y) {
+    for (int c = 0; c < dalcs_system_n_columns(whole->p->system); c++) {
+        y[c] += whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
+    }
+}
+
 void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const double *line,
                        double *y) {
     int n_columns = dalcs_system_n_columns(whole->p->system);
@@ -262,9 +268,18 @@ void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const d
         find_residual(whole, u, line, y);
         find_residual_of_choices(whole, u, y);
         dalcs_lu_solve(&whole->lu, whole->residual);
-        for (int c = 0; c < n_columns; c++) {
-            y[c] += whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
+        add_correction(whole, y);
+    }
+}
+
+void dalcs_whole_refine(const struct dalcs_whole *whole, const double *u, double *y) {
+    for (int round = 0; round < REFINEMENTS; round++) {
+        find_residual(whole, u, NULL, y);
+        for (int k = 0; k < whole->n_choices; k++) {
+            whole->residual[whole->redundant[k]] = 0.0;
         }
+        dalcs_lu_solve(&whole->lu, whole->residual);
+        add_correction(whole, y);
     }
 }
 
