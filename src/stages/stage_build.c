@@ -120,35 +120,53 @@ static void drop_systems(struct dalcs_stage_factors *f) {
     }
 }
 
+/* Columns y at a node of a step that begins with `in`. */
+struct columns_at {
+    const struct dalcs_system *system;
+    const struct dalcs_stage_entry *entry;
+    const double *in, *y;
+};
+
+/* Adds factor times what row `from` of A, or of C, has there. */
+static void add_row(const struct columns_at *at, const struct dalcs_csr *a, int from, double factor,
+                    struct dalcs_row_miss *miss) {
+    const int n_equations = dalcs_system_n_equations(at->system);
+    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+        if (a->j[k] >= n_equations && !dalcs_stage_is_on(at->entry, a->j[k] - n_equations)) {
+            continue; /* y has its w there */
+        }
+        const double term = factor * a->x[k] * at->y[a->j[k]];
+        miss->missed += term;
+        miss->terms += fabs(term);
+        if (a->j[k] < at->system->n_x) { /* solved for as an increment over this */
+            miss->terms += fabs(a->x[k] * at->in[a->j[k]]);
+        }
+    }
+}
+
+/* Of a row with those that are added to it (stage_join.h), as its sources are. */
 struct dalcs_row_miss dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
                                                       const struct dalcs_stage_entry *entry, int r,
                                                       int node, const double *in, const double *y) {
     const struct dalcs_stage_plan *plan = stages->plan;
     const struct dalcs_system *s = stages->system;
-    int n_equations = dalcs_system_n_equations(s);
-    bool is_pair = r >= n_equations;
-    const struct dalcs_csr *a = is_pair ? &s->C : &s->A;
-    int from = is_pair ? r - n_equations : r;
-    double missed = in[s->n_x] * plan->constant[r];
-    double terms = fabs(missed);
-    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
-        if (a->j[k] >= n_equations && !dalcs_stage_is_on(entry, a->j[k] - n_equations)) {
-            continue; /* y has its w there */
-        }
-        double term = (is_pair ? -a->x[k] : a->x[k]) * y[a->j[k]];
-        missed += term;
-        terms += fabs(term);
-        if (a->j[k] < s->n_x) { /* solved for as an increment over this */
-            terms += fabs(a->x[k] * in[a->j[k]]);
-        }
+    const int n_equations = dalcs_system_n_equations(s);
+    const struct columns_at at = {s, entry, in, y};
+    const double constant = in[s->n_x] * plan->constant[r];
+    struct dalcs_row_miss miss = {constant, fabs(constant)};
+    if (r >= n_equations) {
+        add_row(&at, &s->C, r - n_equations, -1.0, &miss);
+    }
+    for (int f = r < n_equations ? r : -1; f >= 0; f = dalcs_stage_join_after(&plan->join, r, f)) {
+        add_row(&at, &s->A, f, 1.0, &miss);
     }
     for (int k = plan->waves.wave_begin[r]; k < plan->waves.wave_begin[r + 1]; k++) {
         double term = plan->waves.wave_x[k] *
                       plan->work.share[plan->waves.wave_of[k] * DALCS_N_SHARES + node];
-        missed += term;
-        terms += fabs(term);
+        miss.missed += term;
+        miss.terms += fabs(term);
     }
-    return (struct dalcs_row_miss){missed, terms};
+    return miss;
 }
 
 double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
