@@ -46,7 +46,8 @@ static void add_flow(struct dalcs_audit *audit, const struct audit_part *part,
         const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
         const double rounding = AUDIT_ROUNDING * (g * volts + fabs(i)) * duration;
         leave(audit, d, i * duration, amperes * duration, rounding);
-        audit->sums.energy_rounding += volts * rounding; /* Tellegen: currents that miss at a node take its voltage's power */
+        audit->sums.energy_rounding +=
+            volts * rounding; /* Tellegen: currents that miss at a node take its voltage's power */
         if (d->kind == DALCS_INDUCTOR) {
             audit->sums.flux[device] -= v * duration;
         } else {

@@ -31,7 +31,7 @@ def netlist(case, by_conditions):
              f"r1 p 0 {ohms!r}", f"vg g 0 pulse(0 1 0 0 0 {0.5 / clock!r} {1 / clock!r})"]
     if by_conditions:
         cards += BY_CONDITIONS
-    else: # the clock turned round at each half of the line, by sources alone
+    else:  # the clock turned round at each half of the line, by sources alone
         cards += [f"vp pol 0 pulse(0 1 0 0 0 {half!r} {2 * half!r})", "b2 npol 0 v=1-v(pol)",
                   "b3 hi 0 v=v(pol)+v(g)-2*min(v(pol),v(g))", "b4 lo 0 v=1-v(hi)"]
     return "\n".join(["totem pole", *cards, f".model sw sw(vt=0.5 ron={ron!r})", f".model d d(ron={of_diode!r})",
