@@ -70,12 +70,12 @@ struct audit_part {
 
 /* Sums over the branches at each node, or of each coil, while a law is checked. */
 struct audit_sums {
-    double *current;             /* [n_nodes] A that leaves, or C */
-    double *scale;               /* [n_nodes] of what was added up */
-    double *rounding;            /* [n_nodes] that is in it */
-    double volts, amperes;       /* ... from the fluxes of coils, and the charges of capacitors */
-    double *flux;                /* [n_devices] Wb, of coils */
-    double energy, energy_scale; /* J, or W */
+    double *current;       /* [n_nodes] A that leaves, or C */
+    double *scale;         /* [n_nodes] of what was added up */
+    double *rounding;      /* [n_nodes] that is in it */
+    double volts, amperes; /* ... from the fluxes of coils, and the charges of capacitors */
+    double *flux;          /* [n_devices] Wb, of coils */
+    double energy, energy_scale, energy_rounding; /* J, or W */
 };
 
 struct dalcs_audit {

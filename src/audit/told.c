@@ -61,10 +61,12 @@ static double stored_in(const struct dalcs_audit_state *s, const struct dalcs_de
 }
 
 /* J: half of what all capacitors and coils have changed by, squared, and of coupled coils their product; NAN: there are
- * curved ones. */
-static double energy_of_change(const struct dalcs_audit *audit, const struct audit_part *part) {
+ * curved ones. rounding: of these terms, which cancel where k is 1. */
+static double energy_of_change(const struct dalcs_audit *audit, const struct audit_part *part,
+                               double *rounding) {
     const struct dalcs_audit_state *then = &audit->later, *now = &audit->shifted;
     double sum = 0.0;
+    double size = 0.0;
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
@@ -74,6 +76,7 @@ static double energy_of_change(const struct dalcs_audit *audit, const struct aud
         if (d->kind == DALCS_CAPACITOR || d->kind == DALCS_INDUCTOR) {
             const double change = stored_in(now, d, device) - stored_in(then, d, device);
             sum += 0.5 * d->value * change * change;
+            size += 0.5 * d->value * change * change;
         }
     }
     for (int k = 0; k < part->n_couplings; k++) {
@@ -81,8 +84,11 @@ static double energy_of_change(const struct dalcs_audit *audit, const struct aud
         const int a = m->inductor[0], b = m->inductor[1];
         const double mutual =
             m->k * sqrt(audit->circuit->device[a].value * audit->circuit->device[b].value);
-        sum += mutual * (now->i[a] - then->i[a]) * (now->i[b] - then->i[b]);
+        const double product = mutual * (now->i[a] - then->i[a]) * (now->i[b] - then->i[b]);
+        sum += product;
+        size += fabs(product);
     }
+    *rounding = AUDIT_ROUNDING * size;
     return sum;
 }
 
@@ -136,13 +142,14 @@ void dalcs_audit_check_told_jump(struct dalcs_audit *audit, int index,
     }
     off = fmax(off, 0.0);
     double worst = audit_ratio(off, scale);
-    const double energy = jump->is_alone ? energy_of_change(audit, part) : NAN;
+    double rounding = 0.0;
+    const double energy = jump->is_alone ? energy_of_change(audit, part, &rounding) : NAN;
     if (isfinite(energy)) {
         const double change = fabs(jump->after - jump->before);
         const double own = 0.5 * d->value * change * change;
         /* what the tolerance leaves open of each state is in its energy twice */
         const double size = fmax(energy, fmax(own, jump->energy_lost)) + d->value * change * scale;
-        const double slack = d->value * change * (slack_before + slack_after);
+        const double slack = d->value * change * (slack_before + slack_after) + rounding;
         worst = fmax(worst, audit_ratio(fmax(fabs(jump->energy_lost - energy) - slack, 0.0), size));
     }
     dalcs_audit_add_to(audit, DALCS_AUDIT_JUMP, jump->device, worst, t);

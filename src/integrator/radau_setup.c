@@ -117,6 +117,23 @@ static void find_cross_scales(const struct dalcs_conductances *g, double *cross)
     cross[1] = g->most > 0.0 ? dalcs_nothing * g->least : dalcs_nothing;
 }
 
+/* What equations add whatever the signals are, and what that could drive through the least of the conductances: where all
+ * else is 0, their rounding is left. */
+static void find_constants(const struct dalcs_osnsp *osnsp, const struct dalcs_conductances *g,
+                           double *constant) {
+    for (int k = 0; k < osnsp->lists.n_drives; k++) {
+        const struct dalcs_drive *d = &osnsp->lists.drive[k];
+        if (d->input == osnsp->system->n_x) {
+            constant[d->is_current] = fmax(constant[d->is_current], d->coefficient);
+        }
+    }
+    if (g->most > 0.0) {
+        const double volt = constant[0];
+        constant[0] = fmax(volt, constant[1] / g->most);
+        constant[1] = fmax(constant[1], volt * g->least);
+    }
+}
+
 /* One of the rungs is a step that follows the fastest source, which sets the pace where nothing else
  * does. Few digits: sums of steps stay exact. */
 static double fit_rung(double promising) {
@@ -143,6 +160,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
     struct dalcs_conductances g = dalcs_conductances_find(c->system, r->options.stop);
     find_cross_scales(&g, part->scales.cross);
+    find_constants(&c->osnsp, &g, part->scales.constant);
     part->scales.leak = 0.5 * DBL_EPSILON * g.joint;
     struct dalcs_choice choice = dalcs_choice_make(&r->options, c, &g, osnsp->dense_limit);
     part->tolerance = choice.tolerance;

@@ -64,7 +64,16 @@ enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, d
     return try_whole(p, entry, u, y, sources_clash);
 }
 
+/* The pair with the wrong sign, if it is one alone. */
+static int wrong_alone(const struct dalcs_osnsp *p) {
+    return p->signs.n_violating == 1 ? p->signs.violating[0] : -1;
+}
+
+/* Where a pair that was turned alone has the wrong sign on its other side, too, it has neither current nor voltage, as a
+ * diode has that alone leads to an island: closed, its current is what rounding leaves of the island's. Open, it leaves the
+ * island's potential to choose, within its sign. */
 enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
+    int turned = -1;
     for (int round = 0; round <= limit; round++) {
         bool sources_clash;
         DALCS_TRY(dalcs_exact_try_mode(p, u, y, &sources_clash));
@@ -74,6 +83,10 @@ enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, doub
         if (p->signs.n_violating == 0) {
             break;
         }
+        if (p->least_norm && turned >= 0 && wrong_alone(p) == turned) {
+            return dalcs_open_mode_solve(p, u, y);
+        }
+        turned = wrong_alone(p);
         dalcs_osnsp_flip_violating(p, round < ROUNDS_AT_ONCE);
         p->counters.pivots++;
     }

@@ -158,6 +158,7 @@ enum dalcs_status dalcs_open_mode_solve(struct dalcs_osnsp *p, const double *u, 
         look_at_parts(&m, y, true, m.sign);
         find_directions(&m);
         status = move(&m, y);
+        dalcs_whole_refine(m.whole, u, y);
     }
     dalcs_arena_finish(&m.arena);
     if (status != DALCS_OK) {

@@ -4,6 +4,7 @@
 #include "magnitudes.h"
 #include "null_space.h"
 #include "osnsp_internal.h"
+#include "redundant_rows.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -131,6 +132,24 @@ static enum dalcs_status choose(struct dalcs_whole *whole, const struct dalcs_nu
     return dalcs_choices_make(whole);
 }
 
+/* The rows that follow from others, chosen with voltages of one size, and currents of what the least conductance makes of it:
+ * those of closed pairs may be no more. */
+static enum dalcs_status choose_redundant(struct dalcs_whole *whole, struct dalcs_null_space *space,
+                                          const struct dalcs_triplets *t) {
+    const struct dalcs_system *s = whole->p->system;
+    double *size = dalcs_arena_alloc(&space->arena, (size_t)whole->n, sizeof(double));
+    if (size == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int c = 0; c < dalcs_system_n_columns(s); c++) {
+        if (whole->place[c] >= 0) {
+            size[whole->place[c]] =
+                s->column_is_current[c] ? whole->p->cache.form[0]->least_conductance : 1.0;
+        }
+    }
+    return dalcs_redundant_rows_choose(space, t, size);
+}
+
 enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dalcs_osnsp *p,
                                      const double *resistance) {
     *whole =
@@ -150,7 +169,10 @@ enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dal
         status = dalcs_null_space_find(&space, whole->n, whole->n, &t);
     }
     if (status == DALCS_OK) {
-        status = choose(whole, &space);
+        status = space.n_free > 0 ? choose_redundant(whole, &space, &t) : DALCS_OK;
+        if (status == DALCS_OK) {
+            status = choose(whole, &space);
+        }
         dalcs_null_space_finish(&space);
     }
     if (status == DALCS_OK) {
@@ -232,6 +254,12 @@ static void find_residual_of_choices(const struct dalcs_whole *whole, const doub
     }
 }
 
+static void add_correction(const struct dalcs_whole *whole, double *y) {
+    for (int c = 0; c < dalcs_system_n_columns(whole->p->system); c++) {
+        y[c] += whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
+    }
+}
+
 void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const double *line,
                        double *y) {
     int n_columns = dalcs_system_n_columns(whole->p->system);
@@ -240,9 +268,18 @@ void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const d
         find_residual(whole, u, line, y);
         find_residual_of_choices(whole, u, y);
         dalcs_lu_solve(&whole->lu, whole->residual);
-        for (int c = 0; c < n_columns; c++) {
-            y[c] += whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
+        add_correction(whole, y);
+    }
+}
+
+void dalcs_whole_refine(const struct dalcs_whole *whole, const double *u, double *y) {
+    for (int round = 0; round < REFINEMENTS; round++) {
+        find_residual(whole, u, NULL, y);
+        for (int k = 0; k < whole->n_choices; k++) {
+            whole->residual[whole->redundant[k]] = 0.0;
         }
+        dalcs_lu_solve(&whole->lu, whole->residual);
+        add_correction(whole, y);
     }
 }
 

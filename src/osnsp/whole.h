@@ -42,6 +42,9 @@ enum dalcs_status dalcs_whole_null_space(const struct dalcs_osnsp *p, int *place
 void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const double *line,
                        double *y);
 
+/* The same from y on, which keeps what it has chosen: that of a mode where directions below were added to its answer. */
+void dalcs_whole_refine(const struct dalcs_whole *whole, const double *u, double *y);
+
 /* What choice k leaves open: the answers of the mode that differ from one in this choice alone, into y[n_columns]. */
 void dalcs_whole_direction(const struct dalcs_whole *whole, int k, double *y);
 

@@ -7,6 +7,18 @@
 
 #include <math.h>
 
+/* Of a pair: what a step that recurs leaves in scales.magnitude may be the voltage of one in which it was open. */
+static double size_of_pair(const struct dalcs_radau_part *part, int column) {
+    const struct dalcs_collocation *m = part->stages.method;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const int pair = column - dalcs_system_n_equations(part->component->system);
+    double size = dalcs_larger(dalcs_slight * part->scales.unit[1], part->scales.column[column]);
+    for (int k = 0; k <= m->s && m->node[k] <= part->segment.end; k++) {
+        size = dalcs_larger(size, fabs(part->segment.out[k * l->stride + column]));
+    }
+    return dalcs_osnsp_is_on(&part->component->osnsp, pair) ? size : 0.0;
+}
+
 /* The largest that an output has been, as far as is known without a look at all rows. */
 static double size_of(const struct dalcs_rows *rows, const struct dalcs_radau_part *part,
                       const struct dalcs_row_signal *signal) {
@@ -15,7 +27,9 @@ static double size_of(const struct dalcs_rows *rows, const struct dalcs_radau_pa
         return size;
     }
     const struct dalcs_probe_term *term = signal->probe->term;
-    double of_column = dalcs_step_scale(part, term->index, part->scales.unit);
+    const bool is_pair = term->index >= dalcs_system_n_equations(part->component->system);
+    double of_column = is_pair ? size_of_pair(part, term->index)
+                               : dalcs_step_scale(part, term->index, part->scales.unit);
     return dalcs_larger(size, fabs(term->coefficient) * of_column);
 }
 

@@ -120,64 +120,6 @@ static void drop_systems(struct dalcs_stage_factors *f) {
     }
 }
 
-struct dalcs_row_miss dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
-                                                      const struct dalcs_stage_entry *entry, int r,
-                                                      int node, const double *in, const double *y) {
-    const struct dalcs_stage_plan *plan = stages->plan;
-    const struct dalcs_system *s = stages->system;
-    int n_equations = dalcs_system_n_equations(s);
-    bool is_pair = r >= n_equations;
-    const struct dalcs_csr *a = is_pair ? &s->C : &s->A;
-    int from = is_pair ? r - n_equations : r;
-    double missed = in[s->n_x] * plan->constant[r];
-    double terms = fabs(missed);
-    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
-        if (a->j[k] >= n_equations && !dalcs_stage_is_on(entry, a->j[k] - n_equations)) {
-            continue; /* y has its w there */
-        }
-        double term = (is_pair ? -a->x[k] : a->x[k]) * y[a->j[k]];
-        missed += term;
-        terms += fabs(term);
-        if (a->j[k] < s->n_x) { /* solved for as an increment over this */
-            terms += fabs(a->x[k] * in[a->j[k]]);
-        }
-    }
-    for (int k = plan->waves.wave_begin[r]; k < plan->waves.wave_begin[r + 1]; k++) {
-        double term = plan->waves.wave_x[k] *
-                      plan->work.share[plan->waves.wave_of[k] * DALCS_N_SHARES + node];
-        missed += term;
-        terms += fabs(term);
-    }
-    return (struct dalcs_row_miss){missed, terms};
-}
-
-double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
-                                const struct dalcs_stage_entry *entry, const double *in,
-                                const double *out) {
-    const struct dalcs_stage_factors *f = entry->factors;
-    const double *y = out + stages->method->s * stages->layout.stride;
-    const struct dalcs_stage_order *o = &f->order[0];
-    int n_x = stages->system->n_x;
-    int n_equations = dalcs_system_n_equations(stages->system);
-    int n_closed = f->update != NULL ? f->update->n_closed : 0;
-    double worst = 0.0;
-    double size = 0.0;
-    for (int i = 0; i < o->n + n_closed; i++) {
-        const struct dalcs_stage_change *c = i < o->n ? NULL : f->update->change[i - o->n];
-        int r = c == NULL ? o->row_of[i] : n_equations + c->pair;
-        double scale = c == NULL ? o->scale[i] : c->row_scale;
-        if (r < n_x || r >= stages->plan->n_rows ||
-            (r >= n_equations && !dalcs_stage_is_on(entry, r - n_equations))) {
-            continue;
-        }
-        struct dalcs_row_miss miss =
-            dalcs_stage_factors_miss_of_row(stages, entry, r, stages->method->s, in, y);
-        worst = miss.missed != miss.missed ? INFINITY : fmax(worst, scale * fabs(miss.missed));
-        size = fmax(size, scale * miss.terms);
-    }
-    return size > 0.0 ? worst / size : 0.0;
-}
-
 /* entry->residual of an arbitrary step, from anywhere but where the circuit is. */
 static enum dalcs_status find_residual(struct dalcs_stages *stages,
                                        struct dalcs_stage_entry *entry) {

@@ -71,8 +71,10 @@ static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau
     a->least[0] = dalcs_nothing * q->unit[0];
     a->least[1] = dalcs_nothing * q->unit[1];
     a->least[2] = dalcs_slight * q->unit[1];
-    a->besides[0] = r->besides[0] + dalcs_step_crossed(part, 0, q->here);
-    a->besides[1] = r->besides[1] + dalcs_step_crossed(part, 1, q->here);
+    a->besides[0] = r->besides[0] + dalcs_step_crossed(part, 0, q->here) +
+                    dalcs_sum_rounded * part->scales.constant[0];
+    a->besides[1] = r->besides[1] + dalcs_step_crossed(part, 1, q->here) +
+                    dalcs_sum_rounded * part->scales.constant[1];
     a->besides[2] = dalcs_beyond * dalcs_sum_rounded * above_map(part) * q->unit[1] + a->besides[1];
 }
 

@@ -74,9 +74,39 @@ def check_switch(program, checker, tolerance):
     checker.check(worst <= 1e-9, f"switch, {tolerance}: off by {worst:.1e}")
 
 
+def stack(n, period, late):
+    """Switches that open one after the other, with their snubbers and leaks, before a coil with a diode across it: as it
+    conducts each opening changes its current by a thousandth. It blocked volts before, which is no scale of amperes."""
+    cards = ["stack", "v1 a0 0 1.64"]
+    for k in range(n):
+        a, b = f"a{k}", f"a{k + 1}"
+        cards += [f"vg{k} g{k} 0 pulse(0 1 {period * late * (k + 1)!r} 0 0 {0.5 * period!r} {period!r})", f"s{k} {a} {b} g{k} 0 sw",
+                  f"d{k} {b} {a} di", f"r{k} {a} {b} {45e6 + 15e6 * k!r}", f"rs{k} {a} s{k} 5k",
+                  f"cs{k} s{k} {b} {4e-9 * period * (1 + 0.3 * k)!r}"]
+    return "\n".join([*cards, f"l1 a{n} l {5e4 * period!r}", "rl l 0 500k", f"df 0 a{n} di", ".model sw sw(vt=0.5 roff=100meg)",
+                      ".model di d", f".tran {period / 50!r} {8 * period!r} uic", ".save i(df)", ".end", ""])
+
+
+def check_stack(program, checker, n, period, late):
+    """Of steps that come back in each period as of those that do not."""
+    name = f"stack of {n}, {period} s, {late}"
+    ours, exact = (run(program, stack(n, period, late), method=None, tolerance=tolerance, options=["--fill", "none"])
+                   for tolerance in (1e-6, 1e-11))
+    if not checker.check(ours.status == exact.status == 0, f"{name}: {ours.stderr} {exact.stderr}"):
+        return
+    wanted = [(left[0], right[1] - left[1]) for left, right in pairs_of_rows(exact) if left[1] > 0.0 and right[1] > 0.0]
+    found = [(left[0], right[1] - left[1]) for left, right in pairs_of_rows(ours) if left[1] > 0.0 and right[1] > 0.0]
+    largest = max(row[1] for row in exact.rows)
+    if checker.check(len(found) == len(wanted) > 0, f"{name}: {len(found)} pairs of rows, not {len(wanted)}"):
+        worst = max(abs(a[1] - b[1]) for a, b in zip(found, wanted)) / largest
+        checker.check(worst <= 1e-8, f"{name}: i(df) jumps by {worst:.1e} more or less than it does")
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("sides")
+    for case in ((7, 34.6754e-3, 3e-4), (5, 34.6754e-3, 1e-3), (6, 34.6754e-3, 6e-4)):
+        check_stack(program, checker, *case)
     for tolerance in some_of(TOLERANCES):
         check_bridge(program, checker, tolerance)
         check_switch(program, checker, tolerance)

@@ -6,14 +6,18 @@ usage: floating_islands.py PROGRAM
 Two diodes in series close the circuit of a ramp and a coil through ground. Up to the forward voltage of one nothing
 flows: the only conductances are those of resistors that lead nowhere, and what the digits of their voltages make of
 currents is no current, of neither sign. From then on i = slope (t - t0)^2 / (2 L), up to the ramp's end.
+
+Then bridges of diodes in series with switches, with or without latches, on sources in a star. While nothing conducts the
+star floats, and to each switch leads a leak of megohms to gigohms beside its milliohms to ohms: every law holds in each.
 """
 
 import pathlib
+import random
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 # the ramp's height and time, the forward voltage, the coil, resistors that lead nowhere, their node; the return path
 CASES = {
@@ -39,6 +43,48 @@ def netlist(name, height, rise, forward, henries, resistors, node, back):
                       f".tran {rise / 100!r} {rise!r} uic", ".end", ""])
 
 
+# seeds of bridges that were refused at the start or where a diode was on neither side, and others
+BRIDGES = (1, 10, 29, 36, 38, 52, 56, 100, 103, 104)
+
+
+def valve(cards, side, anode, cathode, latch, pulse):
+    cards += [f"vm{side} {anode} t{side} 0", f"d{side} t{side} u{side} dx", f"s{side} u{side} {cathode} g{side} 0 sx"]
+    if latch is None:
+        cards.append(f"vg{side} g{side} 0 {pulse}")
+    else:
+        cards += [f"vg{side} f{side} 0 {pulse}", f"b{side} g{side} 0 v=v(f{side})+min(1,max(0,{latch!r}*i(vm{side})))"]
+
+
+def bridge(seed):
+    draw = random.Random(seed)
+    phases = draw.choice((2, 3, 4, 6))
+    volts, hertz = 10 ** draw.uniform(-3, 3.5), 10 ** draw.uniform(0, 5)
+    leak, ohms = 10 ** draw.uniform(6, 11), 10 ** draw.uniform(-3, 2)
+    latch = 1e3 * ohms / volts if draw.random() < 0.5 else None
+    cards = [f"bridge {seed}"]
+    for k in range(phases):
+        cards.append(f"v{k} s{k} n sin(0 {volts:.6g} {hertz:.6g} 0 0 {360 * k / phases + draw.uniform(0, 30):.5g})")
+        cards.append(f"r{k} s{k} a{k} {ohms * draw.uniform(0.5, 2):.12g}")
+        for side, ends in enumerate(((f"a{k}", "p"), ("m", f"a{k}"))):
+            pulse = f"pulse(0 1 {draw.uniform(0.1, 0.9) / hertz:.6g} 0 0 {0.1 / hertz:.6g} {1 / hertz:.6g})"
+            valve(cards, f"{k}{side}", *ends, latch, pulse)
+    cards.append(f"rl p q {100 * ohms:.6g}")
+    coil = draw.random() < 0.7
+    cards.append(f"l1 q m {100 * ohms / hertz * draw.uniform(0.01, 1):.6g}" if coil else f"rm q m {ohms:.6g}")
+    cards.append(f"rg m 0 {10 ** draw.uniform(-2, 8):.6g}")
+    cards.append(f".model dx d(vfwd={draw.choice((0, 0.7, 1e-3 * volts)):.4g} ron={draw.choice((0, 1e-3)):g})")
+    cards.append(f".model sx sw(vt=.5 vh=.1 ron={draw.choice((0, 1e-3, 1e-2))} roff={leak:.6g})")
+    return "\n".join([*cards, f".tran {0.01 / hertz:.6g} {2.2 / hertz:.6g} uic", ".end", ""])
+
+
+def look_at_bridges(checker):
+    for seed in some_of(BRIDGES, 1):
+        outcome = run(sys.argv[1], bridge(seed), method=None, options=["--audit", "full"])
+        if checker.check(outcome.status == 0, f"bridge {seed}: {outcome.stderr[:300]}"):
+            euler = outcome.report["work"]["euler_steps"]
+            checker.check(euler == 0, f"bridge {seed}: {euler} steps by euler")
+
+
 def main():
     checker = Checker("floating_islands")
     for name, (height, rise, forward, henries, resistors, node, back) in CASES.items():
@@ -58,6 +104,7 @@ def main():
             wanted = height / rise * max(0.0, t - start) ** 2 / (2 * henries)
             checker.close(coil, wanted, 1e-8 * most, f"{name}: i(l9) at {t!r}")
             checker.close(diode, wanted, 1e-8 * most, f"{name}: i(d7) at {t!r}")
+    look_at_bridges(checker)
     return checker.finish()
 
 

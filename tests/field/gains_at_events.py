@@ -41,6 +41,20 @@ def netlist(loop, size):
             f".model di d(vfwd=0.7 ron={ohms / 150!r})\n.tran {0.01 / hertz!r} {3.2 / hertz!r} uic\n.end\n")
 
 
+def rest(gains, volts, hertz, gain, ohms):
+    """A loop with a limit on both sides rests up to a late step: what its two rails leave of nothing is no signal."""
+    period = 1.0 / hertz
+    text = (f"at rest\nvr r 0 pulse(0 {0.2 * volts!r} {period!r} 0 0 {5 * period!r} {10 * period!r})\n"
+            f"e1 u 0 value={{limit({gain!r}*v(0,n),{-volts!r},{volts!r})}}\nr1 e n {ohms!r}\nc1 e n {0.3 * period / ohms!r}\n"
+            f"r2 n x {2 * ohms!r}\nc2 x u {3 * period / ohms!r}\nb1 e 0 v=v(y)-2*v(r)\nr3 u y {0.1 * ohms!r}\n"
+            f"c3 y 0 {3 * period / ohms!r}\nr4 y 0 {ohms!r}\n.tran {0.01 * period!r} {1.5 * period!r} uic\n.end\n")
+    done = run(sys.argv[1], text, method=None, options=("--audit", "full", "--fill", "none"))
+    title = f"at rest, {(volts, hertz, gain, ohms)}"
+    if gains.check(done.status == 0, f"{title}: {done.stderr}"):
+        n_steps = done.report["work"]["steps"]
+        gains.check(n_steps <= 500, f"{title}: {n_steps} steps")
+
+
 def main():
     gains = Checker("gains_at_events")
     for loop, size in some_of([(one, size) for one in LOOPS for size in SIZES]):
@@ -66,6 +80,8 @@ def main():
                 worst = max(worst, abs(column[k] - right[k]) / (2.0 * size[0]))
         gains.check(worst <= 1e-6 + 1e-13 * size[2] * 2 * math.pi * 3.2, f"{title}: the output is off by {worst:.1e} of its range")
         gains.check(done.report["work"]["euler_steps"] == 0, f"{title}: steps of implicit Euler")
+    for size in some_of(SIZES):
+        rest(gains, *size)
     return gains.finish()
 
 

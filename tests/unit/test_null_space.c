@@ -1,5 +1,6 @@
 /* test_null_space.c - ranks that are known: of graphs, resistors and products. */
 #include "null_space.h"
+#include "redundant_rows.h"
 
 #include "build_network.h"
 
@@ -147,6 +148,36 @@ START_TEST(test_product) {
 
 END_TEST
 
+/* Two islands: a triangle of ohms with a chain of gigohms behind it, and a pair of milliohms; an empty row besides. Left
+ * out is the row of the largest terms in each. */
+START_TEST(test_largest_are_left_out) {
+    enum { N = 8 };
+
+    struct dalcs_triplets t = {0};
+    add_resistor(&t, 0, 3, 1e9);
+    add_resistor(&t, 3, 5, 2.0);
+    add_resistor(&t, 5, 6, 0.5);
+    add_resistor(&t, 6, 3, 3.0);
+    add_resistor(&t, 0, 1, 1e9);
+    add_resistor(&t, 2, 7, 1e-3);
+    const double size[N] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+    struct dalcs_null_space s;
+    ck_assert_int_eq(dalcs_null_space_find(&s, N, N, &t), DALCS_OK);
+    ck_assert_int_eq(s.n_redundant, 3);
+    ck_assert_int_eq(dalcs_redundant_rows_choose(&s, &t, size), DALCS_OK);
+    bool is_left_out[N] = {false};
+    for (int k = 0; k < s.n_redundant; k++) {
+        is_left_out[s.redundant[k]] = true;
+    }
+    ck_assert(is_left_out[2] || is_left_out[7]);
+    ck_assert(is_left_out[4]);
+    ck_assert(is_left_out[5]); /* 1/2 + 1/0.5 S */
+    dalcs_null_space_finish(&s);
+    dalcs_triplets_finish(&t);
+}
+
+END_TEST
+
 START_TEST(test_empty) {
     struct dalcs_triplets t = {0};
     struct dalcs_null_space s;
@@ -164,4 +195,5 @@ START_TEST(test_empty) {
 
 END_TEST
 
-RUN_TESTS("null space", test_loops, test_resistors, test_product, test_empty)
+RUN_TESTS("null space", test_loops, test_resistors, test_product, test_largest_are_left_out,
+          test_empty)
