@@ -147,6 +147,14 @@ def integrals(case):
                  "not what gates and switches remember")
 
 
+def of_time(case):
+    """Formulas of time that come to no end, and such as do."""
+    for formula in ("0.1*time", "time*time*1k", "0.1*sin(time*1k*time)", "0.1*sqrt(time)", "v(out)*time", "pwl(time,0,0,1m,0.1)"):
+        case.refuses(f"* rises\n{CLOCK}{BUCK}B2 out 0 I={formula}\n.pss uic\n", 2, "b2", "follows time without end")
+    for formula in ("table(time,0,0,1m,0.1)", "0.1*min(time*10k,1)", "limit(time*100,0,0.1)", "0.1*exp(-1k*time)"):
+        case.finds(f"* ends\n{CLOCK}{BUCK}B2 out 0 I={formula}\n.pss uic\n", 10e-6, "value in the end", mean=MEAN)
+
+
 def periods(case):
     case.finds("* plain\n" + CLOCK + BUCK + ".pss\n", 10e-6, "stable", mean=MEAN)
     case.finds("* .tran alone\n" + CLOCK + BUCK + ".tran 1u 1m uic\n", 10e-6, mean=MEAN)
@@ -248,6 +256,7 @@ def main():
         case = Case(pathlib.Path(sys.argv[1]).resolve(), folder)
         refused(case)
         integrals(case)
+        of_time(case)
         periods(case)
         own_period(case)
         one_period(case)
