@@ -67,7 +67,7 @@ struct dalcs_steady {
 
     struct dalcs_steady_crowd { /* steady_crowd.c */
         bool is_limited;        /* while a search goes on */
-        double work;
+        double work, most;
     } crowd;
 
     double residual; /* of the last pass, over the scales */
@@ -150,6 +150,9 @@ enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
                                     struct dalcs_orbit_point *point) DALCS_MUST_CHECK;
 
 /* ---- steady_crowd.c ---------------------------------------------------------------------------- */
+
+/* While a search goes on its work is. */
+void dalcs_steady_limit_crowd(struct dalcs_steady *st, bool is_limited);
 
 /* Is a search over, as steps of implicit Euler, so far and those of a run that goes on (NULL: none does), take too long? */
 bool dalcs_steady_is_crowded(const struct dalcs_steady *st, const struct dalcs_radau *radau);
