@@ -128,11 +128,8 @@ static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) {
-    enum dalcs_status first = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
-    if (first != DALCS_OK) {
-        return first < DALCS_OK ? first : DALCS_OK;
-    }
+/* The last pass is the first one of it. */
+static enum dalcs_status burst_on(struct dalcs_steady *st, bool *done) {
     struct burst b = {.first = st->residual, .best = st->residual, .done = is_done(st, 0.0)};
     bool is_stuck = false; /* where the run has come to: steps may lead to where no run does */
     st->n.bursts++;
@@ -154,6 +151,12 @@ enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) {
     st->is_stuck = is_stuck;
     *done = b.done;
     return DALCS_OK;
+}
+
+enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) {
+    const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+    DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+    return status == DALCS_OK ? burst_on(st, done) : DALCS_OK;
 }
 
 /* Does the last pass go on along st->drift as far as a pass from before, but for what far away is rounding? */
@@ -273,6 +276,10 @@ static void go_back(struct dalcs_steady *st, struct search *s) {
 
 /* From s->run, where a conserved quantity grows: a leap, or whether it grows for ever. */
 static enum dalcs_status leave(struct dalcs_steady *st, struct search *s, bool *endless) {
+    if (!dalcs_steady_has_drift(st)) {
+        dalcs_steady_copy_point(st, &st->at, &s->run);
+        return DALCS_OK;
+    }
     DALCS_TRY(leap(st, s->from.x, s->moved.x, endless));
     if (!*endless && s->may_leap) {
         if (!s->has_leapt) {
@@ -304,8 +311,8 @@ static enum dalcs_status try_from_run(struct dalcs_steady *st, const struct sear
     }
     dalcs_steady_copy_point(st, &st->at, &s->run);
     DALCS_TRY(dalcs_steady_continue(st, &is_near));
-    DALCS_TRY(is_near ? dalcs_steady_burst(st, found) : DALCS_OK);
-    st->is_stuck = false; /* the run is not */
+    DALCS_TRY(is_near ? burst_on(st, found) : DALCS_OK); /* the last pass is from there, with M */
+    st->is_stuck = false;                                /* the run is not */
     return DALCS_OK;
 }
 

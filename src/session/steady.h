@@ -67,7 +67,7 @@ struct dalcs_steady {
 
     struct dalcs_steady_crowd { /* steady_crowd.c */
         bool is_limited;        /* while a search goes on */
-        double work;
+        double work, most;
     } crowd;
 
     double residual; /* of the last pass, over the scales */
@@ -151,6 +151,9 @@ enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
 
 /* ---- steady_crowd.c ---------------------------------------------------------------------------- */
 
+/* While a search goes on its work is. */
+void dalcs_steady_limit_crowd(struct dalcs_steady *st, bool is_limited);
+
 /* Is a search over, as steps of implicit Euler, so far and those of a run that goes on (NULL: none does), take too long? */
 bool dalcs_steady_is_crowded(const struct dalcs_steady *st, const struct dalcs_radau *radau);
 
@@ -163,8 +166,12 @@ enum dalcs_status dalcs_steady_tell_crowd(struct dalcs_steady *st) DALCS_MUST_CH
 /* ---- steady_newton.c --------------------------------------------------------------------------- */
 
 /* st->step of Newton's method from the last pass, and st->distance. Where M has a multiplier of 1 whose quantity is
- * conserved, it keeps that quantity; where that grows, st->is_stuck. */
+ * conserved, it keeps that quantity; where that grows, or nothing periodic has as much of
+ * it, st->is_stuck. */
 enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* Where st->is_stuck: does all go on alike along st->drift? Not where one that drifts drives another one, ever faster. */
+bool dalcs_steady_has_drift(const struct dalcs_steady *st);
 
 /* What a state of a system is multiplied by, so that energies are alike: the square root of what it stores; of one that
  * stores nothing, and of all beside gates, 1 over its scale. */

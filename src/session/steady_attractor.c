@@ -19,8 +19,10 @@ static const long waits[] = {60, 240, 960};
 /* What is beside an unstable orbit by 1e-2, of which a hundredth may grow, has to be large many times over. */
 static const double grown = 1e6;
 
-/* Between two looks a run that has no end to go to grows by `grown`, another one by less than this. */
-static const double bounded = 10.0;
+/* Behind each look a run has gone on for 2.5 times as long. What grows without end, at least as the square root of time,
+ * as the voltage of a capacitor that is fed an even power, is larger by 1.58 then. What has an end has come there, but for
+ * what chance makes of the largest of KEPT periods. The root of 1.58 lies between. */
+static const double bounded = 1.26;
 
 /* Nearer than this, over the scale, is the same point: what an orbit may be off by. */
 static const double good = 1e-10;
@@ -28,7 +30,9 @@ static const double good = 1e-10;
 /* As in steady_report.c. */
 static const double near_one = 1e-9;
 
-/* Steps of the run times unknowns: seconds. A longer search is a .tran of the user. */
+/* Steps of the run times unknowns. Each is 60 instructions where the run leaps over periods, 2500 where each step is new
+ * (doc/steady.md, what it costs): 0.2 to 8 s. A longer search is a .tran of the user. With ten times as much all circuits of
+ * tests/steady/attractors.py come to the same; with a tenth nothing is told of 3 in 51, and nothing false of any. */
 static const double most_work = 1e7;
 
 /* The growth of a difference is a mean of logarithms, of so many sums of so many periods; in one more before them it turns
@@ -37,6 +41,10 @@ enum { SUMS = 16, PERIODS_OF_A_SUM = 64, PERIODS_OF_A_FREE_SUM = 8 };
 
 /* It is not 0 where it is this many times its standard deviation. */
 static const double certain = 4.0;
+
+/* Differences grow as a power of time without chaos: as time itself where a frequency depends on an amplitude, as its square
+ * where that amplitude grows, too. Chaos makes them grow by more in the second half of the sums. */
+static const double largest_power = 2.0;
 
 /* Of 129 points on a circle two are nearer than 2 pi/129 of its radius, 0.025 of its width (Dirichlet); where points are
  * not evenly spread it is more. */
@@ -201,14 +209,18 @@ static double multiply(struct follow *f) {
     return log(size);
 }
 
-/* Over the run on from st->at, in sums of n periods: the mean logarithm for a period, and its standard deviation; *known: M
- * was exact. */
-static enum dalcs_status find_growth(struct follow *f, int n, double *mean, double *deviation,
-                                     bool *known) {
+/* Of logarithms of what a small difference grows by. */
+struct growth {
+    double mean, deviation; /* for a period; the standard one */
+    double second;          /* in the second half of the sums */
+    bool known;             /* M was exact */
+};
+
+/* Over the run on from st->at, in sums of n periods. */
+static enum dalcs_status find_growth(struct follow *f, int n, struct growth *g) {
     struct dalcs_steady *st = f->st;
     double square = 0.0;
-    *mean = 0.0;
-    *known = true;
+    *g = (struct growth){.known = true};
     for (int x = 0; x < st->layout.n_x; x++) {
         f->vector[x] = f->scale[x] * (0.5 + fmod(0.6180339887498949 * (x + 1), 1.0));
     }
@@ -217,31 +229,35 @@ static enum dalcs_status find_growth(struct follow *f, int n, double *mean, doub
         for (int i = 0; i < n; i++) {
             DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
             dalcs_steady_take(st);
-            *known = *known && st->is_exact;
+            g->known = g->known && st->is_exact;
             sum += multiply(f) / n;
         }
-        *mean += k >= 0 ? sum / SUMS : 0.0;
+        g->mean += k >= 0 ? sum / SUMS : 0.0;
+        g->second += k >= SUMS / 2 ? sum * n : 0.0;
         square += k >= 0 ? sum * sum / SUMS : 0.0;
     }
-    *deviation = sqrt(fmax(0.0, square - *mean * *mean) / (SUMS - 1));
-    *known = *known && isfinite(*mean);
+    g->deviation = sqrt(fmax(0.0, square - g->mean * g->mean) / (SUMS - 1));
+    g->known = g->known && isfinite(g->mean);
     return DALCS_OK;
 }
 
+/* From the beginning of the first sum but one on, time grows from 1 to SUMS + 1 of them. */
+static bool is_faster_than_powers(const struct growth *g) {
+    return g->second > largest_power * log((SUMS + 1.0) / (SUMS / 2 + 1.0));
+}
+
 static enum dalcs_status tell_apart(struct follow *f, int n, struct dalcs_steady_attractor *a) {
-    double mean;
-    double deviation;
-    bool known;
-    DALCS_TRY(find_growth(f, n, &mean, &deviation, &known));
-    const bool is_zero = fabs(mean) <= certain * deviation;
-    if (known && mean > 0.0 && !is_zero) {
+    struct growth g;
+    DALCS_TRY(find_growth(f, n, &g));
+    const bool is_zero = fabs(g.mean) <= certain * g.deviation;
+    if (g.known && !is_zero && is_faster_than_powers(&g)) {
         a->kind = DALCS_STEADY_CHAOS;
-    } else if (known && is_zero && f->nearest <= near_return * f->width) {
+    } else if (g.known && is_zero && f->nearest <= near_return * f->width) {
         a->kind = DALCS_STEADY_TORUS;
-    } else if (known && mean < 0.0 && !is_zero) {
+    } else if (g.known && g.mean < 0.0 && !is_zero) {
         a->kind = DALCS_STEADY_SETTLING;
     }
-    a->growth = exp(mean);
+    a->growth = exp(g.mean);
     return DALCS_OK;
 }
 

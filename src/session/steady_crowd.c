@@ -5,10 +5,22 @@
  * does not come to 1e-11, and each period takes thousands of one-step problems. */
 #include "steady.h"
 
-/* One-step problems times unknowns, of the part of the steps that Euler took or that slide: seconds. A longer search is a .tran of
- * the user (steady_attractor.c). */
-static const double most_work = 1e7;
+/* A search without crowds is at worst two runs of 8192 periods (steady.c), in which each pair changes its side and comes
+ * back: two one-step problems. One whose steps of Euler, or that slide, take more is none that ends. Both are weighed by unknowns.
+ * With a tenth, or ten times as much, tests/steady/crowded.py has the same answers. */
+static const double most_problems_of_a_pair = 2.0 * 8192.0 * 2.0;
 
+void dalcs_steady_limit_crowd(struct dalcs_steady *st, bool is_limited) {
+    const struct dalcs_network *network = &st->run->s->network;
+    st->crowd.is_limited = is_limited;
+    st->crowd.most = 0.0;
+    for (int k = 0; k < network->n_systems; k++) {
+        const struct dalcs_system *s = &network->system[k];
+        st->crowd.most += most_problems_of_a_pair * s->n_pairs * (s->n_x + s->n_z);
+    }
+}
+
+/* One-step problems times unknowns, of that part of the steps. */
 static double work_of(const struct dalcs_radau *radau) {
     double work = 0.0;
     for (int k = 0; k < radau->n_parts; k++) {
@@ -23,7 +35,7 @@ static double work_of(const struct dalcs_radau *radau) {
 
 bool dalcs_steady_is_crowded(const struct dalcs_steady *st, const struct dalcs_radau *radau) {
     const double now = radau != NULL ? work_of(radau) : 0.0;
-    return st->crowd.is_limited && st->crowd.work + now > most_work;
+    return st->crowd.is_limited && st->crowd.work + now > st->crowd.most;
 }
 
 void dalcs_steady_count_crowd(struct dalcs_steady *st, const struct dalcs_radau *radau) {

@@ -96,11 +96,14 @@ enum dalcs_status dalcs_steady_tell_failure(struct dalcs_steady *st, bool endles
         return DALCS_NOT_CONVERGED;
     }
     const char *none = is_none_text(st, a);
+    const char *moves = moves_text(st);
+    const char *gates = "the states come back, but not what gates and switches remember";
+    const bool do_ = moves[0] != '\0';
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
                    "look at it with .tran; a switch that follows the circuit may have a clock of "
                    "its own",
-                   "no periodic steady state was found in %ld periods%s; in the last one %s",
-                   st->n.periods, none == NULL ? "" : none, moves_text(st));
+                   "no periodic steady state was found in %ld periods%s; %s%s", st->n.periods,
+                   none == NULL ? "" : none, do_ ? "in the last one " : "", do_ ? moves : gates);
     return DALCS_NOT_CONVERGED;
 }
 

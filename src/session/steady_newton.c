@@ -72,7 +72,7 @@ static double dot(const double *a, const double *b, int n) {
 }
 
 /* vector -= sum of the last m right vectors, such that the last m left vectors have no part of the rest. Returns
- * whether that can be. */
+ * whether that can be: not in a Jordan block, as of two integrators in a row, where they are at right angles. */
 static bool part_conserved(struct newton *w, int m, double *vector) {
     const int first = w->n - m;
     double *c = w->c;
@@ -87,15 +87,16 @@ static bool part_conserved(struct newton *w, int m, double *vector) {
             }
         }
     }
-    if (m == 0 || LAPACKE_dgesv(LAPACK_COL_MAJOR, m, 1, G, m, w->pivot, c, m) != 0) {
-        return m == 0;
+    bool can = m == 0 || LAPACKE_dgesv(LAPACK_COL_MAJOR, m, 1, G, m, w->pivot, c, m) == 0;
+    for (int i = 0; i < m; i++) {
+        can = can && fabs(G[i * m + i]) > is_singular;
     }
-    for (int j = 0; j < m; j++) {
+    for (int j = 0; j < m && can; j++) {
         for (int x = 0; x < w->n; x++) {
             vector[x] -= c[j] * w->Vt[x * w->n + first + j];
         }
     }
-    return true;
+    return can;
 }
 
 static enum dalcs_status note_conserved(struct dalcs_steady *st, int system, const struct newton *w,
@@ -194,27 +195,36 @@ static void find_defect(const struct dalcs_steady *st, int system, struct newton
     }
 }
 
-/* (1 - M) d = F, but for what is conserved. */
+/* Have the last m left vectors a part of the vector? */
+static bool has_conserved(const struct newton *w, int m, const double *vector) {
+    const double size = sqrt(dot(vector, vector, w->n));
+    bool has = false;
+    for (int k = w->n - m; k < w->n; k++) {
+        has = has || fabs(dot(w->U + (size_t)k * (size_t)w->n, vector, w->n)) > grows * size;
+    }
+    return has;
+}
+
+/* (1 - M) d = w->rest, F but for what grows each period: that goes on along right vectors, which M leaves what they are. Of d
+ * what is conserved has no part; where that cannot be, nothing periodic has what the run has. */
 static enum dalcs_status solve(struct dalcs_steady *st, int system, struct newton *w) {
     const int n = w->n;
     const int m = count_rounding(w);
-    const double size = sqrt(dot(w->F, w->F, n));
-    for (int k = 0; k < n; k++) {
-        double part = dot(w->U + (size_t)k * (size_t)n, w->F, n);
-        if (k >= n - m) {
-            st->is_stuck = st->is_stuck || fabs(part) > grows * size;
-            DALCS_TRY(note_conserved(st, system, w, k));
-            continue;
-        }
-        for (int x = 0; x < n; x++) {
-            w->d[x] += w->Vt[x * n + k] * part / w->s[k];
-        }
-    }
-    (void)part_conserved(w, m, w->d);
     for (int x = 0; x < n; x++) {
         w->rest[x] = w->F[x];
     }
     (void)part_conserved(w, m, w->rest);
+    for (int k = 0; k < n - m; k++) {
+        const double part = dot(w->U + (size_t)k * (size_t)n, w->rest, n);
+        for (int x = 0; x < n; x++) {
+            w->d[x] += w->Vt[x * n + k] * part / w->s[k];
+        }
+    }
+    for (int k = n - m; k < n; k++) {
+        DALCS_TRY(note_conserved(st, system, w, k));
+    }
+    const bool is_kept = part_conserved(w, m, w->d) || !has_conserved(w, m, w->d);
+    st->is_stuck = st->is_stuck || !is_kept || has_conserved(w, m, w->F);
     return DALCS_OK;
 }
 
@@ -310,4 +320,12 @@ enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) {
     }
     dalcs_arena_finish(&arena);
     return status;
+}
+
+bool dalcs_steady_has_drift(const struct dalcs_steady *st) {
+    bool has = false;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        has = has || st->drift[x] != 0.0;
+    }
+    return has;
 }

@@ -19,6 +19,9 @@ static const double most_denominator = 1e6;
 /* Periods of the fastest source in a common one: beyond, a run up to the steady state is no longer. */
 static const double most_periods = 1e5;
 
+/* Where a straight line of time that never ends is said to: as in wave.c. */
+static const double never = 0x1p40;
+
 /* One source that repeats. */
 struct clock {
     struct dalcs_stimulus *stimulus;
@@ -86,6 +89,12 @@ bool dalcs_steady_repeats(const struct dalcs_stimulus *s) {
         repeats = repeats || dalcs_steady_repeats(s->u.formula.argument.part[k].of);
     }
     return repeats;
+}
+
+/* A formula that rises with time for ever. */
+static bool is_endless(const struct dalcs_stimulus *s) {
+    const int n = s->kind == DALCS_STIMULUS_PWL ? s->u.pwl.n : 0;
+    return n > 1 && s->u.pwl.t[n - 1] >= never && s->u.pwl.v[n - 1] != s->u.pwl.v[n - 2];
 }
 
 /* It comes to this in the end. */
@@ -179,6 +188,13 @@ static enum dalcs_status look_at(struct clocks *c, struct dalcs_stimulus *s, con
     }
     if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.damping < 0.0 && !c->at_start) {
         return refuse(c->run, NULL, NULL, "a sine that grows without end has no steady state");
+    }
+    if (is_endless(s) && !c->at_start) {
+        char sentence[256];
+        snprintf(sentence, sizeof sentence, "'%s' follows time without end: nothing repeats", name);
+        return refuse(c->run, NULL,
+                      "a function of time that repeats, as sin, or that ends, as table(time, ...)",
+                      sentence);
     }
     if (is_part && c->at_start) { /* it would stay what it is at the start */
         char sentence[256];

@@ -97,10 +97,10 @@ static enum dalcs_status take_repeats(struct dalcs_steady *st, bool uic) {
 
 /* From where any run starts, unless events crowd. */
 static enum dalcs_status search_within(struct dalcs_steady *st, bool *found, bool *endless) {
-    st->crowd.is_limited = true;
+    dalcs_steady_limit_crowd(st, true);
     const enum dalcs_status status = dalcs_steady_search(st, found, endless);
     const bool is_over = status >= DALCS_OK && !*found && dalcs_steady_is_crowded(st, NULL);
-    st->crowd.is_limited = false;
+    dalcs_steady_limit_crowd(st, false);
     return is_over ? dalcs_steady_tell_crowd(st) : status;
 }
 

@@ -158,12 +158,16 @@ class Look:
 
     def grows(self, said):
         """What is said to change in each period does so in a run, once it has come to that."""
-        ends = [self.after(self.case.netlist, n, self.clock()) for n in (4000, 4001)]
-        if None in ends or not self.check(changes(said), f"nothing grows: {said}"):
+        if not self.check(changes(said), f"nothing grows: {said}"):
             return "no run"
-        for name, by in changes(said):
-            is_by = ends[1][name] - ends[0][name]
-            self.check(abs(is_by - by) <= 1e-5 * abs(by), f"{name} changes by {is_by:.6g}, not {by:.6g}")
+        off = math.inf
+        for n in (4000, 16000):  # what settles besides may do so slowly
+            if off > 1e-5:
+                ends = [self.after(self.case.netlist, k, self.clock()) for k in (n, n + 1)]
+                if None in ends:
+                    return "no run"
+                off = max(abs(ends[1][name] - ends[0][name] - by) / abs(by) for name, by in changes(said))
+        self.check(off <= 1e-5, f"what is said to grow is off by {off:.2g}: {said}")
         return f"grows: {', '.join(name for name, _ in changes(said))}"
 
     def clock(self):

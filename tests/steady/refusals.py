@@ -99,6 +99,62 @@ def refused(case):
                  "Rb b 0 1k\n.pss uic\n", 1, "v(c1) rises by 10 mV")
 
 
+def integral(of, to, store="1n"):
+    return f"G{to} 0 {to} {of} 0 1u\nC{to} {to} 0 {store}\n"
+
+
+RECTIFIER = "V1 s 0 SIN(0 20 50)\nD1 s a\nC1 a 0 1m\nR1 a 0 50\n"
+SAMPLE = "A1 out 0 g 0 0 0 h 0 SAMPLEHOLD\n"
+ACCUMULATOR = "A1 nx 0 g 0 0 0 acc 0 SAMPLEHOLD\nB1 nx 0 V=v(acc)+0.01*{}\n"
+
+# name, netlist, what rises by how much each period from any start: what it integrates decides that, and not it alone
+DRIFTS = [
+    ("integral of a converter's output", CLOCK + BUCK + integral("out", "i"), "v(ci) rises by 48 mV"),
+    ("of a sample of it", CLOCK + BUCK + SAMPLE + integral("h", "i"), "v(ci) rises by 47.9447 mV"),
+    ("of the one before", CLOCK + BUCK + SAMPLE + "A2 h 0 g 0 0 0 h2 0 SAMPLEHOLD\n" + integral("h2", "i"),
+     "v(ci) rises by 47.9447 mV"),
+    ("samples that add up", CLOCK + BUCK + ACCUMULATOR.format("(v(out)-4)"), "sample(a1) rises by 7.94472 mV"),
+    ("a coil across the output", CLOCK + BUCK + "E1 m 0 out 0 1\nL9 m 0 1\n", "i(l9) rises by 48 uA"),
+    ("a rectifier", RECTIFIER + integral("a", "i", "1u"), "v(ci) rises by 340.924 mV"),
+    ("two of one converter", CLOCK + BUCK + integral("out", "i") + integral("sw", "j", "2n"), "v(ci) rises by 48 mV"),
+]
+
+# One that drifts drives another one: a Jordan block of M. Nothing goes on alike, and at 1e15 V all would seem to repeat.
+DRIVEN = [
+    ("two", CLOCK + BUCK + integral("out", "i") + integral("i", "j")),
+    ("three", CLOCK + BUCK + integral("out", "i") + integral("i", "j") + integral("j", "k")),
+    ("of a rectifier", RECTIFIER + integral("a", "i", "1u") + integral("i", "j", "1u")),
+    ("slow ones", RECTIFIER + integral("a", "i", "1m") + integral("i", "j", "1m")),
+    ("behind a filter", RECTIFIER + "R2 a f 1k\nC2 f 0 10u\n" + integral("f", "i", "1u") + integral("i", "j", "100u")),
+    ("of unlike sizes", CLOCK + BUCK + integral("out", "i", "1u") + integral("i", "j", "1p")),
+    ("a coil", CLOCK + BUCK + integral("out", "i") + "E1 m 0 i 0 1\nL9 m 0 1\n"),
+    ("samples", CLOCK + BUCK + ACCUMULATOR.format("v(out)") + "A2 ny 0 g 0 0 0 b 0 SAMPLEHOLD\nB2 ny 0 V=v(b)+0.01*v(acc)\n"),
+    ("beside a charge that is conserved", CLOCK + BUCK + integral("out", "i") + integral("i", "j") + "C7 out p 1u\nC6 p 0 2u\n"),
+    # what the first one keeps from the start, -50 mV/A times i(l1), has no mean of 0
+    ("the first one is conserved", CLOCK + BUCK + "Vr r 0 4.8\nE1 q 0 out r 1\n" + integral("q", "i") + integral("i", "j")),
+]
+
+
+def integrals(case):
+    for name, netlist, rises in DRIFTS:
+        case.refuses(f"* {name}\n{netlist}.pss uic\n", 1, "there is no periodic steady state: from any start", rises)
+    for name, netlist in DRIVEN:
+        case.refuses(f"* {name}\n{netlist}.pss uic\n", 1, "no periodic steady state was found", "in the last one")
+    done, report = case.run("* controlled\n" + CLOCK + BUCK + "Vr r 0 1\nB1 u 0 V=v(r)-v(j)-0.5*v(i)+0*v(out)\n" +
+                            integral("u", "i") + integral("i", "j") + ".pss uic\n")
+    case.checker.check(done.returncode == 0 and abs(report["steady"]["states"]["cj"] - 1) < 1e-9, f"controlled: {done.stderr}")
+    case.refuses("* a counter\n" + CLOCK + BUCK + "A1 g 0 0 0 0 0 q 0 COUNTER cycles=5000 duty=0.5\nR9 q out 100\n.pss uic\n", 1,
+                 "not what gates and switches remember")
+
+
+def of_time(case):
+    """Formulas of time that come to no end, and such as do."""
+    for formula in ("0.1*time", "time*time*1k", "0.1*sin(time*1k*time)", "0.1*sqrt(time)", "v(out)*time", "pwl(time,0,0,1m,0.1)"):
+        case.refuses(f"* rises\n{CLOCK}{BUCK}B2 out 0 I={formula}\n.pss uic\n", 2, "b2", "follows time without end")
+    for formula in ("table(time,0,0,1m,0.1)", "0.1*min(time*10k,1)", "limit(time*100,0,0.1)", "0.1*exp(-1k*time)"):
+        case.finds(f"* ends\n{CLOCK}{BUCK}B2 out 0 I={formula}\n.pss uic\n", 10e-6, "value in the end", mean=MEAN)
+
+
 def periods(case):
     case.finds("* plain\n" + CLOCK + BUCK + ".pss\n", 10e-6, "stable", mean=MEAN)
     case.finds("* .tran alone\n" + CLOCK + BUCK + ".tran 1u 1m uic\n", 10e-6, mean=MEAN)
@@ -199,6 +255,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         case = Case(pathlib.Path(sys.argv[1]).resolve(), folder)
         refused(case)
+        integrals(case)
+        of_time(case)
         periods(case)
         own_period(case)
         one_period(case)
