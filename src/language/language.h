@@ -263,13 +263,6 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) DAL
 /* Those of elements and models, in the deck's flat cards. */
 enum dalcs_status dalcs_override_cards(struct dalcs_language *language) DALCS_MUST_CHECK;
 
-/* The token of an element's value; *is_there: false when it has none. */
-int dalcs_card_find_value(const struct dalcs_card *card, bool *is_there);
-
-/* A copy of the card with this value at token `at`. */
-enum dalcs_status dalcs_card_set(struct dalcs_language *language, struct dalcs_card *card, int at,
-                                 double value) DALCS_MUST_CHECK;
-
 /* ---- tolerance.c: DEV and LOT --------------------------------------------------------------------- */
 
 /* Takes them off the deck's cards, and puts what they make of values in this run there. */
