@@ -2,7 +2,7 @@
  *
  * Nothing is evaluated here. Errors inside a subcircuit that is never called are not reported, as far
  * as it can be read at all. */
-#include "definition.h"
+#include "collector.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -296,17 +296,17 @@ void dalcs_definition_finish(struct dalcs_definition *definition) {
     for (size_t k = 0; k < definition->n_inner; k++) {
         dalcs_definition_finish(definition->inner[k]);
     }
-    for (size_t k = 0; k < definition->n_functions; k++) {
-        dalcs_names_finish(&definition->function[k]->arguments);
+    for (size_t k = 0; k < definition->functions.n; k++) {
+        dalcs_names_finish(&definition->functions.function[k]->arguments);
     }
     dalcs_names_finish(&definition->port_index);
-    dalcs_names_finish(&definition->parameters);
-    dalcs_names_finish(&definition->functions);
+    dalcs_names_finish(&definition->parameters.names);
+    dalcs_names_finish(&definition->functions.names);
     dalcs_names_finish(&definition->subcircuits);
     dalcs_names_finish(&definition->models);
     free(definition->item);
-    free(definition->assignment);
-    free(definition->last_of);
-    free(definition->function);
+    free(definition->parameters.assignment);
+    free(definition->parameters.last_of);
+    free(definition->functions.function);
     free(definition->inner);
 }

@@ -1,15 +1,16 @@
 /* definition_values.c - the parameters and functions that a card defines, as .param and .func in the spellings of all
  * simulators. */
-#include "definition.h"
+#include "collector.h"
 
 #include <string.h>
 
 static enum dalcs_status assign(struct dalcs_collector *c, const struct dalcs_token *name,
                                 const struct dalcs_token *value, int n, bool is_formal) {
     struct dalcs_definition *d = c->definition;
-    int slot = dalcs_names_find(&d->parameters, name->text);
+    int slot = dalcs_names_find(&d->parameters.names, name->text);
     if (slot >= 0) {
-        const struct dalcs_assignment *last = &d->assignment[d->last_of[slot]];
+        const struct dalcs_assignment *last =
+            &d->parameters.assignment[d->parameters.last_of[slot]];
         const bool both_formal = is_formal && last->item < 0;
         if (both_formal ||
             (last->item >= 0 && !last->is_conditional && !dalcs_collector_is_conditional(c) &&
@@ -23,15 +24,16 @@ static enum dalcs_status assign(struct dalcs_collector *c, const struct dalcs_to
                                   name->text, dalcs_language_place(c->language, last->name));
         }
     } else {
-        slot = d->n_slots;
-        DALCS_TRY(dalcs_grow(&d->last_of, &d->last_capacity, (size_t)slot + 1, sizeof *d->last_of));
-        DALCS_TRY(dalcs_names_add(&d->parameters, name->text, slot));
-        d->n_slots++;
+        slot = d->parameters.n_slots;
+        DALCS_TRY(dalcs_grow(&d->parameters.last_of, &d->parameters.last_capacity, (size_t)slot + 1,
+                             sizeof *d->parameters.last_of));
+        DALCS_TRY(dalcs_names_add(&d->parameters.names, name->text, slot));
+        d->parameters.n_slots++;
     }
-    d->last_of[slot] = d->n_assignments;
-    DALCS_TRY(dalcs_grow(&d->assignment, &d->assignment_capacity, d->n_assignments + 1,
-                         sizeof *d->assignment));
-    d->assignment[d->n_assignments++] = (struct dalcs_assignment){
+    d->parameters.last_of[slot] = d->parameters.n_assignments;
+    DALCS_TRY(dalcs_grow(&d->parameters.assignment, &d->parameters.capacity,
+                         d->parameters.n_assignments + 1, sizeof *d->parameters.assignment));
+    d->parameters.assignment[d->parameters.n_assignments++] = (struct dalcs_assignment){
         .name = name,
         .value = value,
         .n_tokens = n,
@@ -57,6 +59,27 @@ static int function_head(const struct dalcs_card *card, int at) {
 
 static const char FUNC_USAGE[] = ".func name(argument, ...) {expression}";
 
+/* Under a condition there may be several of a name, and where a file is read twice. */
+static enum dalcs_status name_function(struct dalcs_collector *c,
+                                       struct dalcs_user_function *function) {
+    struct dalcs_definition *d = c->definition;
+    const struct dalcs_token *name = function->name;
+    const int first = dalcs_names_find(&d->functions.names, name->text);
+    if (first < 0) {
+        return dalcs_names_add(&d->functions.names, name->text, (int)d->functions.n - 1);
+    }
+    struct dalcs_user_function *known = d->functions.function[first];
+    if (!dalcs_collector_is_conditional(c) && !dalcs_token_is_same_place(known->name, name)) {
+        dalcs_language_report(c->language, DALCS_ERROR, NULL, name, "give it another name",
+                              "there are two functions '%s', the first at %s", name->text,
+                              dalcs_language_place(c->language, known->name));
+        return DALCS_OK;
+    }
+    function->other = known->other;
+    known->other = function;
+    return DALCS_OK;
+}
+
 /* A function whose head is token[at..head-1] and whose body is token[body..end-1]. */
 static enum dalcs_status add_function(struct dalcs_collector *c, const struct dalcs_card *card,
                                       int at, int head, int body, int end) {
@@ -78,9 +101,10 @@ static enum dalcs_status add_function(struct dalcs_collector *c, const struct da
     if (function == NULL) {
         return DALCS_E_NOMEM;
     }
-    DALCS_TRY(
-        dalcs_grow(&d->function, &d->function_capacity, d->n_functions + 1, sizeof *d->function));
-    d->function[d->n_functions++] = function; /* from here on it is freed with the definition */
+    DALCS_TRY(dalcs_grow(&d->functions.function, &d->functions.capacity, d->functions.n + 1,
+                         sizeof *d->functions.function));
+    d->functions.function[d->functions.n++] =
+        function; /* from here on it is freed with the definition */
     function->name = name;
     function->body = &card->token[body];
     function->n_tokens = end - body;
@@ -95,20 +119,7 @@ static enum dalcs_status add_function(struct dalcs_collector *c, const struct da
         }
     }
     function->n_arguments = head - at - 3;
-    const int first = dalcs_names_find(&d->functions, name->text);
-    if (first < 0) {
-        return dalcs_names_add(&d->functions, name->text, (int)d->n_functions - 1);
-    }
-    struct dalcs_user_function *known = d->function[first];
-    if (!dalcs_collector_is_conditional(c) && !dalcs_token_is_same_place(known->name, name)) {
-        dalcs_language_report(c->language, DALCS_ERROR, NULL, name, "give it another name",
-                              "there are two functions '%s', the first at %s", name->text,
-                              dalcs_language_place(c->language, known->name));
-        return DALCS_OK;
-    }
-    function->other = known->other;
-    known->other = function;
-    return DALCS_OK;
+    return name_function(c, function);
 }
 
 enum dalcs_status dalcs_collector_read_function(struct dalcs_collector *c,

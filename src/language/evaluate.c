@@ -23,12 +23,13 @@ void dalcs_evaluation_report(const struct dalcs_evaluation *r, const struct dalc
 }
 
 enum dalcs_outcome dalcs_evaluation_push(struct dalcs_language *language, double value) {
-    if (dalcs_grow(&language->stack, &language->stack_capacity, language->n_stack + 1,
-                   sizeof *language->stack) != DALCS_OK) {
+    if (dalcs_grow(&language->evaluation.stack, &language->evaluation.stack_capacity,
+                   language->evaluation.n_stack + 1,
+                   sizeof *language->evaluation.stack) != DALCS_OK) {
         language->out_of_memory = true;
         return DALCS_OUTCOME_WRONG;
     }
-    language->stack[language->n_stack++] = value;
+    language->evaluation.stack[language->evaluation.n_stack++] = value;
     return DALCS_OUTCOME_VALUE;
 }
 
@@ -47,7 +48,7 @@ static const char *suggest_name(struct dalcs_language *language, struct dalcs_sc
         return "an expression here is a number that is known before the run";
     }
     for (const struct dalcs_scope *s = scope; s != NULL; s = s->caller) {
-        const char *nearest = dalcs_names_nearest(&s->definition->parameters, name);
+        const char *nearest = dalcs_names_nearest(&s->definition->parameters.names, name);
         if (nearest != NULL && strcmp(nearest, name) == 0) {
             return "the branch of .if that sets it was not chosen, or not yet";
         }
@@ -55,14 +56,15 @@ static const char *suggest_name(struct dalcs_language *language, struct dalcs_sc
             return dalcs_language_text(language, "did you mean '%s'?", nearest);
         }
     }
-    return dalcs_language_suggest(language, &scope->definition->parameters, name, "parameters");
+    return dalcs_language_suggest(language, &scope->definition->parameters.names, name,
+                                  "parameters");
 }
 
 /* What a call gives may be said with what it gives besides, as in LTspice: X1 a b PWM Tdead=1u step=0.1*Tdead. */
 static struct dalcs_value *find_beside(const struct dalcs_evaluation *r, const char *name) {
     const struct dalcs_language *language = r->language;
     const struct dalcs_value *now =
-        language->n_sought > 0 ? language->sought[language->n_sought - 1] : NULL;
+        language->sought.n > 0 ? language->sought.value[language->sought.n - 1] : NULL;
     const bool is_of_call = now != NULL && now->owner != NULL && now->where == r->scope;
     struct dalcs_value *value = is_of_call ? dalcs_scope_find_given(now->owner, name) : NULL;
     return value != now ? value : NULL;
@@ -81,7 +83,7 @@ static enum dalcs_outcome push_name(const struct dalcs_evaluation *r,
         if (value->state == DALCS_VALUE_KNOWN) {
             return dalcs_evaluation_push(language, value->value);
         }
-        language->awaited = value;
+        language->sought.awaited = value;
         return value->state == DALCS_VALUE_WRONG ? DALCS_OUTCOME_WRONG : DALCS_OUTCOME_WAITS;
     }
     if (dalcs_constant_find(o->u.name, &constant)) {
@@ -176,28 +178,33 @@ static bool apply(const struct dalcs_evaluation *r, const struct dalcs_operation
     return true;
 }
 
+static void unary(struct dalcs_language *language, enum dalcs_operation_code code) {
+    double *top = &language->evaluation.stack[language->evaluation.n_stack - 1];
+    *top = code == DALCS_NEGATE ? *top * -1 : code == DALCS_NOT ? *top == 0 : *top != 0;
+}
+
 static enum dalcs_outcome binary(const struct dalcs_evaluation *r,
                                  const struct dalcs_operation *o) {
     struct dalcs_language *language = r->language;
-    double *top = &language->stack[language->n_stack - 2];
+    double *top = &language->evaluation.stack[language->evaluation.n_stack - 2];
     double value;
     if (!apply(r, o, top[0], top[1], &value)) {
         return DALCS_OUTCOME_WRONG;
     }
     top[0] = value;
-    language->n_stack--;
+    language->evaluation.n_stack--;
     return DALCS_OUTCOME_VALUE;
 }
 
 /* A jump by what is on the stack: is it taken? */
 static bool jumps(struct dalcs_language *language, enum dalcs_operation_code code) {
-    double *top = &language->stack[language->n_stack - 1];
+    double *top = &language->evaluation.stack[language->evaluation.n_stack - 1];
     const bool is_zero = *top == 0;
     const bool taken = code == DALCS_JUMP_OR ? !is_zero : is_zero;
     if (taken && code == DALCS_JUMP_OR) {
         *top = 1;
     }
-    language->n_stack -= code == DALCS_JUMP_IF_ZERO || !taken;
+    language->evaluation.n_stack -= code == DALCS_JUMP_IF_ZERO || !taken;
     return taken;
 }
 
@@ -206,7 +213,7 @@ enum dalcs_outcome dalcs_evaluation_run(struct dalcs_evaluation *r) {
     for (int k = 0; k < r->expression->n; k++) {
         const struct dalcs_operation *o = &r->expression->operation[k];
         enum dalcs_outcome outcome = DALCS_OUTCOME_VALUE;
-        if (++language->operations > MOST_OPERATIONS) {
+        if (++language->evaluation.operations > MOST_OPERATIONS) {
             dalcs_evaluation_report(r, o, NULL, "this takes more than %d operations",
                                     MOST_OPERATIONS);
             return DALCS_OUTCOME_WRONG;
@@ -219,16 +226,13 @@ enum dalcs_outcome dalcs_evaluation_run(struct dalcs_evaluation *r) {
             outcome = push_name(r, o);
             break;
         case DALCS_PUSH_ARGUMENT:
-            outcome = dalcs_evaluation_push(language, language->stack[r->base + (size_t)o->count]);
+            outcome = dalcs_evaluation_push(language,
+                                            language->evaluation.stack[r->base + (size_t)o->count]);
             break;
         case DALCS_NEGATE:
-            language->stack[language->n_stack - 1] *= -1;
-            break;
         case DALCS_NOT:
-            language->stack[language->n_stack - 1] = language->stack[language->n_stack - 1] == 0;
-            break;
         case DALCS_TO_LOGIC:
-            language->stack[language->n_stack - 1] = language->stack[language->n_stack - 1] != 0;
+            unary(language, o->code);
             break;
         case DALCS_JUMP:
             k += o->count - 1;
@@ -259,16 +263,16 @@ enum dalcs_outcome dalcs_evaluation_run(struct dalcs_evaluation *r) {
 
 enum dalcs_outcome dalcs_evaluate(struct dalcs_language *language, struct dalcs_scope *scope,
                                   const struct dalcs_expression *expression, double *value) {
-    const size_t base = language->n_stack;
-    const uint32_t n_drawn = language->place.n;
+    const size_t base = language->evaluation.n_stack;
+    const uint32_t n_drawn = language->drawing.place.n;
     struct dalcs_evaluation r = {language, scope, expression, base};
-    language->operations = 0;
+    language->evaluation.operations = 0;
     const enum dalcs_outcome outcome = dalcs_evaluation_run(&r);
     if (outcome == DALCS_OUTCOME_VALUE) {
-        *value = language->stack[base];
+        *value = language->evaluation.stack[base];
     } else {
-        language->place.n = n_drawn; /* it is evaluated again, or for nothing */
+        language->drawing.place.n = n_drawn; /* it is evaluated again, or for nothing */
     }
-    language->n_stack = base;
+    language->evaluation.n_stack = base;
     return outcome;
 }

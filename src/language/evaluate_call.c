@@ -30,7 +30,7 @@ static enum dalcs_outcome call_user(const struct dalcs_evaluation *r,
     if (!check_count(r, o, function->n_arguments, function->n_arguments)) {
         return DALCS_OUTCOME_WRONG;
     }
-    if (function->is_active || language->call_depth >= DEEPEST_CALL) {
+    if (function->is_active || language->evaluation.call_depth >= DEEPEST_CALL) {
         dalcs_evaluation_report(r, o, NULL,
                                 function->is_active
                                     ? "function '%s' calls itself"
@@ -43,16 +43,16 @@ static enum dalcs_outcome call_user(const struct dalcs_evaluation *r,
         return DALCS_OUTCOME_WRONG;
     }
     struct dalcs_evaluation inner = {language, r->scope, function->expression,
-                                     language->n_stack - (size_t)o->count};
+                                     language->evaluation.n_stack - (size_t)o->count};
     function->is_active = true;
-    language->call_depth++;
+    language->evaluation.call_depth++;
     const enum dalcs_outcome outcome = dalcs_evaluation_run(&inner);
-    language->call_depth--;
+    language->evaluation.call_depth--;
     function->is_active = false;
     if (outcome == DALCS_OUTCOME_VALUE) {
         /* The result takes the place of the arguments. */
-        const double value = language->stack[language->n_stack - 1];
-        language->n_stack = inner.base;
+        const double value = language->evaluation.stack[language->evaluation.n_stack - 1];
+        language->evaluation.n_stack = inner.base;
         return dalcs_evaluation_push(language, value);
     }
     return outcome;
@@ -60,7 +60,7 @@ static enum dalcs_outcome call_user(const struct dalcs_evaluation *r,
 
 static const char *suggest_function(const struct dalcs_evaluation *r, const char *name) {
     for (const struct dalcs_scope *s = r->scope; s != NULL; s = s->caller) {
-        const char *nearest = dalcs_names_nearest(&s->definition->functions, name);
+        const char *nearest = dalcs_names_nearest(&s->definition->functions.names, name);
         if (nearest != NULL) {
             return dalcs_language_text(r->language, "did you mean '%s'?", nearest);
         }
@@ -75,14 +75,15 @@ static enum dalcs_outcome draw(const struct dalcs_evaluation *r, const struct da
                                dalcs_draw *function) {
     struct dalcs_language *language = r->language;
     const double *x = /* without arguments there may be no stack */
-        o->count > 0 ? &language->stack[language->n_stack - (size_t)o->count] : NULL;
+        o->count > 0 ? &language->evaluation.stack[language->evaluation.n_stack - (size_t)o->count]
+                     : NULL;
     const double value = dalcs_drawn_next(language, function, x, o->count);
     if (!isfinite(value)) {
         dalcs_evaluation_report(r, o, dalcs_draw_usage(o->u.name), "a value of %s is not finite",
                                 o->u.name);
         return DALCS_OUTCOME_WRONG;
     }
-    language->n_stack -= (size_t)o->count;
+    language->evaluation.n_stack -= (size_t)o->count;
     return dalcs_evaluation_push(language, value);
 }
 
@@ -117,7 +118,7 @@ enum dalcs_outcome dalcs_evaluation_call(const struct dalcs_evaluation *r,
     if (!check_count(r, o, function->least, function->most)) {
         return DALCS_OUTCOME_WRONG;
     }
-    const double *x = &language->stack[language->n_stack - (size_t)o->count];
+    const double *x = &language->evaluation.stack[language->evaluation.n_stack - (size_t)o->count];
     const double value = function->one != NULL   ? function->one(x[0])
                          : function->two != NULL ? function->two(x[0], x[1])
                                                  : function->many(x, o->count);
@@ -134,7 +135,7 @@ enum dalcs_outcome dalcs_evaluation_call(const struct dalcs_evaluation *r,
         }
         return DALCS_OUTCOME_WRONG;
     }
-    language->n_stack -= (size_t)o->count;
+    language->evaluation.n_stack -= (size_t)o->count;
     return dalcs_evaluation_push(language, value);
 }
 

@@ -110,8 +110,8 @@ const struct dalcs_formula *dalcs_formula_make_of(struct dalcs_language *languag
                                                      .is_transfer = variable != NULL &&
                                                                     strcmp(variable, "s") == 0,
                                                      .dialect = language->netlist->dialect,
-                                                     .noted_caret = &language->noted_caret,
-                                                     .noted_log = &language->noted_log};
+                                                     .noted_caret = &language->noted.caret,
+                                                     .noted_log = &language->noted.log};
     struct dalcs_expression_text text;
     struct dalcs_expression *expression = NULL;
     if (dalcs_expression_text(language->arena, token, n, &text)) {

@@ -6,7 +6,7 @@
 /* A parameter of the netlist: one that .param declares, else one more. */
 static struct dalcs_value *declare(struct dalcs_language *language, const char *name) {
     struct dalcs_scope *top = language->top;
-    const int slot = dalcs_names_find(&top->definition->parameters, name);
+    const int slot = dalcs_names_find(&top->definition->parameters.names, name);
     if (slot >= 0) {
         return &top->value[slot];
     }
@@ -44,26 +44,14 @@ static const struct dalcs_token *stepped(const struct dalcs_card *card, int *fir
     return *first < card->n ? &card->token[k + 1] : NULL;
 }
 
-enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
-    struct dalcs_deck *deck = language->deck;
+/* LTspice declares a parameter by stepping it: until then it has the first value. */
+static enum dalcs_status declare_stepped(struct dalcs_language *language) {
     const struct dalcs_definition *root = &language->root;
-    size_t room = deck->n_overrides;
-    for (size_t k = 0; k < root->n_items; k++) {
-        room += dalcs_token_is_word(root->item[k].card->token, ".step");
-    }
-    if (room == 0) {
-        return DALCS_OK;
-    }
-    language->top->extra = dalcs_arena_alloc(language->arena, room, sizeof(struct dalcs_value));
-    if (language->top->extra == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    /* LTspice declares a parameter by stepping it: until then it has the first value. */
     for (size_t k = 0; k < root->n_items; k++) {
         int first;
         const struct dalcs_card *card = root->item[k].card;
         const struct dalcs_token *name = stepped(card, &first);
-        if (name == NULL || dalcs_names_find(&root->parameters, name->text) >= 0) {
+        if (name == NULL || dalcs_names_find(&root->parameters.names, name->text) >= 0) {
             continue;
         }
         struct dalcs_value *value = declare(language, name->text);
@@ -78,6 +66,24 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
                                       .expression = expression,
                                       .where = language->top};
     }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
+    struct dalcs_deck *deck = language->deck;
+    const struct dalcs_definition *root = &language->root;
+    size_t room = deck->n_overrides;
+    for (size_t k = 0; k < root->n_items; k++) {
+        room += dalcs_token_is_word(root->item[k].card->token, ".step");
+    }
+    if (room == 0) {
+        return DALCS_OK;
+    }
+    language->top->extra = dalcs_arena_alloc(language->arena, room, sizeof(struct dalcs_value));
+    if (language->top->extra == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(declare_stepped(language));
     for (size_t k = 0; k < deck->n_overrides; k++) {
         const struct dalcs_override *override = &deck->override[k];
         if (override->kind != DALCS_OVERRIDE_PARAMETER) {
@@ -109,6 +115,7 @@ bool dalcs_deck_uses_parameter(const struct dalcs_deck *deck, const char *name) 
 }
 
 const char *dalcs_deck_nearest_parameter(const struct dalcs_deck *deck, const char *name) {
-    return deck->language == NULL ? NULL
-                                  : dalcs_names_nearest(&deck->language->root.parameters, name);
+    return deck->language == NULL
+               ? NULL
+               : dalcs_names_nearest(&deck->language->root.parameters.names, name);
 }

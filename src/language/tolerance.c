@@ -205,7 +205,7 @@ enum dalcs_status dalcs_tolerances_apply(struct dalcs_language *language) {
     if (status == DALCS_OK) {
         status = apply_to_models(&all);
     }
-    if (all.first != NULL && !language->has_runs) {
+    if (all.first != NULL && !language->drawing.has_runs) {
         dalcs_language_report(language, DALCS_NOTE, NULL, all.first,
                               ".mc 100 draws them, .wcase looks for the worst case",
                               "tolerances (DEV, LOT) count in runs of .mc and .wcase only");

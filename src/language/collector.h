@@ -1,6 +1,6 @@
-/* definition.h - what the files that sort cards into definitions share. Private to this folder. */
-#ifndef DALCS_DEFINITION_H
-#define DALCS_DEFINITION_H
+/* collector.h - what the files that sort cards into definitions share. Private to this folder. */
+#ifndef DALCS_COLLECTOR_H
+#define DALCS_COLLECTOR_H
 
 #include "language.h"
 
