@@ -361,4 +361,23 @@ const struct dalcs_form *dalcs_compile(struct dalcs_compiler *c,
  * unless a quantity is exactly 0. */
 const struct dalcs_form *dalcs_compile_truth(struct dalcs_compiler *c, const struct dalcs_form *a);
 
+/* ---- form.c, for form_functions.c ----------------------------------------------------------------- */
+
+/* A copy that lives as long as what is compiled; NULL: out of memory, or the compilation failed. */
+const struct dalcs_form *dalcs_form_keep(struct dalcs_compiler *c, struct dalcs_form value);
+
+bool dalcs_form_check(struct dalcs_compiler *c, bool ok);
+
+/* Adds factor * f(direction) to a list that has room: a line goes to *affine. */
+bool dalcs_form_add_part(struct dalcs_compiler *c, struct dalcs_affine *affine,
+                         struct dalcs_form_part *part, int *n, double factor,
+                         const struct dalcs_form_part *other);
+
+/* Is it a staircase of one quantity, and a number? */
+bool dalcs_form_is_staircase(const struct dalcs_form *v);
+
+/* It is 0 or 1, or between the two at a jump. */
+const struct dalcs_form *dalcs_form_mark_logic(struct dalcs_compiler *c,
+                                               const struct dalcs_form *v);
+
 #endif
