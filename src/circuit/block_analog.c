@@ -1,7 +1,5 @@
 /* block_analog.c - XSPICE's analog code models of straight lines without memory, as sources. */
-#include "analysis_cards.h"
 #include "block_parts.h"
-#include "element_cards.h"
 #include "model_cards.h"
 
 #include <math.h>

@@ -5,7 +5,6 @@
 #include "builder.h"
 
 #include "foreign.h"
-#include "lower_case.h"
 
 #include <string.h>
 

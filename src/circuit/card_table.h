@@ -55,4 +55,10 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
  * put something in series. */
 void dalcs_card_table_make_room(struct dalcs_card_table *table);
 
+/* ---- circuit_cards.c ------------------------------------------------------------------------------ */
+
+/* Reads all cards of the deck, whose classes these are, pass by pass. */
+enum dalcs_status dalcs_card_table_read(struct dalcs_builder *builder,
+                                        const unsigned char *class_of);
+
 #endif

@@ -1,8 +1,6 @@
 /* logic_parts.c - what becomes of a gate's outputs: sources, impedances, and what else follows them. */
 #include "logic_parts.h"
-#include "element_cards.h"
 #include "model_cards.h"
-#include "result_cards.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,6 @@
  * model of its own. LOT is drawn once: for the model as it is written, whatever subcircuit calls make of it; of elements
  * without a model for all with this letter; of LOT/1 for all that say so. */
 #include "tolerance.h"
-#include "number.h"
 
 #include <stdlib.h>
 #include <string.h>
