@@ -51,6 +51,14 @@ struct dalcs_card_table {
 enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
                                                 const struct dalcs_card *card);
 
+/* ---- card_room.c ---------------------------------------------------------------------------------- */
+
+/* Formulas on a card that names signals: each may become a source. */
+size_t dalcs_card_table_count_formulas(const struct dalcs_card *card);
+
+/* Adds what the card of an element may become. */
+void dalcs_card_table_count(struct dalcs_card_table *table, const struct dalcs_card *card);
+
 /* When all cards are classified: what diodes need whose models limit their current, and switches whose models
  * put something in series. */
 void dalcs_card_table_make_room(struct dalcs_card_table *table);

@@ -47,4 +47,8 @@ bool dalcs_signal_compilation_steps(struct dalcs_signal_compilation *c,
 /* Masks all signals of the text. */
 void dalcs_signal_compilation_mask(struct dalcs_signal_compilation *c);
 
+/* Keeps the steps as the formula. */
+void dalcs_signal_compilation_finish(struct dalcs_signal_compilation *c,
+                                     struct dalcs_signal_formula *formula);
+
 #endif
