@@ -1,5 +1,5 @@
-/* compiler.h - formulas to values: forms, which are affine functions plus piecewise-linear ones of one affine quantity each.
- * Private to this folder. */
+/* compiler.h - formulas to values: forms, which are affine functions plus piecewise-linear ones of one affine
+ * quantity each. Private to this folder. */
 #ifndef DALCS_COMPILER_H
 #define DALCS_COMPILER_H
 

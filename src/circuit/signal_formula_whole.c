@@ -1,4 +1,4 @@
-/* signal_formula_whole.c - a formula of signals when all its steps are known: its degree, and what is asked of it as a whole. */
+/* signal_formula_whole.c - a formula of signals when all its steps are known: its degree, differences of two. */
 #include "result_cards.h"
 #include "signal_formula_card.h"
 

@@ -179,14 +179,14 @@ static bool apply(const struct dalcs_evaluation *r, const struct dalcs_operation
 }
 
 static void unary(struct dalcs_language *language, enum dalcs_operation_code code) {
-    double *top = &language->evaluation.stack[language->evaluation.n_stack - 1];
+    double *top = language->evaluation.stack + (language->evaluation.n_stack - 1);
     *top = code == DALCS_NEGATE ? *top * -1 : code == DALCS_NOT ? *top == 0 : *top != 0;
 }
 
 static enum dalcs_outcome binary(const struct dalcs_evaluation *r,
                                  const struct dalcs_operation *o) {
     struct dalcs_language *language = r->language;
-    double *top = &language->evaluation.stack[language->evaluation.n_stack - 2];
+    double *top = language->evaluation.stack + (language->evaluation.n_stack - 2);
     double value;
     if (!apply(r, o, top[0], top[1], &value)) {
         return DALCS_OUTCOME_WRONG;
@@ -198,7 +198,7 @@ static enum dalcs_outcome binary(const struct dalcs_evaluation *r,
 
 /* A jump by what is on the stack: is it taken? */
 static bool jumps(struct dalcs_language *language, enum dalcs_operation_code code) {
-    double *top = &language->evaluation.stack[language->evaluation.n_stack - 1];
+    double *top = language->evaluation.stack + (language->evaluation.n_stack - 1);
     const bool is_zero = *top == 0;
     const bool taken = code == DALCS_JUMP_OR ? !is_zero : is_zero;
     if (taken && code == DALCS_JUMP_OR) {

@@ -75,8 +75,9 @@ static enum dalcs_outcome draw(const struct dalcs_evaluation *r, const struct da
                                dalcs_draw *function) {
     struct dalcs_language *language = r->language;
     const double *x = /* without arguments there may be no stack */
-        o->count > 0 ? &language->evaluation.stack[language->evaluation.n_stack - (size_t)o->count]
-                     : NULL;
+        o->count > 0
+            ? language->evaluation.stack + (language->evaluation.n_stack - (size_t)o->count)
+            : NULL;
     const double value = dalcs_drawn_next(language, function, x, o->count);
     if (!isfinite(value)) {
         dalcs_evaluation_report(r, o, dalcs_draw_usage(o->u.name), "a value of %s is not finite",
@@ -118,7 +119,7 @@ enum dalcs_outcome dalcs_evaluation_call(const struct dalcs_evaluation *r,
     if (!check_count(r, o, function->least, function->most)) {
         return DALCS_OUTCOME_WRONG;
     }
-    const double *x = &language->evaluation.stack[language->evaluation.n_stack - (size_t)o->count];
+    const double *x = language->evaluation.stack + language->evaluation.n_stack - (size_t)o->count;
     const double value = function->one != NULL   ? function->one(x[0])
                          : function->two != NULL ? function->two(x[0], x[1])
                                                  : function->many(x, o->count);

@@ -1,4 +1,4 @@
-/* test_stimulus_pieces.c - what sources keep to whatever they are: edges in order, pieces between them, ends and repetitions. */
+/* test_stimulus_pieces.c - what all sources keep to: edges in order, pieces between them, ends, repetitions. */
 #include "make_stimulus.h"
 
 #include <float.h>
