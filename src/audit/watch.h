@@ -95,4 +95,9 @@ struct audit_watch {
     bool has_jumped; /* ... where all laws hold, but not all states are what they were before it */
 };
 
+enum dalcs_status audit_make_parts(struct dalcs_audit *audit);
+
+/* A current that a formula reads is an unknown, with Kirchhoff's law at both ends, also that of a short. */
+void audit_merge_shorts(struct dalcs_audit *audit);
+
 #endif

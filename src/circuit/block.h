@@ -41,6 +41,10 @@ struct dalcs_block_card {
 /* A type that XSPICE has, though it may be refused. */
 bool dalcs_block_is_type(const char *type);
 
+/* Is it refused? Then with a message about the element of the card. */
+bool dalcs_block_is_refused(struct dalcs_builder *builder, const struct dalcs_card *card,
+                            const struct dalcs_block *block);
+
 /* What follows the type on a .model card; NULL when an error was reported. */
 const struct dalcs_block *dalcs_block_parse_model(struct dalcs_reader *reader,
                                                   const struct dalcs_token *name,

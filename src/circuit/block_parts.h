@@ -59,4 +59,16 @@ const struct dalcs_formula *dalcs_block_line(struct dalcs_formula_writer *w,
 void dalcs_block_put_out(const struct dalcs_block_card *c, struct dalcs_formula_writer *w,
                          const struct dalcs_formula *what, const struct dalcs_block_end *out);
 
+/* ---- block_state.c -------------------------------------------------------------------------------- */
+
+/* Two branches of one shape. The output is continuous where the input passes from one to the other, for both are at the
+ * same limit there. */
+void dalcs_block_parse_hysteresis(const struct dalcs_block_card *c);
+
+void dalcs_block_parse_integrator(const struct dalcs_block_card *c);
+
+void dalcs_block_parse_slew(const struct dalcs_block_card *c);
+
+void dalcs_block_parse_derivative(const struct dalcs_block_card *c);
+
 #endif

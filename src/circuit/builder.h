@@ -282,4 +282,7 @@ void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_to
 /* "a resistor", by kind */
 const char *dalcs_builder_kind_text(enum dalcs_device_kind kind);
 
+/* Remembers that memory is out where it is; returns `ok`. */
+bool dalcs_builder_note_memory(struct dalcs_builder *builder, bool ok);
+
 #endif

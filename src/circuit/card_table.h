@@ -51,8 +51,22 @@ struct dalcs_card_table {
 enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
                                                 const struct dalcs_card *card);
 
+/* ---- card_room.c ---------------------------------------------------------------------------------- */
+
+/* Formulas on a card that names signals: each may become a source. */
+size_t dalcs_card_table_count_formulas(const struct dalcs_card *card);
+
+/* Adds what the card of an element may become. */
+void dalcs_card_table_count(struct dalcs_card_table *table, const struct dalcs_card *card);
+
 /* When all cards are classified: what diodes need whose models limit their current, and switches whose models
  * put something in series. */
 void dalcs_card_table_make_room(struct dalcs_card_table *table);
+
+/* ---- circuit_cards.c ------------------------------------------------------------------------------ */
+
+/* Reads all cards of the deck, whose classes these are, pass by pass. */
+enum dalcs_status dalcs_card_table_read(struct dalcs_builder *builder,
+                                        const unsigned char *class_of);
 
 #endif

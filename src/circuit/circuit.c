@@ -15,7 +15,6 @@
 #include "history.h"
 #include "later.h"
 #include "model_cards.h"
-#include "oscillator.h"
 #include "result_cards.h"
 #include "slips.h"
 #include "storage.h"
@@ -72,128 +71,6 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
         return ok && builder->elements.default_rser != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     return ok ? DALCS_OK : DALCS_E_NOMEM;
-}
-
-/* XSPICE's, by the model that the last word names; NULL: it is none of them. */
-static const struct dalcs_block *block_of(const struct dalcs_builder *builder,
-                                          const struct dalcs_card *card) {
-    const int index = dalcs_names_find(&builder->models.names, card->token[card->n - 1].text);
-    return index >= 0 ? builder->models.model[index].block : NULL;
-}
-
-static void read_element(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    if (card->parallel > 0 && dalcs_parallel_is_refused(builder, card)) {
-        return;
-    }
-    switch (card->letter) {
-    case 'r':
-        dalcs_passive_parse(builder, card, DALCS_RESISTOR);
-        return;
-    case 'l':
-        dalcs_passive_parse(builder, card, DALCS_INDUCTOR);
-        return;
-    case 'c':
-        dalcs_passive_parse(builder, card, DALCS_CAPACITOR);
-        return;
-    case 'v':
-        dalcs_source_parse(builder, card, DALCS_VSOURCE);
-        return;
-    case 'i':
-        if (dalcs_behavioural_has_own_table(card)) {
-            dalcs_behavioural_parse_own_table(builder, card);
-        } else {
-            dalcs_source_parse(builder, card, DALCS_ISOURCE);
-        }
-        return;
-    case 'e':
-        dalcs_controlled_parse(builder, card, DALCS_VCVS);
-        return;
-    case 'f':
-        dalcs_controlled_parse(builder, card, DALCS_CCCS);
-        return;
-    case 'g':
-        dalcs_controlled_parse(builder, card, DALCS_VCCS);
-        return;
-    case 'h':
-        dalcs_controlled_parse(builder, card, DALCS_CCVS);
-        return;
-    case 'd':
-        dalcs_diode_parse(builder, card);
-        return;
-    case 'a':
-        if (dalcs_card_is_logic(card)) {
-            dalcs_logic_parse(builder, card);
-        } else if (block_of(builder, card) != NULL) {
-            dalcs_block_parse(builder, card, block_of(builder, card));
-        } else if (dalcs_thyristor_is(builder, card)) {
-            dalcs_thyristor_parse(builder, card);
-        } else {
-            dalcs_diode_parse_block(builder, card);
-        }
-        return;
-    case 'm':
-    case 'z':
-    case 'q':
-        dalcs_transistor_parse(builder, card);
-        return;
-    case 'b':
-        dalcs_behavioural_parse(builder, card);
-        return;
-    case 't':
-        dalcs_line_parse(builder, card);
-        return;
-    default:
-        dalcs_switch_parse(builder, card);
-        return;
-    }
-}
-
-enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES, MEASURES, NEVER };
-
-/* The readers of cards, and their passes. */
-static const struct {
-    enum pass pass;
-    void (*parse)(struct dalcs_builder *builder, const struct dalcs_card *card);
-} READ[DALCS_N_CARD_CLASSES] = {
-    [DALCS_CARD_NONE] = {NEVER, NULL},
-    [DALCS_CARD_OPTIONS] = {OPTIONS, dalcs_options_parse},
-    [DALCS_CARD_MODEL] = {MODELS, dalcs_model_parse},
-    [DALCS_CARD_TRAN] = {MODELS, dalcs_analysis_parse_tran},
-    [DALCS_CARD_PSS] = {MODELS, dalcs_analysis_parse_pss},
-    [DALCS_CARD_ENV] = {MODELS, dalcs_analysis_parse_env},
-    [DALCS_CARD_OP] = {MODELS, dalcs_analysis_parse_op},
-    [DALCS_CARD_ELEMENT] = {ELEMENTS, read_element},
-    [DALCS_CARD_COUPLING] = {REFERENCES, dalcs_coupling_parse},
-    [DALCS_CARD_IC] = {REFERENCES, dalcs_initial_parse},
-    [DALCS_CARD_SIGNALS] = {REFERENCES, dalcs_signals_parse},
-    [DALCS_CARD_NODESET] = {REFERENCES, dalcs_initial_parse_nodeset},
-    [DALCS_CARD_DC] = {REFERENCES, dalcs_sweep_parse_dc},
-    [DALCS_CARD_AC] = {REFERENCES, dalcs_sweep_parse_ac},
-    [DALCS_CARD_SENS] = {REFERENCES, dalcs_sensitivity_parse},
-    [DALCS_CARD_STEP] = {REFERENCES, dalcs_sweep_parse_step},
-    [DALCS_CARD_MC] = {REFERENCES, dalcs_monte_carlo_parse},
-    [DALCS_CARD_WORST_CASE] = {REFERENCES, dalcs_worst_case_parse},
-    [DALCS_CARD_MEASURE] = {MEASURES, dalcs_measure_parse},
-    [DALCS_CARD_FOURIER] = {MEASURES, dalcs_fourier_parse},
-    [DALCS_CARD_LOSSES] = {MEASURES, dalcs_losses_parse},
-    [DALCS_CARD_SWITCHLOSS] = {MEASURES, dalcs_switchloss_count},
-};
-
-static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigned char *class_of) {
-    for (enum pass pass = OPTIONS; pass <= MEASURES; pass++) {
-        for (size_t k = 0; k < builder->deck->n_cards; k++) {
-            if (READ[class_of[k]].pass == pass) {
-                READ[class_of[k]].parse(builder, &builder->deck->card[k]);
-            }
-            if (builder->out_of_memory) {
-                return DALCS_E_NOMEM;
-            }
-        }
-        if (pass == ELEMENTS) {
-            dalcs_oscillator_put_all(builder);
-        }
-    }
-    return DALCS_OK;
 }
 
 /* Before any card was understood. */
@@ -295,7 +172,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     }
     dalcs_slip_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
-    DALCS_TRY(read_cards(builder, class_of));
+    DALCS_TRY(dalcs_card_table_read(builder, class_of));
     builder->circuit->is_whole = is_whole(builder);
     dalcs_passive_add_default_rser(builder);
     dalcs_storage_resolve(builder);

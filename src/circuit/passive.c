@@ -2,10 +2,11 @@
  *
  * R = 0 is a short. An inductor of 0 H is one too and becomes a resistor of 0 ohm; a capacitor of
  * 0 F is open and becomes a current source of 0 A: neither has a state. */
+#include "passive.h"
+
 #include "core.h"
 #include "element_cards.h"
 #include "model_cards.h"
-#include "number.h"
 #include "reader.h"
 
 #include <string.h>
@@ -13,180 +14,25 @@
 /* Ohms that LTspice puts in series with a coil where no Rser= is written and no K card names it. */
 static const double LTSPICE_RSER = 1e-3;
 
-/* What belongs to one of the three letters. */
-struct family {
-    const char *usage;
-    const char *value;    /* what the value is called when it is missing */
-    const char *names[3]; /* of the value when written as a parameter */
-    const char *law;      /* the parameter whose formula is its flux or charge, or NULL */
-    enum dalcs_quantity quantity;
-};
-
-static const struct family *family_of(enum dalcs_device_kind kind) {
-    static const struct family resistor = {"a resistor is: Rname node node ohms",
-                                           "a resistance",
-                                           {"r", "resistance", NULL},
-                                           NULL,
-                                           DALCS_OHM};
-    static const struct family inductor = {"an inductor is: Lname node node henries [IC=amperes]",
-                                           "an inductance",
-                                           {"l", "inductance", "ind"},
-                                           "flux",
-                                           DALCS_HENRY};
-    static const struct family capacitor = {"a capacitor is: Cname node node farads [IC=volts]",
-                                            "a capacitance",
-                                            {"c", "capacitance", "cap"},
-                                            "q",
-                                            DALCS_FARAD};
+static const struct dalcs_passive_family *family_of(enum dalcs_device_kind kind) {
+    static const struct dalcs_passive_family resistor = {"a resistor is: Rname node node ohms",
+                                                         "a resistance",
+                                                         {"r", "resistance", NULL},
+                                                         NULL,
+                                                         DALCS_OHM};
+    static const struct dalcs_passive_family inductor = {
+        "an inductor is: Lname node node henries [IC=amperes]",
+        "an inductance",
+        {"l", "inductance", "ind"},
+        "flux",
+        DALCS_HENRY};
+    static const struct dalcs_passive_family capacitor = {
+        "a capacitor is: Cname node node farads [IC=volts]",
+        "a capacitance",
+        {"c", "capacitance", "cap"},
+        "q",
+        DALCS_FARAD};
     return kind == DALCS_RESISTOR ? &resistor : kind == DALCS_INDUCTOR ? &inductor : &capacitor;
-}
-
-static bool is_value_name(const struct family *family, const char *name) {
-    for (int k = 0; k < 3 && family->names[k] != NULL; k++) {
-        if (strcmp(name, family->names[k]) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* The values of a card. */
-struct values {
-    bool has_value;
-    bool is_of_model;  /* unless the card has another */
-    double multiplier; /* 0: none */
-    struct dalcs_parasitics parasitics;
-    struct dalcs_storage_law law;
-    struct dalcs_core core;
-};
-
-/* A formula in the place of a value, or behind Flux= or Q=; false: there is none. */
-static bool take_law(struct dalcs_reader *reader, struct values *values, bool is_slope) {
-    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
-    if (token == NULL || token->kind != DALCS_TOKEN_FORMULA) {
-        return false;
-    }
-    reader->at++;
-    values->has_value = true;
-    values->law.formula = token;
-    values->law.is_slope = is_slope;
-    return true;
-}
-
-/* An inductor has no Lser, a resistor nothing. */
-static bool may_have(enum dalcs_device_kind kind, const char *parasitic) {
-    return dalcs_parasitic_is_name(parasitic) &&
-           (kind == DALCS_CAPACITOR || (kind == DALCS_INDUCTOR && strchr(parasitic, 'l') == NULL));
-}
-
-static bool is_multiplier(struct dalcs_reader *reader, double m) {
-    if (m <= 0) {
-        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
-                            "a multiplier must be positive");
-    }
-    return m > 0;
-}
-
-static bool read_multiplier(struct dalcs_reader *reader, double *multiplier) {
-    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number", multiplier)) {
-        return false;
-    }
-    return is_multiplier(reader, *multiplier);
-}
-
-/* `noiseless`, `noiseless=True` and `x2`, which LTspice writes behind a value: two in parallel. *taken: was it one? */
-static bool read_word(struct dalcs_reader *reader, double *multiplier, bool *taken) {
-    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
-    struct dalcs_number number;
-    *taken = dalcs_reader_take_word(reader, "noiseless");
-    if (*taken && dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
-        return dalcs_reader_skip_value(reader);
-    }
-    if (*taken || token == NULL || token->kind != DALCS_TOKEN_WORD || token->text[0] != 'x' ||
-        dalcs_number_parse(token->text + 1, &number) != DALCS_NUMBER_OK) {
-        return true;
-    }
-    *taken = true;
-    reader->at++;
-    *multiplier = number.value;
-    return is_multiplier(reader, number.value);
-}
-
-/* The value of a parameter after the card's value. False ends the card. */
-static bool read_parameter(struct dalcs_reader *reader, const struct family *family,
-                           const struct dalcs_token *name, struct dalcs_device *device,
-                           struct values *values) {
-    static const char *const temperature[] = {"tc",    "tc1",   "tc2",  "temp",
-                                              "dtemp", "noisy", "noise"};
-    struct dalcs_builder *builder = reader->builder;
-    double ignored;
-    const bool is_law = family->law != NULL && strcmp(name->text, family->law) == 0;
-    if (is_law || is_value_name(family, name->text)) {
-        if (values->has_value) {
-            dalcs_builder_error(builder, name, NULL, "%s is given twice", family->value);
-            return false;
-        }
-        if (take_law(reader, values, !is_law)) {
-            return true;
-        }
-        if (is_law) {
-            dalcs_reader_missing(reader, "a formula of x");
-            return false;
-        }
-        values->has_value = true;
-        return dalcs_reader_number(reader, family->quantity, family->value, &device->value);
-    }
-    if (strcmp(name->text, "ic") == 0 && device->kind != DALCS_RESISTOR) {
-        if (device->has_initial) {
-            dalcs_builder_error(builder, name, NULL, "an initial condition is given twice");
-            return false;
-        }
-        const bool is_inductor = device->kind == DALCS_INDUCTOR;
-        device->has_initial = true;
-        builder->analyses.initial_state =
-            builder->analyses.initial_state != NULL ? builder->analyses.initial_state : name;
-        return dalcs_reader_number(reader, is_inductor ? DALCS_CURRENT : DALCS_VOLTAGE,
-                                   is_inductor ? "a current" : "a voltage", &device->initial);
-    }
-    if (dalcs_builder_is_one_of(name->text, temperature,
-                                sizeof temperature / sizeof temperature[0])) {
-        dalcs_builder_note(builder, name, NULL, "'%s' has no meaning here and is ignored",
-                           name->text);
-        while (dalcs_reader_peek(reader, 0) != NULL &&
-               dalcs_reader_is_number(dalcs_reader_peek(reader, 0))) {
-            if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "a number", &ignored)) {
-                return false;
-            }
-        }
-        return true;
-    }
-    if (device->kind == DALCS_INDUCTOR && dalcs_core_is_name(name->text)) {
-        if (values->has_value && values->core.first == NULL) {
-            dalcs_builder_error(builder, name, NULL, "a core beside %s", family->value);
-            return false;
-        }
-        values->has_value = true;
-        return dalcs_core_read(reader, name, &values->core);
-    }
-    if (strcmp(name->text, "ac") == 0 && device->kind == DALCS_RESISTOR) {
-        dalcs_builder_warn(
-            builder, name, "write a second netlist for .ac with this value",
-            "a resistance of .ac alone is ignored: '%s' has the other one there, too",
-            reader->card->token->text);
-        return dalcs_reader_number(reader, DALCS_OHM, "a resistance", &ignored);
-    }
-    if (may_have(device->kind, name->text)) {
-        return dalcs_parasitic_read(reader, name, &values->parasitics);
-    }
-    if (strcmp(name->text, "m") == 0) {
-        return read_multiplier(reader, &values->multiplier);
-    }
-    if (dalcs_builder_is_label(name->text)) {
-        return dalcs_reader_skip_value(reader);
-    }
-    dalcs_builder_error(builder, name, family->usage, "%s has no parameter '%s'",
-                        dalcs_builder_kind_text(device->kind), name->text);
-    return false;
 }
 
 /* Replaces a device without a state by one that does the same. */
@@ -208,31 +54,6 @@ static void replace_zero(struct dalcs_builder *builder, struct dalcs_device *dev
         (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true};
 }
 
-/* What follows the value, or has it. *value: its token. */
-static bool read_rest(struct dalcs_reader *reader, const struct family *family,
-                      struct dalcs_device *device, struct values *values,
-                      const struct dalcs_token **value) {
-    while (!dalcs_reader_at_end(reader)) {
-        const bool had_value = values->has_value;
-        bool taken;
-        if (!read_word(reader, &values->multiplier, &taken)) {
-            return false;
-        }
-        if (taken) {
-            continue;
-        }
-        const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
-        if (name == NULL) {
-            return dalcs_reader_end(reader);
-        }
-        if (!read_parameter(reader, family, name, device, values)) {
-            return false;
-        }
-        *value = values->has_value && !had_value ? dalcs_reader_previous(reader) : *value;
-    }
-    return true;
-}
-
 /* m of it in parallel. */
 static void multiply(struct dalcs_device *device, struct dalcs_parasitics *parasitics, double m) {
     device->value *= device->kind == DALCS_CAPACITOR ? m : 1 / m;
@@ -242,7 +63,7 @@ static void multiply(struct dalcs_device *device, struct dalcs_parasitics *paras
 
 /* One that is no straight line. */
 static void expand_storage(struct dalcs_builder *builder, const struct dalcs_card *card,
-                           struct dalcs_device *device, struct values *values) {
+                           struct dalcs_device *device, struct dalcs_passive_values *values) {
     const double m = values->multiplier > 0 ? values->multiplier : 1;
     const bool has_core = values->core.first != NULL;
     struct dalcs_core_stop stop;
@@ -264,7 +85,7 @@ static bool is_parameter_next(const struct dalcs_reader *reader) {
 
 /* The value of the model where the card has none, as KiCad writes each part with a temperature. */
 static bool takes_model_value(const struct dalcs_reader *reader, const struct dalcs_model *model,
-                              struct values *values, struct dalcs_device *device) {
+                              struct dalcs_passive_values *values, struct dalcs_device *device) {
     const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
     if (model == NULL || !model->has_value ||
         (next != NULL && !is_parameter_next(reader)) /* a value of its own */) {
@@ -277,7 +98,7 @@ static bool takes_model_value(const struct dalcs_reader *reader, const struct da
 
 /* Beside a value on the card ngspice leaves that of a model out, and PSpice multiplies by it. */
 static bool is_of_model_alone(struct dalcs_reader *reader, const struct dalcs_model *model,
-                              struct values *values) {
+                              struct dalcs_passive_values *values) {
     if (values->is_of_model && !values->has_value) {
         values->has_value = true;
         return true;
@@ -299,7 +120,7 @@ static bool is_of_model_alone(struct dalcs_reader *reader, const struct dalcs_mo
 
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind) {
-    const struct family *family = family_of(kind);
+    const struct dalcs_passive_family *family = family_of(kind);
     if (kind == DALCS_RESISTOR && dalcs_behavioural_is_resistance(card)) {
         dalcs_behavioural_parse_resistance(builder, card);
         return;
@@ -309,7 +130,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node)) {
         return;
     }
-    struct values values = {.has_value = false};
+    struct dalcs_passive_values values = {.has_value = false};
     const char letter = family->names[0][0];
     const struct dalcs_model *model = NULL;
     if (!dalcs_model_take_passive(&reader, letter, &model)) {
@@ -317,7 +138,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     }
     (void)dalcs_reader_take_word(&reader, "noiseless");
     if (!takes_model_value(&reader, model, &values, device) && !is_parameter_next(&reader) &&
-        !take_law(&reader, &values, true)) {
+        !dalcs_passive_take_law(&reader, &values, true)) {
         if (!dalcs_reader_number(&reader, family->quantity, family->value, &device->value)) {
             return;
         }
@@ -325,7 +146,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     }
     const struct dalcs_token *value = dalcs_reader_previous(&reader);
     if (!dalcs_model_take_passive(&reader, letter, &model) ||
-        !read_rest(&reader, family, device, &values, &value) ||
+        !dalcs_passive_read_rest(&reader, family, device, &values, &value) ||
         !is_of_model_alone(&reader, model, &values)) {
         return;
     }

@@ -81,4 +81,16 @@ void dalcs_reader_unexpected(struct dalcs_reader *reader);
 const char *dalcs_reader_unit_hint(const struct dalcs_reader *reader,
                                    const struct dalcs_token *token, const char *otherwise);
 
+/* ---- reader.c, for reader_number.c ---------------------------------------------------------------- */
+
+/* What to write where an expression stands without braces. */
+const char *dalcs_reader_brace_hint(struct dalcs_builder *builder, const struct dalcs_token *token);
+
+/* Is it a formula where a number is wanted? */
+bool dalcs_reader_is_formula(const struct dalcs_token *token);
+
+/* A name of .param, or a formula, that stands where a number is wanted; else how the card is written. */
+const char *dalcs_reader_hint_of_formula(const struct dalcs_reader *reader,
+                                         const struct dalcs_token *token);
+
 #endif

@@ -44,4 +44,11 @@ bool dalcs_signal_compilation_steps(struct dalcs_signal_compilation *c,
                                     const struct dalcs_expression *expression,
                                     struct dalcs_signal_formula *formula);
 
+/* Masks all signals of the text. */
+void dalcs_signal_compilation_mask(struct dalcs_signal_compilation *c);
+
+/* Keeps the steps as the formula. */
+void dalcs_signal_compilation_finish(struct dalcs_signal_compilation *c,
+                                     struct dalcs_signal_formula *formula);
+
 #endif

@@ -1,20 +1,16 @@
-/* summary.c - the run in a few lines: the circuit, the work, the proof, a table of signals, the
- * jumps. */
+/* summary.c - the run in a few lines: the circuit, the work, the proof, energies, jumps. */
 #include "summary.h"
 
-#include "figure.h"
+/* What is rounding, over the largest value. */
+#define INVISIBLE 1e-12
+
+enum { MAX_JUMPS = 5, MAX_PARTS = 6, MAX_METHODS = 4, DIGITS = 4 };
+
 #include "method_text.h"
 #include "quantity.h"
 
 #include <math.h>
 #include <string.h>
-
-/* What is rounding, over the largest value of a signal; of waveforms, what no part of a circuit is held to
- * (doc/methods.md, "What the tolerance means"). */
-#define INVISIBLE              1e-12
-#define INVISIBLE_IN_WAVEFORMS 1e-9
-
-enum { MAX_SIGNALS = 24, MAX_JUMPS = 5, MAX_PARTS = 6, MAX_METHODS = 4, DIGITS = 4 };
 
 static const char *plural(long n) {
     return n == 1 ? "" : "s";
@@ -184,112 +180,6 @@ void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report) {
     write_work(out, report);
     write_certificate(out, report);
     write_nonunique(out, report);
-}
-
-static const char *unit_name(enum dalcs_unit unit) {
-    static const char *const name[] = {
-        [DALCS_VOLT] = "V",        [DALCS_AMPERE] = "A",     [DALCS_UNIT_SECOND] = "s",
-        [DALCS_UNIT_HERTZ] = "Hz", [DALCS_UNIT_OHM] = "ohm", [DALCS_UNIT_NONE] = ""};
-    return name[unit];
-}
-
-static bool has_averages(const struct dalcs_plot *plot) {
-    return plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC;
-}
-
-static double largest_of(const struct dalcs_measure *measure, size_t i) {
-    const struct dalcs_measure_signal signal = dalcs_measure_of(measure, i);
-    return fmax(fabs(signal.min), fabs(signal.max));
-}
-
-static void write_value(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
-    char text[DALCS_QUANTITY_SIZE];
-    const enum dalcs_unit of = measure->plot->unit[i];
-    const char *unit = unit_name(of);
-    if (has_averages(measure->plot) && (of == DALCS_VOLT || of == DALCS_AMPERE) &&
-        largest_of(measure, i) < DALCS_FIGURE_NOTHING) {
-        value = 0.0;
-    }
-    fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit, DIGITS));
-}
-
-/* A value of signal i; what is round-off beside its largest one is shown as 0. */
-static void write_cell(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
-    const double invisible = has_averages(measure->plot) ? INVISIBLE_IN_WAVEFORMS : INVISIBLE;
-    const double largest = largest_of(measure, i);
-    write_value(out, measure, i, fabs(value) <= invisible * largest ? 0.0 : value);
-}
-
-static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool ends) {
-    static const char *const head[] = {
-        [DALCS_OPERATING_POINT] = "         op",
-        [DALCS_TRANSIENT] = "        min         max     average         rms       final",
-        [DALCS_PERIODIC] = "        min         max     average         rms       final",
-        [DALCS_DC_SWEEP] = "        min         max       final",
-        [DALCS_AC] = "      |min|       |max|     |final|"};
-    if (plot->analysis == DALCS_DC_SWEEP || plot->analysis == DALCS_AC) {
-        fprintf(out, "\n  %s over %s", plot->analysis == DALCS_AC ? ".ac" : ".dc", plot->scale);
-    }
-    if (plot->analysis == DALCS_PERIODIC) {
-        fputs("\n  one period", out);
-    }
-    fprintf(out, "\n  %-*s %s\n", width, "signal", ends ? "      final" : head[plot->analysis]);
-}
-
-static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i, bool ends) {
-    const struct dalcs_measure_signal signal = dalcs_measure_of(measure, i);
-    if (measure->plot->analysis != DALCS_OPERATING_POINT && !ends) {
-        write_cell(out, measure, i, signal.min);
-        write_cell(out, measure, i, signal.max);
-    }
-    if (has_averages(measure->plot) && !ends) {
-        write_value(out, measure, i, dalcs_measure_shown_average(measure, i));
-        write_value(out, measure, i, dalcs_measure_rms(measure, i));
-    }
-    write_cell(out, measure, i, signal.final);
-}
-
-void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report) {
-    if (report->n_sides == 0) {
-        return;
-    }
-    fputs("  frozen    ", out);
-    for (size_t i = 0; i < report->n_sides && i < MAX_SIGNALS; i++) {
-        fprintf(out, "%s%s %s%s", i > 0 ? ", " : "", report->side[i].element,
-                report->side[i].on ? "on" : "off",
-                report->side[i].degenerate ? " (or the other way)" : "");
-    }
-    fputs(report->n_sides > MAX_SIGNALS ? ", ...\n" : "\n", out);
-}
-
-static void write_signals(FILE *out, const struct dalcs_measure *measure, bool all, bool ends) {
-    const struct dalcs_plot *plot = measure->plot;
-    if (!plot || measure->n_rows == 0 || plot->n_signals == 0) {
-        return;
-    }
-    size_t n = all || plot->n_signals <= MAX_SIGNALS ? plot->n_signals : MAX_SIGNALS;
-    int width = 9;
-    for (size_t i = 0; i < n; i++) {
-        int length = (int)strlen(plot->name[i]);
-        width = length > width ? length : width;
-    }
-    write_head(out, plot, width, ends);
-    for (size_t i = 0; i < n; i++) {
-        fprintf(out, "  %-*s", width, plot->name[i]);
-        write_cells(out, measure, i, ends);
-        fputc('\n', out);
-    }
-    if (n < plot->n_signals) {
-        fprintf(out, "  ... and %zu more: --all-signals\n", plot->n_signals - n);
-    }
-}
-
-void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all) {
-    write_signals(out, measure, all, false);
-}
-
-void dalcs_summary_write_ends(FILE *out, const struct dalcs_measure *measure, bool all) {
-    write_signals(out, measure, all, true);
 }
 
 static void write_energy(FILE *out, const char *name, double joule, double largest) {

@@ -125,7 +125,7 @@ static bool connect(const struct dalcs_call *call, const struct dalcs_definition
 
 /* The parameter `name` of the scope, or a new one that nothing declares. */
 static struct dalcs_value *parameter_of(struct dalcs_scope *inner, const struct dalcs_token *name) {
-    const int slot = dalcs_names_find(&inner->definition->parameters, name->text);
+    const int slot = dalcs_names_find(&inner->definition->parameters.names, name->text);
     if (slot >= 0) {
         return &inner->value[slot];
     }
@@ -204,16 +204,16 @@ static enum dalcs_status name_instance(const struct dalcs_call *call, struct dal
     const int first = dalcs_names_find(&language->deck->instances, inner->name);
     *is_new = first < 0;
     if (first >= 0) {
-        const struct dalcs_origin *known = language->scope[first]->origin;
+        const struct dalcs_origin *known = language->instances.scope[first]->origin;
         dalcs_language_report(language, DALCS_ERROR, call->scope, x, "give it another name",
                               "there are two calls '%s', the first at %s:%d", inner->name,
                               known->file, known->line);
         return DALCS_OK;
     }
-    DALCS_TRY(dalcs_grow(&language->scope, &language->scope_capacity, language->n_scopes + 1,
-                         sizeof(struct dalcs_scope *)));
-    DALCS_TRY(dalcs_names_add(&language->deck->instances, inner->name, (int)language->n_scopes));
-    language->scope[language->n_scopes++] = inner;
+    DALCS_TRY(dalcs_grow(&language->instances.scope, &language->instances.capacity,
+                         language->instances.n + 1, sizeof(struct dalcs_scope *)));
+    DALCS_TRY(dalcs_names_add(&language->deck->instances, inner->name, (int)language->instances.n));
+    language->instances.scope[language->instances.n++] = inner;
     return DALCS_OK;
 }
 
@@ -271,9 +271,10 @@ void dalcs_call_close(const struct dalcs_call *call, size_t first) {
             }
             continue;
         }
-        dalcs_language_report(
-            language, DALCS_WARNING, call->scope, extra->name,
-            dalcs_language_suggest(language, &inner->definition->parameters, name, "parameters"),
-            "'%s' has no parameter '%s': it is ignored", inner->definition->name->text, name);
+        dalcs_language_report(language, DALCS_WARNING, call->scope, extra->name,
+                              dalcs_language_suggest(language, &inner->definition->parameters.names,
+                                                     name, "parameters"),
+                              "'%s' has no parameter '%s': it is ignored",
+                              inner->definition->name->text, name);
     }
 }

@@ -112,7 +112,7 @@ static bool is_parameter(struct dalcs_scope *scope, const struct dalcs_card *car
 
 static bool has_parameters(const struct dalcs_scope *scope) {
     for (; scope != NULL; scope = scope->caller) {
-        if (scope->definition->n_slots > 0 || scope->n_extra > 0) {
+        if (scope->definition->parameters.n_slots > 0 || scope->n_extra > 0) {
             return true;
         }
     }
@@ -214,6 +214,36 @@ static bool belongs_outside(const struct dalcs_card *card) {
     return card->letter == '.';
 }
 
+/* Token k of an item's card as it is in the flat netlist: `role` is what the card has it for. */
+static void copy_token(struct dalcs_language *language, struct dalcs_scope *scope,
+                       struct dalcs_item *item, int k, struct dalcs_token *token,
+                       enum dalcs_role role) {
+    const struct dalcs_card *card = item->card;
+    const bool is_expression = token->kind == DALCS_TOKEN_EXPRESSION;
+    if (k == 0) {
+        if (card->letter != '.') {
+            rename_token(language, scope, DALCS_ROLE_DEVICE, token);
+        }
+    } else if (is_expression && role == DALCS_ROLE_SIGNAL &&
+               dalcs_formula_reads_value(token->text)) {
+        token->kind = DALCS_TOKEN_WORD; /* no signal, as who reads the card says */
+    } else if (is_expression && role == DALCS_ROLE_SIGNAL) {
+        const struct dalcs_draw_place before = dalcs_drawn_enter(
+            language, (struct dalcs_draw_place){.scope = scope, .card = card, .at = k});
+        token->formula = dalcs_formula_make(language, scope, &card->token[k], 1);
+        dalcs_drawn_leave(language, before, NULL);
+        token->kind = token->formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
+    } else if (is_expression && role != DALCS_ROLE_RAW) {
+        evaluate_token(language, scope, item, k, token);
+    } else if (token->kind == DALCS_TOKEN_WORD && role != DALCS_ROLE_VALUE) {
+        rename_token(language, scope, role, token);
+    } else if ((k == 1 && item->kind == DALCS_ITEM_MODEL) || is_passive_model(scope, card, k)) {
+        rename_token(language, scope, DALCS_ROLE_MODEL, token);
+    } else if (has_parameters(scope) && is_parameter(scope, card, k)) {
+        evaluate_token(language, scope, item, k, token);
+    }
+}
+
 static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs_scope *scope,
                                    struct dalcs_item *item) {
     const struct dalcs_card *card = item->card;
@@ -234,7 +264,6 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
     }
     memcpy(token, card->token, (size_t)card->n * sizeof *token);
     dalcs_roles(card, role);
-    const bool may_be_bare = has_parameters(scope);
     int formula = card->n;
     int n_formula = 0;
     if (!dalcs_formula_find(card, &formula, &n_formula)) {
@@ -251,30 +280,7 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
             (k >= transfer && k < transfer + n_transfer)) {
             continue;
         }
-        if (k == 0) {
-            if (card->letter != '.') {
-                rename_token(language, scope, DALCS_ROLE_DEVICE, token);
-            }
-        } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL &&
-                   dalcs_formula_reads_value(token[k].text)) {
-            token[k].kind = DALCS_TOKEN_WORD; /* no signal, as who reads the card says */
-        } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL) {
-            const struct dalcs_draw_place before = dalcs_drawn_enter(
-                language, (struct dalcs_draw_place){.scope = scope, .card = card, .at = k});
-            token[k].formula = dalcs_formula_make(language, scope, &card->token[k], 1);
-            dalcs_drawn_leave(language, before, NULL);
-            token[k].kind = token[k].formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
-        } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] != DALCS_ROLE_RAW) {
-            evaluate_token(language, scope, item, k, &token[k]);
-        } else if (token[k].kind == DALCS_TOKEN_WORD && role[k] != DALCS_ROLE_VALUE) {
-            rename_token(language, scope, (enum dalcs_role)role[k], &token[k]);
-        } else if (k == 1 && item->kind == DALCS_ITEM_MODEL) {
-            rename_token(language, scope, DALCS_ROLE_MODEL, &token[k]);
-        } else if (is_passive_model(scope, card, k)) {
-            rename_token(language, scope, DALCS_ROLE_MODEL, &token[k]);
-        } else if (may_be_bare && is_parameter(scope, card, k)) {
-            evaluate_token(language, scope, item, k, &token[k]);
-        }
+        copy_token(language, scope, item, k, &token[k], (enum dalcs_role)role[k]);
     }
     struct dalcs_card left = *card; /* what is behind a formula moves */
     if (transfer < left.n) {

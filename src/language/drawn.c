@@ -29,28 +29,29 @@ static void read_seed(const struct dalcs_card *card, uint64_t *seed) {
 void dalcs_drawn_start(struct dalcs_language *language) {
     const struct dalcs_netlist *netlist = language->netlist;
     const struct dalcs_deck *deck = language->deck;
-    language->seed = netlist->has_seed ? netlist->seed : USUAL_SEED;
-    language->run = 1;
+    language->drawing.seed = netlist->has_seed ? netlist->seed : USUAL_SEED;
+    language->drawing.run = 1;
     for (size_t k = 0; k < netlist->n_cards; k++) {
         const struct dalcs_card *card = &netlist->card[k];
         const bool is_mc = is_word(card, 0, ".mc");
         if (!netlist->has_seed && (is_mc || is_word(card, 0, ".options") ||
                                    is_word(card, 0, ".option") || is_word(card, 0, ".opt"))) {
-            read_seed(card, &language->seed);
+            read_seed(card, &language->drawing.seed);
         }
         const bool is_worst = is_word(card, 0, ".wcase") || is_word(card, 0, ".wc");
-        language->is_worst_case = language->is_worst_case || is_worst;
-        language->has_runs = language->has_runs || is_mc || is_worst;
+        language->drawing.is_worst_case = language->drawing.is_worst_case || is_worst;
+        language->drawing.has_runs = language->drawing.has_runs || is_mc || is_worst;
         if (is_mc || is_worst || is_word(card, 0, ".step")) {
-            language->run = 0; /* what all runs have in common may not fail for a draw of one */
+            language->drawing.run =
+                0; /* what all runs have in common may not fail for a draw of one */
         }
     }
     for (size_t k = 0; k < deck->n_overrides; k++) {
         if (deck->override[k].kind == DALCS_OVERRIDE_RUN) {
-            language->run = (uint32_t)deck->override[k].value;
+            language->drawing.run = (uint32_t)deck->override[k].value;
             language->deck->is_step = deck->override[k].is_step;
         } else if (deck->override[k].kind == DALCS_OVERRIDE_CORNER) {
-            language->corner = &deck->override[k];
+            language->drawing.corner = &deck->override[k];
         }
     }
 }
@@ -80,7 +81,7 @@ static uint64_t key_of_value(uint64_t key, uint32_t k) {
 }
 
 double dalcs_drawn_place(struct dalcs_language *language, uint64_t key, uint32_t k) {
-    const struct dalcs_override *corner = language->corner;
+    const struct dalcs_override *corner = language->drawing.corner;
     if (corner != NULL) {
         const uint64_t sought = key_of_value(key, k);
         for (size_t i = 0; i < corner->n_list; i++) {
@@ -89,15 +90,15 @@ double dalcs_drawn_place(struct dalcs_language *language, uint64_t key, uint32_t
             }
         }
     }
-    return corner != NULL || language->run == 0
+    return corner != NULL || language->drawing.run == 0
                ? 0.5
-               : dalcs_draw_uniform(language->seed, language->run, key, k);
+               : dalcs_draw_uniform(language->drawing.seed, language->drawing.run, key, k);
 }
 
 void dalcs_drawn_list(struct dalcs_language *language, uint64_t key, const char *name,
                       bool is_lot) {
     struct dalcs_deck *deck = language->deck;
-    if (!language->is_worst_case) {
+    if (!language->drawing.is_worst_case) {
         return;
     }
     if (name == NULL || dalcs_grow(&deck->draw, &deck->draw_capacity, deck->n_draws + 1,
@@ -110,8 +111,9 @@ void dalcs_drawn_list(struct dalcs_language *language, uint64_t key, const char 
 
 /* What is drawn is of a value, or one of several of it. */
 static void list_next(struct dalcs_language *language, uint64_t key) {
-    const uint32_t k = language->place.n;
-    const char *name = language->is_worst_case ? name_of(language, &language->place) : NULL;
+    const uint32_t k = language->drawing.place.n;
+    const char *name =
+        language->drawing.is_worst_case ? name_of(language, &language->drawing.place) : NULL;
     if (name != NULL) {
         name = k > 0 ? dalcs_language_text(language, "%s:%u", name, (unsigned)k + 1) : name;
         dalcs_drawn_list(language, key_of_value(key, k), name, false);
@@ -119,18 +121,18 @@ static void list_next(struct dalcs_language *language, uint64_t key) {
 }
 
 double dalcs_drawn_next(struct dalcs_language *language, dalcs_draw *draw, const double *x, int n) {
-    const bool is_wanted = language->run > 0 || language->is_worst_case;
-    const uint64_t key = is_wanted ? key_of(&language->place) : 0;
-    const double u = dalcs_drawn_place(language, key, language->place.n);
+    const bool is_wanted = language->drawing.run > 0 || language->drawing.is_worst_case;
+    const uint64_t key = is_wanted ? key_of(&language->drawing.place) : 0;
+    const double u = dalcs_drawn_place(language, key, language->drawing.place.n);
     list_next(language, key);
-    language->place.n++;
+    language->drawing.place.n++;
     return draw(x, n, u);
 }
 
 struct dalcs_draw_place dalcs_drawn_enter(struct dalcs_language *language,
                                           struct dalcs_draw_place place) {
-    const struct dalcs_draw_place before = language->place;
-    language->place = place;
+    const struct dalcs_draw_place before = language->drawing.place;
+    language->drawing.place = place;
     return before;
 }
 
@@ -172,7 +174,7 @@ static const char *tell_apart(struct dalcs_language *language, const struct dalc
 
 void dalcs_drawn_keep(struct dalcs_language *language, const char *name, double value) {
     struct dalcs_deck *deck = language->deck;
-    if (!language->has_runs) {
+    if (!language->drawing.has_runs) {
         return;
     }
     if (name == NULL || dalcs_grow(&deck->drawn, &deck->drawn_capacity, deck->n_drawn + 1,
@@ -185,9 +187,9 @@ void dalcs_drawn_keep(struct dalcs_language *language, const char *name, double 
 
 void dalcs_drawn_leave(struct dalcs_language *language, struct dalcs_draw_place before,
                        const double *value) {
-    const struct dalcs_draw_place place = language->place;
+    const struct dalcs_draw_place place = language->drawing.place;
     struct dalcs_deck *deck = language->deck;
-    language->place = before;
+    language->drawing.place = before;
     deck->has_random_formula = deck->has_random_formula || place.n > 0;
     if (place.n == 0 || value == NULL) {
         return;

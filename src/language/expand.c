@@ -139,7 +139,7 @@ const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name) {
     if (k < 0) {
         return NULL;
     }
-    const struct dalcs_scope *scope = deck->language->scope[k];
+    const struct dalcs_scope *scope = deck->language->instances.scope[k];
     const int port = dalcs_names_find(&scope->definition->port_index, dot + 1);
     return port >= 0 && scope->port != NULL ? scope->port[port] : NULL;
 }
@@ -184,9 +184,9 @@ void dalcs_deck_finish(struct dalcs_deck *deck) {
         dalcs_definition_finish(&language->root);
         dalcs_names_finish(&language->globals);
         dalcs_language_finish_written(language);
-        free(language->stack);
-        free(language->sought);
-        free(language->scope);
+        free(language->evaluation.stack);
+        free(language->sought.value);
+        free(language->instances.scope);
     }
     dalcs_names_finish(&deck->instances);
     free(deck->own);

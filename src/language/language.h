@@ -1,123 +1,12 @@
-/* language.h - what the files of this folder share: definitions, scopes and their values.
- *
- * A definition is the text of a subcircuit, or of the whole netlist; a scope is one instance of it.
- * Names of parameters and functions are looked up in the scope that uses them and then in those that
- * call it, as in ngspice; subcircuits and models in the text around them. Private to this folder. */
+/* language.h - what the files of this folder share, and one expansion of a netlist. Private to this folder. */
 #ifndef DALCS_LANGUAGE_H
 #define DALCS_LANGUAGE_H
 
+#include "definitions.h"
 #include "draws.h"
 #include "expand.h"
 #include "expression.h"
 #include "formula.h"
-
-struct dalcs_scope;
-
-/* What a card is for. */
-enum dalcs_item_kind {
-    DALCS_ITEM_CARD,  /* an element, an analysis, ...: copied */
-    DALCS_ITEM_MODEL, /* copied; its name is local */
-    DALCS_ITEM_CALL,  /* X */
-    DALCS_ITEM_IF,
-    DALCS_ITEM_ELSEIF,
-    DALCS_ITEM_ELSE,
-    DALCS_ITEM_ENDIF,
-    DALCS_ITEM_NONE /* .param, .func, .subckt, .global: only definitions */
-};
-
-struct dalcs_item {
-    const struct dalcs_card *card;
-    struct dalcs_expression **expression; /* [card->n], made when first needed */
-    enum dalcs_item_kind kind;
-};
-
-/* name = expression on a .param or .subckt card. */
-struct dalcs_assignment {
-    const struct dalcs_token *name;
-    const struct dalcs_token *value; /* the first token of its expression */
-    int n_tokens;
-    int slot;            /* of the parameter, which may be assigned more than once */
-    int item;            /* that it stands in; -1 on the .subckt card */
-    bool is_conditional; /* inside an .if */
-    struct dalcs_expression *expression; /* made when first needed */
-};
-
-struct dalcs_user_function {
-    const struct dalcs_token *name;
-    struct dalcs_names arguments; /* name -> index */
-    int n_arguments;
-    const struct dalcs_token *body;
-    int n_tokens;
-    int item;
-    bool is_active;                      /* being evaluated */
-    struct dalcs_expression *expression; /* made when first needed */
-    struct dalcs_user_function *other;   /* one more of this name, or NULL */
-};
-
-struct dalcs_definition {
-    const struct dalcs_token *name;     /* NULL: the netlist itself */
-    const struct dalcs_token *card;     /* its .subckt */
-    struct dalcs_definition *enclosing; /* or NULL */
-    struct dalcs_definition *other;     /* one more of this name, or NULL */
-    int place;                          /* the item of `enclosing` that defines it */
-    struct dalcs_names port_index;
-    const struct dalcs_token **port; /* [n_ports] */
-    int n_ports;
-    struct dalcs_item *item; /* heap, as all arrays with a capacity */
-    size_t n_items, item_capacity;
-    struct dalcs_assignment *assignment;
-    size_t n_assignments, assignment_capacity;
-    size_t *last_of; /* [n_slots] the last of them to each parameter */
-    size_t last_capacity;
-    struct dalcs_names parameters; /* name -> slot */
-    int n_slots;
-    struct dalcs_names functions; /* name -> index of function */
-    struct dalcs_user_function **function;
-    size_t n_functions, function_capacity;
-    struct dalcs_names subcircuits; /* name -> index of inner */
-    struct dalcs_definition **inner;
-    size_t n_inner, inner_capacity;
-    struct dalcs_names models; /* name -> 0 */
-    int condition_depth;       /* of .if inside each other; 0: none */
-    bool is_open;              /* an instance of it is being expanded */
-};
-
-enum dalcs_value_state {
-    DALCS_VALUE_UNKNOWN,
-    DALCS_VALUE_SOUGHT,
-    DALCS_VALUE_KNOWN,
-    DALCS_VALUE_WRONG
-};
-
-/* A parameter in a scope. */
-struct dalcs_value {
-    const struct dalcs_token *name;
-    const struct dalcs_token
-        *token; /* its expression, compiled when it is needed; NULL: none yet */
-    int n_tokens;
-    struct dalcs_expression **expression;
-    struct dalcs_scope *where; /* the scope that its expression is evaluated in */
-    struct dalcs_scope *owner; /* the scope that has it; NULL: the same */
-    enum dalcs_value_state state;
-    double value;
-    bool is_used;
-    bool is_given; /* by a call */
-};
-
-struct dalcs_scope {
-    struct dalcs_definition *definition;
-    struct dalcs_scope *caller;    /* or NULL */
-    struct dalcs_scope *enclosing; /* an instance of definition->enclosing, or NULL */
-    const char *name;              /* "x1.x2", "" for the netlist */
-    const struct dalcs_origin *origin;
-    const char **port;         /* [n_ports] the nodes outside */
-    struct dalcs_value *value; /* [n_slots] */
-    struct dalcs_value *extra; /* [n_extra] parameters that the call gives and nothing declares */
-    int n_extra;
-    bool *active;                         /* [n_items] in a branch that counts; NULL: all are */
-    const struct dalcs_source_line *line; /* the last line copied, */
-    struct dalcs_source_line *copy;       /* and its copy */
-};
 
 /* Where random values are drawn: a parameter, or token `at` of a card. */
 struct dalcs_draw_place {
@@ -126,6 +15,31 @@ struct dalcs_draw_place {
     const char *parameter;
     int at;
     uint32_t n; /* values drawn there */
+};
+
+/* Random values: what they depend on. */
+struct dalcs_drawing {
+    struct dalcs_draw_place place; /* what is being evaluated */
+    uint64_t seed;
+    uint32_t run; /* number of the run, from 1; 0: every draw is in the middle */
+    const struct dalcs_override *corner; /* of .wcase: where each of them is; or NULL */
+    bool has_runs;                       /* .mc or .wcase: what DEV and LOT are for */
+    bool is_worst_case;                  /* .wcase: what is drawn is listed */
+};
+
+/* The stack of an evaluation. */
+struct dalcs_evaluation_stack {
+    double *stack; /* heap */
+    size_t n_stack, stack_capacity;
+    int call_depth;
+    long operations;
+};
+
+/* Parameters that wait for each other. */
+struct dalcs_sought {
+    struct dalcs_value *awaited; /* what an evaluation waits for */
+    struct dalcs_value **value;  /* heap */
+    size_t n, capacity;
 };
 
 enum { DALCS_WRITTEN_FUNCTIONS = 2 };
@@ -145,25 +59,19 @@ struct dalcs_language {
     bool misses_assignment; /* an error on a .param or .func: names may be unknown for it */
     bool out_of_memory;
     bool is_condition; /* what is compiled is that of an .if */
-    bool noted_caret;
-    bool noted_log;
 
-    double *stack; /* of the evaluation: heap */
-    size_t n_stack, stack_capacity;
-    int call_depth;
-    long operations;
-    struct dalcs_value *awaited; /* what an evaluation waits for */
-    struct dalcs_value **sought; /* parameters that wait for each other: heap */
-    size_t n_sought, sought_capacity;
-    struct dalcs_scope **scope; /* every instance, by its place in deck->instances: heap */
-    size_t n_scopes, scope_capacity;
+    struct {
+        bool caret, log;
+    } noted; /* messages that are given once */
 
-    struct dalcs_draw_place place; /* what is being evaluated */
-    uint64_t seed;
-    uint32_t run; /* number of the run, from 1; 0: every draw is in the middle */
-    const struct dalcs_override *corner; /* of .wcase: where each of them is; or NULL */
-    bool has_runs;                       /* .mc or .wcase: what DEV and LOT are for */
-    bool is_worst_case;                  /* .wcase: what is drawn is listed */
+    struct {
+        struct dalcs_scope **scope; /* every one, by its place in deck->instances: heap */
+        size_t n, capacity;
+    } instances;
+
+    struct dalcs_evaluation_stack evaluation;
+    struct dalcs_sought sought;
+    struct dalcs_drawing drawing;
 };
 
 /* ---- language.c: messages ---------------------------------------------------------------------- */
@@ -255,20 +163,13 @@ bool dalcs_scope_compile(struct dalcs_language *language, const struct dalcs_sco
                          const struct dalcs_token *token, int n,
                          const struct dalcs_names *arguments, struct dalcs_expression **expression);
 
-/* ---- override.c: other values than the text says ----------------------------------------------- */
+/* ---- override_parameters.c, override.c: other values than the text says ----------------------------------------------- */
 
 /* Those of parameters, of the top scope; also declares what .step steps and no .param sets. */
 enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) DALCS_MUST_CHECK;
 
 /* Those of elements and models, in the deck's flat cards. */
 enum dalcs_status dalcs_override_cards(struct dalcs_language *language) DALCS_MUST_CHECK;
-
-/* The token of an element's value; *is_there: false when it has none. */
-int dalcs_card_find_value(const struct dalcs_card *card, bool *is_there);
-
-/* A copy of the card with this value at token `at`. */
-enum dalcs_status dalcs_card_set(struct dalcs_language *language, struct dalcs_card *card, int at,
-                                 double value) DALCS_MUST_CHECK;
 
 /* ---- tolerance.c: DEV and LOT --------------------------------------------------------------------- */
 

@@ -31,16 +31,12 @@ static const struct shape *shape_of(char letter) {
     return NULL;
 }
 
-static bool is_word(const struct dalcs_token *token, const char *word) {
-    return token->kind == DALCS_TOKEN_WORD && strcmp(token->text, word) == 0;
-}
-
 /* POLY, VALUE= and the like: the controlling nodes of E and G are elsewhere. */
 static bool is_form(const struct dalcs_token *token) {
     static const char *const forms[] = {"poly", "value", "table", "laplace",
                                         "freq", "vol",   "cur",   "chebyshev"};
     for (size_t k = 0; k < sizeof forms / sizeof forms[0]; k++) {
-        if (is_word(token, forms[k])) {
+        if (dalcs_token_is_word(token, forms[k])) {
             return true;
         }
     }
@@ -90,7 +86,7 @@ bool dalcs_card_is_logic(const struct dalcs_card *card) {
         "samplehold", "ota",   "varistor",    "modulator",    "modulate",     "phasedet"};
     bool is = false;
     for (size_t k = 0; k < sizeof words / sizeof words[0] && card->n > DALCS_LOGIC_MODEL; k++) {
-        is = is || is_word(&card->token[DALCS_LOGIC_MODEL], words[k]);
+        is = is || dalcs_token_is_word(&card->token[DALCS_LOGIC_MODEL], words[k]);
     }
     return is && card->letter == 'a';
 }
@@ -118,7 +114,7 @@ int dalcs_roles_count_terminals(const struct dalcs_card *card) {
     int last = 0;
     for (int k = 1; k < card->n && card->token[k].kind == DALCS_TOKEN_WORD; k++) {
         const bool is_parameter = k + 1 < card->n && card->token[k + 1].kind == DALCS_TOKEN_EQUAL;
-        if (is_parameter || (k > 4 && is_word(&card->token[k], "off"))) {
+        if (is_parameter || (k > 4 && dalcs_token_is_word(&card->token[k], "off"))) {
             break;
         }
         const char *text = card->token[k].text; /* an area, not 2n7002 */
@@ -148,7 +144,7 @@ static void element_roles(const struct dalcs_card *card, const struct shape *sha
         const bool is_controlled = strchr("efgh", shape->letter) != NULL;
         const int n_controls = shape->letter == 'e' || shape->letter == 'g' ? 2 : 0;
         if (is_controlled && n_nodes == n_controls && is_form(&token[k])) {
-            if (is_word(&token[k], "poly")) {
+            if (dalcs_token_is_word(&token[k], "poly")) {
                 poly_roles(card, k, role);
             }
             return;
@@ -174,15 +170,15 @@ static void element_roles(const struct dalcs_card *card, const struct shape *sha
 static void raw_roles(const struct dalcs_card *card, unsigned char *role) {
     bool is_transfer = false; /* of s: whoever reads the card refuses it */
     for (int k = 1; k < card->n; k++) {
-        is_transfer =
-            is_transfer || is_word(&card->token[k], "laplace") || is_word(&card->token[k], "freq");
+        is_transfer = is_transfer || dalcs_token_is_word(&card->token[k], "laplace") ||
+                      dalcs_token_is_word(&card->token[k], "freq");
         const bool is_formula = card->letter == 'b' || is_transfer ||
                                 (k >= 2 && card->token[k - 1].kind == DALCS_TOKEN_EQUAL &&
                                  is_form(&card->token[k - 2])) ||
                                 is_form(&card->token[k - 1]);
-        const bool is_number =
-            k >= 2 && (is_word(&card->token[k - 2], "m") || is_word(&card->token[k - 2], "rpar") ||
-                       is_word(&card->token[k - 2], "cpar"));
+        const bool is_number = k >= 2 && (dalcs_token_is_word(&card->token[k - 2], "m") ||
+                                          dalcs_token_is_word(&card->token[k - 2], "rpar") ||
+                                          dalcs_token_is_word(&card->token[k - 2], "cpar"));
         if (card->token[k].kind == DALCS_TOKEN_EXPRESSION && is_formula && !is_number) {
             role[k] = DALCS_ROLE_RAW;
         }
@@ -195,9 +191,9 @@ static void signal_roles(const struct dalcs_card *card, unsigned char *role) {
     for (int k = 1; k < card->n; k++) {
         const struct dalcs_token *token = &card->token[k];
         if (token->kind == DALCS_TOKEN_OPEN) {
-            inside = is_word(token - 1, "v")   ? DALCS_ROLE_NODE
-                     : is_word(token - 1, "i") ? DALCS_ROLE_DEVICE
-                                               : DALCS_ROLE_VALUE;
+            inside = dalcs_token_is_word(token - 1, "v")   ? DALCS_ROLE_NODE
+                     : dalcs_token_is_word(token - 1, "i") ? DALCS_ROLE_DEVICE
+                                                           : DALCS_ROLE_VALUE;
         } else if (token->kind == DALCS_TOKEN_CLOSE) {
             inside = DALCS_ROLE_VALUE;
         } else if (token->kind == DALCS_TOKEN_WORD) {
@@ -209,7 +205,7 @@ static void signal_roles(const struct dalcs_card *card, unsigned char *role) {
 static bool is_one_of(const struct dalcs_token *token, const char *const *list, size_t n) {
     bool found = false;
     for (size_t k = 0; k < n; k++) {
-        found = found || is_word(token, list[k]);
+        found = found || dalcs_token_is_word(token, list[k]);
     }
     return found;
 }
@@ -242,7 +238,8 @@ void dalcs_roles(const struct dalcs_card *card, unsigned char *role) {
     } else if (card->letter == 'k') {
         coupling_roles(card, role);
     } else if (card->letter == '.' && strcmp(card->token->text, ".model") != 0) {
-        const bool is_measure = is_word(card->token, ".meas") || is_word(card->token, ".measure");
+        const bool is_measure = dalcs_token_is_word(card->token, ".meas") ||
+                                dalcs_token_is_word(card->token, ".measure");
         if (!is_measure) {
             signal_roles(card, role);
         }

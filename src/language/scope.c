@@ -14,7 +14,7 @@ bool dalcs_scope_is_active(const struct dalcs_scope *scope, int item) {
 
 struct dalcs_value *dalcs_scope_find_value(struct dalcs_scope *scope, const char *name) {
     for (struct dalcs_scope *s = scope; s != NULL; s = s->caller) {
-        const int slot = dalcs_names_find(&s->definition->parameters, name);
+        const int slot = dalcs_names_find(&s->definition->parameters.names, name);
         if (slot >= 0 && s->value[slot].token != NULL) {
             return &s->value[slot];
         }
@@ -28,7 +28,7 @@ struct dalcs_value *dalcs_scope_find_value(struct dalcs_scope *scope, const char
 }
 
 struct dalcs_value *dalcs_scope_find_given(struct dalcs_scope *scope, const char *name) {
-    const int slot = dalcs_names_find(&scope->definition->parameters, name);
+    const int slot = dalcs_names_find(&scope->definition->parameters.names, name);
     if (slot >= 0) {
         return scope->value[slot].is_given ? &scope->value[slot] : NULL;
     }
@@ -41,8 +41,9 @@ struct dalcs_value *dalcs_scope_find_given(struct dalcs_scope *scope, const char
 
 struct dalcs_user_function *dalcs_scope_find_function(struct dalcs_scope *scope, const char *name) {
     for (struct dalcs_scope *s = scope; s != NULL; s = s->caller) {
-        const int first = dalcs_names_find(&s->definition->functions, name);
-        struct dalcs_user_function *f = first >= 0 ? s->definition->function[first] : NULL;
+        const int first = dalcs_names_find(&s->definition->functions.names, name);
+        struct dalcs_user_function *f =
+            first >= 0 ? s->definition->functions.function[first] : NULL;
         while (f != NULL && !dalcs_scope_is_active(s, f->item)) {
             f = f->other;
         }
@@ -97,7 +98,7 @@ struct dalcs_scope *dalcs_scope_make(struct dalcs_language *language,
     struct dalcs_arena *arena = language->arena;
     struct dalcs_scope *scope = dalcs_arena_alloc(arena, 1, sizeof *scope);
     struct dalcs_value *value =
-        dalcs_arena_alloc(arena, (size_t)definition->n_slots, sizeof *value);
+        dalcs_arena_alloc(arena, (size_t)definition->parameters.n_slots, sizeof *value);
     if (scope == NULL || value == NULL) {
         return NULL;
     }
@@ -106,9 +107,9 @@ struct dalcs_scope *dalcs_scope_make(struct dalcs_language *language,
     scope->enclosing = enclosing;
     scope->name = "";
     scope->value = value;
-    for (size_t k = 0; k < definition->n_assignments; k++) {
-        if (!definition->assignment[k].is_conditional) {
-            declare(language, scope, &definition->assignment[k]);
+    for (size_t k = 0; k < definition->parameters.n_assignments; k++) {
+        if (!definition->parameters.assignment[k].is_conditional) {
+            declare(language, scope, &definition->parameters.assignment[k]);
         }
     }
     if (definition->condition_depth > 0) {
@@ -133,8 +134,8 @@ bool dalcs_scope_compile(struct dalcs_language *language, const struct dalcs_sco
                                                          .has_signals = arguments != NULL,
                                                          .is_condition = language->is_condition,
                                                          .dialect = language->netlist->dialect,
-                                                         .noted_caret = &language->noted_caret,
-                                                         .noted_log = &language->noted_log};
+                                                         .noted_caret = &language->noted.caret,
+                                                         .noted_log = &language->noted.log};
         struct dalcs_expression_text text;
         if (!dalcs_expression_text(language->arena, token, n, &text) ||
             (*expression = dalcs_expression_parse(&context, &text)) == NULL) {
@@ -165,19 +166,20 @@ static enum dalcs_outcome try_value(struct dalcs_language *language, struct dalc
 static void report_cycle(struct dalcs_language *language, struct dalcs_value *value) {
     enum { MOST_SHOWN = 8 };
 
-    size_t first = language->n_sought;
-    while (language->sought[first - 1] != value) {
+    size_t first = language->sought.n;
+    while (language->sought.value[first - 1] != value) {
         first--;
     }
     first--;
     const char *way = value->name->text;
-    for (size_t k = first + 1; k < language->n_sought && way != NULL; k++) {
-        language->sought[k]->state = DALCS_VALUE_WRONG;
+    for (size_t k = first + 1; k < language->sought.n && way != NULL; k++) {
+        language->sought.value[k]->state = DALCS_VALUE_WRONG;
         if (k - first < MOST_SHOWN) {
-            way = dalcs_language_text(language, "%s -> %s", way, language->sought[k]->name->text);
+            way = dalcs_language_text(language, "%s -> %s", way,
+                                      language->sought.value[k]->name->text);
         }
     }
-    const bool is_long = language->n_sought - first > MOST_SHOWN;
+    const bool is_long = language->sought.n - first > MOST_SHOWN;
     value->state = DALCS_VALUE_WRONG;
     if (way != NULL) {
         dalcs_language_report(language, DALCS_ERROR, value->where, value->name,
@@ -188,35 +190,35 @@ static void report_cycle(struct dalcs_language *language, struct dalcs_value *va
 }
 
 static void seek(struct dalcs_language *language, struct dalcs_value *value) {
-    if (dalcs_grow(&language->sought, &language->sought_capacity, language->n_sought + 1,
+    if (dalcs_grow(&language->sought.value, &language->sought.capacity, language->sought.n + 1,
                    sizeof(struct dalcs_value *)) != DALCS_OK) {
         language->out_of_memory = true;
         return;
     }
     value->state = DALCS_VALUE_SOUGHT;
-    language->sought[language->n_sought++] = value;
+    language->sought.value[language->sought.n++] = value;
 }
 
 /* Finds a value and those that it needs. */
 static void find_value(struct dalcs_language *language, struct dalcs_value *value) {
-    const size_t base = language->n_sought;
+    const size_t base = language->sought.n;
     seek(language, value);
-    while (language->n_sought > base && !language->out_of_memory) {
-        struct dalcs_value *now = language->sought[language->n_sought - 1];
+    while (language->sought.n > base && !language->out_of_memory) {
+        struct dalcs_value *now = language->sought.value[language->sought.n - 1];
         const enum dalcs_outcome outcome = try_value(language, now);
         if (outcome != DALCS_OUTCOME_WAITS) {
             now->state = outcome == DALCS_OUTCOME_VALUE ? DALCS_VALUE_KNOWN : DALCS_VALUE_WRONG;
-        } else if (language->awaited->state == DALCS_VALUE_SOUGHT) {
-            report_cycle(language, language->awaited);
+        } else if (language->sought.awaited->state == DALCS_VALUE_SOUGHT) {
+            report_cycle(language, language->sought.awaited);
         } else {
-            seek(language, language->awaited);
+            seek(language, language->sought.awaited);
         }
-        while (language->n_sought > base &&
-               language->sought[language->n_sought - 1]->state != DALCS_VALUE_SOUGHT) {
-            language->n_sought--;
+        while (language->sought.n > base &&
+               language->sought.value[language->sought.n - 1]->state != DALCS_VALUE_SOUGHT) {
+            language->sought.n--;
         }
     }
-    language->n_sought = base;
+    language->sought.n = base;
 }
 
 bool dalcs_scope_evaluate(struct dalcs_language *language, struct dalcs_scope *scope,
@@ -226,7 +228,7 @@ bool dalcs_scope_evaluate(struct dalcs_language *language, struct dalcs_scope *s
         if (outcome != DALCS_OUTCOME_WAITS) {
             return outcome == DALCS_OUTCOME_VALUE && !language->out_of_memory;
         }
-        find_value(language, language->awaited);
+        find_value(language, language->sought.awaited);
         if (language->out_of_memory) {
             return false;
         }
@@ -301,9 +303,10 @@ static void decide(struct dalcs_language *language, struct dalcs_scope *scope) {
             depth--;
         }
         scope->active[k] = counts;
-        for (; next < d->n_assignments && d->assignment[next].item <= (int)k; next++) {
-            if (d->assignment[next].is_conditional && counts) {
-                declare(language, scope, &d->assignment[next]);
+        for (; next < d->parameters.n_assignments && d->parameters.assignment[next].item <= (int)k;
+             next++) {
+            if (d->parameters.assignment[next].is_conditional && counts) {
+                declare(language, scope, &d->parameters.assignment[next]);
             }
         }
     }
@@ -313,7 +316,7 @@ void dalcs_scope_settle(struct dalcs_language *language, struct dalcs_scope *sco
     if (scope->active != NULL) {
         decide(language, scope);
     }
-    for (int k = 0; k < scope->definition->n_slots && !language->out_of_memory; k++) {
+    for (int k = 0; k < scope->definition->parameters.n_slots && !language->out_of_memory; k++) {
         if (scope->value[k].token != NULL && scope->value[k].state == DALCS_VALUE_UNKNOWN) {
             find_value(language, &scope->value[k]);
         }

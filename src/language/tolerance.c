@@ -4,153 +4,12 @@
  * model of its own. LOT is drawn once: for the model as it is written, whatever subcircuit calls make of it; of elements
  * without a model for all with this letter; of LOT/1 for all that say so. */
 #include "tolerance.h"
-#include "number.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static bool is_passive(const struct dalcs_card *card) {
     return card->letter == 'r' || card->letter == 'l' || card->letter == 'c';
-}
-
-/* Of a model of these: R, RES, C, CAP, L, IND; else 0. */
-static char passive_type(const struct dalcs_card *card) {
-    static const struct {
-        const char *name;
-        char letter;
-    } types[] = {{"r", 'r'}, {"res", 'r'}, {"c", 'c'}, {"cap", 'c'}, {"l", 'l'}, {"ind", 'l'}};
-
-    for (size_t k = 0; k < sizeof types / sizeof types[0] && card->n > 2; k++) {
-        if (strcmp(card->token[2].text, types[k].name) == 0) {
-            return types[k].letter;
-        }
-    }
-    return '\0';
-}
-
-static double size_of(const struct dalcs_tolerance *t, double nominal) {
-    return t->is_relative ? t->size * nominal : t->size;
-}
-
-/* ---- Models ------------------------------------------------------------------------------------ */
-
-/* Those that follow no parameter's value are of none. An R, L or C takes its factor alone from a model. */
-static bool check_model(struct dalcs_tolerant *all, struct dalcs_tolerant_model *m,
-                        const struct dalcs_card *card) {
-    const char letter = passive_type(card);
-    const char own[] = {letter, '\0'};
-    int n = 0;
-    for (int k = 0; k < m->n; k++) {
-        const struct dalcs_tolerances *t = &m->value[k];
-        const struct dalcs_token *token = t->dev.token != NULL ? t->dev.token : t->lot.token;
-        all->first = all->first != NULL ? all->first : token;
-        if (t->name == NULL && letter == '\0') {
-            dalcs_language_report(all->language, DALCS_ERROR, NULL, token,
-                                  "write it behind the value: D(vfwd=0.7 DEV=5%)",
-                                  "this tolerance follows no parameter");
-            return false;
-        }
-        if (letter == '\0' || t->name == NULL || strcmp(t->name, own) == 0) {
-            m->value[n] = *t;
-            m->value[n].dev.is_relative |= letter != '\0'; /* of a factor that is 1 */
-            m->value[n].lot.is_relative |= letter != '\0';
-            n++;
-        }
-    }
-    m->n = n;
-    return true;
-}
-
-static bool take_model(struct dalcs_tolerant *all, size_t k) {
-    struct dalcs_language *language = all->language;
-    struct dalcs_card *card = &language->deck->own[k];
-    struct dalcs_tolerant_model m = {.card = k};
-    if (!dalcs_tolerances_take(language, card, &m.value, &m.n)) {
-        return false;
-    }
-    if (m.n == 0 || !check_model(all, &m, card)) {
-        return m.n == 0;
-    }
-    const char *name = card->token[1].text;
-    m.lot = dalcs_tolerance_lot_of_model(language, name);
-    if (m.lot == NULL ||
-        dalcs_grow(&all->model, &all->capacity, all->n_models + 1, sizeof *all->model) !=
-            DALCS_OK ||
-        dalcs_names_set(&all->models, name, (int)all->n_models) != DALCS_OK) {
-        language->out_of_memory = true;
-        return false;
-    }
-    all->model[all->n_models++] = m;
-    return true;
-}
-
-/* The number at token `at`; false after a message. */
-static bool number_at(struct dalcs_language *language, const struct dalcs_card *card, int at,
-                      const struct dalcs_token *tolerance, double *value) {
-    const struct dalcs_token *token = at < card->n ? &card->token[at] : NULL;
-    struct dalcs_number number;
-    if (token != NULL && token->kind == DALCS_TOKEN_NUMBER) {
-        *value = token->value;
-        return true;
-    }
-    if (token != NULL && token->kind == DALCS_TOKEN_WORD &&
-        dalcs_number_parse_as(token->text, language->netlist->dialect.name, &number) ==
-            DALCS_NUMBER_OK) {
-        *value = number.value;
-        return true;
-    }
-    if (token == NULL || token->kind != DALCS_TOKEN_BAD) {
-        dalcs_language_report(language, DALCS_ERROR, NULL, tolerance,
-                              "for a value inside of a formula or a waveform write mc, unif or "
-                              "agauss, such as SIN(0 {mc(10, 0.05)} 50)",
-                              "this tolerance is of a value that is no number");
-    }
-    return false;
-}
-
-/* The model's values as a device has them: `device` NULL: without DEV, which others draw. */
-static enum dalcs_status set_model(struct dalcs_tolerant *all, const struct dalcs_tolerant_model *m,
-                                   const char *device, struct dalcs_card *card) {
-    struct dalcs_language *language = all->language;
-    for (int k = 0; k < m->n; k++) {
-        const struct dalcs_tolerances *t = &m->value[k];
-        const struct dalcs_token *token = t->dev.token != NULL ? t->dev.token : t->lot.token;
-        double nominal;
-        if (!number_at(language, card, t->at, token, &nominal)) {
-            return DALCS_OK;
-        }
-        const bool has_dev = t->dev.token != NULL;
-        const char *model = language->deck->own[m->card].token[1].text;
-        const char *name =
-            dalcs_language_text(language, "%s(%s)", device != NULL ? device : model, t->name);
-        if (name == NULL) {
-            return DALCS_E_NOMEM;
-        }
-        double value = nominal;
-        if (device != NULL && has_dev) {
-            value += size_of(&t->dev, nominal) *
-                     dalcs_tolerance_draw_dev(all, &t->dev, device, t->name, name);
-        }
-        if (t->lot.token != NULL) {
-            value +=
-                size_of(&t->lot, nominal) * dalcs_tolerance_draw_lot(all, &t->lot, m->lot, t->name);
-        }
-        if (value != nominal) {
-            DALCS_TRY(dalcs_card_set(language, card, t->at, value));
-        }
-        if ((device != NULL) == has_dev) {
-            dalcs_tolerance_keep(all, name, value);
-        }
-    }
-    return DALCS_OK;
-}
-
-static bool has_dev(const struct dalcs_tolerant_model *m) {
-    bool has = false;
-    for (int k = 0; k < m->n; k++) {
-        has = has || m->value[k].dev.token != NULL;
-    }
-    return has;
 }
 
 /* ---- Elements ---------------------------------------------------------------------------------- */
@@ -191,7 +50,7 @@ static enum dalcs_status give_model(struct dalcs_tolerant *all, struct dalcs_car
     memcpy(of_card, card->token, (size_t)card->n * sizeof *of_card);
     of_model[1].text = of_card[at].text = name;
     model.token = of_model;
-    DALCS_TRY(set_model(all, m, device, &model));
+    DALCS_TRY(dalcs_tolerance_set_model(all, m, device, &model));
     if (model.token == of_model) {
         return DALCS_OK; /* nothing is other than in the model itself */
     }
@@ -223,16 +82,16 @@ static enum dalcs_status set_element(struct dalcs_tolerant *all, struct dalcs_ca
     int at = dalcs_card_find_value(card, &is_there); /* or it is behind a model */
     at = t->name != NULL ? t->at : is_there || m == NULL ? at : at + 1;
     double nominal;
-    if (!number_at(language, card, at, token, &nominal)) {
+    if (!dalcs_tolerance_nominal(language, card, at, token, &nominal)) {
         return DALCS_OK;
     }
     double value = nominal;
     if (t->dev.token != NULL) {
-        value +=
-            size_of(&t->dev, nominal) * dalcs_tolerance_draw_dev(all, &t->dev, device, "", device);
+        value += dalcs_tolerance_size(&t->dev, nominal) *
+                 dalcs_tolerance_draw_dev(all, &t->dev, device, "", device);
     }
     if (t->lot.token != NULL) {
-        value += size_of(&t->lot, nominal) *
+        value += dalcs_tolerance_size(&t->lot, nominal) *
                  dalcs_tolerance_draw_lot(all, &t->lot, m != NULL ? m->lot : letter, NULL);
     }
     if (value != nominal) {
@@ -306,7 +165,7 @@ static enum dalcs_status apply_to_element(struct dalcs_tolerant *all, size_t k) 
         status = set_element(all, &card, &t, m);
     } else if (n > 0) {
         status = set_element(all, &card, own, NULL);
-    } else if (m != NULL && !is_passive(&card) && has_dev(m)) {
+    } else if (m != NULL && !is_passive(&card) && dalcs_tolerance_model_has_dev(m)) {
         status = give_model(all, &card, at, m);
     }
     language->deck->own[k] = card; /* which may have moved */
@@ -317,9 +176,9 @@ static enum dalcs_status apply_to_models(struct dalcs_tolerant *all) {
     struct dalcs_deck *deck = all->language->deck;
     for (size_t k = 0; k < all->n_models; k++) {
         struct dalcs_card *card = &deck->own[all->model[k].card];
-        if (passive_type(card) == '\0' && all->model[k].is_used) {
+        if (dalcs_tolerance_passive_type(card) == '\0' && all->model[k].is_used) {
             struct dalcs_card made = *card;
-            DALCS_TRY(set_model(all, &all->model[k], NULL, &made));
+            DALCS_TRY(dalcs_tolerance_set_model(all, &all->model[k], NULL, &made));
             *card = made;
         }
     }
@@ -334,7 +193,7 @@ enum dalcs_status dalcs_tolerances_apply(struct dalcs_language *language) {
     for (size_t k = 0; k < n_cards; k++) {
         const struct dalcs_card *card = &deck->own[k];
         if (card->letter == '.' && card->n > 2 && strcmp(card->token->text, ".model") == 0) {
-            (void)take_model(&all, k);
+            (void)dalcs_tolerance_take_model(&all, k);
         }
     }
     for (size_t k = 0; k < n_cards && status == DALCS_OK; k++) {
@@ -345,7 +204,7 @@ enum dalcs_status dalcs_tolerances_apply(struct dalcs_language *language) {
     if (status == DALCS_OK) {
         status = apply_to_models(&all);
     }
-    if (all.first != NULL && !language->has_runs) {
+    if (all.first != NULL && !language->drawing.has_runs) {
         dalcs_language_report(language, DALCS_NOTE, NULL, all.first,
                               ".mc 100 draws them, .wcase looks for the worst case",
                               "tolerances (DEV, LOT) count in runs of .mc and .wcase only");

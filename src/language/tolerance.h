@@ -2,7 +2,7 @@
 #ifndef DALCS_TOLERANCE_H
 #define DALCS_TOLERANCE_H
 
-#include "language.h"
+#include "card_value.h"
 
 /* DEV[/n][/uniform|/gauss] = size[%] */
 struct dalcs_tolerance {
@@ -57,5 +57,28 @@ void dalcs_tolerance_keep(struct dalcs_tolerant *all, const char *name, double v
  * arena. Those of an element have one entry at most. False when an error was reported. */
 bool dalcs_tolerances_take(struct dalcs_language *language, struct dalcs_card *card,
                            struct dalcs_tolerances **found, int *n_found);
+
+/* ---- tolerance_models.c ------------------------------------------------------------------------ */
+
+/* Of a model of these: R, RES, C, CAP, L, IND; else 0. */
+char dalcs_tolerance_passive_type(const struct dalcs_card *card);
+
+/* In the unit of the value, whose nominal one this is. */
+double dalcs_tolerance_size(const struct dalcs_tolerance *t, double nominal);
+
+/* Keeps what card k of the deck, a .model, has of tolerances; false when an error was reported. */
+bool dalcs_tolerance_take_model(struct dalcs_tolerant *all, size_t k);
+
+/* The number at token `at`; false after a message. */
+bool dalcs_tolerance_nominal(struct dalcs_language *language, const struct dalcs_card *card, int at,
+                             const struct dalcs_token *tolerance, double *value);
+
+/* The model's values as a device has them: `device` NULL: without DEV, which others draw. */
+enum dalcs_status dalcs_tolerance_set_model(struct dalcs_tolerant *all,
+                                            const struct dalcs_tolerant_model *m,
+                                            const char *device, struct dalcs_card *card);
+
+/* Has one of its values a DEV? */
+bool dalcs_tolerance_model_has_dev(const struct dalcs_tolerant_model *m);
 
 #endif

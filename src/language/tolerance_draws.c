@@ -6,7 +6,8 @@
 /* In units of the tolerance; one run alone has none. */
 static double deviation(const struct dalcs_tolerant *all, const struct dalcs_tolerance *t,
                         uint64_t key) {
-    const double u = all->language->has_runs ? dalcs_drawn_place(all->language, key, 0) : 0.5;
+    const double u =
+        all->language->drawing.has_runs ? dalcs_drawn_place(all->language, key, 0) : 0.5;
     return t->is_gauss && u > 0 && u < 1 ? dalcs_normal_quantile(u) : 2 * u - 1;
 }
 
@@ -31,7 +32,7 @@ void dalcs_tolerance_keep(struct dalcs_tolerant *all, const char *name, double v
 /* Several values may share it. */
 static bool is_new(struct dalcs_tolerant *all, const char *name) {
     struct dalcs_language *language = all->language;
-    if (!language->is_worst_case || dalcs_names_find(&all->listed, name) >= 0) {
+    if (!language->drawing.is_worst_case || dalcs_names_find(&all->listed, name) >= 0) {
         return false;
     }
     language->out_of_memory =
@@ -78,7 +79,8 @@ const char *dalcs_tolerance_lot_of_model(struct dalcs_language *language, const 
     const char *instance =
         dot != NULL ? dalcs_language_text(language, "%.*s", (int)(dot - flat), flat) : NULL;
     const int k = instance != NULL ? dalcs_names_find(&language->deck->instances, instance) : -1;
-    return k < 0 ? flat
-                 : dalcs_language_text(language, "%s/%s",
-                                       language->scope[k]->definition->name->text, dot + 1);
+    return k < 0
+               ? flat
+               : dalcs_language_text(language, "%s/%s",
+                                     language->instances.scope[k]->definition->name->text, dot + 1);
 }

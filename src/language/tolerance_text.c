@@ -12,10 +12,6 @@
 
 static const char USAGE[] = "a tolerance is: DEV=5%, LOT=2%, DEV/gauss=1%, LOT/1/uniform=0.1";
 
-static bool is_word(const struct dalcs_token *token, const char *word) {
-    return token->kind == DALCS_TOKEN_WORD && strcmp(token->text, word) == 0;
-}
-
 static bool is_tolerance(const struct dalcs_token *token) {
     const char *text = token->text;
     return token->kind == DALCS_TOKEN_WORD &&
@@ -65,7 +61,7 @@ static bool read_size(struct dalcs_language *language, const struct dalcs_card *
     ++*at;
     if (token->kind == DALCS_TOKEN_NUMBER) {
         t->size = token->value;
-        t->is_relative = *at < card->n && is_word(&card->token[*at], "%");
+        t->is_relative = *at < card->n && dalcs_token_is_word(&card->token[*at], "%");
         *at += t->is_relative ? 1 : 0;
     } else {
         const size_t n = strlen(token->text);

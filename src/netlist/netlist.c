@@ -338,3 +338,7 @@ struct dalcs_location dalcs_token_end(const struct dalcs_token *token) {
     where.length = 1;
     return where;
 }
+
+bool dalcs_token_is_word(const struct dalcs_token *token, const char *word) {
+    return token->kind == DALCS_TOKEN_WORD && strcmp(token->text, word) == 0;
+}

@@ -151,6 +151,9 @@ void dalcs_netlist_finish(struct dalcs_netlist *netlist);
 /* Where a token stands; borrows from the netlist. */
 struct dalcs_location dalcs_token_location(const struct dalcs_token *token);
 
+/* Is the token this word, unquoted? */
+bool dalcs_token_is_word(const struct dalcs_token *token, const char *word);
+
 /* From one token to another; underlines all between them when they share a line. */
 struct dalcs_location dalcs_token_span(const struct dalcs_token *first,
                                        const struct dalcs_token *last);

@@ -177,95 +177,6 @@ static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size
     return status;
 }
 
-/* ---- From outside --------------------------------------------------------------------------------- */
-
-/* A word for several vectors: all, allv, alli, ally, tran1.all. */
-static bool names_all(const char *text) {
-    for (const char *p = strstr(text, "all"); p != NULL; p = strstr(p + 1, "all")) {
-        const bool begins = p == text || strchr(" \t,.", p[-1]) != NULL;
-        const char *end = p + 3 + (p[3] != '\0' && strchr("viy", p[3]) != NULL);
-        if (begins && (*end == '\0' || strchr(" \t,", *end) != NULL)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Does it work with all vectors? */
-static bool takes_all(const struct dalcs_statement *s) {
-    const bool has_file = s->kind == DALCS_STATEMENT_WRITE || s->kind == DALCS_STATEMENT_WRDATA ||
-                          strcmp(s->word, "hardcopy") == 0;
-    const bool takes = has_file || s->kind == DALCS_STATEMENT_PRINT ||
-                       s->kind == DALCS_STATEMENT_DRAW || s->kind == DALCS_STATEMENT_LINEARIZE ||
-                       s->kind == DALCS_STATEMENT_FFT;
-    const char *rest = s->rest + (has_file ? strcspn(s->rest, " \t") : 0);
-    rest += strspn(rest, " \t");
-    return s->kind == DALCS_STATEMENT_DISPLAY || (takes && (*rest == '\0' || names_all(rest)));
-}
-
-/* Is there a statement whose vectors are not named in the text of the script? */
-static bool keeps_all(const struct dalcs_statements *all) {
-    bool found = strstr(all->text, "($") != NULL || strstr(all->text, ",$") != NULL;
-    for (size_t k = 0; k < all->n && !found; k++) {
-        found = takes_all(&all->statement[k]);
-    }
-    return found;
-}
-
-/* Does it look back at plots before the newest? "tran1.v(out)", "{$dc}.out", setplot, $curplot, destroy. */
-static bool keeps_plots(const struct dalcs_statements *all) {
-    static const char *const type[] = {"tran", "ac", "dc", "op", "pss", "sp", "unknown"};
-    bool found = strstr(all->text, "curplot") != NULL || strstr(all->text, "$plots") != NULL ||
-                 strstr(all->text, "}.") != NULL;
-    for (size_t k = 0; k < all->n && !found; k++) {
-        found = all->statement[k].kind == DALCS_STATEMENT_SETPLOT ||
-                all->statement[k].kind == DALCS_STATEMENT_DESTROY;
-    }
-    for (size_t k = 0; k < sizeof type / sizeof type[0]; k++) {
-        const size_t n = strlen(type[k]);
-        for (const char *p = strstr(all->text, type[k]); p != NULL && !found;
-             p = strstr(p + n, type[k])) {
-            found = p[n + strspn(p + n, "0123456789")] == '.';
-        }
-    }
-    return found;
-}
-
-static bool asks(const struct dalcs_statements *all) {
-    bool found = false;
-    for (size_t k = 0; k < all->n && !found; k++) {
-        found = all->statement[k].kind == DALCS_STATEMENT_ANALYSIS;
-    }
-    return found;
-}
-
-enum dalcs_status dalcs_script_look(const struct dalcs_session *session, bool *is_there,
-                                    enum dalcs_analysis *main) {
-    static const struct {
-        const char *word;
-        enum dalcs_analysis analysis;
-    } ranked[] = {{"tran", DALCS_TRANSIENT},
-                  {"ac", DALCS_AC},
-                  {"dc", DALCS_DC_SWEEP},
-                  {"op", DALCS_OPERATING_POINT}};
-
-    struct dalcs_statements all = {0};
-    size_t best = sizeof ranked / sizeof ranked[0];
-    const enum dalcs_status status =
-        dalcs_statements_read(&all, session, 0, dalcs_session_n_script_lines(session));
-    for (size_t k = 0; k < all.n; k++) {
-        for (size_t i = 0; i < best; i++) {
-            best = strcmp(all.statement[k].word, ranked[i].word) == 0 ? i : best;
-        }
-    }
-    if (best < sizeof ranked / sizeof ranked[0]) {
-        *main = ranked[best].analysis;
-    }
-    *is_there = all.n > 0;
-    dalcs_statements_finish(&all);
-    return status;
-}
-
 static bool has_analysis(const struct dalcs_session *session) {
     const struct dalcs_request asked = dalcs_session_request(session);
     return asked.operating_point || asked.transient || asked.dc_sweep || asked.ac;
@@ -289,8 +200,8 @@ enum dalcs_status dalcs_script_read(struct dalcs_script *script, size_t first, s
     script->vectors.session = host->session;
     DALCS_TRY(dalcs_statements_read(&script->statements, host->session, first, end));
     script->vectors.text = script->statements.text;
-    script->vectors.keeps_all = keeps_all(&script->statements);
-    script->vectors.keeps_plots = keeps_plots(&script->statements);
+    script->vectors.keeps_all = dalcs_script_keeps_all(&script->statements);
+    script->vectors.keeps_plots = dalcs_script_keeps_plots(&script->statements);
     return dalcs_statements_check(&script->statements, host);
 }
 
@@ -357,7 +268,7 @@ enum dalcs_status dalcs_script_run(const struct dalcs_script_host *host) {
     if (status == DALCS_OK) {
         status = dalcs_script_read(script, 0, dalcs_session_n_script_lines(host->session));
     }
-    if (status == DALCS_OK && !asks(&script->statements)) {
+    if (status == DALCS_OK && !dalcs_script_asks(&script->statements)) {
         status = dalcs_script_run_cards(script);
     }
     if (status == DALCS_OK) {

@@ -179,4 +179,15 @@ enum dalcs_status dalcs_script_refuse_file(struct dalcs_script *script,
                                            const struct dalcs_statement *statement,
                                            const char *path, int error);
 
+/* ---- script_look.c -------------------------------------------------------------------------------- */
+
+/* Is there a statement whose vectors are not named in the text of the script? */
+bool dalcs_script_keeps_all(const struct dalcs_statements *all);
+
+/* Does it look back at plots before the newest? "tran1.v(out)", "{$dc}.out", setplot, $curplot, destroy. */
+bool dalcs_script_keeps_plots(const struct dalcs_statements *all);
+
+/* Does one of them ask for an analysis? */
+bool dalcs_script_asks(const struct dalcs_statements *all);
+
 #endif

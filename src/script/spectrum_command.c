@@ -1,5 +1,5 @@
-/* spectrum_command.c - linearize, and the spectra of a transient: fft, psd, spec. */
-#include "script_internal.h"
+/* spectrum_command.c - the spectra of a transient: fft, psd, spec. */
+#include "row_grid.h"
 #include "spectrum.h"
 
 #include <math.h>
@@ -7,113 +7,6 @@
 #include <string.h>
 
 static const double TURN = 6.283185307179586;
-
-enum { MOST_ROWS = 100000000 };
-
-/* ---- Rows at equal distances ------------------------------------------------------------------------ */
-
-/* How many times lie on it, by ngspice's rule; 0: none. */
-static size_t rows_of(const struct dalcs_grid *grid) {
-    const double n = (grid->stop - grid->start) / grid->step + 1.5;
-    return grid->step > 0.0 && n >= 2.0 && n <= MOST_ROWS ? (size_t)n : 0;
-}
-
-static double time_of(const struct dalcs_grid *grid, size_t k) {
-    return grid->start + (double)k * grid->step;
-}
-
-/* What the run was asked for; the vectors lin-tstart, lin-tstop and lin-tstep come before that. */
-static struct dalcs_grid grid_of(const struct dalcs_vectors *all,
-                                 const struct dalcs_plot_vectors *plot) {
-    struct dalcs_grid grid = plot->grid;
-    const struct dalcs_vector *start = dalcs_vectors_find_exactly(all, "lin-tstart");
-    const struct dalcs_vector *stop = dalcs_vectors_find_exactly(all, "lin-tstop");
-    const struct dalcs_vector *step = dalcs_vectors_find_exactly(all, "lin-tstep");
-    grid.start = start != NULL ? creal(start->value[0]) : grid.start;
-    grid.stop = stop != NULL ? creal(stop->value[0]) : grid.stop;
-    grid.step = step != NULL ? creal(step->value[0]) : grid.step;
-    return grid;
-}
-
-/* The values at the times of the grid, in the arena; NULL: no memory. Rows lie there already, so that nothing is
- * lost, but where lin-tstep is another. */
-static double complex *sampled(struct dalcs_script *script, const struct dalcs_vector *v,
-                               const struct dalcs_vector *scale, const struct dalcs_grid *grid,
-                               size_t n) {
-    double complex *value = dalcs_arena_alloc(&script->arena, n, sizeof *value);
-    for (size_t k = 0; value != NULL && k < n; k++) {
-        value[k] = dalcs_calculus_interpolate(v->value, scale->value, scale->n, time_of(grid, k));
-    }
-    return value;
-}
-
-static bool is_transient(const struct dalcs_plot_vectors *plot) {
-    return plot->scale != NULL && plot->scale->unit == DALCS_UNIT_SECOND && plot->scale->n > 1;
-}
-
-static enum dalcs_status refuse_plot(struct dalcs_script *script, const struct dalcs_statement *s) {
-    return dalcs_script_refuse(script, s, "setplot tran1 chooses the plot of a tran",
-                               "%s takes the rows of a transient, and the current plot has none",
-                               s->word);
-}
-
-/* The current plot is made. */
-static enum dalcs_status tell_made(struct dalcs_script *script) {
-    const struct dalcs_script_host *host = script->host;
-    DALCS_TRY(host->made != NULL ? host->made(host->user, script->vectors.current) : DALCS_OK);
-    dalcs_script_name_plot(script);
-    return DALCS_OK;
-}
-
-/* linearize [v(out) ...] */
-enum dalcs_status dalcs_script_linearize(struct dalcs_script *script,
-                                         const struct dalcs_statement *s) {
-    struct dalcs_vectors *all = &script->vectors;
-    const struct dalcs_plot_vectors *from = dalcs_plots_current(all);
-    const struct dalcs_vector **vector;
-    const char *text;
-    size_t n_vectors;
-    if (!is_transient(from)) {
-        return refuse_plot(script, s);
-    }
-    const struct dalcs_grid grid = grid_of(all, from);
-    const struct dalcs_vector *scale = from->scale;
-    const size_t n = rows_of(&grid);
-    if (n == 0) {
-        return dalcs_script_refuse(script, s, "let lin-tstep = 1u sets the time between rows",
-                                   "no rows lie every %g s from %g s to %g s", grid.step,
-                                   grid.start, grid.stop);
-    }
-    DALCS_TRY(dalcs_script_expand_low(script, s, &text));
-    DALCS_TRY(dalcs_script_vectors(script, s, text, &vector, &n_vectors));
-    struct dalcs_vector made = {.unit = DALCS_UNIT_SECOND, .n = n};
-    made.value = dalcs_arena_alloc(&script->arena, n, sizeof *made.value);
-    const char *kind = dalcs_arena_printf(&script->arena, "%s (linearized)", from->kind);
-    if (made.value == NULL || kind == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    for (size_t k = 0; k < n; k++) {
-        made.value[k] = time_of(&grid, k);
-    }
-    DALCS_TRY(dalcs_plots_make(all, "tran", kind, from->title));
-    struct dalcs_plot_vectors *to = all->current;
-    to->analysis = DALCS_TRANSIENT;
-    to->grid = grid;
-    DALCS_TRY(dalcs_plot_set(to, scale->name, &made));
-    for (size_t k = 0; k < n_vectors; k++) {
-        const struct dalcs_vector *v = vector[k];
-        if (v->n == scale->n && strcmp(v->name, scale->name) != 0) {
-            struct dalcs_vector straight = *v;
-            straight.n = n;
-            straight.value = sampled(script, v, scale, &grid, n);
-            DALCS_TRY(straight.value != NULL ? dalcs_plot_set(to, v->name, &straight)
-                                             : DALCS_E_NOMEM);
-        }
-    }
-    return tell_made(script);
-}
-
-/* ---- Spectra ------------------------------------------------------------------------------------------ */
 
 /* Of one command. */
 struct spectrum {
@@ -152,13 +45,13 @@ static enum dalcs_status choose_window(struct spectrum *p) {
 /* The rows of the current plot, at equal distances. */
 static enum dalcs_status choose_rows(struct spectrum *p) {
     const struct dalcs_plot_vectors *plot = dalcs_plots_current(&p->script->vectors);
-    if (!is_transient(plot)) {
-        return refuse_plot(p->script, p->statement);
+    if (!dalcs_plot_is_transient(plot)) {
+        return dalcs_grid_refuse_plot(p->script, p->statement);
     }
     p->scale = plot->scale;
     p->grid = plot->grid;
     p->n = plot->scale->n;
-    const size_t n_grid = rows_of(&plot->grid);
+    const size_t n_grid = dalcs_grid_rows(&plot->grid);
     if (n_grid == 0) { /* a plot that let has made */
         const double width = creal(plot->scale->value[p->n - 1] - plot->scale->value[0]);
         p->grid = (struct dalcs_grid){creal(plot->scale->value[0]), width / (double)(p->n - 1),
@@ -167,12 +60,13 @@ static enum dalcs_status choose_rows(struct spectrum *p) {
         p->is_sampled = true;
         p->n = n_grid;
     }
-    return p->grid.step > 0.0 ? DALCS_OK : refuse_plot(p->script, p->statement);
+    return p->grid.step > 0.0 ? DALCS_OK : dalcs_grid_refuse_plot(p->script, p->statement);
 }
 
 static enum dalcs_status weigh(struct spectrum *p, const struct dalcs_vector *v) {
     const double complex *value =
-        p->is_sampled ? sampled(p->script, v, p->scale, &p->grid, p->first + p->n) : v->value;
+        p->is_sampled ? dalcs_grid_sample(p->script, v, p->scale, &p->grid, p->first + p->n)
+                      : v->value;
     for (size_t k = 0; value != NULL && k < p->n; k++) {
         p->x[k] = creal(value[p->first + k]) * p->weight[k];
     }
@@ -230,7 +124,7 @@ static void sum_at(const struct spectrum *p, double complex *to) {
         const double f = p->from + (double)k * p->step;
         double complex sum = 0.0;
         for (size_t i = 0; i < p->n; i++) {
-            sum += p->x[i] * cexp(-TURN * I * (f * time_of(&p->grid, p->first + i)));
+            sum += p->x[i] * cexp(-TURN * I * (f * dalcs_grid_time(&p->grid, p->first + i)));
         }
         to[k] = sum * ((f == 0.0 ? 1.0 : 2.0) / (double)p->n);
     }
@@ -281,7 +175,7 @@ static enum dalcs_status make_spectrum(struct spectrum *p, const struct dalcs_ve
         DALCS_TRY(fill(p, vector[k], value));
         DALCS_TRY(dalcs_plot_set(to, vector[k]->name, &made));
     }
-    return tell_made(p->script);
+    return dalcs_grid_tell_made(p->script);
 }
 
 /* The last rows, so many that the step of the frequencies has whole periods in them: what repeats with it then
@@ -311,7 +205,7 @@ static enum dalcs_status take_frequencies(struct spectrum *p, const char **text)
     }
     const double highest = 0.5 / p->grid.step;
     const double n = floor((value[1] - value[0]) / value[2] * DALCS_ROUNDED_UP) + 1.0;
-    if (!(value[0] >= 0.0 && value[2] > 0.0 && n >= 1.0 && n <= MOST_ROWS)) {
+    if (!(value[0] >= 0.0 && value[2] > 0.0 && n >= 1.0 && n <= DALCS_MOST_GRID_ROWS)) {
         return dalcs_script_refuse(p->script, p->statement, "spec 0 10k 50 v(out)",
                                    "no frequencies lie every %g Hz from %g Hz to %g Hz", value[2],
                                    value[0], value[1]);

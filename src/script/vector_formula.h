@@ -92,4 +92,30 @@ void dalcs_calculus_integral(double complex *to, const double complex *value,
 double complex dalcs_calculus_interpolate(const double complex *value, const double complex *scale,
                                           size_t n, double at);
 
+/* ---- vector_formula.c and vector_names.c ---------------------------------------------------------- */
+
+/* Reads over a symbol or a word; false: it is not there. */
+bool dalcs_vector_formula_take(struct dalcs_vector_formula *f, const char *symbol);
+
+bool dalcs_vector_formula_is_of_name(char c);
+
+/* a ? b : c, the loosest. */
+struct dalcs_vector *dalcs_vector_formula_choice(struct dalcs_vector_formula *f);
+
+/* A vector by its name, a constant, a call. NULL: an error was reported. */
+struct dalcs_vector *dalcs_vector_formula_word(struct dalcs_vector_formula *f);
+
+/* ---- vector_along.c ------------------------------------------------------------------------------- */
+
+/* A vector of the same length and scale; NULL: out of memory. */
+struct dalcs_vector *dalcs_vector_alike(struct dalcs_vector_formula *f,
+                                        const struct dalcs_vector *x, bool is_complex);
+
+/* A function that makes a vector of another one. */
+typedef struct dalcs_vector *dalcs_vector_function(struct dalcs_vector_formula *f,
+                                                   const struct dalcs_vector *x);
+
+/* That of this name; NULL: it is none of these. */
+dalcs_vector_function *dalcs_vector_along(const char *name);
+
 #endif

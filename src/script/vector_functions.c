@@ -1,11 +1,9 @@
-/* vector_functions.c - what a name with parentheses gives. */
+/* vector_functions.c - what a name with parentheses gives: of each value, of a whole vector, of several. */
 #include "vector_formula.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static const double TURN = 6.283185307179586;
 
 /* ---- Of each value --------------------------------------------------------------------------------- */
 
@@ -147,156 +145,6 @@ static const struct {
     {"min", smallest_of}, {"length", length_of},   {"stddev", deviation_of},
 };
 
-/* ---- Of a vector, value by value ------------------------------------------------------------------------ */
-
-static struct dalcs_vector *alike(struct dalcs_vector_formula *f, const struct dalcs_vector *x,
-                                  bool is_complex) {
-    struct dalcs_vector *v = dalcs_vector_make(f, x->n, is_complex);
-    if (v != NULL) {
-        v->scale = x->scale;
-    }
-    return v;
-}
-
-static struct dalcs_vector *running_mean(struct dalcs_vector_formula *f,
-                                         const struct dalcs_vector *x) {
-    struct dalcs_vector *v = alike(f, x, x->is_complex);
-    double complex sum = 0.0;
-    for (size_t k = 0; v != NULL && k < x->n; k++) {
-        sum += x->value[k];
-        v->value[k] = sum / (double)(k + 1);
-    }
-    return v;
-}
-
-static struct dalcs_vector *normalised(struct dalcs_vector_formula *f,
-                                       const struct dalcs_vector *x) {
-    struct dalcs_vector *v = alike(f, x, x->is_complex);
-    double largest = 0.0;
-    for (size_t k = 0; k < x->n; k++) {
-        largest = fmax(largest, cabs(x->value[k]));
-    }
-    for (size_t k = 0; v != NULL && k < x->n; k++) {
-        v->value[k] = x->value[k] / (largest > 0.0 ? largest : 1.0);
-    }
-    return v;
-}
-
-static struct dalcs_vector *continuous_phase(struct dalcs_vector_formula *f,
-                                             const struct dalcs_vector *x) {
-    struct dalcs_vector *v = alike(f, x, false);
-    for (size_t k = 0; v != NULL && k < x->n; k++) {
-        v->value[k] = carg(x->value[k]);
-    }
-    if (v != NULL) {
-        dalcs_calculus_unwrap(v->value, v->n);
-    }
-    return v;
-}
-
-static struct dalcs_vector *unwrapped(struct dalcs_vector_formula *f,
-                                      const struct dalcs_vector *x) {
-    struct dalcs_vector *v = alike(f, x, false);
-    if (v != NULL) {
-        memcpy(v->value, x->value, x->n * sizeof *x->value);
-        dalcs_calculus_unwrap(v->value, v->n);
-    }
-    return v;
-}
-
-/* The scale that it goes along; NULL: it has none. */
-static const struct dalcs_vector *scale_of(struct dalcs_vector_formula *f, const char *name,
-                                           const struct dalcs_vector *x) {
-    if (x->scale == NULL || x->scale->n != x->n) {
-        (void)dalcs_vector_fail(f, "%s() takes a vector of a run", name);
-        return NULL;
-    }
-    return x->scale;
-}
-
-static struct dalcs_vector *derivative(struct dalcs_vector_formula *f,
-                                       const struct dalcs_vector *x) {
-    const struct dalcs_vector *scale = scale_of(f, "deriv", x);
-    struct dalcs_vector *v = scale != NULL ? alike(f, x, x->is_complex) : NULL;
-    if (v != NULL) {
-        dalcs_calculus_derivative(v->value, x->value, scale->value, x->n);
-    }
-    return v;
-}
-
-static struct dalcs_vector *integral(struct dalcs_vector_formula *f, const struct dalcs_vector *x) {
-    const struct dalcs_vector *scale = scale_of(f, "integ", x);
-    struct dalcs_vector *v = scale != NULL ? alike(f, x, x->is_complex) : NULL;
-    if (v != NULL) {
-        dalcs_calculus_integral(v->value, x->value, scale->value, x->n);
-    }
-    return v;
-}
-
-static struct dalcs_vector *group_delay(struct dalcs_vector_formula *f,
-                                        const struct dalcs_vector *x) {
-    const struct dalcs_vector *scale = scale_of(f, "group_delay", x);
-    const struct dalcs_vector *phase = scale != NULL ? continuous_phase(f, x) : NULL;
-    struct dalcs_vector *v = phase != NULL ? alike(f, x, false) : NULL;
-    if (v != NULL) {
-        dalcs_calculus_derivative(v->value, phase->value, scale->value, x->n);
-        for (size_t k = 0; k < v->n; k++) {
-            v->value[k] /= -TURN;
-        }
-    }
-    return v;
-}
-
-/* A vector of another plot on the scale of the current one. */
-static struct dalcs_vector *interpolated(struct dalcs_vector_formula *f,
-                                         const struct dalcs_vector *x) {
-    const struct dalcs_vector *from = scale_of(f, "interpolate", x);
-    const struct dalcs_vector *to = dalcs_vectors_scale(f->vectors);
-    if (from == NULL || to == NULL) {
-        return dalcs_vector_fail(f, "interpolate() needs a plot with a scale");
-    }
-    struct dalcs_vector *v = dalcs_vector_make(f, to->n, x->is_complex);
-    for (size_t k = 0; v != NULL && k < to->n; k++) {
-        v->value[k] = dalcs_calculus_interpolate(x->value, from->value, x->n, creal(to->value[k]));
-    }
-    if (v != NULL) {
-        v->scale = to;
-    }
-    return v;
-}
-
-static struct dalcs_vector *counted(struct dalcs_vector_formula *f, const struct dalcs_vector *x,
-                                    const char *name) {
-    const double n = x->n == 1 ? creal(x->value[0]) : -1.0;
-    if (!(n >= 1.0 && n <= 1e8)) {
-        return dalcs_vector_fail(f, "%s() takes a length", name);
-    }
-    struct dalcs_vector *v = dalcs_vector_make(f, (size_t)n, false);
-    for (size_t k = 0; v != NULL && k < v->n; k++) {
-        v->value[k] = name[0] == 'u' ? 1.0 : (double)k;
-    }
-    return v;
-}
-
-static struct dalcs_vector *vector_of(struct dalcs_vector_formula *f,
-                                      const struct dalcs_vector *x) {
-    return counted(f, x, "vector");
-}
-
-static struct dalcs_vector *ones_of(struct dalcs_vector_formula *f, const struct dalcs_vector *x) {
-    return counted(f, x, "unitvec");
-}
-
-static const struct {
-    const char *name;
-    struct dalcs_vector *(*of)(struct dalcs_vector_formula *f, const struct dalcs_vector *x);
-} ALONG[] = {
-    {"avg", running_mean},        {"norm", normalised},         {"cph", continuous_phase},
-    {"cphase", continuous_phase}, {"unwrap", unwrapped},        {"deriv", derivative},
-    {"integ", integral},          {"group_delay", group_delay}, {"interpolate", interpolated},
-    {"vector", vector_of},        {"unitvec", ones_of},
-};
-
 /* ---- Of several ------------------------------------------------------------------------------------------ */
 
 /* The larger or smaller of two, value by value. */
@@ -352,7 +200,8 @@ struct dalcs_vector *dalcs_vector_call(struct dalcs_vector_formula *f, const cha
     }
     for (size_t i = 0; n == 1 && i < sizeof EACH / sizeof EACH[0]; i++) {
         if (strcmp(EACH[i].name, name) == 0) {
-            struct dalcs_vector *v = alike(f, x, x->is_complex && !EACH[i].gives_reals);
+            struct dalcs_vector *v =
+                dalcs_vector_alike(f, x, x->is_complex && !EACH[i].gives_reals);
             for (size_t k = 0; v != NULL && k < x->n; k++) {
                 v->value[k] = EACH[i].of(x->value[k]);
                 v->is_complex = v->is_complex || cimag(v->value[k]) != 0.0;
@@ -365,10 +214,9 @@ struct dalcs_vector *dalcs_vector_call(struct dalcs_vector_formula *f, const cha
             return dalcs_vector_number(f, WHOLE[i].of(x));
         }
     }
-    for (size_t i = 0; n == 1 && i < sizeof ALONG / sizeof ALONG[0]; i++) {
-        if (strcmp(ALONG[i].name, name) == 0) {
-            return ALONG[i].of(f, x);
-        }
+    dalcs_vector_function *along = n == 1 ? dalcs_vector_along(name) : NULL;
+    if (along != NULL) {
+        return along(f, x);
     }
     return dalcs_vector_fail(
         f, n == 1 ? "there is no function '%s'" : "there is no function '%s' of so many arguments",

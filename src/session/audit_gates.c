@@ -4,28 +4,12 @@
  * are the comparators' positions, which are audited as those of all switches, and what other gates show, in the sources
  * that the circuit has. Nothing of the network or its queue is asked. What depends on an order within one instant (data
  * that change with their clock, a pulse of no width that sets a latch) is taken as it is shown. */
-#include "audit_gates.h"
+#include "audit_gate.h"
 
 #include "radau.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-struct audit_gate {
-    bool q;                  /* decided */
-    bool clock, data, reset; /* when it was looked at last */
-    bool is_lost;            /* behind a delay something depended on an order within an instant */
-    bool shown;              /* what it has to show by now */
-    int count;               /* of clocks; -1: it is not known */
-    double held;             /* V, by a sample */
-    bool was_seen;
-    unsigned flashes; /* its inputs that were on another side for no time */
-    double free_at;   /* s: what was decided when it was lost is shown from then on */
-    double before;    /* V, what it may take at this instant */
-    double ends;      /* s: a pulse, or the time behind it in which no clock counts */
-    double *due;      /* [n_due] s: what it has to show changes */
-    size_t first_due, n_due, capacity;
-};
 
 static enum dalcs_status find_systems(struct dalcs_audit_gates *a) {
     const struct dalcs_circuit *c = a->circuit;
@@ -95,9 +79,8 @@ static bool shows(const struct dalcs_audit_gates *a, int k) {
     return (last > 0.5 * (g->low + g->high)) == (g->output[0] >= 0);
 }
 
-/* *is_known: not what a gate says that nothing shows. */
-static bool reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_input *input,
-                  bool *is_known) {
+bool audit_gate_reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_input *input,
+                      bool *is_known) {
     bool bit = false;
     if (input->from == DALCS_GATE_COMPARATOR) {
         const struct dalcs_logic_place *p = &a->place[input->index];
@@ -108,188 +91,6 @@ static bool reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_in
         bit = is_shown && shows(a, input->index);
     }
     return bit != input->is_inverted;
-}
-
-/* What ends a pulse of a comparator may be what it did: a latch that opens a switch at a current is reset for no time, as the
- * current falls from there on. The run tells which comparators came back; that they could have gone is found here: what
- * they read was where it changes over. A bit for each input. */
-static unsigned flashes_of(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g,
-                           struct dalcs_audit *audit, double t) {
-    unsigned flashes = 0;
-    for (int i = 0; i < g->n_inputs; i++) {
-        const struct dalcs_logic_input *input = &g->input[i];
-        if (input->from == DALCS_GATE_COMPARATOR &&
-            dalcs_logic_run_flashed(a->logic, input->index)) {
-            const struct dalcs_radau_part *part = &a->radau->part[a->place[input->index].part];
-            const bool begins =
-                part->kind == DALCS_PART_STEPPED && part->segment.t >= t - a->radau->resolution;
-            flashes |= dalcs_audit_has_cause(audit, part->index, t, begins) ? 1u << i : 0u;
-        }
-    }
-    return flashes;
-}
-
-static bool has(const struct audit_gate *s, int input) {
-    return (s->flashes >> input & 1u) != 0;
-}
-
-/* What the inputs say; held: they leave it as it was, as far as can be told. */
-struct verdict {
-    bool q, is_held, is_known, is_forced;
-};
-
-static struct verdict of_inputs(const struct dalcs_audit_gates *a,
-                                const struct dalcs_logic_gate *g) {
-    struct verdict v = {.is_known = true};
-    int n = 0;
-    int n_high = 0;
-    for (int i = 0; i < g->n_inputs; i++) {
-        if (g->input[i].from != DALCS_GATE_OPEN) {
-            n++;
-            n_high += reads(a, &g->input[i], &v.is_known) ? 1 : 0;
-        }
-    }
-    v.q = g->kind == DALCS_GATE_AND   ? n_high == n
-          : g->kind == DALCS_GATE_XOR ? n_high % 2 == 1
-          : g->kind == DALCS_GATE_ONE ? n_high == 1
-                                      : n_high > 0;
-    return v;
-}
-
-/* After a clock, from a table: data and reset, 0 0, 1 0, 0 1, 1 1. */
-static bool after_clock(enum dalcs_logic_kind kind, bool q, bool data, bool reset) {
-    const bool jk[] = {q, true, false, !q};
-    const bool sr[] = {q, true, false, false};
-    const int at = (data ? 1 : 0) + (reset ? 2 : 0);
-    switch (kind) {
-    case DALCS_GATE_TOGGLE:
-        return data ? !q : q;
-    case DALCS_GATE_JK:
-        return jk[at];
-    case DALCS_GATE_SR:
-    case DALCS_GATE_SR_LATCH:
-        return sr[at];
-    default:
-        return data;
-    }
-}
-
-static struct verdict of_memory(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g,
-                                struct audit_gate *s) {
-    const bool is_latch = g->kind == DALCS_GATE_LATCH;
-    struct verdict v = {.is_known = s->flashes == 0};
-    const bool clears = reads(a, &g->input[is_latch ? 1 : DALCS_GATE_CLEAR], &v.is_known);
-    const bool sets = reads(a, &g->input[is_latch ? 0 : DALCS_GATE_PRESET], &v.is_known);
-    const bool clock = !is_latch && reads(a, &g->input[DALCS_GATE_CLOCK], &v.is_known);
-    const bool data = !is_latch && reads(a, &g->input[DALCS_GATE_DATA], &v.is_known);
-    const bool has_reset =
-        g->kind == DALCS_GATE_JK || g->kind == DALCS_GATE_SR || g->kind == DALCS_GATE_SR_LATCH;
-    const bool reset = has_reset && reads(a, &g->input[DALCS_GATE_RESET], &v.is_known);
-    const bool is_open = dalcs_gate_is_transparent(g);
-    const bool acts = is_open ? clock : clock && !s->clock && s->was_seen;
-    const bool next = !is_latch && after_clock(g->kind, s->q, data, reset);
-    v.q = !clears && (sets || next);
-    v.is_held = !clears && !sets && !acts;
-    v.is_forced = clears || sets;
-    if (!is_open && acts && !sets && !clears && (data != s->data || reset != s->reset)) {
-        v.is_known = false; /* did they change before the clock? */
-    }
-    if (is_open && !acts && s->clock && (data != s->data || reset != s->reset)) {
-        v.is_known = false; /* after the gate closed? */
-    }
-    if (clock && !is_open && !s->was_seen) {
-        v.is_known = false; /* has it risen at the start, or was it high before? */
-    }
-    s->clock = clock;
-    s->data = data;
-    s->reset = reset;
-    return v;
-}
-
-/* After a lost count, q that rises with the clock is the first of a cycle. */
-static struct verdict of_counter(const struct dalcs_audit_gates *a,
-                                 const struct dalcs_logic_gate *g, struct audit_gate *s, bool now) {
-    struct verdict v = {.is_known = true};
-    const bool clock = reads(a, &g->input[0], &v.is_known);
-    const bool rises = (clock && !s->clock && s->was_seen) || s->flashes == 1u;
-    if (s->flashes > 2u) {
-        s->count = -1; /* which was first? */
-    } else if (reads(a, &g->input[1], &v.is_known) || s->flashes == 2u) {
-        s->count = 0;
-    } else if (rises && s->count >= 0) {
-        s->count = s->count % g->cycles + 1;
-    } else if (rises && g->delay[1] == 0.0 && now && !s->q && !s->is_lost) {
-        s->count = 1;
-    }
-    if (clock && !s->was_seen) {
-        s->count = -1; /* has it risen at the start, or was it high before? */
-    }
-    v.is_known = v.is_known && s->count >= 0;
-    v.q = s->count > 0 && s->count <= g->n_high;
-    s->clock = clock;
-    return v;
-}
-
-/* The pulse that a clock began lasts as long as what was read just before that says. */
-static struct verdict of_monostable(const struct dalcs_audit_gates *a,
-                                    const struct dalcs_logic_gate *g, struct audit_gate *s,
-                                    double t) {
-    struct verdict v = {.is_known = true};
-    const bool clock = reads(a, &g->input[DALCS_GATE_CLOCK], &v.is_known);
-    const bool clears = reads(a, &g->input[DALCS_GATE_CLEAR], &v.is_known);
-    while (s->count > 0 && s->ends <= t + 4.0 * a->radau->resolution) {
-        s->count = s->count == 1 && !g->pulse.is_retriggered ? 2 : 0;
-        s->ends += g->pulse.recovery;
-    }
-    const bool rises = (clock && !s->clock && s->was_seen) || has(s, DALCS_GATE_CLOCK);
-    if (clears || has(s, DALCS_GATE_CLEAR)) {
-        s->count = 0;
-    } else if (rises && (s->count == 0 || g->pulse.is_retriggered)) {
-        s->count = 1;
-        s->ends = t + g->pulse.lead + (g->sampled >= 0 ? fmax(0.0, s->before) : g->pulse.length);
-    }
-    v.is_known = v.is_known && (s->was_seen || !clock);
-    v.is_forced = clears || has(s, DALCS_GATE_CLEAR);
-    v.q = s->count == 1;
-    s->clock = clock;
-    return v;
-}
-
-/* May there be pulses of no width? What has a delay shows none. */
-static bool is_instant(const struct dalcs_audit_gates *a, const struct dalcs_logic_input *input) {
-    return input->from == DALCS_GATE_GATE && !dalcs_gate_has_delay(&a->circuit->gate[input->index]);
-}
-
-/* May one have set it? */
-static bool may_have_missed(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g) {
-    bool may = false;
-    for (int i = 0; i < g->n_inputs; i++) {
-        may = may || is_instant(a, &g->input[i]);
-    }
-    return may;
-}
-
-/* May one have undone what the clock of a flip-flop has just made of it? So it is in a phase detector, whose flip-flops
- * clear each other. */
-static bool may_be_undone(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g,
-                          const struct verdict *v) {
-    const bool has_both = g->kind >= DALCS_GATE_FLIP_FLOP && g->kind <= DALCS_GATE_SR_LATCH;
-    return has_both && !v->is_held && !v->is_forced &&
-           is_instant(a, &g->input[v->q ? DALCS_GATE_CLEAR : DALCS_GATE_PRESET]);
-}
-
-static enum dalcs_status expect(struct audit_gate *s, bool q, double due) {
-    if (q == s->q) {
-        return DALCS_OK;
-    }
-    s->q = q;
-    if (s->n_due > s->first_due && s->due[s->n_due - 1] >= due) {
-        s->n_due--; /* back before it is there */
-        return DALCS_OK;
-    }
-    DALCS_TRY(dalcs_grow(&s->due, &s->capacity, s->n_due + 1, sizeof(*s->due)));
-    s->due[s->n_due++] = due;
-    return DALCS_OK;
 }
 
 /* What it has to show by t. *is_near: it changes about then, and which side t is on is rounding. *last: when it last had to
@@ -313,13 +114,13 @@ static double changed_at(const struct dalcs_audit_gates *a, int k) {
     return s->u.pwl.n > 1 ? s->u.pwl.t[s->u.pwl.n - 2] : -INFINITY;
 }
 
-static struct verdict decide(const struct dalcs_audit_gates *a, int k, bool now, double t) {
+static struct audit_verdict decide(const struct dalcs_audit_gates *a, int k, bool now, double t) {
     const struct dalcs_logic_gate *g = &a->circuit->gate[k];
     struct audit_gate *s = &a->gate[k];
-    return g->kind == DALCS_GATE_COUNTER                            ? of_counter(a, g, s, now)
-           : g->kind == DALCS_GATE_MONOSTABLE                       ? of_monostable(a, g, s, t)
-           : g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g) ? of_memory(a, g, s)
-                                                                    : of_inputs(a, g);
+    return g->kind == DALCS_GATE_COUNTER      ? audit_gate_of_counter(a, g, s, now)
+           : g->kind == DALCS_GATE_MONOSTABLE ? audit_gate_of_monostable(a, g, s, t)
+           : g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g) ? audit_gate_of_memory(a, g, s)
+                                                                    : audit_gate_of_inputs(a, g);
 }
 
 static double longest_delay(const struct dalcs_logic_gate *g) {
@@ -337,10 +138,10 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
         s->q = s->shown = now;
         s->first_due = s->n_due = 0;
     }
-    const struct verdict v = decide(a, k, now, t);
+    const struct audit_verdict v = decide(a, k, now, t);
     s->was_seen = true;
-    const bool is_open =
-        !v.is_known || (v.is_held && may_have_missed(a, g)) || may_be_undone(a, g, &v);
+    const bool is_open = !v.is_known || (v.is_held && audit_gate_may_have_missed(a, g)) ||
+                         audit_gate_may_be_undone(a, g, &v);
     *is_wrong = false;
     if (s->is_lost && !has_memory && v.is_known) { /* what it showed stands until it decides else */
         s->is_lost = false;
@@ -364,7 +165,7 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
     bool is_near;
     double last = -INFINITY;
     const double near = 4.0 * a->radau->resolution;
-    DALCS_TRY(expect(s, q, t + (v.is_forced ? g->forced_delay : g->delay)[q]));
+    DALCS_TRY(audit_gate_expect(s, q, t + (v.is_forced ? g->forced_delay : g->delay)[q]));
     go_to(s, t, near, &is_near, &last);
     const bool is_late = last > -INFINITY && s->shown == now && changed_at(a, k) > last + near;
     *is_wrong = !is_open && !is_near && (s->shown != now || is_late);
@@ -390,10 +191,10 @@ enum dalcs_status dalcs_audit_gates_go_on(struct dalcs_audit_gates *a,
         s->shown = o->shown;
         s->clock = state->clock;
         s->data = g->kind >= DALCS_GATE_FLIP_FLOP && g->kind <= DALCS_GATE_SR_LATCH &&
-                  reads(a, &g->input[DALCS_GATE_DATA], &is_known);
+                  audit_gate_reads(a, &g->input[DALCS_GATE_DATA], &is_known);
         s->reset = (g->kind == DALCS_GATE_JK || g->kind == DALCS_GATE_SR ||
                     g->kind == DALCS_GATE_SR_LATCH) &&
-                   reads(a, &g->input[DALCS_GATE_RESET], &is_known);
+                   audit_gate_reads(a, &g->input[DALCS_GATE_RESET], &is_known);
         s->count = state->count;
         s->ends = o->ends;
         if (g->kind == DALCS_GATE_SAMPLE) {
@@ -449,11 +250,11 @@ static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
     const struct dalcs_stimulus *mode = g->output[1] >= 0 ? &c->stimulus[g->output[1]] : NULL;
     const double value = held->u.pwl.v[held->u.pwl.n - 1];
     bool is_known = true;
-    const bool clock = reads(a, &g->input[DALCS_GATE_CLOCK], &is_known);
-    const bool tracks = reads(a, &g->input[DALCS_GATE_PRESET], &is_known);
+    const bool clock = audit_gate_reads(a, &g->input[DALCS_GATE_CLOCK], &is_known);
+    const bool tracks = audit_gate_reads(a, &g->input[DALCS_GATE_PRESET], &is_known);
     if (!s->is_lost && ((clock && !s->clock) || (s->q && !tracks) || s->flashes != 0)) {
         s->held = s->before;
-    } else if (!is_known || may_have_missed(a, g) || (s->is_lost && clock)) {
+    } else if (!is_known || audit_gate_may_have_missed(a, g) || (s->is_lost && clock)) {
         s->held =
             value; /* a pulse of no width may have been there, or the clock has risen at the start */
     }
@@ -471,7 +272,7 @@ enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dal
     for (int k = 0; a->gate != NULL && k < a->circuit->n_gates; k++) {
         if (shown_by(&a->circuit->gate[k]) >= 0) {
             bool is_wrong;
-            a->gate[k].flashes = flashes_of(a, &a->circuit->gate[k], audit, t);
+            a->gate[k].flashes = audit_gate_flashes(a, &a->circuit->gate[k], audit, t);
             if (a->circuit->gate[k].kind == DALCS_GATE_SAMPLE) {
                 is_wrong = is_sample_wrong(a, k);
             } else {

@@ -62,4 +62,14 @@ void dalcs_measures_row(struct dalcs_measures *measures, double at,
 void dalcs_measures_complex_row(struct dalcs_measures *measures, double at,
                                 const double *value /* [n_outputs] pairs of real and imaginary */);
 
+/* ---- fourier_report.c ----------------------------------------------------------------------------- */
+
+/* The same for all formulas of a card. */
+const struct dalcs_measure_card *dalcs_measures_failed_source(const struct dalcs_circuit *c,
+                                                              const struct dalcs_measure_card *card,
+                                                              const double *results);
+
+enum dalcs_status dalcs_measures_tell_harmonics(struct dalcs_measures *measures,
+                                                struct dalcs_run *r);
+
 #endif

@@ -2,6 +2,7 @@
 #ifndef DALCS_SESSION_INTERNAL_H
 #define DALCS_SESSION_INTERNAL_H
 
+#include "explain.h"
 #include "names.h"
 #include "netlist.h"
 #include "override.h"
@@ -324,15 +325,6 @@ enum dalcs_status dalcs_run_announce(struct dalcs_run *r,
 /* The counts of one engine run into the report. */
 void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e);
 
-/* Where the netlist has an element; NULL when it is no device. */
-const struct dalcs_location *dalcs_place_of(const struct dalcs_circuit *circuit,
-                                            const char *element);
-
-/* "KCL at out", "branch v1", "complementarity of d1"; NULL when out of memory. `where` is a row, or a
- * pair behind them, of a system of e's network, which need not be the session's. */
-const char *dalcs_explain_row(struct dalcs_session *session, const struct dalcs_euler *e,
-                              int system, int where);
-
 /* dalcs_undetermined's on_finding: a warning, and entries of the report; user is the run. */
 enum dalcs_status dalcs_nonunique_found(void *run,
                                         const struct dalcs_finding *finding) DALCS_MUST_CHECK;
@@ -344,15 +336,6 @@ void dalcs_nonunique_count_rest(struct dalcs_run *r);
  * by the caller. */
 enum dalcs_status dalcs_loop_shorts_find(const struct dalcs_circuit *circuit, const bool *is_named,
                                          bool *is_part) DALCS_MUST_CHECK;
-
-/* Did the run end where a formula has no value? */
-bool dalcs_failed_at_pole(const struct dalcs_euler *e, enum dalcs_status status);
-
-/* Puts a numerical failure of e into words, into the report and, if wanted, into a dump. Other
- * statuses explain themselves elsewhere. Returns the status; instead of DALCS_INFEASIBLE, DALCS_NOT_CONVERGED where
- * no witness could be verified, or DALCS_E_NOMEM. */
-enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
-                                        enum dalcs_status status) DALCS_MUST_CHECK;
 
 /* ---- held_coils.c ---------------------------------------------------------------------------- */
 

@@ -40,4 +40,8 @@ enum dalcs_status dalcs_face_direction(const struct dalcs_face *s, int k, struct
 void dalcs_face_scale(struct dalcs_matrix *m, const double *left, bool inverse, const double *right,
                       double factor);
 
+/* States x -> x/unit so that what drives them is as large as what they drive, pairs u -> u/unit, y -> y
+ * unit likewise, so that their power stays; then time so that A is 1. */
+enum dalcs_status dalcs_face_choose_units(struct dalcs_face *s);
+
 #endif

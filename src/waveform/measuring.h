@@ -85,4 +85,7 @@ enum dalcs_status dalcs_measuring_close(struct dalcs_measuring *m) DALCS_MUST_CH
  * run again. False when a time has no value. */
 bool dalcs_measuring_late(struct dalcs_measuring *m, int k, const double *result);
 
+/* Are its rows at times? */
+bool dalcs_measuring_has_time(enum dalcs_measured_analysis analysis);
+
 #endif

@@ -12,6 +12,10 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from public_header import text_of  # noqa: E402
+
 NETLIST = "half a volt\nV1 in 0 1\nR1 in out 1\nR2 out 0 1\nD1 0 out\n.op\n.end\n"
 PROGRAM = """
 #include <dalcs.h>
@@ -95,7 +99,7 @@ class Installed(unittest.TestCase):
     def test_nothing_else_is_visible(self):
         symbols = output_of(["nm", "-D", "--defined-only", self.libraries / "libdalcs.so"])
         visible = {line.split()[-1] for line in symbols.splitlines()}
-        text = re.sub(r"/\*.*?\*/", "", pathlib.Path(HEADER).read_text(), flags=re.DOTALL)
+        text = re.sub(r"/\*.*?\*/", "", text_of(HEADER), flags=re.DOTALL)
         inline = re.compile(r"static inline [^{]*\b(dalcs_\w+)\(.*?\n}\n", re.DOTALL)
         declared = set(re.findall(r"\b(dalcs_\w+)\(", text)) - set(inline.findall(text))
         self.assertLessEqual({"dalcs_session_run", "dalcs_version"}, visible)

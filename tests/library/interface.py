@@ -15,6 +15,10 @@ import sys
 import tempfile
 import zlib
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from public_header import text_of  # noqa: E402
+
 
 def output_of(*command):
     return subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True,
@@ -52,7 +56,7 @@ def measure(header, text):
 
 def main():
     build, header, committed = sys.argv[1:4]
-    text = pathlib.Path(header).read_text(encoding="utf-8")
+    text = text_of(header)
     library = pathlib.Path(build) / "src" / "libdalcs.so"
     dynamic = output_of("readelf", "-d", library)
     found = ["soname " + re.search(r"soname: \[(.*)\]", dynamic)[1]]

@@ -14,6 +14,10 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from public_header import text_of  # noqa: E402
+
 PROGRAM = """
 #include "dalcs.h"
 #include <math.h>
@@ -64,7 +68,7 @@ class Versions(unittest.TestCase):
             return int(status), int(size), float(end), said
 
     def setUp(self):
-        self.header = pathlib.Path(HEADER).read_text()
+        self.header = text_of(HEADER)
         self.assertEqual(len(LAST.findall(self.header)), 1, "the last options are others by now: name them in LAST")
         self.newer = LAST.sub(lambda found: found[0] + "\n    double later;", self.header)
 

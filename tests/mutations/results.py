@@ -95,9 +95,9 @@ MUTATIONS = {
         "waveform/harmonics.c", "double from = fmax(h->from, stretch->from);",
         "double from = fmax(0.9 * h->from, stretch->from);", METER),
     "phases are told of cosines": (
-        "session/measure_report.c", "atan2(h->cosine[i], h->sine[i])", "atan2(h->sine[i], h->cosine[i])", METER),
+        "session/fourier_report.c", "atan2(h->cosine[i], h->sine[i])", "atan2(h->sine[i], h->cosine[i])", METER),
     "the distortion has the fundamental in it": (
-        "session/measure_report.c", "square += i >= 2 ?", "square += i >= 1 ?", METER),
+        "session/fourier_report.c", "square += i >= 2 ?", "square += i >= 1 ?", METER),
     "losses are too small by 1e-4": (
         "waveform/losses_sum.c", "d->energy += weight * volt * ampere;", "d->energy += 0.9999 * weight * volt * ampere;",
         TABLES),
@@ -129,7 +129,7 @@ MUTATIONS = {
         "cli/measure.c", "return duration > 0.0 ? s.integral / duration",
         "return duration > 0.0 ? s.integral / (2.0 * measure->last_time)", METER),
     "volts and amperes change places in the summary": (
-        "session/pipeline.c", "n->output[i].is_current ? DALCS_AMPERE", "!n->output[i].is_current ? DALCS_AMPERE", METER),
+        "session/run_plots.c", "n->output[i].is_current ? DALCS_AMPERE", "!n->output[i].is_current ? DALCS_AMPERE", METER),
     "each row of a file has the values of the one before": (
         "output/csv.c", "write_row(csv, stream, time[k], value + k * csv->n_values);",
         "write_row(csv, stream, time[k], value + (k > 0 ? k - 1 : 0) * csv->n_values);", METER),

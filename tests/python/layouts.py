@@ -14,8 +14,12 @@ import sys
 import tempfile
 import unittest
 
-import dalcs
-from dalcs import _library as library
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from public_header import text_of  # noqa: E402
+
+import dalcs  # noqa: E402
+from dalcs import _library as library  # noqa: E402
 
 SOURCE = pathlib.Path(sys.argv[1])
 HEADER = SOURCE / "src" / "dalcs.h"
@@ -66,7 +70,7 @@ class Layouts(unittest.TestCase):
 
     def test_calls(self):
         """As many arguments as the header has."""
-        plain = re.sub(r"/\*.*?\*/|\(\*\w+\)\([^)]*\)", "", HEADER.read_text(), flags=re.DOTALL)
+        plain = re.sub(r"/\*.*?\*/|\(\*\w+\)\([^)]*\)", "", text_of(HEADER), flags=re.DOTALL)
         for name, (_, arguments) in library.CALLS.items():
             declared = re.search(rf"\b{name}\(([^)]*)\)", plain)
             self.assertIsNotNone(declared, name)

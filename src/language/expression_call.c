@@ -1,0 +1,160 @@
+/* expression_call.c - names in an expression: parameters, calls, v(...), i(...) and if(...). */
+#include "expression_parser.h"
+
+#include <string.h>
+
+static void expect_comma(struct dalcs_parser *p, int begin, int length) {
+    if (p->symbol == DALCS_SYMBOL_COMMA) {
+        dalcs_parser_next(p);
+    } else {
+        dalcs_parser_report(p, DALCS_ERROR, begin, length, "if(condition, value, otherwise)",
+                            "'%.*s' takes 3 arguments", length, p->text->text + begin);
+    }
+}
+
+/* if(condition, a, b): like condition ? a : b. */
+static void parse_if(struct dalcs_parser *p, int begin, int length) {
+    dalcs_parser_choice(p);
+    const size_t skip_first = dalcs_parser_emit_code(p, DALCS_JUMP_IF_ZERO, begin, length);
+    expect_comma(p, begin, length);
+    dalcs_parser_choice(p);
+    const size_t skip_second = dalcs_parser_emit_code(p, DALCS_JUMP, begin, length);
+    dalcs_parser_land(p, skip_first);
+    expect_comma(p, begin, length);
+    dalcs_parser_choice(p);
+    dalcs_parser_land(p, skip_second);
+}
+
+static void note_log(struct dalcs_parser *p, int begin, int length, const char *name) {
+    if (strcmp(name, "log") == 0 && !*p->context->noted_log && !p->context->dialect.is_told) {
+        *p->context->noted_log = true;
+        dalcs_parser_report(
+            p, DALCS_WARNING, begin, length, "write ln or log10",
+            p->context->dialect.name == DALCS_DIALECT_XYCE
+                ? "log is log10, as in Xyce and PSpice; elsewhere it is the natural logarithm"
+                : "log is the natural logarithm, as in ngspice and LTspice; elsewhere it is "
+                  "log10");
+    }
+}
+
+/* The name of a node or an element, which may hold any byte but these, and what follows it. */
+static void parse_signal_name(struct dalcs_parser *p) {
+    const char *text = p->text->text;
+    int end = p->begin;
+    while (text[end] != '\0' && text[end] != ',' && text[end] != '(' && text[end] != ')') {
+        end++;
+    }
+    int stop = end;
+    while (stop > p->begin && (text[stop - 1] == ' ' || text[stop - 1] == '\t')) {
+        stop--;
+    }
+    if (stop == p->begin) {
+        dalcs_parser_report(p, DALCS_ERROR, p->begin, 1, NULL, "a name is missing");
+        return;
+    }
+    const char *name =
+        dalcs_arena_copy(p->context->arena, text + p->begin, (size_t)(stop - p->begin));
+    p->out_of_memory = p->out_of_memory || name == NULL;
+    p->failed = p->failed || name == NULL;
+    if (name != NULL && p->context->arguments != NULL &&
+        dalcs_names_find(p->context->arguments, name) >= 0) {
+        dalcs_parser_report(p, DALCS_ERROR, p->begin, stop - p->begin,
+                            "give the function the voltage itself",
+                            "an argument is a value, not the name of a node or an element");
+    }
+    dalcs_parser_emit(p, (struct dalcs_operation){.code = DALCS_SIGNAL_NAME,
+                                                  .begin = p->begin,
+                                                  .length = stop - p->begin,
+                                                  .u.name = name});
+    p->begin = end;
+    p->length = 0;
+    dalcs_parser_next(p);
+}
+
+/* v(a), v(a,b), i(x): the parser stands at the parenthesis, not yet read beyond it. */
+static void parse_signal(struct dalcs_parser *p, int begin, const char *name) {
+    const int open = p->begin;
+    const size_t place = dalcs_parser_emit(
+        p, (struct dalcs_operation){.code = DALCS_PUSH_SIGNAL, .begin = begin, .u.name = name});
+    int n = 0;
+    do {
+        p->begin += p->length;
+        p->length = 0;
+        while (p->text->text[p->begin] == ' ' || p->text->text[p->begin] == '\t') {
+            p->begin++;
+        }
+        parse_signal_name(p);
+        n++;
+    } while (p->symbol == DALCS_SYMBOL_COMMA && !p->failed);
+    const int end = p->begin + p->length;
+    dalcs_parser_close(p, open);
+    if (n > (*name == 'v' ? 2 : 1)) {
+        dalcs_parser_report(p, DALCS_ERROR, begin, end - begin, NULL,
+                            *name == 'v' ? "a voltage is that of one node, or between two"
+                                         : "a current is that of one element");
+    }
+    if (!p->failed) {
+        p->operation[place].count = n;
+        p->operation[place].length = end - begin;
+    }
+}
+
+static void parse_call(struct dalcs_parser *p, int begin, int length, const char *name) {
+    const int open = p->begin;
+    const struct dalcs_function *function = dalcs_function_find(name, p->context->dialect.name);
+    if (p->context->has_signals && (strcmp(name, "v") == 0 || strcmp(name, "i") == 0)) {
+        parse_signal(p, begin, name);
+        return;
+    }
+    dalcs_parser_next(p);
+    if (function != NULL && function->one == NULL && function->two == NULL &&
+        function->many == NULL) {
+        parse_if(p, begin, length);
+        dalcs_parser_close(p, open);
+        return;
+    }
+    if (dalcs_function_refusal(name) != NULL) {
+        dalcs_parser_emit(
+            p, (struct dalcs_operation){
+                   .code = DALCS_CHECK_CALL, .begin = begin, .length = length, .u.name = name});
+    }
+    int n = 0;
+    if (p->symbol != DALCS_SYMBOL_CLOSE) {
+        do {
+            if (n > 0) {
+                dalcs_parser_next(p);
+            }
+            dalcs_parser_choice(p);
+            n++;
+        } while (p->symbol == DALCS_SYMBOL_COMMA && !p->failed);
+    }
+    dalcs_parser_close(p, open);
+    note_log(p, begin, length, name);
+    dalcs_parser_emit(
+        p, (struct dalcs_operation){
+               .code = DALCS_CALL, .count = n, .begin = begin, .length = length, .u.name = name});
+}
+
+void dalcs_parser_name(struct dalcs_parser *p) {
+    const int begin = p->begin;
+    const int length = p->length;
+    const char *name = dalcs_arena_copy(p->context->arena, p->text->text + begin, (size_t)length);
+    if (name == NULL) {
+        p->out_of_memory = true;
+        p->failed = true;
+        return;
+    }
+    dalcs_parser_next(p);
+    if (p->symbol == DALCS_SYMBOL_OPEN && p->text->text[p->begin] == '(') {
+        parse_call(p, begin, length, name);
+        return;
+    }
+    const int argument =
+        p->context->arguments != NULL ? dalcs_names_find(p->context->arguments, name) : -1;
+    dalcs_parser_emit(
+        p, (struct dalcs_operation){.code = argument >= 0 ? DALCS_PUSH_ARGUMENT : DALCS_PUSH_NAME,
+                                    .count = argument,
+                                    .begin = begin,
+                                    .length = length,
+                                    .u.name = name});
+}
