@@ -58,6 +58,7 @@ struct values {
     struct dalcs_parasitics parasitics;
     struct dalcs_storage_law law;
     struct dalcs_core core;
+    struct dalcs_coefficients coefficients;
 };
 
 /* A formula in the place of a value, or behind Flux= or Q=; false: there is none. */
@@ -116,8 +117,7 @@ static bool read_word(struct dalcs_reader *reader, double *multiplier, bool *tak
 static bool read_parameter(struct dalcs_reader *reader, const struct family *family,
                            const struct dalcs_token *name, struct dalcs_device *device,
                            struct values *values) {
-    static const char *const temperature[] = {"tc",    "tc1",   "tc2",  "temp",
-                                              "dtemp", "noisy", "noise"};
+    static const char *const nothing[] = {"noisy", "noise"};
     struct dalcs_builder *builder = reader->builder;
     double ignored;
     const bool is_law = family->law != NULL && strcmp(name->text, family->law) == 0;
@@ -148,8 +148,10 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
         return dalcs_reader_number(reader, is_inductor ? DALCS_CURRENT : DALCS_VOLTAGE,
                                    is_inductor ? "a current" : "a voltage", &device->initial);
     }
-    if (dalcs_builder_is_one_of(name->text, temperature,
-                                sizeof temperature / sizeof temperature[0])) {
+    if (dalcs_coefficient_is_name(name->text)) {
+        return dalcs_coefficient_read(reader, name, &values->coefficients);
+    }
+    if (dalcs_builder_is_one_of(name->text, nothing, sizeof nothing / sizeof nothing[0])) {
         dalcs_builder_note(builder, name, NULL, "'%s' has no meaning here and is ignored",
                            name->text);
         while (dalcs_reader_peek(reader, 0) != NULL &&
@@ -297,6 +299,20 @@ static bool is_of_model_alone(struct dalcs_reader *reader, const struct dalcs_mo
     return true;
 }
 
+/* The value at the temperature of the circuit. */
+static void warm(struct dalcs_builder *builder, const struct dalcs_card *card,
+                 struct dalcs_device *device, const struct values *values,
+                 const struct dalcs_model *model) {
+    const double factor = dalcs_coefficients_factor(builder, &values->coefficients,
+                                                    model != NULL ? &model->coefficients : NULL);
+    if (factor != 1 && (values->law.formula != NULL || values->core.first != NULL)) {
+        dalcs_builder_warn(builder, card->token, "write the formula with temp",
+                           "coefficients of temperature change no formula and no core");
+        return;
+    }
+    device->value *= factor;
+}
+
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind) {
     const struct family *family = family_of(kind);
@@ -333,6 +349,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_reader_missing(&reader, family->value);
         return;
     }
+    warm(builder, card, device, &values, model);
     if (device->value < 0 && kind != DALCS_RESISTOR) {
         dalcs_builder_error(builder, value, NULL, "%s cannot be negative", family->value);
         return;

@@ -4,7 +4,7 @@
  *   LTspice    PWL(t v +dt v ...), REPEAT FOR n (...) ENDREPEAT, REPEAT FOREVER (...) ENDREPEAT,
  *              FILE=name, TIME_SCALE_FACTOR=x, VALUE_SCALE_FACTOR=x
  *
- * A block that is repeated counts its times from where it begins. What ends is written out; what
+ * A block that is repeated counts its times from where it begins; blocks stand in blocks. What ends is written out; what
  * does not end is written out twice, and the second course repeats. */
 #include "element_cards.h"
 #include "number.h"
@@ -186,6 +186,13 @@ static bool read_repeat(struct points *p, int depth) {
                             "the number of repetitions must be 1, 2, 3, ...");
         return false;
     }
+    /* Blocks stand in blocks: what is around this one goes on with its own origin behind it. */
+    const struct points outer = *p;
+    if (is_forever && outer.is_in_block) {
+        dalcs_builder_error(builder, place, "write REPEAT FOR n",
+                            "a part that repeats forever cannot stand in one that repeats");
+        return false;
+    }
     p->block = p->n;
     p->from = p->n > 0 ? p->t[p->n - 1] : 0;
     p->is_in_block = true;
@@ -209,9 +216,9 @@ static bool read_repeat(struct points *p, int depth) {
     }
     p->has_forever = is_forever;
     p->repeat_from = p->from + length;
-    p->block = p->n;
-    p->from = 0;
-    p->is_in_block = false;
+    p->block = outer.is_in_block ? outer.block : p->n;
+    p->from = outer.is_in_block ? outer.from : 0;
+    p->is_in_block = outer.is_in_block;
     return true;
 }
 
@@ -285,7 +292,7 @@ static bool read_items(struct points *p, int depth) {
             ok = read_group(p, depth);
         } else if (dalcs_reader_is_number(token) && (depth > 0 || !p->is_closed)) {
             ok = read_point(p);
-        } else if (!p->is_in_block && dalcs_reader_take_word(reader, "repeat")) {
+        } else if (depth < DEEPEST && dalcs_reader_take_word(reader, "repeat")) {
             ok = read_repeat(p, depth);
         } else if (!take_parameter(p, &ok)) {
             break;

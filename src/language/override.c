@@ -285,6 +285,22 @@ static const struct dalcs_token *stepped(const struct dalcs_card *card, int *fir
     return *first < card->n ? &card->token[k + 1] : NULL;
 }
 
+static enum dalcs_status declare_known(struct dalcs_language *language, const char *text,
+                                       double value) {
+    struct dalcs_token *name = dalcs_arena_alloc(language->arena, 1, sizeof *name);
+    if (name == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *name = (struct dalcs_token){.kind = DALCS_TOKEN_WORD, .text = text};
+    *declare(language, text) = (struct dalcs_value){.name = name,
+                                                    .token = name,
+                                                    .where = language->top,
+                                                    .state = DALCS_VALUE_KNOWN,
+                                                    .value = value,
+                                                    .is_given = true};
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
     struct dalcs_deck *deck = language->deck;
     const struct dalcs_definition *root = &language->root;
@@ -292,12 +308,17 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
     for (size_t k = 0; k < root->n_items; k++) {
         room += is_word(root->item[k].card->token, ".step");
     }
-    if (room == 0) {
+    const struct dalcs_token *temperature = dalcs_temperature_find(language);
+    if (room == 0 && temperature == NULL) {
         return DALCS_OK;
     }
+    room += DALCS_TEMPERATURE_NAMES;
     language->top->extra = dalcs_arena_alloc(language->arena, room, sizeof(struct dalcs_value));
     if (language->top->extra == NULL) {
         return DALCS_E_NOMEM;
+    }
+    if (temperature != NULL) {
+        DALCS_TRY(dalcs_temperature_declare(language, temperature));
     }
     /* LTspice declares a parameter by stepping it: until then it has the first value. */
     for (size_t k = 0; k < root->n_items; k++) {
@@ -324,17 +345,11 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
         if (override->kind != DALCS_OVERRIDE_PARAMETER) {
             continue;
         }
-        struct dalcs_token *name = dalcs_arena_alloc(language->arena, 1, sizeof *name);
-        if (name == NULL) {
-            return DALCS_E_NOMEM;
+        DALCS_TRY(declare_known(language, override->name, override->value));
+        if (strcmp(override->name, "temp") == 0 &&
+            dalcs_names_find(&root->parameters, "temper") < 0) {
+            DALCS_TRY(declare_known(language, "temper", override->value));
         }
-        *name = (struct dalcs_token){.kind = DALCS_TOKEN_WORD, .text = override->name};
-        *declare(language, override->name) = (struct dalcs_value){.name = name,
-                                                                  .token = name,
-                                                                  .where = language->top,
-                                                                  .state = DALCS_VALUE_KNOWN,
-                                                                  .value = override->value,
-                                                                  .is_given = true};
     }
     return DALCS_OK;
 }

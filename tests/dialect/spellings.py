@@ -181,7 +181,7 @@ ELEMENTS = [
         ("R1 a b rn R=1k\n.model rn RES(R=2k)", "both have a value"),
         ("R1 a b rn\n.model rn RES(TC1=0)", "a resistance is missing")]),
     Kind("a model that has the resistance", DIVIDER, "R1 a b 1k", "v(b)", 5.0, [
-        "R1 a b __R1\n.model __R1 r( r=1k tnom=20 tc1=100u )",
+        "R1 a b __R1\n.model __R1 r( r=1k tnom=27 tc1=100u )",
         "R1 a b rn\n.model rn RES(R=1k)",
         "R1 a b rn\n.model rn RES R=1000",
         "R1 a b rn m=2\n.model rn r(r=2k)",
@@ -462,6 +462,41 @@ SOURCES = [
              "V1 p 0 PWL(0 0 0.2m 0 REPEAT FOREVER (0 2 0.5m 2 0.5m -2 1m -2) ENDREPEAT\n.ends",
          ], [("V1 a 0 PWL(0 0 0.2m 0", "never closed"),
              ("V1 a 0 PWL(0 0 REPEAT FOR 2 (0 2 0.5m 2) ENDREPEAT", "never closed")]),
+    Kind("PWL whose parts repeat in one another", "@\nR1 a 0 1k\n.tran 100u 9m\n",
+         "V1 a 0 PWL(0 0 1m 1 2m 0 3m 1 4m 0 5m 4 6m 1 7m 0 8m 1 9m 3)", "v(a)", 3.0, [
+             "V1 a 0 PWL(0 0 REPEAT FOR 1 REPEAT FOR 2 (1m 1 2m 0) ENDREPEAT 9m 3 ENDREPEAT)",
+             "V1 a 0 PWL REPEAT FOR 1 (REPEAT FOR 3 (0 0 1m 1 2m 0) ENDREPEAT 9m 3) ENDREPEAT",
+             "V1 a 0 PWL REPEAT FOR 3 REPEAT FOR 3 (0 0 +1m 3) ENDREPEAT ENDREPEAT",
+             "V1 a 0 PWL(REPEAT FOR 3 REPEAT FOR 2 0 0 1m 1 ENDREPEAT 3m 3 ENDREPEAT)",
+             "V1 a 0 PWL(REPEAT FOR 3 0 0 REPEAT FOR 2 0 0 1m 1 ENDREPEAT +1m 3 ENDREPEAT)",
+             "V1 a 0 PWL time_scale_factor=1m (REPEAT FOR 3 REPEAT FOR 2 0 0 1 1 ENDREPEAT 3 3 ENDREPEAT)",
+             "V1 a 0 PWL value_scale_factor=3 (REPEAT FOR 3 REPEAT FOR 2 0 0 1m 1 ENDREPEAT 3m 1 ENDREPEAT)",
+             "V1 a 0 PWL(REPEAT FOREVER REPEAT FOR 2 0 0 1m 1 ENDREPEAT 3m 3 3m 3 ENDREPEAT)",
+             "I1 0 a PWL(REPEAT FOR 3 REPEAT FOR 2 0 0 1m 1m ENDREPEAT 3m 3m ENDREPEAT)",
+             "X1 a s\n.subckt s p\nV1 p 0 PWL(REPEAT FOR 3 REPEAT FOR 2 0 0 1m 1 ENDREPEAT 3m 3 ENDREPEAT)\n.ends",
+         ], [("V1 a 0 PWL(REPEAT FOR 2 REPEAT FOREVER 0 0 1m 1 ENDREPEAT ENDREPEAT)", "cannot stand in one"),
+             ("V1 a 0 PWL(REPEAT FOR 2 REPEAT FOR 2 0 0 1m 1 ENDREPEAT", "ENDREPEAT is missing")]),
+    Kind("a resistance that begins with braces", "V1 a 0 2\n.param k=100 e=1\n@\nR0 b 0 0\n.op\n",
+         "B1 a b I=v(a,b)/(100*(1+v(a,b)))", "i(v1)", -2 / 300, [
+        "R1 a b R={k}*(1+v(a,b))",
+        "R1 a b R={k}*exp(ln(1+v(a,b)))",
+        "R1 a b R={k}+{k}*v(a,b)",
+        "R1 a b R={k} + {k}*abs(v(a,b))",
+        "R1 a b R={k} * (1+v(a,b)) tc1=0",
+        "R1 a b R={k}/(1/(1+v(a,b)))",
+        "R1 a b R={k}*(v(a,b) > 1 ? 3 : 4)",
+        "R1 a b R={k*(1+v(a,b))}",
+        "R1 a b R={k}*{e}*(1+v(a,b))",
+        "X1 a b s\n.subckt s p q\nR1 p q R={k}*(1+v(p,q))\n.ends",
+    ]),
+    Kind("words of LTspice behind a formula", "V1 a 0 1\n@\nR1 b 0 1k\n.op\n", "B1 b 0 V=2*v(a)", "v(b)", 2.0, [
+        "B1 b 0 V=2*v(a) NoJacob",
+        "B1 b 0 V=2*v(a) tripdv=1e308 NoJacob",
+        "B1 b 0 V=2*v(a) nojacob tripdt=1n",
+        "B1 0 b I=2m*v(a) NoJacob",
+        "B1 b 0 V={2*v(a)} NOJACOB",
+        "X1 a b s\n.subckt s p q\nB1 q 0 V=2*v(p) NoJacob\n.ends",
+    ]),
     Kind("tc1 behind a formula", "V1 a 0 1\n@\nR1 b 0 1k\n.op\n", "B1 b 0 V=2*v(a)", "v(b)", 2.0, [
         "B1 b 0 V = 2*v(a) tc1=0.001",
         "B1 b 0 V={2*v(a)} tc1=0.001 tc2=0",
@@ -474,6 +509,38 @@ SOURCES = [
         "G1 0 b VALUE={2m*v(a)} tc1=0.001",
         "X1 a b s\n.subckt s p q\nB1 q 0 V=2*v(p) tc1=0.001 tc2=1u\n.ends",
     ], [("B1 b 0 V=2*v(a) gain=1", "did not expect")]),
+]
+
+# At 90 degrees, of one that is 1 kohm at 27: 1 + 1m*63 + 2u*63^2.
+WARM = 1.070938
+HEATED = "I1 0 a 1m\n@\nR0 b 0 0\n.op\n"
+MODELS += [
+    Kind("a resistance at a temperature", HEATED, "R1 a b 1070.938", "v(a)", WARM, [
+        "R1 a b 1k tc=1m,2u temp=90",
+        "R1 a b 1k tc1=1m tc2=2u temp=90",
+        "R1 a b rm 1k temp=90\n.model rm R(tc1=1m tc2=2u)",
+        "R1 a b rm\n.model rm RES(R=1k tc1=1m tc2=2u)\n.temp 90",
+        "R1 a b 1k tc1=1m tc2=2u\n.options temp=90",
+        "R1 a b 1k tc1=1m tc2=2u dtemp=63",
+        ".options temp=57\nR1 a b 1k tc1=1m tc2=2u dtemp=33",
+        ".options temp=70 tnom=7\nR1 a b 1k tc1=1m tc2=2u",
+        "R1 a b rm 1k\n.model rm R(tc1=1m tc2=2u tnom=7)\n.temp 70",
+        "R1 a b {1k*(1+1m*(temp-27)+2u*(temp-27)**2)}\n.temp 90",
+        ".param t=90\n.temp {t}\nR1 a b {1k*(1+1m*(temper-27)+2u*(temper-27)**2)}",
+        "X1 a b s\n.subckt s p q\nR1 p q 1k tc1=1m tc2=2u\n.ends\n.temp 90",
+        "X1 a b s\n.subckt s p q\nR1 p q {1k*(1+1m*(temp-27)+2u*(temp-27)**2)}\n.ends\n.option temp=90",
+        "B1 a b I=v(a,b)/(1k*(1+1m*(temp-27)+2u*(temp-27)**2))\n.temp 90",
+        f"R1 a b 1k tce={math.log(WARM) / math.log(1.01) / 63!r} temp=90",
+        "R1 a b 1070.938 tc1=1m tc2=2u",
+        ".param temp=90\nR1 a b 1070.938 tc1=1m",
+        ".temp 90\nR1 a b 1070.938",
+    ], [("R1 a b 1k tc=1m,2m,3m", "did not expect"), (".temp\nR1 a b 1k", "a temperature is missing")]),
+    Kind("a capacitance at a temperature", RISING, "C1 b 0 1m", "v(b)", 1 - math.exp(-1), [
+        "C1 b 0 0.8m tc1=0.01 temp=52",
+        "C1 b 0 cm 0.8m dtemp=25\n.model cm C(tc1=0.01)",
+        "C1 b 0 cm\n.model cm C(c=0.8m tc1=0.01)\n.temp 52",
+        "C1 b 0 2m tc1=0.01 temp=-23",
+    ], [("C1 b 0 1m tc1=0.01 temp=-173", "cannot be negative")]),
 ]
 
 # ---- Parameters, conditions, formulas --------------------------------------------------------------
@@ -558,7 +625,7 @@ ANALYSES = [
         ".tran 0.5m startup nodiscard",
         ".tran 0.5m startup uic",
         ".tran {0.5m} startup",
-    ], [(".tran 0.5m steady", "not supported")]),
+    ], [(".tran 0.5m step", "not supported")]),
 ]
 
 # ---- Formulas in place of values -------------------------------------------------------------------
@@ -743,6 +810,11 @@ NOTED = [
     ("a model twice", "V1 a 0 1\nD1 a b d\nR1 b 0 1\n.model d D(Ron=1 Vfwd={0.1*2})\n.model d  d(ron=1 vfwd={0.1*2}) ; again\n.op\n",
      "this model 'd' is the one at"),
     ("an open model", "V1 a 0 1\nD1 a b d\nR1 b 0 1\n.model d D(Ron=1\n.op\n", "the model ends with its card"),
+    ("a bias point", "V1 a 0 1\nR1 a 0 1\n.tran 1m\n.savebias b.txt internal time=1m\n", "(.savebias) are not used"),
+    ("a bias point", "V1 a 0 1\nR1 a 0 1\n.op\n.loadbias b.txt\n", "(.loadbias) are not used"),
+    ("steady", "V1 a 0 1\nR1 a 0 1\n.tran 0 1m 0 1u steady startup\n", "goes on to the end of .tran"),
+    ("a temperature", "V1 a 0 1\nD1 a b d\nR1 b 0 1 tc1=1m\n.model d D(Is=1p)\n.temp 85\n.op\n", "keep their values of 27 degrees"),
+    ("temperatures", "V1 a 0 1\nR1 a 0 1 tc1=1m\n.temp 27 85 125\n.op\n", "first temperature of this card alone"),
     ("a sound file", "V1 a 0 1\nR1 a 0 1\n.tran 1m\n.wave out.wav 16 44100 v(a)\n", "(.wave) are not written"),
     ("a sound file", "V1 a 0 1\nR1 a 0 1\n.op\n.wave \"c:\\my sounds\\o.wav\" 8 8k v(a) v(a)\n", "(.wave) are not written"),
 ]
