@@ -95,6 +95,14 @@ static bool read_multiplier(struct dalcs_reader *reader, double *multiplier) {
     return is_multiplier(reader, *multiplier);
 }
 
+/* `ac 1k` behind a resistance, without an equal sign. */
+static bool is_resistance_of_ac(const struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    return token != NULL && token->kind == DALCS_TOKEN_WORD && strcmp(token->text, "ac") == 0 &&
+           next != NULL && dalcs_reader_is_number(next);
+}
+
 /* `noiseless`, `noiseless=True` and `x2`, which LTspice writes behind a value: two in parallel. *taken: was it one? */
 static bool read_word(struct dalcs_reader *reader, double *multiplier, bool *taken) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
@@ -224,6 +232,10 @@ static bool read_rest(struct dalcs_reader *reader, const struct family *family,
             continue;
         }
         const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
+        if (name == NULL && device->kind == DALCS_RESISTOR && is_resistance_of_ac(reader)) {
+            name = dalcs_reader_peek(reader, 0);
+            reader->at++;
+        }
         if (name == NULL) {
             return dalcs_reader_end(reader);
         }

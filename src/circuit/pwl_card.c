@@ -64,12 +64,21 @@ static bool more(const struct dalcs_reader *reader) {
     return next != NULL && dalcs_reader_is_number(next);
 }
 
+/* +{formula}, which is a number by now. */
+static bool is_relative(const struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    return token != NULL && strcmp(token->text, "+") == 0 && next != NULL &&
+           next->kind == DALCS_TOKEN_NUMBER;
+}
+
 static bool read_point(struct points *p) {
     struct dalcs_reader *reader = p->reader;
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     double t;
     double v;
+    reader->at += is_relative(reader);
     if (!dalcs_reader_list_number(reader, DALCS_SECOND, "a time", &t)) {
         return false;
     }
@@ -290,7 +299,8 @@ static bool read_items(struct points *p, int depth) {
     while (ok && (token = dalcs_reader_peek(reader, 0)) != NULL) {
         if (depth < DEEPEST && dalcs_reader_take(reader, DALCS_TOKEN_OPEN)) {
             ok = read_group(p, depth);
-        } else if (dalcs_reader_is_number(token) && (depth > 0 || !p->is_closed)) {
+        } else if ((dalcs_reader_is_number(token) || is_relative(reader)) &&
+                   (depth > 0 || !p->is_closed)) {
             ok = read_point(p);
         } else if (depth < DEEPEST && dalcs_reader_take_word(reader, "repeat")) {
             ok = read_repeat(p, depth);

@@ -440,6 +440,34 @@ static void parse_signal(struct parser *p, int begin, const char *name) {
     }
 }
 
+/* Does a point of a table stand here, as in table(x, (0, 1), (2, 5))? */
+static bool is_point(const struct parser *p, const char *function) {
+    const char *text = p->text->text + p->begin;
+    bool is = false;
+    if (p->symbol != OPEN || *text != '(' ||
+        (strcmp(function, "table") != 0 && strcmp(function, "tbl") != 0)) {
+        return false;
+    }
+    int depth = 0;
+    do {
+        depth += (*text == '(') - (*text == ')');
+        is = is || (depth == 1 && *text == ',');
+        text++;
+    } while (depth > 0 && *text != '\0');
+    return is && depth == 0;
+}
+
+static void parse_point(struct parser *p) {
+    const int open = p->begin;
+    next(p);
+    parse_choice(p);
+    if (p->symbol == COMMA) {
+        next(p);
+        parse_choice(p);
+    }
+    close_parenthesis(p, open);
+}
+
 static void parse_call(struct parser *p, int begin, int length, const char *name) {
     const int open = p->begin;
     const struct dalcs_function *function = dalcs_function_find(name, p->context->dialect.name);
@@ -464,8 +492,13 @@ static void parse_call(struct parser *p, int begin, int length, const char *name
             if (n > 0) {
                 next(p);
             }
-            parse_choice(p);
-            n++;
+            const bool has_two = n > 0 && is_point(p, name);
+            if (has_two) {
+                parse_point(p);
+            } else {
+                parse_choice(p);
+            }
+            n += has_two ? 2 : 1;
         } while (p->symbol == COMMA && !p->failed);
     }
     close_parenthesis(p, open);
