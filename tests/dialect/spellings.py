@@ -607,6 +607,13 @@ PARAMETERS = [
              ".param n=2\n.if (!(n = 3))\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
              "X1 b s n=2\n.subckt s p n=1\n.if (n = 2)\nR1 p 0 1k\n.else\nR1 p 0 3k\n.endif\n.ends",
          ], [(".param n={1=1}\nR1 b 0 1k", "a comparison is written ==")]),
+    Kind("another name behind .ends", "V1 a 0 10\n@\nR9 a b 1k\n.op\n", "R1 b 0 1k", "v(b)", 5.0, [
+        "X1 b 0 s\n.subckt s p q\nR1 p q 1k\n.ends",
+        "X1 b 0 s\n.subckt s p q\nR1 p q 1k\n.ends t",
+        "X1 b 0 s_2\n.subckt s_2 p q\nR1 p q 1k\n.ends s 2",
+        "X1 b 0 s\n.subckt s p q\nX1 p q t\n.subckt t p q\nR1 p q 1k\n.ends u\n.ends v",
+        "X1 b 0 s\n.subckt s p q\n.if (1 > 0)\nR1 p q 1k\n.endif\n.ends t",
+    ], [("X1 b 0 s\n.subckt s p q\nX1 p q t\n.subckt t p q\nR1 p q 1k\n.ends s\n.ends", "ends here is 't'")]),
     Kind("m= of a subcircuit", "V1 a 0 10\n@\nR9 a b 1k\n.op\n", "R1 b 0 1k", "v(b)", 5.0, [
         "X1 b 0 s m=2\n.subckt s p q\nR1 p x 1k\nR2 x q 1k\n.ends",
         "X1 b 0 s M=4\n.subckt s p q\nR1 p q 4k\n.ends",
@@ -847,6 +854,7 @@ NOTED = [
     ("steady", "V1 a 0 1\nR1 a 0 1\n.tran 0 1m 0 1u steady startup\n", "goes on to the end of .tran"),
     ("a temperature", "V1 a 0 1\nD1 a b d\nR1 b 0 1 tc1=1m\n.model d D(Is=1p)\n.temp 85\n.op\n", "keep their values of 27 degrees"),
     ("temperatures", "V1 a 0 1\nR1 a 0 1 tc1=1m\n.temp 27 85 125\n.op\n", "first temperature of this card alone"),
+    ("the name of .ends", "V1 a 0 1\nX1 a 0 s\n.subckt s p q\nR1 p q 1\n.ends r\n.op\n", "that ends here is 's'"),
     ("a sound file", "V1 a 0 1\nR1 a 0 1\n.tran 1m\n.wave out.wav 16 44100 v(a)\n", "(.wave) are not written"),
     ("a sound file", "V1 a 0 1\nR1 a 0 1\n.op\n.wave \"c:\\my sounds\\o.wav\" 8 8k v(a) v(a)\n", "(.wave) are not written"),
 ]
