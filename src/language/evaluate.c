@@ -201,6 +201,11 @@ static enum dalcs_outcome call(const struct run *r, const struct dalcs_operation
     if (drawn != NULL) {
         return draw(r, o, drawn);
     }
+    if (is_random && o->count == 1 && strcmp(o->u.name, "rand") == 0) {
+        double *x = &language->stack[language->n_stack - 1];
+        *x = dalcs_draw_at(floor(*x));
+        return DALCS_OUTCOME_VALUE;
+    }
     const struct dalcs_function *function =
         dalcs_function_find(o->u.name, language->netlist->dialect.name);
     if (function == NULL && hides_names(language)) {
