@@ -607,6 +607,13 @@ PARAMETERS = [
              ".param n=2\n.if (!(n = 3))\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
              "X1 b s n=2\n.subckt s p n=1\n.if (n = 2)\nR1 p 0 1k\n.else\nR1 p 0 3k\n.endif\n.ends",
          ], [(".param n={1=1}\nR1 b 0 1k", "a comparison is written ==")]),
+    Kind("a switch of level 2", "V1 a 0 {V}\n.param V=10\nVc c 0 PULSE(0 1 0 1m 1m 0 2m)\n@\nR1 b 0 1k\n.tran 10u 0.7m\n",
+         "S1 a b c 0 w\n.model w SW(Ron=1k Vt=0.6)", "v(b)", 5.0, [
+             "S1 a b c 0 w\n.model w SW(level=2 Ron=1k Vt=0.6 Vh=-0.2)",
+             "S1 a b c 0 w\n.model w SW(Ron=1k Vt=0.6 Vh=0.2 LEVEL=2)",
+             "S1 a b c 0 w\n.model w SW Ron=1k Vt=0.6 level=2",
+             "S1 a b c 0 w\n.model w SW(Ron=1k Vt=0.6 level=1)",
+         ], [("S1 a b c 0 w\n.model w SW(Ron=1k level=3)", "is 1 or 2")]),
     Kind("another name behind .ends", "V1 a 0 10\n@\nR9 a b 1k\n.op\n", "R1 b 0 1k", "v(b)", 5.0, [
         "X1 b 0 s\n.subckt s p q\nR1 p q 1k\n.ends",
         "X1 b 0 s\n.subckt s p q\nR1 p q 1k\n.ends t",
@@ -854,6 +861,8 @@ NOTED = [
     ("steady", "V1 a 0 1\nR1 a 0 1\n.tran 0 1m 0 1u steady startup\n", "goes on to the end of .tran"),
     ("a temperature", "V1 a 0 1\nD1 a b d\nR1 b 0 1 tc1=1m\n.model d D(Is=1p)\n.temp 85\n.op\n", "keep their values of 27 degrees"),
     ("temperatures", "V1 a 0 1\nR1 a 0 1 tc1=1m\n.temp 27 85 125\n.op\n", "first temperature of this card alone"),
+    ("level 2", "V1 a 0 1\nS1 a b a 0 w\nR1 b 0 1\n.model w SW(level=2 Ron=1 Roff=1Meg Vt=0.5 Vh=-0.1)\n.op\n", "changes over smoothly from 0.4 to 0.6 V (LTspice)"),
+    ("level 2", "V1 a 0 1\nS1 a b a 0 w\nR1 b 0 1\n.param l=2\n.model w SW(Ron=1 Vt=0.5 Vh=0.3 level={l})\n.op\n", "from 0.2 to 0.8 V (LTspice)"),
     ("the name of .ends", "V1 a 0 1\nX1 a 0 s\n.subckt s p q\nR1 p q 1\n.ends r\n.op\n", "that ends here is 's'"),
     ("a sound file", "V1 a 0 1\nR1 a 0 1\n.tran 1m\n.wave out.wav 16 44100 v(a)\n", "(.wave) are not written"),
     ("a sound file", "V1 a 0 1\nR1 a 0 1\n.op\n.wave \"c:\\my sounds\\o.wav\" 8 8k v(a) v(a)\n", "(.wave) are not written"),
