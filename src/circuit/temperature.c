@@ -120,7 +120,7 @@ void dalcs_temperature_settle(struct dalcs_builder *builder) {
     if (dalcs_deck_temperature(builder->deck, &value)) {
         t->change = value - NOMINAL;
     }
-    if (t->change == 0 || t->place == NULL) {
+    if (t->change == t->nominal_change || t->place == NULL) {
         return;
     }
     for (size_t k = 0; k < builder->deck->n_cards; k++) {
