@@ -176,6 +176,12 @@ static bool repeat_block(struct points *p, const struct dalcs_token *place, size
     return true;
 }
 
+static void leave_block(struct points *p, const struct points *outer) {
+    p->block = outer->is_in_block ? outer->block : p->n;
+    p->from = outer->is_in_block ? outer->from : 0;
+    p->is_in_block = outer->is_in_block;
+}
+
 /* After REPEAT. */
 static bool read_repeat(struct points *p, int depth) {
     struct dalcs_reader *reader = p->reader;
@@ -225,9 +231,7 @@ static bool read_repeat(struct points *p, int depth) {
     }
     p->has_forever = is_forever;
     p->repeat_from = p->from + length;
-    p->block = outer.is_in_block ? outer.block : p->n;
-    p->from = outer.is_in_block ? outer.from : 0;
-    p->is_in_block = outer.is_in_block;
+    leave_block(p, &outer);
     return true;
 }
 

@@ -190,6 +190,13 @@ static enum dalcs_outcome draw(const struct run *r, const struct dalcs_operation
     return outcome_of(push(language, value));
 }
 
+/* LTspice's rand(x): the value at the whole number before x. */
+static enum dalcs_outcome hold(struct dalcs_language *language) {
+    double *x = &language->stack[language->n_stack - 1];
+    *x = dalcs_draw_at(floor(*x));
+    return DALCS_OUTCOME_VALUE;
+}
+
 static enum dalcs_outcome call(const struct run *r, const struct dalcs_operation *o) {
     struct dalcs_language *language = r->language;
     struct dalcs_user_function *user = dalcs_language_function(language, r->scope, o->u.name);
@@ -202,9 +209,7 @@ static enum dalcs_outcome call(const struct run *r, const struct dalcs_operation
         return draw(r, o, drawn);
     }
     if (is_random && o->count == 1 && strcmp(o->u.name, "rand") == 0) {
-        double *x = &language->stack[language->n_stack - 1];
-        *x = dalcs_draw_at(floor(*x));
-        return DALCS_OUTCOME_VALUE;
+        return hold(language);
     }
     const struct dalcs_function *function =
         dalcs_function_find(o->u.name, language->netlist->dialect.name);

@@ -312,8 +312,8 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
     if (room == 0 && temperature == NULL) {
         return DALCS_OK;
     }
-    room += DALCS_TEMPERATURE_NAMES;
-    language->top->extra = dalcs_arena_alloc(language->arena, room, sizeof(struct dalcs_value));
+    language->top->extra = dalcs_arena_alloc(language->arena, room + DALCS_TEMPERATURE_NAMES,
+                                             sizeof(struct dalcs_value));
     if (language->top->extra == NULL) {
         return DALCS_E_NOMEM;
     }
