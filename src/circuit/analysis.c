@@ -88,7 +88,12 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
         builder->analyses.startup = token;
         return true;
     }
-    if (dalcs_reader_take_word(reader, "steady") || dalcs_reader_take_word(reader, "step")) {
+    if (dalcs_reader_take_word(reader, "steady")) {
+        dalcs_builder_warn(builder, token, "'dalcs steady' finds the periodic steady state",
+                           "the run goes on to the end of .tran, also when all is steady before");
+        return true;
+    }
+    if (dalcs_reader_take_word(reader, "step")) {
         dalcs_builder_error(builder, token, TRAN_USAGE, "'%s' is not supported yet", token->text);
         return false;
     }

@@ -42,9 +42,16 @@ bool dalcs_behavioural_skip_temperature(struct dalcs_reader *reader) {
     static const char *const names[] = {"tc",         "tc1",    "tc2",    "temp", "dtemp",
                                         "reciproctc", "tripdv", "tripdt", "ic"};
     const struct dalcs_token *name;
-    while ((name = dalcs_reader_peek(reader, 0)) != NULL &&
-           dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]) &&
-           dalcs_reader_take_parameter(reader) != NULL) {
+    while ((name = dalcs_reader_peek(reader, 0)) != NULL) {
+        if (dalcs_reader_take_word(reader, "nojacob")) { /* LTspice's: no derivatives */
+            dalcs_builder_note(reader->builder, name, NULL,
+                               "'%s' has no meaning here and is ignored", name->text);
+            continue;
+        }
+        if (!dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]) ||
+            dalcs_reader_take_parameter(reader) == NULL) {
+            break;
+        }
         if (strcmp(name->text, "ic") == 0) {
             dalcs_builder_warn(
                 reader->builder, name, NULL,

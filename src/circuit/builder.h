@@ -10,6 +10,7 @@
 #include "formula.h"
 #include "names.h"
 #include "netlist.h"
+#include "temperature.h"
 
 enum dalcs_model_kind {
     DALCS_MODEL_DIODE,
@@ -42,9 +43,10 @@ struct dalcs_model {
     const struct dalcs_thyristor *thyristor;
     const struct dalcs_block *block;
     struct dalcs_transistor *transistor;
-    const struct dalcs_token *beyond; /* of R, L or C: what would change values; else NULL */
-    bool has_value;                   /* of R, L or C: that of a card without one, */
-    double value;                     /* and PSpice's factor of one that has its own */
+    const struct dalcs_token *beyond;       /* of R, L or C: what would change values; else NULL */
+    bool has_value;                         /* of R, L or C: that of a card without one, */
+    double value;                           /* and PSpice's factor of one that has its own */
+    struct dalcs_coefficients coefficients; /* of R, L or C */
 };
 
 enum dalcs_hidden {
@@ -189,6 +191,7 @@ struct dalcs_builder {
     struct dalcs_builder_results results;
     struct dalcs_builder_noted noted;
     struct dalcs_builder_kept kept;
+    struct dalcs_temperatures temperatures;
 };
 
 /* ---- builder.c ----------------------------------------------------------------------------- */

@@ -46,6 +46,7 @@ static const struct dot_card DOT_CARDS[] = {
     {".endc", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
     {".options", DALCS_CARD_OPTIONS, NULL, NULL, NOTHING, NULL},
     {".option", DALCS_CARD_OPTIONS, NULL, NULL, NOTHING, NULL},
+    {".temp", DALCS_CARD_TEMPERATURE, NULL, NULL, NOTHING, NULL},
     {".opt", DALCS_CARD_OPTIONS, NULL, NULL, NOTHING, NULL},
     {".ic", DALCS_CARD_IC, NULL, NULL, NOTHING, NULL},
     {".save", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
@@ -80,14 +81,17 @@ static const struct dot_card DOT_CARDS[] = {
 };
 
 /* Without a meaning for ideal elements; accepted. */
-static const char *const IGNORED[] = {".temp",       ".width",  ".prot", ".unprot",
-                                      ".preprocess", ".stmlib", ".list", ".status"};
+static const char *const IGNORED[] = {".width",  ".prot", ".unprot", ".preprocess",
+                                      ".stmlib", ".list", ".status"};
 
 /* What is computed from an .ac besides its signals. */
 static const char NETWORK_PARAMETERS[] = ".net";
 
 /* LTspice's sound files, an output beside others. */
 static const char SOUND[] = ".wave";
+
+/* LTspice's file of a bias point: one that the run writes, or takes first guesses from. */
+static const char *const BIAS[] = {".savebias", ".loadbias"};
 
 /* Xyce's values of formulas at the end of each step. */
 static const char RESULT[] = ".result";
@@ -168,6 +172,10 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
     } else if (strcmp(name->text, SOUND) == 0) {
         dalcs_builder_warn(builder, name, "-o file.csv has the waveforms",
                            "sound files (.wave) are not written: the card is left out");
+    } else if (dalcs_builder_is_one_of(name->text, BIAS, sizeof BIAS / sizeof BIAS[0])) {
+        dalcs_builder_warn(builder, name, ".ic v(node)=volts sets where a run begins",
+                           "files of bias points (%s) are not used: the card is left out",
+                           name->text);
     } else if (strcmp(name->text, RESULT) == 0) {
         dalcs_builder_warn(builder, name, ".meas tran name FIND formula AT=time is one",
                            "no file of results (.result) is written: the card is left out");

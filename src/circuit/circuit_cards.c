@@ -79,6 +79,7 @@ static const struct {
 } READ[DALCS_N_CARD_CLASSES] = {
     [DALCS_CARD_NONE] = {NEVER, NULL},
     [DALCS_CARD_OPTIONS] = {OPTIONS, dalcs_options_parse},
+    [DALCS_CARD_TEMPERATURE] = {OPTIONS, dalcs_temperature_parse},
     [DALCS_CARD_MODEL] = {MODELS, dalcs_model_parse},
     [DALCS_CARD_TRAN] = {MODELS, dalcs_analysis_parse_tran},
     [DALCS_CARD_PSS] = {MODELS, dalcs_analysis_parse_pss},
@@ -111,6 +112,9 @@ enum dalcs_status dalcs_card_table_read(struct dalcs_builder *builder,
             if (builder->out_of_memory) {
                 return DALCS_E_NOMEM;
             }
+        }
+        if (pass == OPTIONS) {
+            dalcs_temperature_settle(builder);
         }
         if (pass == ELEMENTS) {
             dalcs_oscillator_put_all(builder);

@@ -138,10 +138,8 @@ static bool is_value_of(const struct dalcs_model *model, const char *name) {
 
 /* Of an R, L or C the card has the value, or else its model; a model's temperature and noise change nothing here. */
 static void read_passive(struct dalcs_reader *reader, struct dalcs_model *model) {
-    static const char *const nothing[] = {
-        "tc",    "tc1",          "tc2",         "tce",        "tnom", "temp",   "dtemp",
-        "kf",    "af",           "ef",          "lf",         "wf",   "bv_max", "level",
-        "t_abs", "t_rel_global", "t_rel_local", "t_measured", "noise"};
+    static const char *const nothing[] = {"kf",     "af",    "ef",          "lf",   "wf",
+                                          "bv_max", "level", "t_rel_local", "noise"};
     (void)dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
     const struct dalcs_token *name;
     while ((name = take_parameter(reader)) != NULL && dalcs_reader_skip_value(reader)) {
@@ -149,6 +147,9 @@ static void read_passive(struct dalcs_reader *reader, struct dalcs_model *model)
         if (is_value_of(model, name->text) && number_of(dalcs_reader_previous(reader), &value)) {
             model->value = value;
             model->has_value = true;
+        } else if (dalcs_coefficient_is_name(name->text) &&
+                   number_of(dalcs_reader_previous(reader), &value)) {
+            dalcs_coefficient_set(&model->coefficients, name->text, value);
         } else if (!dalcs_builder_is_one_of(name->text, nothing,
                                             sizeof nothing / sizeof nothing[0])) {
             model->beyond = model->beyond != NULL ? model->beyond : name;

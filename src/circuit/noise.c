@@ -7,23 +7,16 @@
 #include "draws.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* A netlist with more is taken for a slip: a PWL of this length takes 16 MB. */
 static const double MOST_VALUES = 1e6;
 
-/* Between 0 and 1. */
-static double value_of(double whole) {
-    char text[32];
-    snprintf(text, sizeof text, "%.17g", whole);
-    return dalcs_draw_uniform(1, 0, dalcs_draw_hash(dalcs_draw_hash_start, text), 0);
-}
-
 static double value_at(enum dalcs_wave_shape shape, double x) {
     const double whole = floor(x);
-    const double first = value_of(whole);
-    return shape == DALCS_HELD_NOISE ? first : first + (x - whole) * (value_of(whole + 1) - first);
+    const double first = dalcs_draw_at(whole);
+    return shape == DALCS_HELD_NOISE ? first
+                                     : first + (x - whole) * (dalcs_draw_at(whole + 1) - first);
 }
 
 static double end_of_run(const struct dalcs_compiler *c) {
@@ -97,7 +90,7 @@ int dalcs_noise_stimulus(struct dalcs_compiler *c, const struct dalcs_wave *wave
             k++;
         }
         t[k] = at;
-        v[k++] = value_of(rises || !holds ? whole : whole - 1);
+        v[k++] = dalcs_draw_at(rises || !holds ? whole : whole - 1);
     }
     const struct dalcs_stimulus s = {.kind = DALCS_STIMULUS_PWL, .u.pwl = {.n = k, .t = t, .v = v}};
     return dalcs_compiler_add_stimulus(c, &s);

@@ -15,28 +15,28 @@
 static const char *const OURS[] = {
     "reltol", "abstol",   "vntol",        "method",   "step",    "stages", "fill",
     "curve",  "compress", "diodecurrent", "filetype", "dialect", "interp", "initial_interval",
-    "bjt",    "seed",     "savecurrents"};
+    "bjt",    "seed",     "savecurrents", "temp",     "tnom"};
 
 static const char *const FOREIGN[] = {
-    "itl1",          "itl2",        "itl3",       "itl4",         "itl5",       "itl6",
-    "gmin",          "trtol",       "chgtol",     "pivtol",       "pivrel",     "maxord",
-    "numdgt",        "temp",        "tnom",       "acct",         "noacct",     "list",
-    "nomod",         "nopage",      "node",       "opts",         "noopts",     "noinit",
-    "klu",           "sparse",      "cshunt",     "rshunt",       "gshunt",     "gfarad",
-    "gminsteps",     "srcsteps",    "defl",       "defw",         "defad",      "defas",
-    "defpd",         "defps",       "scale",      "plotwinsize",  "ramptime",   "ramptol",
-    "trytocompact",  "keepopinfo",  "advconv",    "autostop",     "bypass",     "lvltim",
-    "limpts",        "cptime",      "limtim",     "maxstep",      "mindiv",     "maxevtiter",
-    "noopiter",      "noopalter",   "sollim",     "xmu",          "mu",         "measdgt",
-    "topologycheck", "fastaccess",  "nonlin",     "oldlimit",     "badmos3",    "minbreak",
-    "convstep",      "convabsstep", "dgmin",      "gdsmin",       "delmax",     "absdv",
-    "reldv",         "mxsolve",     "ingold",     "post",         "probe",      "csdf",
-    "brief",         "co",          "width",      "seedinfo",     "sim",        "digits",
-    "accurate",      "runlvl",      "rawfile",    "ibisdc",       "warn",       "stepgmin",
-    "ptrantau",      "ptranmax",    "skipgmin",   "solver",       "altinit",    "gear",
-    "trap",          "newtol",      "nopointtol", "nomarch",      "thev_induc", "baudrate",
-    "ascii",         "meascplxfmt", "flagloads",  "mindeltagmin", "dptran",     "timeint",
-    "parser",        "output",      "device",     "linsol"};
+    "itl1",       "itl2",         "itl3",       "itl4",       "itl5",          "itl6",
+    "gmin",       "trtol",        "chgtol",     "pivtol",     "pivrel",        "maxord",
+    "numdgt",     "acct",         "noacct",     "list",       "nomod",         "nopage",
+    "node",       "opts",         "noopts",     "noinit",     "klu",           "sparse",
+    "cshunt",     "rshunt",       "gshunt",     "gfarad",     "gminsteps",     "srcsteps",
+    "defl",       "defw",         "defad",      "defas",      "defpd",         "defps",
+    "scale",      "plotwinsize",  "ramptime",   "ramptol",    "trytocompact",  "keepopinfo",
+    "advconv",    "autostop",     "bypass",     "lvltim",     "limpts",        "cptime",
+    "limtim",     "maxstep",      "mindiv",     "maxevtiter", "noopiter",      "noopalter",
+    "sollim",     "xmu",          "mu",         "measdgt",    "topologycheck", "fastaccess",
+    "nonlin",     "oldlimit",     "badmos3",    "minbreak",   "convstep",      "convabsstep",
+    "dgmin",      "gdsmin",       "delmax",     "absdv",      "reldv",         "mxsolve",
+    "ingold",     "post",         "probe",      "csdf",       "brief",         "co",
+    "width",      "seedinfo",     "sim",        "digits",     "accurate",      "runlvl",
+    "rawfile",    "ibisdc",       "warn",       "stepgmin",   "ptrantau",      "ptranmax",
+    "skipgmin",   "solver",       "altinit",    "gear",       "trap",          "newtol",
+    "nopointtol", "nomarch",      "thev_induc", "baudrate",   "ascii",         "meascplxfmt",
+    "flagloads",  "mindeltagmin", "dptran",     "timeint",    "parser",        "output",
+    "device",     "linsol"};
 
 enum { N_OURS = sizeof OURS / sizeof OURS[0], N_FOREIGN = sizeof FOREIGN / sizeof FOREIGN[0] };
 
@@ -230,6 +230,9 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     }
     if (strcmp(name, "seed") == 0) {
         return dalcs_monte_carlo_read_seed(reader);
+    }
+    if (strcmp(name, "temp") == 0 || strcmp(name, "tnom") == 0) {
+        return dalcs_temperature_read_option(reader, token);
     }
     if (strcmp(name, "fill") == 0) {
         return read_fill(reader, options);

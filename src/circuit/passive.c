@@ -118,6 +118,20 @@ static bool is_of_model_alone(struct dalcs_reader *reader, const struct dalcs_mo
     return true;
 }
 
+/* The value at the temperature of the circuit. */
+static void warm(struct dalcs_builder *builder, const struct dalcs_card *card,
+                 struct dalcs_device *device, const struct dalcs_passive_values *values,
+                 const struct dalcs_model *model) {
+    const double factor = dalcs_coefficients_factor(builder, &values->coefficients,
+                                                    model != NULL ? &model->coefficients : NULL);
+    if (factor != 1 && (values->law.formula != NULL || values->core.first != NULL)) {
+        dalcs_builder_warn(builder, card->token, "write the formula with temp",
+                           "coefficients of temperature change no formula and no core");
+        return;
+    }
+    device->value *= factor;
+}
+
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind) {
     const struct dalcs_passive_family *family = family_of(kind);
@@ -154,6 +168,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_reader_missing(&reader, family->value);
         return;
     }
+    warm(builder, card, device, &values, model);
     if (device->value < 0 && kind != DALCS_RESISTOR) {
         dalcs_builder_error(builder, value, NULL, "%s cannot be negative", family->value);
         return;

@@ -7,6 +7,7 @@
 #include "model_cards.h"
 #include "number.h"
 #include "reader.h"
+#include "temperature.h"
 
 /* What belongs to one of the three letters. */
 struct dalcs_passive_family {
@@ -25,6 +26,7 @@ struct dalcs_passive_values {
     struct dalcs_parasitics parasitics;
     struct dalcs_storage_law law;
     struct dalcs_core core;
+    struct dalcs_coefficients coefficients;
 };
 
 /* What follows the value, or has it. *value: its token. */

@@ -52,6 +52,14 @@ bool dalcs_passive_read_multiplier(struct dalcs_reader *reader, double *multipli
     return is_multiplier(reader, *multiplier);
 }
 
+/* `ac 1k` behind a resistance, without an equal sign. */
+static bool is_resistance_of_ac(const struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    return token != NULL && token->kind == DALCS_TOKEN_WORD && strcmp(token->text, "ac") == 0 &&
+           next != NULL && dalcs_reader_is_number(next);
+}
+
 /* `noiseless`, `noiseless=True` and `x2`, which LTspice writes behind a value: two in parallel. *taken: was it one? */
 static bool read_word(struct dalcs_reader *reader, double *multiplier, bool *taken) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
@@ -105,8 +113,8 @@ static bool read_initial(struct dalcs_reader *reader, const struct dalcs_token *
                                is_inductor ? "a current" : "a voltage", &device->initial);
 }
 
-/* Nothing depends on a temperature. */
-static bool skip_temperature(struct dalcs_reader *reader, const struct dalcs_token *name) {
+/* Nothing has noise here. */
+static bool skip_noise(struct dalcs_reader *reader, const struct dalcs_token *name) {
     double ignored;
     struct dalcs_builder *builder = reader->builder;
     dalcs_builder_note(builder, name, NULL, "'%s' has no meaning here and is ignored", name->text);
@@ -123,8 +131,7 @@ static bool skip_temperature(struct dalcs_reader *reader, const struct dalcs_tok
 static bool read_parameter(struct dalcs_reader *reader, const struct dalcs_passive_family *family,
                            const struct dalcs_token *name, struct dalcs_device *device,
                            struct dalcs_passive_values *values) {
-    static const char *const temperature[] = {"tc",    "tc1",   "tc2",  "temp",
-                                              "dtemp", "noisy", "noise"};
+    static const char *const noise[] = {"noisy", "noise"};
     struct dalcs_builder *builder = reader->builder;
     double ignored;
     const bool is_law = family->law != NULL && strcmp(name->text, family->law) == 0;
@@ -134,9 +141,11 @@ static bool read_parameter(struct dalcs_reader *reader, const struct dalcs_passi
     if (strcmp(name->text, "ic") == 0 && device->kind != DALCS_RESISTOR) {
         return read_initial(reader, name, device);
     }
-    if (dalcs_builder_is_one_of(name->text, temperature,
-                                sizeof temperature / sizeof temperature[0])) {
-        return skip_temperature(reader, name);
+    if (dalcs_coefficient_is_name(name->text)) {
+        return dalcs_coefficient_read(reader, name, &values->coefficients);
+    }
+    if (dalcs_builder_is_one_of(name->text, noise, sizeof noise / sizeof noise[0])) {
+        return skip_noise(reader, name);
     }
     if (device->kind == DALCS_INDUCTOR && dalcs_core_is_name(name->text)) {
         if (values->has_value && values->core.first == NULL) {
@@ -180,6 +189,10 @@ bool dalcs_passive_read_rest(struct dalcs_reader *reader, const struct dalcs_pas
             continue;
         }
         const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
+        if (name == NULL && device->kind == DALCS_RESISTOR && is_resistance_of_ac(reader)) {
+            name = dalcs_reader_peek(reader, 0);
+            reader->at++;
+        }
         if (name == NULL) {
             return dalcs_reader_end(reader);
         }

@@ -4,7 +4,7 @@
  *   LTspice    PWL(t v +dt v ...), REPEAT FOR n (...) ENDREPEAT, REPEAT FOREVER (...) ENDREPEAT,
  *              FILE=name, TIME_SCALE_FACTOR=x, VALUE_SCALE_FACTOR=x
  *
- * A block that is repeated counts its times from where it begins. What ends is written out; what
+ * A block that is repeated counts its times from where it begins; blocks stand in blocks. What ends is written out; what
  * does not end is written out twice, and the second course repeats. */
 #include "element_cards.h"
 #include "number.h"
@@ -64,12 +64,21 @@ static bool more(const struct dalcs_reader *reader) {
     return next != NULL && dalcs_reader_is_number(next);
 }
 
+/* +{formula}, which is a number by now. */
+static bool is_relative(const struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    return token != NULL && strcmp(token->text, "+") == 0 && next != NULL &&
+           next->kind == DALCS_TOKEN_NUMBER;
+}
+
 static bool read_point(struct points *p) {
     struct dalcs_reader *reader = p->reader;
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     double t;
     double v;
+    reader->at += is_relative(reader);
     if (!dalcs_reader_list_number(reader, DALCS_SECOND, "a time", &t)) {
         return false;
     }
@@ -167,6 +176,12 @@ static bool repeat_block(struct points *p, const struct dalcs_token *place, size
     return true;
 }
 
+static void leave_block(struct points *p, const struct points *outer) {
+    p->block = outer->is_in_block ? outer->block : p->n;
+    p->from = outer->is_in_block ? outer->from : 0;
+    p->is_in_block = outer->is_in_block;
+}
+
 /* After REPEAT. */
 static bool read_repeat(struct points *p, int depth) {
     struct dalcs_reader *reader = p->reader;
@@ -184,6 +199,13 @@ static bool read_repeat(struct points *p, int depth) {
     if (n < 1 || n != floor(n)) {
         dalcs_builder_error(builder, dalcs_reader_previous(reader), NULL,
                             "the number of repetitions must be 1, 2, 3, ...");
+        return false;
+    }
+    /* Blocks stand in blocks: what is around this one goes on with its own origin behind it. */
+    const struct points outer = *p;
+    if (is_forever && outer.is_in_block) {
+        dalcs_builder_error(builder, place, "write REPEAT FOR n",
+                            "a part that repeats forever cannot stand in one that repeats");
         return false;
     }
     p->block = p->n;
@@ -209,9 +231,7 @@ static bool read_repeat(struct points *p, int depth) {
     }
     p->has_forever = is_forever;
     p->repeat_from = p->from + length;
-    p->block = p->n;
-    p->from = 0;
-    p->is_in_block = false;
+    leave_block(p, &outer);
     return true;
 }
 
@@ -283,9 +303,10 @@ static bool read_items(struct points *p, int depth) {
     while (ok && (token = dalcs_reader_peek(reader, 0)) != NULL) {
         if (depth < DEEPEST && dalcs_reader_take(reader, DALCS_TOKEN_OPEN)) {
             ok = read_group(p, depth);
-        } else if (dalcs_reader_is_number(token) && (depth > 0 || !p->is_closed)) {
+        } else if ((dalcs_reader_is_number(token) || is_relative(reader)) &&
+                   (depth > 0 || !p->is_closed)) {
             ok = read_point(p);
-        } else if (!p->is_in_block && dalcs_reader_take_word(reader, "repeat")) {
+        } else if (depth < DEEPEST && dalcs_reader_take_word(reader, "repeat")) {
             ok = read_repeat(p, depth);
         } else if (!take_parameter(p, &ok)) {
             break;

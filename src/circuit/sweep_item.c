@@ -55,7 +55,8 @@ static void set_temperature(struct dalcs_builder *builder, const struct dalcs_to
     sweep->target = DALCS_SWEEP_TEMPERATURE;
     sweep->name = sweep->label = "temp";
     dalcs_builder_note(builder, token, NULL,
-                       "nothing in a circuit of ideal elements depends on the temperature");
+                       "R, L and C with tc1= or tc2=, and formulas with temp, follow the "
+                       "temperature, and nothing else");
 }
 
 static bool set_model(struct dalcs_builder *builder, const struct dalcs_token *model,

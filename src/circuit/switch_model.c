@@ -21,6 +21,7 @@ enum {
     HYSTERESIS_ON,
     HYSTERESIS_OFF,
     ILIMIT,
+    LEVEL,
     N_PARAMETERS
 };
 
@@ -38,33 +39,37 @@ static const struct form *form_of(const char *type) {
     static const struct form forms[] = {
         {"sw",
          "a switch model is: .model name SW [(Ron=ohms Roff=ohms Vt=volts Vh=volts)]",
-         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff", "ilimit"},
+         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff", "ilimit",
+          "level"},
          DALCS_VOLTAGE,
          "V",
          1},
         {"csw",
          "a current switch model is: .model name CSW [(Ron=ohms Roff=ohms It=amperes Ih=amperes)]",
-         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff", "ilimit"},
+         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff", "ilimit",
+          "level"},
          DALCS_CURRENT,
          "A",
          1e-3},
         {"vswitch",
          "a PSpice switch model is: .model name VSWITCH [(Ron=ohms Roff=ohms Von=volts "
          "Voff=volts)]",
-         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff", "ilimit"},
+         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff", "ilimit",
+          "level"},
          DALCS_VOLTAGE,
          "V",
          1},
         {"iswitch",
          "a PSpice current switch model is: .model name ISWITCH [(Ron=ohms Roff=ohms Ion=amperes "
          "Ioff=amperes)]",
-         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff", "ilimit"},
+         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff", "ilimit",
+          "level"},
          DALCS_CURRENT,
          "A",
          1e-3},
         {"switch",
          "a switch model of Xyce is: .model name SWITCH [(Ron=ohms Roff=ohms On=value Off=value)]",
-         {"ron", "roff", "vt", "vh", "lser", "vser", "on", "off", "onh", "offh", "ilimit"},
+         {"ron", "roff", "vt", "vh", "lser", "vser", "on", "off", "onh", "offh", "ilimit", "level"},
          DALCS_PLAIN,
          "of its control",
          1},
@@ -80,7 +85,7 @@ static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_tok
     static const char *const ours[] = {"ron",  "roff",  "vt",  "vh",   "it",   "ih",
                                        "von",  "voff",  "ion", "ioff", "vhon", "vhoff",
                                        "ihon", "ihoff", "on",  "off",  "onh",  "offh"};
-    static const char *const later[] = {"vton", "vtoff", "level", "td", "oneway", "epsilon"};
+    static const char *const later[] = {"vton", "vtoff", "td", "oneway", "epsilon"};
     struct dalcs_builder *builder = reader->builder;
     if (dalcs_builder_is_one_of(name->text, later, sizeof later / sizeof later[0])) {
         dalcs_builder_error(builder, name, reader->usage, "'%s' of a switch is not supported yet",
@@ -264,6 +269,18 @@ static bool set_control(struct dalcs_reader *reader, const struct form *form,
                           : set_midpoint(reader->builder, form, type, parameter, model);
 }
 
+/* LTspice's level 2 changes over smoothly, whatever the sign of Vh. */
+static bool check_level(struct dalcs_reader *reader, struct dalcs_parameter *p) {
+    if (p[LEVEL].value == 2) {
+        p[HYSTERESIS].value = -fabs(p[HYSTERESIS].value);
+    } else if (p[LEVEL].value != 1) {
+        dalcs_builder_error(reader->builder, p[LEVEL].place, reader->usage,
+                            "the level of a switch is 1 or 2");
+        return false;
+    }
+    return true;
+}
+
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
                               struct dalcs_switch_model *model) {
     const struct form *form = form_of(type->text);
@@ -279,6 +296,7 @@ bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_to
         [LSER] = {.quantity = DALCS_HENRY},
         [VSER] = {.quantity = DALCS_VOLTAGE},
         [ILIMIT] = {.quantity = DALCS_CURRENT, .may_be_infinite = true, .value = (double)INFINITY},
+        [LEVEL] = {.quantity = DALCS_PLAIN, .value = 1},
     };
     for (int k = 0; k < N_PARAMETERS; k++) {
         parameter[k].name = form->name[k];
@@ -292,7 +310,7 @@ bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_to
     model->lser = parameter[LSER].value;
     model->vser = parameter[VSER].value;
     model->ilimit = parameter[ILIMIT].value;
-    if (!check_resistances(reader->builder, parameter)) {
+    if (!check_resistances(reader->builder, parameter) || !check_level(reader, parameter)) {
         return false;
     }
     if (!set_control(reader, form, type, parameter, model)) {

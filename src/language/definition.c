@@ -142,6 +142,16 @@ static void close_conditions(struct dalcs_collector *c) {
     }
 }
 
+static bool ends_outer(const struct dalcs_definition *d, const char *name) {
+    for (const struct dalcs_definition *outer = d->enclosing;
+         outer != NULL && outer->enclosing != NULL; outer = outer->enclosing) {
+        if (strcmp(outer->name->text, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void end_subcircuit(struct dalcs_collector *c, const struct dalcs_card *card) {
     struct dalcs_definition *d = c->definition;
     if (d->enclosing == NULL) {
@@ -150,7 +160,10 @@ static void end_subcircuit(struct dalcs_collector *c, const struct dalcs_card *c
     }
     if (card->n > 1 && card->token[1].kind == DALCS_TOKEN_WORD &&
         strcmp(card->token[1].text, d->name->text) != 0) {
-        dalcs_language_report(c->language, DALCS_ERROR, NULL, &card->token[1], NULL,
+        /* Of one around it, this one lacks its own .ends; another name is a slip without a meaning, as elsewhere. */
+        const bool is_outer = ends_outer(d, card->token[1].text);
+        dalcs_language_report(c->language, is_outer ? DALCS_ERROR : DALCS_WARNING, NULL,
+                              &card->token[1], NULL,
                               "the subcircuit that ends here is '%s', from %s", d->name->text,
                               dalcs_language_place(c->language, d->card));
     }

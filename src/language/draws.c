@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 /* ---- The generator ----------------------------------------------------------------------------- */
@@ -49,6 +50,12 @@ double dalcs_draw_uniform(uint64_t seed, uint32_t run, uint64_t place, uint32_t 
     dalcs_philox(counter, key, x);
     const uint64_t bits = ((uint64_t)x[1] << 32 | x[0]) >> 12; /* 52: the half is exact, too */
     return ldexp((double)bits + 0.5, -52);
+}
+
+double dalcs_draw_at(double whole) {
+    char text[32];
+    snprintf(text, sizeof text, "%.17g", whole);
+    return dalcs_draw_uniform(1, 0, dalcs_draw_hash(dalcs_draw_hash_start, text), 0);
 }
 
 /* ---- The normal distribution ------------------------------------------------------------------- */
@@ -168,7 +175,7 @@ static const struct {
     {"limit", 2, 2, draw_limit,
      "limit(nominal, absolute) is one of two ends, limit(x, low, high) keeps x between them"},
     {"rand", 0, 0, draw_rand,
-     "rand() is between 0 and 1; of LTspice's rand(x) write 0.5+flat(0.5)"},
+     "rand() is drawn between 0 and 1, rand(x) has a value for each whole x"},
 };
 
 enum { N_FUNCTIONS = sizeof FUNCTIONS / sizeof FUNCTIONS[0] };

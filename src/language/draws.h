@@ -22,6 +22,9 @@ extern const uint64_t dalcs_draw_hash_start;
 /* Value k of a place in a run: in (0, 1), an odd multiple of 2^-53. */
 double dalcs_draw_uniform(uint64_t seed, uint32_t run, uint64_t place, uint32_t k);
 
+/* LTspice's rand(x) at a whole x, in (0, 1): the same in every run. */
+double dalcs_draw_at(double whole);
+
 /* The quantile of the standard normal distribution, 0 < p < 1: relative error near 1e-16 (Wichura, algorithm AS 241,
  * Applied Statistics 37, 1988). */
 double dalcs_normal_quantile(double p);

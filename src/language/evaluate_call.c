@@ -2,6 +2,7 @@
 #include "evaluation.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Functions that call functions: the depth is limited, for each level takes stack. */
 enum { DEEPEST_CALL = 100 };
@@ -88,6 +89,13 @@ static enum dalcs_outcome draw(const struct dalcs_evaluation *r, const struct da
     return dalcs_evaluation_push(language, value);
 }
 
+/* LTspice's rand(x): the value at the whole number before x. */
+static enum dalcs_outcome hold(struct dalcs_language *language) {
+    double *x = &language->evaluation.stack[language->evaluation.n_stack - 1];
+    *x = dalcs_draw_at(floor(*x));
+    return DALCS_OUTCOME_VALUE;
+}
+
 enum dalcs_outcome dalcs_evaluation_call(const struct dalcs_evaluation *r,
                                          const struct dalcs_operation *o) {
     struct dalcs_language *language = r->language;
@@ -99,6 +107,9 @@ enum dalcs_outcome dalcs_evaluation_call(const struct dalcs_evaluation *r,
     }
     if (drawn != NULL) {
         return draw(r, o, drawn);
+    }
+    if (is_random && o->count == 1 && strcmp(o->u.name, "rand") == 0) {
+        return hold(language);
     }
     const struct dalcs_function *function =
         dalcs_function_find(o->u.name, language->netlist->dialect.name);

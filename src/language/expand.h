@@ -75,6 +75,9 @@ bool dalcs_deck_has_parameter(const struct dalcs_deck *deck, const char *name);
 bool dalcs_deck_uses_parameter(const struct dalcs_deck *deck, const char *name);
 const char *dalcs_deck_nearest_parameter(const struct dalcs_deck *deck, const char *name);
 
+/* The temperature that .temp, .options or a .step sets, unless `temp` is a parameter of the netlist's own. */
+bool dalcs_deck_temperature(const struct dalcs_deck *deck, double *value);
+
 /* One of the netlist's own functions, in whose body DALCS_PUSH_ARGUMENT stands for the arguments; false
  * when there is none of that name. body: NULL when it is wrong, which was reported, or memory ran out. */
 bool dalcs_deck_function(const struct dalcs_deck *deck, const char *name, int *n_arguments,

@@ -99,6 +99,34 @@ static void parse_signal(struct dalcs_parser *p, int begin, const char *name) {
     }
 }
 
+/* Does a point of a table stand here, as in table(x, (0, 1), (2, 5))? */
+static bool is_point(const struct dalcs_parser *p, const char *function) {
+    const char *text = p->text->text + p->begin;
+    bool is = false;
+    if (p->symbol != DALCS_SYMBOL_OPEN || *text != '(' ||
+        (strcmp(function, "table") != 0 && strcmp(function, "tbl") != 0)) {
+        return false;
+    }
+    int depth = 0;
+    do {
+        depth += (*text == '(') - (*text == ')');
+        is = is || (depth == 1 && *text == ',');
+        text++;
+    } while (depth > 0 && *text != '\0');
+    return is && depth == 0;
+}
+
+static void parse_point(struct dalcs_parser *p) {
+    const int open = p->begin;
+    dalcs_parser_next(p);
+    dalcs_parser_choice(p);
+    if (p->symbol == DALCS_SYMBOL_COMMA) {
+        dalcs_parser_next(p);
+        dalcs_parser_choice(p);
+    }
+    dalcs_parser_close(p, open);
+}
+
 static void parse_call(struct dalcs_parser *p, int begin, int length, const char *name) {
     const int open = p->begin;
     const struct dalcs_function *function = dalcs_function_find(name, p->context->dialect.name);
@@ -124,8 +152,13 @@ static void parse_call(struct dalcs_parser *p, int begin, int length, const char
             if (n > 0) {
                 dalcs_parser_next(p);
             }
-            dalcs_parser_choice(p);
-            n++;
+            const bool has_two = n > 0 && is_point(p, name);
+            if (has_two) {
+                parse_point(p);
+            } else {
+                dalcs_parser_choice(p);
+            }
+            n += has_two ? 2 : 1;
         } while (p->symbol == DALCS_SYMBOL_COMMA && !p->failed);
     }
     dalcs_parser_close(p, open);

@@ -118,6 +118,12 @@ bool dalcs_formula_reads_value(const char *text) {
     return reads && strchr(text, '?') == NULL;
 }
 
+/* Does a formula go on here, as in {a}*exp({b}*v(x))? */
+static bool goes_on(const struct dalcs_card *card, int k) {
+    return is_kind(card, k, DALCS_TOKEN_WORD) &&
+           strchr("*/+-<>&|?", card->token[k].text[0]) != NULL;
+}
+
 /* Rname a b R=formula, Rname a b {formula}: one of voltages and currents. A number is not for here. */
 static bool find_resistance(const struct dalcs_card *card, int *first, int *n) {
     static const char *const names[] = {"r", "resistance"};
@@ -128,7 +134,8 @@ static bool find_resistance(const struct dalcs_card *card, int *first, int *n) {
     if (card->n <= 3 || !(has_name || is_kind(card, 3, DALCS_TOKEN_EXPRESSION))) {
         return false;
     }
-    while (has_name && !is_kind(card, 5, DALCS_TOKEN_EXPRESSION) && *first + *n < card->n &&
+    const bool is_braced = is_kind(card, 5, DALCS_TOKEN_EXPRESSION) && !goes_on(card, 6);
+    while (has_name && !is_braced && *first + *n < card->n &&
            !dalcs_assignment_starts(card, *first + *n)) {
         ++*n;
     }
@@ -154,7 +161,7 @@ static int start_of_formula(const struct dalcs_card *card, bool *is_table) {
 }
 
 bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n) {
-    static const char *const laplace[] = {"laplace"};
+    static const char *const behind[] = {"laplace", "nojacob"};
     bool is_table = false;
     if (card->letter == 'r') {
         return find_resistance(card, first, n);
@@ -173,10 +180,10 @@ bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n) {
     while (end < card->n) {
         const enum dalcs_token_kind kind = card->token[end].kind;
         depth += (kind == DALCS_TOKEN_OPEN) - (kind == DALCS_TOKEN_CLOSE);
-        /* LTspice needs no equal sign behind LAPLACE, nor a blank before its parenthesis */
-        const bool is_ratio = card->letter == 'b' && is_word(&card->token[end], laplace, 1);
+        /* LTspice needs no equal sign behind LAPLACE, nor a blank before its parenthesis; NoJacob is a word of its own */
+        const bool is_behind = card->letter == 'b' && is_word(&card->token[end], behind, 2);
         const bool is_next =
-            end > start && depth == 0 && (is_ratio || dalcs_assignment_starts(card, end));
+            end > start && depth == 0 && (is_behind || dalcs_assignment_starts(card, end));
         const bool ends_here =
             is_table && (kind == DALCS_TOKEN_EQUAL ||
                          (end > start && is_kind(card, start, DALCS_TOKEN_EXPRESSION)));

@@ -259,4 +259,15 @@ void dalcs_roles(const struct dalcs_card *card, unsigned char *role);
  * number. */
 int dalcs_roles_count_terminals(const struct dalcs_card *card);
 
+/* ---- temperature.c --------------------------------------------------------------------------- */
+
+enum { DALCS_TEMPERATURE_NAMES = 2 };
+
+/* The token of the temperature that the netlist sets; NULL: it does not. */
+const struct dalcs_token *dalcs_temperature_find(const struct dalcs_language *language);
+
+/* Puts temp and temper into the netlist's scope, which has room for them. */
+enum dalcs_status dalcs_temperature_declare(struct dalcs_language *language,
+                                            const struct dalcs_token *token) DALCS_MUST_CHECK;
+
 #endif

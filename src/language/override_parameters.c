@@ -69,6 +69,22 @@ static enum dalcs_status declare_stepped(struct dalcs_language *language) {
     return DALCS_OK;
 }
 
+static enum dalcs_status declare_known(struct dalcs_language *language, const char *text,
+                                       double value) {
+    struct dalcs_token *name = dalcs_arena_alloc(language->arena, 1, sizeof *name);
+    if (name == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *name = (struct dalcs_token){.kind = DALCS_TOKEN_WORD, .text = text};
+    *declare(language, text) = (struct dalcs_value){.name = name,
+                                                    .token = name,
+                                                    .where = language->top,
+                                                    .state = DALCS_VALUE_KNOWN,
+                                                    .value = value,
+                                                    .is_given = true};
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
     struct dalcs_deck *deck = language->deck;
     const struct dalcs_definition *root = &language->root;
@@ -76,12 +92,17 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
     for (size_t k = 0; k < root->n_items; k++) {
         room += dalcs_token_is_word(root->item[k].card->token, ".step");
     }
-    if (room == 0) {
+    const struct dalcs_token *temperature = dalcs_temperature_find(language);
+    if (room == 0 && temperature == NULL) {
         return DALCS_OK;
     }
-    language->top->extra = dalcs_arena_alloc(language->arena, room, sizeof(struct dalcs_value));
+    language->top->extra = dalcs_arena_alloc(language->arena, room + DALCS_TEMPERATURE_NAMES,
+                                             sizeof(struct dalcs_value));
     if (language->top->extra == NULL) {
         return DALCS_E_NOMEM;
+    }
+    if (temperature != NULL) {
+        DALCS_TRY(dalcs_temperature_declare(language, temperature));
     }
     DALCS_TRY(declare_stepped(language));
     for (size_t k = 0; k < deck->n_overrides; k++) {
@@ -89,17 +110,11 @@ enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) {
         if (override->kind != DALCS_OVERRIDE_PARAMETER) {
             continue;
         }
-        struct dalcs_token *name = dalcs_arena_alloc(language->arena, 1, sizeof *name);
-        if (name == NULL) {
-            return DALCS_E_NOMEM;
+        DALCS_TRY(declare_known(language, override->name, override->value));
+        if (strcmp(override->name, "temp") == 0 &&
+            dalcs_names_find(&root->parameters.names, "temper") < 0) {
+            DALCS_TRY(declare_known(language, "temper", override->value));
         }
-        *name = (struct dalcs_token){.kind = DALCS_TOKEN_WORD, .text = override->name};
-        *declare(language, override->name) = (struct dalcs_value){.name = name,
-                                                                  .token = name,
-                                                                  .where = language->top,
-                                                                  .state = DALCS_VALUE_KNOWN,
-                                                                  .value = override->value,
-                                                                  .is_given = true};
     }
     return DALCS_OK;
 }

@@ -91,6 +91,9 @@ static size_t word_length(const struct dalcs_lexer *lexer, size_t p) {
         (raw[q] == '{' || raw[q] == '\'')) { /* a list that begins with an expression */
         return 1;
     }
+    if (raw[p] == '+' && raw[q] == '{') { /* a time of a PWL that counts from the one before */
+        return 1;
+    }
     while (!ends_word(raw[q]) && !(is_type && (raw[q] == '{' || raw[q] == '['))) {
         q++;
     }

@@ -151,8 +151,7 @@ static bool are_sources(const struct dalcs_circuit *circuit) {
     bool all = true;
     for (int i = 0; i < circuit->n_dc; i++) {
         const int device = circuit->dc[i].device;
-        all = all && (circuit->dc[i].target == DALCS_SWEEP_TEMPERATURE ||
-                      (device >= 0 && circuit->device[device].stimulus >= 0));
+        all = all && device >= 0 && circuit->device[device].stimulus >= 0;
     }
     return all;
 }

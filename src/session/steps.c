@@ -69,12 +69,13 @@ size_t dalcs_steps_count(const struct dalcs_session *session) {
 
 bool dalcs_override_of(const struct dalcs_sweep *sweep, double value,
                        struct dalcs_override *override) {
-    static const enum dalcs_override_kind kind[] = {[DALCS_SWEEP_ELEMENT] = DALCS_OVERRIDE_ELEMENT,
-                                                    [DALCS_SWEEP_PARAMETER] =
-                                                        DALCS_OVERRIDE_PARAMETER,
-                                                    [DALCS_SWEEP_MODEL] = DALCS_OVERRIDE_MODEL};
+    static const enum dalcs_override_kind kind[] = {
+        [DALCS_SWEEP_ELEMENT] = DALCS_OVERRIDE_ELEMENT,
+        [DALCS_SWEEP_TEMPERATURE] = DALCS_OVERRIDE_PARAMETER,
+        [DALCS_SWEEP_PARAMETER] = DALCS_OVERRIDE_PARAMETER,
+        [DALCS_SWEEP_MODEL] = DALCS_OVERRIDE_MODEL};
 
-    if (sweep->target == DALCS_SWEEP_TEMPERATURE || sweep->target == DALCS_SWEEP_RUN) {
+    if (sweep->target == DALCS_SWEEP_RUN) {
         return false;
     }
     *override = (struct dalcs_override){

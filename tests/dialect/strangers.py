@@ -178,6 +178,14 @@ def noise(checker):
     for one, other in (("rand(1k*time)", "rand(1k*time)+0*time"), ("white(1k*time)+0.5", "random(1k*time)"), ("rand(2k*time)", "rand(2000*time)")):
         checker.check(values(one) == values(other) or max(abs(a - b) for a, b in zip(values(one)[1], values(other)[1])) < 1e-12, f"{one}, {other}")
     checker.check(values("rand(1k*time)")[1] != values("rand(1k*time+100)")[1], "another argument has the same values")
+    # Where a number is wanted, rand(x) is what a source has at that x, in every step of .step and run of .mc.
+    for x in (0, 1, 7, 7.9, -3, -0.5, 12345, 1e6):
+        whole = math.floor(x)
+        at = values(f"rand(10k*time+{whole})", "0.05m")[1][-1]
+        number = values("{v}", extra=f".param s={x} v=rand(s)\n")[1][-1]
+        checker.check(number == at and 0 < at < 1, f"rand({x}) is {number}, {at} over time")
+    steps = checker.run("V1 a 0 {rand(k)}\nR1 a 0 1k\n.step param k 1 4 1\n.op")
+    checker.check(steps is not None and len(set(steps.column("v(a)"))) == 4, "rand(k) of .step")
     for formula, words in (("rand(v(b))", "straight line in time"), ("white(1e12*time)", "more than a million")):
         done = checker.run(f"V2 b 0 1\nB1 a 0 V={formula}\nR1 a 0 1k\n.tran 1u 1m", 3)
         checker.check(done is None or words in done.stderr, f"{formula}: {done and done.stderr}")

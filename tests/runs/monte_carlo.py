@@ -304,7 +304,7 @@ class MonteCarlo(unittest.TestCase):
     def test_messages(self):
         cards = {
             "R9 in 0 {gauss(1,2,3,4)}": "'gauss' does not take 4 arguments",
-            "R9 in 0 {rand(3)}": "write 0.5+flat(0.5)",
+            "R9 in 0 {rand(3,4)}": "rand(x) has a value for each whole x",
             "R9 in 0 {agauss(1,2,0)}": "a value of agauss is not finite",
             "B9 in2 0 V=gauss(V(in))": "'gauss' of a voltage, a current or the time",
             ".mc": "a number of runs is missing",
