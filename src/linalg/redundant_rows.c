@@ -35,10 +35,15 @@ static int bring_largest(const struct dependencies *d, int first) {
     return row;
 }
 
-static void choose(const struct dependencies *d, int *redundant) {
+/* False: one is of rows alone that may not be left out. */
+static bool choose(const struct dependencies *d, int *redundant) {
     for (int k = 0; k < d->n; k++) {
-        redundant[k] = bring_largest(d, k);
+        const int row = bring_largest(d, k);
         const double *by = weights_of(d, k);
+        if (!(fabs(by[row]) > 0.0)) {
+            return false;
+        }
+        redundant[k] = row;
         for (int other = k + 1; other < d->n; other++) {
             double *of = weights_of(d, other);
             const double factor = of[redundant[k]] / by[redundant[k]];
@@ -48,15 +53,18 @@ static void choose(const struct dependencies *d, int *redundant) {
             of[redundant[k]] = 0.0;
         }
     }
+    return true;
 }
 
 static enum dalcs_status find(struct dalcs_null_space *space, const struct dalcs_null_space *rows,
-                              const struct dalcs_triplets *t, const double *size) {
+                              const struct dalcs_triplets *t, const double *size,
+                              int n_candidates) {
     const size_t n_rows = (size_t)space->n_rows;
     struct dependencies d = {.n = rows->n_free, .n_rows = space->n_rows};
     d.weight = dalcs_arena_alloc(&space->arena, (size_t)d.n * n_rows, sizeof(double));
     d.size = dalcs_arena_alloc(&space->arena, n_rows, sizeof(double));
-    if (d.weight == NULL || d.size == NULL) {
+    int *chosen = dalcs_arena_alloc(&space->arena, (size_t)d.n, sizeof(int));
+    if (d.weight == NULL || d.size == NULL || chosen == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < t->n; k++) {
@@ -65,16 +73,19 @@ static enum dalcs_status find(struct dalcs_null_space *space, const struct dalcs
     for (int k = 0; k < d.n; k++) {
         dalcs_null_space_vector(rows, k, weights_of(&d, k));
         for (size_t r = 0; r < n_rows; r++) {
-            weights_of(&d, k)[r] *=
-                d.size[r] > 0.0 ? d.size[r] : 1.0; /* an empty row depends alone */
+            const double own = d.size[r] > 0.0 ? d.size[r] : 1.0; /* an empty row depends alone */
+            weights_of(&d, k)[r] *= r < (size_t)n_candidates ? own : 0.0;
         }
     }
-    choose(&d, space->redundant);
+    if (choose(&d, chosen)) {
+        memcpy(space->redundant, chosen, (size_t)d.n * sizeof(int));
+    }
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_redundant_rows_choose(struct dalcs_null_space *space,
-                                              const struct dalcs_triplets *t, const double *size) {
+                                              const struct dalcs_triplets *t, const double *size,
+                                              int n_candidates) {
     struct dalcs_triplets transposed = {0};
     struct dalcs_null_space rows;
     enum dalcs_status status = DALCS_OK;
@@ -87,7 +98,7 @@ enum dalcs_status dalcs_redundant_rows_choose(struct dalcs_null_space *space,
     }
     if (status == DALCS_OK) {
         if (rows.n_free == space->n_redundant) {
-            status = find(space, &rows, t, size);
+            status = find(space, &rows, t, size, n_candidates);
         }
         dalcs_null_space_finish(&rows);
     }

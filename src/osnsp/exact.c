@@ -84,7 +84,11 @@ enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, doub
             break;
         }
         if (p->least_norm && turned >= 0 && wrong_alone(p) == turned) {
-            return dalcs_open_mode_solve(p, u, y);
+            enum dalcs_status status = dalcs_open_mode_solve(p, u, y);
+            if (status <= DALCS_OK) {
+                return status;
+            }
+            DALCS_TRY(dalcs_exact_try_mode(p, u, y, &sources_clash)); /* its signs again */
         }
         turned = wrong_alone(p);
         dalcs_osnsp_flip_violating(p, round < ROUNDS_AT_ONCE);

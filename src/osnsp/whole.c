@@ -133,7 +133,7 @@ static enum dalcs_status choose(struct dalcs_whole *whole, const struct dalcs_nu
 }
 
 /* The rows that follow from others, chosen with voltages of one size, and currents of what the least conductance makes of it:
- * those of closed pairs may be no more. */
+ * those of closed pairs may be no more. Lines of pairs, which are what is asked, stay. */
 static enum dalcs_status choose_redundant(struct dalcs_whole *whole, struct dalcs_null_space *space,
                                           const struct dalcs_triplets *t) {
     const struct dalcs_system *s = whole->p->system;
@@ -147,7 +147,8 @@ static enum dalcs_status choose_redundant(struct dalcs_whole *whole, struct dalc
                 s->column_is_current[c] ? whole->p->cache.form[0]->least_conductance : 1.0;
         }
     }
-    return dalcs_redundant_rows_choose(space, t, size);
+    return dalcs_redundant_rows_choose(
+        space, t, size, whole->resistance != NULL ? dalcs_system_n_equations(s) : whole->n);
 }
 
 enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dalcs_osnsp *p,

@@ -164,7 +164,7 @@ START_TEST(test_largest_are_left_out) {
     struct dalcs_null_space s;
     ck_assert_int_eq(dalcs_null_space_find(&s, N, N, &t), DALCS_OK);
     ck_assert_int_eq(s.n_redundant, 3);
-    ck_assert_int_eq(dalcs_redundant_rows_choose(&s, &t, size), DALCS_OK);
+    ck_assert_int_eq(dalcs_redundant_rows_choose(&s, &t, size, s.n_rows), DALCS_OK);
     bool is_left_out[N] = {false};
     for (int k = 0; k < s.n_redundant; k++) {
         is_left_out[s.redundant[k]] = true;
