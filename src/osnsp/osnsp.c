@@ -84,8 +84,8 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     if (e->map != NULL && !by_factors) {
         dalcs_step_map_apply(p, e, u, y);
         dalcs_certificate_evaluate(p, u, y, sources_clash);
-        if (p->signs.n_violating == 0 && p->certificate.worst <= tolerance && !*sources_clash) {
-            return DALCS_OK; /* a sign may be wrong by the rounding of a map, which the factors have not */
+        if (p->signs.n_violating > 0 || (p->certificate.worst <= tolerance && !*sources_clash)) {
+            return DALCS_OK;
         }
     }
     if (e->singular) {
@@ -195,9 +195,27 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
     return status;
 }
 
+static bool is_undecided(enum dalcs_status status) {
+    return status == DALCS_NOT_CONVERGED || status == DALCS_SINGULAR;
+}
+
+/* From p->mode; where that leads nowhere once more without maps, and from there on: a sign may be wrong by their rounding
+ * alone. */
+static enum dalcs_status pivot_twice(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
+    const size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
+    memcpy(p->work.tied_mode, p->mode, bytes);
+    enum dalcs_status status = pivot(p, u, y, limit);
+    if (is_undecided(status) && !p->asks.refines) {
+        memcpy(p->mode, p->work.tied_mode, bytes);
+        p->asks.refines = true;
+        status = pivot(p, u, y, limit);
+    }
+    return status;
+}
+
 static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
-    enum dalcs_status status = pivot(p, u, y, limit);
+    enum dalcs_status status = pivot_twice(p, u, y, limit);
     if (status == DALCS_OK && p->signs.n_tied > 0 && dalcs_osnsp_is_monotone(p) && !p->least_norm) {
         return dalcs_ties_settle(p, u, y);
     }
@@ -207,10 +225,6 @@ static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, d
     return status;
 }
 
-static bool is_undecided(enum dalcs_status status) {
-    return status == DALCS_NOT_CONVERGED || status == DALCS_SINGULAR;
-}
-
 /* Where the circuit is not passive a ray proves nothing, and iterates that have far to go look like one. */
 static enum dalcs_status prove(struct dalcs_osnsp *p, double sigma, const double *u,
                                bool *is_proof) {
@@ -218,19 +232,10 @@ static enum dalcs_status prove(struct dalcs_osnsp *p, double sigma, const double
     return p->system->monotone ? dalcs_refute_by_ray(p, sigma, u, is_proof) : DALCS_OK;
 }
 
-/* With given sources. */
-static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double *u, double *y) {
-    p->counters.solved++;
-    if (p->cache.n_forms == 0 || p->cache.form[0]->sigma != sigma) {
-        DALCS_TRY(dalcs_forms_get(p, sigma));
-    }
-    bool is_done;
-    enum dalcs_status status = solve_in_order(p, sigma, u, y, &is_done);
-    if (is_done) {
-        return status;
-    }
-    const bool is_open = status == DALCS_INFEASIBLE; /* after what blocks have chosen */
-    status = solve_somehow(p, u, y);
+/* Where solving block by block has not decided. is_open: blocks have chosen before one had no answer. */
+static enum dalcs_status solve_whole(struct dalcs_osnsp *p, double sigma, const double *u,
+                                     double *y, bool is_open) {
+    enum dalcs_status status = solve_somehow(p, u, y);
     bool is_proof = false;
     if (status == DALCS_INFEASIBLE) {
         DALCS_TRY(prove(p, sigma, u, &is_proof));
@@ -251,6 +256,23 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
             dalcs_witness_from_modes(p);
         }
     }
+    return status;
+}
+
+/* With given sources. */
+static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double *u, double *y) {
+    p->counters.solved++;
+    if (p->cache.n_forms == 0 || p->cache.form[0]->sigma != sigma) {
+        DALCS_TRY(dalcs_forms_get(p, sigma));
+    }
+    bool is_done;
+    enum dalcs_status status = solve_in_order(p, sigma, u, y, &is_done);
+    if (is_done) {
+        return status;
+    }
+    const bool refines = p->asks.refines;
+    status = solve_whole(p, sigma, u, y, status == DALCS_INFEASIBLE);
+    p->asks.refines = refines;
     if (status == DALCS_INFEASIBLE) {
         dalcs_witness_complete(p);
     }
