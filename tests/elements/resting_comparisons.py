@@ -34,7 +34,7 @@ CASES = [
 
 # what makes a rate of a trapezoid on node a, and its name
 RATES = [("", "ddt(v(a))"), ("r2 a b 1k\nr3 b 0 2.2k", "ddt(v(b))"), ("c2 a 0 1u", "i(c2)"), ("f2 0 b v1 1\nl2 b 0 1m", "v(b)"),
-         ("e2 b 0 a 0 -3\nr2 b 0 1", "-ddt(v(b)/3)"), ("v2 b a 1\nr2 b 0 1k", "ddt(v(b)-1)"), ("vs a b 0\nc2 b 0 1n", "i(vs)"),
+         ("e2 b 0 a 0 -3\nr2 b 0 1", "-ddt(v(b)/3)"), ("v2 b a {volts!r}\nr2 b 0 1k", "ddt(v(b)-1)"), ("vs a b 0\nc2 b 0 1n", "i(vs)"),
          ("r2 a b 1k\nd2 b 0\nd3 0 b", "ddt(v(a))")]
 RISE, HIGH, FALL, LOW = 0.14, 0.26, 0.2, 0.4  # parts of a period
 COMPARISONS = [("u(x)", RISE), ("x>0 ? 1 : 0", RISE), ("x>=0 ? 1 : 0", 1 - FALL), ("x<0 ? 1 : 0", FALL), ("x<=0 ? 1 : 0", 1 - RISE),
@@ -44,9 +44,9 @@ COMPARISONS = [("u(x)", RISE), ("x>0 ? 1 : 0", RISE), ("x>=0 ? 1 : 0", 1 - FALL)
 def check_rates(checker, case, volts, period):
     """The means over two periods of all comparisons of a rate."""
     cards, rate = case
-    wave = (f"PULSE(0 {volts!r} {0.4 * LOW * period!r} {RISE * period!r} {FALL * period!r} {HIGH * period!r} {period!r})")
+    wave = f"PULSE(0 {volts!r} {0.4 * LOW * period!r} {RISE * period!r} {FALL * period!r} {HIGH * period!r} {period!r})"
     drive = f"i1 0 s {wave}\nv1 s a 0\nr1 a 0 1" if rate == "v(b)" else f"v1 a 0 {wave}"
-    text = "\n".join(["flat", drive, cards] + [f"b{k + 10} y{k} 0 v={formula.replace('x', rate)}\nr{k + 50} y{k} 0 1k\n"
+    text = "\n".join(["flat", drive, cards.format(volts=volts)] + [f"b{k + 10} y{k} 0 v={formula.replace('x', rate)}\nr{k + 50} y{k} 0 1k\n"
                                               f".meas tran m{k} avg v(y{k})" for k, (formula, _) in enumerate(COMPARISONS)]
                      + [f".tran {period / 100!r} {2 * period!r}", ".end\n"])
     done = run(sys.argv[1], text, method=None, options=["--audit", "full"])
