@@ -34,7 +34,7 @@ CASES = [
 
 # what makes a rate of a trapezoid on node a, and its name
 RATES = [("", "ddt(v(a))"), ("r2 a b 1k\nr3 b 0 2.2k", "ddt(v(b))"), ("c2 a 0 1u", "i(c2)"), ("f2 0 b v1 1\nl2 b 0 1m", "v(b)"),
-         ("e2 b 0 a 0 -3\nr2 b 0 1", "-ddt(v(b)/3)"), ("v2 b a {volts!r}\nr2 b 0 1k", "ddt(v(b)-1)"), ("vs a b 0\nc2 b 0 1n", "i(vs)"),
+         ("e2 b 0 a 0 -3\nr2 b 0 1", "-ddt(v(b)/3)"), ("v2 b a {volts!r}\nr2 b 0 1k", "ddt(v(b))"), ("vs a b 0\nc2 b 0 1u", "i(vs)"),
          ("r2 a b 1k\nd2 b 0\nd3 0 b", "ddt(v(a))")]
 RISE, HIGH, FALL, LOW = 0.14, 0.26, 0.2, 0.4  # parts of a period
 COMPARISONS = [("u(x)", RISE), ("x>0 ? 1 : 0", RISE), ("x>=0 ? 1 : 0", 1 - FALL), ("x<0 ? 1 : 0", FALL), ("x<=0 ? 1 : 0", 1 - RISE),
