@@ -198,8 +198,10 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     if (search->opened && dalcs_tied_open_idle(part, part->work.mode_tied, next, q->unit)) {
         return dalcs_search_go_on_trying(part, search);
     }
-    /* A switch has closed whose control only touches its threshold: it is open in the next try. */
-    if (part->guards.fresh && part->guards.flipped && dalcs_guards_open_resting(part, q->unit)) {
+    /* A comparison rests at equality: it has in the next try the side that is written for it, unless that one falls at
+     * once, so that something else decides. */
+    if (part->guards.fresh && !search->rested && dalcs_guards_rest(part, q->unit)) {
+        search->rested = true;
         return DALCS_OK;
     }
     /* A guard is below 0 from the start on and does not come back, as an error of the state would. */

@@ -104,26 +104,56 @@ bool dalcs_guards_overreach(const struct dalcs_radau_part *part, const double *u
 }
 
 /* Is it 0 at all nodes, to the digits of doubles? */
-static bool rests(const struct dalcs_radau_part *part, int guard, const double *unit) {
-    double nothing = dalcs_guard_rounding(part, guard, unit);
+static bool rests(const struct dalcs_radau_part *part, int guard, double nothing) {
+    double work[DALCS_MAX_NODES];
+    int stride;
+    const double *value = dalcs_guard_values(part, guard, work, &stride);
     bool is = true;
     for (int k = 0; k < part->stages.layout.n_nodes && is; k++) {
-        is = fabs(dalcs_guard_control_at(part, guard, k)) <= nothing;
+        is = fabs(value[k * stride]) <= nothing;
     }
     return is;
 }
 
-bool dalcs_guards_open_resting(struct dalcs_radau_part *part, const double *unit) {
+/* Opens switches without hysteresis whose control rests at their threshold. */
+static bool open_switches(struct dalcs_radau_part *part, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool any = false;
     for (int g = p->system->n_pairs; g < dalcs_guards_number(part); g++) {
         int d = dalcs_guard_pair(part, g);
-        bool has_closed = dalcs_osnsp_is_on(p, d) && dalcs_guard_has_flipped(part, d) &&
-                          !dalcs_pair_remembers(&p->system->pair[d]);
-        if (has_closed && rests(part, g, unit)) {
+        bool is_strict = dalcs_osnsp_is_on(p, d) && !dalcs_pair_remembers(&p->system->pair[d]);
+        if (is_strict && rests(part, g, dalcs_guard_rounding(part, g, unit))) {
             dalcs_osnsp_command(p, d, false);
             any = true;
         }
+    }
+    return any;
+}
+
+/* Puts a formula's jump, pairs d and d + 1, on the side that the formula has where its argument is 0. Both pairs are closed
+ * above 0, where the argument is lambda of the second, and open below, where it is w of the first. */
+static bool put_jump(struct dalcs_radau_part *part, int d, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    const struct dalcs_pair *pair = p->system->pair;
+    const bool is_above = dalcs_osnsp_is_on(p, d);
+    const bool is_between = is_above != dalcs_osnsp_is_on(p, d + 1);
+    const bool leads_on =
+        is_above ? pair[d + 1].is_left_out[0] : pair[d].is_left_out[1]; /* to the other side */
+    const int argument = is_above ? d + 1 : d;
+    if (is_between || !leads_on || dalcs_tied_leaves(part, argument, 1.0) ||
+        !rests(part, argument, dalcs_tied_nothing(part, argument, unit))) {
+        return false;
+    }
+    dalcs_osnsp_command(p, d, !is_above);
+    dalcs_osnsp_command(p, d + 1, !is_above);
+    return true;
+}
+
+bool dalcs_guards_rest(struct dalcs_radau_part *part, const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    bool any = open_switches(part, unit);
+    for (int d = 0; d + 1 < s->n_pairs; d++) {
+        any = (s->pair[d].is_jump && put_jump(part, d, unit)) || any;
     }
     return any;
 }

@@ -49,8 +49,10 @@ void dalcs_guards_flip(struct dalcs_radau_part *part);
  * an event begins with the error of its time, and what crosses a little later does not yet. */
 bool dalcs_guards_overreach(const struct dalcs_radau_part *part, const double *unit);
 
-/* A switch without hysteresis is on above its threshold alone. One that has just closed because its control came up to
- * it, and whose control stays there, is open again. Returns whether any is. */
-bool dalcs_guards_open_resting(struct dalcs_radau_part *part, const double *unit);
+/* What rests at its threshold, so that all terms of its expansion at the start of the step are 0, is on the side that its
+ * comparison has at equality: a switch without hysteresis is open, as it is on above its threshold alone, and a jump of a
+ * formula has the value that is written for it (> and < are false, >= and <= are true). What rounding makes of such an
+ * argument decides nothing. Returns whether the mode changes. */
+bool dalcs_guards_rest(struct dalcs_radau_part *part, const double *unit);
 
 #endif

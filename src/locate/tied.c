@@ -30,12 +30,27 @@ bool dalcs_tied_was_at_rest(const struct dalcs_radau_part *part, int pair, const
     return before != NULL && is_nothing(part, pair, before, part->stages.layout.stride, unit);
 }
 
+/* Is it the argument of a formula's jump, on the side that is written for equality? Then this decides. */
+static bool is_as_written(const struct dalcs_radau_part *part, int guard) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const struct dalcs_pair *pair = p->system->pair;
+    bool is = false;
+    if (guard < p->system->n_pairs && pair[guard].is_jump) {
+        is = !dalcs_osnsp_is_on(p, guard) && !dalcs_osnsp_is_on(p, guard + 1) &&
+             pair[guard + 1].is_left_out[0];
+    } else if (guard > 0 && guard < p->system->n_pairs && pair[guard - 1].is_jump) {
+        is = dalcs_osnsp_is_on(p, guard) && dalcs_osnsp_is_on(p, guard - 1) &&
+             pair[guard - 1].is_left_out[1];
+    }
+    return is;
+}
+
 bool dalcs_tied_is(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double work[DALCS_MAX_NODES];
     int stride;
     const double *value = dalcs_guard_values(part, pair, work, &stride);
     return dalcs_guard_is_one(part, pair) && is_nothing(part, pair, value, stride, unit) &&
-           !dalcs_guard_has_crossed(part, pair, value, stride, unit);
+           !dalcs_guard_has_crossed(part, pair, value, stride, unit) && !is_as_written(part, pair);
 }
 
 /* A closed pair that had no current in the whole segment before either? An open one without voltage may
@@ -77,9 +92,7 @@ static bool grows(const struct dalcs_radau_part *part, int pair, const double *u
            dalcs_larger(fabs(value[0]), dalcs_guard_rounding_across(part, pair, unit));
 }
 
-/* Does a guard that starts from nothing go up from node to node, or with sign -1 down, if by no more than rounding
- * makes of it beside others? Its own digits tell, for they are those of a power of time. */
-static bool leaves(const struct dalcs_radau_part *part, int pair, double sign) {
+bool dalcs_tied_leaves(const struct dalcs_radau_part *part, int pair, double sign) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const double *value =
         part->segment.out + dalcs_system_n_equations(part->component->system) + pair;
@@ -120,7 +133,7 @@ bool dalcs_tied_open_idle(struct dalcs_radau_part *part, const uint64_t *before,
     bool found = false;
     for (int d = 0; d < p->system->n_pairs; d++) {
         bool is_tried = dalcs_osnsp_is_on(p, d) && !dalcs_mode_has(before, d);
-        if (is_tried && !is_above(part, d, end, unit) && !leaves(part, d, 1.0)) {
+        if (is_tried && !is_above(part, d, end, unit) && !dalcs_tied_leaves(part, d, 1.0)) {
             dalcs_osnsp_command(p, d, false);
             found = true;
         }
@@ -136,7 +149,7 @@ bool dalcs_tied_turn(struct dalcs_radau_part *part, const double *unit) {
             continue;
         }
         bool is_on = dalcs_osnsp_is_on(p, d);
-        if (is_on ? !grows(part, d, unit) : leaves(part, d, -1.0)) {
+        if (is_on ? !grows(part, d, unit) : dalcs_tied_leaves(part, d, -1.0)) {
             dalcs_osnsp_command(p, d, !is_on);
             found = true;
         }

@@ -18,7 +18,11 @@ double dalcs_tied_nothing(const struct dalcs_radau_part *part, int pair, const d
  * after every event. */
 bool dalcs_tied_stay(const struct dalcs_radau_part *part, bool is_determined, const double *unit);
 
-/* Is this pair such a diode? */
+/* Does a guard that starts from nothing go up from node to node, or with sign -1 down, if by no more than rounding
+ * makes of it beside others? Its own digits tell, for they are those of a power of time. */
+bool dalcs_tied_leaves(const struct dalcs_radau_part *part, int pair, double sign);
+
+/* Is this pair such a diode? Where a formula's jump rests, the side that is written for equality is no tie. */
 bool dalcs_tied_is(const struct dalcs_radau_part *part, int pair, const double *unit);
 
 /* Opens the closed diodes among them but those in which a current begins, and closes the open ones whose voltage

@@ -27,11 +27,19 @@ enum dalcs_status dalcs_refuse_gates(struct dalcs_run *r, const struct dalcs_log
                                      double t) {
     const char *names = list_moving(r, logic);
     const struct dalcs_location *where = NULL;
-    for (int k = 0; k < logic->network.n && where == NULL; k++) {
-        where = logic->network.moves[k] ? &logic->network.gate[k].where : NULL;
+    bool has_latch = false;
+    for (int k = 0; k < logic->network.n; k++) {
+        where = where == NULL && logic->network.moves[k] ? &logic->network.gate[k].where : where;
+        has_latch = has_latch ||
+                    (logic->network.moves[k] && logic->network.gate[k].kind == DALCS_GATE_LATCH);
     }
-    dalcs_diag_add(&r->s->diag, DALCS_ERROR, where,
-                   "give one of them a delay (Td=), or a comparator in the loop a hysteresis (Vh=)",
+    const char *hint =
+        has_latch
+            ? "its S is still high while what it switches sets and clears its R: let the "
+              "pulse at S end earlier, or give the flip-flop a delay (Td=), or the "
+              "comparator at R a hysteresis (Vh=)"
+            : "give one of them a delay (Td=), or a comparator in the loop a hysteresis (Vh=)";
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, where, hint,
                    "at t = %.9g s a loop without delay does not settle: %s", t,
                    names == NULL ? "gates" : names);
     return DALCS_E_NETLIST;

@@ -181,6 +181,10 @@ def small(checker, program):
     done = run_cards(program, "a loop", loop)
     checker.check(done.status != 0 and "a loop without delay does not settle: a1, a2, a3" in done.stderr,
                   f"a loop: {done.stderr}")
+    latch = ["v1 s 0 1", "v2 i 0 pwl(0 0 10n 1)", "b1 r 0 v=u(v(q)*v(i)-0.5)", "a1 s r 0 0 0 0 q 0 SRFLOP", "r1 q 0 1k", ".tran 1n 50n"]
+    done = run_cards(program, "a flip-flop that resets itself", latch)
+    checker.check(done.status != 0 and "settle: a1" in done.stderr and "let the pulse at S end earlier" in done.stderr,
+                  f"a flip-flop that resets itself: {done.stderr}")
 
 
 def measured(checker, program):

@@ -5,6 +5,8 @@ usage: resting_comparisons.py PROGRAM
 
 Where nothing else decides, a formula has there the value that it is written with: > and < are false, >= and <= true,
 sgn is 0. At scales from microvolts to kilovolts, as an operating point, and in runs where the sides become equal.
+So is it of a rate where what it is of goes flat, and rounding over the length of a step is left of it: the parts of the
+time at which comparisons are true are those of a trapezoid's flanks.
 """
 
 import sys
@@ -30,6 +32,30 @@ CASES = [
     (FREEWHEEL, "i(d2)>0 ? 3 : 2", 2, 3, 2), (FREEWHEEL, "i(d1)>0 ? 3 : 2", 3, 2, 2),
 ]
 
+# what makes a rate of a trapezoid on node a, and its name
+RATES = [("", "ddt(v(a))"), ("r2 a b 1k\nr3 b 0 2.2k", "ddt(v(b))"), ("c2 a 0 1u", "i(c2)"), ("f2 0 b v1 1\nl2 b 0 1m", "v(b)"),
+         ("e2 b 0 a 0 -3\nr2 b 0 1", "-ddt(v(b)/3)"), ("v2 b a {volts!r}\nr2 b 0 1k", "ddt(v(b))"), ("vs a b 0\nc2 b 0 1u", "i(vs)"),
+         ("r2 a b 1k\nd2 b 0\nd3 0 b", "ddt(v(a))")]
+RISE, HIGH, FALL, LOW = 0.14, 0.26, 0.2, 0.4  # parts of a period
+COMPARISONS = [("u(x)", RISE), ("x>0 ? 1 : 0", RISE), ("x>=0 ? 1 : 0", 1 - FALL), ("x<0 ? 1 : 0", FALL), ("x<=0 ? 1 : 0", 1 - RISE),
+               ("if(x>0,2,-1)", 3 * RISE - 1), ("!(x>0) ? 4 : 3", 4 - RISE)]
+
+
+def check_rates(checker, case, volts, period):
+    """The means over two periods of all comparisons of a rate."""
+    cards, rate = case
+    wave = f"PULSE(0 {volts!r} {0.4 * LOW * period!r} {RISE * period!r} {FALL * period!r} {HIGH * period!r} {period!r})"
+    drive = f"i1 0 s {wave}\nv1 s a 0\nr1 a 0 1" if rate == "v(b)" else f"v1 a 0 {wave}"
+    text = "\n".join(["flat", drive, cards.format(volts=volts)] + [f"b{k + 10} y{k} 0 v={formula.replace('x', rate)}\nr{k + 50} y{k} 0 1k\n"
+                                              f".meas tran m{k} avg v(y{k})" for k, (formula, _) in enumerate(COMPARISONS)]
+                     + [f".tran {period / 100!r} {2 * period!r}", ".end\n"])
+    done = run(sys.argv[1], text, method=None, options=["--audit", "full"])
+    what = f"{rate} behind {cards[:20]!r}, {volts} V, {period} s"
+    if checker.check(done.status == 0, f"{what}: {done.stderr[:300]}"):
+        got = {m["name"]: m["value"] for m in done.report["measurements"]}
+        for k, (formula, mean) in enumerate(COMPARISONS):
+            checker.close(got[f"m{k}"], mean, 1e-9, f"{what}: mean of {formula}")
+
 
 def check(checker, case, volts, method):
     cards, formula, crest, behind, rest = case
@@ -53,6 +79,9 @@ def main():
         for volts in 10.0, 2e-5, 3e3:
             for method in "auto", "lobatto":
                 check(checker, case, volts, method)
+    for case in some_of(RATES):
+        for volts, period in (3.3, 5e-6), (2e-5, 0.02), (3e3, 1e-3):
+            check_rates(checker, case, volts, period)
     return checker.finish()
 
 
