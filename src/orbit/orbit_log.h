@@ -41,6 +41,16 @@ struct dalcs_orbit_stretch {
     uint64_t *resting; /* as of a span */
 };
 
+/* A diode that comes near to 0 and stays on its side (orbit_near.h). */
+struct dalcs_orbit_low {
+    int pair;
+    bool on;
+    double t;     /* s */
+    double value; /* V or A: w or lambda there */
+    double above
+        [2]; /* the largest of it since the low before, or since it has this side; and until the next */
+};
+
 struct dalcs_orbit_part {
     struct dalcs_orbit_log *log;
     struct dalcs_orbit_rates rates;
@@ -57,6 +67,14 @@ struct dalcs_orbit_part {
         bool is_over;                        /* the last one */
         bool any;                            /* of them has a diode that rests */
     } rest;
+
+    struct dalcs_orbit_near {
+        int n;
+        size_t capacity;
+        struct dalcs_orbit_low *low;  /* [n] */
+        struct dalcs_near_pair *pair; /* [n_pairs] work */
+        uint64_t *mode, *first;       /* [n_words] of the last segment, and of the first one */
+    } near;
 
     bool jumped;         /* behind the last one, in jump_mode */
     uint64_t *jump_mode; /* [n_words] */

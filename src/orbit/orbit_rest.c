@@ -2,6 +2,7 @@
 #include "orbit_rest.h"
 
 #include "magnitudes.h"
+#include "orbit_near.h"
 #include "rounding.h"
 #include "step_error.h"
 
@@ -78,7 +79,7 @@ enum dalcs_status dalcs_orbit_rest_note(struct dalcs_orbit_part *p,
     stretch->n++;
     p->rest.is_over = part->segment.why != DALCS_END_OF_STEP;
     note_pairs(p, stretch);
-    return DALCS_OK;
+    return dalcs_orbit_near_note(p, span);
 }
 
 /* ---- At its end ---------------------------------------------------------------------------------- */
@@ -187,6 +188,7 @@ enum dalcs_status dalcs_orbit_rest_find(struct dalcs_orbit_part *p, double T) {
     if (own == NULL) {
         return DALCS_E_NOMEM;
     }
+    DALCS_TRY(dalcs_orbit_near_find(p));
     find_own(p, own);
     DALCS_TRY(find_resting(p, T, own));
     return p->rest.any ? cut_spans(p) : DALCS_OK;
@@ -194,4 +196,5 @@ enum dalcs_status dalcs_orbit_rest_find(struct dalcs_orbit_part *p, double T) {
 
 void dalcs_orbit_rest_finish(struct dalcs_orbit_part *p) {
     free(p->rest.stretch);
+    dalcs_orbit_near_finish(p);
 }

@@ -10,7 +10,7 @@
 
 #include "orbit_log.h"
 
-/* What pairs come to in the present segment, which is of the span. */
+/* What pairs come to in the present segment, which is of the span; and whether they come near to it (orbit_near.h). */
 enum dalcs_status dalcs_orbit_rest_note(struct dalcs_orbit_part *p,
                                         const struct dalcs_orbit_span *span) DALCS_MUST_CHECK;
 

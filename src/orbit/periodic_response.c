@@ -159,6 +159,17 @@ static void end_gates(struct dalcs_periodic_response *r, double w) {
     dalcs_periodic_gates_end(&r->gates, &there, r->now + flow->n_x);
 }
 
+/* Of diodes that come near to their other side the one that the smallest signal takes there counts. */
+static void look_near(struct dalcs_periodic_response *r, const struct dalcs_flow_piece *piece,
+                      double complex phase) {
+    double reach;
+    const struct dalcs_orbit_low *low = dalcs_periodic_near_look(r, piece, phase, &reach);
+    if (low != NULL && (r->near.low == NULL || reach < r->near.reach)) {
+        r->near.low = low;
+        r->near.reach = reach;
+    }
+}
+
 /* From r->now at the start to what it is at the end of the period. means: r->y grows, with everything at w + of. */
 static void go_through(struct dalcs_periodic_response *r, double w, double other, bool means) {
     const struct dalcs_periodic_flow *flow = r->flow;
@@ -182,6 +193,9 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
         }
         if (means && r->stamp <= r->last_look && r->resting == NULL) {
             r->resting = dalcs_periodic_rest_look(r, piece, phase);
+        }
+        if (means && r->stamp <= r->last_look) {
+            look_near(r, piece, phase);
         }
         const struct dalcs_orbit_span *end = piece->end;
         dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;

@@ -24,6 +24,12 @@ struct dalcs_periodic_response {
     int *pivot;
     const char *
         resting; /* an element that small signals of a frequency so far leave no linear response (periodic_rest.h) */
+
+    struct { /* a diode that only comes near to its other side, and that they move */
+        const struct dalcs_orbit_low *low; /* NULL: none */
+        double reach;                      /* of the signals, by which they take it there */
+    } near;
+
     long stamp;
     long last_look; /* the stamp up to which it is looked for */
     struct dalcs_arena arena;

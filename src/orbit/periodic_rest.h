@@ -9,4 +9,10 @@
 const char *dalcs_periodic_rest_look(const struct dalcs_periodic_response *r,
                                      const struct dalcs_flow_piece *piece, double complex phase);
 
+/* One of the times at which a diode only comes near to its other side (orbit_near.h), of those in the piece, if that counts
+ * for small signals; *reach: of them, by which they take it there. NULL: none. */
+const struct dalcs_orbit_low *dalcs_periodic_near_look(const struct dalcs_periodic_response *r,
+                                                       const struct dalcs_flow_piece *piece,
+                                                       double complex phase, double *reach);
+
 #endif

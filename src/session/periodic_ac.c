@@ -117,25 +117,6 @@ static enum dalcs_status announce(struct dalcs_periodic_ac *a) {
                                                       .is_complex = true});
 }
 
-/* A diode that a small signal opens and closes by its own sign. */
-static void tell_resting(struct dalcs_periodic_ac *a) {
-    struct dalcs_session *s = a->run->s;
-    const char *element = a->by_current.response.resting;
-    for (int k = 0; k < a->n_parts; k++) {
-        element = a->part[k].response.resting != NULL ? a->part[k].response.resting : element;
-    }
-    if (element != NULL) {
-        s->report.response.exact = false;
-        dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.ac.where,
-                       "give it a path of leakage, which decides its side; or inject a small sine "
-                       "in .tran",
-                       "there is no linear response: '%s' has neither voltage nor current for a "
-                       "while, and conducts one half of a small sine alone; the rows take it as "
-                       "it stands",
-                       element);
-    }
-}
-
 static enum dalcs_status walk(struct dalcs_periodic_ac *a) {
     struct dalcs_run *r = a->run;
     const struct dalcs_sweep *f = a->sweep;
@@ -147,7 +128,7 @@ static enum dalcs_status walk(struct dalcs_periodic_ac *a) {
         DALCS_TRY(put_row(a, dalcs_sweep_value(f, k)));
         DALCS_TRY(dalcs_run_progress(r, k + 1, f->n));
     }
-    tell_resting(a);
+    dalcs_periodic_ac_tell(a);
     DALCS_TRY(dalcs_measures_report(&a->measures, r, DALCS_OK));
     DALCS_TRY(dalcs_periodic_loop_report(a));
     return r->sink->end(r->sink->user);

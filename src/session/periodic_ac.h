@@ -66,4 +66,7 @@ double complex dalcs_periodic_loop_gain(const struct dalcs_periodic_ac *ac);
 /* Margins into the report. */
 enum dalcs_status dalcs_periodic_loop_report(struct dalcs_periodic_ac *ac) DALCS_MUST_CHECK;
 
+/* Behind the rows: which diodes small signals take to another side than the rows have it, as warnings. */
+void dalcs_periodic_ac_tell(struct dalcs_periodic_ac *ac);
+
 #endif

@@ -310,7 +310,7 @@ static enum dalcs_status try_from_run(struct dalcs_steady *st, const struct sear
         return DALCS_OK;
     }
     dalcs_steady_copy_point(st, &st->at, &s->run);
-    DALCS_TRY(dalcs_steady_continue(st, &is_near));
+    DALCS_TRY(dalcs_steady_continue(st, s->total, &is_near));
     DALCS_TRY(is_near ? burst_on(st, found) : DALCS_OK); /* the last pass is from there, with M */
     st->is_stuck = false;                                /* the run is not */
     return DALCS_OK;

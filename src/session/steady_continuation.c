@@ -11,7 +11,9 @@
  * as much as M does.
  *
  * The period map of a passive circuit moves no two states away from each other, in units in which energies are alike:
- * so Phi(x) - x never grows along a run, and a leap behind which it has grown is none.
+ * so Phi(x) - x never grows along a run, and a leap behind which it has grown is none. In a circuit with a control, or with
+ * impulses that M does not know from far away, many are none. So at first one of them ends it, and later, where a run of so
+ * many periods has not helped, as many: what a search takes for leaps goes with what it takes for the run.
  *
  * The numbers below are no thresholds of an answer: each of them a tenth or ten times as large, multipliers of 10 to 40
  * stages take 10 to 28 steps and 50 to 435 periods. */
@@ -113,11 +115,12 @@ static double next_length(double k, double left) {
     return fmin(longest, longer_by * k * fmax(1.0, 1.0 / left));
 }
 
-/* From the last pass on, with `before` as work. */
-static enum dalcs_status go(struct dalcs_steady *st, struct dalcs_orbit_point *before,
-                            bool *is_near) {
+/* From the last pass on, with `before` as work, until so many leaps were none. */
+static enum dalcs_status go(struct dalcs_steady *st, long most_failed,
+                            struct dalcs_orbit_point *before, bool *is_near) {
     double k = first_leap;
-    for (int n = 0; n < MOST_LEAPS && !*is_near && k > 1.0; n++) {
+    long n_failed = 0;
+    for (int n = 0; n < MOST_LEAPS && !*is_near && k > 1.0 && n_failed < most_failed; n++) {
         const double size = size_of_change(st);
         dalcs_steady_copy_point(st, before, &st->then);
         const enum dalcs_status status = leap(st, k);
@@ -128,6 +131,7 @@ static enum dalcs_status go(struct dalcs_steady *st, struct dalcs_orbit_point *b
             k = next_length(k, left);
             continue;
         }
+        n_failed++;
         k = k > 2.0 ? sqrt(k) : 1.0;
         dalcs_steady_copy_point(st, &st->at, before);
         DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
@@ -135,13 +139,13 @@ static enum dalcs_status go(struct dalcs_steady *st, struct dalcs_orbit_point *b
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_steady_continue(struct dalcs_steady *st, bool *is_near) {
+enum dalcs_status dalcs_steady_continue(struct dalcs_steady *st, long most_failed, bool *is_near) {
     struct dalcs_orbit_point before;
     *is_near = false;
     if (!dalcs_steady_make_point(st, &before)) {
         return DALCS_E_NOMEM;
     }
     enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
-    status = status == DALCS_OK ? go(st, &before, is_near) : status;
+    status = status == DALCS_OK ? go(st, most_failed, &before, is_near) : status;
     return status < DALCS_OK ? status : DALCS_OK; /* a run that fails ends it, no more */
 }

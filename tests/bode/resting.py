@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Diodes that have neither voltage nor current for a while: a small signal decides their sides itself.
+"""Diodes that have neither voltage nor current for a while, or for an instant: a small signal decides their sides itself.
 
 usage: resting.py PROGRAM
 
 Where it reaches one there is no linear response, and the program says so, with its name. That this is true a small sine
-shows: the component at twice its frequency falls with the amplitude, not with its square. Where it reaches none, as of a
-diode across a closed switch without resistance, the response is exact, and that of a small sine.
+shows: the component at twice its frequency falls with the amplitude, not with its square. Those that only come near to
+their other side are named, with the signal that takes them there, which is less than one that an analyser would send. Where it
+reaches none, as of a diode across a closed switch without resistance, the response is exact, and that of a small sine.
 """
 
 import cmath
@@ -55,7 +56,35 @@ def reached():
                    0.0, 1e-3, 1e-3, "v(out)"), "d1"
 
 
+def forward(coupling, store, period, level, coil):
+    """The coil rings with the capacitor from the clamp back to the clamp, once it is empty."""
+    return Topology(f"forward, K = {coupling}", "Vin in 0 {S}\n" + gate(1, period, 0, 0.4) + f"L1 in sw {coil!r}\nL2 s 0 {coil / 4!r}\n"
+                    f"K1 L1 L2 {coupling}\nS1 sw 0 g1 0 s0\nCr sw 0 {store}\nDc 0 sw\nD1 s f\nD2 0 f\nLo f out {coil / 25!r}\n"
+                    "C1 out 0 100u\nR1 out 0 2\n" + IDEAL, level, 1e-5 * level, period, "v(out)")
+
+
+def pump(resistance, store):
+    return Topology(f"pump, {resistance} and {store}", "Vin in 0 {S}\nVk ck 0 PULSE(0 5 0 0 0 5u 10u)\n"
+                    f"R0 ck k {resistance}\nC1 k a {store}\nD1 in a\nD2 a out\nCo out 0 1u\nRo out 0 5k\n", 5.0, 5e-3, 10e-6, "v(out)")
+
+
+def near():
+    """Topologies, and the diode that only comes near to its other side."""
+    yield forward(0.9, "220p", 10e-6, 48.0, 1e-3), "dc"
+    yield forward(0.97, "1n", 50e-6, 12.0, 3e-3), "dc"
+    yield Topology("buck-boost that rings", "Vin in 0 {S}\n" + gate(1, 10e-6, 0, 0.2) + "S1 in sw g1 0 s0\nDb sw in\nL1 sw 0 20u\n"
+                   "Cs sw 0 100p\nD1 out sw\nC1 out 0 10u\nR1 out 0 300\n" + IDEAL, 12.0, 1.2e-4, 10e-6, "v(out)"), "db"
+    for resistance, store in (("1m", "1u"), ("30", "10n"), ("10", "47n")):
+        yield pump(resistance, store), "d1"
+    yield Topology("four diodes", "Vin in 0 {S}\n" + square("ck1", 0.0, 5.0, 10e-6) + "E2 ck2 0 VALUE={5-v(ck1)}\nD0 in n0\n" +
+                   "".join(f"R{k} ck{1 + k % 2} c{k} 10\nC{k} c{k} n{k} 10n\nD{k + 1} n{k} n{k + 1}\n" for k in range(3)) +
+                   "Co n3 0 1u\nRo n3 0 5k\n", 5.0, 5e-3, 10e-6, "v(n3)"), "d0"
+
+
 def not_reached():
+    ring = forward(0.9, "220p", 10e-6, 48.0, 1e-3)
+    yield ring._replace(name="forward with a loss", netlist=ring.netlist + "Rd sw in 10k\n", amplitude=1e-3)
+    yield forward(0.7, "68p", 4e-6, 300.0, 2e-3)._replace(amplitude=1e-2)
     two = "Vin in 0 {S}\n" + gate(1, 10e-6, 0, 0.4) + gate(2, 10e-6, 0.4, 0.6)
     yield Topology("diodes across switches", two + BUCK + "Ds sw in\nS2 sw 0 g2 0 s0\n" + IDEAL, 24.0, 1e-3, 10e-6, "v(out)")
     yield Topology("a bridge of them", "Vin in 0 {S}\n" + gate(1, 20e-6, 0, 0.6) + gate(2, 20e-6, 0.6, 0.4) +
@@ -107,9 +136,16 @@ class Look:
         twice = [abs(self.injected(case, case.amplitude / k)[1]) for k in (1, 4)]
         self.checker.check(twice[1] > 0.5 * twice[0] > 1e-6, f"{case.name}: linear, {twice}")
 
+    def look_at_near(self, case, name):
+        """It is said, and that it is true a sine shows that is larger than that."""
+        said, exact, found = self.response(case)
+        self.checker.check(not exact and "have this response" in said and f"'{name}' is " in said, f"{case.name}: {exact}, {said}")
+        away = abs(self.injected(case, case.amplitude)[0] - found) / abs(found)
+        self.checker.check(away > 1e-3, f"{case.name}: {found} is off by {away:.2g} alone")
+
     def look_at_others(self, case):
         said, exact, found = self.response(case)
-        self.checker.check(exact and "linear" not in said, f"{case.name}: {said}")
+        self.checker.check(exact and "linear" not in said and "only signals" not in said, f"{case.name}: {said}")
         whole, half = self.injected(case, case.amplitude)[0], self.injected(case, case.amplitude / 2)[0]
         away = abs(found - (4 * half - whole) / 3) / abs(found)
         self.checker.check(away <= NEAR, f"{case.name}: {found} is off by {away:.2g}")
@@ -121,6 +157,8 @@ def main():
         look = Look(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(folder), checker)
         for case, names in reached():
             look.look_at_reached(case, names)
+        for case, name in near():
+            look.look_at_near(case, name)
         for case in not_reached():
             look.look_at_others(case)
     return checker.finish()

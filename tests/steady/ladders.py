@@ -3,8 +3,8 @@
 
 usage: ladders.py PROGRAM
 
-How many steps and periods that takes is bounded, and what is found agrees with a formula or with a long run. Without
-leaps (steady_continuation.c) the ideal ladders take 500 to 950 periods.
+How many steps and periods that takes is bounded, also where leaps lead astray instead, and what is found agrees with a
+formula or with a long run. Without leaps (steady_continuation.c) the ideal ladders take 500 to 950 periods.
 """
 
 import json
@@ -63,6 +63,18 @@ CASES = [(f"{n} stages", cockcroft_walton(n),
 ]
 
 
+def boost(siemens, farads):
+    """Its integral takes thousands of periods: from far away leaps lead to where the switch stays closed."""
+    return ("Vin in 0 12\nL1 in sw 47u\nS1 sw 0 g 0 sm\nD1 sw out\nC1 out 0 47u\nR1 out 0 20\n"
+            f"Gi 0 int VALUE={{{siemens!r}*(5-v(out)*5/24)}}\nCi int 0 {farads!r}\nVtri tri 0 PULSE(0 1 0 9.98u 0.01u 0.01u 10u)\n"
+            "E2 g 0 VALUE={v(int)-v(tri)}\n.model sm SW(Ron=10m Vt=0)\n")
+
+
+# Leaps that lead away are few at first: with all of them these take 122 and 63 steps, 375 and 237 periods.
+MISLED = [("a boost converter with a slow integral", boost(1e-7, 1e-7), (60, 220)),
+          ("the same, less slow", boost(1e-6, 1e-7), (50, 220))]
+
+
 def run(program, folder, netlist, verb, *options):
     (folder / "c.cir").write_text(netlist)
     done = subprocess.run([program, verb, "c.cir", "-q", "-o", "none", "--report", "c.json", *options], cwd=folder,
@@ -70,14 +82,14 @@ def run(program, folder, netlist, verb, *options):
     return done, json.loads((folder / "c.json").read_text())
 
 
-def look_at(checker, program, folder, name, body, formula):
+def look_at(checker, program, folder, name, body, formula, most=(MOST_STEPS, MOST_PERIODS)):
     done, report = run(program, folder, f"{name}\n{body}.pss uic\n.end\n", "steady")
     if not checker.check(done.returncode == 0, f"{name}: {done.stderr}"):
         return
     steady = report["steady"]
     largest = max(math.hypot(m["re"], m["im"]) for m in steady["multipliers"])
     checker.check(steady["stable"] and steady["exact"], f"{name}: {steady['verdict']}")
-    checker.check(steady["newton"] <= MOST_STEPS and steady["periods"] <= MOST_PERIODS,
+    checker.check(steady["newton"] <= most[0] and steady["periods"] <= most[1],
                   f"{name}: {steady['newton']} steps, {steady['periods']} periods")
     if formula is not None:
         signal, ideal, drop, stages = formula
@@ -123,6 +135,8 @@ def main():
             look_at(checker, program, pathlib.Path(folder), name, body, formula)
             if name in COMPARED:
                 compare_ways(checker, program, pathlib.Path(folder), name, body)
+        for name, body, most in MISLED:
+            look_at(checker, program, pathlib.Path(folder), name, body, None, most)
     return checker.finish()
 
 
