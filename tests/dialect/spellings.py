@@ -771,6 +771,39 @@ B1 a 0 V={@}
 R1 a 0 1
 .tran 10u 3.73m
 """
+# Beyond their domain roots, powers and inverse functions are complex in LTspice and Xyce, and the real part counts.
+LTSPICE = ".options dialect=ltspice\nV1 a 0 -4\n@\nR1 b 0 1k\n.op\n"
+FORMULAS += [
+    Kind("the real part of a function", LTSPICE, "B1 b 0 V=1+0*v(a)", "v(b)", 1.0, [
+        "B1 b 0 V=1+sqrt(v(a))",
+        "B1 b 0 V=1+v(a)**0.5",
+        "B1 b 0 V=1+pow(v(a), 1.5)+pow(v(a)-1, 2.5)",
+        "B1 b 0 V=sqrt(sqrt(v(a)*3-1)+1)",
+        "B1 b 0 V=sqrt(v(a)**2)-3",
+        "B1 b 0 V=sqrt(v(a)*v(a)+9)-4",
+        "B1 b 0 V=1+acosh(v(a)/8)+acosh(v(a))",
+        "B1 b 0 V=-asin(v(a))*2/pi",
+        "B1 b 0 V=acos(v(a))/pi",
+        "B1 b 0 V=1-arccos(-v(a))-sqrt(v(a))",
+        "B1 b 0 V=1+(v(a) > -5 ? sqrt(v(a)) : 7)",
+        "B1 b 0 V=if(v(a) > 0.1, sqrt(v(a)), 1)",
+        "B1 0 b I=1m+sqrt(v(a))",
+        ".func f(x) {sqrt(x)}\nE1 b 0 value={1+f(v(a))}",
+        "X1 a b s\n.subckt s p q\nB1 q 0 V=1+sqrt(v(p))*v(p)\n.ends",
+    ]),
+    Kind("the real part from a time on", ".options dialect=ltspice\nV1 a 0 PWL(0 -1 1m 1)\n@\nC1 c 0 1m\n.tran 50u 1m uic\n",
+         "I1 0 c PWL(0 0.4 0.5m 0.4 0.5m 0)", "v(c)", 0.2, [
+        "B1 0 c I=v(a)**1.5",
+        "B1 0 c I=pow(v(a), 1.5)",
+        "B1 0 c I=uramp(v(a))**1.5",
+        "B1 0 c I=sqrt(v(a))*v(a)",
+    ]),
+    Kind("the real part in Xyce", LTSPICE.replace("ltspice", "xyce"), "B1 b 0 V=1+0*v(a)", "v(b)", 1.0, [
+        "B1 b 0 V={1+sqrt(v(a))}",
+        "E1 b 0 VALUE={1+pow(v(a), 1.5)}",
+    ]),
+]
+
 CARRIERS = [
     Kind("a sawtooth", OVER_TIME, "f*time", "v(a)", 0.73, [
         "time*f-floor(time*f)",
