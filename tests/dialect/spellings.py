@@ -772,6 +772,15 @@ B1 a 0 V={@}
 R1 a 0 1
 .tran 10u 3.73m
 """
+FORMULAS += [
+    Kind("a formula of .four in braces", "V1 a 0 SIN(0 1 1k 0 0 90)\nR1 a 0 1k\n.param f=1k n=3\n@\n.tran 10u 2m\n", ".four 1k v(a)", "v(a)", 1.0, [
+        ".four 1k {v(a)}",
+        ".four {f} {n} {v(a)}",
+        ".four {f} {n} {n-2} {2*v(a)} v(a) {v(a)*i(v1)}",
+        ".options dialect=xyce\nX1 s\n.subckt s\nV2 c 0 SIN(0 1 1k)\nR2 c 0 1\n.ends\n.four 1k {v(x1:c)} {v(a)-2*V(X1:c)}",
+    ]),
+]
+
 # Beyond their domain roots, powers and inverse functions are complex in LTspice and Xyce, and the real part counts.
 LTSPICE = ".options dialect=ltspice\nV1 a 0 -4\n@\nR1 b 0 1k\n.op\n"
 FORMULAS += [
