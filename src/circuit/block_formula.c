@@ -43,7 +43,28 @@ static void parse_product(const struct dalcs_block_card *c) {
     put_out(c, &w, product, &c->port[1].end[0]);
 }
 
-/* den_lower_limit has no meaning: where what is below passes 0, the quotient has no value. */
+/* What is below stays den_lower_limit away from 0 on its side of it, the positive one at 0, where the card says so:
+ * a/b is a/max(|b|, limit) with the sign of b. A divisor that stays away from 0 pays no kink without. */
+static const struct dalcs_formula *divide(const struct dalcs_block_card *c,
+                                          struct dalcs_formula_writer *w,
+                                          const struct dalcs_formula *above,
+                                          const struct dalcs_formula *below) {
+    const double limit = dalcs_block_number(c->block, "den_lower_limit", 0);
+    if (!(limit > 0)) {
+        return dalcs_formula_operation(w, DALCS_DIVIDE, above, below);
+    }
+    const struct dalcs_formula *size = dalcs_formula_call(w, "abs", 1, &below);
+    size = dalcs_formula_call(
+        w, "max", 2, (const struct dalcs_formula *const[]){size, dalcs_formula_number(w, limit)});
+    const struct dalcs_formula *side = dalcs_formula_operation(
+        w, DALCS_SUBTRACT,
+        dalcs_formula_operation(w, DALCS_MULTIPLY, dalcs_formula_number(w, 2),
+                                dalcs_formula_call(w, "ge0", 1, &below)),
+        dalcs_formula_number(w, 1));
+    return dalcs_formula_operation(w, DALCS_MULTIPLY,
+                                   dalcs_formula_operation(w, DALCS_DIVIDE, above, size), side);
+}
+
 static void parse_quotient(const struct dalcs_block_card *c) {
     static const char *const names[] = {"num_offset", "num_gain",        "den_offset",
                                         "den_gain",   "den_lower_limit", "den_domain",
@@ -61,7 +82,7 @@ static void parse_quotient(const struct dalcs_block_card *c) {
     const struct dalcs_formula *below =
         dalcs_block_line(&w, &c->port[1].end[0], dalcs_block_number(c->block, "den_offset", 0),
                          dalcs_block_number(c->block, "den_gain", 1));
-    put_out(c, &w, dalcs_formula_operation(&w, DALCS_DIVIDE, above, below), &c->port[2].end[0]);
+    put_out(c, &w, divide(c, &w, above, below), &c->port[2].end[0]);
 }
 
 /* A line between two signals, the upper one of which counts where they have met. */

@@ -27,7 +27,7 @@ static bool read_whole(struct dalcs_reader *reader, const char *what, int *value
 
 static bool next_is_number(const struct dalcs_reader *reader) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
-    return token != NULL && dalcs_reader_is_number(token);
+    return token != NULL && token->kind != DALCS_TOKEN_EXPRESSION && dalcs_reader_is_number(token);
 }
 
 static void add(struct dalcs_builder *builder, const struct dalcs_fourier_card *fourier) {

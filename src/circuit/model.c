@@ -179,6 +179,15 @@ static bool take_close(struct dalcs_reader *reader, const struct dalcs_token *op
     return false;
 }
 
+/* A parenthesis at the end that none opens is a blank, as in SPICE. */
+static void skip_stray_close(struct dalcs_reader *reader) {
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
+    if (dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_builder_warn(reader->builder, next, "leave it out",
+                           "no parenthesis was opened that this one closes");
+    }
+}
+
 /* Reads the parameters of a D or SW into the circuit; false when an error was reported. */
 static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *model) {
     struct dalcs_circuit *circuit = reader->builder->circuit;
@@ -216,7 +225,11 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
     if (!ok) {
         return false;
     }
-    return (!opened || take_close(reader, open)) && dalcs_reader_end(reader);
+    if (opened && !take_close(reader, open)) {
+        return false;
+    }
+    skip_stray_close(reader);
+    return dalcs_reader_end(reader);
 }
 
 /* What people call a part, and how SPICE calls its model. */

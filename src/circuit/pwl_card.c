@@ -8,7 +8,7 @@
  * does not end is written out twice, and the second course repeats. */
 #include "element_cards.h"
 #include "number.h"
-#include "number_file.h"
+#include "pwl_points.h"
 #include "reader.h"
 
 #include <math.h>
@@ -17,46 +17,7 @@
 
 static const char USAGE[] = "PWL(time value time value ...) [r=time] [td=time]";
 
-enum { MOST_POINTS = 10000000, DEEPEST = 4 };
-
-/* The points so far. */
-struct points {
-    struct dalcs_reader *reader;
-    enum dalcs_quantity quantity;
-    double *t, *v;
-    size_t n, t_capacity, v_capacity;
-    double time_scale, value_scale;
-    bool is_in_block; /* between REPEAT and ENDREPEAT */
-    bool is_closed;   /* a parenthesis was closed: a number after it is no point */
-    bool has_forever; /* the last block repeats forever */
-    bool is_relative; /* a note about times with + was made */
-    size_t block;     /* the first point of the block being read */
-    double from;      /* s, where that begins */
-    double repeat_from;
-    const struct dalcs_token *repeat; /* r= */
-    double delay;
-};
-
-static bool add_point(struct points *p, const struct dalcs_token *place, double t, double v) {
-    struct dalcs_builder *builder = p->reader->builder;
-    if (p->n >= MOST_POINTS) {
-        dalcs_builder_error(builder, place, NULL, "a PWL of more than %d points", MOST_POINTS);
-        return false;
-    }
-    if (p->n > 0 && t < p->t[p->n - 1]) {
-        dalcs_builder_error(builder, place, "times must ascend; two equal times are a jump",
-                            "PWL time %g s is before the one ahead of it, %g s", t, p->t[p->n - 1]);
-        return false;
-    }
-    if (dalcs_grow(&p->t, &p->t_capacity, p->n + 1, sizeof *p->t) != DALCS_OK ||
-        dalcs_grow(&p->v, &p->v_capacity, p->n + 1, sizeof *p->v) != DALCS_OK) {
-        builder->out_of_memory = true;
-        return false;
-    }
-    p->t[p->n] = t;
-    p->v[p->n++] = v;
-    return true;
-}
+enum { DEEPEST = 4 };
 
 /* Does a number follow? */
 static bool more(const struct dalcs_reader *reader) {
@@ -72,7 +33,7 @@ static bool is_relative(const struct dalcs_reader *reader) {
            next->kind == DALCS_TOKEN_NUMBER;
 }
 
-static bool read_point(struct points *p) {
+static bool read_point(struct dalcs_pwl_points *p) {
     struct dalcs_reader *reader = p->reader;
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
@@ -102,88 +63,34 @@ static bool read_point(struct points *p) {
                                "a time with '+' counts from the point before, as in LTspice");
         }
     }
-    return add_point(p, token, origin + t * p->time_scale, v * p->value_scale);
-}
-
-/* ---- A file -------------------------------------------------------------------------------- */
-
-static bool read_text(struct points *p, const struct dalcs_token *place,
-                      struct dalcs_number_file *file) {
-    struct dalcs_builder *builder = p->reader->builder;
-    double t;
-    double v;
-    const size_t before = p->n;
-    while (dalcs_number_file_next(file, &t)) {
-        if (!dalcs_number_file_next(file, &v)) {
-            if (file->wrong != NULL) {
-                break;
-            }
-            dalcs_builder_error(builder, place, "each line is a time and a value",
-                                "%s:%d: the last time has no value", file->path, file->line);
-            return false;
-        }
-        if (p->n > before && p->from + t * p->time_scale < p->t[p->n - 1]) {
-            dalcs_builder_error(builder, place, "times must ascend; two equal times are a jump",
-                                "%s:%d: time %g s is before the one ahead of it", file->path,
-                                file->line, t);
-            return false;
-        }
-        if (!add_point(p, place, p->from + t * p->time_scale, v * p->value_scale)) {
-            return false;
-        }
-    }
-    if (!dalcs_number_file_is_read(builder, place, file, "each line is a time and a value")) {
-        return false;
-    }
-    if (p->n == before) {
-        dalcs_builder_error(builder, place, NULL, "there are no points in %s", file->path);
-        return false;
-    }
-    return true;
-}
-
-static bool read_file(struct points *p) {
-    struct dalcs_builder *builder = p->reader->builder;
-    const struct dalcs_token *place = dalcs_reader_peek(p->reader, 0);
-    struct dalcs_number_file file;
-    if (place == NULL || (place->kind != DALCS_TOKEN_WORD && place->kind != DALCS_TOKEN_STRING)) {
-        dalcs_reader_missing(p->reader, "the name of a file");
-        return false;
-    }
-    p->reader->at++;
-    if (!dalcs_number_file_open(builder, place, "points", &file)) {
-        return false;
-    }
-    const bool ok = read_text(p, place, &file);
-    dalcs_number_file_close(&file);
-    return ok;
+    return dalcs_pwl_add(p, token, origin + t * p->time_scale, v * p->value_scale);
 }
 
 /* ---- Repetition ---------------------------------------------------------------------------- */
 
-static bool read_items(struct points *p, int depth);
+static bool read_items(struct dalcs_pwl_points *p, int depth);
 
 /* Appends the block again, `later` after its first course. */
-static bool repeat_block(struct points *p, const struct dalcs_token *place, size_t n,
+static bool repeat_block(struct dalcs_pwl_points *p, const struct dalcs_token *place, size_t n,
                          double later) {
     for (size_t k = 0; k < n; k++) {
         /* Rounding must not put the start of a course before the end of the last. */
         const double t = fmax(p->t[p->block + k] + later, p->t[p->n - 1]);
-        if (!add_point(p, place, t, p->v[p->block + k])) {
+        if (!dalcs_pwl_add(p, place, t, p->v[p->block + k])) {
             return false;
         }
     }
     return true;
 }
 
-static void leave_block(struct points *p, const struct points *outer) {
+static void leave_block(struct dalcs_pwl_points *p, const struct dalcs_pwl_points *outer) {
     p->block = outer->is_in_block ? outer->block : p->n;
     p->from = outer->is_in_block ? outer->from : 0;
     p->is_in_block = outer->is_in_block;
 }
 
 /* After REPEAT. */
-static bool read_repeat(struct points *p, int depth) {
+static bool read_repeat(struct dalcs_pwl_points *p, int depth) {
     struct dalcs_reader *reader = p->reader;
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *place = dalcs_reader_previous(reader);
@@ -202,7 +109,7 @@ static bool read_repeat(struct points *p, int depth) {
         return false;
     }
     /* Blocks stand in blocks: what is around this one goes on with its own origin behind it. */
-    const struct points outer = *p;
+    const struct dalcs_pwl_points outer = *p;
     if (is_forever && outer.is_in_block) {
         dalcs_builder_error(builder, place, "write REPEAT FOR n",
                             "a part that repeats forever cannot stand in one that repeats");
@@ -237,7 +144,7 @@ static bool read_repeat(struct points *p, int depth) {
 
 /* ---- The card ------------------------------------------------------------------------------ */
 
-static bool read_scale(struct points *p, double *scale) {
+static bool read_scale(struct dalcs_pwl_points *p, double *scale) {
     if (!dalcs_reader_number(p->reader, DALCS_PLAIN, "a factor", scale)) {
         return false;
     }
@@ -250,7 +157,7 @@ static bool read_scale(struct points *p, double *scale) {
 }
 
 /* A parameter that belongs to a PWL; false with *ok when another or none comes next. */
-static bool take_parameter(struct points *p, bool *ok) {
+static bool take_parameter(struct dalcs_pwl_points *p, bool *ok) {
     static const char *const names[] = {"file", "time_scale_factor", "value_scale_factor", "r",
                                         "td"};
     const struct dalcs_token *name = dalcs_reader_peek(p->reader, 0);
@@ -263,7 +170,7 @@ static bool take_parameter(struct points *p, bool *ok) {
     }
     if (strcmp(name->text, "file") == 0) {
         p->reader->at += p->reader->at == at; /* Xyce has no = */
-        *ok = read_file(p);
+        *ok = dalcs_pwl_read_file(p);
     } else if (strcmp(name->text, "time_scale_factor") == 0) {
         *ok = read_scale(p, &p->time_scale);
     } else if (strcmp(name->text, "value_scale_factor") == 0) {
@@ -278,7 +185,7 @@ static bool take_parameter(struct points *p, bool *ok) {
 }
 
 /* After an opening parenthesis. */
-static bool read_group(struct points *p, int depth) {
+static bool read_group(struct dalcs_pwl_points *p, int depth) {
     struct dalcs_reader *reader = p->reader;
     const struct dalcs_token *open = dalcs_reader_previous(reader);
     if (!read_items(p, depth + 1)) {
@@ -296,7 +203,7 @@ static bool read_group(struct points *p, int depth) {
 }
 
 /* Reads up to the end or to the next keyword of the card; depth counts parentheses and blocks. */
-static bool read_items(struct points *p, int depth) {
+static bool read_items(struct dalcs_pwl_points *p, int depth) {
     struct dalcs_reader *reader = p->reader;
     const struct dalcs_token *token;
     bool ok = true;
@@ -316,7 +223,7 @@ static bool read_items(struct points *p, int depth) {
 }
 
 /* r= must be one of the times, as in ngspice. */
-static bool find_repeat(struct points *p) {
+static bool find_repeat(struct dalcs_pwl_points *p) {
     struct dalcs_builder *builder = p->reader->builder;
     const double from = p->repeat_from * p->time_scale;
     bool found = false;
@@ -332,30 +239,9 @@ static bool find_repeat(struct points *p) {
     return true;
 }
 
-static bool keep_points(struct points *p, struct dalcs_stimulus *stimulus) {
-    struct dalcs_arena *arena = &p->reader->builder->circuit->arena;
-    double *t = dalcs_arena_alloc(arena, p->n, sizeof *t);
-    double *v = dalcs_arena_alloc(arena, p->n, sizeof *v);
-    if (t == NULL || v == NULL) {
-        p->reader->builder->out_of_memory = true;
-        return false;
-    }
-    for (size_t k = 0; k < p->n; k++) {
-        t[k] = p->t[k] + p->delay;
-        v[k] = p->v[k];
-    }
-    stimulus->kind = DALCS_STIMULUS_PWL;
-    stimulus->u.pwl.n = (int)p->n;
-    stimulus->u.pwl.t = t;
-    stimulus->u.pwl.v = v;
-    stimulus->u.pwl.repeats = p->repeat != NULL || p->has_forever;
-    stimulus->u.pwl.repeat_from = stimulus->u.pwl.repeats ? p->repeat_from + p->delay : 0;
-    return true;
-}
-
 bool dalcs_pwl_card_parse(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                           struct dalcs_stimulus *stimulus) {
-    struct points points = {
+    struct dalcs_pwl_points points = {
         .reader = reader, .quantity = quantity, .time_scale = 1, .value_scale = 1};
     const char *usage = reader->usage;
     reader->usage = USAGE;
@@ -364,7 +250,7 @@ bool dalcs_pwl_card_parse(struct dalcs_reader *reader, enum dalcs_quantity quant
         dalcs_reader_missing(reader, "a time");
         ok = false;
     }
-    ok = ok && (points.repeat == NULL || find_repeat(&points)) && keep_points(&points, stimulus);
+    ok = ok && (points.repeat == NULL || find_repeat(&points)) && dalcs_pwl_keep(&points, stimulus);
     reader->usage = usage;
     free(points.t);
     free(points.v);

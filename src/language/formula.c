@@ -129,6 +129,11 @@ const struct dalcs_formula *dalcs_formula_make_of(struct dalcs_language *languag
     if (formula != NULL && w.has_choices && variable == NULL) {
         formula = dalcs_formula_guard(language, formula, w.n_parts);
     }
+    const enum dalcs_dialect_name dialect = language->netlist->dialect.name;
+    if (formula != NULL && variable == NULL &&
+        (dialect == DALCS_DIALECT_LTSPICE || dialect == DALCS_DIALECT_XYCE)) {
+        formula = dalcs_formula_real_part(language, formula);
+    }
     free(w.stack);
     language->deck->has_errors = language->deck->has_errors || formula == NULL;
     return formula;

@@ -36,6 +36,9 @@ struct dalcs_formula {
 /* In a formula of x, where x is a TIME, the time is a CALL of this name without arguments. */
 extern const char dalcs_formula_time_beside[];
 
+/* Does a text read the time, a voltage or a current? */
+bool dalcs_formula_has_signal(const char *text);
+
 /* Does a formula hold the value of an element or a model, as Xyce writes it, x1:r1:r and dmod:is? */
 bool dalcs_formula_reads_value(const char *text);
 

@@ -78,6 +78,10 @@ static bool text_has_signal(const char *text, bool opens) {
     return false;
 }
 
+bool dalcs_formula_has_signal(const char *text) {
+    return text_has_signal(text, false);
+}
+
 static bool has_signal(const struct dalcs_card *card, int first, int n) {
     bool has = false;
     for (int k = first; k < first + n && !has; k++) {

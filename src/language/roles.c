@@ -223,6 +223,13 @@ static void formula_roles(const struct dalcs_card *card, unsigned char *role) {
             role[k] = is_measure ? DALCS_ROLE_RAW : DALCS_ROLE_SIGNAL;
         }
     }
+    /* The numbers ahead of the signals of a .four may be expressions, too. */
+    for (int k = 1; k < card->n && dalcs_token_is_word(card->token, ".four"); k++) {
+        if (card->token[k].kind == DALCS_TOKEN_EXPRESSION &&
+            dalcs_formula_has_signal(card->token[k].text)) {
+            role[k] = DALCS_ROLE_RAW;
+        }
+    }
 }
 
 void dalcs_roles(const struct dalcs_card *card, unsigned char *role) {

@@ -469,6 +469,7 @@ SOURCES = [
              "V1 a 0 PWL REPEAT FOR 3 REPEAT FOR 3 (0 0 +1m 3) ENDREPEAT ENDREPEAT",
              "V1 a 0 PWL(REPEAT FOR 3 REPEAT FOR 2 0 0 1m 1 ENDREPEAT 3m 3 ENDREPEAT)",
              "V1 a 0 PWL(REPEAT FOR 3 0 0 REPEAT FOR 2 0 0 1m 1 ENDREPEAT +1m 3 ENDREPEAT)",
+             "V1 a 0 PWL(0 0 1m 1 2m 0 REPEAT FOR 1 REPEAT FOR 2 1m 1 2m 0 ENDREPEAT 10m 6 ENDREPEAT)",
              "V1 a 0 PWL time_scale_factor=1m (REPEAT FOR 3 REPEAT FOR 2 0 0 1 1 ENDREPEAT 3 3 ENDREPEAT)",
              "V1 a 0 PWL value_scale_factor=3 (REPEAT FOR 3 REPEAT FOR 2 0 0 1m 1 ENDREPEAT 3m 1 ENDREPEAT)",
              "V1 a 0 PWL(REPEAT FOREVER REPEAT FOR 2 0 0 1m 1 ENDREPEAT 3m 3 3m 3 ENDREPEAT)",
@@ -771,6 +772,48 @@ B1 a 0 V={@}
 R1 a 0 1
 .tran 10u 3.73m
 """
+FORMULAS += [
+    Kind("a formula of .four in braces", "V1 a 0 SIN(0 1 1k 0 0 90)\nR1 a 0 1k\n.param f=1k n=3\n@\n.tran 10u 2m\n", ".four 1k v(a)", "v(a)", 1.0, [
+        ".four 1k {v(a)}",
+        ".four {f} {n} {v(a)}",
+        ".four {f} {n} {n-2} {2*v(a)} v(a) {v(a)*i(v1)}",
+        ".options dialect=xyce\nX1 s\n.subckt s\nV2 c 0 SIN(0 1 1k)\nR2 c 0 1\n.ends\n.four 1k {v(x1:c)} {v(a)-2*V(X1:c)}",
+    ]),
+]
+
+# Beyond their domain roots, powers and inverse functions are complex in LTspice and Xyce, and the real part counts.
+LTSPICE = ".options dialect=ltspice\nV1 a 0 -4\n@\nR1 b 0 1k\n.op\n"
+FORMULAS += [
+    Kind("the real part of a function", LTSPICE, "B1 b 0 V=1+0*v(a)", "v(b)", 1.0, [
+        "B1 b 0 V=1+sqrt(v(a))",
+        "B1 b 0 V=1+v(a)**0.5",
+        "B1 b 0 V=1+pow(v(a), 1.5)+pow(v(a)-1, 2.5)",
+        "B1 b 0 V=sqrt(sqrt(v(a)*3-1)+1)",
+        "B1 b 0 V=sqrt(v(a)**2)-3",
+        "B1 b 0 V=sqrt(v(a)*v(a)+9)-4",
+        "B1 b 0 V=1+acosh(v(a)/8)+acosh(v(a))",
+        "B1 b 0 V=-asin(v(a))*2/pi",
+        "B1 b 0 V=acos(v(a))/pi",
+        "B1 b 0 V=1-arccos(-v(a))-sqrt(v(a))",
+        "B1 b 0 V=1+(v(a) > -5 ? sqrt(v(a)) : 7)",
+        "B1 b 0 V=if(v(a) > 0.1, sqrt(v(a)), 1)",
+        "B1 0 b I=1m+sqrt(v(a))",
+        ".func f(x) {sqrt(x)}\nE1 b 0 value={1+f(v(a))}",
+        "X1 a b s\n.subckt s p q\nB1 q 0 V=1+sqrt(v(p))*v(p)\n.ends",
+    ]),
+    Kind("the real part from a time on", ".options dialect=ltspice\nV1 a 0 PWL(0 -1 1m 1)\n@\nC1 c 0 1m\n.tran 50u 1m uic\n",
+         "I1 0 c PWL(0 0.4 0.5m 0.4 0.5m 0)", "v(c)", 0.2, [
+        "B1 0 c I=v(a)**1.5",
+        "B1 0 c I=pow(v(a), 1.5)",
+        "B1 0 c I=uramp(v(a))**1.5",
+        "B1 0 c I=sqrt(v(a))*v(a)",
+    ]),
+    Kind("the real part in Xyce", LTSPICE.replace("ltspice", "xyce"), "B1 b 0 V=1+0*v(a)", "v(b)", 1.0, [
+        "B1 b 0 V={1+sqrt(v(a))}",
+        "E1 b 0 VALUE={1+pow(v(a), 1.5)}",
+    ]),
+]
+
 CARRIERS = [
     Kind("a sawtooth", OVER_TIME, "f*time", "v(a)", 0.73, [
         "time*f-floor(time*f)",
@@ -861,6 +904,9 @@ NOTED = [
     ("steady", "V1 a 0 1\nR1 a 0 1\n.tran 0 1m 0 1u steady startup\n", "goes on to the end of .tran"),
     ("a temperature", "V1 a 0 1\nD1 a b d\nR1 b 0 1 tc1=1m\n.model d D(Is=1p)\n.temp 85\n.op\n", "keep their values of 27 degrees"),
     ("temperatures", "V1 a 0 1\nR1 a 0 1 tc1=1m\n.temp 27 85 125\n.op\n", "first temperature of this card alone"),
+    ("a stray parenthesis", "V1 a 0 1\nS1 a b a 0 w\nR1 b 0 1\n.model w SW Ron=1 Vt=0.5 )\n.op\n", "no parenthesis was opened that this one closes"),
+    ("a stray parenthesis", "V1 a 0 1\nD1 a b d\nR1 b 0 1\n.model d D(Ron=1))\n.op\n", "no parenthesis was opened that this one closes"),
+    ("a stray parenthesis", "V1 a 0 1\nA1 a b g\nR1 b 0 1\n.model g gain gain=2 )\n.op\n", "no parenthesis was opened that this one closes"),
     ("level 2", "V1 a 0 1\nS1 a b a 0 w\nR1 b 0 1\n.model w SW(level=2 Ron=1 Roff=1Meg Vt=0.5 Vh=-0.1)\n.op\n", "changes over smoothly from 0.4 to 0.6 V (LTspice)"),
     ("level 2", "V1 a 0 1\nS1 a b a 0 w\nR1 b 0 1\n.param l=2\n.model w SW(Ron=1 Vt=0.5 Vh=0.3 level={l})\n.op\n", "from 0.2 to 0.8 V (LTspice)"),
     ("the name of .ends", "V1 a 0 1\nX1 a 0 s\n.subckt s p q\nR1 p q 1\n.ends r\n.op\n", "that ends here is 's'"),

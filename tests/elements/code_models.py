@@ -231,6 +231,23 @@ def products(checker, program):
             checker.close(q, 0.5 * 2 * (a - g + scale) / (-4 * (b + scale)) + 1, 1e-8, f"{what}: a quotient at {t}")
 
 
+def held_divisors(checker, program):
+    """divide with a limit of what is below, which passes 0 and jumps over it, against the numbers."""
+    for scale, rate, limit, sign in ((1, 50, 0.2, 1), (1e-3, 1e3, 0.01, -1), (1e4, 0.2, 0.5, 1), (20, 1e6, 2, -1), (0.3, 7, 0.9, 1)):
+        what = f"a divisor of {scale} V at {rate} Hz from {limit} on"
+        for below in (f"sin(0 {scale!r} {rate!r})", f"pulse({-scale!r} {scale!r} 0 0 0 {0.5 / rate!r} {1 / rate!r})"):
+            done = run_cards(program, what, [
+                f"v1 a 0 {below}", f"v2 b 0 sin({3 * scale!r} {scale!r} {2 * rate!r})", "a5 b a l lm",
+                f".model lm divide(den_lower_limit={limit * scale!r} den_gain={sign} out_gain=-3 out_offset=2 den_domain=1n)",
+                "r5 l 0 1k", f".tran {0.01 / rate!r} {1 / rate!r}"])
+            if not runs(checker, done, what):
+                continue
+            for t, a, b, l in zip(done.time, *(done.column(f"v({x})") for x in "abl")):
+                if abs(a) > 1e-9 * scale:  # at 0 it jumps
+                    held = math.copysign(max(abs(a), limit * scale), sign * a)
+                    checker.close(l, 2 - 3 * b / held, 1e-7 * (1 + 9 / limit), f"{what}: b/a at {t}")
+
+
 def transfers(checker, program):
     """s_xfer against LAPLACE with the same ratio, in steps and with offset and frequency, and against a closed form."""
     cases = (("num_coeff=[1] den_coeff=[1m 1]", "1/(1 + s*1m)"),
@@ -284,7 +301,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("code_models")
-    for part in (truth, ring, flip_flops, bridges, lines, states, products, transfers, refused):
+    for part in (truth, ring, flip_flops, bridges, lines, states, products, held_divisors, transfers, refused):
         part(checker, program)
     return checker.finish()
 
