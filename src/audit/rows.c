@@ -2,7 +2,7 @@
  * way (src/rows), so that they differ by rounding alone. */
 #include "audit_internal.h"
 
-#include "results.h"
+#include "claims.h"
 
 /* Of the tolerance: a row on the right of an event that is so close to the one on its left is made equal to it (rows.h). */
 static const double joins = 0.125;

@@ -1,7 +1,7 @@
 /* signals.c - signals, and formulas of them, as the auditor reads them. */
 #include "audit_internal.h"
 
-#include "results.h"
+#include "claims.h"
 
 /* Whose signal it is; -1: of no part. */
 static int owner_of(const struct dalcs_audit *audit, const struct dalcs_signal *signal) {

@@ -5,8 +5,8 @@
 #include "audit_measures.h"
 
 #include "audit_reader.h"
+#include "claims.h"
 #include "pi.h"
-#include "results.h"
 #include "rounding.h"
 
 struct told {
