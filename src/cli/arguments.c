@@ -105,9 +105,9 @@ static const struct option option[] = {
 
 static enum dalcs_status parse_sideband(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
-    if (dalcs_parse_number(text, &arguments->sideband) != DALCS_OK ||
-        !(fabs(arguments->sideband) <= DALCS_MOST_SIDEBAND) ||
-        arguments->sideband != rint(arguments->sideband)) {
+    if (dalcs_parse_number(text, &arguments->bode.sideband) != DALCS_OK ||
+        !(fabs(arguments->bode.sideband) <= DALCS_MOST_SIDEBAND) ||
+        arguments->bode.sideband != rint(arguments->bode.sideband)) {
         dalcs_cli_error(cli, "--sideband: '%s' is no whole number, at most %d of them away", text,
                         (int)DALCS_MOST_SIDEBAND);
         return DALCS_E_OPTION;
@@ -117,8 +117,8 @@ static enum dalcs_status parse_sideband(struct dalcs_arguments *arguments,
 
 static enum dalcs_status parse_injection(struct dalcs_arguments *arguments,
                                          const struct dalcs_cli *cli, const char *text) {
-    arguments->loop_is_loaded = strcmp(text, "both") == 0;
-    if (!arguments->loop_is_loaded && strcmp(text, "voltage") != 0) {
+    arguments->bode.loop_is_loaded = strcmp(text, "both") == 0;
+    if (!arguments->bode.loop_is_loaded && strcmp(text, "voltage") != 0) {
         dalcs_cli_error(cli, "--injection: '%s' is neither voltage nor both", text);
         return DALCS_E_OPTION;
     }
@@ -128,7 +128,7 @@ static enum dalcs_status parse_injection(struct dalcs_arguments *arguments,
 /* The options of `dalcs bode` alone. */
 static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                                    int code) {
-    if (!arguments->bode) {
+    if (!arguments->bode.is_asked) {
         int k = 0;
         while (option[k].val != code) {
             k++;
@@ -138,13 +138,13 @@ static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const stru
     }
     switch (code) {
     case FROM:
-        return dalcs_verb_take_positive(cli, "--from", optarg, &arguments->bode_from);
+        return dalcs_verb_take_positive(cli, "--from", optarg, &arguments->bode.from);
     case TO:
-        return dalcs_verb_take_positive(cli, "--to", optarg, &arguments->bode_to);
+        return dalcs_verb_take_positive(cli, "--to", optarg, &arguments->bode.to);
     case POINTS:
-        return dalcs_verb_take_count(cli, "--points", optarg, &arguments->bode_points);
+        return dalcs_verb_take_count(cli, "--points", optarg, &arguments->bode.points);
     case LOOP:
-        arguments->loop = optarg;
+        arguments->bode.loop = optarg;
         return DALCS_OK;
     case INJECTION:
         return parse_injection(arguments, cli, optarg);
@@ -154,10 +154,10 @@ static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const stru
 }
 
 static const char *verb_of(const struct dalcs_arguments *arguments) {
-    return arguments->steady     ? "steady"
-           : arguments->bode     ? "bode"
-           : arguments->envelope ? "envelope"
-                                 : "run";
+    return arguments->steady.is_asked     ? "steady"
+           : arguments->bode.is_asked     ? "bode"
+           : arguments->envelope.is_asked ? "envelope"
+                                          : "run";
 }
 
 static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
@@ -187,15 +187,15 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case TSTOP:
         return dalcs_argument_transient(arguments, cli, code == TRAN, optarg);
     case REPORT:
-        arguments->report = optarg;
+        arguments->files.report = optarg;
         return DALCS_OK;
     case PLOT:
         return dalcs_argument_plot(arguments, cli, optarg);
     case DUMP:
-        arguments->dump = optarg;
+        arguments->files.dump = optarg;
         return DALCS_OK;
     case ALL_SIGNALS:
-        arguments->all_signals = true;
+        arguments->files.all_signals = true;
         return DALCS_OK;
     case ENERGY:
         arguments->energy = true;
@@ -213,14 +213,14 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case SHARD:
         return dalcs_argument_shard(arguments, cli, optarg);
     case RESUME:
-        arguments->resume = true;
+        arguments->variants.resume = true;
         return DALCS_OK;
     case JOBS:
-        return dalcs_verb_take_count(cli, "--jobs", optarg, &arguments->jobs);
+        return dalcs_verb_take_count(cli, "--jobs", optarg, &arguments->variants.jobs);
     case SEED:
         return dalcs_argument_seed(arguments, cli, optarg);
     case ONLY:
-        return dalcs_verb_take_count(cli, "--only", optarg, &arguments->only);
+        return dalcs_verb_take_count(cli, "--only", optarg, &arguments->variants.only);
     case PERIOD:
         return dalcs_argument_period(arguments, cli, optarg);
     case STOP:
@@ -232,9 +232,11 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case BIFURCATION:
         return dalcs_argument_bifurcation(arguments, cli, optarg);
     case SAMPLES:
-        return dalcs_argument_samples(arguments, cli, "--samples", optarg, &arguments->samples);
+        return dalcs_argument_samples(arguments, cli, "--samples", optarg,
+                                      &arguments->steady.samples);
     case SETTLE:
-        return dalcs_argument_samples(arguments, cli, "--settle", optarg, &arguments->settle);
+        return dalcs_argument_samples(arguments, cli, "--settle", optarg,
+                                      &arguments->steady.settle);
     case MULTIPLIERS_PLOT:
         return dalcs_argument_multipliers_plot(arguments, cli, optarg);
     case FROM:
@@ -245,10 +247,10 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case SIDEBAND:
         return take_bode(arguments, cli, code);
     case ASCII:
-        arguments->ascii = true;
+        arguments->files.ascii = true;
         return DALCS_OK;
     case SPLIT_STEPS:
-        arguments->split_steps = true;
+        arguments->files.split_steps = true;
         return DALCS_OK;
     case 'q':
         arguments->quiet = true;
@@ -284,17 +286,17 @@ static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli) {
     const bool is_input = strcmp(arguments->netlist, "-") == 0;
     const char *base = is_input ? "stdin" : base_of(arguments->netlist);
-    const bool has_default = arguments->n_outputs == 0 && !arguments->no_waveforms;
+    const bool has_default = arguments->files.n_outputs == 0 && !arguments->files.no_waveforms;
     if (has_default) {
-        arguments->default_output = change_ending(base, ".raw");
-        arguments->output[arguments->n_outputs++] = arguments->default_output;
+        arguments->files.default_output = change_ending(base, ".raw");
+        arguments->files.output[arguments->files.n_outputs++] = arguments->files.default_output;
     }
-    const char *beside = arguments->n_outputs > 0 ? arguments->output[0] : base;
-    if (!arguments->dump && beside) {
-        arguments->default_dump = change_ending(beside, ".failed.dalcs");
-        arguments->dump = arguments->default_dump;
+    const char *beside = arguments->files.n_outputs > 0 ? arguments->files.output[0] : base;
+    if (!arguments->files.dump && beside) {
+        arguments->files.default_dump = change_ending(beside, ".failed.dalcs");
+        arguments->files.dump = arguments->files.default_dump;
     }
-    if ((has_default && !arguments->default_output) || !arguments->dump) {
+    if ((has_default && !arguments->files.default_output) || !arguments->files.dump) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_E_NOMEM;
     }
@@ -303,15 +305,15 @@ static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc, char **argv) {
-    *arguments = (struct dalcs_arguments){.steady = strcmp(argv[0], "steady") == 0,
-                                          .bode = strcmp(argv[0], "bode") == 0,
-                                          .envelope = strcmp(argv[0], "envelope") == 0,
-                                          .seed = NAN,
-                                          .losses_from = NAN,
-                                          .losses_to = INFINITY};
-    arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);
+    *arguments = (struct dalcs_arguments){.steady.is_asked = strcmp(argv[0], "steady") == 0,
+                                          .bode.is_asked = strcmp(argv[0], "bode") == 0,
+                                          .envelope.is_asked = strcmp(argv[0], "envelope") == 0,
+                                          .variants.seed = NAN,
+                                          .losses.from = NAN,
+                                          .losses.to = INFINITY};
+    arguments->files.output = dalcs_alloc((size_t)argc, sizeof *arguments->files.output);
     arguments->set = dalcs_alloc((size_t)argc, sizeof *arguments->set);
-    if (!arguments->output || !arguments->set) {
+    if (!arguments->files.output || !arguments->set) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         dalcs_arguments_finish(arguments);
         return DALCS_E_NOMEM;
@@ -324,18 +326,18 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
         status = take(arguments, cli, code, argv);
     }
     if (status == DALCS_OK && !arguments->help && dalcs_arguments_have_times(arguments) &&
-        arguments->compress > 0.0) {
+        arguments->rows.compress > 0.0) {
         dalcs_cli_error(cli,
                         "--compress leaves rows out, --at prints each of its times: choose one");
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help && dalcs_arguments_have_times(arguments) &&
-        arguments->fill > 0.0) {
+        arguments->rows.fill > 0.0) {
         dalcs_cli_error(cli, "--fill adds rows, --at prints only its own times: choose one");
         status = DALCS_E_OPTION;
     }
-    if (status == DALCS_OK && !arguments->help && arguments->samples > 0 &&
-        (arguments->plot || arguments->multipliers_plot)) {
+    if (status == DALCS_OK && !arguments->help && arguments->steady.samples > 0 &&
+        (arguments->files.plot || arguments->steady.multipliers_plot)) {
         dalcs_cli_error(cli, "--bifurcation and --samples draw many orbits: leave out --plot and "
                              "--multipliers-plot");
         status = DALCS_E_OPTION;
@@ -351,12 +353,12 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
 }
 
 void dalcs_arguments_finish(struct dalcs_arguments *arguments) {
-    free(arguments->output);
+    free(arguments->files.output);
     free(arguments->set);
-    free(arguments->variable);
-    free(arguments->show);
-    free(arguments->times);
-    free(arguments->default_output);
-    free(arguments->default_dump);
+    free(arguments->batch.variable);
+    free(arguments->envelope.show);
+    free(arguments->rows.times);
+    free(arguments->files.default_output);
+    free(arguments->files.default_dump);
     *arguments = (struct dalcs_arguments){0};
 }

@@ -100,14 +100,14 @@ static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int
     for (int code; (code = getopt_long(argc, argv, ":br:o:anipqst:vD:h", option, NULL)) != -1;) {
         switch (code) {
         case 'r':
-            b->arguments.output[0] = optarg;
-            b->arguments.n_outputs = 1;
+            b->arguments.files.output[0] = optarg;
+            b->arguments.files.n_outputs = 1;
             break;
         case 'o':
             b->log = optarg;
             break;
         case ASCII:
-            b->arguments.ascii = true;
+            b->arguments.files.ascii = true;
             break;
         case DIALECT:
             DALCS_TRY(dalcs_verb_take_dialect(cli, optarg, &b->arguments.dialect));
@@ -188,9 +188,10 @@ static enum dalcs_status run_into_log(const struct dalcs_cli *cli, struct batch 
 
 static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **argv,
                                 bool is_ngspice) {
-    struct batch b = {.arguments = {.batch = true, .seed = NAN}, .is_ngspice = is_ngspice};
-    b.arguments.output = dalcs_alloc(1, sizeof *b.arguments.output);
-    if (!b.arguments.output) {
+    struct batch b = {.arguments = {.batch.is_asked = true, .variants.seed = NAN},
+                      .is_ngspice = is_ngspice};
+    b.arguments.files.output = dalcs_alloc(1, sizeof *b.arguments.files.output);
+    if (!b.arguments.files.output) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_EXIT_RUN;
     }
@@ -203,7 +204,7 @@ static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **ar
                 "******\n** ngspice-39, for programs that look for it: this is dalcs %s\n******\n",
                 dalcs_version());
     } else if (status == DALCS_OK) {
-        b.arguments.log = b.log;
+        b.arguments.batch.log = b.log;
         status = dalcs_paths_check(cli, &b.arguments);
         if (status == DALCS_OK) {
             status = b.log ? run_into_log(cli, &b) : run(cli, &b);

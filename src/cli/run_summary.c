@@ -56,12 +56,13 @@ void dalcs_run_tell(const struct dalcs_run *run, const struct dalcs_arguments *a
             continue; /* rows at the beginnings of periods have no averages of them */
         }
         if (is_envelope) {
-            dalcs_summary_write_ends(out, &run->outputs.measure[shown[i]], arguments->all_signals);
+            dalcs_summary_write_ends(out, &run->outputs.measure[shown[i]],
+                                     arguments->files.all_signals);
         } else if (plot != NULL && plot->n_steps > 1) {
             dalcs_step_lines_write(out, &run->outputs.steps, report, shown[i]);
         } else {
             dalcs_summary_write_signals(out, &run->outputs.measure[shown[i]],
-                                        arguments->all_signals);
+                                        arguments->files.all_signals);
         }
     }
     dalcs_summary_write_jumps(out, report);
