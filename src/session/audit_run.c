@@ -61,10 +61,10 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
     const struct dalcs_audit_options options = {.mode = run->options->audit,
                                                 .share = dalcs_audit_share,
                                                 .resolution = a->radau->resolution,
-                                                .vntol = run->vntol,
+                                                .vntol = run->radau.vntol,
                                                 .is_start = run->s->network.held == NULL,
                                                 .origin = origin_of(run, a->radau),
-                                                .abstol = run->abstol,
+                                                .abstol = run->radau.abstol,
                                                 .device_part =
                                                     run->s->network.readout->device_system,
                                                 .n_parts = n,
@@ -125,7 +125,7 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
     *a = (struct dalcs_audit_run){
         .run = run, .euler = euler, .radau = radau, .tried_time = INFINITY, .landed = INFINITY};
     if (run->options->audit == DALCS_AUDIT_OFF || run->s->network.readout == NULL ||
-        run->fixed_step > 0.0 /* whose error nobody controls */) {
+        run->radau.fixed_step > 0.0 /* whose error nobody controls */) {
         return DALCS_OK;
     }
     a->row_work = row_work * run->s->network.n_outputs;
