@@ -79,20 +79,27 @@ enum dalcs_status dalcs_argument_at(struct dalcs_arguments *arguments, const str
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_argument_transient(struct dalcs_arguments *arguments,
-                                           const struct dalcs_cli *cli, bool is_whole,
-                                           const char *text) {
-    const char *name = is_whole ? "--tran" : "--tstop";
-    double stop;
+static enum dalcs_status check_is_run(const struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *name) {
     if (arguments->steady.is_asked || arguments->bode.is_asked || arguments->envelope.is_asked) {
         dalcs_cli_error(cli, "%s is an option of 'dalcs run'%s", name,
                         arguments->envelope.is_asked ? "; 'dalcs envelope' has --stop" : "");
         return DALCS_E_OPTION;
     }
-    if (is_whole) {
-        arguments->tran.card = text;
-        return DALCS_OK;
-    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_tran(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    DALCS_TRY(check_is_run(arguments, cli, "--tran"));
+    arguments->tran.card = text;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_tstop(struct dalcs_arguments *arguments,
+                                       const struct dalcs_cli *cli, const char *text) {
+    double stop;
+    DALCS_TRY(check_is_run(arguments, cli, "--tstop"));
     arguments->tran.stop = text;
-    return dalcs_verb_take_positive(cli, name, text, &stop);
+    return dalcs_verb_take_positive(cli, "--tstop", text, &stop);
 }

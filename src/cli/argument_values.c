@@ -157,71 +157,9 @@ enum dalcs_status dalcs_argument_audit(struct dalcs_arguments *arguments,
     return DALCS_E_OPTION;
 }
 
-static bool is_page(const char *path) {
+bool dalcs_argument_is_page(const char *path) {
     const char *dot = strrchr(path, '.');
     return dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
-}
-
-/* Samples, where no others are asked for, and periods before them. */
-enum { SAMPLES = 64, SETTLE = 256, MOST_SAMPLES = 1000000 };
-
-static enum dalcs_status take_samples(struct dalcs_arguments *arguments,
-                                      const struct dalcs_cli *cli) {
-    if (!arguments->steady.is_asked) {
-        dalcs_cli_error(cli, "--bifurcation, --samples and --settle are options of 'dalcs steady'");
-        return DALCS_E_OPTION;
-    }
-    arguments->steady.samples = arguments->steady.samples > 0 ? arguments->steady.samples : SAMPLES;
-    arguments->steady.settle = arguments->steady.settle > 0 ? arguments->steady.settle : SETTLE;
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_argument_bifurcation(struct dalcs_arguments *arguments,
-                                             const struct dalcs_cli *cli, const char *path) {
-    arguments->steady.bifurcation = path;
-    if (!dalcs_figure_can_write(path) && !is_page(path)) {
-        dalcs_cli_error(
-            cli, "--bifurcation: unknown format of '%s': name it .svg, .png, .pdf or .html", path);
-        return DALCS_E_OPTION;
-    }
-    return take_samples(arguments, cli);
-}
-
-enum dalcs_status dalcs_argument_samples(struct dalcs_arguments *arguments,
-                                         const struct dalcs_cli *cli, const char *name,
-                                         const char *text, size_t *count) {
-    DALCS_TRY(dalcs_verb_take_count(cli, name, text, count));
-    if (*count > MOST_SAMPLES) {
-        dalcs_cli_error(cli, "%s: more than %d periods", name, (int)MOST_SAMPLES);
-        return DALCS_E_OPTION;
-    }
-    return take_samples(arguments, cli);
-}
-
-enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *arguments,
-                                                  const struct dalcs_cli *cli, const char *path) {
-    arguments->steady.multipliers_plot = path;
-    if (!arguments->steady.is_asked) {
-        dalcs_cli_error(cli, "--multipliers-plot is an option of 'dalcs steady'");
-        return DALCS_E_OPTION;
-    }
-    if (!dalcs_figure_can_write(path) && !is_page(path)) {
-        dalcs_cli_error(
-            cli, "--multipliers-plot: unknown format of '%s': name it .svg, .png, .pdf or .html",
-            path);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
-                                             const struct dalcs_cli *cli) {
-    arguments->steady.sensitivity = true;
-    if (!arguments->steady.is_asked) {
-        dalcs_cli_error(cli, "--sensitivity is an option of 'dalcs steady'");
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
 }
 
 /* FROM:TO, either of which may be left out; NULL: the netlist's window. */
@@ -296,7 +234,7 @@ enum dalcs_status dalcs_argument_plot(struct dalcs_arguments *arguments,
     const bool may_be_page =
         arguments->steady.is_asked || arguments->bode.is_asked || arguments->envelope.is_asked;
     arguments->files.plot = path;
-    if (!dalcs_figure_can_write(path) && !(is_page(path) && may_be_page)) {
+    if (!dalcs_figure_can_write(path) && !(dalcs_argument_is_page(path) && may_be_page)) {
         dalcs_cli_error(cli, "--plot: unknown format of '%s': name it %s", path,
                         may_be_page ? ".svg, .png, .pdf or .html" : ".svg, .png or .pdf");
         return DALCS_E_OPTION;

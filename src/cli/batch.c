@@ -93,55 +93,59 @@ static enum dalcs_status take_shell(const struct batch *b, const struct dalcs_cl
     return DALCS_OK;
 }
 
+static enum dalcs_status take(struct batch *b, const struct dalcs_cli *cli, int code,
+                              const char *word) {
+    switch (code) {
+    case 'r':
+        b->arguments.files.output[0] = optarg;
+        b->arguments.files.n_outputs = 1;
+        return DALCS_OK;
+    case 'o':
+        b->log = optarg;
+        return DALCS_OK;
+    case ASCII:
+        b->arguments.files.ascii = true;
+        return DALCS_OK;
+    case DIALECT:
+        return dalcs_verb_take_dialect(cli, optarg, &b->arguments.dialect);
+    case 'h':
+        b->help = true;
+        return DALCS_OK;
+    case 'b':
+    case 'a': /* a batch run runs by itself */
+    case 'q':
+    case 't':
+        return DALCS_OK;
+    case 'n':
+        b->no_start_file = true;
+        return DALCS_OK;
+    case 'i':
+    case 'p':
+    case 's':
+        return take_shell(b, cli, code);
+    case 'v':
+        b->version = true;
+        return DALCS_OK;
+    case 'D':
+        return dalcs_start_variables_take(&b->variables, optarg);
+    case ':':
+        dalcs_cli_error(cli, "option '%s' needs a value; see '%s'", word, help_of(b));
+        return DALCS_E_OPTION;
+    default:
+        dalcs_cli_error(cli, "unknown option '%s'; see '%s'", word, help_of(b));
+        return DALCS_E_OPTION;
+    }
+}
+
+/* Up to -h or -v, which need no netlist. */
 static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int argc,
                                char **argv) {
     optind = 0; /* glibc: start afresh */
     opterr = 0;
     for (int code; (code = getopt_long(argc, argv, ":br:o:anipqst:vD:h", option, NULL)) != -1;) {
-        switch (code) {
-        case 'r':
-            b->arguments.files.output[0] = optarg;
-            b->arguments.files.n_outputs = 1;
-            break;
-        case 'o':
-            b->log = optarg;
-            break;
-        case ASCII:
-            b->arguments.files.ascii = true;
-            break;
-        case DIALECT:
-            DALCS_TRY(dalcs_verb_take_dialect(cli, optarg, &b->arguments.dialect));
-            break;
-        case 'h':
-            b->help = true;
+        DALCS_TRY(take(b, cli, code, argv[optind - 1]));
+        if (b->help || b->version) {
             return DALCS_OK;
-        case 'b':
-        case 'a': /* a batch run runs by itself */
-            break;
-        case 'n':
-            b->no_start_file = true;
-            break;
-        case 'i':
-        case 'p':
-        case 's':
-            DALCS_TRY(take_shell(b, cli, code));
-            break;
-        case 'q':
-        case 't':
-            break;
-        case 'v':
-            b->version = true;
-            return DALCS_OK;
-        case 'D':
-            DALCS_TRY(dalcs_start_variables_take(&b->variables, optarg));
-            break;
-        case ':':
-            dalcs_cli_error(cli, "option '%s' needs a value; see '%s'", argv[optind - 1],
-                            help_of(b));
-            return DALCS_E_OPTION;
-        default:
-            dalcs_cli_error(cli, "unknown option '%s'; see '%s'", argv[optind - 1], help_of(b));
-            return DALCS_E_OPTION;
         }
     }
     if (optind == argc) {

@@ -166,10 +166,9 @@ static enum dalcs_status run_variants(const struct dalcs_cli *cli,
     return dalcs_variants_run(cli, arguments, session, &options);
 }
 
-static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
-                                     const struct dalcs_arguments *arguments,
-                                     struct dalcs_session *session) {
-    size_t n_written = 0;
+/* Reads the netlist, with what the command line asks for besides. */
+static enum dalcs_status read_netlist(const struct dalcs_arguments *arguments,
+                                      struct dalcs_session *session) {
     enum dalcs_status status = DALCS_OK;
     if (arguments->losses.is_asked || arguments->losses.plot != NULL) {
         status = dalcs_session_ask_losses(session, arguments->losses.from, arguments->losses.to);
@@ -187,6 +186,47 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     status = status != DALCS_OK ? status
                                 : dalcs_verb_read(session, arguments->netlist, arguments->dialect);
     status = status != DALCS_OK ? status : dalcs_settings_apply(session, arguments);
+    return status;
+}
+
+/* Opens the files of a run, runs it and closes them. */
+static enum dalcs_status run_into_files(struct dalcs_run *run, struct dalcs_session *session,
+                                        const struct dalcs_arguments *arguments,
+                                        enum dalcs_analysis main, size_t *n_written) {
+    const struct dalcs_cli *cli = run->cli;
+    const struct dalcs_request request = dalcs_session_request(session);
+    struct dalcs_times times = {0};
+    DALCS_TRY(
+        dalcs_times_read(&times, cli, arguments, request.transient ? request.stop : INFINITY));
+    if (arguments->batch.is_asked && arguments->files.n_outputs == 0 &&
+        (request.n_prints > 0 || !request.transient)) {
+        run->printed.out = cli->out;
+    }
+    run->n_rows = run->has_script ? 0.0 : dalcs_row_volume_count(arguments, &request, times.n);
+    run->quiet = arguments->quiet;
+    const bool at = times.n > 0;
+    enum dalcs_status status = dalcs_outputs_init(&run->outputs, arguments, request.ascii, main,
+                                                  at ? times.time[0] : request.start,
+                                                  at ? times.time[times.n - 1] : request.stop);
+    if (status == DALCS_OK) {
+        status = dalcs_measures_file_open(&run->measures, cli, arguments->files.measures);
+    }
+    if (status == DALCS_OK) {
+        status = run_session(run, session, arguments, &times, n_written);
+    } else if (status != DALCS_E_IO) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+    }
+    dalcs_outputs_finish(&run->outputs);
+    dalcs_bifurcation_chart_finish(&run->bifurcation);
+    dalcs_times_finish(&times);
+    return status;
+}
+
+static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
+                                     const struct dalcs_arguments *arguments,
+                                     struct dalcs_session *session) {
+    size_t n_written = 0;
+    enum dalcs_status status = read_netlist(arguments, session);
     dalcs_cli_write_messages(cli, session, &n_written, arguments->quiet);
     if (status != DALCS_OK) {
         if (n_written == 0) {
@@ -209,31 +249,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         return run_variants(cli, arguments, session);
     }
     warn_unused(cli, arguments, &request, main);
-    struct dalcs_times times = {0};
-    DALCS_TRY(
-        dalcs_times_read(&times, cli, arguments, request.transient ? request.stop : INFINITY));
-    if (arguments->batch.is_asked && arguments->files.n_outputs == 0 &&
-        (request.n_prints > 0 || !request.transient)) {
-        run.printed.out = cli->out;
-    }
-    run.n_rows = run.has_script ? 0.0 : dalcs_row_volume_count(arguments, &request, times.n);
-    run.quiet = arguments->quiet;
-    bool at = times.n > 0;
-    status = dalcs_outputs_init(&run.outputs, arguments, request.ascii, main,
-                                at ? times.time[0] : request.start,
-                                at ? times.time[times.n - 1] : request.stop);
-    if (status == DALCS_OK) {
-        status = dalcs_measures_file_open(&run.measures, cli, arguments->files.measures);
-    }
-    if (status == DALCS_OK) {
-        status = run_session(&run, session, arguments, &times, &n_written);
-    } else if (status != DALCS_E_IO) {
-        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
-    }
-    dalcs_outputs_finish(&run.outputs);
-    dalcs_bifurcation_chart_finish(&run.bifurcation);
-    dalcs_times_finish(&times);
-    return status;
+    return run_into_files(&run, session, arguments, main, &n_written);
 }
 
 enum dalcs_status dalcs_cli_run_arguments(const struct dalcs_cli *cli,

@@ -213,6 +213,14 @@ static enum dalcs_status run_rest(struct variants *v) {
     return v->n_failed + v->file.n_failed > 0 ? DALCS_NOT_CONVERGED : DALCS_OK;
 }
 
+static void finish(struct variants *v) {
+    dalcs_run_statistics_finish(&v->statistics);
+    dalcs_variants_file_finish(&v->file);
+    for (size_t k = 0; k < v->n_said; k++) {
+        free(v->said[k]);
+    }
+}
+
 enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
                                      const struct dalcs_arguments *arguments,
                                      const struct dalcs_session *session,
@@ -260,10 +268,6 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
     }
     free(header);
     dalcs_crashes_finish(&crashes, status == DALCS_OK || status == DALCS_NOT_CONVERGED);
-    dalcs_run_statistics_finish(&v.statistics);
-    dalcs_variants_file_finish(&v.file);
-    for (size_t k = 0; k < v.n_said; k++) {
-        free(v.said[k]);
-    }
+    finish(&v);
     return status;
 }
