@@ -100,36 +100,45 @@ static void tell_point(struct result *r) {
     }
 }
 
-/* Sums and extremes. */
-static void tell_statistic(struct result *r) {
+/* Is there a time to measure over? */
+static bool check_window(struct result *r) {
     const struct dalcs_measured *item = r->item;
     const struct dalcs_instant *trig = &item->instant[0];
     const struct dalcs_instant *targ = &item->instant[1];
     char a[DALCS_QUANTITY_SIZE];
     char b[DALCS_QUANTITY_SIZE];
-    double length = item->end - item->begin;
-    if (item->has_value) { /* of one point */
-        tell_point(r);
-        return;
-    }
     if (trig->card->kind != DALCS_INSTANT_NONE) {
         if (!check_instant(r, trig) || !check_instant(r, targ)) {
-            return;
+            return false;
         }
         if (!(targ->time > trig->time)) {
             fail(r, "TARG at %s does not come after TRIG at %s", moment(r, a, targ->time),
                  moment(r, b, trig->time));
-            return;
+            return false;
         }
     }
     if (!(item->from < item->to)) {
         fail(r, "FROM=%s does not come before TO=%s", moment(r, a, item->from),
              moment(r, b, item->to));
-        return;
+        return false;
     }
-    if (!(length > 0.0)) {
+    if (!(item->end - item->begin > 0.0)) {
         fail(r, "there is nothing to measure: the run goes from %s to %s",
              moment(r, a, r->measuring->start), moment(r, b, r->measuring->stop));
+        return false;
+    }
+    return true;
+}
+
+/* Sums and extremes. */
+static void tell_statistic(struct result *r) {
+    const struct dalcs_measured *item = r->item;
+    const double length = item->end - item->begin;
+    if (item->has_value) { /* of one point */
+        tell_point(r);
+        return;
+    }
+    if (!check_window(r)) {
         return;
     }
     switch (item->card->kind) {
