@@ -66,6 +66,22 @@ static bool jumps(const struct dalcs_behaviour *b) {
     return may;
 }
 
+/* The conductances that a device may have. */
+static void see_conductances(struct audit_part *part, const struct dalcs_circuit *c,
+                             const struct dalcs_device *d) {
+    if (d->kind == DALCS_RESISTOR) {
+        see_conductance(part, fabs(1.0 / d->value));
+    } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
+        see_conductance(part, fabs(d->value));
+    } else if (d->kind == DALCS_SWITCH) {
+        see_conductance(part, 1.0 / c->switch_model[d->model].ron);
+        see_conductance(part, 1.0 / c->switch_model[d->model].roff);
+    } else if (d->kind == DALCS_DIODE) {
+        see_conductance(part, 1.0 / c->diode_model[d->model].ron);
+        see_conductance(part, 1.0 / c->diode_model[d->model].roff);
+    }
+}
+
 static void list_members(struct dalcs_audit *audit) {
     const int *owner = audit->net.owner;
     const struct dalcs_circuit *c = audit->circuit;
@@ -92,17 +108,7 @@ static void list_members(struct dalcs_audit *audit) {
         part->has.voltage_reader |= d->kind == DALCS_VCVS || d->kind == DALCS_VCCS;
         part->has.smooth |= d->behaviour != NULL && d->behaviour->smooth != NULL;
         part->has.formula |= jumps(d->behaviour);
-        if (d->kind == DALCS_RESISTOR) {
-            see_conductance(part, fabs(1.0 / d->value));
-        } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
-            see_conductance(part, fabs(d->value));
-        } else if (d->kind == DALCS_SWITCH) {
-            see_conductance(part, 1.0 / c->switch_model[d->model].ron);
-            see_conductance(part, 1.0 / c->switch_model[d->model].roff);
-        } else if (d->kind == DALCS_DIODE) {
-            see_conductance(part, 1.0 / c->diode_model[d->model].ron);
-            see_conductance(part, 1.0 / c->diode_model[d->model].roff);
-        }
+        see_conductances(part, c, d);
     }
     for (int node = 1; node < c->n_nodes; node++) {
         if (owner[node] >= 0) {
