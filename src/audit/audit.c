@@ -70,18 +70,18 @@ static bool can_look_inside(const struct dalcs_audit *audit,
 static void look_inside(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     const double asked = audit->part[stretch->part].watch->asked;
     if (asked >= 0.0) {
-        audit->now.side = DALCS_RIGHT;
-        audit->now.t = asked;
-        look(audit, stretch->part, &audit->now);
+        audit->state.now.side = DALCS_RIGHT;
+        audit->state.now.t = asked;
+        look(audit, stretch->part, &audit->state.now);
         audit_check_interval(audit, &audit->part[stretch->part], stretch->from, asked);
         audit->part[stretch->part].was_integrated = true;
         return;
     }
     const int n = audit->options.mode == DALCS_AUDIT_FULL ? FULL_INSTANTS : 1;
     for (int k = 0; k < n; k++) {
-        audit->now.side = DALCS_RIGHT;
-        audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
-        look(audit, stretch->part, &audit->now);
+        audit->state.now.side = DALCS_RIGHT;
+        audit->state.now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
+        look(audit, stretch->part, &audit->state.now);
     }
 }
 
@@ -130,9 +130,9 @@ static void leave_behind(struct audit_part *part) {
 static void look_at_means(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     take_up(&audit->part[stretch->part], stretch);
     raise_scales(audit, stretch->part);
-    audit->now.side = DALCS_RIGHT;
-    audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
-    look(audit, stretch->part, &audit->now);
+    audit->state.now.side = DALCS_RIGHT;
+    audit->state.now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
+    look(audit, stretch->part, &audit->state.now);
 }
 
 /* A screen is linear: it knows no smooth function. A polynomial may miss one anywhere in a stretch, and all else as before:
@@ -141,11 +141,11 @@ static void look_at_formulas(struct dalcs_audit *audit, const struct dalcs_audit
     struct audit_part *part = &audit->part[stretch->part];
     take_up(part, stretch);
     raise_scales(audit, stretch->part);
-    audit->now.side = DALCS_RIGHT;
-    audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
-    audit->reader.read(audit->reader.user, stretch->part, &audit->now);
-    audit_note_scales(audit, part, &audit->now);
-    audit_check_formulas(audit, part, &audit->now);
+    audit->state.now.side = DALCS_RIGHT;
+    audit->state.now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
+    audit->reader.read(audit->reader.user, stretch->part, &audit->state.now);
+    audit_note_scales(audit, part, &audit->state.now);
+    audit_check_formulas(audit, part, &audit->state.now);
 }
 
 /* A stretch that no lane passes. */
@@ -153,7 +153,7 @@ static bool asks_otherwise(struct dalcs_audit *audit, const struct dalcs_audit_s
     const bool can_look = can_look_inside(audit, stretch);
     if (can_look && stretch->stored == NULL) {
         look_at_means(audit, stretch);
-    } else if (can_look && audit->part[stretch->part].has_smooth) {
+    } else if (can_look && audit->part[stretch->part].has.smooth) {
         look_at_formulas(audit, stretch);
     }
     return audit_watch_asks(audit, stretch, can_look);
@@ -177,7 +177,7 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     const bool asks = !audit_lane_passes(audit, part, stretch) && asks_otherwise(audit, stretch);
     const uint64_t key = stretch->stored != NULL ? stretch->stored->key : 0;
     part->watch->has_turned =
-        part->n_latches > 0 && audit_latches_turn(audit, part, key) && !part->watch->saw_beginning;
+        part->latches.n > 0 && audit_latches_turn(audit, part, key) && !part->watch->saw_beginning;
     dalcs_audit_earn(audit, work);
     part->at.is_drawn = audit->budget.credit >= audit->budget.threshold;
     const bool passes = !asks && !part->at.is_drawn && !part->watch->has_turned;
@@ -204,22 +204,22 @@ void dalcs_audit_put_off(struct dalcs_audit *audit, int index) {
 static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
                               double past) {
     struct audit_part *part = &audit->part[stretch->part];
-    audit->now.t = stretch->from;
-    audit->now.side = DALCS_RIGHT;
+    audit->state.now.t = stretch->from;
+    audit->state.now.side = DALCS_RIGHT;
     /* An event is early or late by what changes no value by more than the tolerance: that share of the stretch that it
      * ended, over which values change by their scales at most. A diode may have its signs that much later, and a switch
      * its control. Where a run starts nothing came before, and what acts there does so within what is promised of times. */
     const double least =
         past > 0.0 ? part->tolerance * past : AUDIT_PROMISED * audit->options.resolution;
     part->at.lateness = fmin(least, stretch->to - stretch->from);
-    look(audit, stretch->part, &audit->now);
+    look(audit, stretch->part, &audit->state.now);
     if (part->is_open) {
-        audit_check_crossing(audit, part, &audit->before, &audit->now);
+        audit_check_crossing(audit, part, &audit->state.before, &audit->state.now);
         audit->budget.credit -= part->cost;
     }
     part->at.lateness = 0.0;
     if (!part->has_entered && stretch->from == 0.0) {
-        audit_check_start(audit, part, &audit->now, stretch->stored);
+        audit_check_start(audit, part, &audit->state.now, stretch->stored);
     }
     part->watch->saw_beginning = true;
     part->has_entered = true;
@@ -230,7 +230,7 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
 static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     if (!part->watch->is_put_off && part->at.past > 0.0) {
-        audit->reader.read_before(audit->reader.user, stretch->part, 0.0, &audit->before);
+        audit->reader.read_before(audit->reader.user, stretch->part, 0.0, &audit->state.before);
         part->is_open = true;
     }
     part->at.from_coarse = part->at.past_coarse;
@@ -293,7 +293,7 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     if (is_inside) {
         look_inside(audit, stretch);
     }
-    struct dalcs_audit_state *end = &audit->before;
+    struct dalcs_audit_state *end = &audit->state.before;
     end->t = stretch->to;
     end->side = DALCS_LEFT;
     look(audit, stretch->part, end);
@@ -336,8 +336,8 @@ void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dal
     const bool is_first = !audit->part[part].has_entered;
     audit->part[part].has_entered = true;
     if (is_first || audit_is_drawn(audit, audit->part[part].cost)) {
-        audit->now.t = t;
-        audit->now.side = side;
-        look(audit, part, &audit->now);
+        audit->state.now.t = t;
+        audit->state.now.side = side;
+        look(audit, part, &audit->state.now);
     }
 }

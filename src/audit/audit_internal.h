@@ -27,9 +27,13 @@ struct audit_part {
     int n_devices, *device;
     int n_nodes, *node;
     int n_couplings, *coupling;
-    int n_latches, *latch; /* its switches with hysteresis */
-    bool *was_closed;      /* [n_latches] */
-    bool *has_turned;      /* [n_latches] where the stretch begins, of those that are asked */
+
+    struct audit_latches { /* its switches with hysteresis, [n] */
+        int n, *device;
+        bool *was_closed;
+        bool *has_turned; /* where the stretch begins, of those that are asked */
+    } latches;
+
     double tolerance;
 
     struct audit_floor {     /* of scales */
@@ -53,18 +57,22 @@ struct audit_part {
         bool is_drawn;    /* for a closer look */
     } at;
 
-    double asked_at; /* s, of what audit->asked has of it; < 0: nothing */
+    double asked_at; /* s, of what audit->state.asked has of it; < 0: nothing */
     enum dalcs_side asked_side;
 
-    double cost;             /* of one instant, in instructions, about */
-    bool has_smooth;         /* a source of a smooth function */
-    bool has_formula;        /* one that jumps: in no time it may be anything between */
-    bool has_reader;         /* what acts by a current: H, F, a formula */
-    bool has_voltage_reader; /* E and G */
-    bool is_restless;        /* it had no operating point to begin with */
-    bool has_entered;        /* the state at its last event is in `before` */
-    bool is_open;            /* `before` is the end of the stretch that was just left */
-    bool was_integrated;     /* an interval in it was looked at */
+    double cost; /* of one instant, in instructions, about */
+
+    struct audit_sources_in {
+        bool smooth;         /* of a smooth function */
+        bool formula;        /* one that jumps: in no time it may be anything between */
+        bool reader;         /* what acts by a current: H, F, a formula */
+        bool voltage_reader; /* E and G */
+    } has;
+
+    bool is_restless;    /* it had no operating point to begin with */
+    bool has_entered;    /* the state at its last event is in audit->state.before */
+    bool is_open;        /* audit->state.before is the end of the stretch that was just left */
+    bool was_integrated; /* an interval in it was looked at */
     struct audit_watch *watch;
 };
 
@@ -108,10 +116,13 @@ struct dalcs_audit {
         double *v, *i, *lambda; /* largest so far */
     } scale;
 
-    struct dalcs_audit_state now, later, shifted; /* work */
-    struct dalcs_audit_state
-        asked; /* of parts, each at the time that it was asked for last (signals.c) */
-    struct dalcs_audit_state before; /* where stretches ended: parts share only ground */
+    struct audit_states {
+        struct dalcs_audit_state now, later, shifted; /* work */
+        struct dalcs_audit_state
+            asked; /* of parts, each at the time that it was asked for last (signals.c) */
+        struct dalcs_audit_state before; /* where stretches ended: parts share only ground */
+    } state;
+
     struct audit_sums sums;
 
     struct audit_crossing {

@@ -2,7 +2,7 @@
 #ifndef DALCS_AUDIT_TOLD_H
 #define DALCS_AUDIT_TOLD_H
 
-#include "results.h"
+#include "claims.h"
 
 /* The states that the checks below compare: where the part's segment ended (is_same: it did not, and went on), and where
  * the present one has begun. */

@@ -14,7 +14,7 @@ struct dalcs_audit_batch *dalcs_audit_batch_of(const struct dalcs_audit *audit, 
 /* Sources in signs and in integrals are asked elsewhere, and so are smooth functions. */
 static bool can_gather(const struct audit_part *part, const struct dalcs_audit_stretch *stretch) {
     const struct audit_screen *screen = part->watch->screens.latest;
-    return !part->has_smooth && !stretch->is_cut && screen->n_terms[AUDIT_TERM_SIGN] == 0 &&
+    return !part->has.smooth && !stretch->is_cut && screen->n_terms[AUDIT_TERM_SIGN] == 0 &&
            screen->n_terms[AUDIT_TERM_FLOW] == 0;
 }
 
@@ -22,7 +22,7 @@ static bool can_gather(const struct audit_part *part, const struct dalcs_audit_s
 static void draw_time(struct dalcs_audit *audit, const struct audit_watch *watch,
                       struct audit_batch *b) {
     const int m = b->n_times > 0 ? (int)(b->n_times * audit_draw(audit)) : 0;
-    b->past = watch->theta[m] * b->image->step;
+    b->past = watch->times.theta[m] * b->image->step;
     b->place = b->n_times > 0 && audit_is_same_end(b->image->at[m].end, b->image->end)
                    ? b->image->at[m].place
                    : NULL;
@@ -110,10 +110,10 @@ static void ask(struct dalcs_audit *audit, int index) {
         last > AUDIT_BATCH_FIRST ? g->to[last - 1] - g->from[last - 1] : part->at.length;
     part->at.length = g->to[last] - g->from[last];
     part->at.past_coarse = false;
-    part->watch->states = sums.end[last + 1];
+    part->watch->before.states = sums.end[last + 1];
     if (first <= last) {
         b->is_busy = true;
-        part->watch->states = sums.end[first];
+        part->watch->before.states = sums.end[first];
         for (int k = first; k <= last; k++) {
             revisit(audit, index, k);
         }

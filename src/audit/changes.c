@@ -71,7 +71,7 @@ static bool has_other_cause(struct dalcs_audit *audit, const struct audit_part *
 }
 
 bool dalcs_audit_has_cause(struct dalcs_audit *audit, int index, double t, bool begins) {
-    struct dalcs_audit_state *before = &audit->later, *after = &audit->now;
+    struct dalcs_audit_state *before = &audit->state.later, *after = &audit->state.now;
     before->t = after->t = t;
     before->side = DALCS_LEFT;
     after->side = DALCS_RIGHT;
@@ -95,8 +95,8 @@ static double slack_at_change(struct dalcs_audit *audit, const struct audit_part
     double moved = 0.0;
     if (!part->at.from_coarse) {
         audit->reader.read_before(audit->reader.user, (int)(part - audit->part),
-                                  audit->options.resolution, &audit->shifted);
-        moved = fabs(audit_control(audit, &audit->shifted, device, &half_width) -
+                                  audit->options.resolution, &audit->state.shifted);
+        moved = fabs(audit_control(audit, &audit->state.shifted, device, &half_width) -
                      audit_control(audit, before, device, &half_width));
     }
     return moved + audit_control_slack(audit, part, after, device);
@@ -107,7 +107,7 @@ static double slack_at_change(struct dalcs_audit *audit, const struct audit_part
 void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after) {
-    for (int k = 0; k < part->n_devices && !part->has_formula; k++) {
+    for (int k = 0; k < part->n_devices && !part->has.formula; k++) {
         const int device = part->device[k];
         if (audit->circuit->device[device].kind != DALCS_SWITCH ||
             before->is_closed[device] == after->is_closed[device]) {
@@ -133,21 +133,21 @@ void audit_check_turns(struct dalcs_audit *audit, const struct audit_part *part,
     const int index = (int)(part - audit->part);
     const struct dalcs_audit_reader *r = &audit->reader;
     bool reach = true;
-    r->read_before(r->user, index, 0.0, &audit->before);
-    for (int k = 0; k < part->n_latches && reach; k++) {
-        const int device = part->latch[k];
-        if (part->has_turned[k]) {
+    r->read_before(r->user, index, 0.0, &audit->state.before);
+    for (int k = 0; k < part->latches.n && reach; k++) {
+        const int device = part->latches.device[k];
+        if (part->latches.has_turned[k]) {
             const bool closes = r->is_on(r->user, index, device, 0);
-            reach = short_of(audit, &audit->before, device, closes) <=
+            reach = short_of(audit, &audit->state.before, device, closes) <=
                     AUDIT_ROUNDING * audit_control_scale(audit, part, device);
             audit->count.positions += reach ? 1 : 0;
         }
     }
     if (!reach) {
-        audit->now.t = t;
-        audit->now.side = DALCS_RIGHT;
-        r->read(r->user, index, &audit->now);
-        audit_check_changes(audit, part, &audit->before, &audit->now);
+        audit->state.now.t = t;
+        audit->state.now.side = DALCS_RIGHT;
+        r->read(r->user, index, &audit->state.now);
+        audit_check_changes(audit, part, &audit->state.before, &audit->state.now);
     }
 }
 
@@ -159,19 +159,19 @@ static bool is_asked(const struct dalcs_audit *audit, int device) {
 bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint64_t key) {
     struct audit_watch *watch = part->watch;
     bool turn = false;
-    if (key != 0 && key == watch->key) {
+    if (key != 0 && key == watch->before.key) {
         return false;
     }
-    watch->key = key;
-    for (int k = 0; k < part->n_latches; k++) {
-        const int device = part->latch[k];
+    watch->before.key = key;
+    for (int k = 0; k < part->latches.n; k++) {
+        const int device = part->latches.device[k];
         const bool now =
             audit->reader.is_on(audit->reader.user, (int)(part - audit->part), device, 0);
-        part->has_turned[k] = now != part->was_closed[k] && is_asked(audit, device);
-        turn = turn || part->has_turned[k];
-        part->was_closed[k] = now;
+        part->latches.has_turned[k] = now != part->latches.was_closed[k] && is_asked(audit, device);
+        turn = turn || part->latches.has_turned[k];
+        part->latches.was_closed[k] = now;
     }
-    turn = turn && watch->knows_sides && !watch->is_put_off && !part->has_formula;
-    watch->knows_sides = part->n_latches > 0;
+    turn = turn && watch->before.knows_sides && !watch->is_put_off && !part->has.formula;
+    watch->before.knows_sides = part->latches.n > 0;
     return turn;
 }

@@ -1,7 +1,7 @@
 /* claims.c - what is claimed of a function of time, against the auditor's own values of it. */
 #include "audit_internal.h"
 
-#include "results.h"
+#include "claims.h"
 
 /* A function that others take for smooth between two times may have kinks and jumps: halving down to a millionth of the
  * time leaves of a jump less than the smallest tolerance that is promised. More values than these are not taken. */

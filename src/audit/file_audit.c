@@ -28,31 +28,33 @@ static bool make_for_nodes(struct file_audit *a) {
     return make(a, &a->node_of, n, sizeof *a->node_of) &&
            make(a, &a->fed_from, n, sizeof *a->fed_from) &&
            make(a, &a->first_branch, n + 1, sizeof *a->first_branch) &&
-           make(a, &a->potential, n, sizeof *a->potential) &&
-           make(a, &a->potential_of, n, sizeof *a->potential_of) &&
-           make(a, &a->v_scale, n, sizeof *a->v_scale) &&
-           make(a, &a->is_covered, n, sizeof *a->is_covered) &&
-           make(a, &a->is_checked, n, sizeof *a->is_checked) &&
-           make(a, &a->count, n, sizeof *a->count) && make(a, &a->stack, n, sizeof *a->stack) &&
-           make(a, &a->cluster, n, sizeof *a->cluster) &&
-           make(a, &a->has_unspent, n, sizeof *a->has_unspent) &&
-           make(a, &a->sum, n, sizeof *a->sum) && make(a, &a->largest, n, sizeof *a->largest) &&
-           make(a, &a->set_law, n, sizeof *a->set_law) &&
-           make(a, &a->of_node, n, sizeof *a->of_node);
+           make(a, &a->columns.potential, n, sizeof *a->columns.potential) &&
+           make(a, &a->columns.potential_of, n, sizeof *a->columns.potential_of) &&
+           make(a, &a->scale.v, n, sizeof *a->scale.v) &&
+           make(a, &a->coverage.is_covered, n, sizeof *a->coverage.is_covered) &&
+           make(a, &a->coverage.is_checked, n, sizeof *a->coverage.is_checked) &&
+           make(a, &a->sets.count, n, sizeof *a->sets.count) &&
+           make(a, &a->sets.stack, n, sizeof *a->sets.stack) &&
+           make(a, &a->sets.cluster, n, sizeof *a->sets.cluster) &&
+           make(a, &a->sets.has_unspent, n, sizeof *a->sets.has_unspent) &&
+           make(a, &a->sets.sum, n, sizeof *a->sets.sum) &&
+           make(a, &a->sets.largest, n, sizeof *a->sets.largest) &&
+           make(a, &a->sets.law, n, sizeof *a->sets.law) &&
+           make(a, &a->window.of_node, n, sizeof *a->window.of_node);
 }
 
 static bool make_for_devices(struct file_audit *a) {
     const size_t n = (size_t)a->circuit->n_devices;
     return make(a, &a->branch, 2 * n, sizeof *a->branch) &&
-           make(a, &a->current_column, n, sizeof *a->current_column) &&
-           make(a, &a->u_scale, n, sizeof *a->u_scale) &&
-           make(a, &a->i_scale, n, sizeof *a->i_scale) &&
-           make(a, &a->ever_known, n, sizeof *a->ever_known) &&
-           make(a, &a->ever_seen, n, sizeof *a->ever_seen) &&
-           make(a, &a->charge, n, sizeof *a->charge) &&
-           make(a, &a->takes_charge, n, sizeof *a->takes_charge) &&
-           make(a, &a->of_device, n, sizeof *a->of_device) &&
-           make(a, &a->is_used, a->table->n_columns, sizeof *a->is_used);
+           make(a, &a->columns.current, n, sizeof *a->columns.current) &&
+           make(a, &a->scale.u, n, sizeof *a->scale.u) &&
+           make(a, &a->scale.i, n, sizeof *a->scale.i) &&
+           make(a, &a->coverage.ever_known, n, sizeof *a->coverage.ever_known) &&
+           make(a, &a->coverage.ever_seen, n, sizeof *a->coverage.ever_seen) &&
+           make(a, &a->charges.charge, n, sizeof *a->charges.charge) &&
+           make(a, &a->charges.is_taken, n, sizeof *a->charges.is_taken) &&
+           make(a, &a->window.of_device, n, sizeof *a->window.of_device) &&
+           make(a, &a->columns.is_used, a->table->n_columns, sizeof *a->columns.is_used);
 }
 
 static enum dalcs_status make_room(struct file_audit *a) {
@@ -62,8 +64,8 @@ static enum dalcs_status make_room(struct file_audit *a) {
         most = b != NULL && b->n_pairs > most ? b->n_pairs : most;
     }
     bool complete = make_for_nodes(a) && make_for_devices(a) &&
-                    make(a, &a->lambda_value, (size_t)most, sizeof *a->lambda_value) &&
-                    make(a, &a->lambda_error, (size_t)most, sizeof *a->lambda_error);
+                    make(a, &a->formulas.value, (size_t)most, sizeof *a->formulas.value) &&
+                    make(a, &a->formulas.error, (size_t)most, sizeof *a->formulas.error);
     for (int k = 0; k < 4; k++) {
         complete = complete && make_row(a, &a->row[k]);
     }
@@ -104,7 +106,7 @@ static void list_branches(struct file_audit *a) {
             const int end[2] = {a->node_of[c->device[d].node[0]], a->node_of[c->device[d].node[1]]};
             for (int e = 0; e < 2 && end[0] != end[1]; e++) {
                 if (fill) {
-                    a->branch[a->first_branch[end[e]] + a->count[end[e]]++] = d;
+                    a->branch[a->first_branch[end[e]] + a->sets.count[end[e]]++] = d;
                 } else {
                     a->first_branch[end[e] + 1]++;
                 }
@@ -148,13 +150,14 @@ static void raise(double *scale, double *most, struct file_number x) {
 
 static void note_scales(struct file_audit *a, const struct file_row *row) {
     for (int d = 0; d < a->circuit->n_devices; d++) {
-        raise(&a->u_scale[d], &a->volts, row->u[d]);
-        raise(&a->i_scale[d], &a->amperes, row->i[d]);
-        a->ever_known[d] = a->ever_known[d] || row->i[d].known;
-        a->ever_seen[d] = a->ever_seen[d] || (row->i[d].known && !row->is_assumed[d]);
+        raise(&a->scale.u[d], &a->scale.volts, row->u[d]);
+        raise(&a->scale.i[d], &a->scale.amperes, row->i[d]);
+        a->coverage.ever_known[d] = a->coverage.ever_known[d] || row->i[d].known;
+        a->coverage.ever_seen[d] =
+            a->coverage.ever_seen[d] || (row->i[d].known && !row->is_assumed[d]);
     }
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        raise(&a->v_scale[n], &a->volts, row->v[n]);
+        raise(&a->scale.v[n], &a->scale.volts, row->v[n]);
     }
 }
 
@@ -223,10 +226,10 @@ static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
     merge_shorts(a);
     list_branches(a);
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->potential_of[n] = -1;
+        a->columns.potential_of[n] = -1;
     }
     for (int d = 0; d < a->circuit->n_devices; d++) {
-        a->current_column[d] = -1;
+        a->columns.current[d] = -1;
     }
     DALCS_TRY(file_find_columns(a, diag));
     a->is_before = file_rests_before(a);

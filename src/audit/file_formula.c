@@ -15,7 +15,7 @@ static struct file_number term_value(const struct file_audit *a, const struct fi
     case DALCS_QUANTITY_CURRENT:
         return row->i[term->index];
     case DALCS_QUANTITY_PAIR:
-        return (struct file_number){a->lambda_value[term->index], a->lambda_error[term->index],
+        return (struct file_number){a->formulas.value[term->index], a->formulas.error[term->index],
                                     true};
     default:
         return file_stimulus(a, row, term->index);
@@ -45,8 +45,8 @@ static double tolerance_of(const struct file_audit *a, const struct file_row *ro
     double sum = 0.0;
     for (int k = 0; k < f->n; k++) {
         const struct dalcs_affine_term *term = &f->term[k];
-        const double scale = term->kind == DALCS_QUANTITY_VOLTAGE   ? a->v_scale[term->index]
-                             : term->kind == DALCS_QUANTITY_CURRENT ? a->i_scale[term->index]
+        const double scale = term->kind == DALCS_QUANTITY_VOLTAGE   ? a->scale.v[term->index]
+                             : term->kind == DALCS_QUANTITY_CURRENT ? a->scale.i[term->index]
                              : term->kind == DALCS_QUANTITY_PAIR
                                  ? 0.0 /* in its error */
                                  : fabs(term_value(a, row, term).value);
@@ -65,8 +65,8 @@ static double coefficient_of(const struct dalcs_affine *f, int pair) {
 }
 
 static void set_lambda(struct file_audit *a, int pair, double low, double high) {
-    a->lambda_value[pair] = 0.5 * (low + high);
-    a->lambda_error[pair] = 0.5 * (high - low);
+    a->formulas.value[pair] = 0.5 * (low + high);
+    a->formulas.error[pair] = 0.5 * (high - low);
 }
 
 /* How large a lambda is for an argument: 1/g is its resistance. */

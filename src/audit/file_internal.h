@@ -96,29 +96,53 @@ struct file_audit {
     int *
         fed_from; /* [n_nodes] likewise, V sources taken for shorts: what differs by sources alone */
     int *first_branch, *branch; /* devices at each node, no shorts and loops */
-    int n_potentials;
-    struct file_potential *potential; /* in an order in which each base comes before */
-    int *potential_of;                /* [n_nodes] or -1 */
-    long *current_column;             /* [n_devices] or -1 */
-    bool *is_used;                    /* [n_columns] */
-    double *u_scale, *i_scale;        /* [n_devices] largest values */
-    double *v_scale;                  /* [n_nodes] */
-    double volts, amperes;            /* the largest of all */
-    bool *ever_known, *ever_seen; /* [n_devices] its current, at some row; and not by its own law */
-    bool *is_covered;             /* [n_nodes] its KCL was asked, or gave a current */
-    bool *is_checked;             /* [n_nodes] of sets, now */
+
+    struct file_columns {
+        int n_potentials;
+        struct file_potential *potential; /* in an order in which each base comes before */
+        int *potential_of;                /* [n_nodes] or -1 */
+        long *current;                    /* [n_devices] or -1 */
+        bool *is_used;                    /* [n_columns] */
+    } columns;
+
+    struct file_scales {
+        double *u, *i;         /* [n_devices] largest values */
+        double *v;             /* [n_nodes] */
+        double volts, amperes; /* the largest of all */
+    } scale;
+
+    struct file_coverage {
+        bool *ever_known, *ever_seen; /* [n_devices] its current, at some row; and not by its law */
+        bool *is_covered;             /* [n_nodes] its KCL was asked, or gave a current */
+        bool *is_checked;             /* [n_nodes] of sets, now */
+    } coverage;
+
     struct file_row row[4];
-    double *lambda_value, *lambda_error; /* work of formulas */
-    int most_pairs;
-    int *count, *stack, *cluster; /* [n_nodes] work of file_kirchhoff.c */
-    bool *has_unspent;            /* [n_nodes] likewise */
-    struct file_number *sum;      /* [n_nodes] */
-    double *largest;              /* [n_nodes] A, of what is summed */
-    struct file_number *charge;   /* [n_devices] C, over one interval */
-    bool *takes_charge;           /* [n_devices] a capacitor whose current is not known then */
-    struct file_set_law *set_law; /* [n_nodes] work of file_storage.c */
+
+    struct file_formulas { /* work */
+        double *value, *error;
+        int most_pairs;
+    } formulas;
+
+    struct file_sets { /* of nodes, [n_nodes] each: work of file_kirchhoff.c */
+        int *count, *stack, *cluster;
+        bool *has_unspent;
+        struct file_number *sum;
+        double *largest;          /* A, of what is summed */
+        struct file_set_law *law; /* work of file_storage.c */
+    } sets;
+
+    struct file_charges {           /* over one interval, [n_devices] */
+        struct file_number *charge; /* C */
+        bool *is_taken;             /* by a capacitor whose current is not known then */
+    } charges;
+
     struct file_worst *worst[FILE_LAWS];
-    struct file_window *of_device, *of_node; /* coils and capacitors; sets of nodes */
+
+    struct file_windows {
+        struct file_window *of_device, *of_node; /* coils and capacitors; sets of nodes */
+    } window;
+
     struct dalcs_arena arena;
 };
 
@@ -168,17 +192,17 @@ struct file_number file_formula(struct file_audit *a, const struct file_row *row
 void file_peel(struct file_audit *a, struct file_row *row);
 void file_check_nodes(struct file_audit *a, const struct file_row *row);
 
-/* Sets of nodes that branches without a flow hang together, by their first node: a->cluster. */
+/* Sets of nodes that branches without a flow hang together, by their first node: a->sets.cluster. */
 void file_cluster(struct file_audit *a, const struct file_number *flow);
 
-/* What flows out of each set, and what its currents are held to: a->sum, a->largest. */
+/* What flows out of each set, and what its currents are held to: a->sets.sum, a->sets.largest. */
 void file_sum_sets(struct file_audit *a, const struct file_number *flow);
 
 /* How many nodes are in each set, one of them beside the first, and is there one whose law gave no current?
- * a->count, a->stack, a->has_unspent; row may be NULL. */
+ * a->sets.count, a->sets.stack, a->sets.has_unspent; row may be NULL. */
 void file_describe_sets(struct file_audit *a, const struct file_row *row);
 
-/* Its nodes need not be told to be missing: those of sets with a->is_checked. */
+/* Its nodes need not be told to be missing: those of sets with a->coverage.is_checked. */
 void file_note_covered(struct file_audit *a);
 
 /* A defect of a set that was described. */

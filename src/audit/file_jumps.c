@@ -62,11 +62,11 @@ typedef bool joins(const struct file_audit *, const struct file_row *, const str
 
 static void join_nodes(struct file_audit *a, const struct file_row *left,
                        const struct file_row *right, joins *join) {
-    dalcs_union_reset(a->cluster, a->circuit->n_nodes);
+    dalcs_union_reset(a->sets.cluster, a->circuit->n_nodes);
     for (int d = 0; d < a->circuit->n_devices; d++) {
         const int *node = a->circuit->device[d].node;
         if (join(a, left, right, d)) {
-            dalcs_union_join(a->cluster, a->node_of[node[0]], a->node_of[node[1]]);
+            dalcs_union_join(a->sets.cluster, a->node_of[node[0]], a->node_of[node[1]]);
         }
     }
 }
@@ -75,18 +75,20 @@ static void check_charges(struct file_audit *a, const struct file_row *left,
                           const struct file_row *right) {
     join_nodes(a, left, right, passes_charge);
     for (int d = 0; d < a->circuit->n_devices; d++) {
-        a->charge[d] = (struct file_number){.known = true};
+        a->charges.charge[d] = (struct file_number){.known = true};
         if (a->circuit->device[d].kind == DALCS_CAPACITOR) {
-            a->charge[d] = file_add(file_stored(a, right, d), -1.0, file_stored(a, left, d));
-            a->charge[d].error += 2.0 * a->circuit->device[d].value * file_volts(a, d);
+            a->charges.charge[d] =
+                file_add(file_stored(a, right, d), -1.0, file_stored(a, left, d));
+            a->charges.charge[d].error += 2.0 * a->circuit->device[d].value * file_volts(a, d);
         }
     }
-    file_sum_sets(a, a->charge);
+    file_sum_sets(a, a->charges.charge);
     file_describe_sets(a, NULL);
     for (int n = 1; n < a->circuit->n_nodes; n++) {
-        if (a->count[n] > 0 && a->sum[n].known && a->sum[n].error > 0.0) {
-            file_find_set(a, n, "C", fabs(a->sum[n].value),
-                          a->sum[n].error + 2.0 * right->t_error * a->amperes, right->t, right->t);
+        if (a->sets.count[n] > 0 && a->sets.sum[n].known && a->sets.sum[n].error > 0.0) {
+            file_find_set(a, n, "C", fabs(a->sets.sum[n].value),
+                          a->sets.sum[n].error + 2.0 * right->t_error * a->scale.amperes, right->t,
+                          right->t);
         }
     }
 }
@@ -106,22 +108,22 @@ void file_check_jump(struct file_audit *a, const struct file_row *left,
         const struct file_number change =
             file_add(file_stored(a, right, d), -1.0, file_stored(a, left, d));
         const double allowed = change.error + 2.0 * law.end_tolerance +
-                               2.0 * right->t_error * (is_coil ? a->volts : a->amperes);
+                               2.0 * right->t_error * (is_coil ? a->scale.volts : a->scale.amperes);
         const bool is_held =
-            is_coil && dalcs_union_find(a->cluster, a->node_of[device->node[0]]) ==
-                           dalcs_union_find(a->cluster, a->node_of[device->node[1]]);
+            is_coil && dalcs_union_find(a->sets.cluster, a->node_of[device->node[0]]) ==
+                           dalcs_union_find(a->sets.cluster, a->node_of[device->node[1]]);
         if (is_held && change.known) {
             file_find(a, DALCS_AUDIT_BRANCH, d, "Wb", fabs(change.value), allowed, right->t,
                       right->t);
         }
         const bool jumps = !change.known || fabs(change.value) > allowed;
         any = any || (jumps && !is_coil);
-        a->of_device[d].n = jumps ? 0 : a->of_device[d].n;
-        a->of_device[d].now.residual += change.value;
-        a->of_device[d].now.moved += change.value;
+        a->window.of_device[d].n = jumps ? 0 : a->window.of_device[d].n;
+        a->window.of_device[d].now.residual += change.value;
+        a->window.of_device[d].now.moved += change.value;
     }
     for (int n = 0; n < a->circuit->n_nodes && any; n++) {
-        a->of_node[n].n = 0;
+        a->window.of_node[n].n = 0;
     }
 }
 

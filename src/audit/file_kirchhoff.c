@@ -12,9 +12,9 @@ static int root(const struct file_audit *a, int device, int end) {
 
 static void count_unknown(struct file_audit *a, const struct file_row *row) {
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->count[n] = 0;
+        a->sets.count[n] = 0;
         for (int k = a->first_branch[n]; k < a->first_branch[n + 1]; k++) {
-            a->count[n] += row->i[a->branch[k]].known ? 0 : 1;
+            a->sets.count[n] += row->i[a->branch[k]].known ? 0 : 1;
         }
     }
 }
@@ -39,13 +39,13 @@ void file_peel(struct file_audit *a, struct file_row *row) {
     int n_stack = 0;
     count_unknown(a, row);
     for (int n = a->circuit->n_nodes - 1; n > 0; n--) {
-        if (a->count[n] == 1) {
-            a->stack[n_stack++] = n;
+        if (a->sets.count[n] == 1) {
+            a->sets.stack[n_stack++] = n;
         }
     }
     while (n_stack > 0) {
-        const int node = a->stack[--n_stack];
-        if (a->count[node] != 1) {
+        const int node = a->sets.stack[--n_stack];
+        if (a->sets.count[node] != 1) {
             continue;
         }
         struct file_number rest;
@@ -53,64 +53,64 @@ void file_peel(struct file_audit *a, struct file_row *row) {
         const bool is_first = root(a, d, 0) == node;
         row->i[d] = file_add(file_exactly(0.0), is_first ? 1.0 : -1.0, rest);
         row->is_spent[node] = true;
-        a->count[node] = 0;
+        a->sets.count[node] = 0;
         const int other = root(a, d, is_first ? 1 : 0);
-        if (--a->count[other] == 1 && other > 0) {
-            a->stack[n_stack++] = other;
+        if (--a->sets.count[other] == 1 && other > 0) {
+            a->sets.stack[n_stack++] = other;
         }
     }
 }
 
 void file_cluster(struct file_audit *a, const struct file_number *flow) {
-    dalcs_union_reset(a->cluster, a->circuit->n_nodes);
+    dalcs_union_reset(a->sets.cluster, a->circuit->n_nodes);
     for (int d = 0; d < a->circuit->n_devices; d++) {
         if (!flow[d].known && !dalcs_device_is_short(&a->circuit->device[d])) {
-            dalcs_union_join(a->cluster, root(a, d, 0), root(a, d, 1));
+            dalcs_union_join(a->sets.cluster, root(a, d, 0), root(a, d, 1));
         }
     }
 }
 
 void file_sum_sets(struct file_audit *a, const struct file_number *flow) {
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->sum[n] = (struct file_number){0};
-        a->largest[n] = 0.0;
+        a->sets.sum[n] = (struct file_number){0};
+        a->sets.largest[n] = 0.0;
     }
     for (int d = 0; d < a->circuit->n_devices; d++) {
-        const int from = dalcs_union_find(a->cluster, root(a, d, 0));
-        const int to = dalcs_union_find(a->cluster, root(a, d, 1));
+        const int from = dalcs_union_find(a->sets.cluster, root(a, d, 0));
+        const int to = dalcs_union_find(a->sets.cluster, root(a, d, 1));
         if (from == to || !flow[d].known) {
             continue;
         }
         for (int e = 0; e < 2; e++) {
             const int n = e == 0 ? from : to;
-            a->sum[n].value += (e == 0 ? 1.0 : -1.0) * flow[d].value;
-            a->sum[n].error += flow[d].error;
-            a->sum[n].known = true;
-            a->largest[n] = fmax(a->largest[n], file_amperes(a, d));
+            a->sets.sum[n].value += (e == 0 ? 1.0 : -1.0) * flow[d].value;
+            a->sets.sum[n].error += flow[d].error;
+            a->sets.sum[n].known = true;
+            a->sets.largest[n] = fmax(a->sets.largest[n], file_amperes(a, d));
         }
     }
 }
 
 void file_describe_sets(struct file_audit *a, const struct file_row *row) {
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->count[n] = 0;
-        a->stack[n] = -1;
-        a->has_unspent[n] = false;
+        a->sets.count[n] = 0;
+        a->sets.stack[n] = -1;
+        a->sets.has_unspent[n] = false;
     }
     for (int n = 0; n < a->circuit->n_nodes; n++) {
         if (a->node_of[n] == n) {
-            const int set = dalcs_union_find(a->cluster, n);
-            a->count[set]++;
-            a->has_unspent[set] = a->has_unspent[set] || row == NULL || !row->is_spent[n];
-            a->stack[set] = n != set && a->stack[set] < 0 ? n : a->stack[set];
+            const int set = dalcs_union_find(a->sets.cluster, n);
+            a->sets.count[set]++;
+            a->sets.has_unspent[set] = a->sets.has_unspent[set] || row == NULL || !row->is_spent[n];
+            a->sets.stack[set] = n != set && a->sets.stack[set] < 0 ? n : a->sets.stack[set];
         }
     }
 }
 
 void file_note_covered(struct file_audit *a) {
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        const int set = dalcs_union_find(a->cluster, a->node_of[n]);
-        a->is_covered[n] = a->is_covered[n] || a->is_checked[set];
+        const int set = dalcs_union_find(a->sets.cluster, a->node_of[n]);
+        a->coverage.is_covered[n] = a->coverage.is_covered[n] || a->coverage.is_checked[set];
     }
 }
 
@@ -119,11 +119,12 @@ void file_check_nodes(struct file_audit *a, const struct file_row *row) {
     file_sum_sets(a, row->i);
     file_describe_sets(a, row);
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->is_covered[n] = a->is_covered[n] || row->is_spent[a->node_of[n]];
-        a->is_checked[n] = n > 0 && a->count[n] > 0 && a->sum[n].known && a->has_unspent[n];
-        if (a->is_checked[n]) {
-            file_find_set(a, n, "A", fabs(a->sum[n].value), a->sum[n].error + a->largest[n], row->t,
-                          row->t);
+        a->coverage.is_covered[n] = a->coverage.is_covered[n] || row->is_spent[a->node_of[n]];
+        a->coverage.is_checked[n] =
+            n > 0 && a->sets.count[n] > 0 && a->sets.sum[n].known && a->sets.has_unspent[n];
+        if (a->coverage.is_checked[n]) {
+            file_find_set(a, n, "A", fabs(a->sets.sum[n].value),
+                          a->sets.sum[n].error + a->sets.largest[n], row->t, row->t);
         }
     }
     file_note_covered(a);
@@ -132,7 +133,7 @@ void file_check_nodes(struct file_audit *a, const struct file_row *row) {
 void file_find_set(struct file_audit *a, int set, const char *unit, double defect, double allowed,
                    double from, double to) {
     if (file_find(a, DALCS_AUDIT_KCL, set, unit, defect, allowed, from, to)) {
-        a->worst[DALCS_AUDIT_KCL][set].n_nodes = a->count[set];
-        a->worst[DALCS_AUDIT_KCL][set].other = a->stack[set];
+        a->worst[DALCS_AUDIT_KCL][set].n_nodes = a->sets.count[set];
+        a->worst[DALCS_AUDIT_KCL][set].other = a->sets.stack[set];
     }
 }

@@ -99,12 +99,13 @@ static int device_of(struct finder *f) {
 /* ---- Potentials --------------------------------------------------------------------------------- */
 
 static void set_potential(struct file_audit *a, int node, int base, double sign, size_t column) {
-    a->potential_of[node] = a->n_potentials;
-    a->potential[a->n_potentials++] = (struct file_potential){node, base, sign, column};
+    a->columns.potential_of[node] = a->columns.n_potentials;
+    a->columns.potential[a->columns.n_potentials++] =
+        (struct file_potential){node, base, sign, column};
 }
 
 static bool is_found(const struct file_audit *a, int node) {
-    return node == 0 || a->potential_of[node] >= 0;
+    return node == 0 || a->columns.potential_of[node] >= 0;
 }
 
 /* v(a) and v(a,b): the nodes; one that there is not: false. */
@@ -146,8 +147,9 @@ static bool are_equal(const struct dalcs_wave_table *t, size_t a, size_t b) {
 /* Another column of the same node, with other numbers. */
 static void note_twin(const struct file_audit *a, int node, size_t column,
                       struct dalcs_diag *diag) {
-    const struct file_potential *p =
-        a->potential_of[node] >= 0 ? &a->potential[a->potential_of[node]] : NULL;
+    const struct file_potential *p = a->columns.potential_of[node] >= 0
+                                         ? &a->columns.potential[a->columns.potential_of[node]]
+                                         : NULL;
     if (p != NULL && p->base == 0 && p->column != column && p->column > 0 &&
         !are_equal(a->table, p->column, column)) {
         dalcs_diag_add(diag, DALCS_WARNING, NULL, NULL,
@@ -168,7 +170,7 @@ static void find_potentials(struct finder *f, struct dalcs_diag *diag) {
             if (!take_name(f, a->table->name[c]) || !nodes_of(f, node)) {
                 continue;
             }
-            a->is_used[c] = true;
+            a->columns.is_used[c] = true;
             if (direct && node[1] == 0) {
                 note_twin(a, node[0], c, diag);
             }
@@ -199,9 +201,9 @@ static void find_currents(struct finder *f) {
     struct file_audit *a = f->a;
     for (size_t c = 1; c < a->table->n_columns; c++) {
         const int device = take_name(f, a->table->name[c]) ? device_of(f) : -1;
-        if (device >= 0 && a->current_column[device] < 0) {
-            a->current_column[device] = (long)c;
-            a->is_used[c] = true;
+        if (device >= 0 && a->columns.current[device] < 0) {
+            a->columns.current[device] = (long)c;
+            a->columns.is_used[c] = true;
         }
     }
 }
@@ -246,7 +248,7 @@ enum dalcs_status file_find_columns(struct file_audit *a, struct dalcs_diag *dia
         find_currents(&f);
         bool any = false;
         for (size_t c = 1; c < a->table->n_columns; c++) {
-            any = any || a->is_used[c];
+            any = any || a->columns.is_used[c];
         }
         status = any ? DALCS_OK : refuse(&f, diag);
     }

@@ -100,13 +100,13 @@ static void miss(struct missing *m, char kind, const char *name) {
 }
 
 static void miss_potential(const struct file_audit *a, struct missing *m, int node) {
-    if (node > 0 && a->potential_of[node] < 0) {
+    if (node > 0 && a->columns.potential_of[node] < 0) {
         miss(m, 'v', a->circuit->node_name[node]);
     }
 }
 
 static void miss_current(const struct file_audit *a, struct missing *m, int device) {
-    if (!a->ever_seen[device]) {
+    if (!a->coverage.ever_seen[device]) {
         miss(m, 'i', a->circuit->device[device].name);
     }
 }
@@ -144,15 +144,16 @@ static const char *gap_of_device(const struct file_audit *a, int d, struct missi
 }
 
 static const char *gap_of_node(const struct file_audit *a, int n, struct missing *m) {
-    if (a->is_covered[n] || a->node_of[n] != n || a->first_branch[n + 1] == a->first_branch[n]) {
+    if (a->coverage.is_covered[n] || a->node_of[n] != n ||
+        a->first_branch[n + 1] == a->first_branch[n]) {
         return NULL;
     }
     for (int k = a->first_branch[n]; k < a->first_branch[n + 1]; k++) {
         const int d = a->branch[k];
         const enum dalcs_device_kind kind = a->circuit->device[d].kind;
-        if (!a->ever_known[d] && kind != DALCS_CAPACITOR) {
+        if (!a->coverage.ever_known[d] && kind != DALCS_CAPACITOR) {
             miss(m, 'i', a->circuit->device[d].name);
-        } else if (kind == DALCS_CAPACITOR && !a->ever_known[d]) {
+        } else if (kind == DALCS_CAPACITOR && !a->coverage.ever_known[d]) {
             miss_potential(a, m, a->circuit->device[d].node[0]);
             miss_potential(a, m, a->circuit->device[d].node[1]);
         }
@@ -191,7 +192,7 @@ static enum dalcs_status list_foreign(const struct file_audit *a, struct dalcs_a
                                       struct dalcs_table_audit *result) {
     const char **list = dalcs_arena_alloc(arena, a->table->n_columns, sizeof *list);
     for (size_t c = 1; c < a->table->n_columns && list != NULL; c++) {
-        if (a->is_used[c]) {
+        if (a->columns.is_used[c]) {
             result->n_used++;
         } else if ((list[result->n_foreign++] =
                         dalcs_arena_printf(arena, "%s", a->table->name[c])) == NULL) {

@@ -69,7 +69,7 @@ struct file_window_law file_law_of(const struct file_audit *a, int device) {
 /* ---- Over an interval --------------------------------------------------------------------------- */
 
 static void check_element(struct file_audit *a, struct file_row *const row[4], int device) {
-    struct file_window *w = &a->of_device[device];
+    struct file_window *w = &a->window.of_device[device];
     const struct file_window_law law = file_law_of(a, device);
     struct file_number x[4];
     take(row, x, a->circuit->device[device].kind == DALCS_CAPACITOR, device);
@@ -94,12 +94,15 @@ static bool find_charges(struct file_audit *a, struct file_row *const row[4]) {
     for (int d = 0; d < a->circuit->n_devices; d++) {
         struct file_number x[4];
         take(row, x, true, d);
-        a->charge[d] = file_trapezoid(row, x);
-        a->takes_charge[d] = a->circuit->device[d].kind == DALCS_CAPACITOR && !a->charge[d].known;
-        if (a->takes_charge[d]) {
-            a->charge[d] = file_add(file_stored(a, row[2], d), -1.0, file_stored(a, row[1], d));
-            a->charge[d].error = 0.0; /* that of what is stored counts at the ends of windows */
-            any = any || a->charge[d].known;
+        a->charges.charge[d] = file_trapezoid(row, x);
+        a->charges.is_taken[d] =
+            a->circuit->device[d].kind == DALCS_CAPACITOR && !a->charges.charge[d].known;
+        if (a->charges.is_taken[d]) {
+            a->charges.charge[d] =
+                file_add(file_stored(a, row[2], d), -1.0, file_stored(a, row[1], d));
+            a->charges.charge[d].error =
+                0.0; /* that of what is stored counts at the ends of windows */
+            any = any || a->charges.charge[d].known;
         }
     }
     return any;
@@ -111,15 +114,15 @@ static void gather(struct file_audit *a, const struct file_row *row, struct file
     }
     for (int n = 0; n < a->circuit->n_nodes; n++) {
         const unsigned long spread = 0x9e3779b97f4a7c15u; /* 2^64 over the golden ratio */
-        law[dalcs_union_find(a->cluster, n)].signature += ((unsigned long)n + 1) * spread;
+        law[dalcs_union_find(a->sets.cluster, n)].signature += ((unsigned long)n + 1) * spread;
     }
     for (int d = 0; d < a->circuit->n_devices; d++) {
         const struct dalcs_device *device = &a->circuit->device[d];
-        const int end[2] = {dalcs_union_find(a->cluster, a->node_of[device->node[0]]),
-                            dalcs_union_find(a->cluster, a->node_of[device->node[1]])};
+        const int end[2] = {dalcs_union_find(a->sets.cluster, a->node_of[device->node[0]]),
+                            dalcs_union_find(a->sets.cluster, a->node_of[device->node[1]])};
         for (int e = 0; e < 2 && end[0] != end[1]; e++) {
             struct file_set_law *l = &law[end[e]];
-            if (a->takes_charge[d]) {
+            if (a->charges.is_taken[d]) {
                 l->ends += device->value * file_volts(a, d);
                 l->end_error += file_stored(a, row, d).error;
                 l->has_charge = true;
@@ -131,18 +134,18 @@ static void gather(struct file_audit *a, const struct file_row *row, struct file
 }
 
 static void check_sets(struct file_audit *a, struct file_row *const row[4]) {
-    struct file_set_law *law = a->set_law;
-    file_cluster(a, a->charge);
-    file_sum_sets(a, a->charge);
+    struct file_set_law *law = a->sets.law;
+    file_cluster(a, a->charges.charge);
+    file_sum_sets(a, a->charges.charge);
     file_describe_sets(a, NULL);
     gather(a, row[2], law);
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->is_checked[n] = false;
+        a->coverage.is_checked[n] = false;
     }
     for (int n = 1; n < a->circuit->n_nodes; n++) {
-        struct file_window *w = &a->of_node[n];
+        struct file_window *w = &a->window.of_node[n];
         const struct file_window_law of = {DALCS_AUDIT_KCL, n, "C", law[n].ends, law[n].rate};
-        const bool is_law = a->count[n] > 0 && law[n].has_charge && a->sum[n].known;
+        const bool is_law = a->sets.count[n] > 0 && law[n].has_charge && a->sets.sum[n].known;
         if (w->n > 0 && (!is_law || w->signature != law[n].signature)) {
             w->n = 0; /* another set: the windows of this one were judged on the way */
         }
@@ -153,8 +156,8 @@ static void check_sets(struct file_audit *a, struct file_row *const row[4]) {
             w->signature = law[n].signature;
             file_window_begin(w, law[n].end_error);
         }
-        a->is_checked[n] = true;
-        file_window_add(a, w, &of, a->sum[n], 0.0, row[2]->t - row[1]->t, law[n].end_error,
+        a->coverage.is_checked[n] = true;
+        file_window_add(a, w, &of, a->sets.sum[n], 0.0, row[2]->t - row[1]->t, law[n].end_error,
                         row[2]->t);
     }
     file_note_covered(a);

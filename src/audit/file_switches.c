@@ -15,7 +15,7 @@ static struct file_number control_at(const struct file_audit *a, const struct fi
         return c;
     }
     if (d->control >= 0) {
-        const long column = a->current_column[d->control];
+        const long column = a->columns.current[d->control];
         c = column >= 0 ? file_cell(a, (size_t)k, (size_t)column) : c;
     } else if (k == (long)row->index) {
         c = file_add(row->v[d->node[2]], -1.0, row->v[d->node[3]]);
@@ -31,8 +31,8 @@ static struct file_number control_at(const struct file_audit *a, const struct fi
 static double control_tolerance(const struct file_audit *a, int device) {
     const struct dalcs_device *d = &a->circuit->device[device];
     const struct dalcs_switch_model *m = &a->circuit->switch_model[d->model];
-    const double signal = d->control >= 0 ? a->i_scale[d->control]
-                                          : fmax(a->v_scale[d->node[2]], a->v_scale[d->node[3]]);
+    const double signal = d->control >= 0 ? a->scale.i[d->control]
+                                          : fmax(a->scale.v[d->node[2]], a->scale.v[d->node[3]]);
     return a->promise.tolerance * fmax(signal, fabs(m->vt) + fabs(m->vh));
 }
 

@@ -14,8 +14,9 @@ enum { MOST_EDGES = 16 };
 
 /* Of the first row; not a number: it is in no column of its own. */
 static double potential(const struct file_audit *a, int node) {
-    const struct file_potential *p =
-        a->potential_of[node] >= 0 ? &a->potential[a->potential_of[node]] : NULL;
+    const struct file_potential *p = a->columns.potential_of[node] >= 0
+                                         ? &a->columns.potential[a->columns.potential_of[node]]
+                                         : NULL;
     return node == 0                                    ? 0.0
            : p != NULL && p->base == 0 && p->column > 0 ? a->table->value[p->column]
                                                         : (double)NAN;
@@ -79,7 +80,7 @@ struct file_number file_stimulus(const struct file_audit *a, const struct file_r
 static const double least_signal = 1e-5, least_of_pair = 1e-2;
 
 double file_volts(const struct file_audit *a, int device) {
-    return a->promise.tolerance * fmax(a->u_scale[device], least_signal * a->volts) +
+    return a->promise.tolerance * fmax(a->scale.u[device], least_signal * a->scale.volts) +
            a->promise.vntol;
 }
 
@@ -87,7 +88,8 @@ double file_amperes(const struct file_audit *a, int device) {
     const enum dalcs_device_kind kind = a->circuit->device[device].kind;
     const bool is_pair = kind == DALCS_DIODE || kind == DALCS_SWITCH;
     const double least = is_pair ? least_of_pair : least_signal;
-    return a->promise.tolerance * fmax(a->i_scale[device], least * a->amperes) + a->promise.abstol;
+    return a->promise.tolerance * fmax(a->scale.i[device], least * a->scale.amperes) +
+           a->promise.abstol;
 }
 
 /* ---- Columns ------------------------------------------------------------------------------------ */
@@ -101,10 +103,10 @@ struct file_number file_cell(const struct file_audit *a, size_t row, size_t colu
 struct file_number file_potential_at(const struct file_audit *a, size_t row, int node) {
     struct file_number sum = file_exactly(0.0);
     while (node > 0) {
-        if (a->potential_of[node] < 0) {
+        if (a->columns.potential_of[node] < 0) {
             return (struct file_number){0};
         }
-        const struct file_potential *p = &a->potential[a->potential_of[node]];
+        const struct file_potential *p = &a->columns.potential[a->columns.potential_of[node]];
         if (p->sign != 0.0) {
             sum = file_add(sum, p->sign, file_cell(a, row, p->column));
         }
@@ -190,7 +192,7 @@ void file_evaluate(struct file_audit *a, size_t k, struct file_row *row,
     row->is_left = !row->is_behind && file_is_behind(table, k + 1);
     read_potentials(a, row);
     for (int d = 0; d < a->circuit->n_devices; d++) {
-        const long column = a->current_column[d];
+        const long column = a->columns.current[d];
         row->i[d] = column >= 0 ? file_cell(a, k, (size_t)column) : (struct file_number){0};
         row->is_assumed[d] = false;
         if (a->circuit->device[d].kind == DALCS_SWITCH) {

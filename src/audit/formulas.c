@@ -195,10 +195,11 @@ static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,
     for (int k = 0; k < d->behaviour->n_pairs; k++) {
         double over = pair_defect(audit, part, s, device, k);
         if (over > part->tolerance && part->at.lateness > 0.0) {
-            audit->shifted.side = s->side;
-            audit->shifted.t = s->t + fmax(part->at.lateness, soon * part->at.step);
-            audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
-            over = fmin(over, pair_defect(audit, part, &audit->shifted, device, k));
+            audit->state.shifted.side = s->side;
+            audit->state.shifted.t = s->t + fmax(part->at.lateness, soon * part->at.step);
+            audit->reader.read(audit->reader.user, (int)(part - audit->part),
+                               &audit->state.shifted);
+            over = fmin(over, pair_defect(audit, part, &audit->state.shifted, device, k));
         }
         audit_find(audit, part, law, device, over * held, held, s->t);
     }

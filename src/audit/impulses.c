@@ -178,8 +178,8 @@ void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *par
                          const struct dalcs_audit_state *after) {
     double *acts = audit->sums.flux; /* of devices: free until fluxes are added up */
     const bool by_coils =
-        (part->has_reader || part->has_voltage_reader) && has_jumping_coil(audit, part, after);
-    const bool by_currents = part->has_reader && mark_jumps(audit, part, before, after) &&
+        (part->has.reader || part->has.voltage_reader) && has_jumping_coil(audit, part, after);
+    const bool by_currents = part->has.reader && mark_jumps(audit, part, before, after) &&
                              mark_actors(audit, part, acts);
     if (!by_coils && !by_currents) {
         return;

@@ -115,7 +115,7 @@ static void judge(struct dalcs_audit *audit, const struct audit_part *part, doub
             double off = fabs(audit->sums.current[node]) - audit->options.abstol * duration;
             const double allowed =
                 audit->sums.rounding[node] + part->tolerance * audit->sums.scale[node];
-            off -= off > allowed ? audit_rounding_around(audit, part, &audit->later, node)
+            off -= off > allowed ? audit_rounding_around(audit, part, &audit->state.later, node)
                                  : audit->sums.rounding[node];
             audit_find(audit, part, DALCS_AUDIT_KCL, node, off, audit->sums.scale[node], time);
         }
@@ -137,7 +137,7 @@ static void judge(struct dalcs_audit *audit, const struct audit_part *part, doub
 void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,
                           double to) {
     const int index = (int)(part - audit->part);
-    struct dalcs_audit_state *s = &audit->later;
+    struct dalcs_audit_state *s = &audit->state.later;
     clear(audit, part);
     s->side = DALCS_RIGHT;
     s->t = from;

@@ -156,7 +156,7 @@ static double source_moves(const struct dalcs_audit *audit, const struct audit_p
         hangs = is_source &&
                 (audit->net.node_of[d->node[0]] == node || audit->net.node_of[d->node[1]] == node);
     }
-    return hangs ? fabs(audit->shifted.v[node] - s->v[node]) : 0.0;
+    return hangs ? fabs(audit->state.shifted.v[node] - s->v[node]) : 0.0;
 }
 
 /* What rounding of time makes of the current that leaves a node. A source is what it is at a time, and what follows it is a
@@ -165,9 +165,9 @@ static double source_moves(const struct dalcs_audit *audit, const struct audit_p
 static double rounding_of_time(struct dalcs_audit *audit, const struct audit_part *part,
                                const struct dalcs_audit_state *s, int node) {
     const double away = audit->options.resolution;
-    audit->shifted.side = s->side;
-    audit->shifted.t = s->t + (s->side == DALCS_RIGHT ? away : -away);
-    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
+    audit->state.shifted.side = s->side;
+    audit->state.shifted.t = s->t + (s->side == DALCS_RIGHT ? away : -away);
+    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->state.shifted);
     double sum = 0.0;
     for (int k = 0; k < part->n_devices; k++) {
         const struct dalcs_device *d = &audit->circuit->device[part->device[k]];

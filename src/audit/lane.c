@@ -21,7 +21,7 @@ static bool is_open(const struct audit_lane *lane, const struct audit_watch *wat
     const struct audit_screen *screen = lane->screen;
     return lane->key == p->key && screen != NULL && lane->image->step == p->step &&
            screen->is_made && screen->rests == 0 && screen->n_terms[AUDIT_TERM_SIGN] == 0 &&
-           screen->n_terms[AUDIT_TERM_FLOW] == 0 && watch->theta[0] <= p->end;
+           screen->n_terms[AUDIT_TERM_FLOW] == 0 && watch->times.theta[0] <= p->end;
 }
 
 /* Is what the image has at the m-th time of use for that end? */
@@ -47,15 +47,15 @@ static bool holds(struct dalcs_audit *audit, const struct audit_watch *watch,
                   const struct audit_lane *lane, const struct dalcs_audit_stretch *stretch, int m) {
     const struct dalcs_audit_polynomials *p = stretch->stored;
     struct audit_screen *screen = lane->screen;
-    const double past = watch->theta[m] * p->step;
+    const double past = watch->times.theta[m] * p->step;
     double off;
     const double sign = audit_screen_by_image(watch, screen, p, m, lane->image, &off);
     double law = watch->place[AUDIT_PLACE_LAWS] + screen->rate * past;
     if (audit_laws_have_stimuli(screen)) {
         law += audit_laws_stimuli(audit, screen, stretch->from + past);
     }
-    const double jump = watch->knows_states && !watch->is_put_off
-                            ? fabs(watch->place[AUDIT_PLACE_START] - watch->states)
+    const double jump = watch->before.knows_states && !watch->is_put_off
+                            ? fabs(watch->place[AUDIT_PLACE_START] - watch->before.states)
                             : 0.0;
     return off + fabs(law) <= screen->limit && -sign <= screen->limit && jump <= screen->limit;
 }
@@ -64,7 +64,7 @@ bool audit_lane_passes(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_stretch *stretch) {
     const struct dalcs_audit_polynomials *p = stretch->stored;
     struct audit_watch *watch = part->watch;
-    if (p == NULL || p->input == NULL || stretch->is_cut || part->has_smooth ||
+    if (p == NULL || p->input == NULL || stretch->is_cut || part->has.smooth ||
         stretch->rule != DALCS_AUDIT_SMOOTH) {
         return false;
     }
@@ -81,8 +81,8 @@ bool audit_lane_passes(struct dalcs_audit *audit, const struct audit_part *part,
     lane->image->end = p->end;
     watch->image = lane->image;
     watch->screens.latest = lane->screen;
-    watch->states = watch->place[AUDIT_PLACE_END];
-    watch->knows_states = true;
+    watch->before.states = watch->place[AUDIT_PLACE_END];
+    watch->before.knows_states = true;
     watch->makes = false;
     audit->count.screened++;
     audit->budget.spent += AUDIT_SCREEN_WORK;

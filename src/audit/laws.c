@@ -52,11 +52,11 @@ static void check_diode(struct dalcs_audit *audit, const struct audit_part *part
     double blocked;
     diode_defects(audit, s, device, scale, &branch, &blocked);
     if (fmax(branch, blocked) > part->tolerance && part->at.lateness > 0.0) {
-        audit->shifted.side = s->side;
-        audit->shifted.t = s->t + part->at.lateness;
-        audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
+        audit->state.shifted.side = s->side;
+        audit->state.shifted.t = s->t + part->at.lateness;
+        audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->state.shifted);
         double later[2];
-        diode_defects(audit, &audit->shifted, device, scale, &later[0], &later[1]);
+        diode_defects(audit, &audit->state.shifted, device, scale, &later[0], &later[1]);
         branch = fmin(branch, later[0]);
         blocked = fmin(blocked, later[1]);
     }
@@ -78,10 +78,10 @@ double audit_control(const struct dalcs_audit *audit, const struct dalcs_audit_s
 static double moves_by(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *s, int device, double later) {
     double half_width;
-    audit->shifted.side = s->side;
-    audit->shifted.t = s->t + later;
-    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
-    return fabs(audit_control(audit, &audit->shifted, device, &half_width) -
+    audit->state.shifted.side = s->side;
+    audit->state.shifted.t = s->t + later;
+    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->state.shifted);
+    return fabs(audit_control(audit, &audit->state.shifted, device, &half_width) -
                 audit_control(audit, s, device, &half_width));
 }
 

@@ -169,10 +169,10 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     DALCS_TRY(audit_make_parts(audit));
     DALCS_TRY(make_sums(audit));
     DALCS_TRY(make_courses(audit));
-    DALCS_TRY(make_state(audit, &audit->now));
-    DALCS_TRY(make_state(audit, &audit->later));
-    DALCS_TRY(make_state(audit, &audit->shifted));
-    DALCS_TRY(make_state(audit, &audit->before));
-    DALCS_TRY(make_state(audit, &audit->asked));
+    DALCS_TRY(make_state(audit, &audit->state.now));
+    DALCS_TRY(make_state(audit, &audit->state.later));
+    DALCS_TRY(make_state(audit, &audit->state.shifted));
+    DALCS_TRY(make_state(audit, &audit->state.before));
+    DALCS_TRY(make_state(audit, &audit->state.asked));
     return DALCS_OK;
 }

@@ -20,7 +20,7 @@ static void count_members(struct dalcs_audit *audit, int *owner) {
             continue;
         }
         audit->part[k].n_devices++;
-        audit->part[k].n_latches += audit_remembers(c, i) ? 1 : 0;
+        audit->part[k].latches.n += audit_remembers(c, i) ? 1 : 0;
         for (int e = 0; e < 2; e++) {
             const int node = audit->net.node_of[c->device[i].node[e]];
             if (node != 0 && owner[node] < 0) {
@@ -66,12 +66,28 @@ static bool jumps(const struct dalcs_behaviour *b) {
     return may;
 }
 
+/* The conductances that a device may have. */
+static void see_conductances(struct audit_part *part, const struct dalcs_circuit *c,
+                             const struct dalcs_device *d) {
+    if (d->kind == DALCS_RESISTOR) {
+        see_conductance(part, fabs(1.0 / d->value));
+    } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
+        see_conductance(part, fabs(d->value));
+    } else if (d->kind == DALCS_SWITCH) {
+        see_conductance(part, 1.0 / c->switch_model[d->model].ron);
+        see_conductance(part, 1.0 / c->switch_model[d->model].roff);
+    } else if (d->kind == DALCS_DIODE) {
+        see_conductance(part, 1.0 / c->diode_model[d->model].ron);
+        see_conductance(part, 1.0 / c->diode_model[d->model].roff);
+    }
+}
+
 static void list_members(struct dalcs_audit *audit) {
     const int *owner = audit->net.owner;
     const struct dalcs_circuit *c = audit->circuit;
     for (int k = 0; k < audit->options.n_parts; k++) {
         audit->part[k].n_devices = audit->part[k].n_nodes = audit->part[k].n_couplings = 0;
-        audit->part[k].n_latches = 0;
+        audit->part[k].latches.n = 0;
     }
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
@@ -82,27 +98,17 @@ static void list_members(struct dalcs_audit *audit) {
         struct audit_part *part = &audit->part[k];
         part->device[part->n_devices++] = i;
         if (audit_remembers(c, i)) {
-            part->latch[part->n_latches++] = i;
+            part->latches.device[part->latches.n++] = i;
         }
         for (int e = 0; e < 2; e++) {
             const bool is_charged = d->kind == DALCS_CAPACITOR;
             audit->net.has_charge[audit->net.node_of[d->node[e]]] |= is_charged;
         }
-        part->has_reader |= d->behaviour != NULL || d->kind == DALCS_CCVS || d->kind == DALCS_CCCS;
-        part->has_voltage_reader |= d->kind == DALCS_VCVS || d->kind == DALCS_VCCS;
-        part->has_smooth |= d->behaviour != NULL && d->behaviour->smooth != NULL;
-        part->has_formula |= jumps(d->behaviour);
-        if (d->kind == DALCS_RESISTOR) {
-            see_conductance(part, fabs(1.0 / d->value));
-        } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
-            see_conductance(part, fabs(d->value));
-        } else if (d->kind == DALCS_SWITCH) {
-            see_conductance(part, 1.0 / c->switch_model[d->model].ron);
-            see_conductance(part, 1.0 / c->switch_model[d->model].roff);
-        } else if (d->kind == DALCS_DIODE) {
-            see_conductance(part, 1.0 / c->diode_model[d->model].ron);
-            see_conductance(part, 1.0 / c->diode_model[d->model].roff);
-        }
+        part->has.reader |= d->behaviour != NULL || d->kind == DALCS_CCVS || d->kind == DALCS_CCCS;
+        part->has.voltage_reader |= d->kind == DALCS_VCVS || d->kind == DALCS_VCCS;
+        part->has.smooth |= d->behaviour != NULL && d->behaviour->smooth != NULL;
+        part->has.formula |= jumps(d->behaviour);
+        see_conductances(part, c, d);
     }
     for (int node = 1; node < c->n_nodes; node++) {
         if (owner[node] >= 0) {
@@ -136,12 +142,12 @@ enum dalcs_status audit_make_parts(struct dalcs_audit *audit) {
         part->node = dalcs_arena_alloc(arena, (size_t)part->n_nodes, sizeof(int));
         part->watch = dalcs_arena_alloc(arena, 1, sizeof(*part->watch));
         part->coupling = dalcs_arena_alloc(arena, (size_t)part->n_couplings, sizeof(int));
-        part->latch = dalcs_arena_alloc(arena, (size_t)part->n_latches, sizeof(int));
-        part->was_closed = dalcs_arena_alloc(arena, (size_t)part->n_latches, sizeof(bool));
-        part->has_turned = dalcs_arena_alloc(arena, (size_t)part->n_latches, sizeof(bool));
+        part->latches.device = dalcs_arena_alloc(arena, (size_t)part->latches.n, sizeof(int));
+        part->latches.was_closed = dalcs_arena_alloc(arena, (size_t)part->latches.n, sizeof(bool));
+        part->latches.has_turned = dalcs_arena_alloc(arena, (size_t)part->latches.n, sizeof(bool));
         if (part->watch == NULL || part->device == NULL || part->node == NULL ||
-            part->coupling == NULL || part->latch == NULL || part->was_closed == NULL ||
-            part->has_turned == NULL) {
+            part->coupling == NULL || part->latches.device == NULL ||
+            part->latches.was_closed == NULL || part->latches.has_turned == NULL) {
             return DALCS_E_NOMEM;
         }
         part->tolerance = audit->options.tolerance[k];

@@ -2,7 +2,7 @@
  * way (src/rows), so that they differ by rounding alone. */
 #include "audit_internal.h"
 
-#include "results.h"
+#include "claims.h"
 
 /* Of the tolerance: a row on the right of an event that is so close to the one on its left is made equal to it (rows.h). */
 static const double joins = 0.125;
@@ -22,17 +22,17 @@ static void check_signal(struct dalcs_audit *audit, int index, double value, boo
     }
     const struct audit_part *part = &audit->part[own];
     struct audit_signal of;
-    const double is = audit_signal_value(audit, &audit->now, index, &of);
+    const double is = audit_signal_value(audit, &audit->state.now, index, &of);
     const double joined = may_be_joined ? joins * audit->options.failure *
                                               largest_of_unit(part, &audit->circuit->signal[index])
                                         : 0.0;
     audit_find(audit, part, DALCS_AUDIT_ROW, index, fabs(value - is) - of.rounding - joined,
-               of.scale, audit->now.t);
+               of.scale, audit->state.now.t);
 }
 
 void dalcs_audit_row(struct dalcs_audit *audit, double t, enum dalcs_side side, const double *value,
                      int n) {
-    struct dalcs_audit_state *s = &audit->now;
+    struct dalcs_audit_state *s = &audit->state.now;
     s->t = t;
     s->side = side;
     for (int k = 0; k < audit->options.n_parts; k++) {

@@ -195,7 +195,7 @@ void audit_screen_rescale(struct dalcs_audit *audit, struct audit_part *part) {
             watch->screens.slot[k]->is_made = false;
         }
     }
-    watch->knows_states = false;
+    watch->before.knows_states = false;
 }
 
 /* What all screens of a part share, when the first of them is made. */
@@ -220,9 +220,9 @@ static bool start(struct dalcs_audit *audit, struct audit_part *part,
     }
     watch->state_factor = factor;
     draw_states(audit, part, watch);
-    find_barycentric(p, watch->barycentric);
+    find_barycentric(p, watch->times.barycentric);
     for (int m = 0; m < AUDIT_SCREEN_TIMES; m++) {
-        watch->theta[m] = (m + audit_draw(audit)) / AUDIT_SCREEN_TIMES;
+        watch->times.theta[m] = (m + audit_draw(audit)) / AUDIT_SCREEN_TIMES;
     }
     return true;
 }

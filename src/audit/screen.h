@@ -235,7 +235,7 @@ void audit_screen_weigh(struct audit_watch *watch, const struct dalcs_audit_poly
 /* Of these times, those before an end, in steps. */
 static inline int audit_n_times_before(const struct audit_watch *watch, double end) {
     int n = 0;
-    while (n < AUDIT_SCREEN_TIMES && watch->theta[n] <= end) {
+    while (n < AUDIT_SCREEN_TIMES && watch->times.theta[n] <= end) {
         n++;
     }
     return n;

@@ -130,12 +130,12 @@ static bool make_first(struct audit_filling *f, struct audit_pieces *set) {
     struct dalcs_audit *audit = f->audit;
     struct audit_sums_of_laws *fill = &f->watch->fill;
     if (f->s == NULL) {
-        audit->now.side = DALCS_RIGHT;
-        audit->now.t = f->t;
-        audit->reader.read(audit->reader.user, f->index, &audit->now);
-        audit_note_scales(audit, f->part, &audit->now);
+        audit->state.now.side = DALCS_RIGHT;
+        audit->state.now.t = f->t;
+        audit->reader.read(audit->reader.user, f->index, &audit->state.now);
+        audit_note_scales(audit, f->part, &audit->state.now);
         audit->budget.spent += f->part->cost;
-        f->s = &audit->now;
+        f->s = &audit->state.now;
     }
     audit_sum_currents(audit, f->part, f->s);
     audit_fill_begin(fill);

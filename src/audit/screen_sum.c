@@ -145,18 +145,18 @@ static void add_places(const struct audit_watch *watch, const struct audit_scree
 }
 
 void audit_screen_weigh(struct audit_watch *watch, const struct dalcs_audit_polynomials *p, int m) {
-    weights_at(p, watch->barycentric, watch->theta[m], watch->now[m]);
-    flow_weights(p, watch->barycentric, watch->theta[m], watch->flow[m]);
-    watch->is_weighed[m] = true;
+    weights_at(p, watch->times.barycentric, watch->times.theta[m], watch->times.now[m]);
+    flow_weights(p, watch->times.barycentric, watch->times.theta[m], watch->times.flow[m]);
+    watch->times.is_weighed[m] = true;
 }
 
 void audit_screen_place(const struct audit_watch *watch, const struct audit_screen *screen,
                         const struct dalcs_audit_polynomials *p, int m, const double *value,
                         double *place) {
     double end[AUDIT_MOST_NODES];
-    weights_at(p, watch->barycentric, p->end, end);
-    const struct weights w =
-        weights_of(watch->now[m], watch->flow[m], end, p->n_nodes, audit_node_at(p->n_nodes, m));
+    weights_at(p, watch->times.barycentric, p->end, end);
+    const struct weights w = weights_of(watch->times.now[m], watch->times.flow[m], end, p->n_nodes,
+                                        audit_node_at(p->n_nodes, m));
     add_places(watch, screen, p, &w, value, place);
 }
 
@@ -166,7 +166,7 @@ DALCS_TWICE(double, least_sign, (int n_places, const double *place), (n_places, 
 
 void audit_screen_weights(const struct audit_watch *watch, const struct dalcs_audit_polynomials *p,
                           double theta, double *w) {
-    weights_at(p, watch->barycentric, theta, w);
+    weights_at(p, watch->times.barycentric, theta, w);
 }
 
 void audit_screen_ends(const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
@@ -187,7 +187,7 @@ static inline __attribute__((always_inline)) void
 add_ends(const struct audit_watch *watch, const struct audit_screen *screen,
          const struct dalcs_audit_polynomials *p, const struct audit_image *image, double *place) {
     double w[AUDIT_MOST_NODES];
-    weights_at(p, watch->barycentric, p->end, w);
+    weights_at(p, watch->times.barycentric, p->end, w);
     const double *from = image->at_node;
     const int n_signs = (screen->n_places - AUDIT_PLACE_SIGNS) / AUDIT_SIGN_TIMES;
     for (int first = 0; first < image->n_ends; first += DALCS_QUAD) {
@@ -286,14 +286,14 @@ static double ask_values(struct dalcs_audit *audit, const struct audit_watch *wa
     double flow[AUDIT_MOST_NODES];
     double end[AUDIT_MOST_NODES];
     memcpy(watch->place, screen->constant, (size_t)screen->n_places * sizeof(double));
-    if (watch->theta[m] <= p->end) {
+    if (watch->times.theta[m] <= p->end) {
         audit_screen_place(watch, screen, p, m, p->value, watch->place);
-        return watch->theta[m];
+        return watch->times.theta[m];
     }
     const double theta = audit_draw(audit) * p->end;
-    weights_at(p, watch->barycentric, theta, now);
-    flow_weights(p, watch->barycentric, theta, flow);
-    weights_at(p, watch->barycentric, p->end, end);
+    weights_at(p, watch->times.barycentric, theta, now);
+    flow_weights(p, watch->times.barycentric, theta, flow);
+    weights_at(p, watch->times.barycentric, p->end, end);
     const struct weights w = weights_of(now, flow, end, p->n_nodes, 0);
     add_places(watch, screen, p, &w, p->value, watch->place);
     return theta;
@@ -305,7 +305,7 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
     const struct dalcs_audit_stretch *stretch = q->stretch;
     const struct dalcs_audit_polynomials *p = stretch->stored;
     double *place = watch->place;
-    double theta = watch->theta[q->m];
+    double theta = watch->times.theta[q->m];
     double laws = 0.0;
     double sign;
     if (q->image != NULL) {

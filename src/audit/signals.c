@@ -1,7 +1,7 @@
 /* signals.c - signals, and formulas of them, as the auditor reads them. */
 #include "audit_internal.h"
 
-#include "results.h"
+#include "claims.h"
 
 /* Whose signal it is; -1: of no part. */
 static int owner_of(const struct dalcs_audit *audit, const struct dalcs_signal *signal) {
@@ -49,7 +49,7 @@ double audit_signal_value(const struct dalcs_audit *audit, const struct dalcs_au
 
 double dalcs_audit_signal(struct dalcs_audit *audit, int index, double t, enum dalcs_side side,
                           double *doubt) {
-    struct dalcs_audit_state *s = &audit->asked;
+    struct dalcs_audit_state *s = &audit->state.asked;
     const int own = dalcs_audit_part_of(audit, index);
     struct audit_part *part = &audit->part[own];
     if (!(part->asked_at == t && part->asked_side == side)) {

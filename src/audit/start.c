@@ -55,10 +55,10 @@ static double reach_of(const struct dalcs_audit_polynomials *p) {
 /* Into crossing.offset: what leaves each node through all but capacitors at the end of the step. */
 static void sum_later_currents(struct dalcs_audit *audit, const struct audit_part *part,
                                const struct dalcs_audit_state *first) {
-    audit->shifted.side = DALCS_LEFT;
-    audit->shifted.t = first->t + part->at.step;
-    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
-    audit_sum_currents(audit, part, &audit->shifted);
+    audit->state.shifted.side = DALCS_LEFT;
+    audit->state.shifted.t = first->t + part->at.step;
+    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->state.shifted);
+    audit_sum_currents(audit, part, &audit->state.shifted);
     for (int k = 0; k < part->n_nodes; k++) {
         audit->crossing.offset[part->node[k]] = audit->sums.current[part->node[k]];
     }
@@ -130,14 +130,16 @@ static void check_coils(struct dalcs_audit *audit, const struct audit_part *part
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
         if (d->kind == DALCS_INDUCTOR && !is_read) {
-            audit->shifted.side = DALCS_LEFT;
-            audit->shifted.t = first->t + part->at.step;
-            audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
+            audit->state.shifted.side = DALCS_LEFT;
+            audit->state.shifted.t = first->t + part->at.step;
+            audit->reader.read(audit->reader.user, (int)(part - audit->part),
+                               &audit->state.shifted);
             is_read = true;
         }
         if (d->kind == DALCS_INDUCTOR) {
             const double slope =
-                fabs(audit_voltage(&audit->shifted, d) - audit_voltage(first, d)) / part->at.step;
+                fabs(audit_voltage(&audit->state.shifted, d) - audit_voltage(first, d)) /
+                part->at.step;
             const double off = fabs(audit_voltage(first, d)) - 2.0 * audit->sums.volts -
                                audit->options.vntol - reach * slope * d->value * part->floor.least;
             audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off * part->at.step,
@@ -151,7 +153,7 @@ void audit_check_start(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_polynomials *stored) {
     if (audit->options.origin == DALCS_AUDIT_FROM_INITIAL) {
         check_initial(audit, part, first);
-    } else if (audit->options.origin == DALCS_AUDIT_FROM_REST && !part->has_reader &&
+    } else if (audit->options.origin == DALCS_AUDIT_FROM_REST && !part->has.reader &&
                !part->is_restless) {
         const double reach = reach_of(stored);
         check_currents(audit, part, first, reach);

@@ -5,14 +5,14 @@
 
 void dalcs_audit_look_before(struct dalcs_audit *audit, int part, bool is_same) {
     if (!is_same) {
-        audit->reader.read_before(audit->reader.user, part, 0.0, &audit->later);
+        audit->reader.read_before(audit->reader.user, part, 0.0, &audit->state.later);
     }
 }
 
 void dalcs_audit_look_behind(struct dalcs_audit *audit, int part, double t) {
-    audit->shifted.t = t;
-    audit->shifted.side = DALCS_RIGHT;
-    audit->reader.read(audit->reader.user, part, &audit->shifted);
+    audit->state.shifted.t = t;
+    audit->state.shifted.side = DALCS_RIGHT;
+    audit->reader.read(audit->reader.user, part, &audit->state.shifted);
     audit->reader.raise(audit->reader.user, part, audit->scale.v, audit->scale.i,
                         audit->scale.lambda);
 }
@@ -42,7 +42,7 @@ static double side_of_diode(struct dalcs_audit *audit, const struct dalcs_audit_
 }
 
 void dalcs_audit_check_event(struct dalcs_audit *audit, int device, bool is_on, double t) {
-    const struct dalcs_audit_state *now = &audit->shifted;
+    const struct dalcs_audit_state *now = &audit->state.shifted;
     double off = 0.0;
     if (audit->circuit->device[device].kind == DALCS_DIODE) {
         const double side = side_of_diode(audit, now, device);
@@ -64,7 +64,7 @@ static double stored_in(const struct dalcs_audit_state *s, const struct dalcs_de
  * curved ones. rounding: of these terms, which cancel where k is 1. */
 static double energy_of_change(const struct dalcs_audit *audit, const struct audit_part *part,
                                double *rounding) {
-    const struct dalcs_audit_state *then = &audit->later, *now = &audit->shifted;
+    const struct dalcs_audit_state *then = &audit->state.later, *now = &audit->state.shifted;
     double sum = 0.0;
     double size = 0.0;
     for (int k = 0; k < part->n_devices; k++) {
@@ -134,11 +134,11 @@ void dalcs_audit_check_told_jump(struct dalcs_audit *audit, int index,
     const double slack_before = is_volt ? moved_near(audit, t, true) : moved;
     const double slack_after = is_volt ? moved_near(audit, t, false) : moved;
     if (jump->knows_before) {
-        off = fabs(jump->before - stored_in(&audit->later, d, jump->device)) - slack_before;
+        off = fabs(jump->before - stored_in(&audit->state.later, d, jump->device)) - slack_before;
     }
     if (jump->knows_after) {
-        off = fmax(off,
-                   fabs(jump->after - stored_in(&audit->shifted, d, jump->device)) - slack_after);
+        off = fmax(off, fabs(jump->after - stored_in(&audit->state.shifted, d, jump->device)) -
+                            slack_after);
     }
     off = fmax(off, 0.0);
     double worst = audit_ratio(off, scale);

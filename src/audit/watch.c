@@ -21,10 +21,10 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
     struct audit_question q = {.stretch = stretch,
                                .near = part->tolerance * length + 4.0 * audit->options.resolution,
                                .m = audit_watch_draw(audit, watch, p)};
-    if (!watch->is_weighed[q.m]) {
+    if (!watch->times.is_weighed[q.m]) {
         audit_screen_weigh(watch, p, q.m);
     }
-    if (watch->theta[0] <= p->end) {
+    if (watch->times.theta[0] <= p->end) {
         q.image = audit_image_again(screen, p, q.m);
         q.image = q.image == NULL ? audit_image_of(audit, part, screen, p, q.m) : q.image;
     }
@@ -49,10 +49,11 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
  * before? Then only how it begins is. */
 static bool alarms(struct dalcs_audit *audit, struct audit_watch *watch,
                    struct audit_screen *screen, const struct audit_answer *answer) {
-    const double jump =
-        watch->knows_states && !watch->is_put_off ? fabs(answer->start - watch->states) : 0.0;
-    watch->states = answer->end;
-    watch->knows_states = true;
+    const double jump = watch->before.knows_states && !watch->is_put_off
+                            ? fabs(answer->start - watch->before.states)
+                            : 0.0;
+    watch->before.states = answer->end;
+    watch->before.knows_states = true;
     audit->count.screened++;
     const bool holds = answer->worst <= screen->limit;
     const bool is_known = holds ? jump <= 2.0 * screen->jumped : screen->alarms >= FEW_ALARMS;
@@ -80,7 +81,7 @@ bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         screen = NULL;
     }
     if (screen == NULL) {
-        watch->knows_states = watch->knows_states && watch->makes;
+        watch->before.knows_states = watch->before.knows_states && watch->makes;
         return watch->makes;
     }
     struct audit_answer answer;
@@ -121,7 +122,7 @@ bool audit_watch_begins(struct dalcs_audit *audit, const struct dalcs_audit_stre
     struct audit_answer answer;
     const double t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
     struct audit_screen *screen = make(audit, stretch, NULL, t, &answer);
-    watch->knows_states = watch->knows_states && screen != NULL;
+    watch->before.knows_states = watch->before.knows_states && screen != NULL;
     return screen == NULL || alarms(audit, watch, screen, &answer);
 }
 
@@ -132,10 +133,11 @@ void audit_watch_learn(struct dalcs_audit *audit, const struct dalcs_audit_stret
         return;
     }
     audit_pieces_forget(part->watch);
-    struct audit_screen *screen = make(audit, stretch, &audit->now, audit->now.t, &answer);
-    part->watch->knows_states = screen != NULL;
+    struct audit_screen *screen =
+        make(audit, stretch, &audit->state.now, audit->state.now.t, &answer);
+    part->watch->before.knows_states = screen != NULL;
     if (screen != NULL) {
-        part->watch->states = answer.end;
+        part->watch->before.states = answer.end;
     }
     if (screen != NULL && !(answer.worst <= screen->limit)) {
         allow(audit, part, screen, answer.worst);

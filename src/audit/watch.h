@@ -49,11 +49,14 @@ struct audit_watch {
 
     double
         *state_factor; /* [n_devices of the part] of a state, in their sum; NULL: not drawn yet */
-    double barycentric[AUDIT_MOST_NODES];
-    double theta
-        [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
-    bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there */
-    double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
+
+    struct audit_times { /* that a step is asked at, one in each fourth, and weights of its nodes */
+        double barycentric[AUDIT_MOST_NODES];
+        double theta[AUDIT_SCREEN_TIMES];    /* in steps */
+        bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there: of values and integrals */
+        double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
+        double flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
+    } times;
 
     struct audit_image *image; /* that the present one was asked by; NULL: by its values, or not */
     int drawn; /* of the times, that the present one is asked at; < 0: none is drawn yet */
@@ -83,14 +86,18 @@ struct audit_watch {
     double *column; /* [2][n_columns in whole quads] work */
     double *place;  /* work */
     size_t place_room;
-    double states; /* the sum of states where the stretch before ended */
-    bool knows_states;
+
+    struct audit_stretch_before {
+        double states; /* the sum of states where it ended */
+        bool knows_states;
+        uint64_t key;     /* 0: it had none */
+        bool knows_sides; /* that switches with hysteresis had in it */
+    } before;
+
     bool is_put_off;    /* the present one does not begin there */
     bool saw_beginning; /* its beginning was looked at */
     bool makes;         /* a screen is to be made of the present stretch */
-    uint64_t key;       /* of the stretch before; 0: it had none */
-    bool knows_sides;   /* that switches with hysteresis had in the stretch before */
-    bool has_turned;    /* one of them is on the other now */
+    bool has_turned;    /* a switch with hysteresis is on the other side now */
     double asked;       /* s: a time in it that asks for a look; < 0: none does */
     bool has_jumped; /* ... where all laws hold, but not all states are what they were before it */
 };

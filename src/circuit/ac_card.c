@@ -84,6 +84,49 @@ static bool read_orbit_words(struct dalcs_reader *reader) {
     return false;
 }
 
+/* DEC, OCT or LIN, and three numbers: token[] has where the first and the last frequency stand, and their number. */
+static bool read_spaced(struct dalcs_reader *reader, struct dalcs_sweep *f, double *n,
+                        const struct dalcs_token *token[3]) {
+    if (!dalcs_sweep_take_spacing(reader, &f->spacing)) {
+        dalcs_reader_missing(reader, "dec, oct, lin or list");
+        return false;
+    }
+    token[2] = dalcs_reader_peek(reader, 0);
+    if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "a number of points", n)) {
+        return false;
+    }
+    token[0] = dalcs_reader_peek(reader, 0);
+    if (!dalcs_reader_list_number(reader, DALCS_HERTZ, "a frequency", &f->start)) {
+        return false;
+    }
+    token[1] = dalcs_reader_peek(reader, 0);
+    if (!dalcs_reader_list_number(reader, DALCS_HERTZ, "a frequency", &f->stop) ||
+        !read_orbit_words(reader) || !dalcs_reader_end(reader)) {
+        return false;
+    }
+    return true;
+}
+
+static bool check_spaced(struct dalcs_builder *builder, const struct dalcs_sweep *f, double n,
+                         const struct dalcs_token *const token[3]) {
+    if (!(n >= 1.0) || n != (double)(long)n || n > DALCS_SWEEP_MOST) {
+        dalcs_builder_error(builder, token[2], AC_USAGE,
+                            "the number of points must be a whole number, at least 1");
+        return false;
+    }
+    const bool is_linear = f->spacing == DALCS_LINEAR;
+    if (!(f->start > 0.0) && !(is_linear && f->start == 0.0)) {
+        dalcs_builder_error(builder, token[0], AC_USAGE, "the first frequency must be positive");
+        return false;
+    }
+    if (!(f->stop >= f->start)) {
+        dalcs_builder_error(builder, token[1], AC_USAGE,
+                            "the last frequency must not be below the first");
+        return false;
+    }
+    return true;
+}
+
 void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_sweep *f = &builder->circuit->ac;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, AC_USAGE);
@@ -100,47 +143,18 @@ void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card
         read_frequencies(&reader, f);
         return;
     }
-    if (!dalcs_sweep_take_spacing(&reader, &f->spacing)) {
-        dalcs_reader_missing(&reader, "dec, oct, lin or list");
-        return;
-    }
-    const struct dalcs_token *points = dalcs_reader_peek(&reader, 0);
     double n;
-    if (!dalcs_reader_list_number(&reader, DALCS_PLAIN, "a number of points", &n)) {
+    const struct dalcs_token *token[3];
+    if (!read_spaced(&reader, f, &n, token) || !check_spaced(builder, f, n, token)) {
         return;
     }
-    const struct dalcs_token *start = dalcs_reader_peek(&reader, 0);
-    if (!dalcs_reader_list_number(&reader, DALCS_HERTZ, "a frequency", &f->start)) {
-        return;
-    }
-    const struct dalcs_token *stop = dalcs_reader_peek(&reader, 0);
-    if (!dalcs_reader_list_number(&reader, DALCS_HERTZ, "a frequency", &f->stop) ||
-        !read_orbit_words(&reader) || !dalcs_reader_end(&reader)) {
-        return;
-    }
-    if (!(n >= 1.0) || n != (double)(long)n || n > DALCS_SWEEP_MOST) {
-        dalcs_builder_error(builder, points, AC_USAGE,
-                            "the number of points must be a whole number, at least 1");
-        return;
-    }
-    const bool is_linear = f->spacing == DALCS_LINEAR;
-    if (!(f->start > 0.0) && !(is_linear && f->start == 0.0)) {
-        dalcs_builder_error(builder, start, AC_USAGE, "the first frequency must be positive");
-        return;
-    }
-    if (!(f->stop >= f->start)) {
-        dalcs_builder_error(builder, stop, AC_USAGE,
-                            "the last frequency must not be below the first");
-        return;
-    }
-    if (is_linear) {
+    if (f->spacing == DALCS_LINEAR) {
         f->n = f->start == f->stop ? 1 : (int)n;
         f->step = f->n > 1 ? (f->stop - f->start) / (f->n - 1) : 0.0;
         return;
     }
     f->step = n;
-    if (dalcs_sweep_count_values(builder, (const struct dalcs_token *const[]){start, stop, points},
-                                 AC_USAGE, f)) {
+    if (dalcs_sweep_count_values(builder, token, AC_USAGE, f)) {
         return;
     }
     f->n = 0;

@@ -101,6 +101,28 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
     return false;
 }
 
+/* The times of a .tran, and where they stand; how many: 0 is an error. */
+static int read_times(struct dalcs_reader *reader, struct dalcs_transient *transient,
+                      double time[N_TIMES], const struct dalcs_token *place[N_TIMES]) {
+    int n = 0;
+    while (!dalcs_reader_at_end(reader)) {
+        const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+        if (dalcs_reader_is_number(token) && n < N_TIMES) {
+            if (!dalcs_reader_list_number(reader, DALCS_SECOND, "a time", &time[n])) {
+                return 0;
+            }
+            place[n++] = token;
+        } else if (!read_word(reader, transient)) {
+            return 0;
+        }
+    }
+    if (n == 0) {
+        dalcs_reader_missing(reader, "a stop time");
+        return 0;
+    }
+    return n;
+}
+
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_transient *transient = &builder->circuit->transient;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, TRAN_USAGE);
@@ -111,20 +133,8 @@ void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs
 
     double time[N_TIMES] = {0};
     const struct dalcs_token *place[N_TIMES] = {NULL};
-    int n = 0;
-    while (!dalcs_reader_at_end(&reader)) {
-        const struct dalcs_token *token = dalcs_reader_peek(&reader, 0);
-        if (dalcs_reader_is_number(token) && n < N_TIMES) {
-            if (!dalcs_reader_list_number(&reader, DALCS_SECOND, "a time", &time[n])) {
-                return;
-            }
-            place[n++] = token;
-        } else if (!read_word(&reader, transient)) {
-            return;
-        }
-    }
+    const int n = read_times(&reader, transient, time, place);
     if (n == 0) {
-        dalcs_reader_missing(&reader, "a stop time");
         return;
     }
     const struct dalcs_dialect dialect = builder->netlist->dialect;

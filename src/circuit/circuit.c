@@ -219,6 +219,31 @@ enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
     return dalcs_circuit_build_with(circuit, netlist, NULL, 0, diag);
 }
 
+static void finish_builder(struct dalcs_builder *builder) {
+    dalcs_names_finish(&builder->elements.nodes);
+    dalcs_names_finish(&builder->elements.devices);
+    dalcs_names_finish(&builder->models.names);
+    dalcs_names_finish(&builder->logic.comparators);
+    dalcs_names_finish(&builder->elements.pairs);
+    dalcs_names_finish(&builder->analyses.initial_pairs);
+    dalcs_names_finish(&builder->signals.names);
+    dalcs_names_finish(&builder->results.measure_names);
+    dalcs_names_finish(&builder->signals.measured_keys);
+    dalcs_arena_finish(&builder->scratch);
+    free(builder->elements.node_name);
+    free(builder->elements.node_token);
+    free(builder->signals.signal);
+    free(builder->signals.measured);
+    free(builder->results.measure);
+    free(builder->results.print);
+    free(builder->results.print_column);
+    free(builder->signals.computed);
+    free(builder->results.fourier);
+    free(builder->analyses.initial_condition);
+    free(builder->formulas.source);
+    dalcs_drivers_finish(&builder->formulas.drivers);
+}
+
 enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
                                            const struct dalcs_netlist *netlist,
                                            const struct dalcs_override *override,
@@ -243,29 +268,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
         status = diag->out_of_memory ? DALCS_E_NOMEM : DALCS_E_NETLIST;
     }
     dalcs_diag_sort(diag);
-
-    dalcs_names_finish(&builder.elements.nodes);
-    dalcs_names_finish(&builder.elements.devices);
-    dalcs_names_finish(&builder.models.names);
-    dalcs_names_finish(&builder.logic.comparators);
-    dalcs_names_finish(&builder.elements.pairs);
-    dalcs_names_finish(&builder.analyses.initial_pairs);
-    dalcs_names_finish(&builder.signals.names);
-    dalcs_names_finish(&builder.results.measure_names);
-    dalcs_names_finish(&builder.signals.measured_keys);
-    dalcs_arena_finish(&builder.scratch);
-    free(builder.elements.node_name);
-    free(builder.elements.node_token);
-    free(builder.signals.signal);
-    free(builder.signals.measured);
-    free(builder.results.measure);
-    free(builder.results.print);
-    free(builder.results.print_column);
-    free(builder.signals.computed);
-    free(builder.results.fourier);
-    free(builder.analyses.initial_condition);
-    free(builder.formulas.source);
-    dalcs_drivers_finish(&builder.formulas.drivers);
+    finish_builder(&builder);
     dalcs_deck_finish(&deck);
     if (status != DALCS_OK) {
         dalcs_circuit_finish(circuit);

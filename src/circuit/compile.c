@@ -236,6 +236,22 @@ static const struct dalcs_form *choice(struct dalcs_compiler *c, const struct da
 
 /* ---- Formulas -------------------------------------------------------------------------------------- */
 
+/* The forms of all arguments; of a choice without its condition: that, or the opposite one, comes later. */
+static const struct dalcs_form **compile_arguments(struct dalcs_compiler *c,
+                                                   const struct dalcs_formula *f) {
+    const struct dalcs_form **argument =
+        dalcs_arena_alloc(c->arena, (size_t)f->n + 1, sizeof(const struct dalcs_form *));
+    if (argument == NULL) {
+        c->builder->out_of_memory = true;
+        c->failed = true;
+    }
+    const int first = f->kind == DALCS_FORMULA_CHOICE ? 1 : 0;
+    for (int k = first; k < f->n && !c->failed; k++) {
+        argument[k] = dalcs_compile(c, f->argument[k]);
+    }
+    return argument;
+}
+
 static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
                                             const struct dalcs_formula *f) {
     if (f->kind == DALCS_FORMULA_CALL && f->n == 1 && dalcs_function_is_noise(f->function)) {
@@ -251,18 +267,7 @@ static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
     if (dalcs_memory_is(f)) {
         return dalcs_memory_form(c, f);
     }
-    const struct dalcs_form **argument =
-        dalcs_arena_alloc(c->arena, (size_t)f->n + 1, sizeof(const struct dalcs_form *));
-    if (argument == NULL) {
-        c->builder->out_of_memory = true;
-        c->failed = true;
-    }
-    const int first = f->kind == DALCS_FORMULA_CHOICE
-                          ? 1
-                          : 0; /* its condition, or the opposite one, comes later */
-    for (int k = first; k < f->n && !c->failed; k++) {
-        argument[k] = dalcs_compile(c, f->argument[k]);
-    }
+    const struct dalcs_form **argument = compile_arguments(c, f);
     if (c->failed) {
         return NULL;
     }

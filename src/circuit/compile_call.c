@@ -86,33 +86,51 @@ static const char *smooth_name(const struct dalcs_compiler *c, const struct dalc
     return function != NULL ? function->name : f->function;
 }
 
+/* Is it a piecewise function of one argument? *form: its; NULL: it could not be made. */
+static bool compile_piecewise(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                              const struct dalcs_form *a, const struct dalcs_form **form) {
+    if (is_named(f, "abs")) {
+        *form = apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}}, 1, -1, 1, a);
+        return true;
+    }
+    if (is_named(f, "sgn")) {
+        *form = apply(c, (struct dalcs_knot[]){{0, -1, 0, 1}}, 1, 0, 0, a);
+        return true;
+    }
+    if (is_named(f, "u") || is_named(f, "stp") || is_named(f, "gt0") || is_named(f, "ge0")) {
+        *form = dalcs_compile_compare(c, a, dalcs_form_number(c, 0), is_named(f, "ge0") ? 1 : 0);
+        return true;
+    }
+    if (is_named(f, "lt0") || is_named(f, "le0")) {
+        *form = dalcs_compile_compare(c, dalcs_form_number(c, 0), a, is_named(f, "le0") ? 1 : 0);
+        return true;
+    }
+    if (is_named(f, "buf")) {
+        *form = dalcs_compile_compare(c, a, dalcs_form_number(c, 0.5), 0);
+        return true;
+    }
+    if (is_named(f, "inv")) {
+        *form = dalcs_compile_compare(c, dalcs_form_number(c, 0.5), a, 1);
+        return true;
+    }
+    if (is_named(f, "uramp")) {
+        *form = apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}}, 1, 0, 1, a);
+        return true;
+    }
+    if (is_named(f, "u2")) {
+        *form = apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}, {1, 1, 1, 1}}, 2, 0, 0, a);
+        return true;
+    }
+    return false;
+}
+
 const struct dalcs_form *dalcs_compile_call(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                             const struct dalcs_form **argument) {
     static const char *const points[] = {"eq0", "ne0"};
     const struct dalcs_form *a = argument[0];
-    if (is_named(f, "abs")) {
-        return apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}}, 1, -1, 1, a);
-    }
-    if (is_named(f, "sgn")) {
-        return apply(c, (struct dalcs_knot[]){{0, -1, 0, 1}}, 1, 0, 0, a);
-    }
-    if (is_named(f, "u") || is_named(f, "stp") || is_named(f, "gt0") || is_named(f, "ge0")) {
-        return dalcs_compile_compare(c, a, dalcs_form_number(c, 0), is_named(f, "ge0") ? 1 : 0);
-    }
-    if (is_named(f, "lt0") || is_named(f, "le0")) {
-        return dalcs_compile_compare(c, dalcs_form_number(c, 0), a, is_named(f, "le0") ? 1 : 0);
-    }
-    if (is_named(f, "buf")) {
-        return dalcs_compile_compare(c, a, dalcs_form_number(c, 0.5), 0);
-    }
-    if (is_named(f, "inv")) {
-        return dalcs_compile_compare(c, dalcs_form_number(c, 0.5), a, 1);
-    }
-    if (is_named(f, "uramp")) {
-        return apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}}, 1, 0, 1, a);
-    }
-    if (is_named(f, "u2")) {
-        return apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}, {1, 1, 1, 1}}, 2, 0, 0, a);
+    const struct dalcs_form *form;
+    if (compile_piecewise(c, f, a, &form)) {
+        return form;
     }
     if (is_named(f, "max")) {
         return fold(c, f, argument, dalcs_form_max);

@@ -154,11 +154,10 @@ static bool is_bare(const struct dalcs_card *card, const struct dalcs_token *typ
     return is_bare;
 }
 
-bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
-                             struct dalcs_diode_card *card, struct dalcs_diode_model *model) {
+/* What a model has where it says nothing. */
+static void set_defaults(struct dalcs_parameter parameter[DALCS_DIODE_N_PARAMETERS]) {
     const double infinite = (double)INFINITY;
-    struct dalcs_builder *builder = reader->builder;
-    struct dalcs_parameter parameter[DALCS_DIODE_N_PARAMETERS] = {
+    const struct dalcs_parameter own[DALCS_DIODE_N_PARAMETERS] = {
         [DALCS_DIODE_RON] = {"ron", DALCS_OHM, false, 0, NULL},
         [DALCS_DIODE_ROFF] = {"roff", DALCS_OHM, true, infinite, NULL},
         [DALCS_DIODE_VFWD] = {"vfwd", DALCS_VOLTAGE, false, 0, NULL},
@@ -179,8 +178,16 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
         [DALCS_DIODE_VRB] = {"vrb", DALCS_VOLTAGE, true, infinite, NULL},
         [DALCS_DIODE_IB] = {"ib", DALCS_CURRENT, false, 1e-3, NULL},
     };
+    memcpy(parameter, own, sizeof own);
+}
+
+bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
+                             struct dalcs_diode_card *card, struct dalcs_diode_model *model) {
+    struct dalcs_builder *builder = reader->builder;
+    struct dalcs_parameter parameter[DALCS_DIODE_N_PARAMETERS];
+    set_defaults(parameter);
     reader->usage = MODEL_USAGE;
-    card->ilimit = card->revilimit = infinite;
+    card->ilimit = card->revilimit = (double)INFINITY;
     if (!dalcs_model_read_parameters(reader, parameter, DALCS_DIODE_N_PARAMETERS,
                                      report_parameter)) {
         return false;

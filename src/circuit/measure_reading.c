@@ -155,6 +155,30 @@ static bool check_crossing(struct dalcs_measure_reading *r, struct dalcs_measure
     return true;
 }
 
+/* Is RISE, FALL or CROSS next? It is read, and may stand there once; *ok: it could be. */
+static bool read_edge(struct dalcs_measure_reading *r, struct dalcs_measure_instant *instant,
+                      bool *has_edge, bool *ok) {
+    static const char *const edges[] = {
+        [DALCS_EDGE_ANY] = "cross", [DALCS_EDGE_RISE] = "rise", [DALCS_EDGE_FALL] = "fall"};
+    const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
+    int edge = 0;
+    while (edge <= DALCS_EDGE_FALL && !dalcs_measure_take(r, edges[edge])) {
+        edge++;
+    }
+    if (edge > DALCS_EDGE_FALL) {
+        return false;
+    }
+    if (*has_edge) {
+        dalcs_builder_error(r->builder, token, CONDITION, "one of RISE, FALL and CROSS, and once");
+        *ok = false;
+        return true;
+    }
+    *has_edge = true;
+    instant->edge = (enum dalcs_measure_edge)edge;
+    *ok = read_count(r, &instant->count);
+    return true;
+}
+
 bool dalcs_measure_read_condition(struct dalcs_measure_reading *r,
                                   struct dalcs_measure_instant *instant) {
     struct dalcs_signal_formula right = {0};
@@ -168,9 +192,6 @@ bool dalcs_measure_read_condition(struct dalcs_measure_reading *r,
         return false;
     }
     while (!dalcs_reader_at_end(&r->reader)) {
-        static const char *const edges[] = {
-            [DALCS_EDGE_ANY] = "cross", [DALCS_EDGE_RISE] = "rise", [DALCS_EDGE_FALL] = "fall"};
-        const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
         if (!has_value && dalcs_measure_take(r, "val")) {
             has_value = true;
             if (!dalcs_measure_read_formula(r, false, "a value", &r->rules, &right)) {
@@ -184,21 +205,11 @@ bool dalcs_measure_read_condition(struct dalcs_measure_reading *r,
             }
             continue;
         }
-        int edge = 0;
-        while (edge <= DALCS_EDGE_FALL && !dalcs_measure_take(r, edges[edge])) {
-            edge++;
-        }
-        if (edge > DALCS_EDGE_FALL) {
+        bool ok;
+        if (!read_edge(r, instant, &has_edge, &ok)) {
             break;
         }
-        if (has_edge) {
-            dalcs_builder_error(r->builder, token, CONDITION,
-                                "one of RISE, FALL and CROSS, and once");
-            return false;
-        }
-        has_edge = true;
-        instant->edge = (enum dalcs_measure_edge)edge;
-        if (!read_count(r, &instant->count)) {
+        if (!ok) {
             return false;
         }
     }

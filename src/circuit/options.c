@@ -185,6 +185,44 @@ static bool read_method(struct dalcs_reader *reader) {
     return true;
 }
 
+/* Is it one whose value is a number? *ok: that could be read. */
+static bool read_numeric(struct dalcs_reader *reader, const char *name, bool *ok) {
+    struct dalcs_circuit_options *options = &reader->builder->circuit->options;
+    if (strcmp(name, "reltol") == 0) {
+        *ok = read_tolerance(reader, &options->reltol);
+        return true;
+    }
+    if (strcmp(name, "abstol") == 0) {
+        *ok = read_positive(reader, DALCS_CURRENT, &options->abstol);
+        return true;
+    }
+    if (strcmp(name, "vntol") == 0) {
+        *ok = read_positive(reader, DALCS_VOLTAGE, &options->vntol);
+        return true;
+    }
+    if (strcmp(name, "step") == 0) {
+        *ok = read_positive(reader, DALCS_SECOND, &options->step);
+        return true;
+    }
+    if (strcmp(name, "initial_interval") == 0) {
+        *ok = read_interval(reader, &options->initial_interval);
+        return true;
+    }
+    if (strcmp(name, "stages") == 0) {
+        *ok = read_stages(reader, &options->stages);
+        return true;
+    }
+    if (strcmp(name, "fill") == 0) {
+        *ok = read_fill(reader, options);
+        return true;
+    }
+    if (strcmp(name, "compress") == 0) {
+        *ok = read_compress(reader, options);
+        return true;
+    }
+    return false;
+}
+
 /* The value of a known option; `=` is optional, as in SPICE. */
 static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *token) {
     struct dalcs_circuit_options *options = &reader->builder->circuit->options;
@@ -202,23 +240,9 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     if (strstr(name, "tol") != NULL && options->tolerance_where.line == 0) {
         options->tolerance_where = dalcs_builder_keep_location(reader->builder, token);
     }
-    if (strcmp(name, "reltol") == 0) {
-        return read_tolerance(reader, &options->reltol);
-    }
-    if (strcmp(name, "abstol") == 0) {
-        return read_positive(reader, DALCS_CURRENT, &options->abstol);
-    }
-    if (strcmp(name, "vntol") == 0) {
-        return read_positive(reader, DALCS_VOLTAGE, &options->vntol);
-    }
-    if (strcmp(name, "step") == 0) {
-        return read_positive(reader, DALCS_SECOND, &options->step);
-    }
-    if (strcmp(name, "initial_interval") == 0) {
-        return read_interval(reader, &options->initial_interval);
-    }
-    if (strcmp(name, "stages") == 0) {
-        return read_stages(reader, &options->stages);
+    bool ok;
+    if (read_numeric(reader, name, &ok)) {
+        return ok;
     }
     if (strcmp(name, "diodecurrent") == 0) {
         options->has_diode_current = true;
@@ -234,14 +258,8 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     if (strcmp(name, "temp") == 0 || strcmp(name, "tnom") == 0) {
         return dalcs_temperature_read_option(reader, token);
     }
-    if (strcmp(name, "fill") == 0) {
-        return read_fill(reader, options);
-    }
     if (strcmp(name, "curve") == 0) {
         return read_either(reader, name, "lines", "cubics", &options->lines);
-    }
-    if (strcmp(name, "compress") == 0) {
-        return read_compress(reader, options);
     }
     if (strcmp(name, "filetype") == 0) {
         return read_either(reader, name, "ascii", "binary", &options->ascii);

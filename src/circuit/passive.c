@@ -132,6 +132,35 @@ static void warm(struct dalcs_builder *builder, const struct dalcs_card *card,
     device->value *= factor;
 }
 
+/* The value, the model and the parameters behind the nodes; *value: the last token of the value. */
+static bool read_values(struct dalcs_reader *reader, const struct dalcs_passive_family *family,
+                        struct dalcs_device *device, struct dalcs_passive_values *values,
+                        const struct dalcs_model **model, const struct dalcs_token **value) {
+    const char letter = family->names[0][0];
+    if (!dalcs_model_take_passive(reader, letter, model)) {
+        return false;
+    }
+    (void)dalcs_reader_take_word(reader, "noiseless");
+    if (!takes_model_value(reader, *model, values, device) && !is_parameter_next(reader) &&
+        !dalcs_passive_take_law(reader, values, true)) {
+        if (!dalcs_reader_number(reader, family->quantity, family->value, &device->value)) {
+            return false;
+        }
+        values->has_value = true;
+    }
+    *value = dalcs_reader_previous(reader);
+    if (!dalcs_model_take_passive(reader, letter, model) ||
+        !dalcs_passive_read_rest(reader, family, device, values, value) ||
+        !is_of_model_alone(reader, *model, values)) {
+        return false;
+    }
+    if (!values->has_value) {
+        dalcs_reader_missing(reader, family->value);
+        return false;
+    }
+    return true;
+}
+
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind) {
     const struct dalcs_passive_family *family = family_of(kind);
@@ -145,27 +174,9 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         return;
     }
     struct dalcs_passive_values values = {.has_value = false};
-    const char letter = family->names[0][0];
     const struct dalcs_model *model = NULL;
-    if (!dalcs_model_take_passive(&reader, letter, &model)) {
-        return;
-    }
-    (void)dalcs_reader_take_word(&reader, "noiseless");
-    if (!takes_model_value(&reader, model, &values, device) && !is_parameter_next(&reader) &&
-        !dalcs_passive_take_law(&reader, &values, true)) {
-        if (!dalcs_reader_number(&reader, family->quantity, family->value, &device->value)) {
-            return;
-        }
-        values.has_value = true;
-    }
-    const struct dalcs_token *value = dalcs_reader_previous(&reader);
-    if (!dalcs_model_take_passive(&reader, letter, &model) ||
-        !dalcs_passive_read_rest(&reader, family, device, &values, &value) ||
-        !is_of_model_alone(&reader, model, &values)) {
-        return;
-    }
-    if (!values.has_value) {
-        dalcs_reader_missing(&reader, family->value);
+    const struct dalcs_token *value;
+    if (!read_values(&reader, family, device, &values, &model, &value)) {
         return;
     }
     warm(builder, card, device, &values, model);

@@ -49,29 +49,38 @@ static bool start_print(struct dalcs_builder *builder, int analysis) {
     return true;
 }
 
-void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
+/* The analysis that a card names, -1: none; false: one that there is not, and the card is ignored. */
+static bool take_analysis(struct dalcs_reader *reader, int *analysis) {
     static const char *const ours[] = {[DALCS_MEASURED_TRAN] = "tran",
                                        [DALCS_MEASURED_OP] = "op",
                                        [DALCS_MEASURED_DC] = "dc",
                                        [DALCS_MEASURED_AC] = "ac"};
     static const char *const other[] = {"noise", "sens",     "hb",        "four",
                                         "hb_ic", "homotopy", "hb_startup"};
+    const struct dalcs_token *type = dalcs_reader_peek(reader, 0);
+    *analysis = -1;
+    for (size_t k = 0; k < sizeof other / sizeof other[0]; k++) {
+        if (dalcs_reader_take_word(reader, other[k])) {
+            dalcs_builder_note(reader->builder, type, NULL,
+                               "there is no %s analysis: this is ignored", type->text);
+            return false;
+        }
+    }
+    for (int k = 0; k <= DALCS_MEASURED_AC && *analysis < 0; k++) {
+        *analysis = dalcs_reader_take_word(reader, ours[k]) ? k : -1;
+    }
+    return true;
+}
+
+void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, DALCS_SIGNALS_USAGE);
-    const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
     builder->signals.are_named = true;
     const char *name = card->token->text;
     const bool takes_options = strcmp(name, ".print") == 0;
     const bool has_type = strcmp(name, ".save") != 0;
-    for (size_t k = 0; has_type && k < sizeof other / sizeof other[0]; k++) {
-        if (dalcs_reader_take_word(&reader, other[k])) {
-            dalcs_builder_note(builder, type, NULL, "there is no %s analysis: this is ignored",
-                               type->text);
-            return;
-        }
-    }
     int analysis = -1;
-    for (int k = 0; has_type && k <= DALCS_MEASURED_AC && analysis < 0; k++) {
-        analysis = dalcs_reader_take_word(&reader, ours[k]) ? k : -1;
+    if (has_type && !take_analysis(&reader, &analysis)) {
+        return;
     }
     if (takes_options) {
         skip_print_options(&reader);

@@ -249,6 +249,50 @@ bool dalcs_signals_is_probe(const struct dalcs_card *card) {
     return strncmp(card->token->text, ".probe", strlen(".probe")) == 0;
 }
 
+/* A word without brackets: a node, or many signals. */
+static bool read_word(struct dalcs_reader *reader) {
+    struct dalcs_builder *builder = reader->builder;
+    if (dalcs_reader_take_word(reader, "all")) {
+        dalcs_signals_add_default(builder);
+        return true;
+    }
+    if (dalcs_reader_take_word(reader, "alli")) {
+        if (dalcs_signals_is_probe(reader->card)) {
+            dalcs_signals_add_default(builder);
+        }
+        dalcs_signals_add_currents(builder);
+        return true;
+    }
+    if (dalcs_reader_take_word(reader, "allp")) {
+        dalcs_signals_add_powers(builder, 'p');
+        return true;
+    }
+    return dalcs_reader_peek(reader, 0)->text[0] == '@' ? read_device_current(reader)
+                                                        : read_plain_node(reader);
+}
+
+/* db(v(out)) */
+static bool read_function_of(struct dalcs_reader *reader, const struct part_name *function) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    reader->at += 2;
+    const struct dalcs_token *inner = dalcs_reader_peek(reader, 0);
+    builder->results.print_part = function->part;
+    builder->results.print_before = dalcs_builder_hint(builder, "%s(", token->text);
+    if (inner == NULL || part_of(inner->text) == NULL) {
+        dalcs_reader_missing(reader, "v(node) or i(element)");
+        return false;
+    }
+    if (!dalcs_signals_read(reader)) {
+        return false;
+    }
+    if (!dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(reader, "')'");
+        return false;
+    }
+    return true;
+}
+
 bool dalcs_signals_read(struct dalcs_reader *reader) {
     static const char *const within[] = {"p", "w", "n"};
     struct dalcs_builder *builder = reader->builder;
@@ -267,22 +311,7 @@ bool dalcs_signals_read(struct dalcs_reader *reader) {
         return false;
     }
     if (next == NULL || next->kind != DALCS_TOKEN_OPEN) {
-        if (dalcs_reader_take_word(reader, "all")) {
-            dalcs_signals_add_default(builder);
-            return true;
-        }
-        if (dalcs_reader_take_word(reader, "alli")) {
-            if (dalcs_signals_is_probe(reader->card)) {
-                dalcs_signals_add_default(builder);
-            }
-            dalcs_signals_add_currents(builder);
-            return true;
-        }
-        if (dalcs_reader_take_word(reader, "allp")) {
-            dalcs_signals_add_powers(builder, 'p');
-            return true;
-        }
-        return token->text[0] == '@' ? read_device_current(reader) : read_plain_node(reader);
+        return read_word(reader);
     }
     if (dalcs_signals_read_all_of(reader)) {
         return true;
@@ -302,22 +331,7 @@ bool dalcs_signals_read(struct dalcs_reader *reader) {
     }
     const struct part_name *function = function_of(token->text);
     if (function != NULL) {
-        reader->at += 2;
-        const struct dalcs_token *inner = dalcs_reader_peek(reader, 0);
-        builder->results.print_part = function->part;
-        builder->results.print_before = dalcs_builder_hint(builder, "%s(", token->text);
-        if (inner == NULL || part_of(inner->text) == NULL) {
-            dalcs_reader_missing(reader, "v(node) or i(element)");
-            return false;
-        }
-        if (!dalcs_signals_read(reader)) {
-            return false;
-        }
-        if (!dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
-            dalcs_reader_missing(reader, "')'");
-            return false;
-        }
-        return true;
+        return read_function_of(reader, function);
     }
     dalcs_builder_warn(builder, token, DALCS_SIGNALS_USAGE,
                        "'%s(...)' is not a signal: it is left out", token->text);

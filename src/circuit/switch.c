@@ -67,6 +67,21 @@ static bool is_taken_for_volts(struct dalcs_builder *builder, const struct dalcs
     return true;
 }
 
+/* Devices in parallel, a resistance and limits of the current, as its model has them. */
+static void expand_model(struct dalcs_builder *builder, const struct dalcs_card *card,
+                         struct dalcs_device *device) {
+    if (device->model >= 0 && card->parallel > 0) {
+        multiply(builder, device, card->parallel);
+    }
+    if (device->model >= 0) {
+        const double most = builder->circuit->switch_model[device->model].ilimit;
+        add_series(builder, card->token, device);
+        dalcs_current_limit_expand(
+            builder, card->token, device,
+            &(struct dalcs_current_limits){.forward = most, .reverse = most});
+    }
+}
+
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     const bool by_current = card->letter == 'w';
     const bool by_formula = !by_current && dalcs_formula_find_control(card) < card->n;
@@ -108,14 +123,5 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
         device->node[2] = node;
     }
     dalcs_reader_end(&reader);
-    if (device->model >= 0 && card->parallel > 0) {
-        multiply(builder, device, card->parallel);
-    }
-    if (device->model >= 0) {
-        const double most = builder->circuit->switch_model[device->model].ilimit;
-        add_series(builder, card->token, device);
-        dalcs_current_limit_expand(
-            builder, card->token, device,
-            &(struct dalcs_current_limits){.forward = most, .reverse = most});
-    }
+    expand_model(builder, card, device);
 }

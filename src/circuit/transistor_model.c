@@ -153,13 +153,11 @@ static void set_diode(struct dalcs_transistor *t, const struct dalcs_parameter *
                                          .breakdown_current = 1};
 }
 
-struct dalcs_transistor *dalcs_transistor_parse_model(struct dalcs_reader *reader,
-                                                      const struct dalcs_token *name,
-                                                      const struct dalcs_token *type) {
-    struct dalcs_builder *builder = reader->builder;
+/* What a model has where it says nothing. */
+static void set_defaults(struct dalcs_parameter p[N_PARAMETERS], const struct dalcs_token *type) {
     const bool igbt = is_igbt(type);
     const bool vdmos = strcmp(type->text, "vdmos") == 0;
-    struct dalcs_parameter p[N_PARAMETERS] = {
+    const struct dalcs_parameter own[N_PARAMETERS] = {
         [VTO] = {igbt ? "vt" : "vto", DALCS_VOLTAGE, false, igbt ? 4.7 : 0, NULL},
         [KP] = {"kp", DALCS_PLAIN, false,
                 vdmos  ? 1
@@ -185,11 +183,22 @@ struct dalcs_transistor *dalcs_transistor_parse_model(struct dalcs_reader *reade
         [VDIODE] = {"vdiode", DALCS_VOLTAGE, false, 0, NULL},
         [RDIODE] = {"rdiode", DALCS_OHM, false, 0, NULL},
     };
+    memcpy(p, own, sizeof own);
     if (is_bipolar(type)) {
         p[RD].name = "rc";
         p[RS].name = "re";
         p[IS].value = 1e-16;
     }
+}
+
+struct dalcs_transistor *dalcs_transistor_parse_model(struct dalcs_reader *reader,
+                                                      const struct dalcs_token *name,
+                                                      const struct dalcs_token *type) {
+    struct dalcs_builder *builder = reader->builder;
+    const bool igbt = is_igbt(type);
+    const bool vdmos = strcmp(type->text, "vdmos") == 0;
+    struct dalcs_parameter p[N_PARAMETERS];
+    set_defaults(p, type);
     reader->usage = igbt ? IGBT_USAGE : is_bipolar(type) ? BIPOLAR_USAGE : MOSFET_USAGE;
     bool is_p = strcmp(type->text, "pmos") == 0 || strcmp(type->text, "pnp") == 0;
     if (!read_all(reader, p, &is_p) || !check(builder, p, reader->usage)) {

@@ -10,17 +10,17 @@
 
 enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
-    if (!arguments->steady && !arguments->bode) {
+    if (!arguments->steady.is_asked && !arguments->bode.is_asked) {
         dalcs_cli_error(cli, "--period is an option of 'dalcs steady' and 'dalcs bode'");
         return DALCS_E_OPTION;
     }
-    return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
+    return dalcs_verb_take_positive(cli, "--period", text, &arguments->steady.period);
 }
 
 /* The options of `dalcs envelope` alone. */
 static enum dalcs_status check_envelope(const struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *name) {
-    if (!arguments->envelope) {
+    if (!arguments->envelope.is_asked) {
         dalcs_cli_error(cli, "%s is an option of 'dalcs envelope'", name);
         return DALCS_E_OPTION;
     }
@@ -30,7 +30,7 @@ static enum dalcs_status check_envelope(const struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_stop(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *text) {
     DALCS_TRY(check_envelope(arguments, cli, "--stop"));
-    return dalcs_verb_take_positive(cli, "--stop", text, &arguments->stop);
+    return dalcs_verb_take_positive(cli, "--stop", text, &arguments->envelope.stop);
 }
 
 /* Times between commas, behind those that are there; owned array. */
@@ -58,8 +58,8 @@ static enum dalcs_status take_times(const struct dalcs_cli *cli, const char *nam
 enum dalcs_status dalcs_argument_show(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *text) {
     DALCS_TRY(check_envelope(arguments, cli, "--show"));
-    arguments->n_show = 0;
-    return take_times(cli, "--show", text, &arguments->show, &arguments->n_show);
+    arguments->envelope.n_show = 0;
+    return take_times(cli, "--show", text, &arguments->envelope.show, &arguments->envelope.n_show);
 }
 
 enum dalcs_status dalcs_argument_at(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
@@ -69,30 +69,37 @@ enum dalcs_status dalcs_argument_at(struct dalcs_arguments *arguments, const str
     snprintf(time, sizeof time, "%.*s", (int)strcspn(text, ","), text);
     /* "10.txt" begins like a number */
     if (access(text, F_OK) != 0 && dalcs_parse_number(time, &first) == DALCS_OK) {
-        return take_times(cli, "--at", text, &arguments->times, &arguments->n_times);
+        return take_times(cli, "--at", text, &arguments->rows.times, &arguments->rows.n_times);
     }
-    if (arguments->at != NULL) {
+    if (arguments->rows.at != NULL) {
         dalcs_cli_error(cli, "--at: a second file of times, '%s': put all times into one", text);
         return DALCS_E_OPTION;
     }
-    arguments->at = text;
+    arguments->rows.at = text;
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_argument_transient(struct dalcs_arguments *arguments,
-                                           const struct dalcs_cli *cli, bool is_whole,
-                                           const char *text) {
-    const char *name = is_whole ? "--tran" : "--tstop";
-    double stop;
-    if (arguments->steady || arguments->bode || arguments->envelope) {
+static enum dalcs_status check_is_run(const struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *name) {
+    if (arguments->steady.is_asked || arguments->bode.is_asked || arguments->envelope.is_asked) {
         dalcs_cli_error(cli, "%s is an option of 'dalcs run'%s", name,
-                        arguments->envelope ? "; 'dalcs envelope' has --stop" : "");
+                        arguments->envelope.is_asked ? "; 'dalcs envelope' has --stop" : "");
         return DALCS_E_OPTION;
     }
-    if (is_whole) {
-        arguments->transient = text;
-        return DALCS_OK;
-    }
-    arguments->tstop = text;
-    return dalcs_verb_take_positive(cli, name, text, &stop);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_tran(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    DALCS_TRY(check_is_run(arguments, cli, "--tran"));
+    arguments->tran.card = text;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_tstop(struct dalcs_arguments *arguments,
+                                       const struct dalcs_cli *cli, const char *text) {
+    double stop;
+    DALCS_TRY(check_is_run(arguments, cli, "--tstop"));
+    arguments->tran.stop = text;
+    return dalcs_verb_take_positive(cli, "--tstop", text, &stop);
 }

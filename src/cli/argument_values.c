@@ -42,7 +42,7 @@ static const char *who_writes(const char *path) {
 enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *path) {
     if (strcmp(path, "none") == 0) {
-        arguments->no_waveforms = true;
+        arguments->files.no_waveforms = true;
         return DALCS_OK;
     }
     if (!dalcs_table_find_format(path)) {
@@ -50,7 +50,7 @@ enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
                         who_writes(path));
         return DALCS_E_OPTION;
     }
-    arguments->output[arguments->n_outputs++] = path;
+    arguments->files.output[arguments->files.n_outputs++] = path;
     return DALCS_OK;
 }
 
@@ -59,7 +59,7 @@ enum dalcs_status dalcs_argument_method(struct dalcs_arguments *arguments,
     size_t n = 0;
     for (; dalcs_method_name(n); n++) {
         if (strcmp(dalcs_method_name(n), text) == 0) {
-            arguments->method = text;
+            arguments->method.name = text;
             return DALCS_OK;
         }
     }
@@ -82,8 +82,9 @@ static enum dalcs_status parse_number(const struct dalcs_cli *cli, const char *n
 
 enum dalcs_status dalcs_argument_tolerance(struct dalcs_arguments *arguments,
                                            const struct dalcs_cli *cli, const char *text) {
-    DALCS_TRY(parse_number(cli, "--tol", text, &arguments->tolerance));
-    if (arguments->tolerance < DALCS_TOLERANCE_MIN || arguments->tolerance > DALCS_TOLERANCE_MAX) {
+    DALCS_TRY(parse_number(cli, "--tol", text, &arguments->method.tolerance));
+    if (arguments->method.tolerance < DALCS_TOLERANCE_MIN ||
+        arguments->method.tolerance > DALCS_TOLERANCE_MAX) {
         dalcs_cli_error(cli, "--tol: '%s' does not lie between %g and %g", text,
                         DALCS_TOLERANCE_MIN, DALCS_TOLERANCE_MAX);
         return DALCS_E_OPTION;
@@ -98,14 +99,14 @@ enum dalcs_status dalcs_argument_stages(struct dalcs_arguments *arguments,
         dalcs_cli_error(cli, "--stages: '%s' is none of 1, 3, 5, 7, 9", text);
         return DALCS_E_OPTION;
     }
-    arguments->stages = (int)value;
+    arguments->method.stages = (int)value;
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_argument_step(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *text) {
-    DALCS_TRY(parse_number(cli, "--step", text, &arguments->step));
-    if (!(arguments->step > 0.0)) {
+    DALCS_TRY(parse_number(cli, "--step", text, &arguments->method.step));
+    if (!(arguments->method.step > 0.0)) {
         dalcs_cli_error(cli, "--step: '%s' must be greater than 0", text);
         return DALCS_E_OPTION;
     }
@@ -127,10 +128,10 @@ static enum dalcs_status parse_part(const struct dalcs_cli *cli, const char *nam
 enum dalcs_status dalcs_argument_fill(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *text) {
     if (strcmp(text, "none") == 0) {
-        arguments->fill = INFINITY;
+        arguments->rows.fill = INFINITY;
         return DALCS_OK;
     }
-    return parse_part(cli, "--fill", text, ", or none", &arguments->fill);
+    return parse_part(cli, "--fill", text, ", or none", &arguments->rows.fill);
 }
 
 enum dalcs_status dalcs_argument_curve(struct dalcs_arguments *arguments,
@@ -139,7 +140,7 @@ enum dalcs_status dalcs_argument_curve(struct dalcs_arguments *arguments,
         dalcs_cli_error(cli, "--curve: '%s' is neither cubics nor lines", text);
         return DALCS_E_OPTION;
     }
-    arguments->curve = text;
+    arguments->rows.curve = text;
     return DALCS_OK;
 }
 
@@ -156,89 +157,27 @@ enum dalcs_status dalcs_argument_audit(struct dalcs_arguments *arguments,
     return DALCS_E_OPTION;
 }
 
-static bool is_page(const char *path) {
+bool dalcs_argument_is_page(const char *path) {
     const char *dot = strrchr(path, '.');
     return dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
-}
-
-/* Samples, where no others are asked for, and periods before them. */
-enum { SAMPLES = 64, SETTLE = 256, MOST_SAMPLES = 1000000 };
-
-static enum dalcs_status take_samples(struct dalcs_arguments *arguments,
-                                      const struct dalcs_cli *cli) {
-    if (!arguments->steady) {
-        dalcs_cli_error(cli, "--bifurcation, --samples and --settle are options of 'dalcs steady'");
-        return DALCS_E_OPTION;
-    }
-    arguments->samples = arguments->samples > 0 ? arguments->samples : SAMPLES;
-    arguments->settle = arguments->settle > 0 ? arguments->settle : SETTLE;
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_argument_bifurcation(struct dalcs_arguments *arguments,
-                                             const struct dalcs_cli *cli, const char *path) {
-    arguments->bifurcation = path;
-    if (!dalcs_figure_can_write(path) && !is_page(path)) {
-        dalcs_cli_error(
-            cli, "--bifurcation: unknown format of '%s': name it .svg, .png, .pdf or .html", path);
-        return DALCS_E_OPTION;
-    }
-    return take_samples(arguments, cli);
-}
-
-enum dalcs_status dalcs_argument_samples(struct dalcs_arguments *arguments,
-                                         const struct dalcs_cli *cli, const char *name,
-                                         const char *text, size_t *count) {
-    DALCS_TRY(dalcs_verb_take_count(cli, name, text, count));
-    if (*count > MOST_SAMPLES) {
-        dalcs_cli_error(cli, "%s: more than %d periods", name, (int)MOST_SAMPLES);
-        return DALCS_E_OPTION;
-    }
-    return take_samples(arguments, cli);
-}
-
-enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *arguments,
-                                                  const struct dalcs_cli *cli, const char *path) {
-    arguments->multipliers_plot = path;
-    if (!arguments->steady) {
-        dalcs_cli_error(cli, "--multipliers-plot is an option of 'dalcs steady'");
-        return DALCS_E_OPTION;
-    }
-    if (!dalcs_figure_can_write(path) && !is_page(path)) {
-        dalcs_cli_error(
-            cli, "--multipliers-plot: unknown format of '%s': name it .svg, .png, .pdf or .html",
-            path);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
-                                             const struct dalcs_cli *cli) {
-    arguments->sensitivity = true;
-    if (!arguments->steady) {
-        dalcs_cli_error(cli, "--sensitivity is an option of 'dalcs steady'");
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
 }
 
 /* FROM:TO, either of which may be left out; NULL: the netlist's window. */
 enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
-    if (arguments->bode || arguments->envelope) {
+    if (arguments->bode.is_asked || arguments->envelope.is_asked) {
         dalcs_cli_error(cli, "--losses is an option of 'dalcs run' and 'dalcs steady'");
         return DALCS_E_OPTION;
     }
-    if (arguments->steady && text != NULL) {
+    if (arguments->steady.is_asked && text != NULL) {
         dalcs_cli_error(
             cli,
             "--losses: a steady state has the losses of its whole orbit: leave the window out");
         return DALCS_E_OPTION;
     }
-    arguments->losses = true;
-    arguments->losses_from = text == NULL ? (double)NAN : 0.0;
-    arguments->losses_to = INFINITY;
+    arguments->losses.is_asked = true;
+    arguments->losses.from = text == NULL ? (double)NAN : 0.0;
+    arguments->losses.to = INFINITY;
     if (text == NULL) {
         return DALCS_OK;
     }
@@ -251,12 +190,12 @@ enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
     memcpy(from, text, (size_t)(colon - text));
     from[colon - text] = '\0';
     if (from[0] != '\0') {
-        DALCS_TRY(parse_number(cli, "--losses", from, &arguments->losses_from));
+        DALCS_TRY(parse_number(cli, "--losses", from, &arguments->losses.from));
     }
     if (colon[1] != '\0') {
-        DALCS_TRY(parse_number(cli, "--losses", colon + 1, &arguments->losses_to));
+        DALCS_TRY(parse_number(cli, "--losses", colon + 1, &arguments->losses.to));
     }
-    if (!(arguments->losses_from >= 0.0 && arguments->losses_from < arguments->losses_to)) {
+    if (!(arguments->losses.from >= 0.0 && arguments->losses.from < arguments->losses.to)) {
         dalcs_cli_error(cli, "--losses: '%s' is no window: write FROM:TO with 0 <= FROM < TO",
                         text);
         return DALCS_E_OPTION;
@@ -266,11 +205,11 @@ enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_argument_losses_plot(struct dalcs_arguments *arguments,
                                              const struct dalcs_cli *cli, const char *path) {
-    if (arguments->bode || arguments->envelope) {
+    if (arguments->bode.is_asked || arguments->envelope.is_asked) {
         dalcs_cli_error(cli, "--losses-plot is an option of 'dalcs run' and 'dalcs steady'");
         return DALCS_E_OPTION;
     }
-    arguments->losses_plot = path;
+    arguments->losses.plot = path;
     if (!dalcs_figure_can_write(path)) {
         dalcs_cli_error(cli, "--losses-plot: unknown format of '%s': name it .svg, .png or .pdf",
                         path);
@@ -281,7 +220,7 @@ enum dalcs_status dalcs_argument_losses_plot(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_argument_compress(struct dalcs_arguments *arguments,
                                           const struct dalcs_cli *cli, const char *text) {
-    return parse_part(cli, "--compress", text, "", &arguments->compress);
+    return parse_part(cli, "--compress", text, "", &arguments->rows.compress);
 }
 
 enum dalcs_status dalcs_argument_set(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
@@ -292,9 +231,10 @@ enum dalcs_status dalcs_argument_set(struct dalcs_arguments *arguments, const st
 
 enum dalcs_status dalcs_argument_plot(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *path) {
-    const bool may_be_page = arguments->steady || arguments->bode || arguments->envelope;
-    arguments->plot = path;
-    if (!dalcs_figure_can_write(path) && !(is_page(path) && may_be_page)) {
+    const bool may_be_page =
+        arguments->steady.is_asked || arguments->bode.is_asked || arguments->envelope.is_asked;
+    arguments->files.plot = path;
+    if (!dalcs_figure_can_write(path) && !(dalcs_argument_is_page(path) && may_be_page)) {
         dalcs_cli_error(cli, "--plot: unknown format of '%s': name it %s", path,
                         may_be_page ? ".svg, .png, .pdf or .html" : ".svg, .png or .pdf");
         return DALCS_E_OPTION;
@@ -306,8 +246,9 @@ enum dalcs_status dalcs_argument_shard(struct dalcs_arguments *arguments,
                                        const struct dalcs_cli *cli, const char *text) {
     char end;
     if (strspn(text, "0123456789/") != strlen(text) ||
-        sscanf(text, "%zu/%zu%c", &arguments->shard, &arguments->n_shards, &end) != 2 ||
-        arguments->shard < 1 || arguments->shard > arguments->n_shards) {
+        sscanf(text, "%zu/%zu%c", &arguments->variants.shard, &arguments->variants.n_shards,
+               &end) != 2 ||
+        arguments->variants.shard < 1 || arguments->variants.shard > arguments->variants.n_shards) {
         dalcs_cli_error(
             cli,
             "--shard: '%s' is not K/N with K from 1 to N; write 3/16 for the third of 16 parts",
@@ -320,7 +261,7 @@ enum dalcs_status dalcs_argument_shard(struct dalcs_arguments *arguments,
 enum dalcs_status dalcs_argument_seed(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *text) {
     if (strspn(text, "0123456789") != strlen(text) || strlen(text) > 15 ||
-        dalcs_parse_number(text, &arguments->seed) != DALCS_OK) {
+        dalcs_parse_number(text, &arguments->variants.seed) != DALCS_OK) {
         dalcs_cli_error(cli, "--seed: '%s' is no whole number of up to 15 digits", text);
         return DALCS_E_OPTION;
     }
@@ -329,8 +270,8 @@ enum dalcs_status dalcs_argument_seed(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_argument_measures(struct dalcs_arguments *arguments,
                                           const struct dalcs_cli *cli, const char *path) {
-    arguments->measures = path;
-    if (arguments->envelope) {
+    arguments->files.measures = path;
+    if (arguments->envelope.is_asked) {
         dalcs_cli_error(cli, "--measures is a table of .meas, which an envelope leaves out");
         return DALCS_E_OPTION;
     }

@@ -5,6 +5,9 @@
 
 #include "arguments.h"
 
+/* Is it the name of a page of HTML? */
+bool dalcs_argument_is_page(const char *path);
+
 enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli,
                                         const char *text) DALCS_MUST_CHECK;
@@ -28,10 +31,12 @@ enum dalcs_status dalcs_argument_curve(struct dalcs_arguments *arguments,
                                        const char *text) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_argument_at(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                                     const char *text) DALCS_MUST_CHECK;
-/* --tran, or --tstop. */
-enum dalcs_status dalcs_argument_transient(struct dalcs_arguments *arguments,
-                                           const struct dalcs_cli *cli, bool is_whole,
-                                           const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_tran(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli,
+                                      const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_tstop(struct dalcs_arguments *arguments,
+                                       const struct dalcs_cli *cli,
+                                       const char *text) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_argument_compress(struct dalcs_arguments *arguments,
                                           const struct dalcs_cli *cli,
                                           const char *text) DALCS_MUST_CHECK;
@@ -42,13 +47,18 @@ enum dalcs_status dalcs_argument_bifurcation(struct dalcs_arguments *arguments,
                                              const struct dalcs_cli *cli,
                                              const char *path) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_argument_samples(struct dalcs_arguments *arguments,
-                                         const struct dalcs_cli *cli, const char *name,
-                                         const char *text, size_t *count) DALCS_MUST_CHECK;
+                                         const struct dalcs_cli *cli,
+                                         const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_settle(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli,
+                                        const char *text) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_argument_multipliers_plot(struct dalcs_arguments *arguments,
                                                   const struct dalcs_cli *cli,
                                                   const char *path) DALCS_MUST_CHECK;
+/* Has no text. */
 enum dalcs_status dalcs_argument_sensitivity(struct dalcs_arguments *arguments,
-                                             const struct dalcs_cli *cli) DALCS_MUST_CHECK;
+                                             const struct dalcs_cli *cli,
+                                             const char *text) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli,
                                         const char *text) DALCS_MUST_CHECK;

@@ -1,265 +1,13 @@
-/* arguments.c - reads options with getopt_long, then sets the others to their defaults. */
-#include "argument_values.h"
+/* arguments.c - reads the command line, then sets what was not asked for to its defaults. */
+#include "arguments.h"
 
+#include "argument_options.h"
 #include "memory.h"
 #include "verb.h"
 
-#include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum {
-    METHOD = 256,
-    DIALECT,
-    TOL,
-    STAGES,
-    STEP,
-    FILL,
-    CURVE,
-    COMPRESS,
-    AT,
-    TRAN,
-    TSTOP,
-    REPORT,
-    PLOT,
-    DUMP,
-    ALL_SIGNALS,
-    ENERGY,
-    LOSSES,
-    LOSSES_PLOT,
-    ASCII,
-    SPLIT_STEPS,
-    AUDIT,
-    PERIOD,
-    STOP,
-    SHOW,
-    FROM,
-    TO,
-    POINTS,
-    SENSITIVITY,
-    MULTIPLIERS_PLOT,
-    BIFURCATION,
-    SAMPLES,
-    SETTLE,
-    LOOP,
-    INJECTION,
-    SIDEBAND,
-    SET,
-    MEASURES,
-    SHARD,
-    RESUME,
-    JOBS,
-    SEED,
-    ONLY
-};
-
-static const struct option option[] = {
-    {"output", required_argument, NULL, 'o'},
-    {"method", required_argument, NULL, METHOD},
-    {"dialect", required_argument, NULL, DIALECT},
-    {"tol", required_argument, NULL, TOL},
-    {"stages", required_argument, NULL, STAGES},
-    {"step", required_argument, NULL, STEP},
-    {"fill", required_argument, NULL, FILL},
-    {"curve", required_argument, NULL, CURVE},
-    {"compress", required_argument, NULL, COMPRESS},
-    {"at", required_argument, NULL, AT},
-    {"tran", required_argument, NULL, TRAN},
-    {"tstop", required_argument, NULL, TSTOP},
-    {"report", required_argument, NULL, REPORT},
-    {"plot", required_argument, NULL, PLOT},
-    {"dump", required_argument, NULL, DUMP},
-    {"all-signals", no_argument, NULL, ALL_SIGNALS},
-    {"energy", no_argument, NULL, ENERGY},
-    {"losses", optional_argument, NULL, LOSSES},
-    {"losses-plot", required_argument, NULL, LOSSES_PLOT},
-    {"audit", required_argument, NULL, AUDIT},
-    {"ascii", no_argument, NULL, ASCII},
-    {"split-steps", no_argument, NULL, SPLIT_STEPS},
-    {"period", required_argument, NULL, PERIOD},
-    {"stop", required_argument, NULL, STOP},
-    {"show", required_argument, NULL, SHOW},
-    {"from", required_argument, NULL, FROM},
-    {"to", required_argument, NULL, TO},
-    {"points", required_argument, NULL, POINTS},
-    {"sensitivity", no_argument, NULL, SENSITIVITY},
-    {"bifurcation", required_argument, NULL, BIFURCATION},
-    {"samples", required_argument, NULL, SAMPLES},
-    {"settle", required_argument, NULL, SETTLE},
-    {"multipliers-plot", required_argument, NULL, MULTIPLIERS_PLOT},
-    {"loop", required_argument, NULL, LOOP},
-    {"injection", required_argument, NULL, INJECTION},
-    {"sideband", required_argument, NULL, SIDEBAND},
-    {"set", required_argument, NULL, SET},
-    {"measures", required_argument, NULL, MEASURES},
-    {"shard", required_argument, NULL, SHARD},
-    {"resume", no_argument, NULL, RESUME},
-    {"jobs", required_argument, NULL, JOBS},
-    {"seed", required_argument, NULL, SEED},
-    {"only", required_argument, NULL, ONLY},
-    {"quiet", no_argument, NULL, 'q'},
-    {"help", no_argument, NULL, 'h'},
-    {NULL, 0, NULL, 0},
-};
-
-static enum dalcs_status parse_sideband(struct dalcs_arguments *arguments,
-                                        const struct dalcs_cli *cli, const char *text) {
-    if (dalcs_parse_number(text, &arguments->sideband) != DALCS_OK ||
-        !(fabs(arguments->sideband) <= DALCS_MOST_SIDEBAND) ||
-        arguments->sideband != rint(arguments->sideband)) {
-        dalcs_cli_error(cli, "--sideband: '%s' is no whole number, at most %d of them away", text,
-                        (int)DALCS_MOST_SIDEBAND);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
-}
-
-static enum dalcs_status parse_injection(struct dalcs_arguments *arguments,
-                                         const struct dalcs_cli *cli, const char *text) {
-    arguments->loop_is_loaded = strcmp(text, "both") == 0;
-    if (!arguments->loop_is_loaded && strcmp(text, "voltage") != 0) {
-        dalcs_cli_error(cli, "--injection: '%s' is neither voltage nor both", text);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
-}
-
-/* The options of `dalcs bode` alone. */
-static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
-                                   int code) {
-    if (!arguments->bode) {
-        int k = 0;
-        while (option[k].val != code) {
-            k++;
-        }
-        dalcs_cli_error(cli, "--%s is an option of 'dalcs bode'", option[k].name);
-        return DALCS_E_OPTION;
-    }
-    switch (code) {
-    case FROM:
-        return dalcs_verb_take_positive(cli, "--from", optarg, &arguments->bode_from);
-    case TO:
-        return dalcs_verb_take_positive(cli, "--to", optarg, &arguments->bode_to);
-    case POINTS:
-        return dalcs_verb_take_count(cli, "--points", optarg, &arguments->bode_points);
-    case LOOP:
-        arguments->loop = optarg;
-        return DALCS_OK;
-    case INJECTION:
-        return parse_injection(arguments, cli, optarg);
-    default:
-        return parse_sideband(arguments, cli, optarg);
-    }
-}
-
-static const char *verb_of(const struct dalcs_arguments *arguments) {
-    return arguments->steady     ? "steady"
-           : arguments->bode     ? "bode"
-           : arguments->envelope ? "envelope"
-                                 : "run";
-}
-
-static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
-                              int code, char **argv) {
-    switch (code) {
-    case 'o':
-        return dalcs_argument_output(arguments, cli, optarg);
-    case METHOD:
-        return dalcs_argument_method(arguments, cli, optarg);
-    case DIALECT:
-        return dalcs_verb_take_dialect(cli, optarg, &arguments->dialect);
-    case TOL:
-        return dalcs_argument_tolerance(arguments, cli, optarg);
-    case STAGES:
-        return dalcs_argument_stages(arguments, cli, optarg);
-    case STEP:
-        return dalcs_argument_step(arguments, cli, optarg);
-    case FILL:
-        return dalcs_argument_fill(arguments, cli, optarg);
-    case CURVE:
-        return dalcs_argument_curve(arguments, cli, optarg);
-    case COMPRESS:
-        return dalcs_argument_compress(arguments, cli, optarg);
-    case AT:
-        return dalcs_argument_at(arguments, cli, optarg);
-    case TRAN:
-    case TSTOP:
-        return dalcs_argument_transient(arguments, cli, code == TRAN, optarg);
-    case REPORT:
-        arguments->report = optarg;
-        return DALCS_OK;
-    case PLOT:
-        return dalcs_argument_plot(arguments, cli, optarg);
-    case DUMP:
-        arguments->dump = optarg;
-        return DALCS_OK;
-    case ALL_SIGNALS:
-        arguments->all_signals = true;
-        return DALCS_OK;
-    case ENERGY:
-        arguments->energy = true;
-        return DALCS_OK;
-    case LOSSES:
-        return dalcs_argument_losses(arguments, cli, optarg);
-    case LOSSES_PLOT:
-        return dalcs_argument_losses_plot(arguments, cli, optarg);
-    case AUDIT:
-        return dalcs_argument_audit(arguments, cli, optarg);
-    case SET:
-        return dalcs_argument_set(arguments, cli, optarg);
-    case MEASURES:
-        return dalcs_argument_measures(arguments, cli, optarg);
-    case SHARD:
-        return dalcs_argument_shard(arguments, cli, optarg);
-    case RESUME:
-        arguments->resume = true;
-        return DALCS_OK;
-    case JOBS:
-        return dalcs_verb_take_count(cli, "--jobs", optarg, &arguments->jobs);
-    case SEED:
-        return dalcs_argument_seed(arguments, cli, optarg);
-    case ONLY:
-        return dalcs_verb_take_count(cli, "--only", optarg, &arguments->only);
-    case PERIOD:
-        return dalcs_argument_period(arguments, cli, optarg);
-    case STOP:
-        return dalcs_argument_stop(arguments, cli, optarg);
-    case SHOW:
-        return dalcs_argument_show(arguments, cli, optarg);
-    case SENSITIVITY:
-        return dalcs_argument_sensitivity(arguments, cli);
-    case BIFURCATION:
-        return dalcs_argument_bifurcation(arguments, cli, optarg);
-    case SAMPLES:
-        return dalcs_argument_samples(arguments, cli, "--samples", optarg, &arguments->samples);
-    case SETTLE:
-        return dalcs_argument_samples(arguments, cli, "--settle", optarg, &arguments->settle);
-    case MULTIPLIERS_PLOT:
-        return dalcs_argument_multipliers_plot(arguments, cli, optarg);
-    case FROM:
-    case TO:
-    case POINTS:
-    case LOOP:
-    case INJECTION:
-    case SIDEBAND:
-        return take_bode(arguments, cli, code);
-    case ASCII:
-        arguments->ascii = true;
-        return DALCS_OK;
-    case SPLIT_STEPS:
-        arguments->split_steps = true;
-        return DALCS_OK;
-    case 'q':
-        arguments->quiet = true;
-        return DALCS_OK;
-    case 'h':
-        arguments->help = true;
-        return DALCS_OK;
-    default:
-        return dalcs_verb_refuse(cli, verb_of(arguments), option, code, argv);
-    }
-}
 
 static const char *base_of(const char *path) {
     const char *slash = strrchr(path, '/');
@@ -284,64 +32,66 @@ static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli) {
     const bool is_input = strcmp(arguments->netlist, "-") == 0;
     const char *base = is_input ? "stdin" : base_of(arguments->netlist);
-    const bool has_default = arguments->n_outputs == 0 && !arguments->no_waveforms;
+    const bool has_default = arguments->files.n_outputs == 0 && !arguments->files.no_waveforms;
     if (has_default) {
-        arguments->default_output = change_ending(base, ".raw");
-        arguments->output[arguments->n_outputs++] = arguments->default_output;
+        arguments->files.default_output = change_ending(base, ".raw");
+        arguments->files.output[arguments->files.n_outputs++] = arguments->files.default_output;
     }
-    const char *beside = arguments->n_outputs > 0 ? arguments->output[0] : base;
-    if (!arguments->dump && beside) {
-        arguments->default_dump = change_ending(beside, ".failed.dalcs");
-        arguments->dump = arguments->default_dump;
+    const char *beside = arguments->files.n_outputs > 0 ? arguments->files.output[0] : base;
+    if (!arguments->files.dump && beside) {
+        arguments->files.default_dump = change_ending(beside, ".failed.dalcs");
+        arguments->files.dump = arguments->files.default_dump;
     }
-    if ((has_default && !arguments->default_output) || !arguments->dump) {
+    if ((has_default && !arguments->files.default_output) || !arguments->files.dump) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_E_NOMEM;
     }
     return DALCS_OK;
 }
 
+/* Options that exclude one another. */
+static enum dalcs_status check_together(const struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli) {
+    if (dalcs_arguments_have_times(arguments) && arguments->rows.compress > 0.0) {
+        dalcs_cli_error(cli,
+                        "--compress leaves rows out, --at prints each of its times: choose one");
+        return DALCS_E_OPTION;
+    }
+    if (dalcs_arguments_have_times(arguments) && arguments->rows.fill > 0.0) {
+        dalcs_cli_error(cli, "--fill adds rows, --at prints only its own times: choose one");
+        return DALCS_E_OPTION;
+    }
+    if (arguments->steady.samples > 0 &&
+        (arguments->files.plot || arguments->steady.multipliers_plot)) {
+        dalcs_cli_error(cli, "--bifurcation and --samples draw many orbits: leave out --plot and "
+                             "--multipliers-plot");
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc, char **argv) {
-    *arguments = (struct dalcs_arguments){.steady = strcmp(argv[0], "steady") == 0,
-                                          .bode = strcmp(argv[0], "bode") == 0,
-                                          .envelope = strcmp(argv[0], "envelope") == 0,
-                                          .seed = NAN,
-                                          .losses_from = NAN,
-                                          .losses_to = INFINITY};
-    arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);
+    *arguments = (struct dalcs_arguments){.steady.is_asked = strcmp(argv[0], "steady") == 0,
+                                          .bode.is_asked = strcmp(argv[0], "bode") == 0,
+                                          .envelope.is_asked = strcmp(argv[0], "envelope") == 0,
+                                          .variants.seed = NAN,
+                                          .losses.from = NAN,
+                                          .losses.to = INFINITY};
+    arguments->files.output = dalcs_alloc((size_t)argc, sizeof *arguments->files.output);
     arguments->set = dalcs_alloc((size_t)argc, sizeof *arguments->set);
-    if (!arguments->output || !arguments->set) {
+    if (!arguments->files.output || !arguments->set) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         dalcs_arguments_finish(arguments);
         return DALCS_E_NOMEM;
     }
-    enum dalcs_status status = DALCS_OK;
-    optind = 0; /* glibc: start afresh */
-    opterr = 0;
-    for (int code; status == DALCS_OK && !arguments->help &&
-                   (code = getopt_long(argc, argv, ":o:qh", option, NULL)) != -1;) {
-        status = take(arguments, cli, code, argv);
-    }
-    if (status == DALCS_OK && !arguments->help && dalcs_arguments_have_times(arguments) &&
-        arguments->compress > 0.0) {
-        dalcs_cli_error(cli,
-                        "--compress leaves rows out, --at prints each of its times: choose one");
-        status = DALCS_E_OPTION;
-    }
-    if (status == DALCS_OK && !arguments->help && dalcs_arguments_have_times(arguments) &&
-        arguments->fill > 0.0) {
-        dalcs_cli_error(cli, "--fill adds rows, --at prints only its own times: choose one");
-        status = DALCS_E_OPTION;
-    }
-    if (status == DALCS_OK && !arguments->help && arguments->samples > 0 &&
-        (arguments->plot || arguments->multipliers_plot)) {
-        dalcs_cli_error(cli, "--bifurcation and --samples draw many orbits: leave out --plot and "
-                             "--multipliers-plot");
-        status = DALCS_E_OPTION;
+    enum dalcs_status status = dalcs_arguments_read_options(arguments, cli, argc, argv);
+    if (status == DALCS_OK && !arguments->help) {
+        status = check_together(arguments, cli);
     }
     if (status == DALCS_OK && !arguments->help) {
-        status = dalcs_verb_take_netlist(cli, verb_of(arguments), argc, argv, &arguments->netlist);
+        status = dalcs_verb_take_netlist(cli, dalcs_arguments_verb(arguments), argc, argv,
+                                         &arguments->netlist);
         status = status == DALCS_OK ? add_defaults(arguments, cli) : status;
     }
     if (status != DALCS_OK) {
@@ -351,12 +101,12 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
 }
 
 void dalcs_arguments_finish(struct dalcs_arguments *arguments) {
-    free(arguments->output);
+    free(arguments->files.output);
     free(arguments->set);
-    free(arguments->variable);
-    free(arguments->show);
-    free(arguments->times);
-    free(arguments->default_output);
-    free(arguments->default_dump);
+    free(arguments->batch.variable);
+    free(arguments->envelope.show);
+    free(arguments->rows.times);
+    free(arguments->files.default_output);
+    free(arguments->files.default_dump);
     *arguments = (struct dalcs_arguments){0};
 }

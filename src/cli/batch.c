@@ -93,55 +93,59 @@ static enum dalcs_status take_shell(const struct batch *b, const struct dalcs_cl
     return DALCS_OK;
 }
 
+static enum dalcs_status take(struct batch *b, const struct dalcs_cli *cli, int code,
+                              const char *word) {
+    switch (code) {
+    case 'r':
+        b->arguments.files.output[0] = optarg;
+        b->arguments.files.n_outputs = 1;
+        return DALCS_OK;
+    case 'o':
+        b->log = optarg;
+        return DALCS_OK;
+    case ASCII:
+        b->arguments.files.ascii = true;
+        return DALCS_OK;
+    case DIALECT:
+        return dalcs_verb_take_dialect(cli, optarg, &b->arguments.dialect);
+    case 'h':
+        b->help = true;
+        return DALCS_OK;
+    case 'b':
+    case 'a': /* a batch run runs by itself */
+    case 'q':
+    case 't':
+        return DALCS_OK;
+    case 'n':
+        b->no_start_file = true;
+        return DALCS_OK;
+    case 'i':
+    case 'p':
+    case 's':
+        return take_shell(b, cli, code);
+    case 'v':
+        b->version = true;
+        return DALCS_OK;
+    case 'D':
+        return dalcs_start_variables_take(&b->variables, optarg);
+    case ':':
+        dalcs_cli_error(cli, "option '%s' needs a value; see '%s'", word, help_of(b));
+        return DALCS_E_OPTION;
+    default:
+        dalcs_cli_error(cli, "unknown option '%s'; see '%s'", word, help_of(b));
+        return DALCS_E_OPTION;
+    }
+}
+
+/* Up to -h or -v, which need no netlist. */
 static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int argc,
                                char **argv) {
     optind = 0; /* glibc: start afresh */
     opterr = 0;
     for (int code; (code = getopt_long(argc, argv, ":br:o:anipqst:vD:h", option, NULL)) != -1;) {
-        switch (code) {
-        case 'r':
-            b->arguments.output[0] = optarg;
-            b->arguments.n_outputs = 1;
-            break;
-        case 'o':
-            b->log = optarg;
-            break;
-        case ASCII:
-            b->arguments.ascii = true;
-            break;
-        case DIALECT:
-            DALCS_TRY(dalcs_verb_take_dialect(cli, optarg, &b->arguments.dialect));
-            break;
-        case 'h':
-            b->help = true;
+        DALCS_TRY(take(b, cli, code, argv[optind - 1]));
+        if (b->help || b->version) {
             return DALCS_OK;
-        case 'b':
-        case 'a': /* a batch run runs by itself */
-            break;
-        case 'n':
-            b->no_start_file = true;
-            break;
-        case 'i':
-        case 'p':
-        case 's':
-            DALCS_TRY(take_shell(b, cli, code));
-            break;
-        case 'q':
-        case 't':
-            break;
-        case 'v':
-            b->version = true;
-            return DALCS_OK;
-        case 'D':
-            DALCS_TRY(dalcs_start_variables_take(&b->variables, optarg));
-            break;
-        case ':':
-            dalcs_cli_error(cli, "option '%s' needs a value; see '%s'", argv[optind - 1],
-                            help_of(b));
-            return DALCS_E_OPTION;
-        default:
-            dalcs_cli_error(cli, "unknown option '%s'; see '%s'", argv[optind - 1], help_of(b));
-            return DALCS_E_OPTION;
         }
     }
     if (optind == argc) {
@@ -188,9 +192,10 @@ static enum dalcs_status run_into_log(const struct dalcs_cli *cli, struct batch 
 
 static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **argv,
                                 bool is_ngspice) {
-    struct batch b = {.arguments = {.batch = true, .seed = NAN}, .is_ngspice = is_ngspice};
-    b.arguments.output = dalcs_alloc(1, sizeof *b.arguments.output);
-    if (!b.arguments.output) {
+    struct batch b = {.arguments = {.batch.is_asked = true, .variants.seed = NAN},
+                      .is_ngspice = is_ngspice};
+    b.arguments.files.output = dalcs_alloc(1, sizeof *b.arguments.files.output);
+    if (!b.arguments.files.output) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_EXIT_RUN;
     }
@@ -203,7 +208,7 @@ static enum dalcs_exit evaluate(const struct dalcs_cli *cli, int argc, char **ar
                 "******\n** ngspice-39, for programs that look for it: this is dalcs %s\n******\n",
                 dalcs_version());
     } else if (status == DALCS_OK) {
-        b.arguments.log = b.log;
+        b.arguments.batch.log = b.log;
         status = dalcs_paths_check(cli, &b.arguments);
         if (status == DALCS_OK) {
             status = b.log ? run_into_log(cli, &b) : run(cli, &b);

@@ -11,20 +11,20 @@
 static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
                                      const struct dalcs_arguments *arguments, bool ascii,
                                      enum dalcs_analysis main) {
-    outputs->table = dalcs_alloc(arguments->n_outputs, sizeof *outputs->table);
+    outputs->table = dalcs_alloc(arguments->files.n_outputs, sizeof *outputs->table);
     if (!outputs->table) {
         return DALCS_E_NOMEM;
     }
-    for (size_t i = 0; i < arguments->n_outputs; i++) {
+    for (size_t i = 0; i < arguments->files.n_outputs; i++) {
         struct dalcs_table *table = &outputs->table[outputs->n_tables++];
-        const char *path = arguments->output[i];
+        const char *path = arguments->files.output[i];
         const struct dalcs_table_format *format =
-            arguments->batch ? &dalcs_raw_format : dalcs_table_find_format(path);
-        if (format == &dalcs_raw_format && (arguments->ascii || ascii)) {
+            arguments->batch.is_asked ? &dalcs_raw_format : dalcs_table_find_format(path);
+        if (format == &dalcs_raw_format && (arguments->files.ascii || ascii)) {
             format = &dalcs_raw_ascii_format;
         }
         enum dalcs_status status = dalcs_table_init_as(table, path, format, main);
-        table->splits_steps = arguments->split_steps;
+        table->splits_steps = arguments->files.split_steps;
         if (status != DALCS_OK) {
             return status;
         }
@@ -35,7 +35,7 @@ static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
 enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
                                      const struct dalcs_arguments *arguments, bool ascii,
                                      enum dalcs_analysis main, double start, double stop) {
-    *outputs = (struct dalcs_outputs){.report_path = arguments->report,
+    *outputs = (struct dalcs_outputs){.report_path = arguments->files.report,
                                       .has_summary = !arguments->quiet,
                                       .is_audited = arguments->audit != DALCS_AUDIT_OFF,
                                       .audit.is_full = arguments->audit == DALCS_AUDIT_FULL};
@@ -44,13 +44,14 @@ enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
         dalcs_outputs_finish(outputs);
         return status;
     }
-    if (arguments->plot && main == DALCS_TRANSIENT && stop > start && !arguments->envelope) {
+    if (arguments->files.plot && main == DALCS_TRANSIENT && stop > start &&
+        !arguments->envelope.is_asked) {
         outputs->figure = dalcs_alloc(1, sizeof *outputs->figure);
         if (!outputs->figure) {
             dalcs_outputs_finish(outputs);
             return DALCS_E_NOMEM;
         }
-        dalcs_figure_init(outputs->figure, arguments->plot, start, stop);
+        dalcs_figure_init(outputs->figure, arguments->files.plot, start, stop);
     }
     return DALCS_OK;
 }

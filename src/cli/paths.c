@@ -67,9 +67,11 @@ static enum dalcs_status check_readable(const struct dalcs_cli *cli, const char 
 }
 
 static const char *result_path(const struct dalcs_arguments *arguments, size_t i) {
-    const char *const other[N_OTHER_RESULTS] = {arguments->report, arguments->plot, arguments->dump,
-                                                arguments->log, arguments->measures};
-    return i < arguments->n_outputs ? arguments->output[i] : other[i - arguments->n_outputs];
+    const char *const other[N_OTHER_RESULTS] = {arguments->files.report, arguments->files.plot,
+                                                arguments->files.dump, arguments->batch.log,
+                                                arguments->files.measures};
+    return i < arguments->files.n_outputs ? arguments->files.output[i]
+                                          : other[i - arguments->files.n_outputs];
 }
 
 /* Result i against what is read and against the results before it. */
@@ -97,8 +99,8 @@ static enum dalcs_status check_result(const struct dalcs_cli *cli,
 
 enum dalcs_status dalcs_paths_check(const struct dalcs_cli *cli,
                                     const struct dalcs_arguments *arguments) {
-    const char *const path[N_INPUTS] = {arguments->netlist, arguments->at};
-    const size_t n_results = arguments->n_outputs + N_OTHER_RESULTS;
+    const char *const path[N_INPUTS] = {arguments->netlist, arguments->rows.at};
+    const size_t n_results = arguments->files.n_outputs + N_OTHER_RESULTS;
     struct place input[N_INPUTS] = {{.known = false}};
     struct place *result = dalcs_alloc(n_results, sizeof *result);
     enum dalcs_status status = result ? DALCS_OK : DALCS_E_NOMEM;

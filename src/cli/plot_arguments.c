@@ -78,6 +78,16 @@ static enum dalcs_status take_width(struct dalcs_plot_arguments *arguments,
     return DALCS_OK;
 }
 
+static enum dalcs_status take_theme(struct dalcs_plot_arguments *arguments,
+                                    const struct dalcs_cli *cli, const char *text) {
+    arguments->theme = dalcs_theme_find(text);
+    if (!arguments->theme) {
+        dalcs_cli_error(cli, "--theme: '%s' is not light, dark or print", text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const struct dalcs_cli *cli,
                               int code, char **argv) {
     switch (code) {
@@ -94,10 +104,8 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
         arguments->histogram = true;
         return DALCS_OK;
     case TORNADO:
-        arguments->tornado = optarg != NULL ? optarg : "";
-        return DALCS_OK;
     case FAMILY:
-        arguments->family = optarg != NULL ? optarg : "";
+        *(code == TORNADO ? &arguments->tornado : &arguments->family) = optarg ? optarg : "";
         return DALCS_OK;
     case 'o':
         return parse_output(arguments, cli, optarg);
@@ -111,12 +119,7 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
         arguments->no_bars = true;
         return DALCS_OK;
     case THEME:
-        arguments->theme = dalcs_theme_find(optarg);
-        if (!arguments->theme) {
-            dalcs_cli_error(cli, "--theme: '%s' is not light, dark or print", optarg);
-            return DALCS_E_OPTION;
-        }
-        return DALCS_OK;
+        return take_theme(arguments, cli, optarg);
     case PLOT:
         return dalcs_verb_take_count(cli, "--plot", optarg, &arguments->plot);
     case RUN:

@@ -69,14 +69,18 @@ enum dalcs_status dalcs_drawing_write_page(struct dalcs_drawing *drawing) {
     struct dalcs_page_run *run = NULL;
     enum dalcs_status status = select_runs(drawing, &run);
     const struct dalcs_page_runs runs = {drawing->runs.n, run, drawing->runs.label};
+    const struct dalcs_page page = {.selection = &drawing->selection,
+                                    .conduction = arguments->no_bars ? &none : &drawing->conduction,
+                                    .runs = &runs,
+                                    .lines = &drawing->lines,
+                                    .title = drawing->title + strspn(drawing->title, "* "),
+                                    .theme = arguments->theme,
+                                    .marks = arguments->marks};
     if (status == DALCS_OK) {
         status = dalcs_atomic_file_open(&file, arguments->output);
     }
     if (status == DALCS_OK) {
-        status = dalcs_page_write(file.stream, &drawing->selection,
-                                  arguments->no_bars ? &none : &drawing->conduction, &runs,
-                                  &drawing->lines, drawing->title + strspn(drawing->title, "* "),
-                                  arguments->theme, arguments->marks, &drawing->diag);
+        status = dalcs_page_write(file.stream, &page, &drawing->diag);
     }
     if (status == DALCS_OK && ferror(file.stream)) {
         int error = errno != 0 ? errno : EIO;

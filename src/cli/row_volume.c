@@ -21,13 +21,14 @@ static const double BINARY = 8.0, LEAST_TEXT = 2.0, USUAL_TEXT = 18.0;
 
 double dalcs_row_volume_count(const struct dalcs_arguments *arguments,
                               const struct dalcs_request *request, size_t n_at) {
-    const bool is_euler = arguments->method != NULL ? strcmp(arguments->method, "euler") == 0
-                                                    : request->euler; /* its steps may be longer */
+    const bool is_euler = arguments->method.name != NULL
+                              ? strcmp(arguments->method.name, "euler") == 0
+                              : request->euler; /* its steps may be longer */
     if (n_at > 0) {
         return (double)n_at;
     }
-    if (!request->transient || !(request->step > 0.0) || arguments->compress > 0.0 ||
-        request->compresses || arguments->envelope || is_euler) {
+    if (!request->transient || !(request->step > 0.0) || arguments->rows.compress > 0.0 ||
+        request->compresses || arguments->envelope.is_asked || is_euler) {
         return 0.0;
     }
     return ceil((request->stop - request->start) / request->step) + 1.0; /* the last one at tstop */

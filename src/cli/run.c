@@ -57,26 +57,28 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
     const struct {
         const char *name;
         bool given;
-    } option[] = {{"--tol", arguments->tolerance > 0.0},
-                  {"--stages", arguments->stages > 0},
-                  {"--step", arguments->step > 0.0},
-                  {"--compress", arguments->compress > 0.0},
-                  {"--fill", arguments->fill > 0.0},
-                  {"--curve", arguments->curve != NULL},
+    } option[] = {{"--tol", arguments->method.tolerance > 0.0},
+                  {"--stages", arguments->method.stages > 0},
+                  {"--step", arguments->method.step > 0.0},
+                  {"--compress", arguments->rows.compress > 0.0},
+                  {"--fill", arguments->rows.fill > 0.0},
+                  {"--curve", arguments->rows.curve != NULL},
                   {"--at", dalcs_arguments_have_times(arguments)},
-                  {"--plot", arguments->plot != NULL},
+                  {"--plot", arguments->files.plot != NULL},
                   {"--energy", arguments->energy},
-                  {"--losses", arguments->losses}};
+                  {"--losses", arguments->losses.is_asked}};
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
-        const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
+        const bool is_plot = arguments->files.plot != NULL && strcmp(option[i].name, "--plot") == 0;
         const bool is_of_steps = i < 3; /* which the search for an orbit takes, too */
-        if (is_plot && (arguments->steady || arguments->bode || arguments->envelope)) {
+        if (is_plot && (arguments->steady.is_asked || arguments->bode.is_asked ||
+                        arguments->envelope.is_asked)) {
             continue; /* it draws the file that is written */
-        } else if (option[i].given && arguments->bode && !is_of_steps) {
+        } else if (option[i].given && arguments->bode.is_asked && !is_of_steps) {
             fprintf(cli->err, "dalcs: warning: %s applies to waveforms: it has no effect\n",
                     option[i].name);
-        } else if (option[i].given && !arguments->bode && !(is_of_steps && request->periodic) &&
+        } else if (option[i].given && !arguments->bode.is_asked &&
+                   !(is_of_steps && request->periodic) &&
                    (is_plot ? !request->transient
                             : main != DALCS_TRANSIENT && main != DALCS_PERIODIC)) {
             fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
@@ -88,13 +90,13 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 /* The one that a file with room for one result holds. */
 static enum dalcs_analysis main_analysis(const struct dalcs_request *request,
                                          const struct dalcs_arguments *arguments) {
-    return arguments->steady                           ? DALCS_PERIODIC
-           : arguments->bode                           ? DALCS_AC
-           : arguments->envelope || request->transient ? DALCS_TRANSIENT
-           : request->ac                               ? DALCS_AC
-           : request->periodic                         ? DALCS_PERIODIC
-           : request->dc_sweep                         ? DALCS_DC_SWEEP
-                                                       : DALCS_OPERATING_POINT;
+    return arguments->steady.is_asked                           ? DALCS_PERIODIC
+           : arguments->bode.is_asked                           ? DALCS_AC
+           : arguments->envelope.is_asked || request->transient ? DALCS_TRANSIENT
+           : request->ac                                        ? DALCS_AC
+           : request->periodic                                  ? DALCS_PERIODIC
+           : request->dc_sweep                                  ? DALCS_DC_SWEEP
+                                                                : DALCS_OPERATING_POINT;
 }
 
 /* ---- The run -------------------------------------------------------------------------------- */
@@ -112,8 +114,8 @@ static enum dalcs_status run_session(struct dalcs_run *run, struct dalcs_session
                                            .sink = &sink,
                                            .out = run->cli->out,
                                            .user = run,
-                                           .set = arguments->variable,
-                                           .n_set = arguments->n_variables,
+                                           .set = arguments->batch.variable,
+                                           .n_set = arguments->batch.n_variables,
                                            .after_run = dalcs_run_tell_measured};
     enum dalcs_status status =
         run->has_script ? dalcs_script_run(&host) : dalcs_session_run(session, &options, &sink);
@@ -164,27 +166,67 @@ static enum dalcs_status run_variants(const struct dalcs_cli *cli,
     return dalcs_variants_run(cli, arguments, session, &options);
 }
 
-static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
-                                     const struct dalcs_arguments *arguments,
-                                     struct dalcs_session *session) {
-    size_t n_written = 0;
+/* Reads the netlist, with what the command line asks for besides. */
+static enum dalcs_status read_netlist(const struct dalcs_arguments *arguments,
+                                      struct dalcs_session *session) {
     enum dalcs_status status = DALCS_OK;
-    if (arguments->losses || arguments->losses_plot != NULL) {
-        status = dalcs_session_ask_losses(session, arguments->losses_from, arguments->losses_to);
+    if (arguments->losses.is_asked || arguments->losses.plot != NULL) {
+        status = dalcs_session_ask_losses(session, arguments->losses.from, arguments->losses.to);
     }
-    if (status == DALCS_OK && (arguments->steady || arguments->envelope)) {
+    if (status == DALCS_OK && (arguments->steady.is_asked || arguments->envelope.is_asked)) {
         status = dalcs_session_ask_steady(session);
     }
-    if (status == DALCS_OK && arguments->bode) {
+    if (status == DALCS_OK && arguments->bode.is_asked) {
         status = dalcs_session_ask_response(session);
     }
-    if (status == DALCS_OK && arguments->sensitivity) {
+    if (status == DALCS_OK && arguments->steady.sensitivity) {
         status = dalcs_session_ask_sensitivities(session);
     }
     status = status != DALCS_OK ? status : dalcs_settings_prepare(session, arguments);
     status = status != DALCS_OK ? status
                                 : dalcs_verb_read(session, arguments->netlist, arguments->dialect);
     status = status != DALCS_OK ? status : dalcs_settings_apply(session, arguments);
+    return status;
+}
+
+/* Opens the files of a run, runs it and closes them. */
+static enum dalcs_status run_into_files(struct dalcs_run *run, struct dalcs_session *session,
+                                        const struct dalcs_arguments *arguments,
+                                        enum dalcs_analysis main, size_t *n_written) {
+    const struct dalcs_cli *cli = run->cli;
+    const struct dalcs_request request = dalcs_session_request(session);
+    struct dalcs_times times = {0};
+    DALCS_TRY(
+        dalcs_times_read(&times, cli, arguments, request.transient ? request.stop : INFINITY));
+    if (arguments->batch.is_asked && arguments->files.n_outputs == 0 &&
+        (request.n_prints > 0 || !request.transient)) {
+        run->printed.out = cli->out;
+    }
+    run->n_rows = run->has_script ? 0.0 : dalcs_row_volume_count(arguments, &request, times.n);
+    run->quiet = arguments->quiet;
+    const bool at = times.n > 0;
+    enum dalcs_status status = dalcs_outputs_init(&run->outputs, arguments, request.ascii, main,
+                                                  at ? times.time[0] : request.start,
+                                                  at ? times.time[times.n - 1] : request.stop);
+    if (status == DALCS_OK) {
+        status = dalcs_measures_file_open(&run->measures, cli, arguments->files.measures);
+    }
+    if (status == DALCS_OK) {
+        status = run_session(run, session, arguments, &times, n_written);
+    } else if (status != DALCS_E_IO) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+    }
+    dalcs_outputs_finish(&run->outputs);
+    dalcs_bifurcation_chart_finish(&run->bifurcation);
+    dalcs_times_finish(&times);
+    return status;
+}
+
+static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
+                                     const struct dalcs_arguments *arguments,
+                                     struct dalcs_session *session) {
+    size_t n_written = 0;
+    enum dalcs_status status = read_netlist(arguments, session);
     dalcs_cli_write_messages(cli, session, &n_written, arguments->quiet);
     if (status != DALCS_OK) {
         if (n_written == 0) {
@@ -194,7 +236,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     }
     const struct dalcs_request request = dalcs_session_request(session);
     enum dalcs_analysis main = main_analysis(&request, arguments);
-    struct dalcs_run run = {.cli = cli, .is_collected = arguments->bifurcation != NULL};
+    struct dalcs_run run = {.cli = cli, .is_collected = arguments->steady.bifurcation != NULL};
     status = dalcs_script_look(session, &run.has_script, &main);
     if (status != DALCS_OK) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
@@ -207,31 +249,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         return run_variants(cli, arguments, session);
     }
     warn_unused(cli, arguments, &request, main);
-    struct dalcs_times times = {0};
-    DALCS_TRY(
-        dalcs_times_read(&times, cli, arguments, request.transient ? request.stop : INFINITY));
-    if (arguments->batch && arguments->n_outputs == 0 &&
-        (request.n_prints > 0 || !request.transient)) {
-        run.printed.out = cli->out;
-    }
-    run.n_rows = run.has_script ? 0.0 : dalcs_row_volume_count(arguments, &request, times.n);
-    run.quiet = arguments->quiet;
-    bool at = times.n > 0;
-    status = dalcs_outputs_init(&run.outputs, arguments, request.ascii, main,
-                                at ? times.time[0] : request.start,
-                                at ? times.time[times.n - 1] : request.stop);
-    if (status == DALCS_OK) {
-        status = dalcs_measures_file_open(&run.measures, cli, arguments->measures);
-    }
-    if (status == DALCS_OK) {
-        status = run_session(&run, session, arguments, &times, &n_written);
-    } else if (status != DALCS_E_IO) {
-        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
-    }
-    dalcs_outputs_finish(&run.outputs);
-    dalcs_bifurcation_chart_finish(&run.bifurcation);
-    dalcs_times_finish(&times);
-    return status;
+    return run_into_files(&run, session, arguments, main, &n_written);
 }
 
 enum dalcs_status dalcs_cli_run_arguments(const struct dalcs_cli *cli,
@@ -249,10 +267,10 @@ enum dalcs_status dalcs_cli_run_arguments(const struct dalcs_cli *cli,
 
 /* What is for people goes elsewhere then. */
 static bool uses_standard_output(const struct dalcs_arguments *arguments) {
-    bool uses = dalcs_is_standard_output(arguments->measures) ||
-                dalcs_is_standard_output(arguments->report);
-    for (size_t k = 0; k < arguments->n_outputs; k++) {
-        uses = uses || dalcs_is_standard_output(arguments->output[k]);
+    bool uses = dalcs_is_standard_output(arguments->files.measures) ||
+                dalcs_is_standard_output(arguments->files.report);
+    for (size_t k = 0; k < arguments->files.n_outputs; k++) {
+        uses = uses || dalcs_is_standard_output(arguments->files.output[k]);
     }
     return uses;
 }
@@ -265,10 +283,10 @@ enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv
         return dalcs_cli_exit(status);
     }
     if (arguments.help) {
-        fputs(arguments.steady     ? dalcs_steady_help
-              : arguments.bode     ? dalcs_bode_help
-              : arguments.envelope ? dalcs_envelope_help
-                                   : help,
+        fputs(arguments.steady.is_asked     ? dalcs_steady_help
+              : arguments.bode.is_asked     ? dalcs_bode_help
+              : arguments.envelope.is_asked ? dalcs_envelope_help
+                                            : help,
               cli->out);
     } else {
         status = dalcs_paths_check(cli, &arguments);

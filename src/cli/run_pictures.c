@@ -10,10 +10,10 @@
 static enum dalcs_status draw_orbit(const struct dalcs_cli *cli,
                                     const struct dalcs_arguments *arguments,
                                     const struct dalcs_report *report) {
-    for (size_t k = 0; k < arguments->n_outputs; k++) {
-        const char *file = arguments->output[k];
-        if (!arguments->bode || dalcs_table_find_format(file) == &dalcs_raw_format) {
-            return dalcs_cli_draw_file(cli, file, arguments->plot, report, arguments->quiet);
+    for (size_t k = 0; k < arguments->files.n_outputs; k++) {
+        const char *file = arguments->files.output[k];
+        if (!arguments->bode.is_asked || dalcs_table_find_format(file) == &dalcs_raw_format) {
+            return dalcs_cli_draw_file(cli, file, arguments->files.plot, report, arguments->quiet);
         }
     }
     dalcs_cli_error(cli, "--plot draws a .raw file: write one with -o besides");
@@ -24,7 +24,7 @@ static enum dalcs_status draw_multipliers(const struct dalcs_cli *cli,
                                           const struct dalcs_arguments *arguments,
                                           const struct dalcs_report *report) {
     char message[DALCS_GNUPLOT_MESSAGE];
-    const char *path = arguments->multipliers_plot;
+    const char *path = arguments->steady.multipliers_plot;
     const enum dalcs_status status = dalcs_multipliers_chart_draw(report, path, message);
     if (status != DALCS_OK) {
         dalcs_cli_error(cli, "cannot draw '%s': %s", path, message);
@@ -37,7 +37,7 @@ static enum dalcs_status draw_multipliers(const struct dalcs_cli *cli,
 static enum dalcs_status draw_bifurcation(struct dalcs_run *run,
                                           const struct dalcs_arguments *arguments) {
     char message[DALCS_GNUPLOT_MESSAGE];
-    const char *path = arguments->bifurcation;
+    const char *path = arguments->steady.bifurcation;
     const enum dalcs_status status = dalcs_bifurcation_chart_draw(&run->bifurcation, path, message);
     if (status != DALCS_OK) {
         dalcs_cli_error(run->cli, "cannot draw '%s': %s", path, message);
@@ -54,13 +54,13 @@ static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
     char message[DALCS_GNUPLOT_MESSAGE] = "there is no .tran and no .pss";
     enum dalcs_status status = DALCS_E_IO;
     if (report->n_losses > 0) {
-        status = dalcs_losses_chart_draw(&report->losses[0], report->title, arguments->losses_plot,
+        status = dalcs_losses_chart_draw(&report->losses[0], report->title, arguments->losses.plot,
                                          message);
     }
     if (status != DALCS_OK) {
-        dalcs_cli_error(cli, "cannot draw '%s': %s", arguments->losses_plot, message);
+        dalcs_cli_error(cli, "cannot draw '%s': %s", arguments->losses.plot, message);
     } else if (!arguments->quiet) {
-        fprintf(cli->out, "  wrote     %s\n", arguments->losses_plot);
+        fprintf(cli->out, "  wrote     %s\n", arguments->losses.plot);
     }
     return status;
 }
@@ -68,17 +68,17 @@ static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
 enum dalcs_status dalcs_run_draw(struct dalcs_run *run, const struct dalcs_arguments *arguments,
                                  const struct dalcs_report *report, bool has_files) {
     enum dalcs_status status = DALCS_OK;
-    if (arguments->losses_plot != NULL) {
+    if (arguments->losses.plot != NULL) {
         status = draw_losses(run->cli, arguments, report);
     }
     if (status == DALCS_OK && has_files && run->is_collected) {
         status = draw_bifurcation(run, arguments);
     }
-    if (status == DALCS_OK && has_files && arguments->multipliers_plot != NULL) {
+    if (status == DALCS_OK && has_files && arguments->steady.multipliers_plot != NULL) {
         status = draw_multipliers(run->cli, arguments, report);
     }
-    if (status == DALCS_OK && has_files && arguments->plot != NULL &&
-        (arguments->steady || arguments->bode || arguments->envelope)) {
+    if (status == DALCS_OK && has_files && arguments->files.plot != NULL &&
+        (arguments->steady.is_asked || arguments->bode.is_asked || arguments->envelope.is_asked)) {
         status = draw_orbit(run->cli, arguments, report);
     }
     return status;

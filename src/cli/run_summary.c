@@ -24,27 +24,23 @@ bool dalcs_run_is_whole(const struct dalcs_report *report, enum dalcs_status sta
     return is;
 }
 
-void dalcs_run_tell(const struct dalcs_run *run, const struct dalcs_arguments *arguments,
-                    const struct dalcs_report *report, enum dalcs_status status) {
+/* Where a run ended that did not come to its end. */
+static void tell_stop(const struct dalcs_run *run, enum dalcs_status status) {
     FILE *out = run->cli->out;
-    if (arguments->quiet || !report || (status != DALCS_OK && run->outputs.n_rows == 0)) {
-        return;
+    char text[DALCS_QUANTITY_SIZE];
+    if (run->is_timeless) { /* its rows have no time */
+        fprintf(out, "  stopped   after %zu row%s: %s\n", run->outputs.n_rows,
+                run->outputs.n_rows == 1 ? "" : "s", dalcs_status_text(status));
+    } else {
+        fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
+                dalcs_status_text(status));
     }
-    dalcs_summary_write_run(out, report);
-    dalcs_envelope_lines_write(out, report);
-    dalcs_steady_lines_write(out, report);
-    dalcs_bode_lines_write(out, report);
-    if (status != DALCS_OK && !dalcs_run_is_whole(report, status)) {
-        char text[DALCS_QUANTITY_SIZE];
-        if (run->is_timeless) { /* its rows have no time */
-            fprintf(out, "  stopped   after %zu row%s: %s\n", run->outputs.n_rows,
-                    run->outputs.n_rows == 1 ? "" : "s", dalcs_status_text(status));
-        } else {
-            fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
-                    dalcs_status_text(status));
-        }
-    }
-    dalcs_summary_write_sides(out, report);
+}
+
+/* The signals of each analysis, or what became of them from step to step. */
+static void tell_analyses(const struct dalcs_run *run, const struct dalcs_arguments *arguments,
+                          const struct dalcs_report *report) {
+    FILE *out = run->cli->out;
 
     static const enum dalcs_analysis shown[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
                                                 DALCS_PERIODIC, DALCS_TRANSIENT};
@@ -56,14 +52,33 @@ void dalcs_run_tell(const struct dalcs_run *run, const struct dalcs_arguments *a
             continue; /* rows at the beginnings of periods have no averages of them */
         }
         if (is_envelope) {
-            dalcs_summary_write_ends(out, &run->outputs.measure[shown[i]], arguments->all_signals);
+            dalcs_summary_write_ends(out, &run->outputs.measure[shown[i]],
+                                     arguments->files.all_signals);
         } else if (plot != NULL && plot->n_steps > 1) {
             dalcs_step_lines_write(out, &run->outputs.steps, report, shown[i]);
         } else {
             dalcs_summary_write_signals(out, &run->outputs.measure[shown[i]],
-                                        arguments->all_signals);
+                                        arguments->files.all_signals);
         }
     }
+}
+
+void dalcs_run_tell(const struct dalcs_run *run, const struct dalcs_arguments *arguments,
+                    const struct dalcs_report *report, enum dalcs_status status) {
+    FILE *out = run->cli->out;
+    if (arguments->quiet || !report || (status != DALCS_OK && run->outputs.n_rows == 0)) {
+        return;
+    }
+    dalcs_summary_write_run(out, report);
+    dalcs_envelope_lines_write(out, report);
+    dalcs_steady_lines_write(out, report);
+    dalcs_bode_lines_write(out, report);
+    if (status != DALCS_OK && !dalcs_run_is_whole(report, status)) {
+        tell_stop(run, status);
+    }
+    dalcs_summary_write_sides(out, report);
+
+    tell_analyses(run, arguments, report);
     dalcs_summary_write_jumps(out, report);
     if (arguments->energy) {
         dalcs_summary_write_energy(out, report);

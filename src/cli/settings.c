@@ -30,7 +30,7 @@ enum dalcs_status dalcs_settings_check(const struct dalcs_cli *cli, const char *
 
 size_t dalcs_settings_threads(const struct dalcs_arguments *arguments) {
     const long here = sysconf(_SC_NPROCESSORS_ONLN);
-    return arguments->jobs > 0 ? arguments->jobs : here > 0 ? (size_t)here : 1;
+    return arguments->variants.jobs > 0 ? arguments->variants.jobs : here > 0 ? (size_t)here : 1;
 }
 
 enum dalcs_status dalcs_settings_prepare(struct dalcs_session *session,
@@ -38,17 +38,17 @@ enum dalcs_status dalcs_settings_prepare(struct dalcs_session *session,
     if (arguments->n_set > 0) {
         DALCS_TRY(dalcs_session_keep_netlist(session));
     }
-    if (!isnan(arguments->seed)) {
-        DALCS_TRY(dalcs_session_set_seed(session, arguments->seed));
+    if (!isnan(arguments->variants.seed)) {
+        DALCS_TRY(dalcs_session_set_seed(session, arguments->variants.seed));
     }
-    return dalcs_session_set_transient(session, arguments->transient, arguments->tstop);
+    return dalcs_session_set_transient(session, arguments->tran.card, arguments->tran.stop);
 }
 
 enum dalcs_status dalcs_settings_check_script(const struct dalcs_cli *cli,
                                               const struct dalcs_session *session,
                                               const struct dalcs_arguments *arguments) {
     const size_t n_lines = dalcs_session_n_script_lines(session);
-    if (arguments->transient == NULL && arguments->tstop == NULL) {
+    if (arguments->tran.card == NULL && arguments->tran.stop == NULL) {
         return DALCS_OK;
     }
     for (size_t k = 0; k < n_lines; k++) {
@@ -56,7 +56,7 @@ enum dalcs_status dalcs_settings_check_script(const struct dalcs_cli *cli,
         line += strspn(line, " \t");
         if (strncasecmp(line, "tran", 4) == 0 && strchr(" \t", line[4]) != NULL) {
             dalcs_cli_error(cli, "%s changes the netlist's .tran, and the .control block has '%s'",
-                            arguments->transient != NULL ? "--tran" : "--tstop", line);
+                            arguments->tran.card != NULL ? "--tran" : "--tstop", line);
             return DALCS_E_OPTION;
         }
     }

@@ -17,11 +17,12 @@ enum dalcs_status dalcs_start_variables_take(struct dalcs_start_variables *v, co
     }
     const struct dalcs_assignment given = dalcs_variables_split(strcpy(copy, text));
     if (strcasecmp(given.name, "filetype") == 0) {
-        a->ascii = strcmp(given.value, "ascii") == 0;
+        a->files.ascii = strcmp(given.value, "ascii") == 0;
     }
     free(copy);
-    DALCS_TRY(dalcs_grow(&a->variable, &v->capacity, a->n_variables + 1, sizeof(*a->variable)));
-    a->variable[a->n_variables++] = text;
+    DALCS_TRY(dalcs_grow(&a->batch.variable, &v->capacity, a->batch.n_variables + 1,
+                         sizeof(*a->batch.variable)));
+    a->batch.variable[a->batch.n_variables++] = text;
     return DALCS_OK;
 }
 
@@ -29,14 +30,14 @@ enum dalcs_status dalcs_start_variables_take(struct dalcs_start_variables *v, co
 static void forget(struct dalcs_arguments *a, const char *name) {
     const size_t n = strlen(name);
     size_t kept = 0;
-    for (size_t k = 0; k < a->n_variables; k++) {
-        const char *text = a->variable[k];
+    for (size_t k = 0; k < a->batch.n_variables; k++) {
+        const char *text = a->batch.variable[k];
         const bool is_it = strncasecmp(text, name, n) == 0 && strchr(" \t=", text[n]) != NULL;
-        a->variable[kept] = text;
+        a->batch.variable[kept] = text;
         kept += is_it ? 0 : 1;
     }
-    a->n_variables = kept;
-    a->ascii = a->ascii && strcasecmp(name, "filetype") != 0;
+    a->batch.n_variables = kept;
+    a->files.ascii = a->files.ascii && strcasecmp(name, "filetype") != 0;
 }
 
 static void note_left_out(void *user, const struct dalcs_start_file *file, const char *command) {

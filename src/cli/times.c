@@ -83,13 +83,13 @@ static int compare(const void *left, const void *right) {
 static enum dalcs_status add_list(struct dalcs_times *times, size_t *capacity,
                                   const struct dalcs_cli *cli,
                                   const struct dalcs_arguments *arguments, double stop) {
-    if (dalcs_grow(&times->time, capacity, times->n + arguments->n_times, sizeof *times->time) !=
-        DALCS_OK) {
+    if (dalcs_grow(&times->time, capacity, times->n + arguments->rows.n_times,
+                   sizeof *times->time) != DALCS_OK) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_E_NOMEM;
     }
-    for (size_t k = 0; k < arguments->n_times; k++) {
-        const double time = arguments->times[k];
+    for (size_t k = 0; k < arguments->rows.n_times; k++) {
+        const double time = arguments->rows.times[k];
         if (time > stop * (1.0 + ROUNDING)) {
             char text[2][DALCS_QUANTITY_SIZE];
             dalcs_cli_error(cli, "--at: %s comes after the end of the run, %s",
@@ -115,10 +115,10 @@ enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs
     *times = (struct dalcs_times){0};
     enum dalcs_status status = DALCS_OK;
     size_t capacity = 0;
-    if (arguments->at != NULL) {
-        status = read_file(times, &capacity, cli, arguments->at, stop);
+    if (arguments->rows.at != NULL) {
+        status = read_file(times, &capacity, cli, arguments->rows.at, stop);
     }
-    if (status == DALCS_OK && arguments->n_times > 0) {
+    if (status == DALCS_OK && arguments->rows.n_times > 0) {
         status = add_list(times, &capacity, cli, arguments, stop);
     }
     if (status != DALCS_OK) {

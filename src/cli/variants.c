@@ -34,15 +34,16 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                                      bool *wanted) {
     const bool has_steps = dalcs_session_request(session).n_steps > 1;
     const bool is_table =
-        arguments->no_waveforms && arguments->n_outputs == 0 && arguments->measures != NULL &&
-        !dalcs_is_standard_output(arguments->measures) && arguments->report == NULL &&
-        arguments->plot == NULL && !arguments->losses && arguments->losses_plot == NULL &&
-        !arguments->energy && !arguments->steady && !arguments->bode && !arguments->batch;
+        arguments->files.no_waveforms && arguments->files.n_outputs == 0 &&
+        arguments->files.measures != NULL && !dalcs_is_standard_output(arguments->files.measures) &&
+        arguments->files.report == NULL && arguments->files.plot == NULL &&
+        !arguments->losses.is_asked && arguments->losses.plot == NULL && !arguments->energy &&
+        !arguments->steady.is_asked && !arguments->bode.is_asked && !arguments->batch.is_asked;
     const bool can_read = strcmp(arguments->netlist, "-") != 0;
     const bool has_corners = dalcs_session_request(session).worst_case;
-    const bool is_asked =
-        arguments->n_shards > 0 || arguments->resume || (arguments->jobs > 0 && !has_corners);
-    *wanted = has_steps && is_table && can_read && !has_script && arguments->only == 0;
+    const bool is_asked = arguments->variants.n_shards > 0 || arguments->variants.resume ||
+                          (arguments->variants.jobs > 0 && !has_corners);
+    *wanted = has_steps && is_table && can_read && !has_script && arguments->variants.only == 0;
     if (*wanted || !is_asked) {
         return DALCS_OK;
     }
@@ -50,7 +51,7 @@ enum dalcs_status dalcs_variants_ask(const struct dalcs_cli *cli,
                     !is_table ? "write -o none --measures FILE.csv, and no other result"
                     : !can_read
                         ? "each thread reads the netlist, so give the name of a file in place of -"
-                    : arguments->only > 0 ? "--only is one of them"
+                    : arguments->variants.only > 0 ? "--only is one of them"
                     : has_script ? "here a .control block runs the analyses, one after the other"
                                  : "the netlist has no .step and no .mc");
     return DALCS_E_OPTION;
@@ -212,18 +213,27 @@ static enum dalcs_status run_rest(struct variants *v) {
     return v->n_failed + v->file.n_failed > 0 ? DALCS_NOT_CONVERGED : DALCS_OK;
 }
 
+static void finish(struct variants *v) {
+    dalcs_run_statistics_finish(&v->statistics);
+    dalcs_variants_file_finish(&v->file);
+    for (size_t k = 0; k < v->n_said; k++) {
+        free(v->said[k]);
+    }
+}
+
 enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
                                      const struct dalcs_arguments *arguments,
                                      const struct dalcs_session *session,
                                      const struct dalcs_run_options *options) {
     const size_t n = dalcs_session_request(session).n_steps;
-    const size_t n_shards = arguments->n_shards > 0 ? arguments->n_shards : 1;
-    const size_t shard = arguments->n_shards > 0 ? arguments->shard : 1;
+    const size_t n_shards = arguments->variants.n_shards > 0 ? arguments->variants.n_shards : 1;
+    const size_t shard = arguments->variants.n_shards > 0 ? arguments->variants.shard : 1;
     struct dalcs_decimal decimal;
     dalcs_decimal_init(&decimal);
-    const bool goes_on = arguments->resume || dalcs_crashes_go_on();
+    const bool goes_on = arguments->variants.resume || dalcs_crashes_go_on();
     struct dalcs_crashes crashes = {0};
-    struct variants v = {.cli = cli, .arguments = arguments, .file = {.path = arguments->measures}};
+    struct variants v = {
+        .cli = cli, .arguments = arguments, .file = {.path = arguments->files.measures}};
     /* Neighbours stay together: the parts one after the other are the whole table. */
     v.pool = (struct dalcs_variants_pool){
         .cli = cli,
@@ -251,17 +261,13 @@ enum dalcs_status dalcs_variants_run(const struct dalcs_cli *cli,
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     } else if (status == DALCS_OK && v.file.is_complete) {
         if (!arguments->quiet) {
-            fprintf(cli->out, "  '%s' is complete\n", arguments->measures);
+            fprintf(cli->out, "  '%s' is complete\n", arguments->files.measures);
         }
     } else if (status == DALCS_OK) {
         status = run_rest(&v);
     }
     free(header);
     dalcs_crashes_finish(&crashes, status == DALCS_OK || status == DALCS_NOT_CONVERGED);
-    dalcs_run_statistics_finish(&v.statistics);
-    dalcs_variants_file_finish(&v.file);
-    for (size_t k = 0; k < v.n_said; k++) {
-        free(v.said[k]);
-    }
+    finish(&v);
     return status;
 }

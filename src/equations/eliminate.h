@@ -22,4 +22,14 @@ enum dalcs_status dalcs_eliminate(struct dalcs_elimination *z, const struct dalc
 /* Of m[n][n]. LAPACKE_dlange allocates, and does not say when that failed. */
 double dalcs_dense_one_norm(const double *m, size_t n);
 
+/* x, lambda and inputs, as they are counted without z, to columns of the reduced system. */
+static inline int dalcs_elimination_column(const struct dalcs_elimination *z, int j) {
+    return j < z->from->n_x ? j : j + z->n_controls;
+}
+
+/* Outputs and states of `to`, read without the z of each system of `from`. */
+enum dalcs_status dalcs_eliminate_outputs(const struct dalcs_elimination *all,
+                                          const struct dalcs_network *from,
+                                          struct dalcs_network *to) DALCS_MUST_CHECK;
+
 #endif

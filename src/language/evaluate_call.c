@@ -96,6 +96,20 @@ static enum dalcs_outcome hold(struct dalcs_language *language) {
     return DALCS_OUTCOME_VALUE;
 }
 
+static void report_not_finite(const struct dalcs_evaluation *r, const struct dalcs_operation *o,
+                              const double *x, double value) {
+    if (o->count == 1) {
+        dalcs_evaluation_report(r, o, NULL, "%s(%.9g) is not %s", o->u.name, x[0],
+                                isnan(value) ? "a number" : "finite");
+    } else if (o->count == 2) {
+        dalcs_evaluation_report(r, o, NULL, "%s(%.9g, %.9g) is not %s", o->u.name, x[0], x[1],
+                                isnan(value) ? "a number" : "finite");
+    } else {
+        dalcs_evaluation_report(r, o, "table(x, x1, y1, x2, y2, ...) with x1 < x2 < ...",
+                                "the points of '%s' are not in order", o->u.name);
+    }
+}
+
 enum dalcs_outcome dalcs_evaluation_call(const struct dalcs_evaluation *r,
                                          const struct dalcs_operation *o) {
     struct dalcs_language *language = r->language;
@@ -135,16 +149,7 @@ enum dalcs_outcome dalcs_evaluation_call(const struct dalcs_evaluation *r,
                          : function->two != NULL ? function->two(x[0], x[1])
                                                  : function->many(x, o->count);
     if (!isfinite(value)) {
-        if (o->count == 1) {
-            dalcs_evaluation_report(r, o, NULL, "%s(%.9g) is not %s", o->u.name, x[0],
-                                    isnan(value) ? "a number" : "finite");
-        } else if (o->count == 2) {
-            dalcs_evaluation_report(r, o, NULL, "%s(%.9g, %.9g) is not %s", o->u.name, x[0], x[1],
-                                    isnan(value) ? "a number" : "finite");
-        } else {
-            dalcs_evaluation_report(r, o, "table(x, x1, y1, x2, y2, ...) with x1 < x2 < ...",
-                                    "the points of '%s' are not in order", o->u.name);
-        }
+        report_not_finite(r, o, x, value);
         return DALCS_OUTCOME_WRONG;
     }
     language->evaluation.n_stack -= (size_t)o->count;

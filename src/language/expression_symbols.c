@@ -153,46 +153,46 @@ static void read_number(struct dalcs_parser *p) {
     p->symbol = DALCS_SYMBOL_WRONG;
 }
 
+static const struct {
+    const char *text;
+    enum dalcs_symbol symbol;
+    enum dalcs_operation_code code;
+    int level;
+} operators[] = {
+    /* The longer ones first. */
+    {"**", DALCS_SYMBOL_OPERATOR, DALCS_POWER, 8},
+    {"||", DALCS_SYMBOL_OR, DALCS_JUMP_OR, 1},
+    {"&&", DALCS_SYMBOL_AND, DALCS_JUMP_AND, 2},
+    {"==", DALCS_SYMBOL_OPERATOR, DALCS_EQUAL, 3},
+    {"!=", DALCS_SYMBOL_OPERATOR, DALCS_UNEQUAL, 3},
+    {"<>", DALCS_SYMBOL_OPERATOR, DALCS_UNEQUAL, 3},
+    {"<=", DALCS_SYMBOL_OPERATOR, DALCS_LESS_EQUAL, 4},
+    {">=", DALCS_SYMBOL_OPERATOR, DALCS_GREATER_EQUAL, 4},
+    {"<", DALCS_SYMBOL_OPERATOR, DALCS_LESS, 4},
+    {">", DALCS_SYMBOL_OPERATOR, DALCS_GREATER, 4},
+    {"+", DALCS_SYMBOL_OPERATOR, DALCS_ADD, 5},
+    {"-", DALCS_SYMBOL_OPERATOR, DALCS_SUBTRACT, 5},
+    {"*", DALCS_SYMBOL_OPERATOR, DALCS_MULTIPLY, 6},
+    {"/", DALCS_SYMBOL_OPERATOR, DALCS_DIVIDE, 6},
+    {"%", DALCS_SYMBOL_OPERATOR, DALCS_REMAINDER, 6},
+    {"\\", DALCS_SYMBOL_OPERATOR, DALCS_QUOTIENT, 6},
+    {"^", DALCS_SYMBOL_OPERATOR, DALCS_POWER, 8},
+    {"|", DALCS_SYMBOL_OR, DALCS_JUMP_OR, 1},
+    {"&", DALCS_SYMBOL_AND, DALCS_JUMP_AND, 2},
+    {"=", DALCS_SYMBOL_OPERATOR, DALCS_EQUAL, 3}, /* in a condition */
+    {"!", DALCS_SYMBOL_BANG, DALCS_NOT, 0},
+    {"~", DALCS_SYMBOL_BANG, DALCS_NOT, 0},
+    {"(", DALCS_SYMBOL_OPEN, 0, 0},
+    {"{", DALCS_SYMBOL_OPEN, 0, 0},
+    {")", DALCS_SYMBOL_CLOSE, 0, 0},
+    {"}", DALCS_SYMBOL_CLOSE, 0, 0},
+    {",", DALCS_SYMBOL_COMMA, 0, 0},
+    {"?", DALCS_SYMBOL_QUESTION, 0, 0},
+    {":", DALCS_SYMBOL_COLON, 0, 0},
+};
+
 /* An operator of one or two bytes. */
 static bool read_operator(struct dalcs_parser *p, const char *t) {
-    static const struct {
-        const char *text;
-        enum dalcs_symbol symbol;
-        enum dalcs_operation_code code;
-        int level;
-    } operators[] = {
-        /* The longer ones first. */
-        {"**", DALCS_SYMBOL_OPERATOR, DALCS_POWER, 8},
-        {"||", DALCS_SYMBOL_OR, DALCS_JUMP_OR, 1},
-        {"&&", DALCS_SYMBOL_AND, DALCS_JUMP_AND, 2},
-        {"==", DALCS_SYMBOL_OPERATOR, DALCS_EQUAL, 3},
-        {"!=", DALCS_SYMBOL_OPERATOR, DALCS_UNEQUAL, 3},
-        {"<>", DALCS_SYMBOL_OPERATOR, DALCS_UNEQUAL, 3},
-        {"<=", DALCS_SYMBOL_OPERATOR, DALCS_LESS_EQUAL, 4},
-        {">=", DALCS_SYMBOL_OPERATOR, DALCS_GREATER_EQUAL, 4},
-        {"<", DALCS_SYMBOL_OPERATOR, DALCS_LESS, 4},
-        {">", DALCS_SYMBOL_OPERATOR, DALCS_GREATER, 4},
-        {"+", DALCS_SYMBOL_OPERATOR, DALCS_ADD, 5},
-        {"-", DALCS_SYMBOL_OPERATOR, DALCS_SUBTRACT, 5},
-        {"*", DALCS_SYMBOL_OPERATOR, DALCS_MULTIPLY, 6},
-        {"/", DALCS_SYMBOL_OPERATOR, DALCS_DIVIDE, 6},
-        {"%", DALCS_SYMBOL_OPERATOR, DALCS_REMAINDER, 6},
-        {"\\", DALCS_SYMBOL_OPERATOR, DALCS_QUOTIENT, 6},
-        {"^", DALCS_SYMBOL_OPERATOR, DALCS_POWER, 8},
-        {"|", DALCS_SYMBOL_OR, DALCS_JUMP_OR, 1},
-        {"&", DALCS_SYMBOL_AND, DALCS_JUMP_AND, 2},
-        {"=", DALCS_SYMBOL_OPERATOR, DALCS_EQUAL, 3}, /* in a condition */
-        {"!", DALCS_SYMBOL_BANG, DALCS_NOT, 0},
-        {"~", DALCS_SYMBOL_BANG, DALCS_NOT, 0},
-        {"(", DALCS_SYMBOL_OPEN, 0, 0},
-        {"{", DALCS_SYMBOL_OPEN, 0, 0},
-        {")", DALCS_SYMBOL_CLOSE, 0, 0},
-        {"}", DALCS_SYMBOL_CLOSE, 0, 0},
-        {",", DALCS_SYMBOL_COMMA, 0, 0},
-        {"?", DALCS_SYMBOL_QUESTION, 0, 0},
-        {":", DALCS_SYMBOL_COLON, 0, 0},
-    };
-
     for (size_t k = 0; k < sizeof operators / sizeof operators[0]; k++) {
         const size_t n = strlen(operators[k].text);
         const bool is_known = p->context->is_condition || strcmp(operators[k].text, "=") != 0;

@@ -102,39 +102,40 @@ static size_t word_length(const struct dalcs_lexer *lexer, size_t p) {
     return q - p;
 }
 
-/* The token that starts at raw[p]; the result is the first byte after it. */
-static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
-                         struct dalcs_token *token) {
-    const char *raw = lexer->raw;
-    char *low = lexer->low;
-    const char c = raw[p];
-    size_t q = p + 1;
-    token->line = lexer->line;
-    token->offset = (int)(p - begin);
-
+/* Is it a token of one byte? */
+static bool read_mark(const struct dalcs_lexer *lexer, char c, struct dalcs_token *token) {
     if (c == '=' || c == '(' || c == ')') {
         token->kind = c == '='   ? DALCS_TOKEN_EQUAL
                       : c == '(' ? DALCS_TOKEN_OPEN
                                  : DALCS_TOKEN_CLOSE;
         token->text = c == '=' ? "=" : c == '(' ? "(" : ")";
         token->length = 1;
-        return q;
+        return true;
     }
 
     if ((c == '{' || c == '[') && is_model_word(lexer, 3)) {
         token->kind = DALCS_TOKEN_OPEN;
         token->text = c == '{' ? "{" : "[";
         token->length = 1;
-        return q;
+        return true;
     }
+    return false;
+}
 
-    bool closed = true;
+/* A text in quotes, an expression or a word from raw[p] on; the result is where it ends, before what closes it. */
+static size_t read_text(struct dalcs_lexer *lexer, size_t p, struct dalcs_token *token,
+                        bool *closed) {
+    const char *raw = lexer->raw;
+    char *low = lexer->low;
+    const char c = raw[p];
+    size_t q = p + 1;
+    *closed = true;
     if (c == '\'' || c == '"') {
         token->kind = DALCS_TOKEN_STRING;
         while (raw[q] != '\0' && raw[q] != c) {
             q++;
         }
-        closed = raw[q] == c;
+        *closed = raw[q] == c;
         if (c == '"') {
             memcpy(low + p + 1, raw + p + 1, q - p - 1);
         } else {
@@ -152,13 +153,30 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
                 break;
             }
         }
-        closed = depth == 0;
+        *closed = depth == 0;
         token->text = low + p + 1;
     } else {
         token->kind = DALCS_TOKEN_WORD;
         q = p + word_length(lexer, p);
         token->text = low + p;
     }
+    return q;
+}
+
+/* The token that starts at raw[p]; the result is the first byte after it. */
+static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
+                         struct dalcs_token *token) {
+    const char *raw = lexer->raw;
+    char *low = lexer->low;
+    const char c = raw[p];
+    token->line = lexer->line;
+    token->offset = (int)(p - begin);
+
+    if (read_mark(lexer, c, token)) {
+        return p + 1;
+    }
+    bool closed;
+    size_t q = read_text(lexer, p, token, &closed);
     const bool invalid = lexer->has_invalid && memchr(low + p, DALCS_LEXER_INVALID, q - p) != NULL;
     low[q] = '\0';
     if (token->kind != DALCS_TOKEN_WORD && closed) {

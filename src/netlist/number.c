@@ -174,6 +174,38 @@ static double convert(const struct mantissa *m, long long power, bool negative) 
     return strtod(buffer, NULL);
 }
 
+/* Of a value that was read: is it in range? */
+static enum dalcs_number_status finish_value(struct dalcs_number *result,
+                                             const struct mantissa *m) {
+    if (result->suffix == 'i') {
+        result->value *= 25.4e-6;
+    }
+    if (isinf(result->value)) {
+        return DALCS_NUMBER_OVERFLOW;
+    }
+    if (result->value == 0 && m->n > 0) {
+        return DALCS_NUMBER_UNDERFLOW;
+    }
+    return DALCS_NUMBER_OK;
+}
+
+/* What scales a number, behind its digits and its exponent; may_be_rkm: they are such that LTspice's 4k7 may follow. */
+static const char *read_scale(const char *p, enum dalcs_dialect_name dialect, bool may_be_rkm,
+                              struct dalcs_number *result, struct mantissa *m, int *suffix_power) {
+    if (dialect == DALCS_DIALECT_LTSPICE && may_be_rkm) {
+        p = read_rkm(p, result, m, suffix_power);
+    } else if (dialect == DALCS_DIALECT_XYCE && dalcs_lower(*p) == 'x') {
+        result->suffix = 'x';
+        result->is_special = true;
+        *suffix_power = 6;
+        p++;
+    }
+    if (!result->is_special) {
+        p += read_suffix(p, &result->suffix, suffix_power);
+    }
+    return p;
+}
+
 enum dalcs_number_status dalcs_number_parse_as(const char *text, enum dalcs_dialect_name dialect,
                                                struct dalcs_number *number) {
     const char *p = text;
@@ -200,17 +232,7 @@ enum dalcs_number_status dalcs_number_parse_as(const char *text, enum dalcs_dial
 
     int suffix_power = 0;
     const char *suffix = p;
-    if (dialect == DALCS_DIALECT_LTSPICE && is_whole && p == mantissa_end) {
-        p = read_rkm(p, &result, &m, &suffix_power);
-    } else if (dialect == DALCS_DIALECT_XYCE && dalcs_lower(*p) == 'x') {
-        result.suffix = 'x';
-        result.is_special = true;
-        suffix_power = 6;
-        p++;
-    }
-    if (!result.is_special) {
-        p += read_suffix(p, &result.suffix, &suffix_power);
-    }
+    p = read_scale(p, dialect, is_whole && p == mantissa_end, &result, &m, &suffix_power);
     result.tail = (int)(p - text);
     while (is_unit_letter(*p)) {
         p++;
@@ -223,17 +245,11 @@ enum dalcs_number_status dalcs_number_parse_as(const char *text, enum dalcs_dial
     }
 
     result.value = convert(&m, m.power + exponent + suffix_power, negative);
-    if (result.suffix == 'i') {
-        result.value *= 25.4e-6;
+    const enum dalcs_number_status status = finish_value(&result, &m);
+    if (status == DALCS_NUMBER_OK) {
+        *number = result;
     }
-    if (isinf(result.value)) {
-        return DALCS_NUMBER_OVERFLOW;
-    }
-    if (result.value == 0 && m.n > 0) {
-        return DALCS_NUMBER_UNDERFLOW;
-    }
-    *number = result;
-    return DALCS_NUMBER_OK;
+    return status;
 }
 
 enum dalcs_number_status dalcs_number_parse(const char *text, struct dalcs_number *number) {

@@ -178,6 +178,36 @@ static void write_lines(FILE *stream, const struct dalcs_figure *figure,
     }
 }
 
+/* The curves of panel p, before them the bands that they are in. */
+static void write_curves(FILE *stream, const struct dalcs_figure *figure,
+                         const struct dalcs_gnuplot_page *page, int v, int p) {
+    const struct dalcs_figure_view *view = &figure->view[v];
+    const struct dalcs_figure_panel *panel = &figure->panel[p];
+    const bool bands = has_bands(figure, v);
+    for (int i = 0; bands && i < panel->n; i++) {
+        fprintf(
+            stream,
+            "%s $v%dp%dc%d using 1:3:4 with filledcurves fs transparent solid %.2g noborder fc rgb "
+            "'%s' notitle",
+            i == 0 ? "plot" : ",", v, p, i, band_opacity(panel->n), figure->theme->curve[i]);
+    }
+    for (int i = 0; i < panel->n; i++) {
+        fprintf(stream, "%s $v%dp%dc%d using 1:2 with lines lw %.1f lc rgb '%s' ",
+                i == 0 && !bands ? "plot" : ",", v, p, i, choose_width(figure, view, p, i),
+                figure->theme->curve[i]);
+        if (figure->theme->dash[i]) {
+            fprintf(stream, "dt %s ", figure->theme->dash[i]);
+        }
+        if (page->place[v].legend) {
+            fputs("title ", stream);
+            dalcs_gnuplot_write_quoted(stream, figure->name[panel->signal[i]],
+                                       DALCS_GNUPLOT_MAX_NAME);
+        } else {
+            fputs("notitle", stream);
+        }
+    }
+}
+
 /* Panel k of the page. */
 static void write_panel(FILE *stream, const struct dalcs_figure *figure,
                         const struct dalcs_gnuplot_page *page, int v, int k) {
@@ -207,29 +237,7 @@ static void write_panel(FILE *stream, const struct dalcs_figure *figure,
                 figure->theme->quiet_text);
     }
     write_lines(stream, figure, page, p);
-    const bool bands = has_bands(figure, v);
-    for (int i = 0; bands && i < panel->n; i++) {
-        fprintf(
-            stream,
-            "%s $v%dp%dc%d using 1:3:4 with filledcurves fs transparent solid %.2g noborder fc rgb "
-            "'%s' notitle",
-            i == 0 ? "plot" : ",", v, p, i, band_opacity(panel->n), figure->theme->curve[i]);
-    }
-    for (int i = 0; i < panel->n; i++) {
-        fprintf(stream, "%s $v%dp%dc%d using 1:2 with lines lw %.1f lc rgb '%s' ",
-                i == 0 && !bands ? "plot" : ",", v, p, i, choose_width(figure, view, p, i),
-                figure->theme->curve[i]);
-        if (figure->theme->dash[i]) {
-            fprintf(stream, "dt %s ", figure->theme->dash[i]);
-        }
-        if (page->place[v].legend) {
-            fputs("title ", stream);
-            dalcs_gnuplot_write_quoted(stream, figure->name[panel->signal[i]],
-                                       DALCS_GNUPLOT_MAX_NAME);
-        } else {
-            fputs("notitle", stream);
-        }
-    }
+    write_curves(stream, figure, page, v, p);
     fputs("\nunset label\n", stream);
 }
 

@@ -1,6 +1,8 @@
 /* page.c - fills page.html: data as JSON, numbers in it as base64 of their bytes, lowest first. */
 #include "page.h"
 
+#include "page_json.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -17,73 +19,6 @@ struct columns {
     size_t n_signals, n_rows, room;
     double *value; /* [(1 + n_signals) * room] */
 };
-
-/* ---- Bytes ---------------------------------------------------------------------------------- */
-
-struct base64 {
-    FILE *stream;
-    unsigned char byte[3];
-    int n;
-};
-
-static void flush_base64(struct base64 *base64) {
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const unsigned char *b = base64->byte;
-    if (base64->n == 0) {
-        return;
-    }
-    fputc(digit[b[0] >> 2], base64->stream);
-    fputc(digit[(b[0] & 3) << 4 | b[1] >> 4], base64->stream);
-    fputc(base64->n > 1 ? digit[(b[1] & 15) << 2 | b[2] >> 6] : '=', base64->stream);
-    fputc(base64->n > 2 ? digit[b[2] & 63] : '=', base64->stream);
-    base64->n = 0;
-    memset(base64->byte, 0, sizeof base64->byte);
-}
-
-static void write_bytes(struct base64 *base64, uint64_t bits, int n_bytes) {
-    for (int i = 0; i < n_bytes; i++) {
-        base64->byte[base64->n++] = (unsigned char)(bits >> (8 * i) & 0xff);
-        if (base64->n == 3) {
-            flush_base64(base64);
-        }
-    }
-}
-
-static void write_column(FILE *stream, const double *value, size_t n, bool exact) {
-    struct base64 base64 = {.stream = stream};
-    for (size_t i = 0; i < n; i++) {
-        if (exact) {
-            uint64_t bits = 0;
-            memcpy(&bits, &value[i], sizeof bits);
-            write_bytes(&base64, bits, 8);
-        } else {
-            float rounded = (float)value[i];
-            uint32_t bits = 0;
-            memcpy(&bits, &rounded, sizeof bits);
-            write_bytes(&base64, bits, 4);
-        }
-    }
-    flush_base64(&base64);
-}
-
-/* ---- JSON ----------------------------------------------------------------------------------- */
-
-/* No "<" that could end the script. */
-static void write_string(FILE *stream, const char *text) {
-    fputc('"', stream);
-    for (const char *c = text; *c; c++) {
-        if ((unsigned char)*c < 0x20 || *c == '"' || *c == '\\' || *c == '<') {
-            fprintf(stream, "\\u%04x", (unsigned char)*c);
-        } else {
-            fputc(*c, stream);
-        }
-    }
-    fputc('"', stream);
-}
-
-static void write_number(FILE *stream, double value) {
-    fprintf(stream, isfinite(value) ? "%.17g" : "null", value);
-}
 
 /* The panel of signal i; those that no panel shows belong to the one of their unit. */
 static int panel_of(const struct dalcs_selection *selection, size_t i, bool *shown) {
@@ -117,10 +52,11 @@ static void write_signals(FILE *stream, const struct dalcs_selection *selection,
             continue;
         }
         fputs(first ? "\n{\"name\": " : ",\n{\"name\": ", stream);
-        write_string(stream, selection->name[i]);
+        dalcs_page_json_string(stream, selection->name[i]);
         fprintf(stream, ", \"panel\": %d, \"shown\": %s, \"values\": \"", panel,
                 shown ? "true" : "false");
-        write_column(stream, columns->value + (1 + i) * columns->room, columns->n_rows, exact);
+        dalcs_page_json_column(stream, columns->value + (1 + i) * columns->room, columns->n_rows,
+                               exact);
         fputs("\"}", stream);
         first = false;
     }
@@ -131,9 +67,9 @@ static void write_panels(FILE *stream, const struct dalcs_selection *selection) 
     fputs(",\n\"panels\": [", stream);
     for (int p = 0; p < selection->n_panels; p++) {
         fputs(p > 0 ? ", {\"quantity\": " : "{\"quantity\": ", stream);
-        write_string(stream, selection->panel[p].quantity);
+        dalcs_page_json_string(stream, selection->panel[p].quantity);
         fputs(", \"unit\": ", stream);
-        write_string(stream, selection->panel[p].unit);
+        dalcs_page_json_string(stream, selection->panel[p].unit);
         fputs("}", stream);
     }
     fputs("]", stream);
@@ -144,18 +80,18 @@ static void write_conduction(FILE *stream, const struct dalcs_conduction *conduc
     for (size_t k = 0; k < conduction->n; k++) {
         const struct dalcs_conduction_element *element = &conduction->element[k];
         fputs(k > 0 ? ",\n{\"name\": " : "\n{\"name\": ", stream);
-        write_string(stream, element->name);
+        dalcs_page_json_string(stream, element->name);
         fprintf(stream, ", \"on\": %s, \"times\": [", element->on_before ? "true" : "false");
         for (size_t i = 0; i < element->n; i++) {
             fputs(i > 0 ? "," : "", stream);
-            write_number(stream, element->change[i].time);
+            dalcs_page_json_number(stream, element->change[i].time);
         }
         fputs("]}", stream);
     }
     fputs("],\n\"jumps\": [", stream);
     for (size_t i = 0; i < conduction->n_jumps; i++) {
         fputs(i > 0 ? "," : "", stream);
-        write_number(stream, conduction->jump[i]);
+        dalcs_page_json_number(stream, conduction->jump[i]);
     }
     fputs("]", stream);
 }
@@ -166,21 +102,18 @@ static void write_lines(FILE *stream, const struct dalcs_margin_lines *lines) {
         const struct dalcs_figure_line *line = &lines->line[k];
         fprintf(stream, "%s{\"panel\": %d, \"level\": %s, \"at\": ", k > 0 ? ", " : "", line->panel,
                 line->is_level ? "true" : "false");
-        write_number(stream, line->at);
+        dalcs_page_json_number(stream, line->at);
         fputs(", \"text\": ", stream);
-        write_string(stream, line->text ? line->text : "");
+        dalcs_page_json_string(stream, line->text ? line->text : "");
         fputs("}", stream);
     }
     fputs("]", stream);
 }
 
-/* What is in the page. */
+/* A page with all digits of its values, or not. */
 struct pages {
-    const struct dalcs_selection *selection; /* of the first run */
-    const struct dalcs_conduction *conduction;
-    const struct dalcs_page_runs *runs;
-    const struct dalcs_margin_lines *lines;
-    bool marks, exact;
+    const struct dalcs_page *page;
+    bool exact;
 };
 
 static enum dalcs_status add_row(void *user, double at, const double *value) {
@@ -208,10 +141,10 @@ static enum dalcs_status take_columns(struct columns *columns,
 
 /* Are they too many values for a page, or for their exact ones? */
 static enum dalcs_status measure(struct pages *pages, struct dalcs_diag *diag) {
-    const size_t n_signals = pages->selection->n;
-    size_t n_rows = dalcs_selection_count_rows(pages->selection) + 2;
-    for (size_t k = 0; k + 1 < pages->runs->n; k++) {
-        n_rows += dalcs_selection_count_rows(&pages->runs->run[k].selection) + 2;
+    const size_t n_signals = pages->page->selection->n;
+    size_t n_rows = dalcs_selection_count_rows(pages->page->selection) + 2;
+    for (size_t k = 0; k + 1 < pages->page->runs->n; k++) {
+        n_rows += dalcs_selection_count_rows(&pages->page->runs->run[k].selection) + 2;
     }
     pages->exact = n_signals * n_rows <= MAX_EXACT;
     if (n_rows > MAX_VALUES / (n_signals + 1)) {
@@ -229,7 +162,7 @@ static enum dalcs_status write_other(FILE *stream, const struct dalcs_page_run *
     const enum dalcs_status status = take_columns(&columns, &run->selection);
     if (status == DALCS_OK) {
         fputs("{\"at\": \"", stream);
-        write_column(stream, columns.value, columns.n_rows, true);
+        dalcs_page_json_column(stream, columns.value, columns.n_rows, true);
         fputs("\"", stream);
         write_signals(stream, &run->selection, &columns, exact);
         write_conduction(stream, &run->conduction);
@@ -240,11 +173,11 @@ static enum dalcs_status write_other(FILE *stream, const struct dalcs_page_run *
 }
 
 static enum dalcs_status write_others(FILE *stream, const struct pages *pages) {
-    const struct dalcs_page_runs *runs = pages->runs;
+    const struct dalcs_page_runs *runs = pages->page->runs;
     fputs(",\n\"labels\": [", stream);
     for (size_t k = 0; k < runs->n; k++) {
         fputs(k > 0 ? ", " : "", stream);
-        write_string(stream, runs->label[k]);
+        dalcs_page_json_string(stream, runs->label[k]);
     }
     fputs("],\n\"others\": [", stream);
     for (size_t k = 0; k + 1 < runs->n; k++) {
@@ -257,20 +190,20 @@ static enum dalcs_status write_others(FILE *stream, const struct pages *pages) {
 
 static enum dalcs_status write_run(FILE *stream, const struct pages *pages,
                                    const struct columns *columns) {
-    const struct dalcs_selection *selection = pages->selection;
+    const struct dalcs_selection *selection = pages->page->selection;
     fputs("{\"axis\": {\"name\": ", stream);
-    write_string(stream, selection->axis.quantity);
+    dalcs_page_json_string(stream, selection->axis.quantity);
     fputs(", \"unit\": ", stream);
-    write_string(stream, selection->axis.unit);
+    dalcs_page_json_string(stream, selection->axis.unit);
     fprintf(stream, ", \"log\": %s},\n\"marks\": %s, \"bits\": %d,\n\"at\": \"",
-            selection->axis.logarithmic ? "true" : "false", pages->marks ? "true" : "false",
+            selection->axis.logarithmic ? "true" : "false", pages->page->marks ? "true" : "false",
             pages->exact ? 64 : 32);
-    write_column(stream, columns->value, columns->n_rows, true);
+    dalcs_page_json_column(stream, columns->value, columns->n_rows, true);
     fputs("\"", stream);
     write_panels(stream, selection);
     write_signals(stream, selection, columns, pages->exact);
-    write_conduction(stream, pages->conduction);
-    write_lines(stream, pages->lines);
+    write_conduction(stream, pages->page->conduction);
+    write_lines(stream, pages->page->lines);
     const enum dalcs_status status = write_others(stream, pages);
     fputs("}", stream);
     return status;
@@ -292,16 +225,12 @@ bool dalcs_page_is_available(void) {
     return true;
 }
 
-enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
-                                   const struct dalcs_conduction *conduction,
-                                   const struct dalcs_page_runs *runs,
-                                   const struct dalcs_margin_lines *lines, const char *title,
-                                   const struct dalcs_theme *theme, bool marks,
+enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_page *page,
                                    struct dalcs_diag *diag) {
-    struct pages pages = {selection, conduction, runs, lines, marks, .exact = false};
+    struct pages pages = {.page = page};
     struct columns columns;
     DALCS_TRY(measure(&pages, diag));
-    enum dalcs_status status = take_columns(&columns, selection);
+    enum dalcs_status status = take_columns(&columns, page->selection);
     for (const char *c = dalcs_embedded_page_html; status == DALCS_OK && *c;) {
         const char *mark = strchr(c, '@');
         fwrite(c, 1, mark ? (size_t)(mark - c) : strlen(c), stream);
@@ -311,9 +240,9 @@ enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *s
         const char *name = mark + 1, *end = strchr(name, '@');
         size_t length = (size_t)(end - name);
         if (strncmp(name, "theme", length) == 0) {
-            fputs(theme->name, stream);
+            fputs(page->theme->name, stream);
         } else if (strncmp(name, "title", length) == 0) {
-            write_text(stream, title);
+            write_text(stream, page->title);
         } else if (strncmp(name, "run", length) == 0) {
             status = write_run(stream, &pages, &columns);
         } else if (strncmp(name, "page.css", length) == 0) {
@@ -337,20 +266,10 @@ bool dalcs_page_is_available(void) {
     return false;
 }
 
-enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
-                                   const struct dalcs_conduction *conduction,
-                                   const struct dalcs_page_runs *runs,
-                                   const struct dalcs_margin_lines *lines, const char *title,
-                                   const struct dalcs_theme *theme, bool marks,
+enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_page *page,
                                    struct dalcs_diag *diag) {
     (void)stream;
-    (void)selection;
-    (void)conduction;
-    (void)runs;
-    (void)lines;
-    (void)title;
-    (void)theme;
-    (void)marks;
+    (void)page;
     dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "this dalcs was built without dygraphs");
     return DALCS_E_OPTION;
 }

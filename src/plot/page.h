@@ -23,13 +23,19 @@ struct dalcs_page_runs {
     const char *const *label;         /* [n] */
 };
 
+struct dalcs_page {
+    const struct dalcs_selection *selection; /* of the first run */
+    const struct dalcs_conduction *conduction;
+    const struct dalcs_page_runs *runs;
+    const struct dalcs_margin_lines *lines;
+    const char *title;
+    const struct dalcs_theme *theme;
+    bool marks; /* of events */
+};
+
 /* All signals of the selection are in the page; those of its panels are shown at first. Errors of the
  * stream stay there. DALCS_E_LIMIT comes with a message: too many values for one page. */
-enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
-                                   const struct dalcs_conduction *conduction,
-                                   const struct dalcs_page_runs *runs,
-                                   const struct dalcs_margin_lines *lines, const char *title,
-                                   const struct dalcs_theme *theme, bool marks,
+enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_page *page,
                                    struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 #endif

@@ -207,6 +207,28 @@ static void write_multipliers(struct dalcs_json *json, const struct dalcs_floque
     dalcs_json_close(json, ']');
 }
 
+/* What the search found beside the orbit. */
+static void write_beside_orbit(struct dalcs_json *json, const struct dalcs_report *report) {
+    if (report->steady.doubled.period > 0.0) {
+        dalcs_json_open(json, "doubled", '{', false);
+        dalcs_json_number(json, "period", report->steady.doubled.period);
+        dalcs_json_boolean(json, "stable", report->steady.doubled.stable);
+        write_multipliers(json, report->steady.doubled.multiplier,
+                          report->steady.doubled.n_multipliers);
+        dalcs_json_close(json, '}');
+    }
+    if (report->steady.attractor.kind != NULL) {
+        dalcs_json_open(json, "attractor", '{', false);
+        dalcs_json_string(json, "kind", report->steady.attractor.kind);
+        if (report->steady.attractor.periods > 0) {
+            dalcs_json_integer(json, "periods", report->steady.attractor.periods);
+            dalcs_json_number(json, "period", report->steady.attractor.period);
+        }
+        dalcs_json_number(json, "growth", report->steady.attractor.growth);
+        dalcs_json_close(json, '}');
+    }
+}
+
 static void write_steady(struct dalcs_json *json, const struct dalcs_report *report) {
     if (!report->steady.present) {
         return;
@@ -228,24 +250,7 @@ static void write_steady(struct dalcs_json *json, const struct dalcs_report *rep
         dalcs_json_number(json, "flow", report->steady.flow);
     }
     write_multipliers(json, report->steady.multiplier, report->steady.n_multipliers);
-    if (report->steady.doubled.period > 0.0) {
-        dalcs_json_open(json, "doubled", '{', false);
-        dalcs_json_number(json, "period", report->steady.doubled.period);
-        dalcs_json_boolean(json, "stable", report->steady.doubled.stable);
-        write_multipliers(json, report->steady.doubled.multiplier,
-                          report->steady.doubled.n_multipliers);
-        dalcs_json_close(json, '}');
-    }
-    if (report->steady.attractor.kind != NULL) {
-        dalcs_json_open(json, "attractor", '{', false);
-        dalcs_json_string(json, "kind", report->steady.attractor.kind);
-        if (report->steady.attractor.periods > 0) {
-            dalcs_json_integer(json, "periods", report->steady.attractor.periods);
-            dalcs_json_number(json, "period", report->steady.attractor.period);
-        }
-        dalcs_json_number(json, "growth", report->steady.attractor.growth);
-        dalcs_json_close(json, '}');
-    }
+    write_beside_orbit(json, report);
     dalcs_json_open(json, "conserved", '[', false);
     for (size_t i = 0; i < report->steady.n_conserved; i++) {
         dalcs_json_string(json, NULL, report->steady.conserved[i]);

@@ -16,27 +16,28 @@ static const double far = 0.25;
 static bool is_on_probation(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
     const double near = 4.0 * a->radau->resolution;
-    if (part->segment.t + near >= a->landed + dalcs_cycle_period(part->memory.cycle)) {
-        a->landed = INFINITY;
+    if (part->segment.t + near >= a->leaps.landed + dalcs_cycle_period(part->memory.cycle)) {
+        a->leaps.landed = INFINITY;
     }
-    return a->landed < INFINITY;
+    return a->leaps.landed < INFINITY;
 }
 
 enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until, bool *may) {
     const struct dalcs_radau_part *part = a->radau->cycling;
-    *may = a->tried_time == INFINITY && !(a->audit != NULL && is_on_probation(a));
-    if (a->audit == NULL || !*may || a->was_tried) {
-        a->was_tried = false;
+    *may = a->leaps.tried_time == INFINITY && !(a->audit != NULL && is_on_probation(a));
+    if (a->audit == NULL || !*may || a->leaps.was_tried) {
+        a->leaps.was_tried = false;
         return DALCS_OK;
     }
     const double work =
         TRIED_PERIODS * dalcs_cycle_n_segments(part->memory.cycle) * dalcs_audit_segment_work;
-    if (!dalcs_audit_may(a->audit, work) && a->has_tried) {
+    if (!dalcs_audit_may(a->audit, work) && a->leaps.has_tried) {
         return DALCS_OK;
     }
-    DALCS_TRY(dalcs_cycle_try(a->radau, until, TRIED_PERIODS, a->tried, &a->tried_time));
-    *may = a->tried_time == INFINITY;
-    a->has_tried |= !*may;
+    DALCS_TRY(
+        dalcs_cycle_try(a->radau, until, TRIED_PERIODS, a->leaps.tried, &a->leaps.tried_time));
+    *may = a->leaps.tried_time == INFINITY;
+    a->leaps.has_tried |= !*may;
     return DALCS_OK;
 }
 
@@ -54,10 +55,10 @@ void dalcs_audit_run_start_leap(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
     if (a->audit != NULL) {
         dalcs_audit_run_settle(a, part->index);
-        memcpy(a->tried, part->x, (size_t)part->component->system->n_x * sizeof(double));
-        a->leap_time = part->segment.t;
-        if (!a->has_passed) {
-            memcpy(a->passed, part->x, (size_t)part->component->system->n_x * sizeof(double));
+        memcpy(a->leaps.tried, part->x, (size_t)part->component->system->n_x * sizeof(double));
+        a->leaps.began = part->segment.t;
+        if (!a->leaps.has_passed) {
+            memcpy(a->leaps.passed, part->x, (size_t)part->component->system->n_x * sizeof(double));
         }
     }
 }
@@ -115,19 +116,19 @@ void dalcs_audit_run_end_leap(struct dalcs_audit_run *a) {
     }
     dalcs_audit_put_off(a->audit, part->index);
     const int n_x = part->component->system->n_x;
-    if (distance(part, a->passed) > far) {
-        a->landed = part->segment.t;
-        memcpy(a->passed, part->x, (size_t)n_x * sizeof(double));
+    if (distance(part, a->leaps.passed) > far) {
+        a->leaps.landed = part->segment.t;
+        memcpy(a->leaps.passed, part->x, (size_t)n_x * sizeof(double));
     }
     const double elements = (double)n_x * (n_x + 1);
     const double periods =
-        rint((part->segment.t - a->leap_time) / dalcs_cycle_period(part->memory.cycle));
+        rint((part->segment.t - a->leaps.began) / dalcs_cycle_period(part->memory.cycle));
     const double work = product_work * elements * (n_x + 1) * (1.0 + log2(fmax(periods, 1.0)));
     dalcs_audit_earn(a->audit, leapt_work * elements * periods);
-    if (work <= small_work || dalcs_audit_may(a->audit, work) || !a->has_passed) {
-        a->has_passed = true;
-        go_on(n_x, dalcs_cycle_map(part), (long)periods, a->tried, a->tried + n_x);
-        dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, distance(part, a->tried),
+    if (work <= small_work || dalcs_audit_may(a->audit, work) || !a->leaps.has_passed) {
+        a->leaps.has_passed = true;
+        go_on(n_x, dalcs_cycle_map(part), (long)periods, a->leaps.tried, a->leaps.tried + n_x);
+        dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, distance(part, a->leaps.tried),
                         part->segment.t);
     }
 }
@@ -153,12 +154,12 @@ double dalcs_audit_run_until(struct dalcs_audit_run *a, double until) {
 void dalcs_audit_leaps_compare(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
     const double near = 4.0 * a->radau->resolution;
-    if (part == NULL || part->segment.t < a->tried_time - near) {
+    if (part == NULL || part->segment.t < a->leaps.tried_time - near) {
         return;
     }
-    const bool is_other = part->segment.t > a->tried_time + near;
-    const double worst = is_other ? 1.0 : distance(part, a->tried);
+    const bool is_other = part->segment.t > a->leaps.tried_time + near;
+    const double worst = is_other ? 1.0 : distance(part, a->leaps.tried);
     dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, worst, part->segment.t);
-    a->tried_time = INFINITY;
-    a->was_tried = true;
+    a->leaps.tried_time = INFINITY;
+    a->leaps.was_tried = true;
 }

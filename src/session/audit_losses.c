@@ -4,7 +4,7 @@
 #include "rounding.h"
 
 #include "audit_reader.h"
-#include "results.h"
+#include "claims.h"
 
 #include <float.h>
 

@@ -5,7 +5,7 @@
  * measurement begins, where its window begins or ends, and where the budget or --audit full says so. */
 #include "audit_measures_asked.h"
 
-#include "results.h"
+#include "claims.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #include "audit_measures_asked.h"
 
 #include "audit_reader.h"
-#include "results.h"
+#include "claims.h"
 
 #include <float.h>
 #include <math.h>

@@ -2,8 +2,8 @@
 #include "audit_measures_asked.h"
 
 #include "audit_reader.h"
+#include "claims.h"
 #include "pi.h"
-#include "results.h"
 
 #include <float.h>
 #include <math.h>

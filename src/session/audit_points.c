@@ -196,8 +196,10 @@ static enum dalcs_status fold(struct dalcs_run *r, const struct dalcs_table_audi
 }
 
 static enum dalcs_status judge(struct dalcs_run *r, struct point *p, bool remembers) {
-    const struct dalcs_file_promise promise = {
-        .tolerance = r->tolerance, .vntol = r->vntol, .abstol = r->abstol, .remembers = remembers};
+    const struct dalcs_file_promise promise = {.tolerance = r->tolerance,
+                                               .vntol = r->radau.vntol,
+                                               .abstol = r->radau.abstol,
+                                               .remembers = remembers};
     struct dalcs_table_audit found;
     DALCS_TRY(dalcs_file_audit(p->circuit, &p->table, &promise, &p->arena, &r->s->diag, &found));
     const struct dalcs_table_law *law = worst_of(p, &found);

@@ -39,7 +39,7 @@ static bool is_coarse(const struct dalcs_audit_run *a) {
 static void check_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
                        const double *time, enum dalcs_side side, int n) {
     const bool is_full = a->run->options->audit == DALCS_AUDIT_FULL;
-    struct audit_rows *rows = &a->rows[side];
+    struct audit_row_budget *rows = &a->rows.side[side];
     const double work = checking_work(a);
     rows->credit -= work;
     /* also in a run of a few rows: at the latest when as many have come as there were */
@@ -54,15 +54,15 @@ static void check_rows(struct dalcs_audit_run *a, const struct dalcs_recorder *r
 }
 
 void dalcs_audit_earn_rows(struct dalcs_audit_run *a) {
-    if (a->rows_work > 0.0) {
-        dalcs_audit_earn(a->audit, a->rows_work);
-        a->rows_work = 0.0;
+    if (a->rows.since > 0.0) {
+        dalcs_audit_earn(a->audit, a->rows.since);
+        a->rows.since = 0.0;
     }
 }
 
 void dalcs_audit_run_rows_now(struct dalcs_audit_run *a, const struct dalcs_recorder *recorder,
                               const double *time, enum dalcs_side side, int n) {
-    struct audit_rows *rows = &a->rows[side];
+    struct audit_row_budget *rows = &a->rows.side[side];
     if (rows->credit >= rows->threshold) {
         if (is_coarse(a)) {
             rows->credit = rows->threshold; /* the next one may be */

@@ -61,10 +61,10 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
     const struct dalcs_audit_options options = {.mode = run->options->audit,
                                                 .share = dalcs_audit_share,
                                                 .resolution = a->radau->resolution,
-                                                .vntol = run->vntol,
+                                                .vntol = run->radau.vntol,
                                                 .is_start = run->s->network.held == NULL,
                                                 .origin = origin_of(run, a->radau),
-                                                .abstol = run->abstol,
+                                                .abstol = run->radau.abstol,
                                                 .device_part =
                                                     run->s->network.readout->device_system,
                                                 .n_parts = n,
@@ -122,22 +122,26 @@ static enum dalcs_status list_stepped(struct dalcs_audit_run *a) {
 
 enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_run *run,
                                         struct dalcs_euler *euler, struct dalcs_radau *radau) {
-    *a = (struct dalcs_audit_run){
-        .run = run, .euler = euler, .radau = radau, .tried_time = INFINITY, .landed = INFINITY};
+    *a = (struct dalcs_audit_run){.run = run,
+                                  .euler = euler,
+                                  .radau = radau,
+                                  .leaps.tried_time = INFINITY,
+                                  .leaps.landed = INFINITY};
     if (run->options->audit == DALCS_AUDIT_OFF || run->s->network.readout == NULL ||
-        run->fixed_step > 0.0 /* whose error nobody controls */) {
+        run->radau.fixed_step > 0.0 /* whose error nobody controls */) {
         return DALCS_OK;
     }
-    a->row_work = row_work * run->s->network.n_outputs;
-    a->row_share = dalcs_audit_share * a->row_work;
+    a->rows.work = row_work * run->s->network.n_outputs;
+    a->rows.share = dalcs_audit_share * a->rows.work;
     enum dalcs_status status = dalcs_audit_members_make(a);
     status = status == DALCS_OK ? list_stepped(a) : status;
     if (status == DALCS_OK && radau->cycling != NULL) {
         const int n_x = radau->cycling->component->system->n_x;
         const int n_elements = n_x * (n_x + 1);
-        a->tried = dalcs_arena_alloc(&a->arena, (size_t)(2 * n_x + 2 * n_elements), sizeof(double));
-        a->passed = dalcs_arena_alloc(&a->arena, (size_t)n_x, sizeof(double));
-        status = a->tried != NULL && a->passed != NULL ? DALCS_OK : DALCS_E_NOMEM;
+        a->leaps.tried =
+            dalcs_arena_alloc(&a->arena, (size_t)(2 * n_x + 2 * n_elements), sizeof(double));
+        a->leaps.passed = dalcs_arena_alloc(&a->arena, (size_t)n_x, sizeof(double));
+        status = a->leaps.tried != NULL && a->leaps.passed != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     if (status == DALCS_OK) {
         status =
@@ -205,7 +209,7 @@ static double work_of(const struct dalcs_audit_run *a, const struct audit_member
     if (segment->why == DALCS_END_AT_EVENT) {
         work += event_work;
     }
-    if (a->has_rows) {
+    if (a->rows.has_any) {
         work += read_work;
     }
     return work;
@@ -285,7 +289,7 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
         }
     }
     dalcs_audit_earn_rows(a);
-    a->has_rows = false;
+    a->rows.has_any = false;
 }
 
 void dalcs_audit_run_cut(struct dalcs_audit_run *a, int part, double t) {
@@ -297,7 +301,7 @@ void dalcs_audit_run_cut(struct dalcs_audit_run *a, int part, double t) {
 }
 
 void dalcs_audit_run_enter_now(struct dalcs_audit_run *a) {
-    if (a->tried_time < INFINITY) {
+    if (a->leaps.tried_time < INFINITY) {
         dalcs_audit_leaps_compare(a);
     }
     a->was_left = false;

@@ -19,14 +19,18 @@ struct dalcs_audit_run {
     struct dalcs_audit *audit;  /* NULL: nothing is audited */
     struct audit_members *part; /* [n_systems] */
     int *stepped, n_stepped;    /* parts with segments */
-    double row_work, row_share; /* of a row, in instructions; of that, what comparisons may cost */
     bool has_algebraic;         /* parts without memory, which are looked at beside rows */
 
     struct audit_rows {
-        double earned, credit, threshold; /* instructions that comparisons may cost */
-    } rows[2];                            /* from each side */
+        double work, share; /* of a row, in instructions; of that, what comparisons may cost */
 
-    double rows_work; /* of rows since the last segment ended, in instructions */
+        struct audit_row_budget {
+            double earned, credit, threshold; /* instructions that comparisons may cost */
+        } side[2];                            /* from each */
+
+        double since; /* instructions of rows since the last segment ended */
+        bool has_any; /* since then */
+    } rows;
 
     struct audit_told {
         size_t n_events, n_jumps; /* of the report, up to the last instant */
@@ -36,17 +40,20 @@ struct dalcs_audit_run {
     } told;
 
     int *pair_of_lambda; /* [n_lambdas] in its system */
-    double *tried;       /* states that a leap would lead to, and work */
-    double leap_time;    /* s, where one began */
-    double tried_time;   /* s, when; INFINITY: none is tried */
-    double *passed;      /* states from which a whole period was stepped last, behind a leap */
-    bool ends_at_pole;   /* of a formula, which tells more than what is broken on the way to it */
-    double landed;       /* s, where a leap ended from which one has to be; INFINITY: none */
-    bool was_left;       /* a segment that was looked at ended at the present time */
-    bool has_rows;       /* since the last segment ended */
-    bool has_passed;     /* a leap was compared, at least once */
-    bool has_tried;      /* at least once */
-    bool was_tried;      /* the next leap needs no trial */
+
+    struct audit_leaps {
+        double began;      /* s */
+        double *tried;     /* states that one would lead to, and work */
+        double tried_time; /* s, when; INFINITY: none is tried */
+        bool has_tried;    /* at least once */
+        bool was_tried;    /* the next one needs no trial */
+        double *passed;    /* states from which a whole period was stepped last, behind one */
+        double landed;     /* s, where one ended from which a period has to be; INFINITY: none */
+        bool has_passed;   /* one was compared, at least once */
+    } leaps;
+
+    bool ends_at_pole; /* of a formula, which tells more than what is broken on the way to it */
+    bool was_left;     /* a segment that was looked at ended at the present time */
     struct dalcs_audit_gates gates;
     struct dalcs_audit_delays delays;
     uint64_t seed; /* of what is drawn besides by the auditor itself */
@@ -71,7 +78,7 @@ void dalcs_audit_run_enter_now(struct dalcs_audit_run *a);
 
 /* Where a segment was looked at there is something to do. */
 static inline void dalcs_audit_run_enter(struct dalcs_audit_run *a) {
-    if (a->was_left || (a->audit != NULL && a->tried_time < INFINITY)) {
+    if (a->was_left || (a->audit != NULL && a->leaps.tried_time < INFINITY)) {
         dalcs_audit_run_enter_now(a);
     }
 }
@@ -111,11 +118,11 @@ static inline void dalcs_audit_run_rows(struct dalcs_audit_run *a,
     if (a->audit == NULL) {
         return;
     }
-    struct audit_rows *rows = &a->rows[side];
-    a->has_rows = true;
-    a->rows_work += a->row_work * n;
-    rows->earned += a->row_share * n;
-    rows->credit += a->row_share * n;
+    struct audit_row_budget *rows = &a->rows.side[side];
+    a->rows.has_any = true;
+    a->rows.since += a->rows.work * n;
+    rows->earned += a->rows.share * n;
+    rows->credit += a->rows.share * n;
     if (rows->credit >= rows->threshold || a->has_algebraic) {
         dalcs_audit_run_rows_now(a, recorder, time, side, n);
     }

@@ -5,8 +5,8 @@
 #include "audit_measures.h"
 
 #include "audit_reader.h"
+#include "claims.h"
 #include "pi.h"
-#include "results.h"
 #include "rounding.h"
 
 struct told {
@@ -92,7 +92,7 @@ static double told_of(const struct dalcs_run *r, const char *name) {
     double value = NAN;
     int n = 0;
     for (size_t k = 0; k < r->s->report.n_measurements; k++) {
-        const struct dalcs_measurement *m = &r->measurement[k];
+        const struct dalcs_measurement *m = &r->measures.reported[k];
         if (strcmp(m->name, name) == 0) {
             value = m->found ? m->value : (double)NAN;
             n++;

@@ -120,7 +120,7 @@ static enum dalcs_status allocate(struct dalcs_cosimulation *c) {
     c->inputs.n = (int)n;
     c->exchange = (struct dalcs_exchange){.n_signals = n_signals,
                                           .n_inputs = n,
-                                          .name = r->name,
+                                          .name = r->signals.name,
                                           .input = c->input,
                                           .given = c->given};
     return DALCS_OK;

@@ -69,8 +69,8 @@ static enum dalcs_status begin_plot(const struct sweep *s) {
             return DALCS_E_NOMEM;
         }
     }
-    memcpy(name + n_outer, s->run->name, s->n_shown * sizeof *name);
-    memcpy(unit + n_outer, s->run->unit, s->n_shown * sizeof *unit);
+    memcpy(name + n_outer, s->run->signals.name, s->n_shown * sizeof *name);
+    memcpy(unit + n_outer, s->run->signals.unit, s->n_shown * sizeof *unit);
     return dalcs_run_announce(s->run,
                               &(struct dalcs_plot){.analysis = DALCS_DC_SWEEP,
                                                    .scale = scale,
@@ -216,7 +216,7 @@ static enum dalcs_status run_sources(struct sweep *s) {
     struct dalcs_stimulus before[DALCS_MOST_DC];
     struct dalcs_euler e;
     DALCS_TRY(dalcs_euler_setup(&e, circuit, &r->s->network, &r->osnsp, 1.0, 1.0));
-    e.listener.open_user = &r->undetermined;
+    e.listener.open_user = &r->nonunique.undetermined;
     e.listener.on_open = dalcs_undetermined_at;
     for (int i = 0; i < s->n_dc; i++) {
         const struct dalcs_stimulus *source = stimulus_of(circuit, &s->dc[i]);

@@ -20,7 +20,7 @@ enum dalcs_status dalcs_delayed_check(const struct dalcs_run *r, enum dalcs_anal
     const bool is_response = (analysis == DALCS_AC && c->ac.n > 0) || asks_orbit(r);
     const bool is_sweep = analysis == DALCS_DC_SWEEP && c->n_dc > 0;
     const bool is_fixed = analysis == DALCS_TRANSIENT && c->transient.present &&
-                          (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0);
+                          (r->method == DALCS_METHOD_EULER || r->radau.fixed_step > 0.0);
     if (c->n_delayed == 0 || !(is_response || is_sweep || is_fixed)) {
         return DALCS_OK;
     }

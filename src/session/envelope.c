@@ -93,7 +93,7 @@ static enum dalcs_status refuse(struct dalcs_run *r, const char *hint, const cha
 static enum dalcs_status check(struct dalcs_run *r) {
     const struct dalcs_circuit *c = &r->s->circuit;
     const bool is_fixed = r->method != DALCS_METHOD_AUTO && r->options->step > 0.0;
-    if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0 || is_fixed) {
+    if (r->method == DALCS_METHOD_EULER || r->radau.fixed_step > 0.0 || is_fixed) {
         return refuse(r, "leave the method, or the step, to the program",
                       ".env needs steps whose error is controlled");
     }

@@ -113,17 +113,26 @@ static enum dalcs_status find_certainty(struct dalcs_component *c, bool is_from,
     return DALCS_OK;
 }
 
+static void report_infeasible(struct dalcs_session *s, const struct dalcs_refusal *x) {
+    static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
+                                       [DALCS_WITNESS_CUTSET] = "cutset",
+                                       [DALCS_WITNESS_MODE] = "mode",
+                                       [DALCS_WITNESS_EQUATIONS] = "equations",
+                                       [DALCS_WITNESS_DERIVATIVE] = "derivative"};
+    s->report.infeasible.present = true;
+    s->report.infeasible.time = x->time;
+    s->report.infeasible.kind = kind[x->kind];
+    s->report.infeasible.n_elements = x->n_elements;
+    s->report.infeasible.element = x->element;
+    s->report.infeasible.because = x->because;
+}
+
 /* DALCS_NOT_CONVERGED where it is not certain. */
 static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
                                             bool is_from, const char *when, const char *hint) {
     struct dalcs_session *s = r->s;
     struct dalcs_component *c = &e->component[e->failure.system];
     const struct dalcs_witness *w = &c->osnsp.witness;
-    static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
-                                       [DALCS_WITNESS_CUTSET] = "cutset",
-                                       [DALCS_WITNESS_MODE] = "mode",
-                                       [DALCS_WITNESS_EQUATIONS] = "equations",
-                                       [DALCS_WITNESS_DERIVATIVE] = "derivative"};
     size_t n_devices = (size_t)s->circuit.n_devices;
     size_t n_stimuli = (size_t)s->circuit.n_stimuli;
     struct dalcs_refusal x = {
@@ -163,12 +172,7 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
     if (!x.is_certain) {
         return DALCS_NOT_CONVERGED;
     }
-    s->report.infeasible.present = true;
-    s->report.infeasible.time = e->failure.time;
-    s->report.infeasible.kind = kind[x.kind];
-    s->report.infeasible.n_elements = x.n_elements;
-    s->report.infeasible.element = x.element;
-    s->report.infeasible.because = x.because;
+    report_infeasible(s, &x);
     return DALCS_INFEASIBLE;
 }
 

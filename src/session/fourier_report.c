@@ -57,6 +57,19 @@ static void warn_of_frequency(struct dalcs_run *r, const struct dalcs_measuring 
     }
 }
 
+/* Magnitudes and phases (degrees) of [n] harmonics; the result is the THD. */
+static double list_lines(const struct dalcs_harmonics *h, size_t n, double *magnitude,
+                         double *phase) {
+    double square = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        double factor = i == 0 ? 1.0 : 2.0;
+        magnitude[i] = i == 0 ? h->cosine[0] : factor * hypot(h->cosine[i], h->sine[i]);
+        phase[i] = i == 0 ? 0.0 : 57.295779513082320877 * atan2(h->cosine[i], h->sine[i]);
+        square += i >= 2 ? magnitude[i] * magnitude[i] : 0.0;
+    }
+    return sqrt(square) / magnitude[1];
+}
+
 enum dalcs_status dalcs_measures_tell_harmonics(struct dalcs_measures *measures,
                                                 struct dalcs_run *r) {
     const struct dalcs_measuring *m = &measures->measuring;
@@ -85,27 +98,20 @@ enum dalcs_status dalcs_measures_tell_harmonics(struct dalcs_measures *measures,
             continue;
         }
         warn_of_frequency(r, m, h);
-        double square = 0.0;
-        for (size_t i = 0; i < n_lines; i++) {
-            double factor = i == 0 ? 1.0 : 2.0;
-            magnitude[i] = i == 0 ? h->cosine[0] : factor * hypot(h->cosine[i], h->sine[i]);
-            phase[i] = i == 0 ? 0.0 : 57.295779513082320877 * atan2(h->cosine[i], h->sine[i]);
-            square += i >= 2 ? magnitude[i] * magnitude[i] : 0.0;
-        }
+        const double thd = list_lines(h, n_lines, magnitude, phase);
         const char *text = h->card->formula.text;
         const char *signal = dalcs_arena_copy(&r->s->arena, text, strlen(text));
         if (signal == NULL) {
             return DALCS_E_NOMEM;
         }
-        fourier[r->s->report.n_fourier++] =
-            (struct dalcs_fourier){.signal = signal,
-                                   .frequency = h->frequency,
-                                   .from = h->from,
-                                   .to = h->to,
-                                   .thd = sqrt(square) / magnitude[1],
-                                   .n_harmonics = n_lines,
-                                   .magnitude = magnitude,
-                                   .phase = phase};
+        fourier[r->s->report.n_fourier++] = (struct dalcs_fourier){.signal = signal,
+                                                                   .frequency = h->frequency,
+                                                                   .from = h->from,
+                                                                   .to = h->to,
+                                                                   .thd = thd,
+                                                                   .n_harmonics = n_lines,
+                                                                   .magnitude = magnitude,
+                                                                   .phase = phase};
         dalcs_audit_fourier_told(&measures->audit, m, (int)k, &fourier[r->s->report.n_fourier - 1]);
     }
     return fourier == NULL ? DALCS_E_NOMEM : DALCS_OK;

@@ -246,8 +246,8 @@ enum dalcs_status dalcs_note_jump(void *user, const struct dalcs_euler_jump *j) 
     if (farthest >= 0 && has_quiet_switch(r, s, j->mode)) {
         DALCS_TRY(r->s->circuit.n_devices > 0 ? find_cuts(r, j) : judge_by_flux(r, j, farthest));
     }
-    if (r->losses != NULL) {
-        DALCS_TRY(dalcs_losses_run_jump(r->losses, j));
+    if (r->transient.losses != NULL) {
+        DALCS_TRY(dalcs_losses_run_jump(r->transient.losses, j));
     }
     return dalcs_event_log_jump(&r->s->recorder.log, j);
 }

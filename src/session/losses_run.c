@@ -39,7 +39,7 @@ enum dalcs_status dalcs_losses_run_start(struct dalcs_losses_run *losses, struct
         return DALCS_OK;
     }
     losses->wanted = true;
-    r->losses = losses;
+    r->transient.losses = losses;
     losses->engine = e;
     losses->is_euler = is_euler;
     DALCS_TRY(dalcs_losses_sum_setup(&losses->sum, c, c->transient.stop, near));

@@ -100,36 +100,45 @@ static void tell_point(struct result *r) {
     }
 }
 
-/* Sums and extremes. */
-static void tell_statistic(struct result *r) {
+/* Is there a time to measure over? */
+static bool check_window(struct result *r) {
     const struct dalcs_measured *item = r->item;
     const struct dalcs_instant *trig = &item->instant[0];
     const struct dalcs_instant *targ = &item->instant[1];
     char a[DALCS_QUANTITY_SIZE];
     char b[DALCS_QUANTITY_SIZE];
-    double length = item->end - item->begin;
-    if (item->has_value) { /* of one point */
-        tell_point(r);
-        return;
-    }
     if (trig->card->kind != DALCS_INSTANT_NONE) {
         if (!check_instant(r, trig) || !check_instant(r, targ)) {
-            return;
+            return false;
         }
         if (!(targ->time > trig->time)) {
             fail(r, "TARG at %s does not come after TRIG at %s", moment(r, a, targ->time),
                  moment(r, b, trig->time));
-            return;
+            return false;
         }
     }
     if (!(item->from < item->to)) {
         fail(r, "FROM=%s does not come before TO=%s", moment(r, a, item->from),
              moment(r, b, item->to));
-        return;
+        return false;
     }
-    if (!(length > 0.0)) {
+    if (!(item->end - item->begin > 0.0)) {
         fail(r, "there is nothing to measure: the run goes from %s to %s",
              moment(r, a, r->measuring->start), moment(r, b, r->measuring->stop));
+        return false;
+    }
+    return true;
+}
+
+/* Sums and extremes. */
+static void tell_statistic(struct result *r) {
+    const struct dalcs_measured *item = r->item;
+    const double length = item->end - item->begin;
+    if (item->has_value) { /* of one point */
+        tell_point(r);
+        return;
+    }
+    if (!check_window(r)) {
         return;
     }
     switch (item->card->kind) {
@@ -214,15 +223,15 @@ static void tell(struct result *r, const double *results) {
 static enum dalcs_status make_room(struct dalcs_run *r) {
     struct dalcs_report *report = &r->s->report;
     size_t n = (size_t)r->s->circuit.n_measures;
-    if (r->measurement == NULL) {
-        r->measurement = dalcs_arena_alloc(&r->s->arena, n, sizeof(*r->measurement));
-        r->result = dalcs_arena_alloc(&r->s->arena, n, sizeof(*r->result));
-        report->measurement = r->measurement;
-        for (size_t k = 0; r->result != NULL && k < n; k++) {
-            r->result[k] = NAN; /* until its analysis has run */
+    if (r->measures.reported == NULL) {
+        r->measures.reported = dalcs_arena_alloc(&r->s->arena, n, sizeof(*r->measures.reported));
+        r->measures.result = dalcs_arena_alloc(&r->s->arena, n, sizeof(*r->measures.result));
+        report->measurement = r->measures.reported;
+        for (size_t k = 0; r->measures.result != NULL && k < n; k++) {
+            r->measures.result[k] = NAN; /* until its analysis has run */
         }
     }
-    return r->measurement == NULL || r->result == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    return r->measures.reported == NULL || r->measures.result == NULL ? DALCS_E_NOMEM : DALCS_OK;
 }
 
 enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct dalcs_run *r,
@@ -236,7 +245,7 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
     DALCS_TRY(dalcs_measuring_close(m));
     for (int k = 0; k < m->n; k++) {
         const struct dalcs_measure_card *card = &c->measure[k];
-        struct dalcs_measurement *measurement = &r->measurement[r->s->report.n_measurements];
+        struct dalcs_measurement *measurement = &r->measures.reported[r->s->report.n_measurements];
         struct result result = {
             .s = r->s, .measuring = m, .item = &m->item[k], .measurement = measurement};
         if (card->analysis != m->analysis) {
@@ -248,21 +257,22 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
             return DALCS_E_NOMEM;
         }
         *measurement = (struct dalcs_measurement){.name = name};
-        const struct dalcs_measure_card *source = dalcs_measures_failed_source(c, card, r->result);
+        const struct dalcs_measure_card *source =
+            dalcs_measures_failed_source(c, card, r->measures.result);
         if (status != DALCS_OK) {
             fail(&result, "the run did not come to its end");
         } else if (source != NULL) {
             fail(&result, "it needs '%s', which could not be measured", source->name);
-        } else if (card->is_late && !dalcs_measuring_late(m, k, r->result)) {
+        } else if (card->is_late && !dalcs_measuring_late(m, k, r->measures.result)) {
             fail(&result, "a time that earlier measurements give has no value");
         } else {
-            tell(&result, r->result);
+            tell(&result, r->measures.result);
             dalcs_audit_measures_told(&measures->audit, m, k, measurement);
         }
         if (result.out_of_memory) {
             return DALCS_E_NOMEM;
         }
-        r->result[k] = measurement->found ? measurement->value : (double)NAN;
+        r->measures.result[k] = measurement->found ? measurement->value : (double)NAN;
         r->s->report.n_measurements++;
         if (!measurement->found && status == DALCS_OK) {
             dalcs_diag_add(&r->s->diag, DALCS_WARNING, &card->where, NULL, "%s: %s", card->name,

@@ -92,10 +92,10 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
                                     c->transient.stop));
     measures->wanted = true;
     measures->begin = dalcs_measuring_begin(&measures->measuring);
-    measures->losses = r->losses;
-    if (r->losses != NULL) {
-        r->losses->audit.run = radau != NULL && audit->audit != NULL ? audit : NULL;
-        measures->begin = fmin(measures->begin, dalcs_losses_run_begin(r->losses));
+    measures->losses = r->transient.losses;
+    if (r->transient.losses != NULL) {
+        r->transient.losses->audit.run = radau != NULL && audit->audit != NULL ? audit : NULL;
+        measures->begin = fmin(measures->begin, dalcs_losses_run_begin(r->transient.losses));
     }
     DALCS_TRY(allocate(measures, c, &r->s->network));
     const struct dalcs_recorder *recorder = &r->s->recorder;

@@ -19,7 +19,7 @@ static const char *unit_of(const struct dalcs_run *r, int output) {
 static const char *say_interval(struct dalcs_run *r, const struct dalcs_open_signal *s,
                                 bool anything) {
     struct dalcs_arena *arena = &r->s->arena;
-    const char *name = r->name[s->output];
+    const char *name = r->signals.name[s->output];
     const char *unit = unit_of(r, s->output);
     if (isinf(s->lower) && isinf(s->upper)) {
         return dalcs_arena_printf(arena, "%s may be anything, and %.6g %s is taken", name, s->value,
@@ -53,7 +53,7 @@ static const char *list_signals(struct dalcs_run *r, const struct dalcs_finding 
                                   k == 0    ? ""
                                   : is_last ? " and "
                                             : ", ",
-                                  r->name[f->signal[k].output]);
+                                  r->signals.name[f->signal[k].output]);
     }
     int more = f->n_signals - MOST_NAMED;
     return more <= 0 || list == NULL
@@ -103,12 +103,12 @@ static enum dalcs_status keep(struct dalcs_run *r, const struct dalcs_finding *f
     for (int k = 0; k < f->n_signals && f->has_intervals; k++) {
         const struct dalcs_open_signal *signal = &f->signal[k];
         struct dalcs_nonunique *entry;
-        DALCS_TRY(entry_of(s, r->name[signal->output], &entry));
+        DALCS_TRY(entry_of(s, r->signals.name[signal->output], &entry));
         if (entry == NULL) {
-            r->n_unreported++;
+            r->nonunique.n_unreported++;
             continue;
         }
-        *entry = (struct dalcs_nonunique){.signal = r->name[signal->output],
+        *entry = (struct dalcs_nonunique){.signal = r->signals.name[signal->output],
                                           .time = f->time,
                                           .lower = signal->lower,
                                           .upper = signal->upper,
@@ -124,11 +124,11 @@ enum dalcs_status dalcs_nonunique_found(void *run, const struct dalcs_finding *f
     if (because == NULL) {
         return DALCS_E_NOMEM;
     }
-    if (r->n_told[finding->kind] < MOST_MESSAGES[finding->kind]) {
-        r->n_told[finding->kind]++;
+    if (r->nonunique.n_told[finding->kind] < MOST_MESSAGES[finding->kind]) {
+        r->nonunique.n_told[finding->kind]++;
         DALCS_TRY(say(r, finding));
     } else {
-        r->n_untold[finding->kind] += finding->n_signals;
+        r->nonunique.n_untold[finding->kind] += finding->n_signals;
     }
     return keep(r, finding, because);
 }
@@ -139,11 +139,13 @@ void dalcs_nonunique_count_rest(struct dalcs_run *r) {
         [DALCS_OPEN_VOLTAGES] = ", voltages between elements that block",
         [DALCS_SHUNTED_SWITCHES] = ", currents that a switch shares with a diode across it"};
     for (int kind = 0; kind < DALCS_FINDING_KINDS; kind++) {
-        if (r->n_untold[kind] > 0) {
+        if (r->nonunique.n_untold[kind] > 0) {
             dalcs_diag_add(&r->s->diag, kind == DALCS_OPEN_CURRENTS ? DALCS_WARNING : DALCS_NOTE,
                            NULL, NULL, "%ld more signal%s not determined%s; the report lists %s%d",
-                           r->n_untold[kind], r->n_untold[kind] == 1 ? " is" : "s are", like[kind],
-                           r->n_unreported > 0 ? "the first " : "", (int)r->s->n_nonunique);
+                           r->nonunique.n_untold[kind],
+                           r->nonunique.n_untold[kind] == 1 ? " is" : "s are", like[kind],
+                           r->nonunique.n_unreported > 0 ? "the first " : "",
+                           (int)r->s->n_nonunique);
         }
     }
 }

@@ -23,7 +23,7 @@ static enum dalcs_status solve(struct dalcs_run *r, const struct dalcs_network *
     struct dalcs_session *s = r->s;
     struct dalcs_euler e;
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, network, &r->osnsp, 1.0, 1.0));
-    e.listener.open_user = &r->undetermined;
+    e.listener.open_user = &r->nonunique.undetermined;
     e.listener.on_open = dalcs_undetermined_at;
     struct dalcs_logic_run logic;
     enum dalcs_status status = dalcs_logic_run_setup(&logic, &s->circuit, &e, NULL);
@@ -36,7 +36,7 @@ static enum dalcs_status solve(struct dalcs_run *r, const struct dalcs_network *
     }
     if (status == DALCS_OK) {
         e.failure.at_operating_point = true;
-        status = dalcs_undetermined_several(&r->undetermined, &e, 0.0);
+        status = dalcs_undetermined_several(&r->nonunique.undetermined, &e, 0.0);
         e.failure.at_operating_point = false;
     }
     double *row = dalcs_alloc((size_t)network->n_outputs, sizeof(*row));

@@ -89,12 +89,12 @@ static enum dalcs_status choose_accuracy(struct dalcs_run *r) {
     if (o->stages != 0 && !DALCS_HAS_STAGES(o->stages)) {
         return option_error(r->s, "the number of stages must be 1, 3, 5, 7 or 9");
     }
-    r->family = r->method == DALCS_METHOD_LOBATTO ? DALCS_LOBATTO_IIIC : DALCS_RADAU_IIA;
+    r->radau.family = r->method == DALCS_METHOD_LOBATTO ? DALCS_LOBATTO_IIIC : DALCS_RADAU_IIA;
     r->tolerance = dalcs_run_tolerance(o, &r->s->circuit);
-    r->abstol = netlist->abstol;
-    r->vntol = netlist->vntol;
-    r->stages = o->stages > 0 ? o->stages : netlist->stages;
-    if (r->stages > 0 && dalcs_collocation_of(r->family, r->stages) == NULL) {
+    r->radau.abstol = netlist->abstol;
+    r->radau.vntol = netlist->vntol;
+    r->radau.stages = o->stages > 0 ? o->stages : netlist->stages;
+    if (r->radau.stages > 0 && dalcs_collocation_of(r->radau.family, r->radau.stages) == NULL) {
         return option_error(r->s, "the number of stages of lobatto must be 3, 5, 7 or 9");
     }
     if (r->method == DALCS_METHOD_EULER) {
@@ -127,11 +127,11 @@ static enum dalcs_status choose_compression(struct dalcs_run *r) {
         return option_error(
             r->s, "compress leaves rows out, output times print each of theirs: choose one");
     }
-    r->compress = o->compress > 0.0 ? o->compress : netlist->compress;
-    if (r->compress > 0.0 && o->at != NULL) {
+    r->rows.compress = o->compress > 0.0 ? o->compress : netlist->compress;
+    if (r->rows.compress > 0.0 && o->at != NULL) {
         dalcs_diag_add(&r->s->diag, DALCS_NOTE, &netlist->compress_where, NULL,
                        "compress has no effect: each output time gets its row");
-        r->compress = 0.0;
+        r->rows.compress = 0.0;
     }
     return DALCS_OK;
 }
@@ -149,8 +149,8 @@ static enum dalcs_status choose_filling(struct dalcs_run *r) {
     if (o->curve != NULL && strcmp(o->curve, "cubics") != 0 && strcmp(o->curve, "lines") != 0) {
         return option_error(r->s, "curve is cubics or lines");
     }
-    r->lines = o->curve != NULL ? o->curve[0] == 'l' : netlist->lines;
-    r->fill = o->fill > 0.0 ? o->fill : netlist->fill;
+    r->rows.lines = o->curve != NULL ? o->curve[0] == 'l' : netlist->lines;
+    r->rows.fill = o->fill > 0.0 ? o->fill : netlist->fill;
     if (is_fixed && o->fill > 0.0 && !is_none) {
         return option_error(r->s, o->at != NULL
                                       ? "fill adds rows, output times print only theirs: choose one"
@@ -161,10 +161,10 @@ static enum dalcs_status choose_filling(struct dalcs_run *r) {
                        o->at != NULL ? "fill has no effect: only the output times are printed"
                                      : "fill has no effect with euler, whose rows are its steps");
     }
-    if (is_fixed || (!is_given && r->fixed_step > 0.0)) {
-        r->fill = INFINITY;
+    if (is_fixed || (!is_given && r->radau.fixed_step > 0.0)) {
+        r->rows.fill = INFINITY;
     } else if (!is_given) {
-        r->fill = fmax(r->tolerance, LEAST_FILL);
+        r->rows.fill = fmax(r->tolerance, LEAST_FILL);
     }
     return DALCS_OK;
 }
@@ -214,11 +214,12 @@ static enum dalcs_status choose_step(struct dalcs_run *r) {
     } else { /* without states, steps end at the printed times only */
         r->h = t->step > 0.0 ? t->step : t->stop / 1000.0;
     }
-    r->fixed_step = r->method != DALCS_METHOD_AUTO && r->method != DALCS_METHOD_EULER ? asked : 0.0;
-    r->max_step = asked > 0.0 ? asked : t->max_step;
+    r->radau.fixed_step =
+        r->method != DALCS_METHOD_AUTO && r->method != DALCS_METHOD_EULER ? asked : 0.0;
+    r->radau.max_step = asked > 0.0 ? asked : t->max_step;
     double least = r->h;
-    if (r->method != DALCS_METHOD_EULER && r->max_step > 0.0) {
-        least = fmin(least, r->max_step);
+    if (r->method != DALCS_METHOD_EULER && r->radau.max_step > 0.0) {
+        least = fmin(least, r->radau.max_step);
     }
     if (t->stop / least > MOST_STEPS) {
         return option_error(s,

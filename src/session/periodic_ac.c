@@ -99,8 +99,8 @@ static enum dalcs_status announce(struct dalcs_periodic_ac *a) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n_shown; k++) {
-        a->name[k] = r->name[k];
-        a->unit[k] = r->unit[k];
+        a->name[k] = r->signals.name[k];
+        a->unit[k] = r->signals.unit[k];
     }
     a->unit[n_shown] = DALCS_UNIT_NONE;
     if (a->loop.device >= 0) {

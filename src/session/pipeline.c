@@ -67,11 +67,12 @@ void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e) {
 
 enum dalcs_status dalcs_transient_run_thinned(struct dalcs_run *r) {
     struct dalcs_thinning thinning;
-    if (!(r->compress > 0.0)) {
+    if (!(r->rows.compress > 0.0)) {
         return dalcs_transient_run(r);
     }
     const struct dalcs_sink *sink = r->sink;
-    DALCS_TRY(dalcs_thinning_setup(&thinning, sink, (size_t)r->s->circuit.n_shown, r->compress));
+    DALCS_TRY(
+        dalcs_thinning_setup(&thinning, sink, (size_t)r->s->circuit.n_shown, r->rows.compress));
     r->sink = &thinning.sink;
     enum dalcs_status status = dalcs_transient_run(r);
     enum dalcs_status flushed = dalcs_thinning_flush(&thinning); /* of a run that stopped early */
@@ -200,7 +201,8 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
     double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     double wall = seconds(CLOCK_MONOTONIC);
     DALCS_TRY(prepare_report(&r));
-    dalcs_undetermined_init(&r.undetermined, &session->circuit, &r, dalcs_nonunique_found);
+    dalcs_undetermined_init(&r.nonunique.undetermined, &session->circuit, &r,
+                            dalcs_nonunique_found);
     enum dalcs_status status = dalcs_run_choose(&r);
     if (status == DALCS_OK) {
         status = dalcs_run_name_signals(&r, session->has_netlist);
@@ -214,7 +216,7 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
     }
     dalcs_steady_forget(&r);
     dalcs_names_finish(&r.interrupting);
-    dalcs_undetermined_finish(&r.undetermined);
+    dalcs_undetermined_finish(&r.nonunique.undetermined);
     dalcs_nonunique_count_rest(&r);
     struct dalcs_report *report = &session->report;
     report->n_nonunique = session->n_nonunique;

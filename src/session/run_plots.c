@@ -7,20 +7,20 @@
 enum dalcs_status dalcs_run_name_signals(struct dalcs_run *r, bool copies) {
     const struct dalcs_network *n = &r->s->network;
     const size_t n_outputs = (size_t)n->n_outputs;
-    r->name = dalcs_arena_alloc(&r->s->arena, n_outputs, sizeof(*r->name));
-    r->unit = dalcs_arena_alloc(&r->s->arena, n_outputs, sizeof(*r->unit));
-    if (r->name == NULL || r->unit == NULL) {
+    r->signals.name = dalcs_arena_alloc(&r->s->arena, n_outputs, sizeof(*r->signals.name));
+    r->signals.unit = dalcs_arena_alloc(&r->s->arena, n_outputs, sizeof(*r->signals.unit));
+    if (r->signals.name == NULL || r->signals.unit == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < n_outputs; i++) {
         const char *name = n->output[i].name;
-        r->name[i] = copies ? dalcs_arena_copy(&r->s->arena, name, strlen(name)) : name;
-        if (r->name[i] == NULL) {
+        r->signals.name[i] = copies ? dalcs_arena_copy(&r->s->arena, name, strlen(name)) : name;
+        if (r->signals.name[i] == NULL) {
             return DALCS_E_NOMEM;
         }
-        r->unit[i] = n->is_without_units       ? DALCS_UNIT_NONE
-                     : n->output[i].is_current ? DALCS_AMPERE
-                                               : DALCS_VOLT;
+        r->signals.unit[i] = n->is_without_units       ? DALCS_UNIT_NONE
+                             : n->output[i].is_current ? DALCS_AMPERE
+                                                       : DALCS_VOLT;
     }
     return DALCS_OK;
 }
@@ -30,8 +30,8 @@ enum dalcs_status dalcs_run_begin_plot(struct dalcs_run *r, enum dalcs_analysis 
                                                       .scale = "time",
                                                       .scale_unit = DALCS_UNIT_SECOND,
                                                       .n_signals = (size_t)r->s->circuit.n_shown,
-                                                      .name = r->name,
-                                                      .unit = r->unit});
+                                                      .name = r->signals.name,
+                                                      .unit = r->signals.unit});
 }
 
 enum dalcs_status dalcs_run_announce(struct dalcs_run *r, const struct dalcs_plot *about) {

@@ -128,39 +128,57 @@ struct dalcs_run {
     const struct dalcs_run_options *options;
     const struct dalcs_sink *sink;
 
-    /* From here to max_step: chosen by dalcs_run_choose. */
+    /* From here to rows: chosen by dalcs_run_choose. */
     struct dalcs_osnsp_options osnsp;
     enum dalcs_method method;
-    double tolerance;     /* of radau and auto */
-    double abstol, vntol; /* A, V; allowed on top of it */
-    enum dalcs_family family;
-    int stages;        /* of it; 0: not asked for */
-    double compress;   /* 0: keep all rows */
-    double fill;       /* INFINITY: add no rows */
-    bool lines;        /* of filled rows */
-    double h;          /* s; the step of euler */
-    double fixed_step; /* s; of radau without error control; 0: with it */
-    double max_step;   /* s; of radau with error control; 0: no bound */
+    double tolerance; /* of radau and auto */
+    double h;         /* s; the step of euler */
+
+    struct dalcs_run_radau {
+        double abstol, vntol; /* A, V; allowed on top of the tolerance */
+        enum dalcs_family family;
+        int stages;        /* of it; 0: not asked for */
+        double fixed_step; /* s; without error control; 0: with it */
+        double max_step;   /* s; with error control; 0: no bound */
+    } radau;
+
+    struct dalcs_run_rows {
+        double compress; /* 0: keep all */
+        double fill;     /* INFINITY: add none */
+        bool lines;      /* of filled rows */
+    } rows;
 
     const struct dalcs_orbit_point *orbit; /* where .tran starts; NULL: as the netlist says */
     struct dalcs_orbit_point *orbit_end;   /* receives the end of such a run; may be NULL */
     bool leaves_orbit;                     /* that is a .tran of its own; else a period of .pss */
     struct dalcs_steady_known *known; /* what .pss has found, for .ac behind it; NULL: nothing */
 
-    struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */
-    double *result;                        /* [n_measures] NAN: could not be measured */
+    struct dalcs_run_measures {             /* [n_measures] each */
+        struct dalcs_measurement *reported; /* of the report; NULL: none yet */
+        double *result;                     /* NAN: could not be measured */
+    } measures;
+
     struct dalcs_audited_points points;
     const struct dalcs_plot *step; /* its step and parameters; NULL without .step */
-    const char *
-        *name; /* [n_outputs] of the network: rows have the first n_shown, messages may name any */
-    enum dalcs_unit *unit;
-    struct dalcs_names interrupting;         /* switches that a warning has named */
-    struct dalcs_losses_run *losses;         /* of the transient that runs; NULL: none */
-    struct dalcs_cosimulation *cosimulation; /* of it, likewise */
-    struct dalcs_undetermined undetermined;
-    int n_told[DALCS_FINDING_KINDS];    /* messages of what is not determined */
-    long n_untold[DALCS_FINDING_KINDS]; /* signals of which there is no message */
-    long n_unreported;                  /* and no entry in the report */
+
+    struct dalcs_run_signals { /* [n_outputs] each, of the network: */
+        const char **name;     /* rows have the first n_shown, messages may name any */
+        enum dalcs_unit *unit;
+    } signals;
+
+    struct dalcs_names interrupting; /* switches that a warning has named */
+
+    struct dalcs_run_transient {                 /* of the one that runs */
+        struct dalcs_losses_run *losses;         /* NULL: none */
+        struct dalcs_cosimulation *cosimulation; /* likewise */
+    } transient;
+
+    struct dalcs_run_nonunique { /* what is not determined */
+        struct dalcs_undetermined undetermined;
+        int n_told[DALCS_FINDING_KINDS];    /* messages of it */
+        long n_untold[DALCS_FINDING_KINDS]; /* signals of which there is no message */
+        long n_unreported;                  /* and no entry in the report */
+    } nonunique;
 };
 
 /* Does the run keep a ledger of energies? A system file has no devices to keep it of. */

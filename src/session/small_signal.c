@@ -363,7 +363,7 @@ static enum dalcs_status report_sides(struct dalcs_run *r, struct dalcs_euler *e
 
 static enum dalcs_status find_operating_point(struct dalcs_run *r, struct dalcs_euler *e,
                                               struct dalcs_logic_run *logic) {
-    e->listener.open_user = &r->undetermined;
+    e->listener.open_user = &r->nonunique.undetermined;
     e->listener.on_open = dalcs_undetermined_at;
     enum dalcs_status status = dalcs_logic_run_setup(logic, &r->s->circuit, e, NULL);
     if (status == DALCS_OK) {
@@ -372,7 +372,7 @@ static enum dalcs_status find_operating_point(struct dalcs_run *r, struct dalcs_
     }
     if (status == DALCS_OK) {
         e->failure.at_operating_point = true;
-        status = dalcs_undetermined_several(&r->undetermined, e, 0.0);
+        status = dalcs_undetermined_several(&r->nonunique.undetermined, e, 0.0);
         e->failure.at_operating_point = false;
     }
     status = dalcs_explain_failure(r, e, status);
@@ -388,8 +388,8 @@ static enum dalcs_status walk(struct small_signal *a) {
                                                          .scale = "frequency",
                                                          .scale_unit = DALCS_UNIT_HERTZ,
                                                          .n_signals = (size_t)r->s->circuit.n_shown,
-                                                         .name = r->name,
-                                                         .unit = r->unit,
+                                                         .name = r->signals.name,
+                                                         .unit = r->signals.unit,
                                                          .is_complex = true}));
     DALCS_TRY(dalcs_measures_start_rows(&a->measures, r, DALCS_MEASURED_AC, dalcs_sweep_value(f, 0),
                                         dalcs_sweep_value(f, f->n - 1)));

@@ -235,8 +235,8 @@ enum dalcs_status dalcs_steady_report_signals(struct dalcs_steady *st) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {
-        signal[k] =
-            (struct dalcs_steady_signal){st->run->name[k], st->found.average[k], st->found.rms[k]};
+        signal[k] = (struct dalcs_steady_signal){st->run->signals.name[k], st->found.average[k],
+                                                 st->found.rms[k]};
     }
     s->report.steady.signal = signal;
     s->report.steady.state = st->found.state;

@@ -75,7 +75,7 @@ static void take_period(struct dalcs_run *r, double period, bool uic) {
                                             .use_initial_conditions = uic,
                                             .where = c->transient.where};
     r->h = period / rows_in_a_period;
-    r->max_step = r->options->step;
+    r->radau.max_step = r->options->step;
 }
 
 /* ---- All of it ----------------------------------------------------------------------------------- */
@@ -134,7 +134,7 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     const struct dalcs_circuit *c = &r->s->circuit;
     double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
     bool is_fixed = r->method != DALCS_METHOD_AUTO && r->options->step > 0.0;
-    if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0 || is_fixed) {
+    if (r->method == DALCS_METHOD_EULER || r->radau.fixed_step > 0.0 || is_fixed) {
         return dalcs_steady_refuse(r, "leave the method, or the step, to the program",
                                    "a steady state needs steps whose error is controlled");
     }

@@ -45,12 +45,12 @@ static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
 
 struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, double stop) {
     return (struct dalcs_radau_options){.tolerance = r->tolerance,
-                                        .abstol = r->abstol,
-                                        .vntol = r->vntol,
-                                        .family = r->family,
-                                        .stages = r->stages,
-                                        .fixed_step = r->fixed_step,
-                                        .max_step = r->max_step,
+                                        .abstol = r->radau.abstol,
+                                        .vntol = r->radau.vntol,
+                                        .family = r->radau.family,
+                                        .stages = r->radau.stages,
+                                        .fixed_step = r->radau.fixed_step,
+                                        .max_step = r->radau.max_step,
                                         .stop = stop};
 }
 
@@ -129,7 +129,8 @@ static struct dalcs_radau *radau_of(struct parts *p) {
 static enum dalcs_status set_up_rows(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     struct dalcs_schedule schedule = choose_schedule(r);
-    dalcs_transient_warn_of_coarse_rows(r, &schedule, isinf(r->fill) ? schedule.start : INFINITY);
+    dalcs_transient_warn_of_coarse_rows(r, &schedule,
+                                        isinf(r->rows.fill) ? schedule.start : INFINITY);
     dalcs_recorder_finish(&s->recorder); /* of a .pss before */
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
@@ -146,9 +147,9 @@ static enum dalcs_status set_up_euler(struct dalcs_run *r, struct parts *p) {
         r->options->record || dalcs_run_keeps_ledger(r) || dalcs_run_wants_losses(r);
     e->listener.jump_user = r;
     e->listener.on_jump = dalcs_note_jump;
-    e->listener.open_user = &r->undetermined;
+    e->listener.open_user = &r->nonunique.undetermined;
     e->listener.on_open = dalcs_undetermined_at;
-    s->report.step = p->is_euler ? r->h : r->fixed_step;
+    s->report.step = p->is_euler ? r->h : r->radau.fixed_step;
     s->report.stop = stop;
     return DALCS_OK;
 }
@@ -162,7 +163,7 @@ static enum dalcs_status set_up_others(struct dalcs_run *r, struct parts *p) {
     }
     DALCS_TRY(dalcs_logic_run_setup(&p->logic, &s->circuit, &p->euler, radau_of(p)));
     DALCS_TRY(dalcs_cosimulation_start(&p->cosimulation, r, &p->logic));
-    r->cosimulation = &p->cosimulation;
+    r->transient.cosimulation = &p->cosimulation;
     if (dalcs_run_wants_losses(r)) {
         DALCS_TRY(dalcs_losses_run_start(&p->losses, r, &p->euler, p->is_euler,
                                          p->is_euler ? 0.0 : p->radau.resolution));
@@ -187,7 +188,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
     if (radau != NULL) {
         DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));
     }
-    DALCS_TRY(dalcs_undetermined_several(&r->undetermined, e, s->circuit.transient.stop));
+    DALCS_TRY(dalcs_undetermined_several(&r->nonunique.undetermined, e, s->circuit.transient.stop));
     dalcs_recorder_states(&s->network, e, s->start);
     DALCS_TRY(dalcs_run_begin_plot(r, r->orbit != NULL && !r->leaves_orbit ? DALCS_PERIODIC
                                                                            : DALCS_TRANSIENT));
@@ -230,10 +231,10 @@ static void finish(struct dalcs_run *r, struct parts *p) {
     dalcs_audit_run_finish(&p->audit);
     dalcs_logic_run_finish(&p->logic);
     dalcs_cosimulation_finish(&p->cosimulation);
-    r->cosimulation = NULL;
+    r->transient.cosimulation = NULL;
     dalcs_measures_finish(&p->measures);
     dalcs_losses_run_finish(&p->losses);
-    r->losses = NULL;
+    r->transient.losses = NULL;
     dalcs_energy_finish(&p->energy);
     dalcs_radau_finish(&p->radau);
     dalcs_euler_finish(&p->euler);

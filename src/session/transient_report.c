@@ -62,12 +62,12 @@ static void note_held_back(struct dalcs_run *r, const struct dalcs_radau *radau)
     for (int k = 0; k < radau->n_parts; k++) {
         held_back += radau->part[k].length.held_back;
     }
-    if (r->max_step > 0.0 && r->fixed_step == 0.0 && held_back > MANY_STEPS &&
+    if (r->radau.max_step > 0.0 && r->radau.fixed_step == 0.0 && held_back > MANY_STEPS &&
         2 * held_back > radau->steps) {
         dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL, "leave tmax out of .tran",
                        "the longest step that is allowed, %g s, cut %ld of %ld steps short: the "
                        "tolerance does not need it",
-                       r->max_step, held_back, radau->steps);
+                       r->radau.max_step, held_back, radau->steps);
     }
 }
 

@@ -89,8 +89,8 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
     struct dalcs_euler held;
     dalcs_delayed_rest(&s->circuit);
     DALCS_TRY(dalcs_euler_setup(&held, &s->circuit, clamped, &r->osnsp, 1.0, 1.0));
-    r->undetermined.clamped = clamped;
-    held.listener.open_user = &r->undetermined;
+    r->nonunique.undetermined.clamped = clamped;
+    held.listener.open_user = &r->nonunique.undetermined;
     held.listener.on_open = dalcs_undetermined_at;
     held.listener.on_operating_point = dalcs_held_coils_rest;
     double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
@@ -148,8 +148,8 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
     DALCS_TRY(dalcs_gates_operating_point(e, logic, true));
     if (has_rows && dalcs_transient_begins_with_a_jump(c, radau)) {
         DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
-        if (r->losses != NULL) {
-            dalcs_losses_run_before_start(r->losses);
+        if (r->transient.losses != NULL) {
+            dalcs_losses_run_before_start(r->transient.losses);
         }
     }
     return start_at(e, radau, NULL);

@@ -292,15 +292,15 @@ enum dalcs_status dalcs_transient_walk(struct dalcs_run *r, struct dalcs_radau *
                           .measures = measures,
                           .audit = audit,
                           .logic = logic,
-                          .cosimulation = r->cosimulation};
+                          .cosimulation = r->transient.cosimulation};
     logic->cut.user = audit;
     logic->cut.tell = tell_cut;
     c.next_row = dalcs_recorder_due(c.recorder);
     c.next_edge = edge_after(&c, 0.0);
     c.interval = c.to_go = dalcs_transient_progress_interval(&r->s->network);
     DALCS_TRY(dalcs_rows_setup(&c.rows, radau, NULL, r->s->network.n_outputs));
-    enum dalcs_status status =
-        dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->fill, r->lines, &FILLING_LIMIT);
+    enum dalcs_status status = dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->rows.fill,
+                                                   r->rows.lines, &FILLING_LIMIT);
     status = status == DALCS_OK ? dalcs_gate_samples_setup(&c.samples, logic) : status;
     dalcs_audit_run_begin(audit);
     dalcs_audit_run_told(audit, 0.0);

@@ -38,8 +38,7 @@ static void write_head(const struct writer *w, int i) {
 }
 
 static void write_value(const struct writer *w, const char *before, double value) {
-    fputs(before, w->stream);
-    dalcs_spice_write_number(w->stream, value);
+    dalcs_spice_write_value(w->stream, before, value);
 }
 
 /* R, L and C, gains included: "l1 a b 1e-3 ic=2". */
@@ -223,52 +222,6 @@ static enum dalcs_status write_device(const struct writer *w, int i) {
     return DALCS_OK;
 }
 
-static void write_diode_model(const struct writer *w, int k) {
-    const struct dalcs_diode_model *model = &w->circuit->diode_model[k];
-    const struct dalcs_spice_options *o = w->options;
-    switch (o->diode) {
-    case DALCS_SPICE_STOCK:
-        fprintf(w->stream, ".model m__%d d", k);
-        if (isfinite(model->vrev)) {
-            write_value(w, "(bv=", model->vrev);
-            fputc(')', w->stream);
-        }
-        fputc('\n', w->stream);
-        break;
-    case DALCS_SPICE_EXPONENTIAL:
-        for (int back = 0; back < (isfinite(model->vrev) ? 2 : 1); back++) {
-            fprintf(w->stream, ".model m%s__%d d(is=1e-14", back ? "b" : "", k);
-            write_value(w, " n=", o->emission);
-            write_value(w, " rs=", fmax(back ? model->rrev : model->ron, o->series));
-            fputs(")\n", w->stream);
-        }
-        break;
-    case DALCS_SPICE_LINES:
-        fprintf(w->stream, ".model m__%d sidiode(", k);
-        write_value(w, "ron=", fmax(model->ron, o->on));
-        write_value(w, " roff=", fmin(model->roff, o->off));
-        write_value(w, " vfwd=", model->vfwd);
-        if (isfinite(model->vrev)) {
-            write_value(w, " vrev=", model->vrev);
-            write_value(w, " rrev=", fmax(model->rrev, o->on));
-        }
-        fputs(")\n", w->stream);
-        break;
-    }
-}
-
-static void write_switch_model(const struct writer *w, int k) {
-    const struct dalcs_switch_model *model = &w->circuit->switch_model[k];
-    for (int by_current = 0; by_current < 2; by_current++) {
-        fprintf(w->stream, by_current ? ".model mw__%d csw(" : ".model ms__%d sw(", k);
-        write_value(w, "ron=", model->ron > 0.0 ? model->ron : w->options->on);
-        write_value(w, " roff=", fmin(model->roff, w->options->off));
-        write_value(w, by_current ? " it=" : " vt=", model->vt);
-        write_value(w, by_current ? " ih=" : " vh=", model->vh);
-        fputs(")\n", w->stream);
-    }
-}
-
 static void write_couplings(const struct writer *w) {
     for (int i = 0; i < w->circuit->n_couplings; i++) {
         const struct dalcs_coupling *coupling = &w->circuit->coupling[i];
@@ -342,10 +295,10 @@ enum dalcs_status dalcs_spice_write(const struct dalcs_spice_names *names,
     }
     write_couplings(&w);
     for (int k = 0; k < circuit->n_diode_models; k++) {
-        write_diode_model(&w, k);
+        dalcs_spice_write_diode_model(stream, circuit, options, k);
     }
     for (int k = 0; k < circuit->n_switch_models; k++) {
-        write_switch_model(&w, k);
+        dalcs_spice_write_switch_model(stream, circuit, options, k);
     }
     DALCS_TRY(write_initial_conditions(&w));
     write_analysis(&w);

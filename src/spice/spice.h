@@ -54,4 +54,13 @@ bool dalcs_spice_takes_stimulus(const struct dalcs_circuit *circuit, int i, int 
 const char *dalcs_spice_write_stimulus(const struct dalcs_circuit *circuit, FILE *stream, int k,
                                        double edge);
 
+/* " ron=", and a number. */
+void dalcs_spice_write_value(FILE *stream, const char *before, double value);
+
+/* Model k of the circuit. */
+void dalcs_spice_write_diode_model(FILE *stream, const struct dalcs_circuit *circuit,
+                                   const struct dalcs_spice_options *o, int k);
+void dalcs_spice_write_switch_model(FILE *stream, const struct dalcs_circuit *circuit,
+                                    const struct dalcs_spice_options *o, int k);
+
 #endif

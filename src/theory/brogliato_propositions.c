@@ -66,6 +66,28 @@ enum dalcs_status dalcs_brogliato_43(struct dalcs_brogliato_case *c) {
         definite ? c->passive_step.margin : least);
 }
 
+/* Lemma 4.5: G2 is 0 when B1 is, monotone when X2 B1 = C1'. */
+static enum dalcs_status find_monotone(const struct dalcs_brogliato_case *c,
+                                       const struct dalcs_quadruple *q,
+                                       const struct dalcs_matrix *X, const bool *is_second,
+                                       bool *monotone) {
+    struct dalcs_arena *work = c->f->work;
+    struct dalcs_matrix xb;
+    DALCS_TRY(dalcs_matrix_product(&xb, work, X, &q->B));
+    for (int j = 0; j < c->b->m && !is_second[j]; j++) {
+        bool is_zero = true;
+        bool matches = true;
+        for (int i = 0; i < c->b->p; i++) {
+            double left = *dalcs_at(&xb, i, j);
+            double right = *dalcs_at(&q->C, j, i);
+            is_zero = is_zero && left == 0.0;
+            matches = matches && fabs(left - right) <= 1e-9 * (fabs(left) + fabs(right));
+        }
+        *monotone = *monotone && (is_zero || matches);
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_brogliato_blocks(struct dalcs_brogliato_case *c, bool of_step, bool *blocks,
                                          bool *coupled, bool *monotone, double *strength) {
     const struct dalcs_quadruple *q = of_step ? &c->step : &c->model;
@@ -87,24 +109,12 @@ enum dalcs_status dalcs_brogliato_blocks(struct dalcs_brogliato_case *c, bool of
         of_step ? DALCS_BROGLIATO("assumption 7") : DALCS_BROGLIATO("assumption 9"),
         of_step ? "some X2 > 0 has X2 Bt2 = Ct2'" : "some X2 > 0 has X2 Bbar_II2 = C_II2'", q,
         is_second, coupled, &X));
-    *monotone = true; /* lemma 4.5: G2 is 0 when B1 is, monotone when X2 B1 = C1' */
+    *monotone = true;
     bool definite = false;
     if (*blocks && *coupled) {
         DALCS_TRY(dalcs_index_strength(&q->A, &X, strength, work));
         definite = *strength > 1e-12 * dalcs_matrix_largest(&q->A);
-        struct dalcs_matrix xb;
-        DALCS_TRY(dalcs_matrix_product(&xb, work, &X, &q->B));
-        for (int j = 0; j < c->b->m && !is_second[j]; j++) {
-            bool is_zero = true;
-            bool matches = true;
-            for (int i = 0; i < c->b->p; i++) {
-                double left = *dalcs_at(&xb, i, j);
-                double right = *dalcs_at(&q->C, j, i);
-                is_zero = is_zero && left == 0.0;
-                matches = matches && fabs(left - right) <= 1e-9 * (fabs(left) + fabs(right));
-            }
-            *monotone = *monotone && (is_zero || matches);
-        }
+        DALCS_TRY(find_monotone(c, q, &X, is_second, monotone));
     }
     bool holds = *blocks && *coupled && definite && *monotone;
     c->found->step_unique = c->found->step_unique || (holds && of_step);

@@ -103,6 +103,21 @@ static enum dalcs_status verify(bool *holds, const struct dalcs_matrix *P,
     return DALCS_OK;
 }
 
+/* Have B, C and C B one rank? */
+static enum dalcs_status compare_ranks(const struct dalcs_matrix *cb, const struct dalcs_matrix *B,
+                                       const struct dalcs_matrix *C, bool *is_one,
+                                       struct dalcs_arena *arena) {
+    int rank[3];
+    DALCS_TRY(dalcs_matrix_rank(cb, &rank[0], NULL, arena));
+    DALCS_TRY(dalcs_matrix_rank(B, &rank[1], NULL, arena));
+    DALCS_TRY(dalcs_matrix_rank(C, &rank[2], NULL, arena));
+    if (dalcs_matrix_largest(cb) <= tolerance * dalcs_matrix_largest(B) * dalcs_matrix_largest(C)) {
+        rank[0] = 0; /* what products that cancel leave */
+    }
+    *is_one = rank[0] == rank[1] && rank[0] == rank[2];
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_coupling_find(struct dalcs_matrix *P, bool *holds, const char **why,
                                       const struct dalcs_matrix *given_B,
                                       const struct dalcs_matrix *given_C,
@@ -134,15 +149,9 @@ enum dalcs_status dalcs_coupling_find(struct dalcs_matrix *P, bool *holds, const
     if (*why != NULL) {
         return DALCS_OK;
     }
-    int rank[3];
-    DALCS_TRY(dalcs_matrix_rank(&cb, &rank[0], NULL, arena));
-    DALCS_TRY(dalcs_matrix_rank(&B, &rank[1], NULL, arena));
-    DALCS_TRY(dalcs_matrix_rank(&C, &rank[2], NULL, arena));
-    if (dalcs_matrix_largest(&cb) <=
-        tolerance * dalcs_matrix_largest(&B) * dalcs_matrix_largest(&C)) {
-        rank[0] = 0; /* what products that cancel leave */
-    }
-    if (rank[0] != rank[1] || rank[0] != rank[2]) {
+    bool is_one;
+    DALCS_TRY(compare_ranks(&cb, &B, &C, &is_one, arena));
+    if (!is_one) {
         *why = "C B has not the rank of B and of C";
         return DALCS_OK;
     }

@@ -102,6 +102,72 @@ static enum dalcs_status look_at(struct dalcs_face *s, double omega) {
     return append_zeros(s, &form, &where, n_parts);
 }
 
+/* The vectors (B u, v), by their coefficients of u and v. */
+static enum dalcs_status spread_rates(struct dalcs_face *s, const struct dalcs_matrix *bu,
+                                      struct dalcs_matrix *where) {
+    DALCS_TRY(dalcs_matrix_new(where, s->arena, s->n + s->m, bu->columns + s->m));
+    for (int j = 0; j < where->columns; j++) {
+        for (int i = 0; i < s->n && j < bu->columns; i++) {
+            *dalcs_at(where, i, j) = *dalcs_at(bu, i, j);
+        }
+        if (j >= bu->columns) {
+            *dalcs_at(where, s->n + j - bu->columns, j) = 1.0;
+        }
+    }
+    return DALCS_OK;
+}
+
+/* -u'CABu - u'CBv + v'CBu + v'Dv over (coefficients of u, v); rate = CABu. */
+static enum dalcs_status rate_form(struct dalcs_face *s, const struct dalcs_matrix *u,
+                                   const struct dalcs_matrix *rate, struct dalcs_matrix *form) {
+    struct dalcs_matrix cb;
+    DALCS_TRY(dalcs_matrix_product(&cb, s->arena, &s->q.C, &s->q.B));
+    DALCS_TRY(dalcs_matrix_new(form, s->arena, u->columns + s->m, u->columns + s->m));
+    for (int i = 0; i < u->columns; i++) {
+        for (int j = 0; j < u->columns; j++) {
+            double value = 0.0;
+            for (int k = 0; k < s->m; k++) {
+                value -= *dalcs_at(u, k, i) * *dalcs_at(rate, k, j) +
+                         *dalcs_at(u, k, j) * *dalcs_at(rate, k, i);
+            }
+            *dalcs_at(form, i, j) = value;
+        }
+    }
+    for (int i = 0; i < s->m; i++) {
+        for (int j = 0; j < u->columns; j++) {
+            double value = 0.0;
+            for (int k = 0; k < s->m; k++) {
+                value += (*dalcs_at(&cb, i, k) - *dalcs_at(&cb, k, i)) * *dalcs_at(u, k, j);
+            }
+            *dalcs_at(form, u->columns + i, j) = *dalcs_at(form, j, u->columns + i) = value;
+        }
+        for (int j = 0; j < s->m; j++) {
+            *dalcs_at(form, u->columns + i, u->columns + j) =
+                *dalcs_at(&s->q.D, i, j) + *dalcs_at(&s->q.D, j, i);
+        }
+    }
+    return DALCS_OK;
+}
+
+/* Where a form over the columns of `where` is 0, or below it. */
+static enum dalcs_status append_zeros_of(struct dalcs_face *s, const struct dalcs_matrix *form,
+                                         const struct dalcs_matrix *where) {
+    double *value = dalcs_arena_alloc(s->arena, (size_t)form->rows + 1, sizeof(double));
+    struct dalcs_matrix vector;
+    struct dalcs_matrix zeros;
+    if (value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_matrix_symmetric_eigen(form, value, &vector, s->arena));
+    vector.columns = 0;
+    while (vector.columns < form->rows && value[vector.columns] < noise) {
+        s->is_gaining = s->is_gaining || value[vector.columns] < -noise;
+        vector.columns++;
+    }
+    DALCS_TRY(dalcs_matrix_product(&zeros, s->arena, where, &vector));
+    return append(s, &zeros);
+}
+
 /* Large s: (0, u) with (D + D') u = 0, hence P B u = C'u; and, one order below, (B u, v) with
  * -u'CABu - u'CBv + v'CBu + v'Dv = 0. */
 static enum dalcs_status look_at_infinity(struct dalcs_face *s) {
@@ -126,61 +192,13 @@ static enum dalcs_status look_at_infinity(struct dalcs_face *s) {
     struct dalcs_matrix bu;
     struct dalcs_matrix abu;
     struct dalcs_matrix rate;
-    struct dalcs_matrix cb;
     struct dalcs_matrix where;
     DALCS_TRY(dalcs_matrix_product(&bu, s->arena, &s->q.B, &u));
     DALCS_TRY(dalcs_matrix_product(&abu, s->arena, &s->q.A, &bu));
     DALCS_TRY(dalcs_matrix_product(&rate, s->arena, &s->q.C, &abu));
-    DALCS_TRY(dalcs_matrix_product(&cb, s->arena, &s->q.C, &s->q.B));
-    DALCS_TRY(dalcs_matrix_new(&where, s->arena, s->n + s->m, u.columns + s->m));
-    for (int j = 0; j < where.columns; j++) {
-        for (int i = 0; i < s->n && j < u.columns; i++) {
-            *dalcs_at(&where, i, j) = *dalcs_at(&bu, i, j);
-        }
-        if (j >= u.columns) {
-            *dalcs_at(&where, s->n + j - u.columns, j) = 1.0;
-        }
-    }
-    /* the form over (coefficients of u, v), put back onto vectors (x, u) */
-    struct dalcs_matrix small;
-    DALCS_TRY(dalcs_matrix_new(&small, s->arena, where.columns, where.columns));
-    for (int i = 0; i < u.columns; i++) {
-        for (int j = 0; j < u.columns; j++) {
-            double value = 0.0;
-            for (int k = 0; k < s->m; k++) {
-                value -= *dalcs_at(&u, k, i) * *dalcs_at(&rate, k, j) +
-                         *dalcs_at(&u, k, j) * *dalcs_at(&rate, k, i);
-            }
-            *dalcs_at(&small, i, j) = value;
-        }
-    }
-    for (int i = 0; i < s->m; i++) {
-        for (int j = 0; j < u.columns; j++) {
-            double value = 0.0;
-            for (int k = 0; k < s->m; k++) {
-                value += (*dalcs_at(&cb, i, k) - *dalcs_at(&cb, k, i)) * *dalcs_at(&u, k, j);
-            }
-            *dalcs_at(&small, u.columns + i, j) = *dalcs_at(&small, j, u.columns + i) = value;
-        }
-        for (int j = 0; j < s->m; j++) {
-            *dalcs_at(&small, u.columns + i, u.columns + j) =
-                *dalcs_at(&s->q.D, i, j) + *dalcs_at(&s->q.D, j, i);
-        }
-    }
-    double *value = dalcs_arena_alloc(s->arena, (size_t)small.rows + 1, sizeof(double));
-    struct dalcs_matrix vector;
-    struct dalcs_matrix zeros;
-    if (value == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    DALCS_TRY(dalcs_matrix_symmetric_eigen(&small, value, &vector, s->arena));
-    vector.columns = 0;
-    while (vector.columns < small.rows && value[vector.columns] < noise) {
-        s->is_gaining = s->is_gaining || value[vector.columns] < -noise;
-        vector.columns++;
-    }
-    DALCS_TRY(dalcs_matrix_product(&zeros, s->arena, &where, &vector));
-    return append(s, &zeros);
+    DALCS_TRY(spread_rates(s, &bu, &where));
+    DALCS_TRY(rate_form(s, &u, &rate, &form));
+    return append_zeros_of(s, &form, &where); /* put back onto vectors (x, u) */
 }
 
 enum dalcs_status dalcs_face_kernel(struct dalcs_face *s) {

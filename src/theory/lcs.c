@@ -54,6 +54,21 @@ static void balance(struct dalcs_dictionary *d) {
     }
 }
 
+static void name_all(struct dalcs_dictionary *d, const struct dalcs_blocks *b) {
+    const int n = b->n;
+    const int p = b->p;
+    const int m = b->m;
+    const int k = b->k;
+    name_range(d->row, 0, n, DALCS_VARIABLE_DERIVATIVE);
+    name_range(d->row, n, p, DALCS_VARIABLE_ZERO);
+    name_range(d->row, n + p, m, DALCS_VARIABLE_REVERSE);
+    name_range(d->column, 0, n, DALCS_VARIABLE_STATE);
+    name_range(d->column, n, p, DALCS_VARIABLE_ALGEBRAIC);
+    name_range(d->column, n + p, m, DALCS_VARIABLE_CURRENT);
+    name_range(d->column, n + p + m, k, DALCS_VARIABLE_INPUT);
+    name_range(d->column, n + p + m + k, k, DALCS_VARIABLE_INPUT_DERIVATIVE);
+}
+
 static enum dalcs_status make(struct dalcs_dictionary *d, struct dalcs_arena *arena,
                               const struct dalcs_blocks *b) {
     int n = b->n;
@@ -87,14 +102,7 @@ static enum dalcs_status make(struct dalcs_dictionary *d, struct dalcs_arena *ar
     put_block(d, n + p, n, &b->C_II);
     put_block(d, n + p, n + p, &b->D);
     put_block(d, n + p, n + p + m, &b->F);
-    name_range(d->row, 0, n, DALCS_VARIABLE_DERIVATIVE);
-    name_range(d->row, n, p, DALCS_VARIABLE_ZERO);
-    name_range(d->row, n + p, m, DALCS_VARIABLE_REVERSE);
-    name_range(d->column, 0, n, DALCS_VARIABLE_STATE);
-    name_range(d->column, n, p, DALCS_VARIABLE_ALGEBRAIC);
-    name_range(d->column, n + p, m, DALCS_VARIABLE_CURRENT);
-    name_range(d->column, n + p + m, k, DALCS_VARIABLE_INPUT);
-    name_range(d->column, n + p + m + k, k, DALCS_VARIABLE_INPUT_DERIVATIVE);
+    name_all(d, b);
     for (int i = 0; i < d->n_rows; i++) {
         d->row_scale[i] = 1.0;
     }

@@ -226,6 +226,20 @@ static void drop_rounding(struct dalcs_matrix *rate, const struct dalcs_matrix *
     }
 }
 
+/* x' of (x, u), both in these units. */
+static enum dalcs_status scaled_motion(const struct dalcs_lcs *l, const double *unit,
+                                       struct dalcs_matrix *motion, struct dalcs_arena *arena) {
+    const int n = l->n;
+    DALCS_TRY(dalcs_matrix_new(motion, arena, n, n + l->m));
+    for (int j = 0; j < n + l->m; j++) {
+        for (int i = 0; i < n; i++) {
+            double a = j < n ? *dalcs_at(&l->A, i, j) : *dalcs_at(&l->B, i, j - n);
+            *dalcs_at(motion, i, j) = a * unit[j] / unit[i];
+        }
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_passivity_lossless(const struct dalcs_lcs *l, const struct dalcs_matrix *P,
                                            double noise, int *dimension,
                                            struct dalcs_arena *arena) {
@@ -245,13 +259,7 @@ enum dalcs_status dalcs_passivity_lossless(const struct dalcs_lcs *l, const stru
     while (still.columns < Q.rows && value[still.columns] < noise) {
         still.columns++;
     }
-    DALCS_TRY(dalcs_matrix_new(&motion, arena, n, n + l->m));
-    for (int j = 0; j < n + l->m; j++) {
-        for (int i = 0; i < n; i++) {
-            double a = j < n ? *dalcs_at(&l->A, i, j) : *dalcs_at(&l->B, i, j - n);
-            *dalcs_at(&motion, i, j) = a * unit[j] / unit[i];
-        }
-    }
+    DALCS_TRY(scaled_motion(l, unit, &motion, arena));
     *dimension = n;
     for (int last = n + 1; *dimension < last;) {
         struct dalcs_matrix x;

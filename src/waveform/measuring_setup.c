@@ -38,6 +38,25 @@ static enum dalcs_status set_up_harmonics(struct dalcs_measuring *m, double stop
     return DALCS_OK;
 }
 
+/* Is one measured late, by what it keeps? */
+static bool start_items(struct dalcs_measuring *m) {
+    bool keeps = false;
+    for (int k = 0; k < m->n; k++) {
+        const struct dalcs_measure_card *card = &m->circuit->measure[k];
+        m->item[k] = (struct dalcs_measured){.card = card,
+                                             .instant = {dalcs_instant_start(&card->instant[0]),
+                                                         dalcs_instant_start(&card->instant[1])},
+                                             .from = card->from,
+                                             .to = card->to,
+                                             .begin = INFINITY,
+                                             .end = -INFINITY,
+                                             .least = INFINITY,
+                                             .most = -INFINITY};
+        keeps = keeps || (card->is_late && card->analysis == m->analysis);
+    }
+    return keeps;
+}
+
 enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
                                         const struct dalcs_circuit *circuit,
                                         enum dalcs_measured_analysis analysis, double start,
@@ -68,20 +87,7 @@ enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
     if (analysis == DALCS_MEASURED_AC) {
         m->stretch.imaginary = m->values + 2 * n_signals;
     }
-    bool keeps = false;
-    for (int k = 0; k < m->n; k++) {
-        const struct dalcs_measure_card *card = &circuit->measure[k];
-        m->item[k] = (struct dalcs_measured){.card = card,
-                                             .instant = {dalcs_instant_start(&card->instant[0]),
-                                                         dalcs_instant_start(&card->instant[1])},
-                                             .from = card->from,
-                                             .to = card->to,
-                                             .begin = INFINITY,
-                                             .end = -INFINITY,
-                                             .least = INFINITY,
-                                             .most = -INFINITY};
-        keeps = keeps || (card->is_late && card->analysis == analysis);
-    }
+    const bool keeps = start_items(m);
     m->kept = keeps ? dalcs_kept_stretches_create(&m->stretch) : NULL;
     if (keeps && m->kept == NULL) {
         dalcs_measuring_finish(m);

@@ -1,6 +1,6 @@
 #ifndef TESTS_FUZZ_RANDOM_DRAFT_H
 #define TESTS_FUZZ_RANDOM_DRAFT_H
-/* random_draft.h - a netlist while it is written from bytes: what random_netlist.c and random_blocks.c share. */
+/* random_draft.h - a netlist while it is written from bytes: what random_netlist.c, random_elements.c and random_blocks.c share. */
 #include "random_netlist.h"
 
 #include <stdbool.h>
@@ -44,6 +44,19 @@ void signal_of(struct draft *d);
 
 /* Of signals, of a depth. */
 void formula(struct draft *d, int depth);
+
+const char *gain(struct draft *d);
+
+/* The value of a source. */
+void stimulus(struct draft *d);
+
+/* ---- random_elements.c ------------------------------------------------------------------------- */
+
+/* One element between two nodes. */
+void element(struct draft *d, const char *a, const char *b);
+
+/* Each coil is in one pair at most: three that are coupled at will may give energy. */
+void couplings(struct draft *d);
 
 /* ---- random_blocks.c --------------------------------------------------------------------------- */
 

@@ -72,8 +72,9 @@ class Help(unittest.TestCase):
         for source in (pathlib.Path(__file__).resolve().parents[2] / "src" / "cli").glob("*.c"):
             if source.name == "batch.c":
                 continue  # all of ngspice's options are taken there
-            taken |= {f"--{name}" for name in
-                      re.findall(r'\{"([\w-]+)",\s*(?:no|required|optional)_argument', source.read_text())}
+            entry = (r'\{"([\w-]+)",\s*(?:(?:0|\'\w\'),\s*)?(?:no|required|optional)_argument'
+                     r'|\b(?:READ|FLAG|TEXT|COUNT)\("([\w-]+)"')  # of getopt_long's table, or argument_options.c's
+            taken |= {f"--{''.join(name)}" for name in re.findall(entry, source.read_text())}
         self.assertGreater(len(taken), 40)
         self.assertEqual(sorted(taken - named), [])
 

@@ -87,8 +87,8 @@ MUTATIONS = {
     "a delay is told the other way": (
         "session/measure_report.c", "give(r, i[1].time - i[0].time);", "give(r, i[0].time - i[1].time);", METER),
     "a formula of results reads others than those that are told": (
-        "session/measure_report.c", "r->result[k] = measurement->found ? measurement->value",
-        "r->result[k] = measurement->found ? 1.001 * measurement->value + 1e-6", METER),
+        "session/measure_report.c", "r->measures.result[k] = measurement->found ? measurement->value",
+        "r->measures.result[k] = measurement->found ? 1.001 * measurement->value + 1e-6", METER),
     "a sine is summed as a cosine": (
         "waveform/harmonics.c", "h->sine[k] += value * s;", "h->sine[k] += value * c;", METER),
     "harmonics are of a period that is not the last": (

@@ -1,8 +1,8 @@
 /* The generator against the vectors of its authors, the quantile against erfc, the functions against their
  * definitions. Seeds are fixed: these tests fail always or never. */
 #include "draws.h"
+#include "run_tests.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -138,18 +138,6 @@ START_TEST(test_functions_are_their_definitions) {
 
 END_TEST
 
-int main(void) {
-    Suite *suite = suite_create("draws");
-    TCase *tcase = tcase_create("draws");
-    tcase_add_test(tcase, test_philox_known_answers);
-    tcase_add_test(tcase, test_quantile_inverts_erfc);
-    tcase_add_test(tcase, test_uniform_along_every_axis);
-    tcase_add_test(tcase, test_names_of_places_differ);
-    tcase_add_test(tcase, test_functions_are_their_definitions);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed == 0 ? 0 : 1;
-}
+RUN_TESTS("draws", test_philox_known_answers, test_quantile_inverts_erfc,
+          test_uniform_along_every_axis, test_names_of_places_differ,
+          test_functions_are_their_definitions)

@@ -1,7 +1,7 @@
 /* Counts of values that are known, and what a histogram is not of. */
 #include "histogram.h"
+#include "run_tests.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -86,15 +86,4 @@ START_TEST(test_refusals) {
 
 END_TEST
 
-int main(void) {
-    Suite *suite = suite_create("histogram");
-    TCase *tcase = tcase_create("histogram");
-    tcase_add_test(tcase, test_counts);
-    tcase_add_test(tcase, test_refusals);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed == 0 ? 0 : 1;
-}
+RUN_TESTS("histogram", test_counts, test_refusals)

@@ -1,7 +1,7 @@
 /* Spectra against Fourier series by hand: of edges, ramps and rows at odd distances, over part of a file. */
+#include "run_tests.h"
 #include "spectrum.h"
 
-#include <check.h>
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
@@ -110,17 +110,4 @@ START_TEST(test_refusals) {
 
 END_TEST
 
-int main(void) {
-    Suite *suite = suite_create("spectrum");
-    TCase *tcase = tcase_create("spectrum");
-    tcase_add_test(tcase, test_square_and_ramp);
-    tcase_add_test(tcase, test_part_of_a_file);
-    tcase_add_test(tcase, test_many_rows);
-    tcase_add_test(tcase, test_refusals);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed == 0 ? 0 : 1;
-}
+RUN_TESTS("spectrum", test_square_and_ramp, test_part_of_a_file, test_many_rows, test_refusals)

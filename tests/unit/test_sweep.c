@@ -1,7 +1,7 @@
 /* Values of sweeps: counted, and where rounding may not lose or add one. */
+#include "run_tests.h"
 #include "sweep.h"
 
-#include <check.h>
 #include <math.h>
 
 static struct dalcs_sweep linear(double start, double stop, double step) {
@@ -57,17 +57,5 @@ START_TEST(test_decades_and_octaves) {
 
 END_TEST
 
-int main(void) {
-    Suite *suite = suite_create("sweep");
-    TCase *tcase = tcase_create("sweep");
-    tcase_add_test(tcase, test_last_value_is_the_stop);
-    tcase_add_test(tcase, test_steps_that_do_not_fit);
-    tcase_add_test(tcase, test_no_values);
-    tcase_add_test(tcase, test_decades_and_octaves);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed == 0 ? 0 : 1;
-}
+RUN_TESTS("sweep", test_last_value_is_the_stop, test_steps_that_do_not_fit, test_no_values,
+          test_decades_and_octaves)

@@ -1,10 +1,10 @@
-/* results.h - are numbers that are made of a waveform those of this waveform? Integrals, values, slopes, times at which a
+/* claims.h - are numbers that are made of a waveform those of this waveform? Integrals, values, slopes, times at which a
  * level is passed, each claimed by others and checked by the auditor at instants of its own.
  *
  * What is claimed is a function of signals over some time. The auditor reads the signals as it reads states; what two ways
  * to a value may differ by through rounding is the function's doubt. */
-#ifndef DALCS_AUDIT_RESULTS_H
-#define DALCS_AUDIT_RESULTS_H
+#ifndef DALCS_AUDIT_CLAIMS_H
+#define DALCS_AUDIT_CLAIMS_H
 
 #include "audit.h"
 
