@@ -228,7 +228,7 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
 /* ---- steady_continuation.c --------------------------------------------------------------------- */
 
 /* Leaps from st->at on to where Newton's method may begin again, st->at; *is_near: they have led to such a point. most_failed:
- * behind so many of them the circuit was farther from periodic than before, and they end. */
+ * behind so many of them the circuit may be farther from periodic than before; then they end. */
 enum dalcs_status dalcs_steady_continue(struct dalcs_steady *st, long most_failed,
                                         bool *is_near) DALCS_MUST_CHECK;
 

@@ -12,8 +12,8 @@
  *
  * The period map of a passive circuit moves no two states away from each other, in units in which energies are alike:
  * so Phi(x) - x never grows along a run, and a leap behind which it has grown is none. In a circuit with a control, or with
- * impulses that M does not know from far away, many are none. So at first one of them ends it, and later, where a run of so
- * many periods has not helped, as many: what a search takes for leaps goes with what it takes for the run.
+ * impulses that M does not know from far away, many are none. So it ends behind more of them than the run has had periods
+ * that did not help: what a search takes for leaps goes with what it takes for the run.
  *
  * The numbers below are no thresholds of an answer: each of them a tenth or ten times as large, multipliers of 10 to 40
  * stages take 10 to 28 steps and 50 to 435 periods. */
@@ -115,12 +115,12 @@ static double next_length(double k, double left) {
     return fmin(longest, longer_by * k * fmax(1.0, 1.0 / left));
 }
 
-/* From the last pass on, with `before` as work, until so many leaps were none. */
+/* From the last pass on, with `before` as work, until more leaps than so many were none. */
 static enum dalcs_status go(struct dalcs_steady *st, long most_failed,
                             struct dalcs_orbit_point *before, bool *is_near) {
     double k = first_leap;
     long n_failed = 0;
-    for (int n = 0; n < MOST_LEAPS && !*is_near && k > 1.0 && n_failed < most_failed; n++) {
+    for (int n = 0; n < MOST_LEAPS && !*is_near && k > 1.0 && n_failed <= most_failed; n++) {
         const double size = size_of_change(st);
         dalcs_steady_copy_point(st, before, &st->then);
         const enum dalcs_status status = leap(st, k);
