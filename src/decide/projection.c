@@ -111,7 +111,7 @@ static bool has_states(const struct dalcs_radau_part *part, int of) {
 }
 
 /* A step of length part->segment.h, up to limit. *means_something: it is long enough for the mode to be seen beside
- * rounding. */
+ * rounding, and for its matrix to have a solution. */
 static enum dalcs_status try_projection(struct dalcs_radau_part *part, double limit,
                                         bool *means_something) {
     if (part->segment.h > limit - part->segment.t) {
@@ -120,7 +120,7 @@ static enum dalcs_status try_projection(struct dalcs_radau_part *part, double li
     struct dalcs_stage_entry *entry;
     enum dalcs_status status = dalcs_segment_solve(part, &entry);
     *means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_nothing;
-    return status;
+    return status < DALCS_OK ? status : DALCS_OK;
 }
 
 /* Do states that move begin elsewhere in the last step than in one before it, farther than the step goes? work.y1: where they began
