@@ -9,6 +9,7 @@
 #include "magnitudes.h"
 #include "micro_steps.h"
 #include "present.h"
+#include "rounding.h"
 #include "seen_jump.h"
 #include "step_length.h"
 #include "take_jump.h"
@@ -16,26 +17,31 @@
 #include <math.h>
 #include <string.h>
 
-/* Where a component is not passive, a state may jump although another one runs away, the farther the
- * shorter the micro-step: the derivative of an impulse. */
+/* Where a component is not passive, a state may jump although another one runs away, the farther the shorter the
+ * micro-step: the derivative of an impulse. The rounding of an impulse over h runs away, too: of a capacitor in series with
+ * an open switch the voltage is the difference of two that hold the same impulse. */
 static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      double h) {
     const struct dalcs_system *s = part->component->system;
     double *longer = r->base->after;
     double largest[2];
+    double impulsive[2];
     bool jumps = false;
     bool runs_away = false;
     memcpy(longer, part->work.y1, (size_t)s->n_x * sizeof(double));
     DALCS_TRY(dalcs_micro_steps(r, part, ldexp(h, -DALCS_FAR_SHORTER)));
     dalcs_micro_largest(part, largest);
     dalcs_micro_raise(s, longer, s->n_x, largest);
+    memcpy(impulsive, largest, sizeof(impulsive));
+    dalcs_micro_raise(s, part->work.y1, dalcs_system_n_equations(s), impulsive);
     for (int x = 0; x < s->n_x; x++) {
         double before = fabs(longer[x] - part->x[x]);
         double now = fabs(part->work.y1[x] - part->x[x]);
         bool stays = fabs(part->work.y1[x] - longer[x]) < 0.5 * now;
         bool moves = now > dalcs_alike * largest[s->column_is_current[x]];
         jumps = jumps || (moves && stays);
-        runs_away = runs_away || (moves && now > dalcs_beyond * before);
+        bool is_rounding = now <= dalcs_answer_rounded * impulsive[s->column_is_current[x]];
+        runs_away = runs_away || (moves && !is_rounding && now > dalcs_beyond * before);
     }
     if (jumps && runs_away) {
         dalcs_osnsp_blame_states(&part->component->osnsp, part->x, longer, part->work.y1);
