@@ -1,16 +1,13 @@
 /* summary.c - the run in a few lines: the circuit, the work, the proof, energies, jumps. */
 #include "summary.h"
 
-/* What is rounding, over the largest value. */
-#define INVISIBLE 1e-12
-
-enum { MAX_JUMPS = 5, MAX_PARTS = 6, MAX_METHODS = 4, DIGITS = 4 };
-
 #include "method_text.h"
 #include "quantity.h"
 
 #include <math.h>
 #include <string.h>
+
+enum { MAX_JUMPS = 5, MAX_PARTS = 6, MAX_METHODS = 4, DIGITS = 4 };
 
 static const char *plural(long n) {
     return n == 1 ? "" : "s";
@@ -184,7 +181,7 @@ void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report) {
 
 static void write_energy(FILE *out, const char *name, double joule, double largest) {
     char text[DALCS_QUANTITY_SIZE];
-    if (fabs(joule) > INVISIBLE * largest) {
+    if (fabs(joule) > DALCS_SUMMARY_INVISIBLE * largest) {
         fprintf(out, "  %-18s %11s\n", name, dalcs_quantity_write_column(text, joule, "J", DIGITS));
     }
 }

@@ -6,6 +6,9 @@
 
 #include <stdio.h>
 
+/* What is rounding, over the largest value of its kind. */
+#define DALCS_SUMMARY_INVISIBLE 1e-12
+
 /* Title, size, work, certificate; three or four lines. */
 void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report);
 

@@ -7,9 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What is rounding, over the largest value of a signal; of waveforms, what no part of a circuit is held to
- * (doc/methods.md, "What the tolerance means"). */
-#define INVISIBLE              1e-12
+/* Of waveforms what no part of a circuit is held to, over the largest value of a signal (doc/methods.md, "What the
+ * tolerance means"). */
 #define INVISIBLE_IN_WAVEFORMS 1e-9
 
 enum { MAX_SIGNALS = 24, DIGITS = 4 };
@@ -43,7 +42,8 @@ static void write_value(FILE *out, const struct dalcs_measure *measure, size_t i
 
 /* A value of signal i; what is round-off beside its largest one is shown as 0. */
 static void write_cell(FILE *out, const struct dalcs_measure *measure, size_t i, double value) {
-    const double invisible = has_averages(measure->plot) ? INVISIBLE_IN_WAVEFORMS : INVISIBLE;
+    const double invisible =
+        has_averages(measure->plot) ? INVISIBLE_IN_WAVEFORMS : DALCS_SUMMARY_INVISIBLE;
     const double largest = largest_of(measure, i);
     write_value(out, measure, i, fabs(value) <= invisible * largest ? 0.0 : value);
 }

@@ -8,8 +8,9 @@
 
 #include "null_space.h"
 
-/* space->redundant becomes as many of the first n_candidates rows whose terms, each column times size[n_columns], are the largest that the
- * dependencies have. t: the matrix of the space. Nothing changes where rounding hides how many depend. */
+/* space->redundant becomes as many of the first n_candidates rows whose terms, each column times size[n_columns], are the
+ * largest that the dependencies have. t: the matrix of the space. Nothing changes where rounding hides how many depend, or
+ * where one is of other rows alone. */
 enum dalcs_status dalcs_redundant_rows_choose(struct dalcs_null_space *space,
                                               const struct dalcs_triplets *t, const double *size,
                                               int n_candidates) DALCS_MUST_CHECK;

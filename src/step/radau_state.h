@@ -75,8 +75,8 @@ struct dalcs_part_scales {
     double magnitude_end;
     double unit[2];  /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: the part of one unit's scale that counts for the other */
-    double constant
-        [2]; /* V, A: the largest that equations add, as limits of formulas do, and others may cancel */
+    /* V, A: the largest that equations add, as limits of formulas do, and others may cancel. */
+    double constant[2];
     /* A per V, what rounding of conductances that meet makes of nothing between them and ground. */
     double leak;
     struct dalcs_column_kinds *kinds; /* see step_scales.h */
