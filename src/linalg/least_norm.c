@@ -1,7 +1,6 @@
 /* least_norm.c - of what a mode leaves open, what is seen and what is not. */
 #include "least_norm.h"
 
-#include <float.h>
 #include <math.h>
 
 static double product(const double *a, const double *b, int n) {
@@ -28,9 +27,8 @@ static void swap(double *a, double *b, int n) {
 
 /* Of the vectors from `first` on, the one that is seen most beside its own terms; -1: rounding is all that is seen. */
 static int find_largest(const struct dalcs_least_norm *o, int first) {
-    double rounding = (double)o->n_columns * DBL_EPSILON;
     int best = -1;
-    double most = rounding;
+    double most = dalcs_least_norm_rounding(o->n_columns);
     for (int k = first; k < o->n; k++) {
         const double *part = dalcs_least_norm_part(o, k);
         double seen = sqrt(product(part, part, o->n_parts));

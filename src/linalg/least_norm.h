@@ -13,6 +13,7 @@
 #ifndef DALCS_LEAST_NORM_H
 #define DALCS_LEAST_NORM_H
 
+#include <float.h>
 #include <stddef.h>
 
 struct dalcs_least_norm {
@@ -23,6 +24,11 @@ struct dalcs_least_norm {
     double *
         size; /* [n] of what rounding in the parts is of: the norm of the sums of their terms' sizes */
 };
+
+/* What rounding leaves of parts, over their size. */
+static inline double dalcs_least_norm_rounding(int n_columns) {
+    return n_columns * DBL_EPSILON;
+}
 
 /* Vector k and its parts. */
 static inline double *dalcs_least_norm_vector(const struct dalcs_least_norm *o, int k) {

@@ -222,6 +222,18 @@ static enum dalcs_status eliminate_all(struct work *w, int n_rows, int *rank) {
     return DALCS_OK;
 }
 
+static void put_entry(struct dalcs_null_space *s, int at, const struct entry *e) {
+    s->column[at] = e->column;
+    s->value[at] = (double)e->value;
+    s->bound[at] = (double)e->bound;
+}
+
+static void move_entry(struct dalcs_null_space *s, int from, int to) {
+    s->column[to] = s->column[from];
+    s->value[to] = s->value[from];
+    s->bound[to] = s->bound[from];
+}
+
 static enum dalcs_status keep(struct dalcs_null_space *s, const struct work *w) {
     size_t n_entries = 0;
     for (int k = 0; k < s->rank; k++) {
@@ -230,10 +242,12 @@ static enum dalcs_status keep(struct dalcs_null_space *s, const struct work *w) 
     s->begin = dalcs_arena_alloc(&s->arena, (size_t)s->rank + 1, sizeof(int));
     s->column = dalcs_arena_alloc(&s->arena, n_entries, sizeof(int));
     s->value = dalcs_arena_alloc(&s->arena, n_entries, sizeof(double));
+    s->bound = dalcs_arena_alloc(&s->arena, n_entries, sizeof(double));
+    s->error = dalcs_arena_alloc(&s->arena, (size_t)s->n_columns, sizeof(double));
     s->redundant = dalcs_arena_alloc(&s->arena, (size_t)(s->n_rows - s->rank), sizeof(int));
     s->free_column = dalcs_arena_alloc(&s->arena, (size_t)s->n_columns, sizeof(int));
-    if (s->begin == NULL || s->column == NULL || s->value == NULL || s->redundant == NULL ||
-        s->free_column == NULL) {
+    if (s->begin == NULL || s->column == NULL || s->value == NULL || s->bound == NULL ||
+        s->error == NULL || s->redundant == NULL || s->free_column == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int r = 0; r < s->n_rows; r++) {
@@ -246,13 +260,11 @@ static enum dalcs_status keep(struct dalcs_null_space *s, const struct work *w) 
         const struct row *row = &w->row[w->eliminated[k]];
         int first = out;
         for (int i = 0; i < row->n; i++, out++) {
-            s->column[out] = row->entry[i].column;
-            s->value[out] = (double)row->entry[i].value;
-            if (s->column[out] == w->pivot_of[w->eliminated[k]]) {
-                s->column[out] = s->column[first];
-                s->value[out] = s->value[first];
-                s->column[first] = row->entry[i].column;
-                s->value[first] = (double)row->entry[i].value;
+            if (row->entry[i].column == w->pivot_of[w->eliminated[k]]) {
+                move_entry(s, first, out);
+                put_entry(s, first, &row->entry[i]);
+            } else {
+                put_entry(s, out, &row->entry[i]);
             }
         }
         s->begin[k + 1] = out;
@@ -306,19 +318,30 @@ enum dalcs_status dalcs_null_space_find(struct dalcs_null_space *s, int n_rows, 
     return status;
 }
 
+/* Back substitution with a bound of the error of each sum. */
 void dalcs_null_space_vector(const struct dalcs_null_space *s, int k, double *vector) {
     memset(vector, 0, (size_t)s->n_columns * sizeof(*vector));
+    memset(s->error, 0, (size_t)s->n_columns * sizeof(*vector));
     vector[s->free_column[k]] = 1.0;
     for (int i = s->rank - 1; i >= 0; i--) {
         double sum = 0.0;
-        double size = 0.0;
-        for (int at = s->begin[i] + 1; at < s->begin[i + 1]; at++) {
-            double term = s->value[at] * vector[s->column[at]];
+        double error = 0.0;
+        const int first = s->begin[i];
+        for (int at = first + 1; at < s->begin[i + 1]; at++) {
+            const int c = s->column[at];
+            const double term = s->value[at] * vector[c];
             sum -= term;
-            size += fabs(term);
+            error += DBL_EPSILON * fabs(term) + s->bound[at] * fabs(vector[c]) +
+                     fabs(s->value[at]) * s->error[c];
         }
-        bool is_rounding = fabs(sum) <= (double)doubt * DBL_EPSILON * size;
-        vector[s->column[s->begin[i]]] = is_rounding ? 0.0 : sum / s->value[s->begin[i]];
+        const bool is_rounding = fabs(sum) <= (double)doubt * error;
+        const double value = is_rounding ? 0.0 : sum / s->value[first];
+        error += s->bound[first] * fabs(value);
+        vector[s->column[first]] = value;
+        s->error[s->column[first]] = is_rounding ? 0.0 : error / fabs(s->value[first]);
+    }
+    for (int c = 0; c < s->n_columns; c++) {
+        s->error[c] *= (double)doubt;
     }
 }
 

@@ -17,9 +17,10 @@ struct dalcs_null_space {
 
     /* the other rows, in the order of elimination */
     int rank;
-    int *begin;  /* [rank + 1] */
-    int *column; /* the pivot's first */
-    double *value;
+    int *begin;            /* [rank + 1] */
+    int *column;           /* the pivot's first */
+    double *value, *bound; /* entries, and of their rounding */
+    double *error;         /* [n_columns] how far off the entries of the last vector may be */
 
     struct dalcs_arena arena; /* of the arrays */
 };
@@ -28,7 +29,8 @@ struct dalcs_null_space {
 enum dalcs_status dalcs_null_space_find(struct dalcs_null_space *s, int n_rows, int n_columns,
                                         const struct dalcs_triplets *t) DALCS_MUST_CHECK;
 
-/* vector[n_columns]: the one with 1 in free_column[k] and 0 in the other free ones. */
+/* vector[n_columns]: the one with 1 in free_column[k] and 0 in the other free ones. Of the others, what may be rounding alone
+ * is 0. */
 void dalcs_null_space_vector(const struct dalcs_null_space *s, int k, double *vector);
 
 void dalcs_null_space_finish(struct dalcs_null_space *s);

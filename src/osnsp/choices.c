@@ -27,21 +27,29 @@ static bool is_closed(const struct choices *c, int d) {
     return c->whole->place[c->n_columns - c->n_pairs + (size_t)d] >= 0;
 }
 
+/* That of an entry which is as rounded as this one is. */
+static double size_of(const struct choices *c, const double *vector, size_t column) {
+    return fabs(vector[column]) +
+           c->whole->error[column] / dalcs_least_norm_rounding((int)c->n_columns);
+}
+
 /* What pairs of one kind have in a vector: lambda of closed ones, w of open ones. Returns the norm of its terms' sizes. */
 static double find_parts(const struct choices *c, enum dalcs_pair_kind kind, const double *vector,
                          double *part) {
-    const double *lambda = vector + (c->n_columns - c->n_pairs);
+    const size_t first = c->n_columns - c->n_pairs;
     const struct dalcs_csr *C = &c->s->C;
     double square = 0.0;
     for (int d = 0; d < c->s->n_pairs; d++) {
         const struct dalcs_pair *pair = &c->s->pair[d];
         bool counts = pair->kind == kind && !pair->is_left_out[is_closed(c, d)];
-        double sum = counts && is_closed(c, d) ? lambda[d] / c->root : 0.0;
-        double size = fabs(sum);
+        const bool has_current = counts && is_closed(c, d);
+        const size_t of = first + (size_t)d;
+        double sum = has_current ? vector[of] / c->root : 0.0;
+        double size = has_current ? size_of(c, vector, of) / c->root : 0.0;
         for (int i = C->p[d]; counts && !is_closed(c, d) && i < C->p[d + 1]; i++) {
-            double term = c->root * C->x[i] * vector[C->j[i]];
-            sum += term;
-            size += fabs(term);
+            const double by = c->root * C->x[i];
+            sum += by * vector[C->j[i]];
+            size += fabs(by) * size_of(c, vector, (size_t)C->j[i]);
         }
         part[d] = sum;
         square += size * size;

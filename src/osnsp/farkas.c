@@ -25,6 +25,10 @@ void dalcs_claim_visit(const struct dalcs_claim *claim, int row,
     const struct dalcs_system *s = claim->system;
     if (row < dalcs_system_n_equations(s)) {
         visit_row(&s->A, row, -1.0, add, user);
+        if (s->A_rest.p !=
+            NULL) { /* what rounding has left of the entries: it cancels along an island */
+            visit_row(&s->A_rest, row, -1.0, add, user);
+        }
         if (row < s->n_x) {
             visit_row(&s->P, row, claim->sigma, add, user);
         }

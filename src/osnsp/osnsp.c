@@ -229,7 +229,7 @@ static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, d
 static enum dalcs_status prove(struct dalcs_osnsp *p, double sigma, const double *u,
                                bool *is_proof) {
     *is_proof = false;
-    return p->system->monotone ? dalcs_refute_by_ray(p, sigma, u, is_proof) : DALCS_OK;
+    return p->system->monotone ? dalcs_refute_at_once(p, sigma, u, is_proof) : DALCS_OK;
 }
 
 /* Where solving block by block has not decided. is_open: blocks have chosen before one had no answer. */
@@ -249,6 +249,10 @@ static enum dalcs_status solve_whole(struct dalcs_osnsp *p, double sigma, const 
         enum dalcs_status insisted = pivot(p, u, y, p->options.max_pivots + 2 * p->system->n_pairs);
         p->asks.insists = false;
         status = insisted <= DALCS_OK ? insisted : status;
+    }
+    if (is_undecided(status)) {
+        DALCS_TRY(prove(p, sigma, u, &is_proof));
+        status = is_proof ? DALCS_INFEASIBLE : status;
     }
     if (status > DALCS_OK && (is_open || !dalcs_osnsp_is_monotone(p))) {
         status = dalcs_enumerate(p, u, y);

@@ -6,6 +6,7 @@
 #include "refute.h"
 
 #include "magnitudes.h"
+#include "null_space.h"
 #include "osnsp_internal.h"
 #include "refute_case.h"
 
@@ -111,8 +112,10 @@ static enum dalcs_status setup(struct dalcs_refutation *r, struct dalcs_osnsp *p
     r->claim.side = dalcs_arena_alloc(&r->work, m, sizeof(*r->claim.side));
     r->v = dalcs_arena_alloc(&r->work, m, sizeof(double));
     r->clean = dalcs_arena_alloc(&r->work, m, sizeof(double));
+    r->right = dalcs_arena_alloc(&r->work, m, sizeof(double));
     r->sum = dalcs_arena_alloc(&r->work, 3 * n, sizeof(double));
-    if (r->claim.side == NULL || r->v == NULL || r->clean == NULL || r->sum == NULL) {
+    if (r->claim.side == NULL || r->v == NULL || r->clean == NULL || r->right == NULL ||
+        r->sum == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int d = 0; d < s->n_pairs; d++) {
@@ -134,17 +137,89 @@ static bool is_refuted_by_ray(struct dalcs_refutation *r) {
     return is_refuted;
 }
 
-enum dalcs_status dalcs_refute_by_ray(struct dalcs_osnsp *p, double sigma, const double *u,
-                                      bool *is_certain) {
+/* Where a row of the claim goes. */
+struct collection {
+    struct dalcs_triplets t;
+    int row;
+    enum dalcs_status status;
+};
+
+static void collect(void *user, int column, double value) {
+    struct collection *to = user;
+    if (to->status == DALCS_OK) {
+        to->status = dalcs_triplets_add(&to->t, column, to->row, value);
+    }
+}
+
+/* Weights under which the equations add up to 0, as those of an island's KCL do, in the digits that they have. */
+static void weigh_equations(struct dalcs_refutation *r, const struct dalcs_null_space *space,
+                            int k) {
+    memset(r->v, 0, (size_t)r->n_rows * sizeof(double));
+    dalcs_null_space_vector(space, k, r->v);
+    for (int row = 0; row < space->n_columns; row++) {
+        int exponent;
+        (void)frexp(space->error[row], &exponent);
+        if (space->error[row] > 0.0) {
+            r->v[row] = ldexp(rint(ldexp(r->v[row], -exponent)), exponent);
+        }
+    }
+}
+
+static bool weights_refute(struct dalcs_refutation *r) {
+    if (dalcs_claim_is_refuted(&r->claim, r->v, r->sum)) {
+        return true;
+    }
+    for (int row = 0; row < r->n_rows; row++) {
+        r->v[row] = -r->v[row];
+    }
+    return dalcs_claim_is_refuted(&r->claim, r->v, r->sum);
+}
+
+/* Do the equations contradict each other whatever the pairs do (Fredholm)? To all digits, which least squares lose where
+ * conductances or sources are far apart. */
+static enum dalcs_status refute_by_equations(struct dalcs_refutation *r, bool *is_certain) {
+    const int n_equations = dalcs_system_n_equations(r->claim.system);
+    struct collection to = {.status = DALCS_OK};
+    struct dalcs_null_space space;
+    for (to.row = 0; to.row < n_equations; to.row++) {
+        dalcs_claim_visit(&r->claim, to.row, collect, &to);
+    }
+    if (to.status == DALCS_OK) {
+        to.status = dalcs_null_space_find(&space, r->n_columns, n_equations, &to.t);
+    }
+    dalcs_triplets_finish(&to.t);
+    if (to.status != DALCS_OK) {
+        return to.status;
+    }
+    for (int k = 0; k < space.n_free && !*is_certain; k++) {
+        weigh_equations(r, &space, k);
+        *is_certain = weights_refute(r);
+    }
+    dalcs_null_space_finish(&space);
+    if (*is_certain) {
+        r->proof = r->v;
+        r->n_cases = 1;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status refute_at_once(struct dalcs_refutation *r, bool *is_certain) {
+    *is_certain = is_refuted_by_ray(r);
+    return *is_certain ? DALCS_OK : refute_by_equations(r, is_certain);
+}
+
+enum dalcs_status dalcs_refute_at_once(struct dalcs_osnsp *p, double sigma, const double *u,
+                                       bool *is_certain) {
     struct dalcs_refutation r;
     enum dalcs_status status = setup(&r, p, sigma, u);
-    *is_certain = status == DALCS_OK && is_refuted_by_ray(&r);
+    *is_certain = false;
+    status = status == DALCS_OK ? refute_at_once(&r, is_certain) : status;
     dalcs_arena_finish(&r.work);
     return status;
 }
 
 static enum dalcs_status refute(struct dalcs_refutation *r, bool *is_certain) {
-    *is_certain = is_refuted_by_ray(r);
+    DALCS_TRY(refute_at_once(r, is_certain));
     if (*is_certain || r->n_rows + r->n_columns > MOST_SIZE) {
         return DALCS_OK;
     }

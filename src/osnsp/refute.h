@@ -11,8 +11,8 @@
 enum dalcs_status dalcs_osnsp_refute(struct dalcs_osnsp *p, double sigma, const double *u,
                                      bool *is_certain) DALCS_MUST_CHECK;
 
-/* The same, of nothing but the ray that p->witness has. */
-enum dalcs_status dalcs_refute_by_ray(struct dalcs_osnsp *p, double sigma, const double *u,
-                                      bool *is_certain) DALCS_MUST_CHECK;
+/* The same, of nothing but the ray that p->witness has and the equations without signs. */
+enum dalcs_status dalcs_refute_at_once(struct dalcs_osnsp *p, double sigma, const double *u,
+                                       bool *is_certain) DALCS_MUST_CHECK;
 
 #endif

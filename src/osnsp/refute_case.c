@@ -57,11 +57,10 @@ enum dalcs_status dalcs_refutation_make_dense(struct dalcs_refutation *r) {
     r->dense = dalcs_arena_alloc(&r->work, m * n, sizeof(double));
     r->row_scale = dalcs_arena_alloc(&r->work, m, sizeof(double));
     r->column_scale = dalcs_arena_alloc(&r->work, n, sizeof(double));
-    r->right = dalcs_arena_alloc(&r->work, m, sizeof(double));
     r->lambda = dalcs_arena_alloc(&r->work, m, sizeof(int));
     r->slack = dalcs_arena_alloc(&r->work, m, sizeof(int));
     if (row == NULL || r->dense == NULL || r->row_scale == NULL || r->column_scale == NULL ||
-        r->right == NULL || r->lambda == NULL || r->slack == NULL) {
+        r->lambda == NULL || r->slack == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < m; i++) {

@@ -6,6 +6,7 @@
 #include "osnsp_internal.h"
 #include "redundant_rows.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -105,30 +106,41 @@ static enum dalcs_status factor(struct dalcs_whole *whole, const struct dalcs_tr
     return status;
 }
 
-/* What is open, from the vectors that the mode maps to 0. */
+/* The vectors that the mode maps to 0, and their errors. */
+static void take_open(struct dalcs_whole *whole, const struct dalcs_null_space *space) {
+    const int n_columns = dalcs_system_n_columns(whole->p->system);
+    for (int k = 0; k < space->n_free; k++) {
+        dalcs_null_space_vector(space, k, whole->residual);
+        double *vector = whole->open + (size_t)k * (size_t)n_columns;
+        for (int c = 0; c < n_columns; c++) {
+            const int place = whole->place[c];
+            vector[c] = place >= 0 ? whole->residual[place] : 0.0;
+            whole->error[c] = fmax(whole->error[c], place >= 0 ? space->error[place] : 0.0);
+        }
+    }
+}
+
 static enum dalcs_status choose(struct dalcs_whole *whole, const struct dalcs_null_space *space) {
     const struct dalcs_system *s = whole->p->system;
-    size_t n_choices = (size_t)space->n_free;
-    size_t n_columns = (size_t)dalcs_system_n_columns(s);
+    const size_t n_choices = (size_t)space->n_free;
+    const size_t n_columns = (size_t)dalcs_system_n_columns(s);
     if (space->n_free > whole->p->options.max_outer) {
         return DALCS_SINGULAR;
     }
-    whole->redundant = dalcs_arena_alloc(&whole->arena, n_choices, sizeof(int));
-    whole->choice = dalcs_arena_alloc(&whole->arena, n_choices * n_columns, sizeof(double));
-    whole->choice_w =
-        dalcs_arena_alloc(&whole->arena, n_choices * (size_t)s->n_pairs, sizeof(double));
-    if (whole->redundant == NULL || whole->choice == NULL || whole->choice_w == NULL) {
+    struct dalcs_arena *arena = &whole->arena;
+    whole->redundant = dalcs_arena_alloc(arena, n_choices, sizeof(int));
+    whole->choice = dalcs_arena_alloc(arena, n_choices * n_columns, sizeof(double));
+    whole->choice_w = dalcs_arena_alloc(arena, n_choices * (size_t)s->n_pairs, sizeof(double));
+    whole->open = dalcs_arena_alloc(arena, n_choices * n_columns, sizeof(double));
+    whole->error = dalcs_arena_alloc(arena, n_columns, sizeof(double));
+    if (whole->redundant == NULL || whole->choice == NULL || whole->choice_w == NULL ||
+        whole->open == NULL || whole->error == NULL) {
         return DALCS_E_NOMEM;
     }
     whole->n_choices = space->n_free;
     memcpy(whole->redundant, space->redundant, n_choices * sizeof(int));
-    for (int k = 0; k < space->n_free; k++) {
-        dalcs_null_space_vector(space, k, whole->residual);
-        double *vector = whole->choice + (size_t)k * n_columns;
-        for (size_t c = 0; c < n_columns; c++) {
-            vector[c] = whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
-        }
-    }
+    take_open(whole, space);
+    memcpy(whole->choice, whole->open, n_choices * n_columns * sizeof(double));
     return dalcs_choices_make(whole);
 }
 
@@ -284,20 +296,11 @@ void dalcs_whole_refine(const struct dalcs_whole *whole, const double *u, double
     }
 }
 
-void dalcs_whole_direction(const struct dalcs_whole *whole, int k, double *y) {
-    memset(whole->residual, 0, (size_t)whole->n * sizeof(double));
-    whole->residual[whole->redundant[k]] = 1.0;
-    dalcs_lu_solve(&whole->lu, whole->residual);
-    for (int c = 0; c < dalcs_system_n_columns(whole->p->system); c++) {
-        y[c] = whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
-    }
-}
-
 size_t dalcs_whole_bytes(const struct dalcs_whole *whole) {
     size_t n_columns = (size_t)dalcs_system_n_columns(whole->p->system);
     size_t n_choices = (size_t)whole->n_choices;
     return sizeof(*whole) + dalcs_lu_bytes(&whole->lu) +
-           n_columns * (sizeof(int) + (1 + 2 * n_choices) * sizeof(double));
+           n_columns * (sizeof(int) + (2 + 3 * n_choices) * sizeof(double));
 }
 
 void dalcs_whole_finish(struct dalcs_whole *whole) {
