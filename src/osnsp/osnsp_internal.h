@@ -233,6 +233,9 @@ void dalcs_step_map_apply(const struct dalcs_osnsp *p, const struct dalcs_mode_e
 
 /* ---- witness.c ----------------------------------------------------------------------------- */
 
+/* Names an element, once. */
+void dalcs_witness_add(struct dalcs_witness *w, const char *name);
+
 /* Is the displacement p->work.step_now of the proximal iteration a ray? Then p->witness names it. */
 bool dalcs_witness_from_ray(struct dalcs_osnsp *p);
 
@@ -246,11 +249,10 @@ void dalcs_witness_from_modes(struct dalcs_osnsp *p);
  * tree of capacitors, others of the tree are relative to its root. */
 double dalcs_witness_weight(const struct dalcs_witness *w, const struct dalcs_system *s, int row);
 
-/* p->weighed. Of weights v[dalcs_claim_n_rows()] that refute a problem (farkas.h): whose equations and signs they are. Of
- * a problem of which several cases are refuted: its pairs. */
-void dalcs_witness_from_weights(struct dalcs_osnsp *p, const double *v);
-/* Likewise of a passive problem, into p->witness: they are a ray. */
+/* Of weights v[dalcs_claim_n_rows()] that refute a passive problem (farkas.h): they are a ray. */
 void dalcs_witness_from_passive_weights(struct dalcs_osnsp *p, const double *v);
+
+/* Of a problem of which several cases are refuted, into p->weighed: its pairs. */
 void dalcs_witness_from_cases(struct dalcs_osnsp *p);
 
 /* What it names becomes what p->witness names; the ray is not copied. */
@@ -258,6 +260,11 @@ void dalcs_witness_copy(struct dalcs_osnsp *p, const struct dalcs_witness *from)
 
 /* Names something where the others found no name. */
 void dalcs_witness_complete(struct dalcs_osnsp *p);
+
+/* ---- witness_weights.c --------------------------------------------------------------------- */
+
+/* p->weighed, of weights v[dalcs_claim_n_rows()] that refute a problem: whose equations and signs they are. */
+void dalcs_witness_from_weights(struct dalcs_osnsp *p, const double *v);
 
 /* ---- osnsp.c ------------------------------------------------------------------------------- */
 

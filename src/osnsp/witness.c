@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-static void add_element(struct dalcs_witness *w, const char *name) {
+void dalcs_witness_add(struct dalcs_witness *w, const char *name) {
     for (int k = 0; k < w->n_elements; k++) {
         if (strcmp(w->element[k], name) == 0) {
             return;
@@ -54,7 +54,7 @@ static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) 
             }
         }
         if (fabs(work) > dalcs_nothing * size) {
-            add_element(&p->witness, s->input_element[input]);
+            dalcs_witness_add(&p->witness, s->input_element[input]);
         }
     }
 }
@@ -149,12 +149,12 @@ static void take_ray(struct dalcs_osnsp *p, const double *d, double largest) {
         enum dalcs_label_kind kind = s->column[c].kind;
         if (s->column_is_current[c] && fabs(d[i]) > dalcs_nothing * largest &&
             kind != DALCS_LABEL_REFERENCE) {
-            add_element(&p->witness, s->column[c].element);
+            dalcs_witness_add(&p->witness, s->column[c].element);
         }
     }
     for (int k = 0; k < f->n_pairs; k++) {
         if (fmax(fabs(d[f->n + k]), fabs(d_w[k])) > dalcs_nothing * largest) {
-            add_element(&p->witness, s->pair[k].element);
+            dalcs_witness_add(&p->witness, s->pair[k].element);
         }
     }
 }
@@ -218,7 +218,7 @@ void dalcs_witness_from_clash(struct dalcs_osnsp *p) {
     for (int r = 0; r < dalcs_system_n_equations(s); r++) {
         for (int k = s->E.p[r]; s->row_is_current[r] && k < s->E.p[r + 1]; k++) {
             if (s->E.j[k] > 0) {
-                add_element(&p->witness, s->input_element[s->E.j[k]]);
+                dalcs_witness_add(&p->witness, s->input_element[s->E.j[k]]);
             }
         }
     }
@@ -247,7 +247,7 @@ double dalcs_osnsp_along_ray(const struct dalcs_osnsp *p, const double *inputs) 
 void dalcs_witness_complete(struct dalcs_osnsp *p) {
     int where = p->certificate.where;
     if (p->witness.n_elements == 0 && where >= 0 && where < dalcs_system_n_equations(p->system)) {
-        add_element(&p->witness, p->system->row[where].element);
+        dalcs_witness_add(&p->witness, p->system->row[where].element);
     }
 }
 
@@ -263,7 +263,7 @@ void dalcs_osnsp_blame_states(struct dalcs_osnsp *p, const double *x, const doub
     p->witness.has_ray = false;
     for (int i = 0; i < s->n_x; i++) {
         if (fmax(fabs(y1[i] - x[i]), fabs(y2[i] - x[i])) >= 0.5 * largest) {
-            add_element(&p->witness, s->column[i].element);
+            dalcs_witness_add(&p->witness, s->column[i].element);
         }
     }
 }
@@ -273,7 +273,7 @@ static void name_pairs(const struct dalcs_system *s, struct dalcs_witness *w) {
     w->kind = DALCS_WITNESS_MODE;
     w->has_ray = false;
     for (int d = 0; d < s->n_pairs; d++) {
-        add_element(w, s->pair[d].element);
+        dalcs_witness_add(w, s->pair[d].element);
     }
 }
 
@@ -285,94 +285,11 @@ void dalcs_witness_from_cases(struct dalcs_osnsp *p) {
     name_pairs(p->system, &p->weighed);
 }
 
-/* Sources that enter an equation. */
-static void add_inputs(struct dalcs_osnsp *p, int r) {
-    const struct dalcs_csr *of = &p->system->E;
-    for (int k = of->p[r]; k < of->p[r + 1]; k++) {
-        if (of->j[k] > 0 && of->x[k] != 0.0) {
-            add_element(&p->weighed, p->system->input_element[of->j[k]]);
-        }
-    }
-}
-
-/* Sources by what the circuit has in it, which have no equation of their own. */
-static void add_readers(struct dalcs_osnsp *p, int r) {
-    const struct dalcs_csr *reads = &p->system->reads;
-    for (int k = reads->p == NULL ? 0 : reads->p[r]; reads->p != NULL && k < reads->p[r + 1]; k++) {
-        add_element(&p->weighed, p->system->reader[k]);
-    }
-}
-
-/* V, A: the largest weight of equations in volts, and of those in amperes; how many equations have one. */
-static int largest_weights(const struct dalcs_system *s, const double *v, double *largest) {
-    int n_rows = 0;
-    largest[0] = largest[1] = 0.0;
-    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
-        double *of = &largest[s->row_is_current[r]];
-        *of = fmax(*of, fabs(v[r]));
-        n_rows += v[r] != 0.0;
-    }
-    return n_rows;
-}
-
-/* What the weighted equations add up to for the current of a pair; *size: without their signs. */
-static double current_of_pair(const struct dalcs_system *s, const double *v, int pair,
-                              double *size) {
-    int n_equations = dalcs_system_n_equations(s);
-    double sum = 0.0;
-    *size = 0.0;
-    for (int r = 0; r < n_equations + s->n_pairs; r++) {
-        const struct dalcs_csr *of = r < n_equations ? &s->A : &s->C;
-        int row = r < n_equations ? r : r - n_equations;
-        for (int k = of->p[row]; k < of->p[row + 1]; k++) {
-            if (of->j[k] == n_equations + pair) {
-                sum += (r < n_equations ? -1.0 : 1.0) * v[r] * of->x[k];
-                *size += fabs(v[r] * of->x[k]);
-            }
-        }
-    }
-    return sum;
-}
-
-/* Do the weights use that one of its two sides is 0 or not negative? */
-static bool is_weighed(const struct dalcs_system *s, const double *v, int pair, double largest) {
-    int n_equations = dalcs_system_n_equations(s);
-    double size;
-    double sum = current_of_pair(s, v, pair, &size);
-    double side = fmax(fabs(v[n_equations + pair]), fabs(v[n_equations + s->n_pairs + pair]));
-    return side > dalcs_nothing * largest || fabs(sum) > dalcs_nothing * size;
-}
-
-void dalcs_witness_from_weights(struct dalcs_osnsp *p, const double *v) {
-    const struct dalcs_system *s = p->system;
-    int n_equations = dalcs_system_n_equations(s);
-    double largest[2];
-    bool is_alone = largest_weights(s, v, largest) == 1; /* what enters a node has cancelled */
-    p->weighed.n_elements = 0;
-    p->weighed.kind = DALCS_WITNESS_EQUATIONS;
-    for (int r = 0; r < n_equations; r++) {
-        if (!(fabs(v[r]) > dalcs_nothing * largest[s->row_is_current[r]])) {
-            continue;
-        }
-        add_inputs(p, r);
-        add_readers(p, r);
-        if (s->row[r].kind == DALCS_LABEL_BRANCH || s->row[r].kind == DALCS_LABEL_STATE ||
-            (s->row[r].kind == DALCS_LABEL_NODE && is_alone)) {
-            add_element(&p->weighed, s->row[r].element);
-        }
-    }
-    for (int d = 0; d < s->n_pairs; d++) {
-        if (is_weighed(s, v, d, fmax(largest[0], largest[1]))) {
-            add_element(&p->weighed, s->pair[d].element);
-        }
-    }
-}
-
 void dalcs_witness_copy(struct dalcs_osnsp *p, const struct dalcs_witness *from) {
     p->witness.kind = from->kind;
     p->witness.has_ray = from->has_ray;
     p->witness.n_elements = 0;
     for (int k = 0; k < from->n_elements; k++) {
-        add_element(&p->witness, from->element[k]);
+        dalcs_witness_add(&p->witness, from->element[k]);
     }
 }
