@@ -26,13 +26,13 @@ void dalcs_lu_keep_diagonal(klu_common *common, bool keep) {
  * apart make differ; a pivot that is this many times rcond_min of its own column is no rounding. */
 static const double clear_of_rounding = 100.0;
 
-enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, int n, int *p,
-                                   int *i) {
-    *symbolic = klu_analyze(n, p, i, common);
+enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common,
+                                   const struct dalcs_columns *a) {
+    *symbolic = klu_analyze(a->n, a->p, a->i, common);
     if (*symbolic == NULL) {
         return common->status == KLU_SINGULAR ? DALCS_SINGULAR : DALCS_E_NOMEM;
     }
-    if ((*symbolic)->structural_rank >= 0 && (*symbolic)->structural_rank < n) {
+    if ((*symbolic)->structural_rank >= 0 && (*symbolic)->structural_rank < a->n) {
         klu_free_symbolic(symbolic, common);
         return DALCS_SINGULAR;
     }
@@ -43,14 +43,12 @@ enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, 
 struct values {
     klu_common *common;
     klu_symbolic *symbolic;
-    bool is_complex;
-    int *p, *i;
-    double *x;
+    const struct dalcs_columns *a;
     double rcond_min;
 };
 
 static bool is_well_conditioned(const struct values *v, klu_numeric *numeric) {
-    if (v->is_complex) {
+    if (v->a->is_complex) {
         klu_z_rcond(v->symbolic, numeric, v->common);
     } else {
         klu_rcond(v->symbolic, numeric, v->common);
@@ -59,8 +57,8 @@ static bool is_well_conditioned(const struct values *v, klu_numeric *numeric) {
 }
 
 static enum dalcs_status factor(const struct values *v, klu_numeric **numeric) {
-    *numeric = v->is_complex ? klu_z_factor(v->p, v->i, v->x, v->symbolic, v->common)
-                             : klu_factor(v->p, v->i, v->x, v->symbolic, v->common);
+    *numeric = v->a->is_complex ? klu_z_factor(v->a->p, v->a->i, v->a->x, v->symbolic, v->common)
+                                : klu_factor(v->a->p, v->a->i, v->a->x, v->symbolic, v->common);
     if (v->common->status == KLU_OUT_OF_MEMORY || v->common->status == KLU_TOO_LARGE) {
         return DALCS_E_NOMEM;
     }
@@ -70,7 +68,7 @@ static enum dalcs_status factor(const struct values *v, klu_numeric **numeric) {
 
 static double magnitude(const struct values *v, const double *real, const double *imaginary,
                         int k) {
-    return v->is_complex ? hypot(real[k], imaginary[k]) : fabs(real[k]);
+    return v->a->is_complex ? hypot(real[k], imaginary[k]) : fabs(real[k]);
 }
 
 /* The least pivot over the largest element of its column, in the matrix and in U. */
@@ -85,9 +83,9 @@ static double least_relative_pivot(const struct values *v, const struct dalcs_lu
             largest = fmax(largest, a);
             pivot = e->Ui[k] == c ? a : pivot;
         }
-        for (int k = v->p[lu->to[c]]; k < v->p[lu->to[c] + 1]; k++) {
-            largest =
-                fmax(largest, v->is_complex ? hypot(v->x[2 * k], v->x[2 * k + 1]) : fabs(v->x[k]));
+        for (int k = v->a->p[lu->to[c]]; k < v->a->p[lu->to[c] + 1]; k++) {
+            largest = fmax(largest, v->a->is_complex ? hypot(v->a->x[2 * k], v->a->x[2 * k + 1])
+                                                     : fabs(v->a->x[k]));
         }
         least = fmin(least, pivot / largest);
     }
@@ -97,15 +95,15 @@ static double least_relative_pivot(const struct values *v, const struct dalcs_lu
 /* Do the pivots of other values serve these? */
 static bool refactor(const struct values *v, klu_numeric *numeric) {
     klu_common *c = v->common;
-    int done = v->is_complex ? klu_z_refactor(v->p, v->i, v->x, v->symbolic, numeric, c)
-                             : klu_refactor(v->p, v->i, v->x, v->symbolic, numeric, c);
+    int done = v->a->is_complex ? klu_z_refactor(v->a->p, v->a->i, v->a->x, v->symbolic, numeric, c)
+                                : klu_refactor(v->a->p, v->a->i, v->a->x, v->symbolic, numeric, c);
     if (!done || c->status != KLU_OK || !is_well_conditioned(v, numeric)) {
         return false;
     }
-    if (v->is_complex) {
-        klu_z_rgrowth(v->p, v->i, v->x, v->symbolic, numeric, c);
+    if (v->a->is_complex) {
+        klu_z_rgrowth(v->a->p, v->a->i, v->a->x, v->symbolic, numeric, c);
     } else {
-        klu_rgrowth(v->p, v->i, v->x, v->symbolic, numeric, c);
+        klu_rgrowth(v->a->p, v->a->i, v->a->x, v->symbolic, numeric, c);
     }
     return c->rgrowth >= least_reciprocal_growth;
 }
@@ -120,15 +118,14 @@ void dalcs_lu_drop(klu_numeric **kept, bool is_complex, klu_common *common) {
 
 enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *common,
                                            klu_symbolic *symbolic, klu_numeric **kept,
-                                           bool is_complex, int *p, int *i, double *x,
-                                           double rcond_min) {
-    *lu = (struct dalcs_lu){.n = symbolic->n, .is_complex = is_complex};
-    const struct values v = {common, symbolic, is_complex, p, i, x, rcond_min};
+                                           const struct dalcs_columns *a, double rcond_min) {
+    *lu = (struct dalcs_lu){.n = symbolic->n, .is_complex = a->is_complex};
+    const struct values v = {common, symbolic, a, rcond_min};
     klu_numeric *numeric = kept != NULL ? *kept : NULL;
     enum dalcs_status status = DALCS_OK;
     bool is_doubtful = false;
     if (numeric == NULL || !refactor(&v, numeric)) {
-        dalcs_lu_drop(&numeric, is_complex, common);
+        dalcs_lu_drop(&numeric, a->is_complex, common);
         status = factor(&v, &numeric);
         is_doubtful = status == DALCS_OK && !is_well_conditioned(&v, numeric);
     }
@@ -145,7 +142,7 @@ enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *comm
         free(e.storage);
     }
     if (kept == NULL || status != DALCS_OK) {
-        dalcs_lu_drop(&numeric, is_complex, common);
+        dalcs_lu_drop(&numeric, a->is_complex, common);
     }
     if (kept != NULL) {
         *kept = numeric;
@@ -157,9 +154,11 @@ enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *comm
 }
 
 /* btf_maxtrans matches a column to its first entry whose row is still free. */
-static void list_matched_rows_first(int n, const int *p, int *i, double *x,
-                                    const int *row_of_column) {
-    for (int c = 0; c < n; c++) {
+static void list_matched_rows_first(const struct dalcs_columns *a, const int *row_of_column) {
+    const int *p = a->p;
+    int *i = a->i;
+    double *x = a->x;
+    for (int c = 0; c < a->n; c++) {
         for (int k = p[c]; k < p[c + 1]; k++) {
             if (i[k] == row_of_column[c]) {
                 double value = x[k];
@@ -173,25 +172,26 @@ static void list_matched_rows_first(int n, const int *p, int *i, double *x,
     }
 }
 
-enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n, int *p, int *i,
-                                  double *x, int *row_of_column, double rcond_min) {
-    *lu = (struct dalcs_lu){.n = n};
-    if (n == 0) {
+enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common,
+                                  const struct dalcs_columns *a, int *row_of_column,
+                                  double rcond_min) {
+    *lu = (struct dalcs_lu){.n = a->n};
+    if (a->n == 0) {
         return DALCS_OK;
     }
     if (row_of_column != NULL) {
-        list_matched_rows_first(n, p, i, x, row_of_column);
+        list_matched_rows_first(a, row_of_column);
     }
     klu_symbolic *symbolic;
-    enum dalcs_status status = dalcs_lu_analyze(&symbolic, common, n, p, i);
+    enum dalcs_status status = dalcs_lu_analyze(&symbolic, common, a);
     if (status != DALCS_OK) {
         dalcs_lu_finish(lu);
         return status;
     }
-    for (int k = 0; row_of_column != NULL && k < n; k++) {
+    for (int k = 0; row_of_column != NULL && k < a->n; k++) {
         row_of_column[symbolic->Q[k]] = symbolic->P[k];
     }
-    status = dalcs_lu_factor_analyzed(lu, common, symbolic, NULL, false, p, i, x, rcond_min);
+    status = dalcs_lu_factor_analyzed(lu, common, symbolic, NULL, a, rcond_min);
     klu_free_symbolic(&symbolic, common);
     return status;
 }

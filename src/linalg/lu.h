@@ -33,6 +33,14 @@ struct dalcs_lu {
     void *storage;         /* of all of these */
 };
 
+/* A square matrix by columns. */
+struct dalcs_columns {
+    int n;
+    int *p, *i;
+    double *x; /* real and imaginary parts in turn, where it is complex */
+    bool is_complex;
+};
+
 /* KLU's settings and counters; one for each thread of work. */
 void dalcs_lu_common_init(klu_common *common);
 
@@ -45,7 +53,7 @@ void dalcs_lu_keep_diagonal(klu_common *common, bool keep);
  * diagonal, elements may grow a thousandfold. */
 void dalcs_lu_pivot_carefully(klu_common *common);
 
-/* Factors the matrix of order n whose columns are (p[n+1], i[], x[]). DALCS_SINGULAR when KLU meets
+/* Factors a matrix. DALCS_SINGULAR when KLU meets
  * a zero pivot, or when its cheap estimate of the reciprocal condition is below rcond_min and a pivot
  * may be what rounding left of its column: the caller balances rows and columns, so that this means
  * something. On any failure *lu is zeroed: nothing to free.
@@ -54,21 +62,22 @@ void dalcs_lu_pivot_carefully(klu_common *common);
  * one was found to match to it, -1 where there is none, and gets the rows found for this one. The
  * search for a full diagonal, which is quadratic in a long chain of capacitors, then finds all but a
  * few rows at once; for that, entries change places within their columns. */
-enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n, int *p, int *i,
-                                  double *x, int *row_of_column, double rcond_min) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common,
+                                  const struct dalcs_columns *a, int *row_of_column,
+                                  double rcond_min) DALCS_MUST_CHECK;
 
 /* A matrix of up to so many rows is as well factored without an analysis. */
 enum { DALCS_LU_SMALL = 16 };
 
 /* The same of such a matrix, by plain elimination. DALCS_SINGULAR where a pivot is 0 or, over another one, less
  * than `apart`: then it may be singular, or need an order that follows its pattern; dalcs_lu_factor decides that. */
-enum dalcs_status dalcs_lu_factor_small(struct dalcs_lu *lu, int n, const int *p, const int *i,
-                                        const double *x, double apart) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_lu_factor_small(struct dalcs_lu *lu, const struct dalcs_columns *a,
+                                        double apart) DALCS_MUST_CHECK;
 
 /* The analysis of the pattern alone, for all values, real or complex. DALCS_SINGULAR when no
  * values can make the matrix regular. Free it with klu_free_symbolic. */
-enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, int n, int *p,
-                                   int *i) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common,
+                                   const struct dalcs_columns *a) DALCS_MUST_CHECK;
 
 /* dalcs_lu_factor with the analysis at hand. `common` must not serve both real and complex ones.
  * kept may be NULL. Otherwise, and if *kept has KLU's factors of other values of the same
@@ -77,7 +86,7 @@ enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, 
  * freed by dalcs_lu_drop. */
 enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *common,
                                            klu_symbolic *symbolic, klu_numeric **kept,
-                                           bool is_complex, int *p, int *i, double *x,
+                                           const struct dalcs_columns *a,
                                            double rcond_min) DALCS_MUST_CHECK;
 
 void dalcs_lu_drop(klu_numeric **kept, bool is_complex, klu_common *common);

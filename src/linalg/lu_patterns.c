@@ -20,11 +20,11 @@ void dalcs_lu_patterns_finish(struct dalcs_lu_patterns *patterns, klu_common *co
     *patterns = (struct dalcs_lu_patterns){0};
 }
 
-static bool is_it(const struct dalcs_lu_pattern *known, bool keeps_diagonal, int n, const int *p,
-                  const int *i) {
-    return known->n == n && known->keeps_diagonal == keeps_diagonal &&
-           memcmp(known->p, p, ((size_t)n + 1) * sizeof(*p)) == 0 &&
-           memcmp(known->p + n + 1, i, (size_t)p[n] * sizeof(*i)) == 0;
+static bool is_it(const struct dalcs_lu_pattern *known, bool keeps_diagonal,
+                  const struct dalcs_columns *a) {
+    return known->n == a->n && known->keeps_diagonal == keeps_diagonal &&
+           memcmp(known->p, a->p, ((size_t)a->n + 1) * sizeof(*a->p)) == 0 &&
+           memcmp(known->p + a->n + 1, a->i, (size_t)a->p[a->n] * sizeof(*a->i)) == 0;
 }
 
 /* Number `from` becomes the first. */
@@ -44,25 +44,25 @@ static bool are_full(const struct dalcs_lu_patterns *patterns, int most, size_t 
 }
 
 static enum dalcs_status analyse(struct dalcs_lu_patterns *patterns, klu_common *common,
-                                 bool keeps_diagonal, int n, int *p, int *i) {
-    const size_t n_starts = (size_t)n + 1;
-    const size_t n_entries = (size_t)p[n];
+                                 bool keeps_diagonal, const struct dalcs_columns *a) {
+    const size_t n_starts = (size_t)a->n + 1;
+    const size_t n_entries = (size_t)a->p[a->n];
     const int most = patterns->most > 0 ? patterns->most : DALCS_LU_PATTERNS;
-    struct dalcs_lu_pattern made = {.n = n, .keeps_diagonal = keeps_diagonal};
+    struct dalcs_lu_pattern made = {.n = a->n, .keeps_diagonal = keeps_diagonal};
     if (patterns->known == NULL) {
         patterns->known = dalcs_alloc((size_t)most, sizeof(*patterns->known));
     }
     if (patterns->known == NULL) {
         return DALCS_E_NOMEM;
     }
-    DALCS_TRY(dalcs_lu_analyze(&made.symbolic, common, n, p, i));
+    DALCS_TRY(dalcs_lu_analyze(&made.symbolic, common, a));
     made.p = malloc((n_starts + n_entries) * sizeof(*made.p));
     if (made.p == NULL) {
         forget(&made, common);
         return DALCS_E_NOMEM;
     }
-    memcpy(made.p, p, n_starts * sizeof(*p));
-    memcpy(made.p + n_starts, i, n_entries * sizeof(*i));
+    memcpy(made.p, a->p, n_starts * sizeof(*a->p));
+    memcpy(made.p + n_starts, a->i, n_entries * sizeof(*a->i));
     while (patterns->n > 0 && are_full(patterns, most, n_entries)) {
         forget(&patterns->known[--patterns->n], common);
     }
@@ -72,26 +72,25 @@ static enum dalcs_status analyse(struct dalcs_lu_patterns *patterns, klu_common 
 }
 
 enum dalcs_status dalcs_lu_factor_again(struct dalcs_lu *lu, struct dalcs_lu_patterns *patterns,
-                                        klu_common *common, int n, int *p, int *i, double *x,
+                                        klu_common *common, const struct dalcs_columns *a,
                                         double rcond_min) {
     const bool keeps_diagonal = common->btf == 0;
-    *lu = (struct dalcs_lu){.n = n};
-    if (n == 0) {
+    *lu = (struct dalcs_lu){.n = a->n};
+    if (a->n == 0) {
         return DALCS_OK;
     }
     int k = 0;
-    while (k < patterns->n && !is_it(&patterns->known[k], keeps_diagonal, n, p, i)) {
+    while (k < patterns->n && !is_it(&patterns->known[k], keeps_diagonal, a)) {
         k++;
     }
     if (k < patterns->n) {
         put_first(patterns, k);
     } else {
-        enum dalcs_status status = analyse(patterns, common, keeps_diagonal, n, p, i);
+        enum dalcs_status status = analyse(patterns, common, keeps_diagonal, a);
         if (status != DALCS_OK) {
             dalcs_lu_finish(lu);
             return status;
         }
     }
-    return dalcs_lu_factor_analyzed(lu, common, patterns->known[0].symbolic, NULL, false, p, i, x,
-                                    rcond_min);
+    return dalcs_lu_factor_analyzed(lu, common, patterns->known[0].symbolic, NULL, a, rcond_min);
 }

@@ -29,7 +29,7 @@ struct dalcs_lu_patterns {
 
 /* dalcs_lu_factor() by an analysis that is there, or that is kept. */
 enum dalcs_status dalcs_lu_factor_again(struct dalcs_lu *lu, struct dalcs_lu_patterns *patterns,
-                                        klu_common *common, int n, int *p, int *i, double *x,
+                                        klu_common *common, const struct dalcs_columns *a,
                                         double rcond_min) DALCS_MUST_CHECK;
 
 void dalcs_lu_patterns_finish(struct dalcs_lu_patterns *patterns, klu_common *common);

@@ -14,15 +14,16 @@ struct dense {
     double a[DALCS_LU_SMALL][DALCS_LU_SMALL];
 };
 
-static void spread_out(struct dense *m, int n, const int *p, const int *i, const double *x) {
+static void spread_out(struct dense *m, const struct dalcs_columns *a) {
+    const int n = a->n;
     m->n = n;
     for (int r = 0; r < n; r++) {
         m->row[r] = r;
         memset(m->a[r], 0, (size_t)n * sizeof(double));
     }
     for (int c = 0; c < n; c++) {
-        for (int k = p[c]; k < p[c + 1]; k++) {
-            m->a[i[k]][c] = x[k];
+        for (int k = a->p[c]; k < a->p[c + 1]; k++) {
+            m->a[a->i[k]][c] = a->x[k];
         }
     }
 }
@@ -88,14 +89,15 @@ static void append(const struct dense *m, int r, int from, int to, int *row_p, i
     row_p[r + 1] = out;
 }
 
-enum dalcs_status dalcs_lu_factor_small(struct dalcs_lu *lu, int n, const int *p, const int *i,
-                                        const double *x, double apart) {
+enum dalcs_status dalcs_lu_factor_small(struct dalcs_lu *lu, const struct dalcs_columns *a,
+                                        double apart) {
+    const int n = a->n;
     struct dense m;
     *lu = (struct dalcs_lu){.n = n, .n_blocks = n > 0 ? 1 : 0};
     if (n == 0) {
         return DALCS_OK;
     }
-    spread_out(&m, n, p, i, x);
+    spread_out(&m, a);
     if (!eliminate(&m) || !(least_over_largest(&m) >= apart)) {
         *lu = (struct dalcs_lu){0};
         return DALCS_SINGULAR;

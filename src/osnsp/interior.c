@@ -100,7 +100,8 @@ static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
     fill_pattern(m);
     dalcs_lu_keep_diagonal(&p->cache.klu, true);
     enum dalcs_status status =
-        dalcs_lu_analyze(&m->symbolic, &p->cache.klu, (int)order, m->start, m->row);
+        dalcs_lu_analyze(&m->symbolic, &p->cache.klu,
+                         &(struct dalcs_columns){.n = (int)order, .p = m->start, .i = m->row});
     dalcs_lu_keep_diagonal(&p->cache.klu, false);
     if (status != DALCS_OK) {
         finish(m);
@@ -132,8 +133,9 @@ static enum dalcs_status factor(struct interior *m) {
     }
     dalcs_lu_finish(&m->lu);
     m->p->counters.factorizations++;
-    return dalcs_lu_factor_analyzed(&m->lu, &m->p->cache.klu, m->symbolic, &m->kept, false,
-                                    m->start, m->row, m->value, 0.0);
+    const struct dalcs_columns a = {
+        .n = m->n + m->n_pairs, .p = m->start, .i = m->row, .x = m->value};
+    return dalcs_lu_factor_analyzed(&m->lu, &m->p->cache.klu, m->symbolic, &m->kept, &a, 0.0);
 }
 
 static double voltage_of(const struct interior *m, int d, const double *y) {

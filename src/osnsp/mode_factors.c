@@ -138,8 +138,7 @@ static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_e
             int row = p->cache.matched_row[index_of_slot(f, e, c)];
             row_of_column[c] = row >= 0 ? slot[row] : -1;
         }
-        status = dalcs_lu_factor(&e->lu, &p->cache.klu, a->n, a->p, a->i, a->x, row_of_column,
-                                 least_rcond(p));
+        status = dalcs_lu_factor(&e->lu, &p->cache.klu, a, row_of_column, least_rcond(p));
         for (int c = 0; c < a->n; c++) {
             int row = row_of_column[c];
             p->cache.matched_row[index_of_slot(f, e, c)] = row >= 0 ? index_of_slot(f, e, row) : -1;
@@ -152,9 +151,8 @@ static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_e
 
 enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu,
                                            const struct dalcs_columns *a, double apart) {
-    return p->asks.is_passing && a->n <= DALCS_LU_SMALL
-               ? dalcs_lu_factor_small(lu, a->n, a->p, a->i, a->x, apart)
-               : DALCS_SINGULAR;
+    return p->asks.is_passing && a->n <= DALCS_LU_SMALL ? dalcs_lu_factor_small(lu, a, apart)
+                                                        : DALCS_SINGULAR;
 }
 
 struct dalcs_lu_patterns *dalcs_modes_patterns(struct dalcs_osnsp *p) {
@@ -168,7 +166,7 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
     }
     enum dalcs_status status = dalcs_modes_factor_small(p, &e->lu, a, dalcs_nothing);
     return status > DALCS_OK ? dalcs_lu_factor_again(&e->lu, dalcs_modes_patterns(p), &p->cache.klu,
-                                                     a->n, a->p, a->i, a->x, least_rcond(p))
+                                                     a, least_rcond(p))
                              : status;
 }
 

@@ -58,14 +58,8 @@ void dalcs_modes_finish(struct dalcs_osnsp *p);
 enum dalcs_status dalcs_modes_factor_plain(struct dalcs_osnsp *p,
                                            struct dalcs_mode_entry *entry) DALCS_MUST_CHECK;
 
-/* A square matrix by columns. All is in the block that starts at x. */
-struct dalcs_columns {
-    int n;
-    int *p, *i;
-    double *x;
-};
-
-/* With so many entries, which are for the caller to set, as are the starts behind the first. */
+/* With so many entries, which are for the caller to set, as are the starts behind the first. All is in the block that starts
+ * at x. */
 enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n,
                                       size_t n_entries) DALCS_MUST_CHECK;
 

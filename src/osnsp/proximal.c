@@ -98,8 +98,7 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
     enum dalcs_status status = dalcs_modes_factor_small(p, &entry->lu, &a, 0.0);
     if (status > DALCS_OK) {
         dalcs_lu_keep_diagonal(&p->cache.klu, true);
-        status = dalcs_lu_factor_again(&entry->lu, dalcs_modes_patterns(p), &p->cache.klu, n, a.p,
-                                       a.i, a.x, 0.0);
+        status = dalcs_lu_factor_again(&entry->lu, dalcs_modes_patterns(p), &p->cache.klu, &a, 0.0);
         dalcs_lu_keep_diagonal(&p->cache.klu, false);
     }
     dalcs_columns_finish(&a);

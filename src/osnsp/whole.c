@@ -93,14 +93,13 @@ static enum dalcs_status put_columns(const struct dalcs_whole *whole,
 static enum dalcs_status factor(struct dalcs_whole *whole, const struct dalcs_triplets *t) {
     struct dalcs_csr columns = {0};
     DALCS_TRY(put_columns(whole, t, &columns));
-    const struct dalcs_columns a = {whole->n, columns.p, columns.j, columns.x};
+    const struct dalcs_columns a = {.n = whole->n, .p = columns.p, .i = columns.j, .x = columns.x};
     enum dalcs_status status = dalcs_modes_factor_small(whole->p, &whole->lu, &a, dalcs_nothing);
     if (status > DALCS_OK) {
         klu_common common;
         dalcs_lu_common_init(&common);
         dalcs_lu_pivot_carefully(&common);
-        status = dalcs_lu_factor(&whole->lu, &common, whole->n, columns.p, columns.j, columns.x,
-                                 NULL, 0.0);
+        status = dalcs_lu_factor(&whole->lu, &common, &a, NULL, 0.0);
     }
     dalcs_csr_finish(&columns);
     return status;

@@ -186,9 +186,10 @@ static enum dalcs_status part_setup(struct part *part, const struct dalcs_compon
     }
     DALCS_TRY(compress(part));
     /* what is shorted has no unknowns, and KLU takes no matrix without rows */
-    return part->n == 0
-               ? DALCS_OK
-               : dalcs_lu_analyze(&part->symbolic, &part->common, part->n, part->p, part->i);
+    return part->n == 0 ? DALCS_OK
+                        : dalcs_lu_analyze(
+                              &part->symbolic, &part->common,
+                              &(struct dalcs_columns){.n = part->n, .p = part->p, .i = part->i});
 }
 
 /* ---- One frequency ------------------------------------------------------------------------------ */
@@ -260,8 +261,9 @@ static enum dalcs_status solve_part(struct part *part, double frequency, double 
         return DALCS_OK;
     }
     balance(part, omega);
-    DALCS_TRY(dalcs_lu_factor_analyzed(&lu, &part->common, part->symbolic, NULL, true, part->p,
-                                       part->i, part->x, rcond_min));
+    const struct dalcs_columns a = {
+        .n = part->n, .p = part->p, .i = part->i, .x = part->x, .is_complex = true};
+    DALCS_TRY(dalcs_lu_factor_analyzed(&lu, &part->common, part->symbolic, NULL, &a, rcond_min));
     memset(part->y[0], 0, (size_t)part->n * sizeof(double));
     memset(part->y[1], 0, (size_t)part->n * sizeof(double));
     for (int round = 0; round < 2; round++) { /* once more, for what rounding left */

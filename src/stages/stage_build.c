@@ -92,9 +92,11 @@ static enum dalcs_status factor_all(struct dalcs_stages *stages, struct dalcs_st
         double im;
         find_eigenvalue(stages, entry->h, q, &re, &im);
         dalcs_stage_matrix_at(m, re, im, q > 0);
-        DALCS_TRY(dalcs_lu_factor_analyzed(
-            &f->lu[q], q > 0 ? &stages->cache.klu_complex : &stages->cache.klu, a->symbolic,
-            &a->numeric[q], q > 0, m->p, m->i, m->values, rcond_min));
+        const struct dalcs_columns columns = {
+            .n = m->n, .p = m->p, .i = m->i, .x = m->values, .is_complex = q > 0};
+        DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q],
+                                           q > 0 ? &stages->cache.klu_complex : &stages->cache.klu,
+                                           a->symbolic, &a->numeric[q], &columns, rcond_min));
         DALCS_TRY(list_order(stages->plan, m, f, q));
     }
     return DALCS_OK;

@@ -251,7 +251,8 @@ static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mo
                                        .is_singular = is_singular};
     enum dalcs_status status = DALCS_E_NOMEM;
     if (first != NULL && a->mode != NULL) {
-        status = dalcs_lu_analyze(&a->symbolic, &stages->cache.klu, m->n, m->p, first);
+        status = dalcs_lu_analyze(&a->symbolic, &stages->cache.klu,
+                                  &(struct dalcs_columns){.n = m->n, .p = m->p, .i = first});
     }
     free(first);
     if (status != DALCS_OK) {

@@ -15,6 +15,10 @@ struct columns {
     double x[1024];
 };
 
+/* The same as it is factored. */
+#define COLUMNS(order, a)                                                                          \
+    (&(struct dalcs_columns){.n = (order), .p = (a).p, .i = (a).i, .x = (a).x})
+
 static struct columns compress(int n, const double *dense) {
     struct columns a = {.p = {0}};
     int out = 0;
@@ -36,9 +40,9 @@ static enum dalcs_status factor(struct dalcs_lu *lu, int n, const double *dense,
     struct columns a = compress(n, dense);
     dalcs_lu_common_init(&klu);
     if (by_small) {
-        return dalcs_lu_factor_small(lu, n, a.p, a.i, a.x, 1e-6);
+        return dalcs_lu_factor_small(lu, COLUMNS(n, a), 1e-6);
     }
-    return dalcs_lu_factor(lu, &klu, n, a.p, a.i, a.x, NULL, rcond_min);
+    return dalcs_lu_factor(lu, &klu, COLUMNS(n, a), NULL, rcond_min);
 }
 
 /* Backward stable: the residual is some roundings of |A| |x|, n of them at most, times the growth of
@@ -163,7 +167,7 @@ static void check_matched(const double *dense, int *row_of_column) {
     struct columns a = compress(MATCHED, dense);
     struct dalcs_lu lu;
     dalcs_lu_common_init(&klu);
-    ck_assert_int_eq(dalcs_lu_factor(&lu, &klu, MATCHED, a.p, a.i, a.x, row_of_column, 1e-14),
+    ck_assert_int_eq(dalcs_lu_factor(&lu, &klu, COLUMNS(MATCHED, a), row_of_column, 1e-14),
                      DALCS_OK);
     bool is_taken[MATCHED] = {false};
     double b[MATCHED];
@@ -263,7 +267,7 @@ START_TEST(test_nothing) {
     dalcs_lu_solve(&lu, NULL);
     ck_assert_uint_eq(dalcs_lu_bytes(&lu), 0);
     dalcs_lu_finish(&lu);
-    ck_assert_int_eq(dalcs_lu_factor_small(&lu, 0, NULL, NULL, NULL, 1e-6), DALCS_OK);
+    ck_assert_int_eq(dalcs_lu_factor_small(&lu, &(struct dalcs_columns){0}, 1e-6), DALCS_OK);
     dalcs_lu_solve_ordered(&lu);
     dalcs_lu_finish(&lu);
 }
@@ -302,9 +306,8 @@ static void check_patterns(struct dalcs_lu_patterns *patterns) {
                 b[i] = i - 7.0;
             }
             enum dalcs_status status =
-                again == 1
-                    ? dalcs_lu_factor_again(&lu, patterns, &klu, OF_ORDER, a.p, a.i, a.x, 1e-14)
-                    : dalcs_lu_factor(&lu, &klu, OF_ORDER, a.p, a.i, a.x, NULL, 1e-14);
+                again == 1 ? dalcs_lu_factor_again(&lu, patterns, &klu, COLUMNS(OF_ORDER, a), 1e-14)
+                           : dalcs_lu_factor(&lu, &klu, COLUMNS(OF_ORDER, a), NULL, 1e-14);
             ck_assert_int_eq(status, DALCS_OK);
             dalcs_lu_solve(&lu, b);
             dalcs_lu_finish(&lu);
@@ -338,16 +341,17 @@ START_TEST(test_singular_patterns) {
     struct dalcs_lu lu;
     dalcs_lu_common_init(&klu);
     struct columns a = compress(2, empty_column);
-    ck_assert_int_eq(dalcs_lu_factor_again(&lu, &patterns, &klu, 2, a.p, a.i, a.x, 0.0),
+    ck_assert_int_eq(dalcs_lu_factor_again(&lu, &patterns, &klu, COLUMNS(2, a), 0.0),
                      DALCS_SINGULAR);
     ck_assert_int_eq(patterns.n, 0); /* whatever the values */
     a = compress(2, same_rows);
     for (int k = 0; k < 2; k++) {
-        ck_assert_int_eq(dalcs_lu_factor_again(&lu, &patterns, &klu, 2, a.p, a.i, a.x, 1e-14),
+        ck_assert_int_eq(dalcs_lu_factor_again(&lu, &patterns, &klu, COLUMNS(2, a), 1e-14),
                          DALCS_SINGULAR);
         ck_assert_int_eq(patterns.n, 1);
     }
-    ck_assert_int_eq(dalcs_lu_factor_again(&lu, &patterns, &klu, 0, a.p, a.i, a.x, 0.0), DALCS_OK);
+    ck_assert_int_eq(dalcs_lu_factor_again(&lu, &patterns, &klu, &(struct dalcs_columns){0}, 0.0),
+                     DALCS_OK);
     dalcs_lu_finish(&lu);
     dalcs_lu_patterns_finish(&patterns, &klu);
 }
