@@ -123,8 +123,8 @@ static double scale_of_argument(const struct dalcs_radau_part *part, int pair, i
     return least;
 }
 
-/* What an argument is known to. */
-static double noise_of_argument(const struct dalcs_radau_part *part, int pair, const double *unit) {
+double dalcs_formula_argument_noise(const struct dalcs_radau_part *part, int pair,
+                                    const double *unit) {
     const struct dalcs_system *s = part->component->system;
     double size = 0.0;
     for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
@@ -141,13 +141,13 @@ static double noise_of(const struct dalcs_radau_part *part, int pair, bool is_on
                        const double *unit) {
     const struct dalcs_system *s = part->component->system;
     const double slope = dalcs_pair_slope(s, pair);
-    double noise = noise_of_argument(part, pair, unit);
+    double noise = dalcs_formula_argument_noise(part, pair, unit);
     for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
         const int e = s->C.j[k] - dalcs_system_n_equations(s);
         if (e < 0 || e == pair || !s->pair[e].is_formula) {
             continue;
         }
-        const double of_argument = noise_of_argument(part, e, unit);
+        const double of_argument = dalcs_formula_argument_noise(part, e, unit);
         const double of_slope = dalcs_pair_slope(s, e);
         const bool is_argument = is_on && slope == 0.0;
         if (is_argument) {
