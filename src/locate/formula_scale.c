@@ -159,11 +159,36 @@ static double noise_of(const struct dalcs_radau_part *part, int pair, bool is_on
     return is_on && slope > 0.0 ? noise / slope : noise;
 }
 
+/* Of a comparison, by what its argument is made of; `scale` where it is made of other kinks. The argument is w of the first
+ * pair or lambda of the second, and of no unit of theirs. */
+static double scale_of_compared(const struct dalcs_radau_part *part, int pair, double scale,
+                                const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    const int first = s->pair[pair].is_jump ? pair : pair - 1;
+    const int n_equations = dalcs_system_n_equations(s);
+    double size = 0.0;
+    for (int k = s->F.p[first]; k < s->F.p[first + 1]; k++) {
+        size += fabs(s->F.x[k] * part->excitation.constant[s->F.j[k]]);
+    }
+    for (int k = s->C.p[first]; k < s->C.p[first + 1]; k++) {
+        const int c = s->C.j[k];
+        if (c < n_equations) {
+            size += fabs(s->C.x[k]) * dalcs_step_scale(part, c, unit);
+        } else if (c != n_equations + first && c != n_equations + first + 1) {
+            return scale;
+        }
+    }
+    return size > 0.0 ? size : scale;
+}
+
 double dalcs_formula_scale(const struct dalcs_radau_part *part, int pair, double scale,
                            const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    if (part->laws.places == NULL || !s->pair[pair].is_formula || compares(s, pair)) {
+    if (part->laws.places == NULL || !s->pair[pair].is_formula) {
         return scale;
+    }
+    if (compares(s, pair)) {
+        return scale_of_compared(part, pair, scale, unit);
     }
     const bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair);
     const double own = is_on ? scale_of_output(part, pair, 0) : scale_of_argument(part, pair, 0);
