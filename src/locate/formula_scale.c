@@ -159,12 +159,11 @@ static double noise_of(const struct dalcs_radau_part *part, int pair, bool is_on
     return is_on && slope > 0.0 ? noise / slope : noise;
 }
 
-/* Of a comparison, by what its argument is made of; `scale` where it is made of other kinks. The argument is w of the first
+/* Of the comparison with this first pair, by what its argument is made of; `scale` where that is other kinks. It is w of the first
  * pair or lambda of the second, and of no unit of theirs. */
-static double scale_of_compared(const struct dalcs_radau_part *part, int pair, double scale,
+static double scale_of_compared(const struct dalcs_radau_part *part, int first, double scale,
                                 const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    const int first = s->pair[pair].is_jump ? pair : pair - 1;
     const int n_equations = dalcs_system_n_equations(s);
     double size = 0.0;
     for (int k = s->F.p[first]; k < s->F.p[first + 1]; k++) {
@@ -188,7 +187,11 @@ double dalcs_formula_scale(const struct dalcs_radau_part *part, int pair, double
         return scale;
     }
     if (compares(s, pair)) {
-        return scale_of_compared(part, pair, scale, unit);
+        const int first = s->pair[pair].is_jump ? pair : pair - 1;
+        const double known =
+            dalcs_formula_argument_noise(part, first, unit) / part->inner_tolerance;
+        return dalcs_smaller(scale,
+                             dalcs_larger(scale_of_compared(part, first, scale, unit), known));
     }
     const bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair);
     const double own = is_on ? scale_of_output(part, pair, 0) : scale_of_argument(part, pair, 0);
