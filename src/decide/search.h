@@ -30,7 +30,7 @@ struct dalcs_search {
     int refined;  /* times that a step was shortened for the signs at its start */
     bool closer;  /* micro-steps have looked for a mode that lasts for a small part of the step */
     int flips_closer;
-    bool rested; /* comparisons at equality are on the side that is written for it */
+    int rested; /* answers, and one, after which comparisons at equality were put on the side that is written for it */
     bool untied; /* tied diodes have been looked at */
     bool opened; /* and are on their other sides now, to try */
     bool projected;

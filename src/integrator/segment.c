@@ -199,9 +199,10 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
         return dalcs_search_go_on_trying(part, search);
     }
     /* A comparison rests at equality: it has in the next try the side that is written for it, unless that one falls at
-     * once, so that something else decides. */
-    if (part->guards.fresh && !search->rested && dalcs_guards_rest(part, q->unit)) {
-        search->rested = true;
+     * once, so that something else decides. What it commands may turn, and micro-steps, which answer that, see rounding. */
+    if (part->guards.fresh && search->rested <= search->restarts &&
+        dalcs_guards_rest(part, q->unit)) {
+        search->rested = search->restarts + 1;
         return DALCS_OK;
     }
     /* A guard is below 0 from the start on and does not come back, as an error of the state would. */

@@ -123,8 +123,8 @@ static double scale_of_argument(const struct dalcs_radau_part *part, int pair, i
     return least;
 }
 
-/* What an argument is known to. */
-static double noise_of_argument(const struct dalcs_radau_part *part, int pair, const double *unit) {
+double dalcs_formula_argument_noise(const struct dalcs_radau_part *part, int pair,
+                                    const double *unit) {
     const struct dalcs_system *s = part->component->system;
     double size = 0.0;
     for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
@@ -141,13 +141,13 @@ static double noise_of(const struct dalcs_radau_part *part, int pair, bool is_on
                        const double *unit) {
     const struct dalcs_system *s = part->component->system;
     const double slope = dalcs_pair_slope(s, pair);
-    double noise = noise_of_argument(part, pair, unit);
+    double noise = dalcs_formula_argument_noise(part, pair, unit);
     for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
         const int e = s->C.j[k] - dalcs_system_n_equations(s);
         if (e < 0 || e == pair || !s->pair[e].is_formula) {
             continue;
         }
-        const double of_argument = noise_of_argument(part, e, unit);
+        const double of_argument = dalcs_formula_argument_noise(part, e, unit);
         const double of_slope = dalcs_pair_slope(s, e);
         const bool is_argument = is_on && slope == 0.0;
         if (is_argument) {
@@ -159,11 +159,39 @@ static double noise_of(const struct dalcs_radau_part *part, int pair, bool is_on
     return is_on && slope > 0.0 ? noise / slope : noise;
 }
 
+/* Of the comparison with this first pair, by what its argument is made of; `scale` where that is other kinks. It is w of the first
+ * pair or lambda of the second, and of no unit of theirs. */
+static double scale_of_compared(const struct dalcs_radau_part *part, int first, double scale,
+                                const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    const int n_equations = dalcs_system_n_equations(s);
+    double size = 0.0;
+    for (int k = s->F.p[first]; k < s->F.p[first + 1]; k++) {
+        size += fabs(s->F.x[k] * part->excitation.constant[s->F.j[k]]);
+    }
+    for (int k = s->C.p[first]; k < s->C.p[first + 1]; k++) {
+        const int c = s->C.j[k];
+        if (c < n_equations) {
+            size += fabs(s->C.x[k]) * dalcs_step_scale(part, c, unit);
+        } else if (c != n_equations + first && c != n_equations + first + 1) {
+            return scale;
+        }
+    }
+    return size > 0.0 ? size : scale;
+}
+
 double dalcs_formula_scale(const struct dalcs_radau_part *part, int pair, double scale,
                            const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    if (part->laws.places == NULL || !s->pair[pair].is_formula || compares(s, pair)) {
+    if (part->laws.places == NULL || !s->pair[pair].is_formula) {
         return scale;
+    }
+    if (compares(s, pair)) {
+        const int first = s->pair[pair].is_jump ? pair : pair - 1;
+        const double known =
+            dalcs_formula_argument_noise(part, first, unit) / part->inner_tolerance;
+        return dalcs_smaller(scale,
+                             dalcs_larger(scale_of_compared(part, first, scale, unit), known));
     }
     const bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair);
     const double own = is_on ? scale_of_output(part, pair, 0) : scale_of_argument(part, pair, 0);

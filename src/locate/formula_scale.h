@@ -23,4 +23,8 @@ enum dalcs_status dalcs_formula_scale_setup(struct dalcs_radau_part *part) DALCS
 double dalcs_formula_scale(const struct dalcs_radau_part *part, int pair, double scale,
                            const double *unit);
 
+/* What the argument of a kink or a jump is known to, in its own unit: what it reads is. */
+double dalcs_formula_argument_noise(const struct dalcs_radau_part *part, int pair,
+                                    const double *unit);
+
 #endif

@@ -2,6 +2,7 @@
 #include "guards_internal.h"
 
 #include "doubt.h"
+#include "formula_scale.h"
 #include "guard_scale.h"
 #include "guard_values.h"
 #include "magnitudes.h"
@@ -130,22 +131,26 @@ static bool open_switches(struct dalcs_radau_part *part, const double *unit) {
     return any;
 }
 
-/* Puts a formula's jump, pairs d and d + 1, on the side that the formula has where its argument is 0. Both pairs are closed
- * above 0, where the argument is lambda of the second, and open below, where it is w of the first. */
+/* Puts a formula's jump, pairs d and d + 1, where the formula has the value that is written for an argument of 0. Both pairs
+ * are closed above 0, where the argument is lambda of the second, and open below, where it is w of the first; the first
+ * alone is closed where the value is between the two, as that of sgn is. */
 static bool put_jump(struct dalcs_radau_part *part, int d, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     const struct dalcs_pair *pair = p->system->pair;
     const bool is_above = dalcs_osnsp_is_on(p, d);
     const bool is_between = is_above != dalcs_osnsp_is_on(p, d + 1);
-    const bool leads_on =
-        is_above ? pair[d + 1].is_left_out[0] : pair[d].is_left_out[1]; /* to the other side */
+    const bool rests_below = pair[d + 1].is_left_out[0];
+    const bool rests_above = pair[d].is_left_out[1];
+    const bool is_as_written = is_above ? rests_above : rests_below;
     const int argument = is_above ? d + 1 : d;
-    if (is_between || !leads_on || dalcs_tied_leaves(part, argument, 1.0) ||
-        !rests(part, argument, dalcs_tied_nothing(part, argument, unit))) {
+    const double nothing =
+        dalcs_formula_argument_noise(part, d, unit) + dalcs_guard_rounding(part, argument, unit);
+    if (is_between || is_as_written || dalcs_tied_leaves(part, argument, 1.0) ||
+        !rests(part, argument, nothing)) {
         return false;
     }
-    dalcs_osnsp_command(p, d, !is_above);
-    dalcs_osnsp_command(p, d + 1, !is_above);
+    dalcs_osnsp_command(p, d, !rests_below);
+    dalcs_osnsp_command(p, d + 1, rests_above);
     return true;
 }
 

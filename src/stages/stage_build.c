@@ -180,6 +180,7 @@ static enum dalcs_status factor_doubtful(struct dalcs_stages *stages,
     DALCS_TRY(dalcs_stage_singular_find(&f->singular, stages->plan, entry));
     if (f->singular.n > 0) {
         entry->n_clashes = f->singular.n * stages->method->s;
+        entry->gives_rows_up = f->singular.within_blocks;
         enum dalcs_status status = factor_singular(stages, entry, f, m);
         if (status != DALCS_SINGULAR) {
             return status;

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static int column_of(const struct dalcs_stage_workshop *b, int unknown) {
     int n_equations = dalcs_system_n_equations(b->system);
@@ -24,28 +25,42 @@ static bool is_within_block(const struct dalcs_stage_workshop *b, int row, int u
     return block == NULL || block[own] == block[column_of(b, unknown)];
 }
 
-/* The null vectors of the columns, or else of the rows, of what has no memory: *vector[*nullity][n], over
- * the scales of all unknowns and of length 1, with 0 in the places of states. */
-static enum dalcs_status find_null_vectors(struct dalcs_stage_workshop *b, bool of_columns,
-                                           int *nullity, double **vector) {
+/* Whose null space it is: that of the columns, or else of the rows, of what has no memory; of each block alone, or of all
+ * that it reads. */
+struct side {
+    bool of_columns, within_blocks;
+};
+
+static enum dalcs_status find_null_space(const struct dalcs_stage_workshop *b, struct side side,
+                                         struct dalcs_null_space *space) {
     int n = b->n;
     int n_x = b->n_x;
-    const double *scale = of_columns ? b->eq.column_scale : b->eq.row_scale;
     struct dalcs_triplets t = {0};
-    struct dalcs_null_space space;
     enum dalcs_status status = DALCS_OK;
     for (int i = 0; i < n; i++) {
         for (int j = n_x; j < n && status == DALCS_OK; j++) {
-            double a = of_columns ? b->eq.plain_base[j * n + i] : b->eq.plain_base[i * n + j];
-            bool counts = a != 0.0 && (!of_columns || is_within_block(b, i, j));
+            int row = side.of_columns ? i : j;
+            int unknown = side.of_columns ? j : i;
+            double a = b->eq.plain_base[unknown * n + row];
+            bool counts = a != 0.0 && (!side.within_blocks || is_within_block(b, row, unknown));
             status = counts ? dalcs_triplets_add(&t, i, j - n_x, a) : DALCS_OK;
         }
     }
     if (status == DALCS_OK) {
-        status = dalcs_null_space_find(&space, n, n - n_x, &t);
+        status = dalcs_null_space_find(space, n, n - n_x, &t);
     }
     dalcs_triplets_finish(&t);
-    DALCS_TRY(status);
+    return status;
+}
+
+/* The null vectors: *vector[*nullity][n], over the scales of all unknowns and of length 1, with 0 in the places of states. */
+static enum dalcs_status find_null_vectors(struct dalcs_stage_workshop *b, struct side side,
+                                           int *nullity, double **vector) {
+    int n = b->n;
+    int n_x = b->n_x;
+    const double *scale = side.of_columns ? b->eq.column_scale : b->eq.row_scale;
+    struct dalcs_null_space space;
+    DALCS_TRY(find_null_space(b, side, &space));
     *nullity = space.n_free;
     *vector = dalcs_stage_workshop_reals(&b->arena, n * *nullity);
     for (int k = 0; k < *nullity && *vector != NULL; k++) {
@@ -184,11 +199,36 @@ static enum dalcs_status choose(struct dalcs_stage_workshop *b, double *null_vec
     return DALCS_OK;
 }
 
+/* Rows that follow from others of their block, whatever they read of blocks before it: a comparison of what only a rate
+ * tells asks that this be 0, and says nothing of its own output. The choice stands in their places, and what they miss is the clash. */
+static enum dalcs_status give_rows_up(struct dalcs_stage_workshop *b, int *n_of_rows) {
+    const struct side rows = {.within_blocks = true};
+    struct dalcs_null_space space;
+    DALCS_TRY(find_null_space(b, rows, &space));
+    int n = *n_of_rows = space.n_free;
+    b->open.given_up = dalcs_arena_alloc(&b->arena, (size_t)n, sizeof(int));
+    b->open.left = dalcs_stage_workshop_reals(&b->arena, n * b->n);
+    bool has_room = b->open.given_up != NULL && b->open.left != NULL;
+    for (int k = 0; k < n && has_room; k++) {
+        b->open.given_up[k] = b->n_x + space.free_column[k];
+        memset(b->open.left + k * b->n, 0, (size_t)b->n * sizeof(double));
+        b->open.left[k * b->n + b->open.given_up[k]] = 1.0;
+    }
+    dalcs_null_space_finish(&space);
+    return has_room ? DALCS_OK : DALCS_E_NOMEM;
+}
+
 enum dalcs_status dalcs_stage_choice_find(struct dalcs_stage_workshop *b) {
+    const struct side columns = {.of_columns = true, .within_blocks = true};
+    const struct side rows = {0};
     int n_of_rows;
     double *null_vectors;
-    DALCS_TRY(find_null_vectors(b, true, &b->open.nullity, &null_vectors));
-    DALCS_TRY(find_null_vectors(b, false, &n_of_rows, &b->open.left));
+    b->open.given_up = NULL;
+    DALCS_TRY(find_null_vectors(b, columns, &b->open.nullity, &null_vectors));
+    DALCS_TRY(find_null_vectors(b, rows, &n_of_rows, &b->open.left));
+    if (n_of_rows < b->open.nullity) {
+        DALCS_TRY(give_rows_up(b, &n_of_rows));
+    }
     if (n_of_rows != b->open.nullity) {
         return DALCS_SINGULAR;
     }

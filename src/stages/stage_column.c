@@ -203,6 +203,34 @@ static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
     }
 }
 
+/* What null vector k of the rows says of sources, whose share is of each stage: they disagree by so much. */
+static void put_clash_of_sources(const struct dalcs_stage_workshop *b, int k, int rhs_column,
+                                 const double *share, double *out) {
+    double clash = 0.0;
+    for (int i = b->n_x; i < b->n; i++) {
+        clash += b->open.left[k * b->n + i] * b->eq.rhs[rhs_column * b->n + i];
+    }
+    for (int i = 0; i < b->stages->method->s; i++) {
+        out[i] = clash * share[i + 1];
+    }
+}
+
+/* What a row that is given up for a choice misses at each stage. */
+static void put_clash_of_row(const struct dalcs_stage_workshop *b, int row, int column,
+                             int rhs_column, const double *share, double *out) {
+    const bool is_state = column < b->n_x;
+    const double scale = b->eq.row_scale[row];
+    for (int i = 0; i < b->stages->method->s; i++) {
+        const double *of_stage = b->column.lanes + i + 1;
+        double sum = b->eq.plain_rhs[rhs_column * b->n + row] * (is_state ? 1.0 : share[i + 1]);
+        for (int c = 0; c < b->n; c++) {
+            const double start = is_state && c == column ? 1.0 : 0.0;
+            sum -= b->eq.plain_base[c * b->n + row] * (of_stage[c * DALCS_LANES] - start);
+        }
+        out[i] = scale * sum;
+    }
+}
+
 void dalcs_stage_column_fill(struct dalcs_stage_workshop *b, int column, int rhs_column,
                              const struct dalcs_stage_drive *drive, struct dalcs_map_column *to) {
     double *out = to->out;
@@ -230,12 +258,13 @@ void dalcs_stage_column_fill(struct dalcs_stage_workshop *b, int column, int rhs
         put_columns(b, DALCS_RIPPLE_LANE, out + l->ripple);
     }
     for (int k = 0; k < b->open.nullity; k++) {
-        double clash = 0.0;
-        for (int i = s->n_x; i < b->n && !is_state; i++) {
-            clash += b->open.left[k * b->n + i] * b->eq.rhs[rhs_column * b->n + i];
-        }
-        for (int i = 1; i <= m->s; i++) {
-            out[l->n_fixed + k * m->s + i - 1] = clash * share[i];
+        double *clash = out + l->n_fixed + k * m->s;
+        if (b->open.given_up != NULL) {
+            put_clash_of_row(b, b->open.given_up[k], column, rhs_column, share, clash);
+        } else if (!is_state) {
+            put_clash_of_sources(b, k, rhs_column, share, clash);
+        } else {
+            memset(clash, 0, (size_t)m->s * sizeof(*clash));
         }
     }
     for (int i = l->n_fixed + b->entry->n_clashes; i < b->entry->rows; i++) {
@@ -284,6 +313,10 @@ void dalcs_stage_column_check(struct dalcs_stage_workshop *b, int column, int rh
         if (increment != 0.0) {
             largest = add_terms(b, c, increment / b->eq.column_scale[c], largest);
         }
+    }
+    for (int k = 0; k < b->open.nullity && b->open.given_up != NULL; k++) {
+        b->column.residual[b->open.given_up[k] - b->n_x] =
+            0.0; /* a clash, of all columns together */
     }
     double worst = 0.0;
     for (int r = 0; r < n_z; r++) {

@@ -54,6 +54,7 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     }
     DALCS_TRY(dalcs_stage_workshop_solve(b, entry));
     entry->n_clashes = b->open.nullity * stages->method->s;
+    entry->gives_rows_up = b->open.nullity > 0 && b->open.given_up != NULL;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
     entry->maps.current_rows = dalcs_dense_map_rows(stages->n_levered);
     int all_rows = entry->rows + entry->maps.current_rows + (entry->frees_states ? 0 : b->n_x);

@@ -30,6 +30,7 @@ struct search {
     struct dalcs_arena arena;
     int *closed;         /* [n_pairs] which of entry->on a closed pair is */
     int n_columns;       /* without memory: z, then lambda of closed pairs */
+    bool within_blocks;  /* of rows, what they read of other blocks does not count */
     int n_open;          /* solutions */
     double *vector;      /* [n_open][n_columns] */
     struct trace *trace; /* [n_open] */
@@ -54,7 +55,8 @@ static enum dalcs_status add_row(const struct search *s, const struct dalcs_csr 
     int own = from < dalcs_system_n_equations(s->system) ? s->system->dual[from] : from;
     for (int k = a->p[from]; k < a->p[from + 1]; k++) {
         int column = place_of(s, a->j[k], first);
-        bool is_own = block == NULL || first == 0 || block[own] == block[a->j[k]];
+        bool is_read = first == 0 && !s->within_blocks;
+        bool is_own = block == NULL || is_read || block[own] == block[a->j[k]];
         if (column >= 0 && is_own) {
             DALCS_TRY(dalcs_triplets_add(t, row, column, a->x[k]));
         }
@@ -289,6 +291,17 @@ static enum dalcs_status fill(struct dalcs_stage_singular *g, struct search *s,
     return dalcs_csr_compress(&g->shore, g->n, s->system->n_pairs, &s->shore);
 }
 
+/* Rows that follow from others; where these are too few, from others of their blocks (stage_choice.c). */
+static enum dalcs_status find_rows(struct search *s, int n_wanted, struct dalcs_null_space *rows) {
+    DALCS_TRY(find_null_space(s, s->system->n_x, 0, rows));
+    if (rows->n_redundant >= n_wanted) {
+        return DALCS_OK;
+    }
+    dalcs_null_space_finish(rows);
+    s->within_blocks = true;
+    return find_null_space(s, s->system->n_x, 0, rows);
+}
+
 static enum dalcs_status find(struct dalcs_stage_singular *g, struct search *s) {
     s->closed = dalcs_arena_alloc(&s->arena, (size_t)s->system->n_pairs, sizeof(int));
     if (s->closed == NULL) {
@@ -299,13 +312,14 @@ static enum dalcs_status find(struct dalcs_stage_singular *g, struct search *s) 
     }
     struct dalcs_null_space rows;
     struct dalcs_null_space columns;
-    DALCS_TRY(find_null_space(s, s->system->n_x, 0, &rows));
-    enum dalcs_status status = find_null_space(s, 0, s->system->n_x, &columns);
+    DALCS_TRY(find_null_space(s, 0, s->system->n_x, &columns));
+    enum dalcs_status status = find_rows(s, columns.n_free, &rows);
     if (status == DALCS_OK) {
         status = fill(g, s, &rows, &columns);
-        dalcs_null_space_finish(&columns);
+        g->within_blocks = s->within_blocks;
+        dalcs_null_space_finish(&rows);
     }
-    dalcs_null_space_finish(&rows);
+    dalcs_null_space_finish(&columns);
     return status;
 }
 

@@ -12,6 +12,7 @@
 
 struct dalcs_stage_singular {
     int n;
+    bool within_blocks;         /* rows follow from others of their blocks, whatever they read */
     int *row;                   /* [n] of M, that follow from others */
     double *scale;              /* [n] of these, in the matrix that was balanced with them */
     struct dalcs_csr choice;    /* [n][n_rows] in their place, by columns of M */

@@ -72,6 +72,7 @@ struct dalcs_workshop_open {
     double *left;   /* [nullity][n] null vectors of the rows, balanced */
     double *choice; /* [nullity][n] balanced: what is asked instead, and */
     double *chosen; /* [nullity][n_rhs] what of the right-hand sides it is */
+    int *given_up;  /* [nullity] or NULL: rows without a null vector, in whose places that is */
 };
 
 /* Kept from map to map; what a map needs apart from it is in the arena. */

@@ -166,6 +166,10 @@ int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry) {
     return entry->n_clashes;
 }
 
+bool dalcs_stage_gives_rows_up(const struct dalcs_stage_entry *entry) {
+    return entry->gives_rows_up;
+}
+
 double dalcs_stage_residual(const struct dalcs_stage_entry *entry) {
     return entry->residual;
 }

@@ -135,6 +135,9 @@ void dalcs_stages_stay_near(struct dalcs_stages *stages, const uint64_t *mode, c
 
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
 
+/* Are clashes what rows miss that were given up, instead of what sources disagree by? */
+bool dalcs_stage_gives_rows_up(const struct dalcs_stage_entry *entry);
+
 /* Room for any answer: a mode has no more null vectors than columns, each with a clash at every stage; in whole eights. */
 static inline size_t dalcs_stages_room(const struct dalcs_stages *stages) {
     const size_t n_columns = (size_t)dalcs_system_n_columns(stages->system);

@@ -20,6 +20,7 @@ struct dalcs_stage_entry {
     int n_on;
     int *on; /* [n_on] ascending */
     int n_clashes;
+    bool gives_rows_up; /* which no sources contradict, but only what they read (stage_choice.c) */
     bool frees_states;
     double *natural; /* [2 n_equations] */
     double residual;

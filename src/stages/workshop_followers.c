@@ -17,6 +17,15 @@ static double border(const struct dalcs_stage_workshop *b, int i, const double *
     return sum;
 }
 
+/* Does a choice stand in the place of row i? */
+static bool is_given_up(const struct dalcs_stage_workshop *b, int i) {
+    bool is = false;
+    for (int k = 0; k < b->open.nullity && b->open.given_up != NULL && !is; k++) {
+        is = b->open.given_up[k] == i;
+    }
+    return is;
+}
+
 /* S without P and its right-hand sides, by rows. */
 static void fill_whole(struct dalcs_stage_workshop *b) {
     int n = b->n;
@@ -28,13 +37,14 @@ static void fill_whole(struct dalcs_stage_workshop *b) {
             row[j] = 0.0L;
         }
         for (int j = 0; j < b->n_rhs; j++) {
-            row[n + j] = b->eq.rhs[j * n + i];
+            row[n + j] = is_given_up(b, i) ? 0.0L : b->eq.rhs[j * n + i];
             row[n + j] += b->open.nullity > 0 ? border(b, i, b->open.chosen, b->n_rhs, j) : 0.0;
         }
     }
     for (int j = 0; j < n; j++) {
         for (int k = b->eq.nonzero_p[j]; k < b->eq.nonzero_p[j + 1]; k++) {
-            b->kept.whole[b->eq.nonzero_i[k] * (n + b->n_rhs) + j] = b->eq.base[k];
+            int i = b->eq.nonzero_i[k];
+            b->kept.whole[i * (n + b->n_rhs) + j] = is_given_up(b, i) ? 0.0L : b->eq.base[k];
         }
         for (int i = 0; i < n && b->open.nullity > 0; i++) {
             b->kept.whole[i * (n + b->n_rhs) + j] += border(b, i, b->open.choice, n, j);

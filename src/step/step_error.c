@@ -202,15 +202,30 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
     }
 }
 
+/* Up to where a clash is none, by its row in the answer. Sources disagree by errors of one-step problems. What a comparison
+ * reads is at rest or moves, however slowly: rounding alone is nothing. */
+static double clash_limit(const struct dalcs_radau_part *part,
+                          const struct dalcs_stage_entry *entry, int row, const double *unit) {
+    const double largest = dalcs_larger(unit[0], unit[1]);
+    if (!dalcs_stage_gives_rows_up(entry)) {
+        return dalcs_alike * largest;
+    }
+    return dalcs_stage_has_map(entry)
+               ? dalcs_beyond * dalcs_sum_rounded *
+                     dalcs_stage_spread(&part->stages, entry, row, part->segment.in,
+                                        part->scales.column)
+               : dalcs_answer_rounded * largest;
+}
+
 bool dalcs_step_clashes(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
                         double end, const double *unit) {
     const struct dalcs_collocation *m = part->stages.method;
     const double *clash = part->segment.out + part->stages.layout.n_fixed;
     const double *last = clash + dalcs_stage_n_clashes(entry);
-    double limit = dalcs_alike * dalcs_larger(unit[0], unit[1]);
     for (; clash < last; clash += m->s) { /* those of one null vector, at the stages */
         for (int i = 0; i < m->s && (i == 0 || m->node[i + 1] <= end); i++) {
-            if (fabs(clash[i]) > limit) {
+            const int row = (int)(clash + i - part->segment.out);
+            if (fabs(clash[i]) > clash_limit(part, entry, row, unit)) {
                 return true;
             }
         }

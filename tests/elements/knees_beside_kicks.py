@@ -48,6 +48,60 @@ def cards(case, formula, sections):
             ".save v(k) v(y) i(v5) v(b)", f".tran {period / 200} {3 * period}", ".end"]
 
 
+# A coil's valves that cut it off, and beside them valves that stay closed by comparisons of their currents.
+VALVES = """comparisons beside a kick
+V1 s 0 SIN(0 1000 50)
+L1 s a 0.6m
+R1 a b 70m
+R2 b 0 60
+L0 b 0 70m
+L2 b t 21m
+D1 t x1 D
+Vs1 x1 y1 0
+S1 y1 0 l1 0 MOS
+B1 l1 0 V=v(g1)+u(i(Vs1)-1m)
+Rl1 l1 0 1.4k
+D2 0 x2 D
+Vs2 x2 y2 0
+S2 y2 t l2 0 MOS
+B2 l2 0 V=v(g2)+u(i(Vs2)-1m)
+Rl2 l2 0 1.4k
+D3 w x3 D
+Vs3 x3 y3 0
+S3 y3 0 l3 0 MOS
+B3 l3 0 V=v(g)+u(i(Vs3)-{amperes})
+Rl3 l3 0 1.4k
+D4 0 x4 D
+Vs4 x4 y4 0
+S4 y4 w l4 0 MOS
+B4 l4 0 V=v(g)+u(i(Vs4)-{amperes})
+Rl4 l4 0 1.4k
+Vg1 g1 0 PULSE(0 1 7m 1u 1u 200u 20m)
+Vg2 g2 0 PULSE(0 1 17m 1u 1u 200u 20m)
+C1 b u 100u
+L3 u w 0.3m
+Vg g 0 PULSE(0 1 {at} 1u 1u 50m 200m)
+.model MOS SW(Ron=20m Roff=1e12 Vt=0.5)
+.model D D(Ron=20m Roff=1e12 Vfwd=0.7)
+.tran 100u 70m uic
+.end
+"""
+
+
+def compare_valves(checker, program):
+    """A comparison changes when its sides are equal, beside whatever kick."""
+    for at, amperes in (("40m", 1e-3), ("20m", 1e-3), ("30m", 1e-2), ("60m", 1e-3), ("20m", 1e-2)):
+        what = f"valves at {at}, {amperes} A"
+        done = dalcs_program.run(program, VALVES.format(at=at, amperes=amperes), method=None, options=["--audit", "off"])
+        if not checker.check(done.status == 0, f"{what}: {done.stderr}"):
+            continue
+        rows = list(zip(*(done.column(name) for name in ("v(l3)", "v(g)", "i(vs3)", "v(l4)", "i(vs4)"))))
+        worst = max([abs(amps - amperes) for latch, gate, amps, *_ in rows if (latch - gate > 0.5) != (amps > amperes)] +
+                    [abs(row[4] - amperes) for row in rows if (row[3] - row[1] > 0.5) != (row[4] > amperes)] + [0.0])
+        checker.check(worst < 1e-8, f"{what}: a comparison is off by {worst} A")
+        checker.check(max(abs(v) for v in done.column("v(t)")) > 1e5, f"{what}: there is no kick")
+
+
 def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("knees_beside_kicks")
@@ -62,6 +116,7 @@ def main():
         worst = max(abs(given - value(case[3] * amperes, volts)) for given, amperes, volts in rows)
         checker.check(worst <= 1e-6 * largest, f"{what}: off by {worst} of {largest}")
         checker.check(max(map(abs, done.column("v(b)"))) > 1e4 * case[0], f"{what}: there is no kick")
+    compare_valves(checker, program)
     return checker.finish()
 
 

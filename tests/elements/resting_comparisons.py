@@ -38,7 +38,7 @@ RATES = [("", "ddt(v(a))"), ("r2 a b 1k\nr3 b 0 2.2k", "ddt(v(b))"), ("c2 a 0 1u
          ("r2 a b 1k\nd2 b 0\nd3 0 b", "ddt(v(a))")]
 RISE, HIGH, FALL, LOW = 0.14, 0.26, 0.2, 0.4  # parts of a period
 COMPARISONS = [("u(x)", RISE), ("x>0 ? 1 : 0", RISE), ("x>=0 ? 1 : 0", 1 - FALL), ("x<0 ? 1 : 0", FALL), ("x<=0 ? 1 : 0", 1 - RISE),
-               ("if(x>0,2,-1)", 3 * RISE - 1), ("!(x>0) ? 4 : 3", 4 - RISE)]
+               ("if(x>0,2,-1)", 3 * RISE - 1), ("!(x>0) ? 4 : 3", 4 - RISE), ("sgn(x)", RISE - FALL), ("3-2*sgn(-x)", 3 + 2 * (RISE - FALL))]
 
 
 def check_rates(checker, case, volts, period):
