@@ -55,6 +55,7 @@ struct dalcs_report {
     struct {
         const char *mode; /* "sample" or "full"; NULL: nothing was audited */
         long instants;    /* at which laws were checked, operating points among them */
+        long frequencies; /* likewise, of .ac */
         long segments;    /* between two events or ends of steps, of all parts; 0: points alone */
         long audited;     /* of them, those that were looked into */
         long screened;    /* those of which all linear laws were checked at once */

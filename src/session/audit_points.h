@@ -14,6 +14,10 @@ enum dalcs_status dalcs_audit_point(struct dalcs_run *r, const struct dalcs_circ
                                     const struct dalcs_euler *e, const double *row,
                                     bool remembers) DALCS_MUST_CHECK;
 
+/* A frequency was audited, too: its worst defect over its scale, and of what. */
+enum dalcs_status dalcs_audit_add_frequency(struct dalcs_run *r, double defect, const char *what,
+                                            double frequency) DALCS_MUST_CHECK;
+
 /* What was found of them, beside what the report has of a waveform. */
 void dalcs_audit_add_points(struct dalcs_run *r);
 
