@@ -256,11 +256,14 @@ enum dalcs_status dalcs_audit_add_frequency(struct dalcs_run *r, double defect, 
     return points->where != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-static enum dalcs_status judge(struct dalcs_run *r, struct point *p, bool remembers) {
+static enum dalcs_status judge(struct dalcs_run *r, struct point *p,
+                               const struct dalcs_solved_point *point) {
     const struct dalcs_file_promise promise = {.tolerance = r->tolerance,
                                                .vntol = r->radau.vntol,
                                                .abstol = r->radau.abstol,
-                                               .remembers = remembers};
+                                               .are_gates_restless =
+                                                   !dalcs_logic_run_is_at_rest(point->logic),
+                                               .remembers = point->remembers};
     struct dalcs_table_audit found;
     DALCS_TRY(dalcs_file_audit(p->circuit, &p->table, &promise, &p->arena, &r->s->diag, &found));
     const struct dalcs_table_law *law = worst_of(p, &found);
@@ -275,24 +278,23 @@ static enum dalcs_status judge(struct dalcs_run *r, struct point *p, bool rememb
     return DALCS_REFUTED;
 }
 
-enum dalcs_status dalcs_audit_point(struct dalcs_run *r, const struct dalcs_circuit *circuit,
-                                    const struct dalcs_network *network,
-                                    const struct dalcs_euler *e, const double *row,
-                                    bool remembers) {
+enum dalcs_status dalcs_audit_point(struct dalcs_run *r, const struct dalcs_solved_point *point) {
+    const struct dalcs_network *network = point->network;
     if (r->options->audit == DALCS_AUDIT_OFF || network->readout == NULL) {
         return DALCS_OK;
     }
-    struct point p = {.circuit = circuit, .readout = network->readout, .euler = e};
+    struct point p = {
+        .circuit = point->circuit, .readout = network->readout, .euler = point->euler};
     enum dalcs_status status = make_room(&p, (size_t)network->n_outputs);
     if (status == DALCS_OK) {
         find_largest(&p);
-        status = add_row(&p, network, row);
+        status = add_row(&p, network, point->row);
     }
     if (status == DALCS_OK) {
         status = fill(&p);
     }
     if (status == DALCS_OK && p.table.n_columns > 1) {
-        status = judge(r, &p, remembers);
+        status = judge(r, &p, point);
     }
     dalcs_names_finish(&p.there);
     dalcs_arena_finish(&p.arena);

@@ -100,37 +100,38 @@ static void find_systems(struct dalcs_audit_response *a, const struct dalcs_eule
     }
 }
 
-static enum dalcs_status audit_point(struct dalcs_run *r, const struct dalcs_euler *e) {
-    const struct dalcs_network *network = &r->s->network;
+static enum dalcs_status audit_point(struct dalcs_run *r, struct dalcs_solved_point point) {
+    const struct dalcs_network *network = point.network;
     double *row = dalcs_alloc((size_t)network->n_outputs, sizeof *row);
     if (row == NULL) {
         return DALCS_E_NOMEM;
     }
-    dalcs_recorder_evaluate(network, e, row);
-    const enum dalcs_status status = dalcs_audit_point(r, &r->s->circuit, network, e, row, false);
+    dalcs_recorder_evaluate(network, point.euler, row);
+    point.row = row;
+    const enum dalcs_status status = dalcs_audit_point(r, &point);
     free(row);
     return status;
 }
 
 enum dalcs_status dalcs_audit_response_start(struct dalcs_audit_response *a, struct dalcs_run *r,
-                                             const struct dalcs_euler *e,
+                                             const struct dalcs_solved_point *point,
                                              struct dalcs_response_columns *of, int n) {
-    const struct dalcs_network *network = &r->s->network;
+    const struct dalcs_network *network = point->network;
     *a = (struct dalcs_audit_response){.run = r, .of = of, .n = n};
     if (r->options->audit == DALCS_AUDIT_OFF || network->readout == NULL) {
         return DALCS_OK;
     }
-    DALCS_TRY(audit_point(r, e));
+    DALCS_TRY(audit_point(r, *point));
     a->readout = network->readout;
     DALCS_TRY(make_room(a));
-    find_systems(a, e);
+    find_systems(a, point->euler);
     struct dalcs_response_columns *at =
         dalcs_arena_alloc(&a->arena, (size_t)network->n_systems, sizeof *at);
     if (at == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k < network->n_systems; k++) {
-        at[k].part[0] = e->component[k].y;
+        at[k].part[0] = point->euler->component[k].y;
     }
     a->of = at;
     read_values(a);

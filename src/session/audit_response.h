@@ -4,7 +4,7 @@
 
 #include "session_internal.h"
 
-#include "euler.h"
+#include "audit_points.h"
 #include "response.h"
 
 #include <stdint.h>
@@ -27,10 +27,10 @@ struct dalcs_audit_response {
     struct dalcs_arena arena;
 };
 
-/* Around the operating point of e, which is audited as such; `of`: where the answers at n frequencies will be. Does nothing
+/* Around an operating point of the session's circuit, which is audited as such, its row apart; `of`: where the answers at n frequencies will be. Does nothing
  * with --audit off. DALCS_REFUTED, with a message, where the operating point is wrong. */
 enum dalcs_status dalcs_audit_response_start(struct dalcs_audit_response *a, struct dalcs_run *r,
-                                             const struct dalcs_euler *e,
+                                             const struct dalcs_solved_point *point,
                                              struct dalcs_response_columns *of,
                                              int n) DALCS_MUST_CHECK;
 

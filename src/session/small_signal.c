@@ -406,7 +406,11 @@ static enum dalcs_status walk(struct small_signal *a) {
     return r->sink->end(r->sink->user);
 }
 
-static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler *e) {
+static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler *e,
+                               struct dalcs_logic_run *logic) {
+    struct dalcs_session *s = a->run->s;
+    const struct dalcs_solved_point point = {
+        .circuit = &s->circuit, .network = &s->network, .euler = e, .logic = logic};
     a->part = dalcs_alloc((size_t)e->n_components, sizeof *a->part);
     a->row = dalcs_alloc(2 * (size_t)a->run->s->network.n_outputs, sizeof *a->row);
     a->columns = dalcs_alloc((size_t)e->n_components, sizeof *a->columns);
@@ -424,7 +428,7 @@ static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler 
         DALCS_TRY(status);
         a->columns[k] = (struct dalcs_response_columns){{a->part[k].y[0], a->part[k].y[1]}};
     }
-    return dalcs_audit_response_start(&a->audit, a->run, e, a->columns, a->run->s->circuit.ac.n);
+    return dalcs_audit_response_start(&a->audit, a->run, &point, a->columns, s->circuit.ac.n);
 }
 
 enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) {
@@ -435,7 +439,7 @@ enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) {
     DALCS_TRY(dalcs_euler_setup(&e, &r->s->circuit, &r->s->network, &r->osnsp, 1.0, 1.0));
     enum dalcs_status status = find_operating_point(r, &e, &logic);
     if (status == DALCS_OK) {
-        status = setup(&a, &e);
+        status = setup(&a, &e, &logic);
     }
     if (status == DALCS_OK) {
         status = walk(&a);
