@@ -128,9 +128,9 @@ static void write_audit(FILE *out, const struct dalcs_report *report) {
     const long instants = report->audit.screened + report->audit.instants; /* sums, and each law */
     fprintf(out, "  proof     audited at %ld %s%s", instants,
             report->audit.segments > 0 ? "instant" : "operating point", plural(instants));
-    if (report->audit.frequencies > 0) {
-        fprintf(out, " and %ld frequenc%s", report->audit.frequencies,
-                report->audit.frequencies == 1 ? "y" : "ies");
+    if (report->frequencies > 0) {
+        fprintf(out, " and %ld frequenc%s", report->frequencies,
+                report->frequencies == 1 ? "y" : "ies");
     }
     fprintf(out, ": worst defect %.2g", report->audit.worst);
     if (report->audit.worst > 0.0) {

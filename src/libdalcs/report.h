@@ -55,7 +55,6 @@ struct dalcs_report {
     struct {
         const char *mode; /* "sample" or "full"; NULL: nothing was audited */
         long instants;    /* at which laws were checked, operating points among them */
-        long frequencies; /* likewise, of .ac */
         long segments;    /* between two events or ends of steps, of all parts; 0: points alone */
         long audited;     /* of them, those that were looked into */
         long screened;    /* those of which all linear laws were checked at once */
@@ -249,6 +248,8 @@ struct dalcs_report {
 
     size_t n_steps, n_failed_steps; /* of .step, 0 without; of those that were asked for */
     const struct dalcs_failed_step *failed_step; /* each once; all other steps were run */
+
+    long frequencies; /* of .ac, at which laws were checked: beside the instants of `audit` */
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

@@ -211,7 +211,7 @@ void dalcs_audit_add_points(struct dalcs_run *r) {
     const bool is_worse = report->audit.mode == NULL || points->worst > report->audit.worst;
     report->audit.mode = r->options->audit == DALCS_AUDIT_FULL ? "full" : "sample";
     report->audit.instants += points->n;
-    report->audit.frequencies += points->frequencies;
+    report->frequencies += points->frequencies;
     report->audit.positions += points->positions;
     if (is_worse) {
         report->audit.worst = points->worst;
