@@ -64,6 +64,8 @@ static enum dalcs_status make_room(struct file_audit *a) {
         most = b != NULL && b->n_pairs > most ? b->n_pairs : most;
     }
     bool complete = make_for_nodes(a) && make_for_devices(a) &&
+                    make(a, &a->gates.bit, (size_t)a->circuit->n_gates, sizeof *a->gates.bit) &&
+                    make(a, &a->gates.source, (size_t)a->circuit->n_stimuli, sizeof(int)) &&
                     make(a, &a->formulas.value, (size_t)most, sizeof *a->formulas.value) &&
                     make(a, &a->formulas.error, (size_t)most, sizeof *a->formulas.error);
     for (int k = 0; k < 4; k++) {
@@ -166,6 +168,7 @@ static void check_row(struct file_audit *a, size_t k) {
     struct file_row *now = &a->row[k % 4];
     file_check_branches(a, now);
     file_check_nodes(a, now);
+    file_check_gates(a, now);
     if (k == 0 && !a->is_at_rest) {
         file_check_start(a, now, &a->row[3]);
     }

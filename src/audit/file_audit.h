@@ -11,8 +11,9 @@
 
 /* What the table promises of each signal. */
 struct dalcs_file_promise {
-    double tolerance;     /* over its largest value */
-    double vntol, abstol; /* V, A; besides */
+    double tolerance;        /* over its largest value */
+    double vntol, abstol;    /* V, A; besides */
+    bool are_gates_restless; /* they do not settle, as a warning has said */
     bool
         remembers; /* rows before the first one have left switches with hysteresis where they are */
 };

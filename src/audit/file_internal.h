@@ -132,6 +132,11 @@ struct file_audit {
         struct file_set_law *law; /* work of file_storage.c */
     } sets;
 
+    struct file_gates {     /* work of file_gates.c */
+        unsigned char *bit; /* [n_gates] */
+        int *source;        /* [n_stimuli] the V source that each drives; -1: none */
+    } gates;
+
     struct file_charges {           /* over one interval, [n_devices] */
         struct file_number *charge; /* C */
         bool *is_taken;             /* by a capacitor whose current is not known then */
@@ -218,6 +223,11 @@ void file_check_switch(struct file_audit *a, const struct file_row *row, int dev
 /* Which positions it may have at a row, by control and history. */
 unsigned char file_position(const struct file_audit *a, const struct file_row *row,
                             const struct file_row *before, int device);
+
+/* ---- file_gates.c ---- */
+
+/* At rest. */
+void file_check_gates(struct file_audit *a, const struct file_row *row);
 
 /* ---- file_windows.c ---- */
 

@@ -222,7 +222,8 @@ static inline bool dalcs_circuit_has_waves(const struct dalcs_circuit *circuit) 
 
 /* Has an analysis answers that the audit reads? */
 static inline bool dalcs_circuit_is_audited(const struct dalcs_circuit *circuit) {
-    return dalcs_circuit_has_waves(circuit) || circuit->operating_point || circuit->n_dc > 0;
+    return dalcs_circuit_has_waves(circuit) || circuit->operating_point || circuit->n_dc > 0 ||
+           circuit->ac.n > 0;
 }
 
 /* A resistor of 0 ohm: its two nodes are one, unless its current is a signal. */

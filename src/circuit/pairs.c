@@ -226,7 +226,7 @@ static struct dalcs_affine keep(struct dalcs_compiler *c, const struct dalcs_aff
 
 static void keep_cell(struct dalcs_compiler *c, const struct dalcs_cell *cell,
                       struct dalcs_affine *w, double *rest) {
-    const bool is_jump = cell->resistance == 0;
+    const bool is_jump = cell->resistance == 0 && !isinf(cell->height); /* else one pair alone */
     rest[cell->pair] = is_jump ? cell->rest : NAN;
     const struct dalcs_affine zero = dalcs_affine_constant(0);
     struct dalcs_affine excess = dalcs_affine_add(c, &zero, -1, &cell->argument);

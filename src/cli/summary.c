@@ -126,9 +126,13 @@ static void write_work(FILE *out, const struct dalcs_report *report) {
 static void write_audit(FILE *out, const struct dalcs_report *report) {
     char text[DALCS_QUANTITY_SIZE];
     const long instants = report->audit.screened + report->audit.instants; /* sums, and each law */
-    fprintf(out, "  proof     audited at %ld %s%s: worst defect %.2g", instants,
-            report->audit.segments > 0 ? "instant" : "operating point", plural(instants),
-            report->audit.worst);
+    fprintf(out, "  proof     audited at %ld %s%s", instants,
+            report->audit.segments > 0 ? "instant" : "operating point", plural(instants));
+    if (report->frequencies > 0) {
+        fprintf(out, " and %ld frequenc%s", report->frequencies,
+                report->frequencies == 1 ? "y" : "ies");
+    }
+    fprintf(out, ": worst defect %.2g", report->audit.worst);
     if (report->audit.worst > 0.0) {
         fprintf(out, " of %s", report->audit.where);
     }

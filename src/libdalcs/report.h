@@ -248,6 +248,8 @@ struct dalcs_report {
 
     size_t n_steps, n_failed_steps; /* of .step, 0 without; of those that were asked for */
     const struct dalcs_failed_step *failed_step; /* each once; all other steps were run */
+
+    long frequencies; /* of .ac, at which laws were checked: beside the instants of `audit` */
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

@@ -73,6 +73,7 @@ static void write_audit(struct dalcs_json *json, const struct dalcs_report *repo
     dalcs_json_open(json, "audit", '{', false);
     dalcs_json_string(json, "mode", report->audit.mode);
     dalcs_json_integer(json, "instants", report->audit.instants);
+    dalcs_json_integer(json, "frequencies", report->frequencies);
     dalcs_json_integer(json, "segments", report->audit.segments);
     dalcs_json_integer(json, "audited", report->audit.audited);
     dalcs_json_integer(json, "screened", report->audit.screened);

@@ -6,6 +6,7 @@
 
 #include "file_audit.h"
 #include "names.h"
+#include "quantity.h"
 #include "rounding.h"
 
 #include <math.h>
@@ -20,6 +21,7 @@ struct point {
     struct dalcs_names there; /* of its columns */
     const char **name;
     double *value, *relative, *absolute;
+    double *largest[2]; /* [n_systems] V, A */
     struct dalcs_arena arena;
 };
 
@@ -29,7 +31,12 @@ static enum dalcs_status make_room(struct point *p, size_t n_outputs) {
     p->value = dalcs_arena_alloc(&p->arena, most, sizeof(double));
     p->relative = dalcs_arena_alloc(&p->arena, most, sizeof(double));
     p->absolute = dalcs_arena_alloc(&p->arena, most, sizeof(double));
-    if (p->name == NULL || p->value == NULL || p->relative == NULL || p->absolute == NULL) {
+    for (int k = 0; k < 2; k++) {
+        p->largest[k] =
+            dalcs_arena_alloc(&p->arena, (size_t)p->euler->n_components, sizeof(double));
+    }
+    if (p->largest[0] == NULL || p->largest[1] == NULL || p->name == NULL || p->value == NULL ||
+        p->relative == NULL || p->absolute == NULL) {
         return DALCS_E_NOMEM;
     }
     p->name[0] = "time";
@@ -42,8 +49,42 @@ static enum dalcs_status make_room(struct point *p, size_t n_outputs) {
     return DALCS_OK;
 }
 
-/* One more column, unless one of that name is there; `size` is what its value is a sum of. */
-static enum dalcs_status add(struct point *p, const char *name, double value, double size) {
+static double largest_of(const struct point *p, int unit, int system) {
+    return system >= 0 ? p->largest[unit][system] : 0.0;
+}
+
+/* The largest voltage of a node and current of each system. Where nothing flows, currents are what resistors make of the
+ * rounding of voltages. */
+static void find_largest(struct point *p) {
+    const struct dalcs_readout *r = p->readout;
+    for (int d = 0; d < p->circuit->n_devices; d++) {
+        const int system = r->device_system[d];
+        if (system < 0) {
+            continue;
+        }
+        const double *y = p->euler->component[system].y;
+        double *largest[2] = {&p->largest[0][system], &p->largest[1][system]};
+        for (int k = 0; k < 2; k++) {
+            const int column = r->node_column[p->circuit->device[d].node[k]];
+            *largest[0] = fmax(*largest[0], column >= 0 ? fabs(y[column]) : 0.0);
+        }
+        *largest[1] = fmax(*largest[1], fabs(dalcs_readout_current(r, d, y)));
+    }
+    for (int d = 0; d < p->circuit->n_devices; d++) {
+        const struct dalcs_device *device = &p->circuit->device[d];
+        const int system = r->device_system[d];
+        if (system >= 0 && device->kind == DALCS_RESISTOR && device->value != 0.0) {
+            const double of_rounding = dalcs_rounded * p->largest[0][system] / fabs(device->value);
+            p->largest[1][system] = fmax(p->largest[1][system], of_rounding / dalcs_answer_rounded);
+        }
+    }
+}
+
+/* One more column, unless one of that name is there; `size` is what its value is a sum of, `largest` the largest value of
+ * its unit in its system. What elimination makes of a 0 is within the rounding of that: such a value is known to its own
+ * size. */
+static enum dalcs_status add(struct point *p, const char *name, double value, double size,
+                             double largest) {
     const size_t c = p->table.n_columns;
     int found;
     if (name == NULL) {
@@ -53,7 +94,8 @@ static enum dalcs_status add(struct point *p, const char *name, double value, do
     if (found == (int)c) {
         p->name[c] = name;
         p->value[c] = value;
-        p->absolute[c] = dalcs_answer_rounded * size;
+        const bool is_rounding = fabs(value) <= dalcs_answer_rounded * largest;
+        p->absolute[c] = fmax(dalcs_answer_rounded * size, is_rounding ? fabs(value) : 0.0);
         p->table.n_columns++;
     }
     return DALCS_OK;
@@ -76,7 +118,9 @@ static enum dalcs_status add_row(struct point *p, const struct dalcs_network *ne
         const struct dalcs_output *output = &network->output[k];
         const double size = size_of(p, &output->plus) + size_of(p, &output->minus);
         if (!output->is_current) {
-            DALCS_TRY(add(p, output->name, row[k], size));
+            DALCS_TRY(add(p, output->name, row[k], size,
+                          fmax(largest_of(p, 0, output->plus.system),
+                               largest_of(p, 0, output->minus.system))));
         }
     }
     return DALCS_OK;
@@ -91,8 +135,9 @@ static enum dalcs_status add_nodes(struct point *p, int device, bool *is_there) 
         if (column >= 0 && !is_there[node]) {
             is_there[node] = true;
             const char *name = dalcs_arena_printf(&p->arena, "v(%s)", p->circuit->node_name[node]);
-            const double v = p->euler->component[p->readout->device_system[device]].y[column];
-            DALCS_TRY(add(p, name, v, fabs(v)));
+            const int system = p->readout->device_system[device];
+            const double v = p->euler->component[system].y[column];
+            DALCS_TRY(add(p, name, v, fabs(v), largest_of(p, 0, system)));
         }
     }
     return DALCS_OK;
@@ -113,7 +158,8 @@ static enum dalcs_status add_current(struct point *p, int device) {
         size += fabs(r->term[k].coefficient * y[r->term[k].column]);
     }
     return r->start[device + 1] > r->start[device] && dalcs_names_find(&p->there, terminal) < 0
-               ? add(p, name, dalcs_readout_current(r, device, y), size)
+               ? add(p, name, dalcs_readout_current(r, device, y), size,
+                     largest_of(p, 1, r->device_system[device]))
                : DALCS_OK;
 }
 
@@ -165,6 +211,7 @@ void dalcs_audit_add_points(struct dalcs_run *r) {
     const bool is_worse = report->audit.mode == NULL || points->worst > report->audit.worst;
     report->audit.mode = r->options->audit == DALCS_AUDIT_FULL ? "full" : "sample";
     report->audit.instants += points->n;
+    report->frequencies += points->frequencies;
     report->audit.positions += points->positions;
     if (is_worse) {
         report->audit.worst = points->worst;
@@ -195,11 +242,28 @@ static enum dalcs_status fold(struct dalcs_run *r, const struct dalcs_table_audi
     return points->where != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-static enum dalcs_status judge(struct dalcs_run *r, struct point *p, bool remembers) {
+enum dalcs_status dalcs_audit_add_frequency(struct dalcs_run *r, double defect, const char *what,
+                                            double frequency) {
+    struct dalcs_audited_points *points = &r->points;
+    char text[DALCS_QUANTITY_SIZE];
+    points->frequencies++;
+    points->allowed = r->tolerance;
+    if (points->where == NULL || defect > points->worst) {
+        points->worst = defect;
+        points->where = dalcs_arena_printf(&r->s->arena, "%s at %s", what == NULL ? "" : what,
+                                           dalcs_quantity_write(text, frequency, "Hz", 6));
+    }
+    return points->where != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static enum dalcs_status judge(struct dalcs_run *r, struct point *p,
+                               const struct dalcs_solved_point *point) {
     const struct dalcs_file_promise promise = {.tolerance = r->tolerance,
                                                .vntol = r->radau.vntol,
                                                .abstol = r->radau.abstol,
-                                               .remembers = remembers};
+                                               .are_gates_restless =
+                                                   !dalcs_logic_run_is_at_rest(point->logic),
+                                               .remembers = point->remembers};
     struct dalcs_table_audit found;
     DALCS_TRY(dalcs_file_audit(p->circuit, &p->table, &promise, &p->arena, &r->s->diag, &found));
     const struct dalcs_table_law *law = worst_of(p, &found);
@@ -214,23 +278,23 @@ static enum dalcs_status judge(struct dalcs_run *r, struct point *p, bool rememb
     return DALCS_REFUTED;
 }
 
-enum dalcs_status dalcs_audit_point(struct dalcs_run *r, const struct dalcs_circuit *circuit,
-                                    const struct dalcs_network *network,
-                                    const struct dalcs_euler *e, const double *row,
-                                    bool remembers) {
+enum dalcs_status dalcs_audit_point(struct dalcs_run *r, const struct dalcs_solved_point *point) {
+    const struct dalcs_network *network = point->network;
     if (r->options->audit == DALCS_AUDIT_OFF || network->readout == NULL) {
         return DALCS_OK;
     }
-    struct point p = {.circuit = circuit, .readout = network->readout, .euler = e};
+    struct point p = {
+        .circuit = point->circuit, .readout = network->readout, .euler = point->euler};
     enum dalcs_status status = make_room(&p, (size_t)network->n_outputs);
     if (status == DALCS_OK) {
-        status = add_row(&p, network, row);
+        find_largest(&p);
+        status = add_row(&p, network, point->row);
     }
     if (status == DALCS_OK) {
         status = fill(&p);
     }
     if (status == DALCS_OK && p.table.n_columns > 1) {
-        status = judge(r, &p, remembers);
+        status = judge(r, &p, point);
     }
     dalcs_names_finish(&p.there);
     dalcs_arena_finish(&p.arena);

@@ -133,7 +133,9 @@ static enum dalcs_status solve_point(struct sweep *s, struct dalcs_euler *e,
     dalcs_measures_row(&s->measures, s->value[0], s->row + n_outer);
     DALCS_TRY(r->sink->row(r->sink->user, s->value[0], s->row));
     if (is_audited(s, e)) {
-        status = dalcs_audit_point(r, circuit, network, e, s->row + n_outer, s->k > 0);
+        const struct dalcs_solved_point point = {circuit, network,          e,
+                                                 logic,   s->row + n_outer, s->k > 0};
+        status = dalcs_audit_point(r, &point);
         if (status == DALCS_REFUTED) {
             blame_point(s);
         }

@@ -48,7 +48,9 @@ static enum dalcs_status solve(struct dalcs_run *r, const struct dalcs_network *
         status = r->sink->row(r->sink->user, 0.0, row);
     }
     if (status == DALCS_OK) {
-        status = dalcs_audit_point(r, &s->circuit, network, &e, row, false);
+        const struct dalcs_solved_point point = {
+            .circuit = &s->circuit, .network = network, .euler = &e, .logic = &logic, .row = row};
+        status = dalcs_audit_point(r, &point);
     }
     if (status == DALCS_OK) {
         status = measure_operating_point(r, row);

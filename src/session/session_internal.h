@@ -116,9 +116,9 @@ enum dalcs_method {
     DALCS_METHOD_EULER
 };
 
-/* What the audit has found at operating points. */
+/* What the audit has found at operating points and frequencies. */
 struct dalcs_audited_points {
-    long n, positions;
+    long n, positions, frequencies;
     double worst, allowed;
     const char *where; /* NULL: nothing was audited */
 };

@@ -4,6 +4,7 @@
  * left of (2.1) is linear, so amplitudes obey
  *     (j omega P_I - A_I) y = E_I s,   -A_II y = E_II s,   C y = -F s where w = 0, else lambda = 0
  * with the AC values of the sources as s: one sparse complex system for each frequency. */
+#include "audit_response.h"
 #include "gates.h"
 #include "measures.h"
 #include "pi.h"
@@ -40,6 +41,8 @@ struct small_signal {
     int n_parts;
     double *row; /* [2 n_outputs] */
     struct dalcs_measures measures;
+    struct dalcs_response_columns *columns; /* [n_parts] for the audit */
+    struct dalcs_audit_response audit;
 };
 
 /* ---- The matrix -------------------------------------------------------------------------------- */
@@ -282,11 +285,12 @@ static double probe(const struct small_signal *a, const struct dalcs_probe *prob
     return dalcs_probe_value(probe, part->y[which], part->s[which]);
 }
 
-static enum dalcs_status solve_frequency(struct small_signal *a, double frequency) {
+/* The k-th. */
+static enum dalcs_status solve_frequency(struct small_signal *a, int k, double frequency) {
     struct dalcs_run *r = a->run;
     const struct dalcs_network *network = &r->s->network;
-    for (int k = 0; k < a->n_parts; k++) {
-        const enum dalcs_status status = solve_part(&a->part[k], frequency, r->osnsp.rcond_min);
+    for (int p = 0; p < a->n_parts; p++) {
+        const enum dalcs_status status = solve_part(&a->part[p], frequency, r->osnsp.rcond_min);
         if (status == DALCS_SINGULAR) {
             dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
                            "an undamped resonance at this frequency, or a loop of conducting ideal "
@@ -302,7 +306,8 @@ static enum dalcs_status solve_frequency(struct small_signal *a, double frequenc
         }
     }
     dalcs_measures_complex_row(&a->measures, frequency, a->row);
-    return r->sink->row(r->sink->user, frequency, a->row);
+    DALCS_TRY(r->sink->row(r->sink->user, frequency, a->row));
+    return dalcs_audit_response_look(&a->audit, k, frequency, a->row);
 }
 
 /* ---- The operating point ------------------------------------------------------------------------ */
@@ -396,17 +401,22 @@ static enum dalcs_status walk(struct small_signal *a) {
     DALCS_TRY(dalcs_measures_start_rows(&a->measures, r, DALCS_MEASURED_AC, dalcs_sweep_value(f, 0),
                                         dalcs_sweep_value(f, f->n - 1)));
     for (int k = 0; k < f->n; k++) {
-        DALCS_TRY(solve_frequency(a, dalcs_sweep_value(f, k)));
+        DALCS_TRY(solve_frequency(a, k, dalcs_sweep_value(f, k)));
         DALCS_TRY(dalcs_run_progress(r, k + 1, f->n));
     }
     DALCS_TRY(dalcs_measures_report(&a->measures, r, DALCS_OK));
     return r->sink->end(r->sink->user);
 }
 
-static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler *e) {
+static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler *e,
+                               struct dalcs_logic_run *logic) {
+    struct dalcs_session *s = a->run->s;
+    const struct dalcs_solved_point point = {
+        .circuit = &s->circuit, .network = &s->network, .euler = e, .logic = logic};
     a->part = dalcs_alloc((size_t)e->n_components, sizeof *a->part);
     a->row = dalcs_alloc(2 * (size_t)a->run->s->network.n_outputs, sizeof *a->row);
-    if (a->part == NULL || a->row == NULL) {
+    a->columns = dalcs_alloc((size_t)e->n_components, sizeof *a->columns);
+    if (a->part == NULL || a->row == NULL || a->columns == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k < e->n_components; k++) {
@@ -418,8 +428,9 @@ static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler 
                            "frequency");
         }
         DALCS_TRY(status);
+        a->columns[k] = (struct dalcs_response_columns){{a->part[k].y[0], a->part[k].y[1]}};
     }
-    return DALCS_OK;
+    return dalcs_audit_response_start(&a->audit, a->run, &point, a->columns, s->circuit.ac.n);
 }
 
 enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) {
@@ -430,7 +441,7 @@ enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) {
     DALCS_TRY(dalcs_euler_setup(&e, &r->s->circuit, &r->s->network, &r->osnsp, 1.0, 1.0));
     enum dalcs_status status = find_operating_point(r, &e, &logic);
     if (status == DALCS_OK) {
-        status = setup(&a, &e);
+        status = setup(&a, &e, &logic);
     }
     if (status == DALCS_OK) {
         status = walk(&a);
@@ -438,9 +449,11 @@ enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) {
     for (int k = 0; k < a.n_parts; k++) {
         part_finish(&a.part[k]);
     }
+    dalcs_audit_response_finish(&a.audit);
     dalcs_measures_finish(&a.measures);
     free(a.part);
     free(a.row);
+    free(a.columns);
     dalcs_run_add_work(r, &e);
     dalcs_logic_run_finish(&logic);
     dalcs_euler_finish(&e);

@@ -110,6 +110,25 @@ void block(struct draft *d, int n, const char *a, const char *b) {
     }
 }
 
+void subcircuits(struct draft *d) {
+    static const char *const inner[] = {
+        "d1 m q dm\n.model dm D(Ron={r} Vfwd=0.7)\nc1 m q 10n ic=1",
+        "s1 m q p q sm\n.model sm SW(Vt=0.5 Vh=0.1 Ron={r/1k})\nd1 q m",
+        "l1 m q 1m\nl2 s q 4m\nk1 l1 l2 0.98\nr2 s q {2*r}",
+        "e1 s q m q 2\nf1 p m e1 0.1\nr2 s q {r}",
+        "b1 m q i={g(v(m,q),2)}\nh1 s q e1 10\ne1 t q m q 1\nr2 s t {r}"};
+    const int n = 1 + pick(d, 3);
+    for (int k = 0; k < n; k++) {
+        put(d, "x%d %s %s %s%s\n", k, live(d), node(d), WORD(d, "one", "two"),
+            WORD(d, "", " r=47", " params: r=1"));
+    }
+    put(d, ".func g(x,y) {%s}\n", WORD(d, "x/(1k*y)", "1m*max(x,y)", "1m*x*y"));
+    put(d, ".subckt one p q params: r=1k\nr1 p m {r}\n%s\n.ends\n", inner[pick(d, 5)]);
+    put(d, ".subckt two p q r=100\nx1 p m one r={r*2}\nx2 m q one\nr1 m 0 {r}\n%s.ends\n",
+        WORD(d, "", "c1 m 0 1n\n", ".ic v(m)=1\n"));
+    put(d, "%s", WORD(d, "", ".temp 50\n", ".options tnom=20\n"));
+}
+
 void other_analyses(struct draft *d) {
     switch (pick(d, 5)) {
     case 0:

@@ -63,6 +63,9 @@ void couplings(struct draft *d);
 /* One of the code models of XSPICE or of LTspice's A devices, with its model, between a node and ground or others. */
 void block(struct draft *d, int n, const char *a, const char *b);
 
+/* Subcircuits in one another, with parameters and coupled coils, functions, and the temperature. */
+void subcircuits(struct draft *d);
+
 /* Cards of other analyses around it: .env, .pss with .ac, measurements of these. */
 void other_analyses(struct draft *d);
 

@@ -1,18 +1,22 @@
 /* random_runs.c - valid netlists of random bytes, run one after the other in one process.
  *
- *   random_runs SEED COUNT [FIRST]
+ *   random_runs SEED COUNT [FIRST [SECONDS]]
  *
  * What libFuzzer does with fuzz_run.c, less its bookkeeping of coverage, which takes longer than a short run: for many
- * runs. Run k of a seed has bytes of its own: `random_runs SEED 1 k` is that run alone. Most netlists are small. What
- * ends the process, or a run of more than MOST_SECONDS of processor time, is told with its number.
- * With DALCS_TEST_SHORT=1 it makes a quarter of them. */
+ * runs. Run k of a seed has bytes of its own: `random_runs SEED 1 k` is that run alone. Most netlists are small. A run that
+ * ends the process, or takes more than MOST_SECONDS of processor time, is told with its number, and another process goes on
+ * behind it. With SECONDS a run that takes longer than that is left, which is no failure: the search for a mode of a
+ * singular system may take minutes. With DALCS_TEST_SHORT=1 it makes a quarter of them. */
 #include <inttypes.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/time.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -21,24 +25,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 /* The largest netlists of 12 elements take 120 choices or so; most are of a few. */
 enum { MOST_BYTES = 160, MOST_SECONDS = 60, RUNS_BETWEEN_LINES = 100000 };
 
-static volatile sig_atomic_t has_printed;
-static uint64_t seed, run;
+static uint64_t seed;
+static long most_seconds = MOST_SECONDS;
 
-/* Of a failure: nothing but write() is sure to work. */
-static void tell(int signal_number) {
-    char line[96];
-    if (!has_printed) {
-        has_printed = 1;
-        const int n =
-            snprintf(line, sizeof line, "signal %d in run: random_runs %" PRIu64 " 1 %" PRIu64 "\n",
-                     signal_number, seed, run);
-        if (write(2, line, (size_t)n) < 0) {
-            _exit(2);
-        }
-    }
-    signal(signal_number, SIG_DFL);
-    raise(signal_number == SIGPROF ? SIGABRT : signal_number);
-}
+/* Of the process that runs, as the one that waits for it sees it. */
+static volatile uint64_t *run;
 
 /* Steele, Lea and Flood, OOPSLA 2014: SplitMix64. */
 static uint64_t next(uint64_t *state) {
@@ -49,7 +40,7 @@ static uint64_t next(uint64_t *state) {
 }
 
 static void one(void) {
-    uint64_t state = seed * UINT64_C(0x2545f4914f6cdd1d) + run;
+    uint64_t state = seed * UINT64_C(0x2545f4914f6cdd1d) + *run;
     uint8_t data[MOST_BYTES];
     next(&state);
     const uint64_t length = next(&state);
@@ -59,14 +50,36 @@ static void one(void) {
         const uint64_t word = next(&state);
         memcpy(data + k, &word, k + sizeof word <= size ? sizeof word : size - k);
     }
-    const struct itimerval most = {.it_value = {.tv_sec = MOST_SECONDS}};
+    const struct itimerval most = {.it_value = {.tv_sec = most_seconds}};
     setitimer(ITIMER_PROF, &most, NULL);
     LLVMFuzzerTestOneInput(data, size);
 }
 
+static void run_all(uint64_t first, uint64_t end, time_t begin) {
+    while (*run < end) {
+        one();
+        ++*run;
+        if ((*run - first) % RUNS_BETWEEN_LINES == 0) {
+            printf("%" PRIu64 " runs, %ld s\n", *run - first, (long)(time(NULL) - begin));
+            fflush(stdout);
+        }
+    }
+}
+
+/* How a process ended before all were run: is that a failure? */
+static bool tell(int status, bool may_be_slow) {
+    const bool is_slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF;
+    fprintf(stderr, "%s %d in run: random_runs %" PRIu64 " 1 %" PRIu64 "\n",
+            is_slow               ? "out of time, signal"
+            : WIFSIGNALED(status) ? "signal"
+                                  : "status",
+            WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), seed, *run);
+    return !is_slow || !may_be_slow;
+}
+
 int main(int argc, char **argv) {
     if (argc < 3) {
-        fputs("usage: random_runs SEED COUNT [FIRST]\n", stderr);
+        fputs("usage: random_runs SEED COUNT [FIRST [SECONDS]]\n", stderr);
         return 2;
     }
     seed = strtoull(argv[1], NULL, 10);
@@ -74,18 +87,30 @@ int main(int argc, char **argv) {
     const uint64_t asked = strtoull(argv[2], NULL, 10);
     const uint64_t count = asked > 4 && is_short != NULL ? asked / 4 : asked;
     const uint64_t first = argc > 3 ? strtoull(argv[3], NULL, 10) : 0;
-    static const int failures[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGPROF};
-    for (size_t k = 0; k < sizeof failures / sizeof failures[0]; k++) {
-        signal(failures[k], tell);
-    }
     const time_t begin = time(NULL);
-    for (run = first; run < first + count; run++) {
-        one();
-        if ((run + 1 - first) % RUNS_BETWEEN_LINES == 0) {
-            printf("%" PRIu64 " runs, %ld s\n", run + 1 - first, (long)(time(NULL) - begin));
-            fflush(stdout);
+    long n_failed = 0, n_left = 0;
+    most_seconds = argc > 4 ? strtol(argv[4], NULL, 10) : MOST_SECONDS;
+    run = mmap(NULL, sizeof *run, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (run == MAP_FAILED) {
+        return 2;
+    }
+    for (*run = first; *run < first + count; ++*run) {
+        int status;
+        const pid_t process = fork();
+        if (process == 0) {
+            run_all(first, first + count, begin);
+            exit(0); /* where a sanitizer looks for leaks */
+        }
+        if (process < 0 || waitpid(process, &status, 0) != process) {
+            return 2;
+        }
+        if (status != 0) {
+            const bool fails = tell(status, argc > 4);
+            n_failed += fails ? 1 : 0;
+            n_left += fails ? 0 : 1;
         }
     }
-    printf("seed %" PRIu64 ": %" PRIu64 " runs, %ld s\n", seed, count, (long)(time(NULL) - begin));
-    return 0;
+    printf("seed %" PRIu64 ": %" PRIu64 " runs, %ld s, %ld left, %ld failed\n", seed, count,
+           (long)(time(NULL) - begin), n_left, n_failed);
+    return n_failed > 0 ? 1 : 0;
 }

@@ -43,6 +43,29 @@ v2 p 0 PULSE(0 5 1u 1n 1n 5u 10u)
 POINT = CIRCUIT + ".op\n"
 SWEEP = CIRCUIT + ".dc v1 -10 10 0.1\n"
 
+GATES = """gates and latches at rest
+v1 a 0 5
+v2 b 0 0
+v3 c 0 3.3
+a1 a b 0 0 0 0 o1 0 AND vhigh=5 ref=2.5
+a2 a b 0 0 0 n2 o2 0 OR vhigh=5 ref=2.5
+a3 o2 c 0 0 0 0 o3 0 XOR vhigh=5 ref=2.5 td=1u
+a4 o1 0 0 0 0 n4 0 0 INV vhigh=5 ref=2.5
+a5 a b 0 0 0 0 q 0 SRFLOP vhigh=5 ref=2.5
+a6 a 0 b a 0 m6 q6 0 DFLOP vhigh=5 ref=2.5
+a7 q6 m6 0 0 0 0 o7 0 AND vhigh=5 ref=2.5
+r1 o1 0 1k
+r2 o2 0 1k
+r3 o3 0 1k
+r4 n4 0 1k
+r5 q 0 1k
+r6 q6 0 1k
+r7 o7 0 1k
+r8 n2 0 1k
+r9 m6 0 1k
+.op
+"""
+
 # name: (file, what to replace, by what, netlist)
 MUTATIONS = {
     "a constant is 1e-4 too large": (
@@ -82,6 +105,20 @@ MUTATIONS = {
     "a transconductance has the other sign": (
         "dalcs/stamp_device.c", "d->node[2], d->node[3],\n                                            d->value);",
         "d->node[2], d->node[3],\n                                            -d->value);", POINT),
+    "an exclusive gate is one of any": (
+        "logic/logic_network.c", "g->kind == DALCS_GATE_ONE ? n_high == 1", "g->kind == DALCS_GATE_ONE ? n_high > 0", GATES),
+    "a gate of all asks for one": (
+        "logic/logic_network.c", "g->kind == DALCS_GATE_AND   ? n_high == n", "g->kind == DALCS_GATE_AND   ? n_high > 0 * n",
+        GATES),
+    "inverters do not invert": (
+        "logic/logic_network.c", "    return bit != input->is_inverted;", "    return bit || (input->is_inverted && bit);", GATES),
+    "a latch keeps what it had": (
+        "logic/logic_network.c", "    return !reset && (set || q);", "    return !reset && (q || (set && q));", GATES),
+    "a flip-flop does not heed its preset": (
+        "logic/logic_network.c", "        state->q = !clears;", "        state->q = state->q && !clears;", GATES),
+    "complements are not": (
+        "logic/logic_outputs.c", "level_of(g, pin, l->network.state[k].seen), changed",
+        "level_of(g, 0 * pin, l->network.state[k].seen), changed", GATES.replace("m6 0 0 0 0 o7", "a 0 0 0 0 o7")),
     "a row has the other sign": (
         "waveform/recorder.c", "value[i] = dalcs_recorder_signal(network, e, i);",
         "value[i] = -dalcs_recorder_signal(network, e, i);", POINT),

@@ -20,6 +20,18 @@ TRIAC = "V1 a 0 SIN(0 325 50)\nR1 a c 10\nL1 c b 10m\nA1 b 0 g t1\nVg g 0 PULSE(
 
 # name: (netlist, options, {(signal, time): value})
 CIRCUITS = {
+    "a node at 0 V beside 3 V, which elimination makes 1e-17 V": (
+        "v1 a 0 -3\nr2 b 0 509\nr3 c b 0.07506\nr4 d a 15.22k\nc1 d b 195.2n\ng2 b d b 0 0.009449\n.op\n", [], {}),
+    "nothing flows, beside 5 V across tenths of milliohms": (
+        "v1 a 0 5\nr2 b a 247.3k\nr3 c a 20.77k\nr4 d c 0.02976\nr5 e c 0.76\nra1 b a 0.1729m\nra2 c b 45.68k\n"
+        "ca3 a d 55n\n.op\n", [], {}),
+    "small signals of which nothing flows": (
+        "v1 a 0 AC 1 172\nr2 b a 49.49k\nr3 c b 2.279m\nr4 d c 16.86k\nr5 e 0 471\nr6 f c 2.207m\nca1 d c 29n\n"
+        "ra2 f d 0.1716\nwa3 a e v1 w0\n.model w0 CSW(it=1m ron=1m roff=1meg)\n.ac dec 2 1 1g\n", [], {}),
+    "small signals around an amplifier between its rails": (
+        "v1 a 0 AC 1\nr1 a n 1k\nr2 n o 3k\nb1 o 0 V=10*sgn(-v(n))\nr3 o 0 1k\n.ac dec 2 1 1g\n", [], {}),
+    "small signals beside a switch that has no rest": (
+        "v1 a 0 AC 1\nr1 a b 1k\nix1 0 b 1m\nwa9 b 0 v1 w0\n.model w0 CSW(it=1u ron=1m roff=1meg)\n.ac dec 2 1 1g\n", [], {}),
     "H reads an impulse into an RC": (DRIVEN + "H1 d 0 E1 -1\n" + READ, [], {("v(f)", 1e-3): 1.0}),
     "F reads an impulse into R and an RC": (DRIVEN + "F1 0 d E1 -1\n" + READ, [], {("v(f)", 1e-3): 500.0}),
     "B reads an impulse into an RC": (DRIVEN + "B1 d 0 V=-i(E1)\n" + READ, [], {("v(f)", 1e-3): 1.0}),

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Right operating points: the audit finds nothing in them. Each netlist with .op in the place of its analyses, and with a
-sweep of its first source.
+"""Right operating points and responses: the audit finds nothing in them. Each netlist with .op in the place of its
+analyses, with a sweep of its first source, and with .ac of that.
 
 usage: sound_points.py PROGRAM SOURCE
 """
@@ -16,6 +16,7 @@ from dalcs_program import Checker  # noqa: E402
 
 ANALYSES = re.compile(r"\.(tran|pss|env|ac|dc|op|four|meas|measure|losses|step|save|print|plot|wcase|mc|options|end)\b", re.I)
 AT_LEAST = 70  # netlists with an operating point
+LEAST_RESPONSES = 30
 
 
 def at_rest(text, card):
@@ -42,21 +43,27 @@ def run(program, path, text, directory):
 def main():
     program, source = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
     checker = Checker("sound_points")
-    n = 0
+    n, n_responses = 0, 0
     with tempfile.TemporaryDirectory() as name:
         for path in sorted(source.glob("netlists/**/*.cir")):
             text = path.read_text()
             cards = [".op"]
             first = re.search(r"^(v\w+)\s", text, re.I | re.M)
             cards += [f".dc {first.group(1)} -10 10 1"] if first else []
+            cards += [".ac dec 3 0.1 10meg"] if first else []
             for card in cards:
-                ran = run(program, path, at_rest(text, card), pathlib.Path(name))
+                netlist = at_rest(text, card)
+                if card.startswith(".ac"):
+                    netlist = re.sub(rf"^({first.group(1)}\s.*)$", r"\1 AC 1", netlist, count=1, flags=re.M)
+                ran = run(program, path, netlist, pathlib.Path(name))
                 n += card == ".op" and ran.returncode == 0
+                n_responses += card.startswith(".ac") and ran.returncode == 0
                 if ran.returncode == 1:
                     checker.check("the audit finds" not in ran.stderr, f"{path.name} {card}: {ran.stderr}")
                 elif ran.returncode == 0:
                     checker.check("audited at" in ran.stdout, f"{path.name} {card}: {ran.stdout}")
     checker.check(n >= AT_LEAST, f"only {n} netlists have an operating point")
+    checker.check(n_responses >= LEAST_RESPONSES, f"only {n_responses} netlists have a response around it")
     return checker.finish()
 
 

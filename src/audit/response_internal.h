@@ -1,0 +1,68 @@
+/* response_internal.h - what the files about small signals, src/audit/response*.c, share. */
+#ifndef DALCS_RESPONSE_INTERNAL_H
+#define DALCS_RESPONSE_INTERNAL_H
+
+#include "response.h"
+
+#include "rounding.h"
+
+#include <math.h>
+
+/* A line of a diode or a switch, p u = q i. */
+struct response_line {
+    double p, q;
+};
+
+enum { RESPONSE_MOST_LINES = 3 };
+
+/* What a device may be for small signals, by its operating point. */
+struct response_lines {
+    int n;
+    struct response_line line[RESPONSE_MOST_LINES];
+    double *slope; /* [n_pairs] of a formula: d lambda by its argument; NAN: it is at a corner */
+    double gradient
+        [2]
+        [3]; /* of a smooth function: the least and the largest where its arguments may be; at them */
+};
+
+struct response_node {
+    double complex sum;
+    double scale, size;
+    bool is_open; /* a current is not known, or a device is not there */
+};
+
+/* A sum, the sizes of its terms, and what these are sums of, which rounding goes by. */
+struct response_sum {
+    double complex value;
+    double scale, size;
+};
+
+/* Between the modulus and 1.42 times that, for a third of what that takes. */
+static inline double response_magnitude(double complex x) {
+    return fabs(creal(x)) + fabs(cimag(x));
+}
+
+/* What a voltage is known by: one within the rounding of the largest is not known at all. */
+static inline double response_size(const struct dalcs_response_audit *a, double complex v) {
+    const double size = response_magnitude(v);
+    return size > dalcs_answer_rounded * a->volts ? size : size / dalcs_answer_rounded;
+}
+
+/* ---- response_lines.c ---- */
+
+/* Of all devices at the operating point. */
+enum dalcs_status response_find_lines(struct dalcs_response_audit *a,
+                                      const struct dalcs_response_values *at) DALCS_MUST_CHECK;
+
+/* ---- response_formula.c ---- */
+
+/* Of a device with a behaviour. */
+enum dalcs_status response_find_slopes(struct dalcs_response_audit *a,
+                                       const struct dalcs_response_values *at,
+                                       int device) DALCS_MUST_CHECK;
+
+/* What it puts out, with doubt: an error beside that of the tolerance; false: it is at a corner. */
+bool response_formula(struct dalcs_response_audit *a, const struct dalcs_response_values *is,
+                      int device, struct response_sum *output, double *doubt);
+
+#endif
