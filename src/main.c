@@ -10,8 +10,14 @@
 /* The signal that stops the run; 0: none yet. */
 static volatile sig_atomic_t interrupted;
 
+/* The session at work, which looks for a signal's flag between its rows alone; NULL: none. */
+static struct dalcs_session *volatile running;
+
 static void note_signal(int number) {
     interrupted = number;
+    if (running != NULL) {
+        dalcs_session_cancel(running);
+    }
 }
 
 /* The first signal ends the run with its results so far in files; a second one ends the program.
@@ -51,6 +57,7 @@ int main(int argc, char **argv) {
         .err = stderr,
         .err_is_terminal = isatty(STDERR_FILENO) == 1,
         .interrupted = &interrupted,
+        .running = &running,
     };
     errno = 0;
     int result = dalcs_cli_eval(&cli, argc, argv);

@@ -37,8 +37,8 @@ void dalcs_sensitivity_parse(struct dalcs_builder *builder, const struct dalcs_c
 void dalcs_sensitivity_check(struct dalcs_builder *builder);
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* v(node) at the start of a .tran, as by .ic. */
-void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place, int node,
-                        double value);
+void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place,
+                        const int *node, double value);
 void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* .nodeset: the same form, without an effect */
 void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dalcs_card *card);

@@ -140,7 +140,7 @@ void dalcs_block_parse_integrator(const struct dalcs_block_card *c) {
         return;
     }
     if (add_bound(c, state, true, high) && add_bound(c, state, false, low)) {
-        dalcs_initial_hold(c->builder, c->card->token, state, first);
+        dalcs_initial_hold(c->builder, c->card->token, (int[]){state, 0}, first);
     }
 }
 

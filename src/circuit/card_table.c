@@ -108,10 +108,13 @@ static const char *refused_element(char letter) {
     case 'n':
         return "compiled models";
     case 'o':
-    case 'u':
-    case 'y':
-    case 'p':
         return "transmission lines with losses";
+    case 'u':
+        return "distributed RC lines, and the digital devices of PSpice and Xyce,";
+    case 'y':
+        return "lossy lines of ngspice, and Xyce's Y devices,";
+    case 'p':
+        return "coupled lines, and ports,";
     default:
         return NULL;
     }
@@ -121,9 +124,12 @@ static const char *hint_of_element(char letter) {
     switch (letter) {
     case 'j':
         return "write an ideal switch S, with a diode D across it for a body diode";
-    case 'o':
     case 'u':
     case 'y':
+        return "Aname in1 in2 0 0 0 inverse out 0 AND is a gate, with DFLOP and others a "
+               "flip-flop; "
+               "Tname a b c d Z0=ohms TD=seconds is a line without losses";
+    case 'o':
     case 'p':
         return "Tname a b c d Z0=ohms TD=seconds is a line without losses";
     default:

@@ -49,9 +49,9 @@ static void add_voltage(struct dalcs_builder *builder, const struct dalcs_token 
             {node[0], node[1]}, value, dalcs_builder_keep_location(builder, place)};
 }
 
-void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place, int node,
-                        double value) {
-    add_voltage(builder, place, (int[]){node, 0}, value);
+void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place,
+                        const int *node, double value) {
+    add_voltage(builder, place, node, value);
 }
 
 static bool read_value(struct dalcs_reader *reader, enum dalcs_quantity quantity, double *value) {

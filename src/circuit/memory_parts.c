@@ -1,6 +1,7 @@
 /* memory_parts.c - ddt(x), idt(x) and sdt(x) in a formula: the current of a capacitor that follows x, and the voltage of
  * one that x charges. What idt() begins at is added behind the capacitor, whose voltage is held at 0 where the run
- * starts; while a condition holds, a switch across it brings it back there. */
+ * starts; while a condition holds, a switch across it brings it back there. Where that varies, the capacitor itself begins
+ * at it, and the switch leads to it. */
 #include "analysis_cards.h"
 #include "behaviour.h"
 #include "model_cards.h"
@@ -51,14 +52,15 @@ static int add_derivative(struct dalcs_compiler *c, const struct dalcs_formula *
     return rate;
 }
 
-/* Across the capacitor while the condition holds. */
-static bool add_reset(struct dalcs_compiler *c, const struct dalcs_formula *condition, int state) {
+/* To what it begins at, while the condition holds. */
+static bool add_reset(struct dalcs_compiler *c, const struct dalcs_formula *condition, int state,
+                      int first) {
     static const struct dalcs_switch_model model = {
         .name = "reset", .roff = (double)INFINITY, .vt = 0.5};
     int source;
     const int control = dalcs_compiler_node_at(c, "reset", condition, false, &source);
     struct dalcs_device *s =
-        control >= 0 ? dalcs_memory_add_device(c, DALCS_SWITCH, "reset", state, 0) : NULL;
+        control >= 0 ? dalcs_memory_add_device(c, DALCS_SWITCH, "reset", state, first) : NULL;
     if (s == NULL) {
         return false;
     }
@@ -67,12 +69,15 @@ static bool add_reset(struct dalcs_compiler *c, const struct dalcs_formula *cond
     return s->model >= 0;
 }
 
-/* A node whose voltage is the integral of x from 0 on; -1 after an error. */
-static int add_integral(struct dalcs_compiler *c, const struct dalcs_formula *f) {
+/* A node whose voltage is the integral of x, from 0 or, where that varies, from its second argument on; -1 after an
+ * error. */
+static int add_integral(struct dalcs_compiler *c, const struct dalcs_formula *f, bool varies) {
     int source;
+    const int first =
+        varies ? dalcs_compiler_node_at(c, "first", f->argument[1], false, &source) : 0;
     const int input = dalcs_compiler_node_at(c, "integrand", f->argument[0], false, &source);
     const int state = input >= 0 ? dalcs_compiler_new_node(c, "integral") : -1;
-    if (state < 0 || add_capacitor(c, "integral", state) < 0) {
+    if (first < 0 || state < 0 || add_capacitor(c, "integral", state) < 0) {
         return -1;
     }
     struct dalcs_device *g = dalcs_memory_add_device(c, DALCS_VCCS, "charge", 0, state);
@@ -81,8 +86,8 @@ static int add_integral(struct dalcs_compiler *c, const struct dalcs_formula *f)
     }
     g->node[2] = input;
     g->value = dalcs_charging;
-    dalcs_initial_hold(c->builder, c->element, state, 0);
-    return f->n < 3 || add_reset(c, f->argument[2], state) ? state : -1;
+    dalcs_initial_hold(c->builder, c->element, (int[]){state, first}, 0);
+    return f->n < 3 || add_reset(c, f->argument[2], state, first) ? state : -1;
 }
 
 bool dalcs_memory_is(const struct dalcs_formula *f) {
@@ -99,7 +104,8 @@ const struct dalcs_form *dalcs_memory_form(struct dalcs_compiler *c,
         c->failed = true;
         return NULL;
     }
-    if (first != NULL && !dalcs_form_is_number(first)) {
+    const bool varies = first != NULL && !dalcs_form_is_number(first);
+    if (varies && strcmp(f->function, "idtmod") == 0) {
         dalcs_builder_error_at(c->builder, &f->argument[1]->where, NULL,
                                "the initial value of '%s' must be a number", f->function);
         c->failed = true;
@@ -110,11 +116,12 @@ const struct dalcs_form *dalcs_memory_form(struct dalcs_compiler *c,
     }
     int *node = &c->smooth_node[f->number_of];
     if (*node == 0) {
-        const int made = is_derivative ? add_derivative(c, f->argument[0]) : add_integral(c, f);
+        const int made =
+            is_derivative ? add_derivative(c, f->argument[0]) : add_integral(c, f, varies);
         c->failed = c->failed || made < 0;
         *node = made > 0 ? made : 0;
     }
     struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, *node);
-    v.constant = first != NULL ? first->affine.constant : 0;
+    v.constant = first != NULL && !varies ? first->affine.constant : 0;
     return c->failed ? NULL : dalcs_form_affine(c, &v);
 }

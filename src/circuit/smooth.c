@@ -157,6 +157,9 @@ double dalcs_smooth_held(enum dalcs_smooth_kind kind, const double *x, double sl
     double low;
     double high;
     find_domain(kind, x[1], &low, &high);
+    if (kind == DALCS_SMOOTH_QUOTIENT && x[1] == 0.0) {
+        low = high = 0.0; /* rounding over 0 is 0/0 */
+    }
     const double held = x[0] < low ? low : x[0] > high ? high : x[0];
     return fabs(x[0] - held) <= slack ? held : x[0];
 }

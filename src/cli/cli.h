@@ -21,6 +21,7 @@ struct dalcs_cli {
     FILE *out, *err;
     bool err_is_terminal;
     const volatile sig_atomic_t *interrupted; /* not 0: stop soon */
+    struct dalcs_session *volatile *running;  /* that a signal is to cancel; may be NULL */
 };
 
 enum dalcs_exit dalcs_cli_exit(enum dalcs_status status);

@@ -101,6 +101,15 @@ static enum dalcs_analysis main_analysis(const struct dalcs_request *request,
 
 /* ---- The run -------------------------------------------------------------------------------- */
 
+static void set_running(const struct dalcs_cli *cli, struct dalcs_session *session) {
+    if (cli->running != NULL) {
+        *cli->running = session;
+    }
+    if (session != NULL && *cli->interrupted) {
+        dalcs_session_cancel(session); /* by a signal that came before */
+    }
+}
+
 /* Runs a session that has read its netlist and ends all files. */
 static enum dalcs_status run_session(struct dalcs_run *run, struct dalcs_session *session,
                                      const struct dalcs_arguments *arguments,
@@ -117,8 +126,10 @@ static enum dalcs_status run_session(struct dalcs_run *run, struct dalcs_session
                                            .set = arguments->batch.variable,
                                            .n_set = arguments->batch.n_variables,
                                            .after_run = dalcs_run_tell_measured};
+    set_running(run->cli, session);
     enum dalcs_status status =
         run->has_script ? dalcs_script_run(&host) : dalcs_session_run(session, &options, &sink);
+    set_running(run->cli, NULL);
     dalcs_progress_finish(&run->progress);
     dalcs_print_table_finish(&run->printed);
 

@@ -18,7 +18,8 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
                                             const struct dalcs_system *system, int n_points,
                                             struct dalcs_arena *arena) {
     const size_t n = (size_t)n_points * (size_t)system->n_smooth;
-    *newton = (struct dalcs_smooth_newton){.system = system, .n_points = n_points, .n = (int)n};
+    *newton = (struct dalcs_smooth_newton){
+        .system = system, .n_points = n_points, .n = (int)n, .share = 1.0};
     newton->phi = dalcs_arena_alloc(arena, n, sizeof(double));
     newton->before = dalcs_arena_alloc(arena, n, sizeof(double));
     newton->x = dalcs_arena_alloc(arena, n, sizeof(*newton->x));
@@ -40,11 +41,32 @@ static const struct dalcs_smooth_input *input_of(const struct dalcs_smooth_newto
     return &newton->system->smooth[q % newton->system->n_smooth];
 }
 
+/* What of a function, or of its slope, counts; at 0 it may have none. */
+static double counted(const struct dalcs_smooth_newton *newton, double value) {
+    return newton->share == 0.0 ? 0.0 : newton->share * value;
+}
+
+static double rest_of(const struct dalcs_smooth_newton *newton, const struct dalcs_smooth_input *of,
+                      const double *x) {
+    return counted(newton, dalcs_smooth_value(of->kind, x)) - dalcs_smooth_line(of, 0) * x[0] -
+           dalcs_smooth_line(of, 1) * x[1];
+}
+
+static void find_gradient_of_rest(const struct dalcs_smooth_newton *newton, int q, const double *x,
+                                  double *gradient) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    dalcs_smooth_finite_gradient(of, x, gradient);
+    for (int j = 0; j < 2; j++) {
+        gradient[j] = counted(newton, gradient[j]) - dalcs_smooth_line(of, j);
+    }
+}
+
 void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double (*x)[2]) {
     for (int q = 0; q < newton->n; q++) {
         newton->before[q] = newton->phi[q];
         memcpy(newton->tangent[q], x[q % newton->system->n_smooth], sizeof(newton->tangent[q]));
     }
+    newton->volt = 0.0;
     newton->halved = newton->n_steps = 0;
     newton->limits = newton->at_pole = false;
     newton->defect = INFINITY;
@@ -80,6 +102,7 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
     const struct dalcs_system *s = newton->system;
     const int first = point * s->n_smooth;
     const double volt = largest_voltage(s, y);
+    newton->volt = dalcs_larger(newton->volt, volt);
     dalcs_smooth_arguments(s, y, newton->x + first);
     for (int k = 0; k < s->n_smooth; k++) {
         const struct dalcs_smooth_input *of = &s->smooth[k];
@@ -92,7 +115,7 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
         }
         /* What a kink leaves of 0 has no terms but itself: it is known to the rounding of the voltages. */
         const double off =
-            dalcs_larger(dalcs_alike * newton->terms[first + k][0], dalcs_rounded * volt);
+            dalcs_larger(dalcs_alike * newton->terms[first + k][0], dalcs_rounded * newton->volt);
         newton->x[first + k][0] = dalcs_smooth_held(of->kind, newton->x[first + k], off);
     }
 }
@@ -121,17 +144,17 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
     for (int q = 0; q < newton->n; q++) {
         const struct dalcs_smooth_input *of = input_of(newton, q);
         double gradient[2];
-        double f = dalcs_smooth_value(of->kind, newton->x[q]);
+        double f = counted(newton, dalcs_smooth_value(of->kind, newton->x[q]));
         dalcs_smooth_finite_gradient(of, newton->x[q], gradient);
         double least = tolerance * fabs(f);
         double most = least;
         for (int j = 0; j < of->n; j++) {
             bool is_read = of->column[j] >= 0;
-            double slope = fabs(gradient[j]) + fabs(dalcs_smooth_line(of, j));
+            double slope = fabs(counted(newton, gradient[j])) + fabs(dalcs_smooth_line(of, j));
             least += is_read ? dalcs_rounded * slope * fabs(newton->x[q][j]) : 0.0;
             most += is_read ? dalcs_answer_rounded * slope * newton->terms[q][j] : 0.0;
         }
-        double off = fabs(dalcs_smooth_rest(of, newton->x[q]) - newton->phi[q]);
+        double off = fabs(rest_of(newton, of, newton->x[q]) - newton->phi[q]);
         double ratio = over(off, most);
         newton->worst = ratio > worst ? q % newton->system->n_smooth : newton->worst;
         worst = ratio <= worst ? worst : ratio; /* NAN stays */
@@ -165,7 +188,8 @@ static bool is_finite(struct dalcs_smooth_newton *newton, bool *has_slopes) {
 
 bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats) {
     bool has_slopes;
-    const bool is = is_finite(newton, &has_slopes);
+    const bool is = is_finite(newton, &has_slopes) || newton->share == 0.0;
+    has_slopes = has_slopes || newton->share == 0.0;
     const bool is_first = newton->n_steps == 0;
     *repeats = !(is && has_slopes) &&
                newton->halved < (is_first ? newton->system->n_smooth : MOST_HALVINGS);
@@ -213,8 +237,8 @@ static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
         a[j] = dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
         newton->limits = newton->limits || a[j] != newton->x[q][j];
     }
-    dalcs_smooth_gradient_of_rest(of, a, gradient);
-    newton->step[q] = dalcs_smooth_rest(of, a) - newton->phi[q];
+    find_gradient_of_rest(newton, q, a, gradient);
+    newton->step[q] = rest_of(newton, of, a) - newton->phi[q];
     for (int j = 0; j < of->n; j++) {
         newton->step[q] += of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
     }
@@ -248,7 +272,7 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
 bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton) {
     for (int q = 0; q < newton->n; q++) {
         double gradient[2];
-        dalcs_smooth_gradient_of_rest(input_of(newton, q), newton->x[q], gradient);
+        find_gradient_of_rest(newton, q, newton->x[q], gradient);
         put_row(newton, q, gradient);
     }
     return factor(newton);
@@ -259,7 +283,7 @@ void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const do
     for (int q = 0; q < newton->n; q++) {
         const struct dalcs_smooth_input *of = input_of(newton, q);
         double gradient[2];
-        dalcs_smooth_gradient_of_rest(of, newton->x[q], gradient);
+        find_gradient_of_rest(newton, q, newton->x[q], gradient);
         change[q] = 0.0;
         for (int j = 0; j < of->n; j++) {
             change[q] += of->column[j] >= 0 ? gradient[j] * dx[q][j] : 0.0;

@@ -16,11 +16,13 @@ struct dalcs_smooth_newton {
     const struct dalcs_system *system;
     int n_points;
     int n;          /* n_points * system->n_smooth values, point by point */
+    double share;   /* functions count this much: 1, but on the way there from 0 */
     double *phi;    /* [n] */
     double *before; /* [n] phi one step ago */
     double (*x)[2]; /* [n] arguments that were read */
     double (*terms)
         [2]; /* [n] V: what they are made of, or the largest voltage that was read beside them */
+    double volt;          /* the largest that was read at any point since the beginning */
     double (*tangent)[2]; /* [n] where tangents are */
     double (*other)[2];   /* [3][n_smooth] arguments elsewhere, for who asks what is between */
     double *slope;        /* [n][2][n] S */

@@ -202,7 +202,8 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
 
 /* Ends the run at hand with DALCS_E_CANCELLED, or where none is, the next one as it begins. The one call
- * that another thread, or a signal handler, may make while the session runs. */
+ * that another thread, or a signal handler, may make while the session runs. It is served within a step, too: between one-step
+ * problems and between modes of one. */
 void dalcs_session_cancel(struct dalcs_session *session);
 
 #endif

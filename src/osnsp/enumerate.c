@@ -35,6 +35,9 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
     for (unsigned code = 1; code <= 1u << n; code++) {
         /* Gray code: one flip from mode to mode, and the last flip closes the cycle. */
         int bit = code < 1u << n ? __builtin_ctz(code) : n - 1;
+        if (dalcs_osnsp_is_cancelled(p)) {
+            return DALCS_E_CANCELLED;
+        }
         if (n > 0) {
             dalcs_osnsp_flip(p, diode[bit]);
         }

@@ -265,6 +265,9 @@ static enum dalcs_status solve_whole(struct dalcs_osnsp *p, double sigma, const 
 
 /* With given sources. */
 static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double *u, double *y) {
+    if (dalcs_osnsp_is_cancelled(p)) {
+        return DALCS_E_CANCELLED;
+    }
     p->counters.solved++;
     if (p->cache.n_forms == 0 || p->cache.form[0]->sigma != sigma) {
         DALCS_TRY(dalcs_forms_get(p, sigma));

@@ -17,6 +17,7 @@
 #include "partition.h"
 #include "step_form.h"
 
+#include <stdatomic.h>
 #include <stdint.h>
 
 struct dalcs_osnsp_options {
@@ -29,6 +30,8 @@ struct dalcs_osnsp_options {
     int dense_limit;              /* unknowns up to which recurring modes use a dense map */
     struct dalcs_lu_patterns
         *patterns; /* of modes, which outlive the problem; NULL: it has its own */
+    const atomic_bool
+        *is_cancelled; /* from then on problems end with DALCS_E_CANCELLED; NULL: never */
 };
 
 /* Those of a run. */
@@ -139,6 +142,8 @@ struct dalcs_osnsp_smooth {
     struct dalcs_smooth_newton *newton; /* NULL: the system has no smooth sources */
     double *given;                      /* [n_x + n_inputs] inputs with their values */
     int n_tangents;                     /* times that their lines in the equations were changed */
+    double *reached; /* [n_smooth] values that agreed last on the way to an operating point */
+    double (*reached_x)[2]; /* [n_smooth] ... and arguments */
 };
 
 /* What has no meaning between two problems. */
@@ -189,6 +194,10 @@ struct dalcs_osnsp {
 /* Allocates everything; the system must outlive it. On failure *p is zeroed. */
 enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_system *system,
                                     const struct dalcs_osnsp_options *options) DALCS_MUST_CHECK;
+
+static inline bool dalcs_osnsp_is_cancelled(const struct dalcs_osnsp *p) {
+    return p->options.is_cancelled != NULL && atomic_load(p->options.is_cancelled);
+}
 
 /* Solves at sigma (1/s; 0: operating point). u[n_x + n_inputs] = (x_k, s), in which those of smooth sources have no
  * meaning: Newton's method finds them, from the last ones on. On DALCS_OK y[n_columns] =

@@ -18,6 +18,10 @@ enum { MOST_STEPS = 1000 };
  * digits. */
 enum { MOST_STEEPER = 8 };
 
+/* On the way to functions that count in full Newton's method begins near its answer, where it doubles digits; what has not
+ * agreed after as many steps as a limited exponential takes for a change by a factor of 1e17 is too far away. */
+enum { MOST_STEPS_NEAR = 40 };
+
 enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     if (p->system->n_smooth == 0) {
         return DALCS_OK;
@@ -25,7 +29,12 @@ enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     p->smooth.newton = dalcs_arena_alloc(&p->arena, 1, sizeof(*p->smooth.newton));
     p->smooth.given = dalcs_arena_alloc(&p->arena, (size_t)(p->system->n_x + p->system->n_inputs),
                                         sizeof(*p->smooth.given));
-    if (p->smooth.newton == NULL || p->smooth.given == NULL) {
+    p->smooth.reached =
+        dalcs_arena_alloc(&p->arena, (size_t)p->system->n_smooth, sizeof(*p->smooth.reached));
+    p->smooth.reached_x =
+        dalcs_arena_alloc(&p->arena, (size_t)p->system->n_smooth, sizeof(*p->smooth.reached_x));
+    if (p->smooth.newton == NULL || p->smooth.given == NULL || p->smooth.reached == NULL ||
+        p->smooth.reached_x == NULL) {
         return DALCS_E_NOMEM;
     }
     struct dalcs_smooth_newton *n = p->smooth.newton;
@@ -98,18 +107,19 @@ static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, double *y)
 }
 
 /* From the present values and lines. */
-static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
-                                 given_solve *solve) {
+static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y, given_solve *solve,
+                                 int most_steps) {
     const struct dalcs_system *s = p->system;
     struct dalcs_smooth_newton *n = p->smooth.newton;
     int n_steeper = 0;
     bool is_last =
         false; /* what holds no flux but its current is rounded like a flux: one step more */
     dalcs_smooth_newton_begin(n, n->x);
-    for (int step = 0; step < MOST_STEPS; step++) {
+    for (int step = 0; step < most_steps; step++) {
         put_sources(p, p->smooth.given);
         enum dalcs_status status = solve(p, sigma, p->smooth.given, y);
-        if (status > DALCS_OK && p->smooth.n_tangents > 0 && n_steeper++ < MOST_STEEPER) {
+        if (status > DALCS_OK && n->share == 1.0 && p->smooth.n_tangents > 0 &&
+            n_steeper++ < MOST_STEEPER) {
             dalcs_smooth_scale_tangents(s, 1.0 / dalcs_small, n->x, n->phi);
             forget(p);
             dalcs_smooth_newton_begin(n, n->x);
@@ -134,7 +144,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
         }
         is_last = agrees && is_done;
         bool stalls = step > 0 && is_done && !is_last && !n->limits; /* the digits do not suffice */
-        if (stalls && dalcs_osnsp_retangent(p, y)) {
+        if (stalls && n->share == 1.0 && dalcs_osnsp_retangent(p, y)) {
             continue;
         }
         DALCS_TRY(find_slope(p, p->smooth.given, y));
@@ -145,11 +155,48 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
     return DALCS_NOT_CONVERGED;
 }
 
+static void keep_reached(struct dalcs_osnsp *p) {
+    const struct dalcs_smooth_newton *n = p->smooth.newton;
+    memcpy(p->smooth.reached, n->phi, (size_t)n->n * sizeof(*n->phi));
+    memcpy(p->smooth.reached_x, n->x, (size_t)n->n * sizeof(*n->x));
+}
+
+static void go_back(const struct dalcs_osnsp *p) {
+    const struct dalcs_smooth_newton *n = p->smooth.newton;
+    memcpy(n->phi, p->smooth.reached, (size_t)n->n * sizeof(*n->phi));
+    memcpy(n->x, p->smooth.reached_x, (size_t)n->n * sizeof(*n->x));
+}
+
+/* By a path of answers from functions that count nothing to those that count in full: a homotopy in an artificial
+ * parameter (R. Melville et al., Artificial parameter homotopy methods for the DC operating point problem, 1993). */
+static enum dalcs_status follow(struct dalcs_osnsp *p, double *y, given_solve *solve) {
+    static const double first = 0.125;
+    struct dalcs_smooth_newton *n = p->smooth.newton;
+    memset(n->phi, 0, (size_t)n->n * sizeof(*n->phi));
+    memset(n->x, 0, (size_t)n->n * sizeof(*n->x));
+    n->share = 0.0;
+    enum dalcs_status status = iterate(p, 0.0, y, solve, MOST_STEPS_NEAR);
+    double reached = 0.0;
+    for (double step = first; status == DALCS_OK && reached < 1.0;) {
+        keep_reached(p);
+        n->share = fmin(1.0, reached + step);
+        status = iterate(p, 0.0, y, solve, MOST_STEPS_NEAR);
+        reached = status == DALCS_OK ? n->share : reached;
+        step *= status == DALCS_OK ? 2.0 : 0.25;
+        if (status > DALCS_OK && reached + step > reached + dalcs_nothing * first) {
+            go_back(p);
+            status = DALCS_OK;
+        }
+    }
+    n->share = 1.0;
+    return status;
+}
+
 enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, const double *u,
                                            double *y, given_solve *solve) {
     const struct dalcs_system *s = p->system;
     memcpy(p->smooth.given, u, (size_t)(s->n_x + s->n_inputs) * sizeof(*p->smooth.given));
-    enum dalcs_status status = iterate(p, sigma, y, solve);
+    enum dalcs_status status = iterate(p, sigma, y, solve, MOST_STEPS);
     if (status > DALCS_OK && p->smooth.n_tangents == 0) {
         /* without lines, as where nothing else holds a node: with some, from nothing */
         dalcs_smooth_nominal_tangents(s);
@@ -157,11 +204,14 @@ enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, 
         memset(p->smooth.newton->phi, 0, (size_t)p->smooth.newton->n * sizeof(double));
         memset(p->smooth.newton->x, 0, (size_t)p->smooth.newton->n * sizeof(*p->smooth.newton->x));
         dalcs_smooth_starting_tangents(s, p->smooth.newton->x, p->smooth.newton->phi);
-        status = iterate(p, sigma, y, solve);
+        status = iterate(p, sigma, y, solve, MOST_STEPS);
+    }
+    if (status > DALCS_OK && sigma == 0.0) {
+        status = follow(p, y, solve);
     }
     /* beside a line that is far steeper what is rounding would be any answer */
     for (int k = 0; status == DALCS_OK && dalcs_osnsp_retangent(p, y); k++) {
-        status = k < MOST_STEEPER ? iterate(p, sigma, y, solve) : DALCS_NOT_CONVERGED;
+        status = k < MOST_STEEPER ? iterate(p, sigma, y, solve, MOST_STEPS) : DALCS_NOT_CONVERGED;
     }
     return status;
 }

@@ -30,23 +30,23 @@ static const char *name_owner(struct dalcs_session *s, const char *element) {
     return owner != NULL ? owner : element;
 }
 
-/* Has the function no value there, over the real numbers? */
+/* Has the function no value there, or beyond, over the real numbers? What rounding takes across the end is held at it. */
 static bool is_outside(enum dalcs_smooth_kind kind, double x, double exponent) {
     switch (kind) {
     case DALCS_SMOOTH_LOG:
     case DALCS_SMOOTH_LOG10:
         return !(x > 0);
     case DALCS_SMOOTH_SQRT:
-        return x < 0;
+        return x <= 0;
     case DALCS_SMOOTH_POWER:
-        return x < 0 && floor(exponent) != exponent;
+        return x <= 0 && floor(exponent) != exponent;
     case DALCS_SMOOTH_ASIN:
     case DALCS_SMOOTH_ACOS:
-        return fabs(x) > 1;
+        return fabs(x) >= 1;
     case DALCS_SMOOTH_ATANH:
         return !(fabs(x) < 1);
     case DALCS_SMOOTH_ACOSH:
-        return x < 1;
+        return x <= 1;
     default:
         return false;
     }
@@ -54,7 +54,8 @@ static bool is_outside(enum dalcs_smooth_kind kind, double x, double exponent) {
 
 static const char *hint_of_smooth(enum dalcs_smooth_kind kind, double x, double exponent) {
     if (is_outside(kind, x, exponent)) {
-        return "it has no value there: limit(x, low, high), or a condition around it, keeps the "
+        return "it has no value there, or beyond: limit(x, low, high), or a condition around it, "
+               "keeps the "
                "argument where it has one";
     }
     if (kind == DALCS_SMOOTH_QUOTIENT) {

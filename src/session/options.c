@@ -237,6 +237,8 @@ enum dalcs_status dalcs_run_choose(struct dalcs_run *r) {
     DALCS_TRY(choose_compression(r));
     DALCS_TRY(check_tolerances(r->s, r->options));
     r->osnsp = dalcs_osnsp_options_of(r->options);
+    r->osnsp.is_cancelled =
+        r->s->is_cancelled_with != NULL ? r->s->is_cancelled_with : &r->s->is_cancelled;
     r->osnsp.patterns = r->s->steps.n > 0 ? &r->s->patterns : NULL;
     DALCS_TRY(choose_step(r));
     return choose_filling(r);

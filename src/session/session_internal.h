@@ -96,7 +96,8 @@ struct dalcs_session {
     enum dalcs_status ended; /* how the last run did */
     atomic_bool
         is_cancelled; /* written by other threads and signal handlers, which may write nothing else */
-    char *document;   /* the last one handed out as text; heap */
+    const atomic_bool *is_cancelled_with; /* of the session that it works for; NULL: its own */
+    char *document;                       /* the last one handed out as text; heap */
     double *start, *final;
     struct dalcs_steady_anchor anchor;
     struct dalcs_run_options anchor_options; /* that it was looked for with */

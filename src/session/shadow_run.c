@@ -105,6 +105,7 @@ static enum dalcs_status make_shadow(struct dalcs_session *s, int n, struct dalc
     *c = s->circuit;
     c->arena = (struct dalcs_arena){0};
     shadow->name = s->name;
+    shadow->is_cancelled_with = &s->is_cancelled;
     DALCS_TRY(list_signals(&shadow->arena, c, n));
     c->losses = NULL;
     c->n_computed = c->n_measured = c->n_measures = c->n_fouriers = c->n_prints = c->n_steps = 0;

@@ -171,6 +171,9 @@ static enum dalcs_status iterate(struct dalcs_radau_part *part, double tolerance
     for (int step = 0; step < MOST_STEPS; step++) {
         bool repeats;
         bool is_done;
+        if (dalcs_osnsp_is_cancelled(&part->component->osnsp)) {
+            return DALCS_E_CANCELLED;
+        }
         put_values(part);
         enum dalcs_status status = apply(part, entry);
         if (status != DALCS_OK) {

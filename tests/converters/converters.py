@@ -21,7 +21,9 @@ from dalcs_program import Checker, run, some_of  # pylint: disable=wrong-import-
 
 KINDS = {"six_pulse": "thyristors", "ac_controller": "thyristors", "gto_inverter": "thyristors",
          "peak_current": "choppers", "power_factor": "choppers", "charger": "choppers", "forward": "choppers",
-         "llc": "resonant", "svpwm": "drives", "active_rectifier": "drives", "machine": "drives"}
+         "llc": "resonant", "svpwm": "drives", "active_rectifier": "drives", "machine": "drives",
+         "half_controlled": "others", "series_machine": "others", "constant_power": "others", "saturating_flyback": "others",
+         "dead_time": "others"}
 POINTS = 97
 NEAR = 1e-9
 

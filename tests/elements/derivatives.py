@@ -100,6 +100,30 @@ def resets(checker, program):
         checker.close(min(done.column("v(i)")), 3, 1e-9, "nothing is integrated")
 
 
+def samples(checker, program):
+    """What an integral begins at varies: a signal that a condition samples and that is held, with a drift or none, and a first value."""
+    for volts, hertz in ((2, 1e3), (5e3, 1), (1e-3, 1e6)):
+        t0, w = 1 / hertz, 2 * math.pi * hertz
+        done = run_cards(program, "samples", [
+            f"v1 x 0 sin({0.5 * volts!r} {volts!r} {hertz!r})", f"vc c 0 pulse(0 1 {0.1 * t0!r} 0 0 {0.02 * t0!r} {0.25 * t0!r})", "b1 h 0 v=idt(0,v(x),v(c)>0.5)",
+            f"b2 k 0 v=idt({volts * hertz!r},v(x)+{volts!r},v(c)>0.5)", f"b3 m 0 v={hertz!r}*sdt(v(x),2*v(x)/{hertz!r})", *(f"r{n} {n} 0 1k" for n in "hkm"),
+            f".tran {t0 / 200!r} {t0!r}"])
+        if not runs(checker, done, "samples"):
+            continue
+
+        def of(t, volts=volts, w=w):
+            return volts * (0.5 + math.sin(w * t))
+        for t, h, k, m in zip(done.time, *(done.column(f"v({n})") for n in "hkm")):
+            turns = (t / t0 - 0.1) / 0.25
+            since = (turns - math.floor(turns)) * 0.25
+            if min(since, abs(since - 0.02), 0.25 - since) < 1e-6:
+                continue
+            last = 0.0 if turns < 0 else min(t, (0.1 + 0.25 * math.floor(turns) + 0.02) * t0)
+            checker.close(h, of(last), 1e-7 * volts, f"samples at {t}")
+            checker.close(k, of(last) + volts + volts * (t - last) / t0, 1e-7 * volts, f"samples that drift at {t}")
+            checker.close(m, 2 * of(0) + volts * hertz * (0.5 * t + (1 - math.cos(w * t)) / w), 1e-7 * volts, f"a first value at {t}")
+
+
 def wraps(checker, program):
     """idtmod() of numbers, ramps and sines that turn back, over scales; what it wraps to is never beyond its ends."""
     for rate, first, modulus, offset in ((500, 0.25, 1, 0), (-3e6, 0.1, 360, -180), (0.02, 5, 2, 7), (0, 1.5, 1, 0)):
@@ -160,7 +184,7 @@ def tables(checker, program):
 
 def refused(checker, program):
     for card, text in (("b1 o 0 v=ddt(v(a),1)", "number of arguments"), ("b1 o 0 v=idt()", "number of arguments"),
-                       ("b1 o 0 v=idt(v(a),v(b))", "the initial value of"),
+                       ("b1 o 0 v=idtmod(v(a),v(b))", "the initial value of"),
                        ("c1 o 0 q=ddt(x)", "B, E and G"), ("b1 o 0 v=eq0(v(a))", "single points"), ("i1 o 0 tbl=(1,1,0,2)", "must ascend"),
                        ("i1 o 0 tbl=(1,1,2)", "the y of a point"), (".param p={ddt(3)}", "is not a number"),
                        ("b1 o 0 v=v(a) laplace(exp(s))", "before its cause"), ("b1 o 0 v=v(a) laplace=sqrt(s)", "transfer function")):
@@ -182,7 +206,7 @@ def refused(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("derivatives")
-    for part in (of_sources, tight, of_circuits, resets, wraps, tables, refused):
+    for part in (of_sources, tight, of_circuits, resets, samples, wraps, tables, refused):
         part(checker, program)
     return checker.finish()
 

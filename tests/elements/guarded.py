@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Branches of a formula that have no value where they are not chosen: constant powers, roots and logarithms behind a
-condition, against closed forms, ngspice's habit of evaluating what is chosen alone.
+condition, against closed forms, ngspice's habit of evaluating what is chosen alone. Roots that begin at 0, where they are steep
+without bound, and operating points that Newton's method does not find from nothing.
 
 usage: guarded.py PROGRAM
 """
 
 import math
 import pathlib
+import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -60,6 +62,53 @@ def loads(checker, program):
                 checker.close(v, t / 1e-3, 1e-6, f"before at {t}")
 
 
+def roots(checker, program):
+    """Of what begins at 0 and grows as t^2 and t^3."""
+    for name, cards, wanted in (
+            ("of a charge", ["i1 0 x pwl(0 0 1n 1m)", "c1 x 0 1u", "b1 y 0 v=2*sqrt(v(x))"], lambda t: 2 * math.sqrt(1e3 * (t - 5e-10)) if t > 1e-9 else None),
+            ("of a filtered square", ["v1 s 0 pwl(0 0 1m 1)", "b1 a 0 v=v(s)**2", "r1 a x 1meg", "c1 x 0 1u", "v2 one 0 1", "b2 y 0 v=100*sqrt(v(x)/v(one))"],
+             lambda t: 1e5 * math.sqrt(t ** 3 * (1 / 3 - t / 12 + t * t / 60)))):
+        done = run_cards(program, name, [*cards, "rl y 0 1k", ".tran 10u 1m"])
+        if runs(checker, done, name):
+            largest = max(abs(y) for y in done.column("v(y)"))
+            for t, y in zip(done.time, done.column("v(y)")):
+                if wanted(t) is not None:
+                    checker.close(y, wanted(t), 1e-6 * largest, f"{name} at {t} s")
+
+
+def averaged_buck(vin, ohms, gain, coil, volts):
+    """v(out) of a buck with Vorperian's averaged switch and a regulator, by two nested bisections."""
+    def bisect(f, low, high):
+        for _ in range(200):
+            low, high = (0.5 * (low + high), high) if f(0.5 * (low + high)) < 0 else (low, 0.5 * (low + high))
+        return 0.5 * (low + high)
+
+    def out(duty):
+        def of(m):
+            current = m * vin / (ohms + 0.011)
+            return current, min(max(2 * coil * 1e5 * current / (duty * vin * (1 - m) + 1e-6) - duty, 0.05), 1 - duty)
+        return of(bisect(lambda m: m * (duty + of(m)[1]) - duty, 0, 1))[0] * ohms
+    return out(bisect(lambda d: d - min(max(gain * (2.5 - 2.5 / volts * out(d)), 0.05), 0.95), 0.05, 0.95))
+
+
+def averaged(checker, program):
+    """Operating points of averaged converters at all loads, where steps of Newton's method go around in a circle: functions that
+    count more and more lead there."""
+    draw = random.Random(5)
+    for k in range(40):
+        vin, ohms = draw.choice((5, 12, 48, 400)), draw.choice((0.5, 5, 50, 500, 5000))
+        volts, gain, coil = vin * draw.uniform(0.15, 0.85), 10 ** draw.uniform(1, 4.5), 10 ** draw.uniform(-6, -3)
+        name = f"averaged {k}: {vin} V, {ohms} ohm, {gain}, {coil} H, {volts} V"
+        done = run_cards(program, name, [
+            f"v1 in 0 {vin}", "xs in sw 0 d pwm", f"l1 sw out {coil!r} rser=10m", "c1 out 0 220u", f"r1 out 0 {ohms}", f"e4 fb 0 out 0 {2.5 / volts!r}",
+            f"g1 0 amp ref fb {gain * 1e-4!r}", "v2 ref 0 2.5", "r4 amp 0 10k", "c2 amp 0 1u", "e5 d 0 value={limit(v(amp),0.04,4.9)}", ".subckt pwm a c p d",
+            "ga a p value={v(dc)/(v(dc)+v(dpc))*i(vs)}", "ec cx p value={v(dc)/(v(dc)+v(dpc))*v(a,p)}", "ra a p 1g", "rd d 0 1g", "ro c cz 1m", "vs cx cz 0",
+            f"e1 dp 0 value={{2*{coil!r}*100k*i(vs)/(v(dc)*v(a,cx)+1u)-v(dc)}}", "e2 dc 0 value={limit(v(d),0.05,0.95)}",
+            "e3 dpc 0 value={limit(v(dp),0.05,1-v(dc))}", ".ends", ".tran 1u 1u"])
+        if runs(checker, done, name):
+            checker.close(done.column("v(out)")[0], averaged_buck(vin, ohms, gain, coil, volts), 1e-9 * vin, name)
+
+
 def still_wrong(checker, program):
     """What a condition does not exclude is said as before."""
     for form in ("1/v(x)", "if(v(x) > -1, 1/v(x), 0)", "if(v(y) > 1, 1/v(x), 0)", "if(v(x) > 0, 0, sqrt(v(x)))"):
@@ -70,7 +119,7 @@ def still_wrong(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("guarded")
-    for part in (functions, loads, still_wrong):
+    for part in (functions, loads, roots, averaged, still_wrong):
         part(checker, program)
     return checker.finish()
 

@@ -825,6 +825,22 @@ class Interrupt(Case):
     def test_terminate(self):
         self.interrupt(signal.SIGTERM)
 
+    def test_while_an_operating_point_is_looked_for(self):
+        n = 12  # 4096 modes for each position of the switches, none of which fits
+        cards = ["not passive"]
+        for k in range(n):
+            cards += [f"v{k} a{k} 0 {1 + k}", f"r{k} a{k} b{k} 1k", f"d{k} b{k} c{k}", f"rn{k} c{k} 0 -{500 + 7 * k}",
+                      f"e{k} x{k} 0 c{k} b{(k + 1) % n} 3", f"rx{k} x{k} b{(k + 2) % n} 300",
+                      f"s{k} c{k} x{k} x{(k + 3) % n} c{(k + 5) % n} sm"]
+        self.write("\n".join([*cards, ".model sm sw(ron=10 roff=1meg vt=0.7)", ".tran 1m 1", ".end", ""]))
+        with subprocess.Popen([DALCS, "run", "a.cir", "-q", "-o", "none"], cwd=self.folder, text=True,
+                              stderr=subprocess.PIPE) as process:
+            time.sleep(2)
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, -signal.SIGINT, errors)
+        self.assertIn("dalcs: interrupted at t = 0 s, after 0 rows", errors)
+
 
 class Terminal(Case):
     """A run whose messages go to a terminal says how far it is, and nothing of it elsewhere."""
