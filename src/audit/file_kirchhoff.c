@@ -114,7 +114,34 @@ void file_note_covered(struct file_audit *a) {
     }
 }
 
+/* At rest sources alone feed a part that capacitors and current sources join to the rest, whatever the file says. Its
+ * potential may be anything, and KCL at its nodes is held to a scale that grows with that. */
+static void check_islands(struct file_audit *a, const struct file_row *row) {
+    struct file_number *flow = a->charges.charge;
+    for (int d = 0; d < a->circuit->n_devices; d++) {
+        const struct dalcs_device *device = &a->circuit->device[d];
+        flow[d] = (struct file_number){0};
+        if (device->kind == DALCS_ISOURCE) {
+            flow[d] = file_stimulus(a, row, device->stimulus);
+        } else if (device->kind == DALCS_CAPACITOR) {
+            flow[d] = file_exactly(0.0);
+        }
+    }
+    file_cluster(a, flow);
+    file_sum_sets(a, flow);
+    file_describe_sets(a, NULL);
+    for (int n = 1; n < a->circuit->n_nodes; n++) {
+        if (a->sets.count[n] > 0 && a->sets.sum[n].known) {
+            file_find_set(a, n, "A", fabs(a->sets.sum[n].value),
+                          a->sets.sum[n].error + a->sets.largest[n], row->t, row->t);
+        }
+    }
+}
+
 void file_check_nodes(struct file_audit *a, const struct file_row *row) {
+    if (a->is_at_rest) {
+        check_islands(a, row);
+    }
     file_cluster(a, row->i);
     file_sum_sets(a, row->i);
     file_describe_sets(a, row);
