@@ -52,7 +52,7 @@ static void add_short(struct reduction *r, const struct dalcs_device *d) {
 static bool is_source(const struct dalcs_device *d) {
     const struct dalcs_behaviour *b = d->behaviour;
     bool is = d->kind == DALCS_VSOURCE || d->kind == DALCS_ISOURCE;
-    if (b != NULL && b->smooth == NULL && b->n_pairs == 0) {
+    if (b != NULL && !b->is_part && b->smooth == NULL && b->n_pairs == 0) {
         is = true;
         for (int k = 0; k < b->output.n; k++) {
             is = is && b->output.term[k].kind == DALCS_QUANTITY_STIMULUS;

@@ -147,6 +147,8 @@ FORMULAS = [
     ("V1 p 0 PULSE(3 8 0.1u 0 0 0.4u 1u)", "B1 p 0 V=5*v(g)+3", "C1 p a 1u\nD1 0 a\nD2 a b\nC2 b 0 2u\nR1 b 0 10"),
     ("V1 p n PULSE(0 -5 0.1u 0 0 0.4u 1u)", "B1 p n V=-5*v(g)*v(h)", "Rn n 0 3\nC1 p a 1u\nD1 n a\nR1 a n 10"),
     ("V1 p 0 PULSE(-3.5 3.5 0.1u 0 0 0.4u 1u)", "E1 p 0 VALUE={7*u(v(g)-0.5)-3.5}", "C1 p a 1u\nD1 0 a\nR1 a 0 10"),
+    ("V1 p 0 PULSE(0 4 0.1u 0 0 0.4u 1u)", "B9 r 0 V=sin(3e5*2**(time/1m))\nB1 p 0 V=4*v(g)",
+     "C1 p a 1u\nD1 0 a\nR1 a 0 10\nC2 b 0 1u"),
     ("I1 0 a 2", "B1 0 a I=2", "S1 a 0 g 0 sw\nL1 a b 1u\nR1 b 0 1"),
     ("V1 p 0 PULSE(0 12 0.1u 0 0 0.4u 1u)", "B1 p 0 V=12*v(g)",
      "C1 p q 1u\nL1 q 0 1m\nL2 s 0 1m\nK1 L1 L2 1\nD1 s o\nC2 o 0 1u\nR1 o 0 100"),
