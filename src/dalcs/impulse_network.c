@@ -47,6 +47,20 @@ static void add_short(struct reduction *r, const struct dalcs_device *d) {
     copy->value = 0.0;
 }
 
+/* Is it a source, though a formula says of what? One that reads states acts where the circuit has gone to, and jumps are
+ * problems without it (jumps.h). */
+static bool is_source(const struct dalcs_device *d) {
+    const struct dalcs_behaviour *b = d->behaviour;
+    bool is = d->kind == DALCS_VSOURCE || d->kind == DALCS_ISOURCE;
+    if (b != NULL && !b->is_part && b->smooth == NULL && b->n_pairs == 0) {
+        is = true;
+        for (int k = 0; k < b->output.n; k++) {
+            is = is && b->output.term[k].kind == DALCS_QUANTITY_STIMULUS;
+        }
+    }
+    return is;
+}
+
 /* An exactly ideal diode with a threshold, from the first to the second node of d. */
 static void add_diode(struct reduction *r, const struct dalcs_device *d, const char *name,
                       double threshold) {
@@ -67,8 +81,13 @@ static enum dalcs_status reduce_to_charge(struct reduction *r, const struct dalc
         }
         break;
     case DALCS_CAPACITOR:
-    case DALCS_VSOURCE:
         add(r, d);
+        break;
+    case DALCS_VSOURCE:
+    case DALCS_VCVS:
+        if (is_source(d)) {
+            add(r, d);
+        }
         break;
     case DALCS_RESISTOR:
         if (d->value == 0.0) {
@@ -107,13 +126,23 @@ static enum dalcs_status reduce_to_charge(struct reduction *r, const struct dalc
 static void reduce_to_flux(struct reduction *r, const struct dalcs_device *d) {
     switch (d->kind) {
     case DALCS_INDUCTOR:
-    case DALCS_ISOURCE:
         add(r, d);
+        break;
+    case DALCS_ISOURCE:
+    case DALCS_VCCS:
+        if (is_source(d)) {
+            add(r, d);
+        }
         break;
     case DALCS_RESISTOR:
     case DALCS_CAPACITOR:
-    case DALCS_VSOURCE:
         add_short(r, d);
+        break;
+    case DALCS_VSOURCE:
+    case DALCS_VCVS:
+        if (is_source(d)) {
+            add_short(r, d);
+        }
         break;
     case DALCS_SWITCH:
         if (isfinite(r->from->switch_model[d->model].roff)) {
@@ -150,18 +179,27 @@ static void let_go_of_controls(struct dalcs_circuit *to) {
     }
 }
 
+/* Of each source the impulse, then what it drives: its power is their product. */
 static void add_signals(struct dalcs_circuit *to, enum dalcs_impulse_kind kind) {
+    const enum dalcs_device_kind driven[] = {
+        [DALCS_IMPULSE_CHARGE] = DALCS_VSOURCE, [DALCS_IMPULSE_FLUX] = DALCS_ISOURCE};
+
+    const enum dalcs_device_kind by_formula[] = {
+        [DALCS_IMPULSE_CHARGE] = DALCS_VCVS, [DALCS_IMPULSE_FLUX] = DALCS_VCCS};
+
     for (int i = 0; i < to->n_devices; i++) {
         const struct dalcs_device *d = &to->device[i];
-        if (kind == DALCS_IMPULSE_CHARGE && d->kind == DALCS_VSOURCE) {
-            to->signal[to->n_signals++] =
-                (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .name = d->name, .device = i};
-        } else if (kind == DALCS_IMPULSE_FLUX && d->kind == DALCS_ISOURCE) {
-            to->signal[to->n_signals++] = (struct dalcs_signal){.kind = DALCS_SIGNAL_VOLTAGE,
-                                                                .name = d->name,
-                                                                .node = {d->node[0], d->node[1]},
-                                                                .device = -1};
+        if (d->kind != driven[kind] && d->kind != by_formula[kind]) {
+            continue;
         }
+        const struct dalcs_signal current = {
+            .kind = DALCS_SIGNAL_CURRENT, .name = d->name, .device = i};
+        const struct dalcs_signal voltage = {.kind = DALCS_SIGNAL_VOLTAGE,
+                                             .name = d->name,
+                                             .node = {d->node[0], d->node[1]},
+                                             .device = -1};
+        to->signal[to->n_signals++] = kind == DALCS_IMPULSE_CHARGE ? current : voltage;
+        to->signal[to->n_signals++] = kind == DALCS_IMPULSE_CHARGE ? voltage : current;
     }
 }
 
@@ -191,7 +229,7 @@ static enum dalcs_status reduce(struct reduction *r) {
     to->switch_model =
         dalcs_arena_alloc(&to->arena, (size_t)from->n_switch_models, sizeof(*to->switch_model));
     to->coupling = dalcs_arena_alloc(&to->arena, (size_t)from->n_couplings, sizeof(*to->coupling));
-    to->signal = dalcs_arena_alloc(&to->arena, n, sizeof(*to->signal));
+    to->signal = dalcs_arena_alloc(&to->arena, 2 * n, sizeof(*to->signal));
     if (to->device == NULL || to->diode_model == NULL || to->switch_model == NULL ||
         to->coupling == NULL || to->signal == NULL) {
         return DALCS_E_NOMEM;

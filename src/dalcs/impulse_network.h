@@ -22,7 +22,7 @@
 enum dalcs_impulse_kind { DALCS_IMPULSE_CHARGE, DALCS_IMPULSE_FLUX, DALCS_N_IMPULSES };
 
 struct dalcs_impulse_network {
-    struct dalcs_circuit circuit; /* its signals: i of V sources, or v across I sources */
+    struct dalcs_circuit circuit; /* its signals: i and v of V sources, or v and i of I sources */
     struct dalcs_network network;
 };
 

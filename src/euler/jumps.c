@@ -18,21 +18,23 @@ static bool is_its_own(const struct dalcs_jump_part *part, int x) {
     return part->osnsp.system->column_is_current[x] == (part->kind == DALCS_IMPULSE_FLUX);
 }
 
+static double value_of(const struct dalcs_jump_part *part, const struct dalcs_output *out) {
+    const double *inputs = part->u + part->osnsp.system->n_x;
+    double plus = out->plus.system < 0 ? 0.0 : dalcs_probe_value(&out->plus, part->y, inputs);
+    double minus = out->minus.system < 0 ? 0.0 : dalcs_probe_value(&out->minus, part->y, inputs);
+    return plus - minus;
+}
+
 /* Work of the sources against their impulses: a V source delivers -v i, an I source as well. */
-static double source_work(const struct dalcs_jump_part *part, const double *inputs) {
+static double source_work(const struct dalcs_jump_part *part) {
     double work = 0.0;
     for (int i = 0; i < part->n_sources; i++) {
-        const struct dalcs_output *out = part->source[i].impulse;
-        const double *in = part->u + part->osnsp.system->n_x;
-        double plus = out->plus.system < 0 ? 0.0 : dalcs_probe_value(&out->plus, part->y, in);
-        double minus = out->minus.system < 0 ? 0.0 : dalcs_probe_value(&out->minus, part->y, in);
-        work -= inputs[part->source[i].input] * (plus - minus);
+        work -= value_of(part, part->source[i].driven) * value_of(part, part->source[i].impulse);
     }
     return work;
 }
 
-static void read_answer(const struct dalcs_jump_part *part, const double *inputs,
-                        struct dalcs_jump_answer *answer) {
+static void read_answer(const struct dalcs_jump_part *part, struct dalcs_jump_answer *answer) {
     const struct dalcs_system *s = part->osnsp.system;
     const double *lambda = part->y + dalcs_system_n_equations(s);
     double largest = 0.0;
@@ -55,7 +57,7 @@ static void read_answer(const struct dalcs_jump_part *part, const double *inputs
     for (int d = 0; d < s->n_pairs; d++) {
         impulse[part->pair[d]] = part->kind == DALCS_IMPULSE_CHARGE ? lambda[d] : part->osnsp.w[d];
     }
-    answer->source_work += source_work(part, inputs);
+    answer->source_work += source_work(part);
 }
 
 static enum dalcs_status solve_part(struct dalcs_jump_part *part, const uint64_t *mode,
@@ -101,7 +103,7 @@ enum dalcs_status dalcs_jumps_solve(const struct dalcs_jumps *j, int k, const ui
     }
     for (int p = j->first_part[k]; p >= 0; p = j->part[p].next) {
         if (!j->part[p].is_driven) {
-            read_answer(&j->part[p], inputs, answer);
+            read_answer(&j->part[p], answer);
         }
     }
     return DALCS_OK;

@@ -18,9 +18,8 @@ struct dalcs_jump_part {
     int n_sources;
 
     struct source {
-        const struct dalcs_output *impulse;
-        int input; /* the owner's */
-    } * source;    /* [n_inputs] those that may do work */
+        const struct dalcs_output *impulse, *driven; /* C and V, or Wb and A */
+    } * source;                                      /* [n_outputs] those that may do work */
 };
 
 #endif

@@ -4,6 +4,7 @@
 #include "names.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Names of states, pairs and inputs; each belongs to one device. */
 struct places {
@@ -78,7 +79,7 @@ static enum dalcs_status part_setup(struct dalcs_jump_part *part,
     part->state = dalcs_alloc((size_t)s->n_x, sizeof(int));
     part->pair = dalcs_alloc((size_t)s->n_pairs, sizeof(int));
     part->input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
-    part->source = dalcs_alloc((size_t)s->n_inputs, sizeof(*part->source));
+    part->source = dalcs_alloc((size_t)impulse->n_outputs, sizeof(*part->source));
     if (part->u == NULL || part->y == NULL || part->state == NULL || part->pair == NULL ||
         part->input == NULL || part->source == NULL) {
         return DALCS_E_NOMEM;
@@ -90,7 +91,11 @@ static enum dalcs_status part_setup(struct dalcs_jump_part *part,
         part->pair[d] = look_up(places, s->pair[d].element, &part->owner);
     }
     for (int i = 1; i < s->n_inputs; i++) {
+        /* those of a formula follow each other */
         part->input[i] = look_up(places, s->input_element[i], &part->owner);
+        part->input[i] += i > 1 && strcmp(s->input_element[i], s->input_element[i - 1]) == 0
+                              ? part->input[i - 1] - part->input[i] + 1
+                              : 0;
     }
     return DALCS_OK;
 }
@@ -148,14 +153,13 @@ static enum dalcs_status add_parts(struct dalcs_jumps *j, enum dalcs_impulse_kin
             j->first_part[part->owner] = part_of[k];
         }
     }
-    for (int i = 0; status == DALCS_OK && i < network->n_outputs; i++) {
-        const struct dalcs_output *out = &network->output[i];
-        int k = out->plus.system >= 0 ? out->plus.system : out->minus.system;
-        if (k >= 0 && part_of[k] >= 0) {
+    for (int i = 1; status == DALCS_OK && i < network->n_outputs; i++) {
+        const struct dalcs_output *impulse = &network->output[i - 1];
+        const struct dalcs_output *driven = &network->output[i];
+        int k = impulse->plus.system >= 0 ? impulse->plus.system : impulse->minus.system;
+        if (k >= 0 && part_of[k] >= 0 && strcmp(impulse->name, driven->name) == 0) {
             struct dalcs_jump_part *part = &j->part[part_of[k]];
-            int owner;
-            part->source[part->n_sources++] =
-                (struct source){out, look_up(places, out->name, &owner)};
+            part->source[part->n_sources++] = (struct source){impulse, driven};
         }
     }
     free(part_of);

@@ -9,6 +9,7 @@
 #include "quads.h"
 #include "radau.h"
 #include "smooth_step.h"
+#include "stage_store.h"
 #include "step_length.h"
 #include "transition.h"
 
@@ -174,6 +175,9 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, method, &limits));
     part->stages.block_of = c->osnsp.partition.block_of;
     part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : dalcs_nothing * part->inner_tolerance;
+    if (r->options.store != NULL) {
+        dalcs_stage_store_take(r->options.store, part->index, &part->stages);
+    }
     DALCS_TRY(dalcs_arena_reserve(&part->arena, room_for_part(c->system)));
     DALCS_TRY(allocate(part));
     DALCS_TRY(dalcs_transition_setup(part));
@@ -229,11 +233,13 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
     return status;
 }
 
-static void part_finish(struct dalcs_radau_part *part) {
+static void part_finish(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     dalcs_transition_finish(part); /* first: it holds steps */
     dalcs_periodic_finish(part);
     dalcs_cycle_finish(part);
-    if (part->stages.system != NULL) {
+    if (part->stages.system != NULL && r->options.store != NULL) {
+        dalcs_stage_store_put(r->options.store, part->index, &part->stages);
+    } else if (part->stages.system != NULL) {
         dalcs_stages_finish(&part->stages);
     }
     dalcs_excitation_finish(&part->excitation);
@@ -243,7 +249,7 @@ static void part_finish(struct dalcs_radau_part *part) {
 
 void dalcs_radau_finish(struct dalcs_radau *r) {
     for (int k = 0; r->part != NULL && k < r->n_parts; k++) {
-        part_finish(&r->part[k]);
+        part_finish(r, &r->part[k]);
     }
     free(r->part);
     *r = (struct dalcs_radau){0};

@@ -41,12 +41,14 @@ struct dalcs_orbit_stretch {
     uint64_t *resting; /* as of a span */
 };
 
-/* A diode that comes near to 0 and stays on its side (orbit_near.h). */
+/* A diode that comes near to 0 and stays on its side, or goes to the other one just before a command (orbit_near.h). */
 struct dalcs_orbit_low {
     int pair;
     bool on;
     double t;     /* s */
     double value; /* V or A: w or lambda there */
+    double
+        gap; /* s: it goes to its other side, but this little before a command acts on it; else 0 */
     double above
         [2]; /* the largest of it since the low before, or since it has this side; and until the next */
 };
@@ -74,6 +76,7 @@ struct dalcs_orbit_part {
         struct dalcs_orbit_low *low;  /* [n] */
         struct dalcs_near_pair *pair; /* [n_pairs] work */
         uint64_t *mode, *first;       /* [n_words] of the last segment, and of the first one */
+        bool has_crossed;             /* any, at the end of the last segment */
     } near;
 
     bool jumped;         /* behind the last one, in jump_mode */

@@ -20,6 +20,13 @@ struct dalcs_near_pair {
     double own[2];    /* w and lambda at their largest */
     bool has_crossed; /* at the end of the last segment */
     bool was_away;    /* before the lows that are looked at, between which it stayed near */
+    double begins;    /* V or A: at the first node of the period */
+
+    struct dalcs_near_event {
+        double t, rate; /* s; V/s or A/s of its guard, 0: there is none */
+        bool was_on;
+    } crossed,
+        event; /* at the end of the last segment; its own last one, if no command has acted on it since */
 };
 
 static int n_pairs_of(const struct dalcs_orbit_part *p) {
@@ -86,9 +93,36 @@ static enum dalcs_status begin(struct dalcs_orbit_part *p) {
     memcpy(near->mode, p->rates.part->component->osnsp.mode, words * sizeof *near->mode);
     memcpy(near->first, near->mode, words * sizeof *near->mode);
     for (int k = 0; k < n_pairs_of(p); k++) {
-        near->pair[k] = (struct dalcs_near_pair){.before = INFINITY, .last = -1};
+        near->pair[k] =
+            (struct dalcs_near_pair){.before = INFINITY, .begins = INFINITY, .last = -1};
     }
     return DALCS_OK;
+}
+
+/* At t a command, or an edge, acts on a pair that has just had its own event. Had that not come before, the guard would be on
+ * its old side by this much: a signal that moves it as far has the event behind the command, if there is one then. */
+static enum dalcs_status meet_command(struct dalcs_orbit_part *p, int pair, double t) {
+    struct dalcs_orbit_near *near = &p->near;
+    struct dalcs_near_event *event = &near->pair[pair].event;
+    const double rate = event->rate;
+    event->rate = 0.0;
+    if (rate == 0.0 || near->has_crossed || p->log->gates != NULL) {
+        return DALCS_OK; /* gates may command because of the event */
+    }
+    DALCS_TRY(dalcs_grow(&near->low, &near->capacity, (size_t)near->n + 1, sizeof *near->low));
+    near->low[near->n++] = (struct dalcs_orbit_low){.pair = pair,
+                                                    .on = event->was_on,
+                                                    .t = event->t,
+                                                    .value = rate * (t - event->t),
+                                                    .gap = t - event->t,
+                                                    .above = {INFINITY, INFINITY}};
+    return DALCS_OK;
+}
+
+/* Does it jump to that value, of its lambda or w, from the node before? */
+static bool is_moved(const struct dalcs_near_pair *of, double value) {
+    return of->event.rate != 0.0 &&
+           fabs(value - of->before) > dalcs_small * fmax(value, of->before);
 }
 
 /* The side of a pair is over. If not by its own event, it was away from 0 behind the last low, or was near until then. */
@@ -112,6 +146,8 @@ static enum dalcs_status change_sides(struct dalcs_orbit_part *p, const uint64_t
         if (is_diode(p, k) &&
             (of->has_crossed || dalcs_mode_has(near->mode, k) != dalcs_mode_has(mode, k))) {
             DALCS_TRY(end_side(p, k, p->rates.part->segment.t));
+            DALCS_TRY(meet_command(p, k, p->rates.part->segment.t));
+            of->event = of->has_crossed ? of->crossed : (struct dalcs_near_event){.rate = 0.0};
             of->before = -INFINITY;
             of->falls = false;
             of->peak = 0.0;
@@ -131,6 +167,10 @@ static enum dalcs_status note_node(struct dalcs_orbit_part *p, int node) {
     for (int k = 0; k < n_pairs_of(p); k++) {
         struct dalcs_near_pair *of = &p->near.pair[k];
         const double value = is_diode(p, k) ? fabs(p->work_y[dalcs_orbit_guard_row(part, k)]) : 0.0;
+        if (node == 0 && of->before >= 0.0 && is_moved(of, value)) {
+            DALCS_TRY(meet_command(p, k, part->segment.t));
+        }
+        of->begins = isinf(of->begins) ? value : of->begins;
         if (value > of->before && of->falls) {
             DALCS_TRY(node == 0 ? add_low(p, k, part->segment.t, of->before)
                                 : find_low(p, k, from, at[node] * part->segment.end));
@@ -147,12 +187,18 @@ static enum dalcs_status note_node(struct dalcs_orbit_part *p, int node) {
 /* The last node may lie behind the least of the polynomial. */
 static enum dalcs_status end_segment(struct dalcs_orbit_part *p) {
     const struct dalcs_radau_part *part = p->rates.part;
+    p->near.has_crossed = part->guards.n_crossed > 0;
     for (int k = 0; k < n_pairs_of(p); k++) {
         struct dalcs_near_pair *of = &p->near.pair[k];
         const int row = dalcs_orbit_guard_row(part, k);
         of->has_crossed = false;
         for (int c = 0; c < part->guards.n_crossed; c++) {
             of->has_crossed = of->has_crossed || part->guards.crossed[c] == k;
+        }
+        if (of->has_crossed) {
+            of->crossed = (struct dalcs_near_event){.t = part->segment.t_end,
+                                                    .rate = fabs(dalcs_orbit_guard_rate(part, row)),
+                                                    .was_on = dalcs_mode_has(p->near.mode, k)};
         }
         if (of->falls && !of->has_crossed &&
             dalcs_orbit_guard_rate(part, row) * p->work_y[row] > 0.0) {
@@ -195,6 +241,9 @@ static enum dalcs_status close_period(struct dalcs_orbit_part *p) {
         }
         if (!goes_on) {
             DALCS_TRY(end_side(p, k, p->rates.part->segment.t_end));
+        }
+        if (!goes_on || is_moved(of, of->begins)) {
+            DALCS_TRY(meet_command(p, k, p->rates.part->segment.t_end));
         }
         for (int m = 0; m < near->n; m++) {
             struct dalcs_orbit_low *low = &near->low[m];

@@ -4,7 +4,8 @@
  * move lambda or w by less than it is away from 0. Where it only touches 0 no signal is as small: one sign of it takes the
  * pair to its other side, and the response has another derivative to each side (Cottle, Pang and Stone, The Linear
  * Complementarity Problem, chapter 7). A ring without losses touches its clamp at each turn. A current that fades away until a
- * command comes is as near. Near is what is much smaller than the largest of this lambda or w on the orbit.
+ * command comes is as near. So is one that fades away just before: where the signal delays that, the command comes first, as at
+ * the border of discontinuous conduction. Near is what is much smaller than the largest of this lambda or w on the orbit.
  */
 #ifndef DALCS_ORBIT_NEAR_H
 #define DALCS_ORBIT_NEAR_H

@@ -100,10 +100,13 @@ DALCS_TWICE(double, least_column, (const struct dalcs_variation_part *v, double 
 }
 
 /* Does a new mode allow every column, but for what the run may be off by? variation.c takes larger parts of one, and only
- * these, out of it. Sums have what is not allowed of all columns. */
-static bool is_allowed(const struct dalcs_variation_part *v, double rounding) {
+ * these, out of it. Sums have what is not allowed of all columns. *least: of them, once it was asked for; else 0. */
+static bool is_allowed(const struct dalcs_variation_part *v, double rounding, double *least) {
     const double off = size_of(v, v->four.begin, v->four.states);
-    return off <= rounding || off <= v->part->tolerance * least_column(v, rounding);
+    if (off > rounding && *least == 0.0) {
+        *least = least_column(v, rounding);
+    }
+    return off <= rounding || off <= v->part->tolerance * *least;
 }
 
 /* y, four vectors, less their parts in the directions of fours. */
@@ -160,13 +163,14 @@ static int find_basis(struct dalcs_variation_part *v, const struct dalcs_stage_e
                       bool is_new, int *n_last) {
     uint64_t random = 0x9e3779b97f4a7c15u;
     double rounding = 0.0;
+    double least = 0.0;
     for (int g = 0; g < most_fours(v); g++) {
         dalcs_four *y = v->four.end;
         draw(v, &random);
         const double size = size_of(v, v->four.states, NULL);
         rounding = fmax(rounding, v->n_x * DBL_EPSILON * size);
         dalcs_stage_columns_apply(&v->part->stages, entry, &v->four);
-        if (is_new && !is_allowed(v, rounding)) {
+        if (is_new && !is_allowed(v, rounding, &least)) {
             return 0;
         }
         for (int x = 0; x < v->n_x; x++) {

@@ -32,22 +32,36 @@ static void tell_near(struct dalcs_periodic_ac *a) {
             r->near.low != NULL && (of->near.low == NULL || r->near.reach < of->near.reach);
         of = is_nearer ? r : of;
     }
-    if (of->near.low != NULL) {
-        const struct dalcs_orbit_low *low = of->near.low;
-        const struct dalcs_pair *pair = &of->flow->system->pair[low->pair];
-        s->report.response.exact = false;
+    if (of->near.low == NULL) {
+        return;
+    }
+    const struct dalcs_orbit_low *low = of->near.low;
+    const struct dalcs_pair *pair = &of->flow->system->pair[low->pair];
+    s->report.response.exact = false;
+    if (low->gap > 0.0) {
         dalcs_diag_add(
             &s->diag, DALCS_WARNING, &s->circuit.ac.where,
-            "add the loss that keeps it away from there, as of a resistor across a ring "
-            "or a diode; or inject a sine of the size that counts in .tran",
+            "inject a sine of the size that counts in .tran",
             "only signals below %.2g of the AC values have this response: at %.9g s '%s' "
-            "is %.2g %s away from %s, and a larger one takes it there; the rows take it "
-            "as it stands",
-            of->near.reach, low->t, pair->element, low->value, low->on ? "A" : "V",
-            pair->is_formula ? "its kink or jump"
-            : low->on        ? "blocking"
-                             : "conducting");
+            "%s, %.2g s before a switch or an edge acts on it, and a larger one takes "
+            "that behind; the rows take it as it stands",
+            of->near.reach, low->t, pair->element,
+            pair->is_formula ? "comes to its kink or jump"
+            : low->on        ? "ceases to conduct"
+                             : "begins to conduct",
+            low->gap);
+        return;
     }
+    dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.ac.where,
+                   "add the loss that keeps it away from there, as of a resistor across a ring "
+                   "or a diode; or inject a sine of the size that counts in .tran",
+                   "only signals below %.2g of the AC values have this response: at %.9g s '%s' "
+                   "is %.2g %s away from %s, and a larger one takes it there; the rows take it "
+                   "as it stands",
+                   of->near.reach, low->t, pair->element, low->value, low->on ? "A" : "V",
+                   pair->is_formula ? "its kink or jump"
+                   : low->on        ? "blocking"
+                                    : "conducting");
 }
 
 void dalcs_periodic_ac_tell(struct dalcs_periodic_ac *a) {

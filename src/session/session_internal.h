@@ -152,6 +152,7 @@ struct dalcs_run {
     const struct dalcs_orbit_point *orbit; /* where .tran starts; NULL: as the netlist says */
     struct dalcs_orbit_point *orbit_end;   /* receives the end of such a run; may be NULL */
     bool leaves_orbit;                     /* that is a .tran of its own; else a period of .pss */
+    struct dalcs_stage_store *store;  /* of the runs of a search for a steady state; NULL: none */
     struct dalcs_steady_known *known; /* what .pss has found, for .ac behind it; NULL: nothing */
 
     struct dalcs_run_measures {             /* [n_measures] each */

@@ -8,6 +8,7 @@
 
 #include "logic_memory.h"
 #include "session_internal.h"
+#include "stage_store.h"
 
 struct dalcs_logic_run;
 struct dalcs_orbit_log;
@@ -38,6 +39,7 @@ struct dalcs_steady {
     struct dalcs_steady_layout layout;
     double period;                     /* s */
     struct dalcs_orbit_point at, then; /* now, and after the pass */
+    struct dalcs_stage_store store;    /* maps, from pass to pass */
     double *M;                         /* of the last pass with one */
     double *scale;                     /* [n_x] of each state on the way */
     double *step;                      /* [n_x] the last one of Newton's method */

@@ -15,6 +15,8 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
     *st = (struct dalcs_steady){.run = r, .period = period};
     struct dalcs_steady_layout *l = &st->layout;
     DALCS_TRY(dalcs_logic_memory_setup(&l->memory, &st->arena, &r->s->circuit, period));
+    DALCS_TRY(dalcs_stage_store_setup(&st->store, network->n_systems));
+    r->store = &st->store;
     l->n_systems = network->n_systems;
     l->first = dalcs_arena_alloc(&st->arena, n, sizeof(*l->first));
     l->first_pair = dalcs_arena_alloc(&st->arena, n, sizeof(*l->first_pair));
@@ -62,6 +64,10 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
 }
 
 void dalcs_steady_finish(struct dalcs_steady *st) {
+    if (st->run != NULL) {
+        st->run->store = NULL;
+    }
+    dalcs_stage_store_finish(&st->store);
     dalcs_arena_finish(&st->arena);
     *st = (struct dalcs_steady){0};
 }

@@ -51,7 +51,8 @@ struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, do
                                         .stages = r->radau.stages,
                                         .fixed_step = r->radau.fixed_step,
                                         .max_step = r->radau.max_step,
-                                        .stop = stop};
+                                        .stop = stop,
+                                        .store = r->store};
 }
 
 /* What a run with either method is made of. */

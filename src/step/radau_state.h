@@ -193,10 +193,11 @@ struct dalcs_radau_options {
     double tolerance;     /* largest error over each waveform's scale */
     double abstol, vntol; /* A, V: error allowed besides */
     enum dalcs_family family;
-    int stages;        /* 0: chosen */
-    double fixed_step; /* s; 0: the error is controlled */
-    double max_step;   /* s; 0: none */
-    double stop;       /* s */
+    int stages;                      /* 0: chosen */
+    double fixed_step;               /* s; 0: the error is controlled */
+    double max_step;                 /* s; 0: none */
+    double stop;                     /* s */
+    struct dalcs_stage_store *store; /* maps of runs before, and for those behind; NULL: none */
 };
 
 /* What decides sources at an instant, gates: asked where segments have ended and none has begun. */

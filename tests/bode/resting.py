@@ -13,6 +13,7 @@ import cmath
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -81,7 +82,27 @@ def near():
                    "Co n3 0 1u\nRo n3 0 5k\n", 5.0, 5e-3, 10e-6, "v(n3)"), "d0"
 
 
+def borders():
+    """The discontinuous side of the border: the diode ceases to conduct just before the clock."""
+    def load(base, beyond):
+        return f"C1 out 0 1m\nR1 out 0 {base * (1 + beyond)!r}\n" + IDEAL
+    clock = gate(1, 10e-6, 0, 0.4)
+    yield Topology("buck", "Vin in 0 {S}\n" + clock + "S1 in sw g1 0 s0\nD1 0 sw\nL1 sw out 10u\n" + load(10 / 3, 2e-4),
+                   12.0, 0.0, 10e-6, "v(out)")
+    yield Topology("boost, a clock in mid-period", "Vin in 0 {S}\n" + gate(1, 20e-6, 0.3, 0.5) + "L1 in sw 40u\nS1 sw 0 g1 0 s0\nD1 sw out\n" +
+                   load(32.0, 1e-4), 24.0, 0.0, 20e-6, "v(out)")
+    yield Topology("flyback", "Vin in 0 {S}\n" + gate(1, 2e-6, 0.2, 0.5) + "S1 sw 0 g1 0 s0\nL1 in sw 2u\nL2 0 s 8u\nK1 L1 L2 1\nD1 s out\n" +
+                   load(32.0, 5e-4), 48.0, 0.0, 2e-6, "v(out)")
+    yield Topology("sepic", "Vin in 0 {S}\n" + clock + "L1 in a 20u\nS1 a 0 g1 0 s0\nCs a b 100u\nRx b xd 1\nCx xd a 1m\nL2 b 0 20u\n"
+                   "D1 b out\n" + load(5.556, 1e-4), 12.0, 0.0, 10e-6, "v(out)")
+    yield Topology("an edge of the source", "Vin in 0 {S}\nVk k in PULSE(-4 6 1u 0 0 4u 10u)\nL1 k x 10u\nD1 x out\nVo out 0 12.0005\n",
+                   12.0, 0.0, 10e-6, "i(vo)")
+
+
 def not_reached():
+    two = "Vin in 0 12\nVo o 0 {S}\n" + gate(1, 10e-6, 0, 0.2) + gate(2, 10e-6, 0.4800001, 0.2)
+    yield Topology("the clock of another phase", two + "".join(f"S{k} in x{k} g{k} 0 s0\nD{k} 0 x{k}\nL{k} x{k} m 10u\n" for k in (1, 2)) +
+                   "Ro m o 1m\n" + IDEAL, 5.0, 1e-3, 10e-6, "i(vo)")
     ring = forward(0.9, "220p", 10e-6, 48.0, 1e-3)
     yield ring._replace(name="forward with a loss", netlist=ring.netlist + "Rd sw in 10k\n", amplitude=1e-3)
     yield forward(0.7, "68p", 4e-6, 300.0, 2e-3)._replace(amplitude=1e-2)
@@ -143,6 +164,17 @@ class Look:
         away = abs(self.injected(case, case.amplitude)[0] - found) / abs(found)
         self.checker.check(away > 1e-3, f"{case.name}: {found} is off by {away:.2g} alone")
 
+    def look_at_border(self, case):
+        """A sine that is just smaller has this response, and one three times as large another one."""
+        said, exact, found = self.response(case)
+        told = re.search(r"only signals below (\S+) of .* 'd1' ceases to conduct", said)
+        if not self.checker.check(not exact and told, f"{case.name}: {exact}, {said}"):
+            return
+        reach = float(told.group(1))
+        for part, least, most in ((0.45, 0.0, 1e-4), (3.0, 1e-2, math.inf)):
+            away = abs(self.injected(case, part * reach)[0] - found) / abs(found)
+            self.checker.check(least <= away <= most, f"{case.name}: {found} is off by {away:.2g} at {part} of {reach}")
+
     def look_at_others(self, case):
         said, exact, found = self.response(case)
         self.checker.check(exact and "linear" not in said and "only signals" not in said, f"{case.name}: {said}")
@@ -159,6 +191,8 @@ def main():
             look.look_at_reached(case, names)
         for case, name in near():
             look.look_at_near(case, name)
+        for case in borders():
+            look.look_at_border(case)
         for case in not_reached():
             look.look_at_others(case)
     return checker.finish()

@@ -141,6 +141,28 @@ R1 o 0 10
 """
 
 
+# What a source of time is, then what a formula says of it.
+FORMULAS = [
+    ("V1 p 0 5", "B1 p 0 V=5", "S1 p a g 0 sw\nC1 a 0 1u\nR1 a 0 10"),
+    ("V1 p 0 PULSE(3 8 0.1u 0 0 0.4u 1u)", "B1 p 0 V=5*v(g)+3", "C1 p a 1u\nD1 0 a\nD2 a b\nC2 b 0 2u\nR1 b 0 10"),
+    ("V1 p n PULSE(0 -5 0.1u 0 0 0.4u 1u)", "B1 p n V=-5*v(g)*v(h)", "Rn n 0 3\nC1 p a 1u\nD1 n a\nR1 a n 10"),
+    ("V1 p 0 PULSE(-3.5 3.5 0.1u 0 0 0.4u 1u)", "E1 p 0 VALUE={7*u(v(g)-0.5)-3.5}", "C1 p a 1u\nD1 0 a\nR1 a 0 10"),
+    ("V1 p 0 PULSE(0 4 0.1u 0 0 0.4u 1u)", "B9 r 0 V=sin(3e5*2**(time/1m))\nB1 p 0 V=4*v(g)",
+     "C1 p a 1u\nD1 0 a\nR1 a 0 10\nC2 b 0 1u"),
+    ("I1 0 a 2", "B1 0 a I=2", "S1 a 0 g 0 sw\nL1 a b 1u\nR1 b 0 1"),
+    ("V1 p 0 PULSE(0 12 0.1u 0 0 0.4u 1u)", "B1 p 0 V=12*v(g)",
+     "C1 p q 1u\nL1 q 0 1m\nL2 s 0 1m\nK1 L1 L2 1\nD1 s o\nC2 o 0 1u\nR1 o 0 100"),
+]
+CLOCK = """
+Vg g 0 PULSE(0 1 0.1u 0 0 0.4u 1u)
+Rg g 0 1
+Vh h 0 1
+Rh h 0 1
+.model sw SW(Ron=0 Vt=0.5)
+.tran 10n 5u uic
+"""
+
+
 class Jumps:
     def __init__(self, program, method):
         self.program = program
@@ -180,6 +202,14 @@ class Jumps:
         if self.method != "euler":  # where the first row behind a jump shows flux/h
             top = max(abs(v) for v in result.column("v(b)"))
             self.check.check(top < 1e-6, f"v(b) reaches {top} V")
+
+    def formulas(self):
+        """A formula of sources is a source: charge and flux pass it, and its work is in the balance."""
+        for source, formula, others in FORMULAS:
+            plain, other = (self.run(f"t\n{first}\n{others}{CLOCK}").report["energy"] for first in (source, formula))
+            size = max(abs(value) for value in plain.values())
+            worst = max(abs(other[key] - plain[key]) for key in plain)
+            self.check.check(worst <= 1e-9 * size, f"{formula}: {other}, but {plain}")
 
     def no_jump(self):
         result = self.run(FAST)
@@ -252,7 +282,7 @@ class Jumps:
     def all(self):
         for case in (self.source, self.interruption, self.no_jump, self.beside, self.many,
                      self.doubler, self.derivative, self.impact, self.edge, self.open,
-                     self.behind_transformer):
+                     self.behind_transformer, self.formulas):
             case()
         return self.check.finish()
 

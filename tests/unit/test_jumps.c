@@ -3,6 +3,8 @@
 
 #include "build_network.h"
 
+#include <stdio.h>
+
 enum { MOST = 16 };
 
 static struct text_network t;
@@ -79,6 +81,19 @@ START_TEST(test_source) {
     ck_assert_double_eq_tol(state("c2"), 4.0, 1e-14);
     ck_assert_double_eq_tol(answer.source_work, 96e-6, 1e-19);
     finish();
+    static const char *const formula[] = {"V=12", "V=15-3", "V=12*v(3)", "V=11+v(3)+5*time"};
+    for (int k = 0; k < 4; k++) {
+        char text[200];
+        snprintf(
+            text, sizeof text,
+            "t\nB1 1 0 %s\nV3 3 0 1\nR3 3 0 1\nC1 1 2 1u\nC2 2 0 2u\nR1 2 0 1\n.tran 1u 1m uic\n",
+            formula[k]);
+        jump(text);
+        ck_assert(answer.is_known && answer.moves);
+        ck_assert_double_eq_tol(state("c2"), 4.0, 1e-14);
+        ck_assert_double_eq_tol(answer.source_work, 96e-6, 1e-19);
+        finish();
+    }
 }
 
 END_TEST
@@ -116,6 +131,11 @@ START_TEST(test_flux) {
     ck_assert_double_eq_tol(state("l2"), 5.0, 1e-14);
     ck_assert_double_eq_tol(flux[pair("d1")], 1e-3, 1e-17);
     ck_assert_double_eq_tol(answer.source_work, -1e-3, 1e-17); /* at -1 mWb across 1 A */
+    finish();
+    jump("t\nL1 0 1 1m IC=3\nB1 0 1 I=1+time\nD1 1 0 DI\nB2 2 0 V=7\nL2 1 2 2m IC=5.5\n"
+         ".model DI D(Ron=0)\n.tran 1u 1m uic\n");
+    ck_assert_double_eq_tol(state("l2"), 5.0, 1e-14);
+    ck_assert_double_eq_tol(answer.source_work, -1e-3, 1e-17);
     finish();
 }
 

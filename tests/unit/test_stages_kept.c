@@ -1,4 +1,5 @@
 /* test_stages_kept.c - stages in singular modes, watched voltages, natural units, and the store of modes. */
+#include "stage_store.h"
 #include "start_stages.h"
 
 #include <math.h>
@@ -235,5 +236,46 @@ START_TEST(test_store) {
 
 END_TEST
 
+/* With another constant input meanwhile. */
+static void start_again(struct dalcs_stage_store *store, double constant) {
+    dalcs_stage_store_put(store, 0, &stages);
+    ck_assert_ptr_null(stages.system);
+    x.constant[0] = constant;
+    ck_assert_int_eq(dalcs_stages_setup(&stages, s, &x, dalcs_collocation_of(DALCS_RADAU_IIA, 5),
+                                        &(struct dalcs_stage_limits){64, 1e-14, 1 << 24}),
+                     DALCS_OK);
+    dalcs_stage_store_take(store, 0, &stages);
+}
+
+/* The next run has the maps of the last one, with their answers; not where an input differs that is in them. */
+START_TEST(test_next_run) {
+    struct dalcs_stage_store store;
+    const uint64_t off = 0;
+    const double state[] = {6.0};
+    start("next\nV1 a 0 SIN(1 2 0.1)\nV2 b 0 3\nR1 a c 1\nD1 c b\nC1 c 0 1\n.tran 1 1\n", 5);
+    ck_assert_int_eq(dalcs_stage_store_setup(&store, 1), DALCS_OK);
+    dalcs_stage_store_take(&store, 0, &stages); /* nothing */
+    (void)step(off, 0.0, 0.5, state);
+    const struct dalcs_stage_entry *entry = get(off, 0.5);
+    const double answer = column_at(5, DALCS_LABEL_STATE, "c1");
+    start_again(&store, 1.0);
+    ck_assert_ptr_eq(get(off, 0.5), entry);
+    ck_assert_int_eq(stages.cache.factorizations, 0);
+    (void)step(off, 0.0, 0.5, state);
+    ck_assert_double_eq(column_at(5, DALCS_LABEL_STATE, "c1"), answer);
+    (void)get(DIODE("d1"), 0.25); /* the first run's means serve, too */
+    start_again(&store, 1.0);
+    ck_assert(dalcs_stages_find(&stages, &(uint64_t){DIODE("d1")}, 0.25));
+    start_again(&store, 2.0);
+    ck_assert(dalcs_stages_find(&stages, &off, 0.5) == NULL);
+    (void)get(off, 0.5);
+    dalcs_stage_store_put(&store, 0, &stages);
+    dalcs_stage_store_finish(&store);
+    finish();
+}
+
+END_TEST
+
 RUN_TESTS("stages that are kept", test_parallel_diodes, test_floating, test_clash,
-          test_next_to_open, test_watched, test_shift, test_shift_in_a_moment, test_store)
+          test_next_to_open, test_watched, test_shift, test_shift_in_a_moment, test_store,
+          test_next_run)
