@@ -176,7 +176,7 @@ static void leave(void *info) {
 static void find_intervals(struct program *p) {
     p->is_solved = true;
     for (int i = 0; i < p->n_signals; i++) {
-        int device = p->view->u->circuit->signal[p->signal[i].output].device;
+        int device = p->view->u->circuit->results.signal[p->signal[i].output].device;
         double rise = furthest(p, device, 1.0);
         double fall = furthest(p, device, -1.0);
         dalcs_view_bound(p->view, true, fall, rise, &p->signal[i]);

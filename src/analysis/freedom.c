@@ -101,7 +101,7 @@ static void add_device(struct dalcs_view *view, int device) {
         break;
     }
     case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &c->diode_model[d->model];
+        const struct dalcs_diode_model *m = &c->models.of_diode[d->model];
         add_pair(view, device, pair, m->ron, isfinite(m->roff));
         if (isfinite(m->vrev)) {
             add_pair(view, device, pair + 1, m->rrev, isfinite(m->roff));
@@ -109,7 +109,7 @@ static void add_device(struct dalcs_view *view, int device) {
         break;
     }
     case DALCS_SWITCH: {
-        const struct dalcs_switch_model *m = &c->switch_model[d->model];
+        const struct dalcs_switch_model *m = &c->models.of_switch[d->model];
         bool closed = side_of(view, pair) == CONDUCTS;
         bool holds = closed || isfinite(m->roff);
         add(view, device, holds ? DALCS_VOLTAGE_FIXED : DALCS_VOLTAGE_ANY, closed && m->ron == 0.0);
@@ -218,7 +218,9 @@ void dalcs_view_finish(struct dalcs_view *view) {
 int dalcs_view_current_of(const struct dalcs_view *view, int output) {
     const struct dalcs_output *out = &view->network->output[output];
     bool is_here = out->is_current && out->plus.system == view->at->system;
-    return is_here && !view->u->told[output].is_told ? view->u->circuit->signal[output].device : -1;
+    return is_here && !view->u->told[output].is_told
+               ? view->u->circuit->results.signal[output].device
+               : -1;
 }
 
 static double probe_value(const struct dalcs_view *view, const struct dalcs_probe *probe) {

@@ -146,7 +146,7 @@ static int cause_of(struct islands *s, int output) {
     if (!concerns(s, output)) {
         return -1;
     }
-    const int *node = s->view->u->circuit->signal[output].node;
+    const int *node = s->view->u->circuit->results.signal[output].node;
     int a = island(s, node[0]);
     int b = island(s, node[1]);
     return a == b ? -1 : dalcs_union_find(s->parent, a != 0 ? a : b);
@@ -170,7 +170,7 @@ static void find_intervals(struct islands *s, struct dalcs_finding *finding) {
     int n_open = 0;
     for (int k = 0; k < finding->n_signals; k++) {
         struct dalcs_open_signal *signal = &finding->signal[k];
-        const int *node = s->view->u->circuit->signal[signal->output].node;
+        const int *node = s->view->u->circuit->results.signal[signal->output].node;
         find_interval(s, island(s, node[0]), island(s, node[1]), signal);
         if (dalcs_view_is_open(s->view, false, signal->lower, signal->upper)) {
             finding->signal[n_open++] = *signal;

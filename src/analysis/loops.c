@@ -229,7 +229,7 @@ static enum dalcs_status tell_block(struct loops *l, int k) {
     if (!l->has_coils[k]) {
         for (int i = 0; i < finding.n_signals; i++) {
             struct dalcs_open_signal *s = &finding.signal[i];
-            find_interval(l, view->u->circuit->signal[s->output].device, s);
+            find_interval(l, view->u->circuit->results.signal[s->output].device, s);
         }
     }
     for (int e = 0; e < n; e++) { /* of the graph's branches to the view's */

@@ -56,7 +56,7 @@ static void sort_devices(struct dalcs_undetermined *u) {
             bool is_diode = d->kind == DALCS_DIODE;
             u->first_pair[u->device[j]] = pair;
             pair += is_diode || d->kind == DALCS_SWITCH ? 1 : 0;
-            pair += is_diode && isfinite(c->diode_model[d->model].vrev) ? 1 : 0;
+            pair += is_diode && isfinite(c->models.of_diode[d->model].vrev) ? 1 : 0;
             pair += d->behaviour != NULL ? d->behaviour->n_pairs : 0;
         }
     }
@@ -83,7 +83,7 @@ enum dalcs_status dalcs_undetermined_prepare(struct dalcs_undetermined *u) {
     u->first_pair = dalcs_alloc(n_devices, sizeof(int));
     u->vertex_of = dalcs_alloc(n_nodes, sizeof(int));
     u->branch_of = dalcs_alloc(2 * n_devices, sizeof(int));
-    u->told = dalcs_alloc((size_t)c->n_signals, sizeof(*u->told));
+    u->told = dalcs_alloc((size_t)c->results.n_signals, sizeof(*u->told));
     if (u->device_start == NULL || u->device == NULL || u->shorts == NULL ||
         u->first_pair == NULL || u->vertex_of == NULL || u->branch_of == NULL || u->told == NULL) {
         return DALCS_E_NOMEM;

@@ -31,7 +31,7 @@ static bool sources_bend(const struct dalcs_audit *audit, double t) {
 static bool is_at_corner(const struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+    const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
     double scale[2];
     audit_diode_scale(audit, part, device, scale);
     const double v = audit_voltage(s, d);

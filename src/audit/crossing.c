@@ -67,10 +67,10 @@ int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_par
         break;
     case DALCS_SWITCH:
         find_positions(audit, part, before, after, device, may_be);
-        both = audit->circuit->switch_model[d->model].ron == 0.0 && may_be[true];
+        both = audit->circuit->models.of_switch[d->model].ron == 0.0 && may_be[true];
         break;
     case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+        const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
         const double v = audit_voltage(after, d);
         const double allowed = part->tolerance * audit_volts(audit, part, d->node[0], d->node[1]);
         return (m->ron == 0.0 && v >= m->vfwd - allowed ? AUDIT_FORWARD : 0) |
@@ -103,9 +103,9 @@ static bool bounds_voltage(const struct dalcs_audit *audit, const struct audit_p
     case DALCS_SWITCH:
         find_positions(audit, part, before, after, device, may_be);
         return !audit_has_impulse(audit, d) &&
-               (isfinite(audit->circuit->switch_model[d->model].roff) || !may_be[false]);
+               (isfinite(audit->circuit->models.of_switch[d->model].roff) || !may_be[false]);
     case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+        const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
         return !audit_has_impulse(audit, d) &&
                (isfinite(m->roff) || isfinite(m->vrev) ||
                 after->i[device] > part->tolerance * audit_amperes(audit, part, device));
@@ -152,10 +152,10 @@ static double conductance_of(const struct dalcs_audit *audit, const struct dalcs
     const struct dalcs_circuit *c = audit->circuit;
     const struct dalcs_device *d = &c->device[device];
     if (d->kind == DALCS_SWITCH && first->is_closed[device]) {
-        return 1.0 / c->switch_model[d->model].ron;
+        return 1.0 / c->models.of_switch[d->model].ron;
     }
     if (d->kind == DALCS_DIODE && first->i[device] != 0.0) {
-        return 1.0 / c->diode_model[d->model].ron;
+        return 1.0 / c->models.of_diode[d->model].ron;
     }
     return d->kind == DALCS_RESISTOR ? fabs(1.0 / d->value) : 0.0;
 }

@@ -63,11 +63,12 @@ static enum dalcs_status make_room(struct file_audit *a) {
         const struct dalcs_behaviour *b = a->circuit->device[d].behaviour;
         most = b != NULL && b->n_pairs > most ? b->n_pairs : most;
     }
-    bool complete = make_for_nodes(a) && make_for_devices(a) &&
-                    make(a, &a->gates.bit, (size_t)a->circuit->n_gates, sizeof *a->gates.bit) &&
-                    make(a, &a->gates.source, (size_t)a->circuit->n_stimuli, sizeof(int)) &&
-                    make(a, &a->formulas.value, (size_t)most, sizeof *a->formulas.value) &&
-                    make(a, &a->formulas.error, (size_t)most, sizeof *a->formulas.error);
+    bool complete =
+        make_for_nodes(a) && make_for_devices(a) &&
+        make(a, &a->gates.bit, (size_t)a->circuit->control.n_gates, sizeof *a->gates.bit) &&
+        make(a, &a->gates.source, (size_t)a->circuit->n_stimuli, sizeof(int)) &&
+        make(a, &a->formulas.value, (size_t)most, sizeof *a->formulas.value) &&
+        make(a, &a->formulas.error, (size_t)most, sizeof *a->formulas.error);
     for (int k = 0; k < 4; k++) {
         complete = complete && make_row(a, &a->row[k]);
     }
@@ -207,7 +208,7 @@ static double ramp_of(const struct file_audit *a) {
             return 0.0;
         }
     }
-    return 2.0 * a->circuit->transient.step;
+    return 2.0 * a->circuit->analyses.transient.step;
 }
 
 static enum dalcs_status check_times(const struct file_audit *a, struct dalcs_diag *diag) {

@@ -37,7 +37,7 @@ static void check_pair(struct file_audit *a, const struct file_row *row, int dev
 
 void file_check_diode(struct file_audit *a, const struct file_row *row, int device) {
     const struct dalcs_device *d = &a->circuit->device[device];
-    const struct dalcs_diode_model *m = &a->circuit->diode_model[d->model];
+    const struct dalcs_diode_model *m = &a->circuit->models.of_diode[d->model];
     const struct file_number u = row->u[device], i = row->i[device];
     const double volts = file_volts(a, device) + u.error;
     if (!u.known) {

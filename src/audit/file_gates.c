@@ -19,7 +19,7 @@ static enum bit read(const struct file_audit *a, const struct file_row *row,
     const struct dalcs_circuit *c = a->circuit;
     enum bit bit = LOW; /* open */
     if (input->from == DALCS_GATE_COMPARATOR) {
-        const unsigned char position = row->position[c->comparator[input->index]];
+        const unsigned char position = row->position[c->control.comparator[input->index]];
         bit = position == FILE_CLOSED ? HIGH : position == FILE_OPEN ? LOW : NOT_KNOWN;
     } else if (input->from == DALCS_GATE_GATE) {
         bit = (enum bit)a->gates.bit[input->index];
@@ -115,14 +115,14 @@ static enum bit shown(const struct file_row *row, const struct dalcs_logic_gate 
 static void find_bits(struct file_audit *a, const struct file_row *row) {
     const struct dalcs_circuit *c = a->circuit;
     bool goes_on = true;
-    for (int k = 0; k < c->n_gates; k++) {
-        a->gates.bit[k] = (unsigned char)shown(row, &c->gate[k]);
+    for (int k = 0; k < c->control.n_gates; k++) {
+        a->gates.bit[k] = (unsigned char)shown(row, &c->control.gate[k]);
     }
     while (goes_on) {
         goes_on = false;
-        for (int k = 0; k < c->n_gates; k++) {
+        for (int k = 0; k < c->control.n_gates; k++) {
             if (a->gates.bit[k] == NOT_KNOWN) {
-                a->gates.bit[k] = (unsigned char)wanted(a, row, &c->gate[k]);
+                a->gates.bit[k] = (unsigned char)wanted(a, row, &c->control.gate[k]);
                 goes_on = goes_on || a->gates.bit[k] != NOT_KNOWN;
             }
         }
@@ -145,13 +145,14 @@ void file_check_gates(struct file_audit *a, const struct file_row *row) {
     }
     find_sources(a);
     find_bits(a, row);
-    for (int k = 0; k < c->n_gates; k++) {
-        const enum bit q = wanted(a, row, &c->gate[k]);
+    for (int k = 0; k < c->control.n_gates; k++) {
+        const enum bit q = wanted(a, row, &c->control.gate[k]);
         for (int end = 0; end < 2 && q != NOT_KNOWN; end++) {
-            const int device = source_of(a, &c->gate[k], end);
+            const int device = source_of(a, &c->control.gate[k], end);
             const bool is_high = (q == HIGH) == (end == 0);
             if (device >= 0) {
-                check_output(a, row, device, is_high ? c->gate[k].high : c->gate[k].low);
+                check_output(a, row, device,
+                             is_high ? c->control.gate[k].high : c->control.gate[k].low);
             }
         }
     }

@@ -18,10 +18,10 @@ static bool passes_charge(const struct file_audit *a, const struct file_row *lef
     case DALCS_VCCS:
         return d->behaviour != NULL;
     case DALCS_SWITCH:
-        return a->circuit->switch_model[d->model].ron == 0.0 &&
+        return a->circuit->models.of_switch[d->model].ron == 0.0 &&
                ((left->position[device] | right->position[device]) & FILE_CLOSED) != 0;
     case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &a->circuit->diode_model[d->model];
+        const struct dalcs_diode_model *m = &a->circuit->models.of_diode[d->model];
         const double margin = file_volts(a, device) + u.error;
         return !u.known || (m->ron == 0.0 && u.value >= m->vfwd - margin) ||
                (m->rrev == 0.0 && u.value <= -m->vrev + margin);
@@ -44,10 +44,10 @@ static bool bounds_voltage(const struct file_audit *a, const struct file_row *le
     case DALCS_VSOURCE:
         return true;
     case DALCS_SWITCH:
-        return isfinite(a->circuit->switch_model[d->model].roff) ||
+        return isfinite(a->circuit->models.of_switch[d->model].roff) ||
                (left->position[device] == FILE_CLOSED && right->position[device] == FILE_CLOSED);
     case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &a->circuit->diode_model[d->model];
+        const struct dalcs_diode_model *m = &a->circuit->models.of_diode[d->model];
         return isfinite(m->roff) || isfinite(m->vrev) ||
                (i.known && !right->is_assumed[device] &&
                 i.value > file_amperes(a, device) + i.error);
@@ -131,7 +131,8 @@ void file_check_jump(struct file_audit *a, const struct file_row *left,
  * .ic says of nodes is not followed to the elements between them. */
 void file_check_start(struct file_audit *a, const struct file_row *first, struct file_row *before) {
     const struct dalcs_circuit *c = a->circuit;
-    if (first->t != 0.0 || !c->transient.use_initial_conditions || c->n_initial_conditions > 0) {
+    if (first->t != 0.0 || !c->analyses.transient.use_initial_conditions ||
+        c->n_initial_conditions > 0) {
         return;
     }
     for (int d = 0; d < c->n_devices; d++) {

@@ -9,7 +9,7 @@
 static struct file_number control_at(const struct file_audit *a, const struct file_row *row,
                                      int device, long k) {
     const struct dalcs_device *d = &a->circuit->device[device];
-    const struct dalcs_switch_model *m = &a->circuit->switch_model[d->model];
+    const struct dalcs_switch_model *m = &a->circuit->models.of_switch[d->model];
     struct file_number c = {0};
     if (k < 0 || k >= (long)a->table->n_rows) {
         return c;
@@ -30,7 +30,7 @@ static struct file_number control_at(const struct file_audit *a, const struct fi
 /* What a control is held to, besides: over its own largest value. */
 static double control_tolerance(const struct file_audit *a, int device) {
     const struct dalcs_device *d = &a->circuit->device[device];
-    const struct dalcs_switch_model *m = &a->circuit->switch_model[d->model];
+    const struct dalcs_switch_model *m = &a->circuit->models.of_switch[d->model];
     const double signal = d->control >= 0 ? a->scale.i[d->control]
                                           : fmax(a->scale.v[d->node[2]], a->scale.v[d->node[3]]);
     return a->promise.tolerance * fmax(signal, fabs(m->vt) + fabs(m->vh));
@@ -61,14 +61,14 @@ static bool knows_start(const struct file_audit *a, const struct file_row *row,
                         const struct dalcs_device *d) {
     const bool is_commanded = d->control < 0 && a->fed_from[d->node[2]] == a->fed_from[d->node[3]];
     const bool is_start =
-        a->is_at_rest ? is_commanded : a->circuit->transient.use_initial_conditions;
+        a->is_at_rest ? is_commanded : a->circuit->analyses.transient.use_initial_conditions;
     return row->t == 0.0 && (is_start || row->is_left) && !a->promise.remembers;
 }
 
 unsigned char file_position(const struct file_audit *a, const struct file_row *row,
                             const struct file_row *before, int device) {
     const struct dalcs_device *d = &a->circuit->device[device];
-    const double half_width = fabs(a->circuit->switch_model[d->model].vh);
+    const double half_width = fabs(a->circuit->models.of_switch[d->model].vh);
     const long k = (long)row->index;
     const struct file_number now = control_at(a, row, device, k);
     const bool is_between = row->is_behind && !row->is_right; /* others are on both sides of it */
@@ -112,7 +112,7 @@ struct miss {
 static struct miss miss_of(const struct file_audit *a, const struct file_row *row, int device,
                            unsigned char position) {
     const struct dalcs_device *d = &a->circuit->device[device];
-    const struct dalcs_switch_model *m = &a->circuit->switch_model[d->model];
+    const struct dalcs_switch_model *m = &a->circuit->models.of_switch[d->model];
     const struct file_number u = row->u[device], i = row->i[device];
     struct file_number off = u;
     double allowed = file_volts(a, device);
@@ -134,7 +134,7 @@ static bool fits(struct miss m) {
 static double short_of(const struct file_audit *a, const struct file_row *row, int device,
                        unsigned char shown) {
     const struct dalcs_device *d = &a->circuit->device[device];
-    const double half_width = fabs(a->circuit->switch_model[d->model].vh);
+    const double half_width = fabs(a->circuit->models.of_switch[d->model].vh);
     const double c = control_at(a, row, device, (long)row->index).value;
     return shown == FILE_OPEN ? c + half_width : half_width - c;
 }

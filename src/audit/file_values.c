@@ -26,7 +26,7 @@ static double potential(const struct file_audit *a, int node) {
  * says which it was. */
 bool file_rests_before(const struct file_audit *a) {
     const struct dalcs_circuit *c = a->circuit;
-    bool before = c->transient.present;
+    bool before = c->analyses.transient.present;
     for (int d = 0; d < c->n_devices && before; d++) {
         const struct dalcs_device *device = &c->device[d];
         if (device->kind != DALCS_VSOURCE || c->stimulus[device->stimulus].is_written) {
@@ -156,11 +156,11 @@ static struct file_number of_position(const struct file_audit *a, const struct f
     const struct dalcs_device *d = &a->circuit->device[device];
     const struct file_number none = {0}, zero = file_exactly(0.0), u = row->u[device];
     if (d->kind == DALCS_SWITCH && row->position[device] == FILE_OPEN) {
-        const double roff = a->circuit->switch_model[d->model].roff;
+        const double roff = a->circuit->models.of_switch[d->model].roff;
         return isfinite(roff) ? file_add(zero, 1.0 / roff, u) : zero;
     }
     if (d->kind == DALCS_DIODE && u.known) {
-        const struct dalcs_diode_model *m = &a->circuit->diode_model[d->model];
+        const struct dalcs_diode_model *m = &a->circuit->models.of_diode[d->model];
         const double margin = file_volts(a, device) + u.error;
         const bool blocks = u.value < m->vfwd - margin && u.value > -m->vrev + margin;
         return !blocks ? none : isfinite(m->roff) ? file_add(zero, 1.0 / m->roff, u) : zero;

@@ -11,11 +11,11 @@ int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law) 
     case DALCS_AUDIT_PERIOD:
         return audit->options.n_parts;
     case DALCS_AUDIT_ROW:
-        return audit->circuit->n_signals;
+        return audit->circuit->results.n_signals;
     case DALCS_AUDIT_MEASURE:
-        return audit->circuit->n_measures;
+        return audit->circuit->results.n_measures;
     case DALCS_AUDIT_FOURIER:
-        return audit->circuit->n_fouriers;
+        return audit->circuit->results.n_fouriers;
     default:
         return audit->circuit->n_devices;
     }
@@ -131,13 +131,13 @@ void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law 
         snprintf(text, size, "the energy balance");
         break;
     case DALCS_AUDIT_ROW:
-        snprintf(text, size, "the rows of %s", c->signal[index].name);
+        snprintf(text, size, "the rows of %s", c->results.signal[index].name);
         break;
     case DALCS_AUDIT_MEASURE:
-        snprintf(text, size, ".meas %s", c->measure[index].name);
+        snprintf(text, size, ".meas %s", c->results.measure[index].name);
         break;
     case DALCS_AUDIT_FOURIER:
-        snprintf(text, size, ".four %s", c->fourier[index].formula.text);
+        snprintf(text, size, ".four %s", c->results.fourier[index].formula.text);
         break;
     case DALCS_AUDIT_LOSSES:
         snprintf(text, size, ".losses of %s", c->device[index].name);

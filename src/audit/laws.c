@@ -17,7 +17,7 @@ static double ampere_rounding(const struct dalcs_audit *audit, const struct dalc
 static void diode_defects(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
                           int device, const double scale[2], double *branch, double *blocked) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+    const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
     const double v = audit_voltage(s, d);
     const double leak = isfinite(m->roff) ? v / m->roff : 0.0;
     const double own = s->i[device] - leak;
@@ -40,7 +40,7 @@ void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part 
     /* what is within rounding of 0 is nothing: it is over a scale that is not less */
     scale[0] = audit->sums.volts / part->tolerance +
                audit_volts(audit, part, d->node[0], d->node[1]) +
-               audit->circuit->diode_model[d->model].ron * amperes;
+               audit->circuit->models.of_diode[d->model].ron * amperes;
     scale[1] = amperes + ampere_rounding(audit, d) / part->tolerance;
 }
 
@@ -67,7 +67,7 @@ static void check_diode(struct dalcs_audit *audit, const struct audit_part *part
 double audit_control(const struct dalcs_audit *audit, const struct dalcs_audit_state *s, int device,
                      double *half_width) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    const struct dalcs_switch_model *m = &audit->circuit->switch_model[d->model];
+    const struct dalcs_switch_model *m = &audit->circuit->models.of_switch[d->model];
     double control = d->control >= 0 ? s->i[d->control] : s->v[d->node[2]] - s->v[d->node[3]];
     control = m->is_inverted ? -control : control;
     *half_width = fabs(m->vh);
@@ -99,7 +99,7 @@ double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *p
 double audit_control_scale(const struct dalcs_audit *audit, const struct audit_part *part,
                            int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    const struct dalcs_switch_model *m = &audit->circuit->switch_model[d->model];
+    const struct dalcs_switch_model *m = &audit->circuit->models.of_switch[d->model];
     const double signal = d->control >= 0 ? audit_amperes(audit, part, d->control)
                                           : audit_volts(audit, part, d->node[2], d->node[3]);
     return fmax(signal, fabs(m->vt) + fabs(m->vh));
@@ -140,7 +140,7 @@ static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
         audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, scale, s->t);
         audit->count.positions++;
     } else if (d->kind == DALCS_DIODE && d->behaviour == NULL) {
-        const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+        const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
         const double v = audit_voltage(s, d);
         const double own = s->i[device] - (isfinite(m->roff) ? v / m->roff : 0.0);
         const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->floor.ampere);
@@ -155,7 +155,7 @@ static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
 static void check_switch(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    const struct dalcs_switch_model *m = &audit->circuit->switch_model[d->model];
+    const struct dalcs_switch_model *m = &audit->circuit->models.of_switch[d->model];
     const bool is_closed = s->is_closed[device];
     const double v = audit_voltage(s, d);
     const double i = s->i[device];

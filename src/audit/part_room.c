@@ -72,7 +72,7 @@ static enum dalcs_status number_lambdas(struct dalcs_audit *audit) {
 /* Parts of formulas. One that an element without a formula reads, as a term of a POLY, is held to its own law. */
 static enum dalcs_status find_formula_parts(struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
-    if (c->n_smooth == 0) {
+    if (c->control.n_smooth == 0) {
         return DALCS_OK;
     }
     audit->net.part_of = dalcs_arena_alloc(&audit->arena, (size_t)c->n_nodes, sizeof(int));

@@ -5,7 +5,7 @@
 
 bool audit_remembers(const struct dalcs_circuit *c, int device) {
     const struct dalcs_device *d = &c->device[device];
-    return d->kind == DALCS_SWITCH && c->switch_model[d->model].vh != 0.0;
+    return d->kind == DALCS_SWITCH && c->models.of_switch[d->model].vh != 0.0;
 }
 
 static void count_members(struct dalcs_audit *audit, int *owner) {
@@ -74,11 +74,11 @@ static void see_conductances(struct audit_part *part, const struct dalcs_circuit
     } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
         see_conductance(part, fabs(d->value));
     } else if (d->kind == DALCS_SWITCH) {
-        see_conductance(part, 1.0 / c->switch_model[d->model].ron);
-        see_conductance(part, 1.0 / c->switch_model[d->model].roff);
+        see_conductance(part, 1.0 / c->models.of_switch[d->model].ron);
+        see_conductance(part, 1.0 / c->models.of_switch[d->model].roff);
     } else if (d->kind == DALCS_DIODE) {
-        see_conductance(part, 1.0 / c->diode_model[d->model].ron);
-        see_conductance(part, 1.0 / c->diode_model[d->model].roff);
+        see_conductance(part, 1.0 / c->models.of_diode[d->model].ron);
+        see_conductance(part, 1.0 / c->models.of_diode[d->model].roff);
     }
 }
 

@@ -52,9 +52,9 @@ static void find_lines(struct dalcs_response_audit *a, const struct dalcs_respon
         return;
     }
     if (d->kind == DALCS_DIODE) {
-        find_diode(l, &c->diode_model[d->model], own[0], own[1], doubt);
+        find_diode(l, &c->models.of_diode[d->model], own[0], own[1], doubt);
     } else if (d->kind == DALCS_SWITCH) {
-        const struct dalcs_switch_model *m = &c->switch_model[d->model];
+        const struct dalcs_switch_model *m = &c->models.of_switch[d->model];
         const double control = d->control >= 0 ? creal(at->i[d->control])
                                                : creal(at->v[d->node[2]] - at->v[d->node[3]]);
         const double of_control = d->control >= 0 ? doubt.amperes : doubt.volts;

@@ -23,9 +23,10 @@ static void check_signal(struct dalcs_audit *audit, int index, double value, boo
     const struct audit_part *part = &audit->part[own];
     struct audit_signal of;
     const double is = audit_signal_value(audit, &audit->state.now, index, &of);
-    const double joined = may_be_joined ? joins * audit->options.failure *
-                                              largest_of_unit(part, &audit->circuit->signal[index])
-                                        : 0.0;
+    const double joined = may_be_joined
+                              ? joins * audit->options.failure *
+                                    largest_of_unit(part, &audit->circuit->results.signal[index])
+                              : 0.0;
     audit_find(audit, part, DALCS_AUDIT_ROW, index, fabs(value - is) - of.rounding - joined,
                of.scale, audit->state.now.t);
 }

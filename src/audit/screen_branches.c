@@ -23,7 +23,7 @@ static void add_line(const struct audit_filling *f, struct dalcs_audit_row *row,
 
 static void fill_diode(struct audit_filling *f, int device, enum audit_side side) {
     const struct dalcs_device *d = &f->audit->circuit->device[device];
-    const struct dalcs_diode_model *m = &f->audit->circuit->diode_model[d->model];
+    const struct dalcs_diode_model *m = &f->audit->circuit->models.of_diode[d->model];
     double scale[2];
     audit_diode_scale(f->audit, f->part, device, scale);
     const double allowed[2] = {f->part->tolerance * scale[0],
@@ -50,7 +50,7 @@ static void fill_diode(struct audit_filling *f, int device, enum audit_side side
 
 static void fill_switch(struct audit_filling *f, int device, bool is_closed) {
     const struct dalcs_device *d = &f->audit->circuit->device[device];
-    const struct dalcs_switch_model *m = &f->audit->circuit->switch_model[d->model];
+    const struct dalcs_switch_model *m = &f->audit->circuit->models.of_switch[d->model];
     const double rounding = fmax(f->audit->sums.rounding[f->audit->net.node_of[d->node[0]]],
                                  f->audit->sums.rounding[f->audit->net.node_of[d->node[1]]]) +
                             f->audit->sums.amperes;
@@ -158,7 +158,7 @@ enum audit_side audit_side_of(const struct audit_filling *f, int device, int cho
         return AUDIT_ON;
     }
     const bool breaks_down = d->kind == DALCS_DIODE &&
-                             isfinite(f->audit->circuit->diode_model[d->model].vrev) &&
+                             isfinite(f->audit->circuit->models.of_diode[d->model].vrev) &&
                              r->is_on(r->user, f->index, device, choice + 1);
     return breaks_down ? AUDIT_IN_BREAKDOWN : AUDIT_OFF;
 }

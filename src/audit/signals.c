@@ -13,7 +13,7 @@ static int owner_of(const struct dalcs_audit *audit, const struct dalcs_signal *
 }
 
 int dalcs_audit_part_of(const struct dalcs_audit *audit, int index) {
-    const struct dalcs_signal *signal = &audit->circuit->signal[index];
+    const struct dalcs_signal *signal = &audit->circuit->results.signal[index];
     if (audit->options.n_parts == 0) {
         return -1;
     }
@@ -30,7 +30,7 @@ int dalcs_audit_part_of(const struct dalcs_audit *audit, int index) {
 
 double audit_signal_value(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
                           int index, struct audit_signal *of) {
-    const struct dalcs_signal *signal = &audit->circuit->signal[index];
+    const struct dalcs_signal *signal = &audit->circuit->results.signal[index];
     const struct audit_part *part = &audit->part[dalcs_audit_part_of(audit, index)];
     if (signal->kind == DALCS_SIGNAL_VOLTAGE) {
         const int *node = signal->node;
@@ -67,7 +67,7 @@ double dalcs_audit_signal(struct dalcs_audit *audit, int index, double t, enum d
 }
 
 double dalcs_audit_signal_scale(const struct dalcs_audit *audit, int index) {
-    const struct dalcs_signal *signal = &audit->circuit->signal[index];
+    const struct dalcs_signal *signal = &audit->circuit->results.signal[index];
     const int own = dalcs_audit_part_of(audit, index);
     if (own < 0) {
         return 0.0;
@@ -97,8 +97,8 @@ static double signal_at(const struct dalcs_signal_formula_point *point, int inde
     (void)part; /* signals over time are real */
     const struct asked *a = point->user;
     double doubt;
-    const double value =
-        dalcs_audit_signal(a->audit, a->audit->circuit->measured[index], a->t, a->side, &doubt);
+    const double value = dalcs_audit_signal(a->audit, a->audit->circuit->results.measured[index],
+                                            a->t, a->side, &doubt);
     return index == a->bumped ? value + doubt : value;
 }
 

@@ -29,7 +29,7 @@ static bool is_ideal(const struct dalcs_audit *audit, const struct audit_part *p
     case DALCS_RESISTOR:
         return d->value == 0.0;
     case DALCS_SWITCH:
-        return first->is_closed[device] && c->switch_model[d->model].ron == 0.0;
+        return first->is_closed[device] && c->models.of_switch[d->model].ron == 0.0;
     case DALCS_DIODE: /* one at its knee may have carried at rest what a source that moves takes from it at once */
         return audit_ways_of_charge(audit, part, before, first, device) != 0;
     default:

@@ -24,7 +24,7 @@ void dalcs_audit_look_behind(struct dalcs_audit *audit, int part, double t) {
 static double side_of_diode(struct dalcs_audit *audit, const struct dalcs_audit_state *s,
                             int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+    const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
     const int node = audit->net.node_of[d->node[0]];
     const int other = audit->net.node_of[d->node[1]];
     const int own = audit->net.owner[node] >= 0 ? audit->net.owner[node] : audit->net.owner[other];

@@ -33,13 +33,13 @@ static bool read_loop(struct dalcs_reader *reader) {
     if (!dalcs_reader_name(reader, "a voltage source", &name)) {
         return false;
     }
-    builder->circuit->orbit_ac.loop = dalcs_sweep_keep_text(builder, name->text);
+    builder->circuit->analyses.orbit_ac.loop = dalcs_sweep_keep_text(builder, name->text);
     return true;
 }
 
 /* voltage or both */
 static bool read_injection(struct dalcs_reader *reader) {
-    bool *is_loaded = &reader->builder->circuit->orbit_ac.is_loaded;
+    bool *is_loaded = &reader->builder->circuit->analyses.orbit_ac.is_loaded;
     *is_loaded = dalcs_reader_take_word(reader, "both");
     if (*is_loaded || dalcs_reader_take_word(reader, "voltage")) {
         return true;
@@ -61,7 +61,7 @@ static bool read_sideband(struct dalcs_reader *reader) {
                             (int)DALCS_MOST_SIDEBAND);
         return false;
     }
-    reader->builder->circuit->orbit_ac.sideband = (int)value;
+    reader->builder->circuit->analyses.orbit_ac.sideband = (int)value;
     return true;
 }
 
@@ -128,7 +128,7 @@ static bool check_spaced(struct dalcs_builder *builder, const struct dalcs_sweep
 }
 
 void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    struct dalcs_sweep *f = &builder->circuit->ac;
+    struct dalcs_sweep *f = &builder->circuit->analyses.ac;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, AC_USAGE);
     if (!dalcs_analysis_is_first(builder, card, &builder->analyses.ac)) {
         return;

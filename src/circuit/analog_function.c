@@ -96,8 +96,8 @@ static void parse_varistor(struct dalcs_builder *builder, const struct dalcs_car
     }
     all->node[1] = inside; /* a short, whose current is the element's */
     struct dalcs_circuit *circuit = builder->circuit;
-    const int model = circuit->n_diode_models++;
-    circuit->diode_model[model] = (struct dalcs_diode_model){
+    const int model = circuit->models.n_diodes++;
+    circuit->models.of_diode[model] = (struct dalcs_diode_model){
         .name = "varistor", .ron = p.value, .roff = (double)INFINITY, .vrev = (double)INFINITY};
     const int both[2] = {inside, node[PIN_COMMON]};
     if (add_side(&c, both, model, false)) {

@@ -124,7 +124,7 @@ static int read_times(struct dalcs_reader *reader, struct dalcs_transient *trans
 }
 
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    struct dalcs_transient *transient = &builder->circuit->transient;
+    struct dalcs_transient *transient = &builder->circuit->analyses.transient;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, TRAN_USAGE);
     if (!dalcs_analysis_is_first(builder, card, &builder->analyses.tran)) {
         return;
@@ -200,7 +200,7 @@ static bool read_pss_word(struct dalcs_reader *reader, struct dalcs_periodic_car
 }
 
 void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    struct dalcs_periodic_card *periodic = &builder->circuit->periodic;
+    struct dalcs_periodic_card *periodic = &builder->circuit->analyses.periodic;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, PSS_USAGE);
     if (!dalcs_analysis_is_first(builder, card, &builder->analyses.pss)) {
         return;
@@ -242,9 +242,9 @@ static bool read_at(struct dalcs_reader *reader, struct dalcs_envelope_card *car
 }
 
 static bool read_env_word(struct dalcs_reader *reader, struct dalcs_builder *builder) {
-    struct dalcs_envelope_card *card = &builder->circuit->envelope;
+    struct dalcs_envelope_card *card = &builder->circuit->analyses.envelope;
     if (dalcs_reader_take_word(reader, "uic")) {
-        builder->circuit->transient.use_initial_conditions = true;
+        builder->circuit->analyses.transient.use_initial_conditions = true;
         return true;
     }
     const bool is_at = dalcs_reader_take_word(reader, "at");
@@ -278,8 +278,8 @@ static bool read_env_word(struct dalcs_reader *reader, struct dalcs_builder *bui
 }
 
 void dalcs_analysis_parse_env(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    struct dalcs_transient *transient = &builder->circuit->transient;
-    struct dalcs_envelope_card *envelope = &builder->circuit->envelope;
+    struct dalcs_transient *transient = &builder->circuit->analyses.transient;
+    struct dalcs_envelope_card *envelope = &builder->circuit->analyses.envelope;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, ENV_USAGE);
     if (!dalcs_analysis_is_first(builder, card, &builder->analyses.tran)) {
         return;
@@ -308,6 +308,6 @@ void dalcs_analysis_parse_env(struct dalcs_builder *builder, const struct dalcs_
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, ".op takes no values");
     if (dalcs_analysis_is_first(builder, card, &builder->analyses.op)) {
-        builder->circuit->operating_point = dalcs_reader_end(&reader);
+        builder->circuit->analyses.operating_point = dalcs_reader_end(&reader);
     }
 }

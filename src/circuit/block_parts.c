@@ -59,8 +59,8 @@ bool dalcs_block_add_clamp(const struct dalcs_block_card *c, const int *node,
     if (end < 0 || d == NULL) {
         return false;
     }
-    d->model = circuit->n_diode_models++;
-    circuit->diode_model[d->model] =
+    d->model = circuit->models.n_diodes++;
+    circuit->models.of_diode[d->model] =
         (struct dalcs_diode_model){.name = "clamp",
                                    .ron = clamp->ohms,
                                    .roff = (double)INFINITY,

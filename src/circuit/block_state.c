@@ -105,9 +105,9 @@ static bool add_bound(const struct dalcs_block_card *c, int state, bool is_upper
                                         (int[]){node, 0}, limit);
     }
     struct dalcs_circuit *circuit = c->builder->circuit;
-    circuit->diode_model[circuit->n_diode_models] = (struct dalcs_diode_model){
+    circuit->models.of_diode[circuit->models.n_diodes] = (struct dalcs_diode_model){
         .name = "limit", .roff = INFINITY, .vfwd = fabs(limit), .vrev = INFINITY};
-    d->model = circuit->n_diode_models++;
+    d->model = circuit->models.n_diodes++;
     return true;
 }
 

@@ -49,9 +49,10 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     circuit->device = dalcs_arena_alloc(arena, n_devices, sizeof *circuit->device);
     circuit->stimulus = dalcs_arena_alloc(arena, table.n_stimuli, sizeof *circuit->stimulus);
     circuit->coupling = dalcs_arena_alloc(arena, table.n_pairs, sizeof *circuit->coupling);
-    circuit->diode_model =
-        dalcs_arena_alloc(arena, n_models + 1 + table.n_scaled, sizeof *circuit->diode_model);
-    circuit->switch_model = dalcs_arena_alloc(arena, n_cards, sizeof *circuit->switch_model);
+    circuit->models.of_diode =
+        dalcs_arena_alloc(arena, n_models + 1 + table.n_scaled, sizeof *circuit->models.of_diode);
+    circuit->models.of_switch =
+        dalcs_arena_alloc(arena, n_cards, sizeof *circuit->models.of_switch);
     builder->models.model =
         dalcs_arena_alloc(&builder->scratch, n_models, sizeof *builder->models.model);
     builder->elements.device_token = dalcs_arena_alloc(&builder->scratch, n_devices + n_couplings,
@@ -61,8 +62,8 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     builder->elements.current_of =
         dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->elements.current_of);
     const bool ok = circuit->device != NULL && circuit->stimulus != NULL &&
-                    circuit->coupling != NULL && circuit->diode_model != NULL &&
-                    circuit->switch_model != NULL && builder->models.model != NULL &&
+                    circuit->coupling != NULL && circuit->models.of_diode != NULL &&
+                    circuit->models.of_switch != NULL && builder->models.model != NULL &&
                     builder->elements.device_token != NULL &&
                     builder->elements.control_token != NULL && builder->elements.current_of != NULL;
     if (dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE)) {
@@ -90,8 +91,8 @@ static void check_presence(struct dalcs_builder *builder) {
     }
     const bool asks = builder->analyses.tran != NULL || builder->analyses.op != NULL ||
                       builder->analyses.dc != NULL || builder->analyses.ac != NULL ||
-                      builder->analyses.pss != NULL || builder->netlist->n_script_lines > 0 ||
-                      builder->netlist->asks_steady;
+                      builder->analyses.pss != NULL || builder->netlist->commands.n > 0 ||
+                      builder->netlist->asks.steady;
     if (!asks && (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
         dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
                                "the netlist has no analysis: no .tran, .op, .dc or .ac");
@@ -104,18 +105,18 @@ static enum dalcs_status collect_prints(struct dalcs_builder *builder) {
     const size_t n_columns = builder->results.n_print_columns;
     struct dalcs_print_column *column =
         dalcs_arena_alloc(&circuit->arena, n_columns, sizeof *column);
-    circuit->print = dalcs_arena_alloc(&circuit->arena, n, sizeof *circuit->print);
-    if (column == NULL || circuit->print == NULL) {
+    circuit->results.print = dalcs_arena_alloc(&circuit->arena, n, sizeof *circuit->results.print);
+    if (column == NULL || circuit->results.print == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n_columns; k++) {
         column[k] = builder->results.print_column[k];
     }
-    circuit->n_prints = (int)n;
+    circuit->results.n_prints = (int)n;
     for (size_t k = 0; k < n; k++) {
-        circuit->print[k] = builder->results.print[k];
-        circuit->print[k].column = column;
-        column += circuit->print[k].n;
+        circuit->results.print[k] = builder->results.print[k];
+        circuit->results.print[k].column = column;
+        column += circuit->results.print[k].n;
     }
     return DALCS_OK;
 }
@@ -126,13 +127,13 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
     struct dalcs_arena *arena = &circuit->arena;
     const size_t n_nodes = (size_t)circuit->n_nodes;
     circuit->node_name = dalcs_arena_alloc(arena, n_nodes, sizeof *circuit->node_name);
-    circuit->signal = dalcs_arena_alloc(arena, builder->signals.n + builder->signals.n_measured,
-                                        sizeof *circuit->signal);
+    circuit->results.signal = dalcs_arena_alloc(
+        arena, builder->signals.n + builder->signals.n_measured, sizeof *circuit->results.signal);
     circuit->initial_condition = dalcs_arena_alloc(arena, builder->analyses.n_initial_conditions,
                                                    sizeof *circuit->initial_condition);
     circuit->title =
         dalcs_arena_copy(arena, builder->netlist->title, strlen(builder->netlist->title));
-    if (circuit->node_name == NULL || circuit->signal == NULL ||
+    if (circuit->node_name == NULL || circuit->results.signal == NULL ||
         circuit->initial_condition == NULL || circuit->title == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -140,10 +141,10 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
     for (size_t k = 1; k < n_nodes; k++) {
         circuit->node_name[k] = builder->elements.node_name[k];
     }
-    circuit->n_signals = (int)builder->signals.n;
-    circuit->n_shown = circuit->n_named = circuit->n_signals;
+    circuit->results.n_signals = (int)builder->signals.n;
+    circuit->results.n_shown = circuit->results.n_named = circuit->results.n_signals;
     for (size_t k = 0; k < builder->signals.n; k++) {
-        circuit->signal[k] = builder->signals.signal[k];
+        circuit->results.signal[k] = builder->signals.signal[k];
     }
     circuit->n_initial_conditions = (int)builder->analyses.n_initial_conditions;
     for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {
@@ -160,8 +161,9 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
 static bool is_whole(const struct dalcs_builder *builder) {
     const struct dalcs_circuit *c = builder->circuit;
     return builder->formulas.later != NULL ||
-           (c->n_gates > 0 && (builder->netlist->asks_steady || c->periodic.present ||
-                               c->transient.starts_steady || c->envelope.present));
+           (c->control.n_gates > 0 &&
+            (builder->netlist->asks.steady || c->analyses.periodic.present ||
+             c->analyses.transient.starts_steady || c->analyses.envelope.present));
 }
 
 static enum dalcs_status build(struct dalcs_builder *builder) {
@@ -173,7 +175,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_slip_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(dalcs_card_table_read(builder, class_of));
-    builder->circuit->is_whole = is_whole(builder);
+    builder->circuit->control.is_whole = is_whole(builder);
     dalcs_passive_add_default_rser(builder);
     dalcs_storage_resolve(builder);
     dalcs_controlled_resolve(builder);
@@ -181,7 +183,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_behavioural_resolve(builder);
     dalcs_delay_resolve(builder);
     dalcs_later_resolve(builder);
-    builder->circuit->is_whole = is_whole(builder);
+    builder->circuit->control.is_whole = is_whole(builder);
     dalcs_logic_resolve(builder);
     dalcs_initial_leave_held(builder);
     dalcs_model_check(builder);
@@ -278,8 +280,8 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
 
 void dalcs_circuit_finish(struct dalcs_circuit *circuit) {
     struct dalcs_arena arena = circuit->arena;
-    for (int k = 0; k < circuit->n_delayed; k++) {
-        dalcs_history_finish(circuit->delayed[k].history);
+    for (int k = 0; k < circuit->control.n_delayed; k++) {
+        dalcs_history_finish(circuit->control.delayed[k].history);
     }
     *circuit = (struct dalcs_circuit){0};
     dalcs_arena_finish(&arena);

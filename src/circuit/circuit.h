@@ -96,25 +96,19 @@ struct dalcs_delayed {
     struct dalcs_history *history; /* of the present run; the circuit's */
 };
 
-struct dalcs_circuit {
-    const char *title;
-    int n_nodes; /* ground included */
-    const char **node_name;
-    int n_devices;
-    struct dalcs_device *device;
-    int n_stimuli;
-    struct dalcs_stimulus *stimulus;
-    int n_diode_models;
-    struct dalcs_diode_model *diode_model;
+/* Of the devices, by number. */
+struct dalcs_circuit_models {
+    int n_diodes;
+    struct dalcs_diode_model *of_diode;
     bool has_own_tangents; /* each exponential diode has a model that no other has */
-    int n_switch_models;
-    struct dalcs_switch_model *switch_model;
+    int n_switches;
+    struct dalcs_switch_model *of_switch;
     int n_saturations;
     struct dalcs_saturation *saturation;
-    int n_couplings;
-    struct dalcs_coupling *coupling;
-    int n_initial_conditions;
-    struct dalcs_initial_condition *initial_condition;
+};
+
+/* What is no branch of the network: functions of signals, gates, and what tells them. */
+struct dalcs_circuit_control {
     int n_smooth;        /* sources of a smooth function */
     int smooth_stimulus; /* the constant 0, which stands for what they put out; -1: there are none */
     int n_gates;
@@ -125,7 +119,11 @@ struct dalcs_circuit {
     int *comparator; /* [n_comparators] switches that nothing flows in: what gates read */
     int n_externals; /* sources that a program outside gives values (stimulus.h) */
     bool is_whole;   /* all of it is one system: gates carry small signals from part to part */
-    int n_signals;   /* default: every node voltage, then currents of V, L, D, S, W, E, H */
+};
+
+/* What is asked of the waveforms. */
+struct dalcs_circuit_results {
+    int n_signals; /* default: every node voltage, then currents of V, L, D, S, W, E, H */
     struct dalcs_signal *signal;
     int n_shown; /* the first of them, which rows have; the others are there to be measured */
     int n_named; /* the first of these, which results have: all without computed columns */
@@ -138,13 +136,16 @@ struct dalcs_circuit {
     int n_fouriers;
     struct dalcs_fourier_card *fourier; /* .four, one for each signal */
     struct dalcs_losses_card *losses;   /* NULL: not asked for */
+    int n_prints;
+    struct dalcs_print_card *print; /* .print and .plot, in their order */
+};
+
+struct dalcs_circuit_analyses {
     struct dalcs_transient transient;
     struct dalcs_envelope_card envelope;
     struct dalcs_periodic_card periodic;
     bool operating_point; /* .op */
-    int n_prints;
-    struct dalcs_print_card *print; /* .print and .plot, in their order */
-    int n_dc;                       /* of .dc, the innermost first; 0: there is none */
+    int n_dc;             /* of .dc, the innermost first; 0: there is none */
     struct dalcs_sweep dc[DALCS_MOST_DC];
     struct dalcs_sweep ac; /* frequencies of .ac in Hz; n is 0 without one */
     struct dalcs_orbit_ac_card orbit_ac;
@@ -152,9 +153,32 @@ struct dalcs_circuit {
     struct dalcs_worst_case_card worst_case;
     int n_steps; /* of .step and .mc, the innermost first */
     struct dalcs_sweep *step;
-    int n_drawn; /* values that random functions had a part in */
+};
+
+/* Values that random functions had a part in. */
+struct dalcs_circuit_random {
+    int n_drawn;
     struct dalcs_drawn_value *drawn;
     bool is_random; /* these, or formulas with random values */
+};
+
+struct dalcs_circuit {
+    const char *title;
+    int n_nodes; /* ground included */
+    const char **node_name;
+    int n_devices;
+    struct dalcs_device *device;
+    int n_stimuli;
+    struct dalcs_stimulus *stimulus;
+    int n_couplings;
+    struct dalcs_coupling *coupling;
+    int n_initial_conditions;
+    struct dalcs_initial_condition *initial_condition;
+    struct dalcs_circuit_models models;
+    struct dalcs_circuit_control control;
+    struct dalcs_circuit_results results;
+    struct dalcs_circuit_analyses analyses;
+    struct dalcs_circuit_random random;
 
     struct dalcs_circuit_options {
         double reltol, abstol, vntol;          /* 0: not given; the last two in A, V */
@@ -217,13 +241,13 @@ void dalcs_circuit_finish(struct dalcs_circuit *circuit);
 
 /* Does an analysis have waveforms of time? */
 static inline bool dalcs_circuit_has_waves(const struct dalcs_circuit *circuit) {
-    return circuit->transient.present || circuit->periodic.present;
+    return circuit->analyses.transient.present || circuit->analyses.periodic.present;
 }
 
 /* Has an analysis answers that the audit reads? */
 static inline bool dalcs_circuit_is_audited(const struct dalcs_circuit *circuit) {
-    return dalcs_circuit_has_waves(circuit) || circuit->operating_point || circuit->n_dc > 0 ||
-           circuit->ac.n > 0;
+    return dalcs_circuit_has_waves(circuit) || circuit->analyses.operating_point ||
+           circuit->analyses.n_dc > 0 || circuit->analyses.ac.n > 0;
 }
 
 /* A resistor of 0 ohm: its two nodes are one, unless its current is a signal. */
@@ -273,9 +297,9 @@ static inline void dalcs_circuit_mark_wanted_currents(const struct dalcs_circuit
     for (int i = 0; i < circuit->n_devices; i++) {
         dalcs_behaviour_visit(circuit->device[i].behaviour, dalcs_mark_wanted_term, wanted);
     }
-    for (int i = 0; i < circuit->n_signals; i++) {
-        if (circuit->signal[i].kind == DALCS_SIGNAL_CURRENT) {
-            wanted[circuit->signal[i].device] = true;
+    for (int i = 0; i < circuit->results.n_signals; i++) {
+        if (circuit->results.signal[i].kind == DALCS_SIGNAL_CURRENT) {
+            wanted[circuit->results.signal[i].device] = true;
         }
     }
 }

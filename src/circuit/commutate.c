@@ -42,7 +42,8 @@ static const struct dalcs_form *pulse(struct dalcs_compiler *c, const struct dal
     const double edges = fmax(s->u.pulse.rise, s->u.pulse.fall);
     const double shortest = fmin(s->u.pulse.width, s->u.pulse.period - s->u.pulse.width);
     /* .dc and .ac may give it any other value */
-    const bool is_free = c->builder->circuit->n_dc > 0 || s->ac_real != 0 || s->ac_imaginary != 0 ||
+    const bool is_free = c->builder->circuit->analyses.n_dc > 0 || s->ac_real != 0 ||
+                         s->ac_imaginary != 0 ||
                          (s->has_dc && s->dc != s->u.pulse.low && s->dc != s->u.pulse.high);
     if (is_free || s->u.pulse.low == s->u.pulse.high || !(edges <= 0.05 * shortest)) {
         return NULL;
@@ -85,7 +86,7 @@ static const struct dalcs_form *source_steps(struct dalcs_compiler *c,
         const struct dalcs_device *device = &circuit->device[k];
         if (device->kind == DALCS_VSOURCE && device->stimulus >= 0) {
             const struct dalcs_stimulus *s = &circuit->stimulus[device->stimulus];
-            const bool is_number = s->kind == DALCS_STIMULUS_DC && circuit->n_dc == 0 &&
+            const bool is_number = s->kind == DALCS_STIMULUS_DC && circuit->analyses.n_dc == 0 &&
                                    s->ac_real == 0 && s->ac_imaginary == 0;
             return is_number ? dalcs_form_number(c, s->dc) : pulse(c, f, v, s);
         }

@@ -19,8 +19,8 @@
 int dalcs_diode_ideal_model(struct dalcs_builder *builder) {
     if (builder->models.ideal_diode < 0) {
         struct dalcs_circuit *circuit = builder->circuit;
-        builder->models.ideal_diode = circuit->n_diode_models++;
-        circuit->diode_model[builder->models.ideal_diode] = (struct dalcs_diode_model){
+        builder->models.ideal_diode = circuit->models.n_diodes++;
+        circuit->models.of_diode[builder->models.ideal_diode] = (struct dalcs_diode_model){
             .name = "ideal", .roff = (double)INFINITY, .vrev = (double)INFINITY};
     }
     return builder->models.ideal_diode;

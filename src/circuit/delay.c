@@ -76,7 +76,7 @@ static const struct dalcs_stimulus *source_of(struct dalcs_compiler *c, int node
 
 /* .dc sweeps it, or .ac needs a phase that no source has. */
 static bool may_be_another(const struct dalcs_compiler *c, const struct dalcs_stimulus *s) {
-    return c->builder->circuit->n_dc > 0 ||
+    return c->builder->circuit->analyses.n_dc > 0 ||
            (c->builder->analyses.ac != NULL && (s->ac_real != 0 || s->ac_imaginary != 0));
 }
 
@@ -114,8 +114,8 @@ static bool shift(struct dalcs_compiler *c, struct dalcs_stimulus *s, double sec
 static bool find_gate_levels(const struct dalcs_circuit *circuit, const struct dalcs_stimulus *s,
                              struct dalcs_delay *delay) {
     bool found = false;
-    for (int k = 0; k < circuit->n_gates && !found; k++) {
-        const struct dalcs_logic_gate *g = &circuit->gate[k];
+    for (int k = 0; k < circuit->control.n_gates && !found; k++) {
+        const struct dalcs_logic_gate *g = &circuit->control.gate[k];
         for (int i = 0; i < 2 && g->kind != DALCS_GATE_SAMPLE && !found; i++) {
             found = g->output[i] >= 0 && &circuit->stimulus[g->output[i]] == s;
             delay->low = found ? g->low : delay->low;

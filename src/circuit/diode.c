@@ -83,8 +83,8 @@ static bool read_rest(struct dalcs_reader *reader, struct scale *scale) {
 static void scale_model(struct dalcs_builder *builder, const struct dalcs_diode_card *card,
                         struct dalcs_device *device, const struct scale *scale) {
     struct dalcs_circuit *circuit = builder->circuit;
-    struct dalcs_diode_model *model = &circuit->diode_model[circuit->n_diode_models];
-    *model = circuit->diode_model[device->model];
+    struct dalcs_diode_model *model = &circuit->models.of_diode[circuit->models.n_diodes];
+    *model = circuit->models.of_diode[device->model];
     if (card->is_berkeley) {
         struct dalcs_diode_card cells = *card;
         dalcs_diode_cells(&cells, scale->series);
@@ -102,7 +102,7 @@ static void scale_model(struct dalcs_builder *builder, const struct dalcs_diode_
         model->vfwd *= scale->series;
         model->vrev *= scale->series;
     }
-    device->model = circuit->n_diode_models++;
+    device->model = circuit->models.n_diodes++;
 }
 
 /* After the nodes. */
@@ -126,7 +126,7 @@ static void read_model(struct dalcs_reader *reader, struct dalcs_device *device)
     if (scale.place != NULL) {
         scale_model(builder, card, device, &scale);
     }
-    const struct dalcs_diode_model *model = &builder->circuit->diode_model[device->model];
+    const struct dalcs_diode_model *model = &builder->circuit->models.of_diode[device->model];
     if (model->vrev == 0) { /* and Vfwd = 0, and one resistance both ways (diode_model.c) */
         device->kind = DALCS_RESISTOR;
         device->value = isfinite(model->roff)

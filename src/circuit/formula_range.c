@@ -54,8 +54,8 @@ static struct dalcs_range source_range(const struct search *search, int device) 
     if (search->may_change || !dalcs_stimulus_bounds(s, &r.low, &r.high)) {
         return anything;
     }
-    for (int k = 0; k < c->n_dc; k++) {
-        const struct dalcs_sweep *sweep = &c->dc[k];
+    for (int k = 0; k < c->analyses.n_dc; k++) {
+        const struct dalcs_sweep *sweep = &c->analyses.dc[k];
         for (int i = 0; sweep->device == device && i < 2 && sweep->spacing != DALCS_LISTED; i++) {
             const double end = i == 0 ? sweep->start : sweep->stop;
             r = hull(r, between(end, end));
@@ -231,8 +231,8 @@ static struct dalcs_range range_of(struct search *search, const struct dalcs_for
 /* Does the script have a command that gives sources other values while the circuit stays? */
 static bool script_alters(const struct dalcs_netlist *netlist) {
     bool alters = false;
-    for (size_t k = 0; k < netlist->n_script_lines && !alters; k++) {
-        const char *text = netlist->script[k].text;
+    for (size_t k = 0; k < netlist->commands.n && !alters; k++) {
+        const char *text = netlist->commands.line[k].text;
         text += strspn(text, " \t");
         alters = strncmp(text, "alter", 5) == 0 || strncmp(text, "dc ", 3) == 0;
     }

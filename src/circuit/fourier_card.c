@@ -73,7 +73,7 @@ void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card 
         return;
     }
     if (dalcs_reader_take_word(&reader, "-1")) {
-        fourier.n_periods = all_periods(&builder->circuit->transient, fourier.frequency);
+        fourier.n_periods = all_periods(&builder->circuit->analyses.transient, fourier.frequency);
     } else if (next_is_number(&reader) &&
                !read_whole(&reader, "the number of periods", &fourier.n_periods)) {
         return;
@@ -83,7 +83,7 @@ void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card 
         return;
     }
     if (builder->analyses.tran == NULL && builder->analyses.pss == NULL &&
-        !builder->netlist->asks_steady) {
+        !builder->netlist->asks.steady) {
         dalcs_builder_note(builder, card->token, NULL,
                            "there is no .tran and no .pss: this is left out");
         return;

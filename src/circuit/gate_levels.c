@@ -46,7 +46,7 @@ static double threshold(const struct dalcs_gate *gate, double sign, double vt) {
 }
 
 static void set_threshold(struct dalcs_builder *builder, struct dalcs_device *device, double vt) {
-    struct dalcs_switch_model model = builder->circuit->switch_model[device->model];
+    struct dalcs_switch_model model = builder->circuit->models.of_switch[device->model];
     model.vt = vt;
     const int added = dalcs_switch_add_model(builder, &model);
     device->model = added >= 0 ? added : device->model;
@@ -87,7 +87,7 @@ static void settle(struct dalcs_builder *builder, const struct dalcs_gate_reader
         struct dalcs_device *device = &circuit->device[(at - 1) / 2];
         const double sign = sign_of(gate, device->node + 2);
         if (device->kind == DALCS_SWITCH && device->model >= 0 && sign != 0) {
-            const struct dalcs_switch_model *model = &circuit->switch_model[device->model];
+            const struct dalcs_switch_model *model = &circuit->models.of_switch[device->model];
             const double vt = threshold(gate, sign, model->vt);
             if (model->vh == 0 && !model->is_inverted && vt != model->vt) {
                 set_threshold(builder, device, vt);
@@ -107,7 +107,7 @@ const struct dalcs_gate *dalcs_gate_find(struct dalcs_compiler *c,
                                          const struct dalcs_device *device,
                                          const struct dalcs_form *form) {
     struct dalcs_gate found = {.node = {device->node[0], device->node[1]}};
-    if (device->kind != DALCS_VCVS || c->builder->circuit->n_switch_models == 0 ||
+    if (device->kind != DALCS_VCVS || c->builder->circuit->models.n_switches == 0 ||
         !list_values(dalcs_levels_of(c, form), &found)) {
         return NULL;
     }

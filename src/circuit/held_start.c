@@ -79,8 +79,8 @@ void dalcs_initial_leave_held(struct dalcs_builder *builder) {
     struct held h;
     size_t n = 0;
     if (builder->analyses.n_initial_conditions == 0 || builder->failed ||
-        builder->circuit->transient.use_initial_conditions ||
-        builder->circuit->periodic.use_initial_conditions || !make(builder, &h)) {
+        builder->circuit->analyses.transient.use_initial_conditions ||
+        builder->circuit->analyses.periodic.use_initial_conditions || !make(builder, &h)) {
         return;
     }
     for (size_t k = 0; k < builder->analyses.n_initial_conditions; k++) {

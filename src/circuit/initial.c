@@ -189,9 +189,9 @@ static void tell_not_held(struct dalcs_builder *builder) {
 }
 
 void dalcs_initial_check(struct dalcs_builder *builder) {
-    const struct dalcs_transient *transient = &builder->circuit->transient;
+    const struct dalcs_transient *transient = &builder->circuit->analyses.transient;
     if ((transient->present && transient->use_initial_conditions) ||
-        builder->circuit->periodic.use_initial_conditions) {
+        builder->circuit->analyses.periodic.use_initial_conditions) {
         return;
     }
     if (builder->analyses.initial_state != NULL) {

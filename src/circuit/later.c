@@ -70,7 +70,7 @@ static void add_one(struct dalcs_builder *builder, const struct dalcs_later *lat
         .kind = DALCS_STIMULUS_DELAYED, .has_dc = true, .is_written = true, .u.history = history};
     struct dalcs_signal signal = {
         .name = name, .kind = DALCS_SIGNAL_VOLTAGE, .device = -1, .node = {later->input, 0}};
-    circuit->delayed[circuit->n_delayed++] =
+    circuit->control.delayed[circuit->control.n_delayed++] =
         (struct dalcs_delayed){.name = element,
                                .signal = dalcs_signals_measure(builder, signal),
                                .initial = later->initial,
@@ -83,8 +83,9 @@ void dalcs_later_resolve(struct dalcs_builder *builder) {
     if (n == 0) {
         return;
     }
-    circuit->delayed = dalcs_arena_alloc(&circuit->arena, n, sizeof *circuit->delayed);
-    builder->out_of_memory = builder->out_of_memory || circuit->delayed == NULL ||
+    circuit->control.delayed =
+        dalcs_arena_alloc(&circuit->arena, n, sizeof *circuit->control.delayed);
+    builder->out_of_memory = builder->out_of_memory || circuit->control.delayed == NULL ||
                              !dalcs_builder_reserve_devices(builder, n * DALCS_LATER_DEVICES);
     for (const struct dalcs_later_list *l = builder->formulas.later;
          l != NULL && !builder->out_of_memory; l = l->before) {

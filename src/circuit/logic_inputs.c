@@ -46,17 +46,18 @@ static int find_comparator(struct dalcs_builder *builder, const struct dalcs_log
     const char *key =
         dalcs_builder_hint(builder, "%d %d %a %a", pin->node, pin->reference, of->on, of->off);
     int place;
-    if (key == NULL || dalcs_names_find_or_add(&builder->logic.comparators, key,
-                                               circuit->n_comparators, &place) != DALCS_OK) {
+    if (key == NULL ||
+        dalcs_names_find_or_add(&builder->logic.comparators, key, circuit->control.n_comparators,
+                                &place) != DALCS_OK) {
         builder->out_of_memory = true;
         return -1;
     }
-    if (place == circuit->n_comparators) {
+    if (place == circuit->control.n_comparators) {
         const struct dalcs_device *s = add_comparator(builder, of, k);
         if (s == NULL) {
             return -1;
         }
-        circuit->comparator[circuit->n_comparators++] = (int)(s - circuit->device);
+        circuit->control.comparator[circuit->control.n_comparators++] = (int)(s - circuit->device);
     }
     return place;
 }
@@ -77,7 +78,7 @@ static int driver_of(const struct dalcs_builder *builder,
         by->gate->high <= of->on) {
         return -1;
     }
-    return 2 * (int)(by->gate - builder->circuit->gate) + (by->node[0] != pin->node);
+    return 2 * (int)(by->gate - builder->circuit->control.gate) + (by->node[0] != pin->node);
 }
 
 static void resolve_input(struct dalcs_builder *builder,

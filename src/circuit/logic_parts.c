@@ -9,25 +9,25 @@ struct dalcs_logic_card *dalcs_logic_start(struct dalcs_builder *builder,
                                            const struct dalcs_token *name, int n_inputs) {
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_arena *arena = &circuit->arena;
-    if (circuit->gate == NULL) {
-        circuit->gate =
-            dalcs_arena_alloc(arena, builder->logic.gate_capacity, sizeof *circuit->gate);
-        circuit->comparator = dalcs_arena_alloc(arena, builder->logic.comparator_capacity,
-                                                sizeof *circuit->comparator);
+    if (circuit->control.gate == NULL) {
+        circuit->control.gate =
+            dalcs_arena_alloc(arena, builder->logic.gate_capacity, sizeof *circuit->control.gate);
+        circuit->control.comparator = dalcs_arena_alloc(arena, builder->logic.comparator_capacity,
+                                                        sizeof *circuit->control.comparator);
     }
     struct dalcs_logic_card *of = dalcs_arena_alloc(&builder->scratch, 1, sizeof *of);
     struct dalcs_logic_pin *pin =
         dalcs_arena_alloc(&builder->scratch, (size_t)n_inputs, sizeof *pin);
     struct dalcs_logic_input *input = dalcs_arena_alloc(arena, (size_t)n_inputs, sizeof *input);
     const char *text = dalcs_arena_copy(arena, name->text, strlen(name->text));
-    if (circuit->gate == NULL || circuit->comparator == NULL || of == NULL || pin == NULL ||
-        input == NULL || text == NULL) {
+    if (circuit->control.gate == NULL || circuit->control.comparator == NULL || of == NULL ||
+        pin == NULL || input == NULL || text == NULL) {
         builder->out_of_memory = true;
         return NULL;
     }
     *of = (struct dalcs_logic_card){.name = name,
                                     .is_element = true,
-                                    .gate = &circuit->gate[circuit->n_gates],
+                                    .gate = &circuit->control.gate[circuit->control.n_gates],
                                     .pin = pin,
                                     .node = {-1, -1}};
     *of->gate = (struct dalcs_logic_gate){.name = text,
@@ -219,7 +219,7 @@ static bool add_outputs(struct dalcs_builder *builder, const struct dalcs_logic_
 
 void dalcs_logic_add(struct dalcs_builder *builder, struct dalcs_logic_card *of) {
     if (add_outputs(builder, of)) {
-        builder->circuit->n_gates++;
+        builder->circuit->control.n_gates++;
         of->before = builder->logic.gate_card;
         builder->logic.gate_card = of;
     }

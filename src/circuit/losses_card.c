@@ -66,14 +66,14 @@ static bool read_time(struct dalcs_reader *reader, const char *name, double *tim
 /* Is there a waveform whose losses may be asked for? */
 static bool has_waveform(const struct dalcs_builder *builder) {
     return builder->analyses.tran != NULL || builder->analyses.pss != NULL ||
-           builder->netlist->asks_steady;
+           builder->netlist->asks.steady;
 }
 
 /* Of a window within the run. */
 static void check_window(struct dalcs_builder *builder, const struct dalcs_token *from,
                          const struct dalcs_token *to) {
-    const struct dalcs_losses_card *card = builder->circuit->losses;
-    const double stop = builder->circuit->transient.stop;
+    const struct dalcs_losses_card *card = builder->circuit->results.losses;
+    const double stop = builder->circuit->analyses.transient.stop;
     const struct dalcs_token *either = from != NULL ? from : to;
     if (builder->analyses.tran == NULL && either != NULL) {
         dalcs_builder_error(builder, either, "leave from= and to= out",
@@ -94,14 +94,15 @@ static void check_window(struct dalcs_builder *builder, const struct dalcs_token
 
 static struct dalcs_losses_card *make_card(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
-    if (circuit->losses == NULL) {
-        circuit->losses = dalcs_arena_alloc(&circuit->arena, 1, sizeof *circuit->losses);
-        builder->out_of_memory = builder->out_of_memory || circuit->losses == NULL;
-        if (circuit->losses != NULL) {
-            *circuit->losses = (struct dalcs_losses_card){.to = INFINITY};
+    if (circuit->results.losses == NULL) {
+        circuit->results.losses =
+            dalcs_arena_alloc(&circuit->arena, 1, sizeof *circuit->results.losses);
+        builder->out_of_memory = builder->out_of_memory || circuit->results.losses == NULL;
+        if (circuit->results.losses != NULL) {
+            *circuit->results.losses = (struct dalcs_losses_card){.to = INFINITY};
         }
     }
-    return circuit->losses;
+    return circuit->results.losses;
 }
 
 void dalcs_losses_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -151,15 +152,15 @@ void dalcs_losses_parse(struct dalcs_builder *builder, const struct dalcs_card *
 /* The devices that read a gate's input: a switch and a resistor without a current, on a node of their own. */
 static bool is_of_a_comparator(const struct dalcs_circuit *circuit, const struct dalcs_device *d) {
     bool is = false;
-    for (int k = 0; k < circuit->n_comparators && !is; k++) {
-        is = circuit->device[circuit->comparator[k]].node[0] == d->node[0];
+    for (int k = 0; k < circuit->control.n_comparators && !is; k++) {
+        is = circuit->device[circuit->control.comparator[k]].node[0] == d->node[0];
     }
     return is;
 }
 
 /* The options of the command line replace the card. */
 static bool take_request(struct dalcs_builder *builder) {
-    const struct dalcs_losses_request *request = &builder->netlist->losses;
+    const struct dalcs_losses_request *request = &builder->netlist->asks.losses;
     if (!request->is_asked || !has_waveform(builder)) {
         return true;
     }
@@ -175,7 +176,7 @@ static bool take_request(struct dalcs_builder *builder) {
                                "state are those of its whole orbit");
     } else if (request->has_window) {
         const struct dalcs_location where = {.file = builder->netlist->name};
-        const double stop = builder->circuit->transient.stop;
+        const double stop = builder->circuit->analyses.transient.stop;
         losses->from = request->from;
         losses->to = request->to;
         if (!(losses->from < fmin(losses->to, stop)) ||
@@ -200,7 +201,7 @@ void dalcs_losses_collect(struct dalcs_builder *builder) {
     if (!take_request(builder)) {
         return;
     }
-    if (circuit->losses == NULL || !circuit->losses->present) {
+    if (circuit->results.losses == NULL || !circuit->results.losses->present) {
         if (builder->results.switchloss != NULL) {
             dalcs_builder_note(builder, builder->results.switchloss,
                                "add a line .losses, or run with --losses",
@@ -229,6 +230,6 @@ void dalcs_losses_collect(struct dalcs_builder *builder) {
             measure(builder, (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = k},
                     "i(%s)", d->name);
     }
-    circuit->losses->device = device;
+    circuit->results.losses->device = device;
     dalcs_switchloss_collect(builder);
 }

@@ -236,7 +236,7 @@ static bool is_run(const struct dalcs_builder *builder, enum dalcs_measured_anal
     case DALCS_MEASURED_DC:
         return builder->analyses.dc != NULL;
     case DALCS_MEASURED_PSS:
-        return builder->analyses.pss != NULL || builder->netlist->asks_steady;
+        return builder->analyses.pss != NULL || builder->netlist->asks.steady;
     default:
         return builder->analyses.ac != NULL;
     }

@@ -28,16 +28,16 @@ static bool list_shown(struct dalcs_builder *builder, struct shown *shown) {
     const struct dalcs_circuit *circuit = builder->circuit;
     const int n = circuit->n_nodes + circuit->n_devices;
     shown->place = dalcs_arena_alloc(&builder->scratch, (size_t)n, sizeof *shown->place);
-    shown->difference =
-        dalcs_arena_alloc(&builder->scratch, (size_t)circuit->n_shown, sizeof *shown->difference);
+    shown->difference = dalcs_arena_alloc(&builder->scratch, (size_t)circuit->results.n_shown,
+                                          sizeof *shown->difference);
     if (shown->place == NULL || shown->difference == NULL) {
         return false;
     }
     for (int k = 0; k < n; k++) {
         shown->place[k] = -1;
     }
-    for (int k = circuit->n_shown - 1; k >= 0; k--) {
-        const struct dalcs_signal *s = &circuit->signal[k];
+    for (int k = circuit->results.n_shown - 1; k >= 0; k--) {
+        const struct dalcs_signal *s = &circuit->results.signal[k];
         if (s->kind == DALCS_SIGNAL_CURRENT) {
             shown->place[circuit->n_nodes + s->device] = k;
         } else if (s->node[1] == 0) {
@@ -45,8 +45,8 @@ static bool list_shown(struct dalcs_builder *builder, struct shown *shown) {
         }
     }
     shown->n = 0;
-    for (int k = 0; k < circuit->n_shown; k++) {
-        const struct dalcs_signal *s = &circuit->signal[k];
+    for (int k = 0; k < circuit->results.n_shown; k++) {
+        const struct dalcs_signal *s = &circuit->results.signal[k];
         if (s->kind != DALCS_SIGNAL_CURRENT && s->node[1] != 0) {
             shown->difference[shown->n++] = (struct difference){{s->node[0], s->node[1]}, k};
         }
@@ -82,13 +82,14 @@ enum dalcs_status dalcs_measured_collect(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_arena *arena = &circuit->arena;
     const size_t n = builder->signals.n_measured;
-    circuit->n_measured = (int)n;
-    circuit->measured = dalcs_arena_alloc(arena, n, sizeof *circuit->measured);
-    circuit->measure =
-        dalcs_arena_alloc(arena, builder->results.n_measures, sizeof *circuit->measure);
-    circuit->fourier =
-        dalcs_arena_alloc(arena, builder->results.n_fouriers, sizeof *circuit->fourier);
-    if (circuit->measured == NULL || circuit->measure == NULL || circuit->fourier == NULL) {
+    circuit->results.n_measured = (int)n;
+    circuit->results.measured = dalcs_arena_alloc(arena, n, sizeof *circuit->results.measured);
+    circuit->results.measure =
+        dalcs_arena_alloc(arena, builder->results.n_measures, sizeof *circuit->results.measure);
+    circuit->results.fourier =
+        dalcs_arena_alloc(arena, builder->results.n_fouriers, sizeof *circuit->results.fourier);
+    if (circuit->results.measured == NULL || circuit->results.measure == NULL ||
+        circuit->results.fourier == NULL) {
         return DALCS_E_NOMEM;
     }
     struct shown shown;
@@ -98,30 +99,31 @@ enum dalcs_status dalcs_measured_collect(struct dalcs_builder *builder) {
     for (size_t k = 0; k < n; k++) {
         int place = place_of(circuit, &shown, &builder->signals.measured[k]);
         if (place < 0) {
-            place = circuit->n_signals++;
-            circuit->signal[place] = builder->signals.measured[k];
+            place = circuit->results.n_signals++;
+            circuit->results.signal[place] = builder->signals.measured[k];
         }
-        circuit->measured[k] = place;
+        circuit->results.measured[k] = place;
     }
-    circuit->computed =
-        dalcs_arena_alloc(arena, builder->signals.n_computed, sizeof *circuit->computed);
-    if (circuit->computed == NULL) {
+    circuit->results.computed =
+        dalcs_arena_alloc(arena, builder->signals.n_computed, sizeof *circuit->results.computed);
+    if (circuit->results.computed == NULL) {
         return DALCS_E_NOMEM;
     }
-    circuit->n_computed = (int)builder->signals.n_computed;
+    circuit->results.n_computed = (int)builder->signals.n_computed;
     for (size_t k = 0; k < builder->signals.n_computed; k++) {
-        circuit->computed[k] = builder->signals.computed[k];
+        circuit->results.computed[k] = builder->signals.computed[k];
     }
     if (builder->signals.n_computed > 0) {
-        circuit->n_shown = circuit->n_signals; /* what they are computed from is in the rows */
+        circuit->results.n_shown =
+            circuit->results.n_signals; /* what they are computed from is in the rows */
     }
-    circuit->n_measures = (int)builder->results.n_measures;
+    circuit->results.n_measures = (int)builder->results.n_measures;
     for (size_t k = 0; k < builder->results.n_measures; k++) {
-        circuit->measure[k] = builder->results.measure[k];
+        circuit->results.measure[k] = builder->results.measure[k];
     }
-    circuit->n_fouriers = (int)builder->results.n_fouriers;
+    circuit->results.n_fouriers = (int)builder->results.n_fouriers;
     for (size_t k = 0; k < builder->results.n_fouriers; k++) {
-        circuit->fourier[k] = builder->results.fourier[k];
+        circuit->results.fourier[k] = builder->results.fourier[k];
     }
     return DALCS_OK;
 }

@@ -201,15 +201,15 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
     const bool opened = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
     bool ok;
     if (model->kind == DALCS_MODEL_DIODE) {
-        model->index = circuit->n_diode_models++;
-        circuit->diode_model[model->index].name = name;
+        model->index = circuit->models.n_diodes++;
+        circuit->models.of_diode[model->index].name = name;
         ok = dalcs_diode_parse_model(reader, model->type, &model->diode,
-                                     &circuit->diode_model[model->index]);
+                                     &circuit->models.of_diode[model->index]);
     } else if (model->kind == DALCS_MODEL_THYRISTOR) {
-        model->index = circuit->n_diode_models++;
-        circuit->diode_model[model->index].name = name;
-        model->thyristor =
-            dalcs_thyristor_parse_model(reader, model->type, &circuit->diode_model[model->index]);
+        model->index = circuit->models.n_diodes++;
+        circuit->models.of_diode[model->index].name = name;
+        model->thyristor = dalcs_thyristor_parse_model(reader, model->type,
+                                                       &circuit->models.of_diode[model->index]);
         ok = model->thyristor != NULL;
     } else if (model->kind == DALCS_MODEL_BLOCK) {
         model->block = dalcs_block_parse_model(reader, model->name, model->type);
@@ -218,9 +218,10 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
         model->transistor = dalcs_transistor_parse_model(reader, model->name, model->type);
         ok = model->transistor != NULL;
     } else {
-        model->index = circuit->n_switch_models++;
-        circuit->switch_model[model->index].name = name;
-        ok = dalcs_switch_parse_model(reader, model->type, &circuit->switch_model[model->index]);
+        model->index = circuit->models.n_switches++;
+        circuit->models.of_switch[model->index].name = name;
+        ok =
+            dalcs_switch_parse_model(reader, model->type, &circuit->models.of_switch[model->index]);
     }
     if (!ok) {
         return false;

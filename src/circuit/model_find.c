@@ -45,7 +45,7 @@ static int add_part(struct dalcs_builder *builder, const struct dalcs_token *nam
     struct dalcs_model *model = &builder->models.model[builder->models.n];
     const char *own = dalcs_arena_copy(&circuit->arena, name->text, strlen(name->text));
     struct dalcs_diode_card diode;
-    struct dalcs_diode_model *lines = &circuit->diode_model[circuit->n_diode_models];
+    struct dalcs_diode_model *lines = &circuit->models.of_diode[circuit->models.n_diodes];
     if (own == NULL ||
         !(strcmp(own, "d") == 0 ? dalcs_diode_take_default(builder, name, &diode, lines)
                                 : dalcs_diode_take_part(builder, name, &diode, lines))) {
@@ -53,7 +53,7 @@ static int add_part(struct dalcs_builder *builder, const struct dalcs_token *nam
         return -1;
     }
     *model = (struct dalcs_model){.kind = DALCS_MODEL_DIODE,
-                                  .index = circuit->n_diode_models++,
+                                  .index = circuit->models.n_diodes++,
                                   .name = name,
                                   .type = name,
                                   .diode = diode};

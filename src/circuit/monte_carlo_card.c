@@ -96,22 +96,23 @@ void dalcs_monte_carlo_parse(struct dalcs_builder *builder, const struct dalcs_c
 enum dalcs_status dalcs_monte_carlo_collect(struct dalcs_builder *builder) {
     const struct dalcs_deck *deck = builder->deck;
     struct dalcs_circuit *circuit = builder->circuit;
-    circuit->drawn = dalcs_arena_alloc(&circuit->arena, deck->n_drawn, sizeof *circuit->drawn);
-    if (circuit->drawn == NULL) {
+    circuit->random.drawn =
+        dalcs_arena_alloc(&circuit->arena, deck->n_drawn, sizeof *circuit->random.drawn);
+    if (circuit->random.drawn == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < deck->n_drawn; k++) {
         const char *name = deck->drawn[k].name;
-        circuit->drawn[k] = (struct dalcs_drawn_value){
+        circuit->random.drawn[k] = (struct dalcs_drawn_value){
             dalcs_arena_copy(&circuit->arena, name, strlen(name)), deck->drawn[k].value};
-        if (circuit->drawn[k].name == NULL) {
+        if (circuit->random.drawn[k].name == NULL) {
             return DALCS_E_NOMEM;
         }
     }
-    circuit->n_drawn = (int)deck->n_drawn;
-    circuit->is_random = deck->n_drawn > 0 || deck->has_random_formula;
-    if (circuit->is_random && circuit->n_steps == 0 && !deck->is_step &&
-        !circuit->worst_case.present) {
+    circuit->random.n_drawn = (int)deck->n_drawn;
+    circuit->random.is_random = deck->n_drawn > 0 || deck->has_random_formula;
+    if (circuit->random.is_random && circuit->analyses.n_steps == 0 && !deck->is_step &&
+        !circuit->analyses.worst_case.present) {
         dalcs_diag_add(builder->diag, DALCS_NOTE, NULL, ".mc 100 runs it with 100 of them",
                        "random values are drawn once");
     }

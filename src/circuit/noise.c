@@ -20,7 +20,7 @@ static double value_at(enum dalcs_wave_shape shape, double x) {
 }
 
 static double end_of_run(const struct dalcs_compiler *c) {
-    return c->builder->analyses.tran != NULL ? c->builder->circuit->transient.stop : 0;
+    return c->builder->analyses.tran != NULL ? c->builder->circuit->analyses.transient.stop : 0;
 }
 
 /* rate t + offset */

@@ -208,7 +208,8 @@ static void take_stimuli(struct dalcs_compiler *c) {
 static void add_smooth_stimulus(struct dalcs_compiler *c) {
     struct dalcs_circuit *circuit = c->builder->circuit;
     const struct dalcs_stimulus zero = {.kind = DALCS_STIMULUS_DC, .has_dc = true};
-    circuit->smooth_stimulus = circuit->n_smooth > 0 ? dalcs_compiler_add_stimulus(c, &zero) : -1;
+    circuit->control.smooth_stimulus =
+        circuit->control.n_smooth > 0 ? dalcs_compiler_add_stimulus(c, &zero) : -1;
 }
 
 void dalcs_behavioural_resolve(struct dalcs_builder *builder) {

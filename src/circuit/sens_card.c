@@ -54,12 +54,12 @@ static void take_all(struct dalcs_builder *builder, struct dalcs_sensitivity_car
 }
 
 void dalcs_sensitivity_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    struct dalcs_sensitivity_card *sens = &builder->circuit->sensitivity;
+    struct dalcs_sensitivity_card *sens = &builder->circuit->analyses.sensitivity;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, SENS_USAGE);
     if (!dalcs_analysis_is_first(builder, card, &builder->analyses.sens)) {
         return;
     }
-    if (builder->analyses.pss == NULL && !builder->netlist->asks_steady) {
+    if (builder->analyses.pss == NULL && !builder->netlist->asks.steady) {
         dalcs_builder_warn(
             builder, card->token, "write .pss beside it",
             ".sens differentiates a periodic steady state, and there is no .pss: the "
@@ -102,10 +102,10 @@ static bool check_item(struct dalcs_builder *builder, const struct dalcs_sweep *
 }
 
 void dalcs_sensitivity_check(struct dalcs_builder *builder) {
-    struct dalcs_sensitivity_card *card = &builder->circuit->sensitivity;
-    card->present = card->present || builder->netlist->asks_sensitivities;
-    if (card->present && builder->circuit->n_steps > 0) {
-        dalcs_builder_error_at(builder, &builder->circuit->step[0].where,
+    struct dalcs_sensitivity_card *card = &builder->circuit->analyses.sensitivity;
+    card->present = card->present || builder->netlist->asks.sensitivities;
+    if (card->present && builder->circuit->analyses.n_steps > 0) {
+        dalcs_builder_error_at(builder, &builder->circuit->analyses.step[0].where,
                                "leave one of them out; .sens itself varies the values",
                                "sensitivities belong to one circuit, and .step makes several");
         card->present = false;

@@ -129,7 +129,7 @@ static int add_smooth(struct dalcs_compiler *c, const struct dalcs_formula *f,
     }
     struct dalcs_circuit *circuit = c->builder->circuit;
     point_at(f, &circuit->device[circuit->n_devices - 1]);
-    circuit->n_smooth++;
+    circuit->control.n_smooth++;
     return node;
 }
 
@@ -168,6 +168,6 @@ int dalcs_smooth_add(struct dalcs_builder *builder, const struct dalcs_token *el
     }
     device->node[0] = node;
     device->behaviour = behaviour;
-    builder->circuit->n_smooth++;
+    builder->circuit->control.n_smooth++;
     return node;
 }

@@ -265,7 +265,7 @@ static void make_external(struct dalcs_builder *builder, const struct dalcs_card
     s->u.pwl.t = point;
     s->u.pwl.v = point + 1;
     s->u.pwl.repeats = false;
-    builder->circuit->n_externals++;
+    builder->circuit->control.n_externals++;
 }
 
 void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,

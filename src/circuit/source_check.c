@@ -9,8 +9,8 @@
 /* Edges are told apart to 1e-15 of the time; leave room for a few points in between. */
 static void check_period(struct dalcs_builder *builder, const struct dalcs_token *name,
                          double period) {
-    const double stop = builder->circuit->transient.stop;
-    if (builder->circuit->transient.present && period < stop * 1e-13) {
+    const double stop = builder->circuit->analyses.transient.stop;
+    if (builder->circuit->analyses.transient.present && period < stop * 1e-13) {
         dalcs_builder_error(builder, name, NULL,
                             "a period of %g s is below the resolution of times up to %g s", period,
                             stop);
@@ -39,7 +39,7 @@ static void check_pulse(struct dalcs_builder *builder, const struct dalcs_token 
 
 void dalcs_stimulus_check(struct dalcs_builder *builder, const struct dalcs_token *name,
                           struct dalcs_stimulus *s) {
-    const struct dalcs_transient *transient = &builder->circuit->transient;
+    const struct dalcs_transient *transient = &builder->circuit->analyses.transient;
     if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.frequency == 0 && transient->present) {
         s->u.sine.frequency = 1 / transient->stop;
         dalcs_builder_note(builder, name, NULL, "SIN without a frequency: it is 1/tstop = %g Hz",
@@ -117,7 +117,7 @@ void dalcs_source_check(struct dalcs_builder *builder) {
                                  &circuit->stimulus[device->stimulus]);
         }
         if (device->stimulus >= 0 && circuit->stimulus[device->stimulus].is_ac_alone &&
-            circuit->transient.present && circuit->ac.n == 0) {
+            circuit->analyses.transient.present && circuit->analyses.ac.n == 0) {
             dalcs_builder_warn(
                 builder, builder->elements.device_token[k],
                 "SIN(0 12 60) is a sine of 12 and 60 Hz",

@@ -26,7 +26,7 @@ void dalcs_sweep_parse_dc(struct dalcs_builder *builder, const struct dalcs_card
     }
     int n = 0;
     do {
-        struct dalcs_sweep *sweep = &circuit->dc[n];
+        struct dalcs_sweep *sweep = &circuit->analyses.dc[n];
         const bool is_spaced = dalcs_sweep_take_spacing(&reader, &sweep->spacing);
         if (!dalcs_sweep_read_item(&reader, "vir", sweep)) {
             return;
@@ -42,37 +42,38 @@ void dalcs_sweep_parse_dc(struct dalcs_builder *builder, const struct dalcs_card
     if (!dalcs_reader_end(&reader)) {
         return;
     }
-    if (n == 2 && strcmp(circuit->dc[0].label, circuit->dc[1].label) == 0) {
+    if (n == 2 && strcmp(circuit->analyses.dc[0].label, circuit->analyses.dc[1].label) == 0) {
         dalcs_builder_error(builder, card->token, DC_USAGE, "both sweeps are of '%s'",
-                            circuit->dc[0].label);
+                            circuit->analyses.dc[0].label);
         return;
     }
-    circuit->n_dc = n;
+    circuit->analyses.n_dc = n;
 }
 
 bool dalcs_sweep_add_step(struct dalcs_builder *builder, const struct dalcs_card *card,
                           const struct dalcs_sweep *sweep) {
     struct dalcs_circuit *circuit = builder->circuit;
-    if (circuit->step == NULL) {
-        circuit->step = dalcs_arena_alloc(&circuit->arena, MOST_NESTED, sizeof *circuit->step);
-        builder->out_of_memory = builder->out_of_memory || circuit->step == NULL;
+    if (circuit->analyses.step == NULL) {
+        circuit->analyses.step =
+            dalcs_arena_alloc(&circuit->arena, MOST_NESTED, sizeof *circuit->analyses.step);
+        builder->out_of_memory = builder->out_of_memory || circuit->analyses.step == NULL;
     }
     if (builder->out_of_memory) {
         return false;
     }
-    if (circuit->n_steps == MOST_NESTED) {
+    if (circuit->analyses.n_steps == MOST_NESTED) {
         dalcs_builder_error(builder, card->token, NULL, "more than %d .step cards",
                             (int)MOST_NESTED);
         return false;
     }
-    for (int k = 0; k < circuit->n_steps; k++) {
-        if (strcmp(circuit->step[k].label, sweep->label) == 0) {
+    for (int k = 0; k < circuit->analyses.n_steps; k++) {
+        if (strcmp(circuit->analyses.step[k].label, sweep->label) == 0) {
             dalcs_builder_error(builder, card->token, NULL, "a second %s of '%s'",
                                 card->token->text, sweep->label);
             return false;
         }
     }
-    circuit->step[circuit->n_steps++] = *sweep;
+    circuit->analyses.step[circuit->analyses.n_steps++] = *sweep;
     return true;
 }
 
@@ -102,29 +103,30 @@ void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_ca
 void dalcs_sweep_check(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
     long total = 1;
-    for (int k = 0; k < circuit->n_steps; k++) {
-        const int device = circuit->step[k].device;
+    for (int k = 0; k < circuit->analyses.n_steps; k++) {
+        const int device = circuit->analyses.step[k].device;
         const int stimulus = device >= 0 ? circuit->device[device].stimulus : -1;
         if (stimulus >= 0 && circuit->stimulus[stimulus].kind != DALCS_STIMULUS_DC &&
-            circuit->transient.present) {
-            dalcs_builder_warn_at(
-                builder, &circuit->step[k].where, "put a parameter into the function and step that",
-                "this steps the DC value of '%s'; .tran uses its function", circuit->step[k].name);
+            circuit->analyses.transient.present) {
+            dalcs_builder_warn_at(builder, &circuit->analyses.step[k].where,
+                                  "put a parameter into the function and step that",
+                                  "this steps the DC value of '%s'; .tran uses its function",
+                                  circuit->analyses.step[k].name);
         }
-        total *= circuit->step[k].n;
+        total *= circuit->analyses.step[k].n;
         if (total > DALCS_SWEEP_MOST) {
-            dalcs_builder_error_at(builder, &circuit->step[k].where, NULL,
+            dalcs_builder_error_at(builder, &circuit->analyses.step[k].where, NULL,
                                    "these are more than %d steps", (int)DALCS_SWEEP_MOST);
             return;
         }
     }
-    bool has_ac = circuit->ac.n == 0 || circuit->orbit_ac.loop != NULL;
+    bool has_ac = circuit->analyses.ac.n == 0 || circuit->analyses.orbit_ac.loop != NULL;
     for (int k = 0; k < circuit->n_stimuli && !has_ac; k++) {
         has_ac = circuit->stimulus[k].ac_real != 0.0 || circuit->stimulus[k].ac_imaginary != 0.0;
     }
     if (!has_ac) {
         dalcs_builder_error_at(
-            builder, &circuit->ac.where,
+            builder, &circuit->analyses.ac.where,
             "write AC 1 on the source that drives it, such as: V1 in 0 DC 5 AC 1",
             ".ac without a source that has an AC value: everything would be 0");
     }

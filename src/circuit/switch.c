@@ -15,7 +15,7 @@ static const char CURRENT_USAGE[] = "a switch is: Wname node node Vsource model 
 static void add_series(struct dalcs_builder *builder, const struct dalcs_token *element,
                        struct dalcs_device *device) {
     struct dalcs_circuit *circuit = builder->circuit;
-    const struct dalcs_switch_model *model = &circuit->switch_model[device->model];
+    const struct dalcs_switch_model *model = &circuit->models.of_switch[device->model];
     for (int k = 0; k < 2; k++) {
         const bool is_coil = k == 0;
         if ((is_coil ? model->lser : model->vser) == 0) {
@@ -44,7 +44,7 @@ static void add_series(struct dalcs_builder *builder, const struct dalcs_token *
 
 /* m switches in parallel have a model of their own. */
 static void multiply(struct dalcs_builder *builder, struct dalcs_device *device, double m) {
-    struct dalcs_switch_model model = builder->circuit->switch_model[device->model];
+    struct dalcs_switch_model model = builder->circuit->models.of_switch[device->model];
     model.ron /= m;
     model.roff /= m;
     model.lser /= m;
@@ -74,7 +74,7 @@ static void expand_model(struct dalcs_builder *builder, const struct dalcs_card 
         multiply(builder, device, card->parallel);
     }
     if (device->model >= 0) {
-        const double most = builder->circuit->switch_model[device->model].ilimit;
+        const double most = builder->circuit->models.of_switch[device->model].ilimit;
         add_series(builder, card->token, device);
         dalcs_current_limit_expand(
             builder, card->token, device,
@@ -110,7 +110,7 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
                                by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
     device->initially_on = dalcs_reader_take_word(&reader, "on");
     device->has_initial_state = device->initially_on || dalcs_reader_take_word(&reader, "off");
-    if (device->model >= 0 && builder->circuit->switch_model[device->model].is_exchanged) {
+    if (device->model >= 0 && builder->circuit->models.of_switch[device->model].is_exchanged) {
         device->initially_on = !device->initially_on;
     }
     const struct dalcs_token *control = by_formula ? dalcs_reader_peek(&reader, 0) : NULL;

@@ -148,7 +148,7 @@ static void exchange(struct dalcs_builder *builder, const struct dalcs_token *pl
 
 int dalcs_switch_add_model(struct dalcs_builder *builder, const struct dalcs_switch_model *model) {
     struct dalcs_circuit *circuit = builder->circuit;
-    const size_t n = (size_t)circuit->n_switch_models;
+    const size_t n = (size_t)circuit->models.n_switches;
     if (n == builder->models.switch_capacity) {
         const size_t most = 2 * n + 4;
         struct dalcs_switch_model *all = dalcs_arena_alloc(&circuit->arena, most, sizeof *all);
@@ -157,13 +157,13 @@ int dalcs_switch_add_model(struct dalcs_builder *builder, const struct dalcs_swi
             return -1;
         }
         if (n > 0) {
-            memcpy(all, circuit->switch_model, n * sizeof *all);
+            memcpy(all, circuit->models.of_switch, n * sizeof *all);
         }
-        circuit->switch_model = all;
+        circuit->models.of_switch = all;
         builder->models.switch_capacity = most;
     }
-    circuit->switch_model[n] = *model;
-    return circuit->n_switch_models++;
+    circuit->models.of_switch[n] = *model;
+    return circuit->models.n_switches++;
 }
 
 /* Vt and Vh of SW and CSW. LTspice's negative Vh asks for a smooth change between Vt - |Vh| and

@@ -99,8 +99,8 @@ static int device_of(const struct dalcs_builder *builder, const char *name) {
 
 static bool has_model(const struct dalcs_circuit *c, const struct dalcs_device *d,
                       const char *name) {
-    const char *own = d->kind == DALCS_DIODE    ? c->diode_model[d->model].name
-                      : d->kind == DALCS_SWITCH ? c->switch_model[d->model].name
+    const char *own = d->kind == DALCS_DIODE    ? c->models.of_diode[d->model].name
+                      : d->kind == DALCS_SWITCH ? c->models.of_switch[d->model].name
                                                 : NULL;
     return own != NULL && strcmp(own, name) == 0;
 }
@@ -109,7 +109,7 @@ static bool has_model(const struct dalcs_circuit *c, const struct dalcs_device *
 static void give(struct dalcs_builder *builder, const struct dalcs_token *name, int k,
                  const char *word) {
     struct dalcs_circuit *c = builder->circuit;
-    const int side = c->losses->table[k].is_off;
+    const int side = c->results.losses->table[k].is_off;
     const int own = device_of(builder, name->text);
     int n = 0;
     for (int i = 0; i < c->n_devices; i++) {
@@ -119,7 +119,7 @@ static void give(struct dalcs_builder *builder, const struct dalcs_token *name, 
             continue;
         }
         n++;
-        int *at = &c->losses->device[i].table[side];
+        int *at = &c->results.losses->device[i].table[side];
         if (*at < 0 || own >= 0) {
             *at = k;
         }
@@ -134,7 +134,7 @@ static void give(struct dalcs_builder *builder, const struct dalcs_token *name, 
 
 static void read_card(struct dalcs_builder *builder, const struct dalcs_card *card, bool of_model) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
-    struct dalcs_losses_card *losses = builder->circuit->losses;
+    struct dalcs_losses_card *losses = builder->circuit->results.losses;
     const struct dalcs_token *name;
     const struct dalcs_token *kind;
     struct dalcs_loss_table table = {0};
@@ -162,7 +162,7 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
 }
 
 void dalcs_switchloss_collect(struct dalcs_builder *builder) {
-    struct dalcs_losses_card *losses = builder->circuit->losses;
+    struct dalcs_losses_card *losses = builder->circuit->results.losses;
     losses->table = dalcs_arena_alloc(&builder->circuit->arena, builder->results.n_switchlosses,
                                       sizeof *losses->table);
     if (losses->table == NULL) {

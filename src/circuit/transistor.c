@@ -169,7 +169,7 @@ static bool add_diode(struct dalcs_builder *builder, struct dalcs_transistor_use
     if (diode == NULL) {
         return false;
     }
-    struct dalcs_diode_model *lines = &circuit->diode_model[circuit->n_diode_models];
+    struct dalcs_diode_model *lines = &circuit->models.of_diode[circuit->models.n_diodes];
     lines->name = circuit->device[use->device].name;
     if (use->of->kind == DALCS_IGBT) {
         *lines = (struct dalcs_diode_model){.name = lines->name,
@@ -183,7 +183,7 @@ static bool add_diode(struct dalcs_builder *builder, struct dalcs_transistor_use
         dalcs_diode_model_map(&use->of->diode, at, use->parallel, lines);
         lines->exponential = (struct dalcs_exponential){0}; /* the line stays where it is */
     }
-    use->diode = diode->model = circuit->n_diode_models++;
+    use->diode = diode->model = circuit->models.n_diodes++;
     use->diode_device = (int)(diode - circuit->device);
     diode->node[0] = node[0];
     diode->node[1] = node[1];
@@ -202,9 +202,9 @@ static bool add_knee(struct dalcs_builder *builder, const struct dalcs_transisto
     }
     knee->node[0] = device->node[0];
     knee->node[1] = device->node[0] = inside;
-    circuit->diode_model[circuit->n_diode_models] = (struct dalcs_diode_model){
+    circuit->models.of_diode[circuit->models.n_diodes] = (struct dalcs_diode_model){
         .name = device->name, .roff = INFINITY, .vfwd = use->of->knee, .vrev = INFINITY};
-    knee->model = circuit->n_diode_models++;
+    knee->model = circuit->models.n_diodes++;
     return true;
 }
 

@@ -74,7 +74,7 @@ static void note(struct dalcs_builder *builder, const struct dalcs_transistor_us
     const struct dalcs_device *d = &c->device[use->device];
     const char *diode = ", no diode across it";
     if (use->diode >= 0) {
-        const struct dalcs_diode_model *m = &c->diode_model[use->diode];
+        const struct dalcs_diode_model *m = &c->models.of_diode[use->diode];
         diode = dalcs_builder_hint(builder, ", %s %.3g V + %s",
                                    t->kind == DALCS_BIPOLAR ? "base to emitter"
                                    : t->kind == DALCS_IGBT  ? "diode"
@@ -90,8 +90,9 @@ static void note(struct dalcs_builder *builder, const struct dalcs_transistor_us
                        t->kind == DALCS_BIPOLAR ? "be"
                        : t->kind == DALCS_IGBT  ? "ge"
                                                 : "gs",
-                       (t->is_p ? -1 : 1) * c->switch_model[d->model].vt, knee != NULL ? knee : "",
-                       ohms(builder, ron), at, diode != NULL ? diode : "");
+                       (t->is_p ? -1 : 1) * c->models.of_switch[d->model].vt,
+                       knee != NULL ? knee : "", ohms(builder, ron), at,
+                       diode != NULL ? diode : "");
 }
 
 /* The gate's level that it is on with, above 0 also of a p channel, and in words. */
@@ -121,7 +122,7 @@ static void note_saturation(struct dalcs_builder *builder, const struct dalcs_tr
     struct dalcs_circuit *c = builder->circuit;
     const struct dalcs_transistor *t = use->of;
     const double sign = t->is_p ? -1 : 1;
-    c->saturation[c->n_saturations++] =
+    c->models.saturation[c->models.n_saturations++] =
         (struct dalcs_saturation){.name = c->device[use->device].name,
                                   .device = builder->elements.current_of[use->device],
                                   .current = sign * 0.5 * t->saturating * use->width / use->length *
@@ -134,9 +135,9 @@ static void settle(struct dalcs_builder *builder, const struct dalcs_gate_links 
                    const struct dalcs_transistor_use *use) {
     struct dalcs_circuit *c = builder->circuit;
     const struct dalcs_transistor *t = use->of;
-    struct dalcs_switch_model *model = &c->switch_model[c->device[use->device].model];
+    struct dalcs_switch_model *model = &c->models.of_switch[c->device[use->device].model];
     const bool is_bipolar = t->kind == DALCS_BIPOLAR;
-    model->vt = is_bipolar ? 0.5 * c->diode_model[use->diode].vfwd
+    model->vt = is_bipolar ? 0.5 * c->models.of_diode[use->diode].vfwd
                 : t->is_p  ? -t->threshold
                            : t->threshold;
     const struct dalcs_gate_drive drive = dalcs_gate_drive_of(c, links, use);
@@ -196,8 +197,8 @@ void dalcs_transistor_resolve(struct dalcs_builder *builder) {
     }
     struct dalcs_circuit *c = builder->circuit;
     dalcs_transistor_settle_typical(builder, &links, first);
-    c->saturation = dalcs_arena_alloc(&c->arena, n, sizeof *c->saturation);
-    if (c->saturation == NULL) {
+    c->models.saturation = dalcs_arena_alloc(&c->arena, n, sizeof *c->models.saturation);
+    if (c->models.saturation == NULL) {
         builder->out_of_memory = true;
         return;
     }

@@ -40,8 +40,8 @@ static struct dalcs_gate_range minus(const struct dalcs_gate_range *a,
 
 /* What a gate puts out lies between its levels, also on its way; of a sample it is what was taken. */
 static bool is_of_gate(const struct dalcs_circuit *c, int stimulus, struct dalcs_gate_range *r) {
-    for (int k = 0; k < c->n_gates && !r->is_known; k++) {
-        const struct dalcs_logic_gate *g = &c->gate[k];
+    for (int k = 0; k < c->control.n_gates && !r->is_known; k++) {
+        const struct dalcs_logic_gate *g = &c->control.gate[k];
         if (g->kind != DALCS_GATE_SAMPLE &&
             (g->output[0] == stimulus || g->output[1] == stimulus)) {
             *r = between(g->low, g->high);

@@ -37,7 +37,7 @@ static void turn(struct dalcs_circuit *c, const struct dalcs_transistor_use *use
     const int from = node[0];
     node[0] = node[1];
     node[1] = from;
-    c->switch_model[c->device[use->device].model].is_inverted = true;
+    c->models.of_switch[c->device[use->device].model].is_inverted = true;
 }
 
 static void tell(struct dalcs_builder *builder, struct dalcs_transistor *t) {

@@ -35,7 +35,7 @@ static bool read_corners(struct dalcs_reader *reader, struct dalcs_worst_case_ca
 
 void dalcs_worst_case_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
-    struct dalcs_worst_case_card *worst = &builder->circuit->worst_case;
+    struct dalcs_worst_case_card *worst = &builder->circuit->analyses.worst_case;
     bool is_told = false;
     bool ok = true;
     if (worst->present) {
@@ -64,7 +64,7 @@ void dalcs_worst_case_parse(struct dalcs_builder *builder, const struct dalcs_ca
 enum dalcs_status dalcs_worst_case_collect(struct dalcs_builder *builder) {
     const struct dalcs_deck *deck = builder->deck;
     struct dalcs_circuit *circuit = builder->circuit;
-    struct dalcs_worst_case_card *worst = &circuit->worst_case;
+    struct dalcs_worst_case_card *worst = &circuit->analyses.worst_case;
     if (!worst->present) {
         return DALCS_OK;
     }
@@ -89,19 +89,19 @@ enum dalcs_status dalcs_worst_case_collect(struct dalcs_builder *builder) {
 
 void dalcs_worst_case_check(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
-    const struct dalcs_worst_case_card *worst = &circuit->worst_case;
+    const struct dalcs_worst_case_card *worst = &circuit->analyses.worst_case;
     if (!worst->present) {
         return;
     }
-    if (circuit->n_steps > 0 || circuit->sensitivity.present) {
+    if (circuit->analyses.n_steps > 0 || circuit->analyses.sensitivity.present) {
         dalcs_builder_error_at(builder, &worst->where, "leave one of them out",
                                "a worst case belongs to one circuit, and %s",
-                               circuit->n_steps > 0 ? ".step and .mc make several"
-                                                    : ".sens varies its values itself");
-    } else if (builder->netlist->n_script_lines > 0) {
+                               circuit->analyses.n_steps > 0 ? ".step and .mc make several"
+                                                             : ".sens varies its values itself");
+    } else if (builder->netlist->commands.n > 0) {
         dalcs_builder_error_at(builder, &worst->where, "leave one of them out",
                                "a .control block and .wcase both choose the runs");
-    } else if (circuit->n_measures == 0) {
+    } else if (circuit->results.n_measures == 0) {
         dalcs_builder_error_at(builder, &worst->where,
                                "write a card such as .meas tran low min v(out)",
                                "nothing is measured that could have a worst case");

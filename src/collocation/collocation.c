@@ -63,7 +63,7 @@ void dalcs_collocation_parts(const struct dalcs_collocation *c, const double *at
     for (int i = 0; i < c->n_stages; i++) {
         factor[i] = (struct dalcs_extended){at_stages[i], 0.0};
     }
-    dalcs_extended_combine(1 + 2 * c->n_pairs, c->n_stages, factor, c->exact_from, NULL, part);
+    dalcs_extended_combine(1 + 2 * c->n_pairs, c->n_stages, factor, c->exact.from, NULL, part);
 }
 
 void dalcs_collocation_weights(const struct dalcs_collocation *c, double theta, double *weight) {

@@ -31,6 +31,27 @@ enum {
 
 enum dalcs_family { DALCS_RADAU_IIA, DALCS_LOBATTO_IIIC };
 
+/* With the digits that the large elements of the eigenvectors (300 for s = 7, 3500 for 9) cost. Solutions are 1 + 2 n_pairs
+ * parts, that of lambda and (re, im) of each of mu. */
+struct dalcs_exact_collocation {
+    long double back[DALCS_MAX_STAGES];
+    long double lambda;
+    long double complex mu[DALCS_MAX_CONJUGATES];
+    /* what the nodes, and in place s the polynomial through the stages at 0, take of each part. Stage i is
+     * to[i] W + sum over pairs of 2 Re(to_pair[i][p] W_p) */
+    struct dalcs_extended_row to[DALCS_SOLUTION_PARTS];
+    struct dalcs_extended_row from[DALCS_MAX_STAGES]; /* what the parts take of each stage */
+};
+
+/* Newton's form on all nodes, which come in Leja's order for the sake of rounding: place of the k-th, itself, and what the
+ * difference of the value there from that at the first adds to the coefficients. */
+struct dalcs_newton_form {
+    int order[DALCS_MAX_NODES];
+    double node[DALCS_MAX_NODES];
+    double coefficient[DALCS_MAX_NODES]
+                      [DALCS_MAX_NODES]; /* [k][coefficient], 0 for those before k */
+};
+
 struct dalcs_collocation {
     enum dalcs_family family;
     int s;        /* nodes behind the start, and the degree of the polynomials */
@@ -39,36 +60,32 @@ struct dalcs_collocation {
     double node[DALCS_MAX_NODES]; /* 0, c_1, ..., c_s */
     double lambda;                /* the real eigenvalue of A^-1 */
     double complex mu[DALCS_MAX_CONJUGATES];
-
-    /* with the digits that the large elements of the eigenvectors (300 for s = 7, 3500 for 9) cost */
-    long double exact_back[DALCS_MAX_STAGES];
-    long double exact_lambda;
-    long double complex exact_mu[DALCS_MAX_CONJUGATES];
-    /* of solutions as 1 + 2 n_pairs parts, that of lambda and (re, im) of each of mu: what the nodes, and in
-     * place s the polynomial through the stages at 0, take of each part; what the parts take of each stage. Stage i is
-     * to[i] W + sum over pairs of 2 Re(to_pair[i][p] W_p) */
-    struct dalcs_extended_row exact_to[DALCS_SOLUTION_PARTS];
-    struct dalcs_extended_row exact_from[DALCS_MAX_STAGES];
+    struct dalcs_exact_collocation exact;
     double barycentric[DALCS_MAX_NODES]; /* weights of all s + 1 nodes */
-    /* Newton's form on all nodes, which come in Leja's order for the sake of rounding: place of the k-th, itself,
-     * and what the difference of the value there from that at the first adds to the coefficients */
-    int newton_order[DALCS_MAX_NODES];
-    double newton_node[DALCS_MAX_NODES];
-    double newton[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* [k][coefficient], 0 for those before k */
+    struct dalcs_newton_form differences;
     double back[DALCS_MAX_STAGES];   /* value at 0 of the polynomial through the stages alone */
     double weight[DALCS_MAX_STAGES]; /* of the stages, in an integral over the step */
-    double gauss[DALCS_MAX_NODES]; /* Gauss' rule with s nodes for integrals over (0, 1), then 1, */
-    double gauss_weight[DALCS_MAX_NODES]; /* with the weight 0 */
-    double test_size;                     /* the product of the distances from all nodes there */
-    double test_node;                     /* where polynomials on all nodes are worst */
-    double test[DALCS_MAX_NODES];         /* their value there */
-    double test_factor; /* how much more their derivative may be off than the filter of the error
-                           estimate lets through */
+
+    struct { /* Gauss' rule with s nodes for integrals over (0, 1), then 1 with the weight 0 */
+        double node[DALCS_MAX_NODES], weight[DALCS_MAX_NODES];
+    } quadrature;
+
+    struct {         /* where polynomials on all nodes are worst */
+        double size; /* the product of the distances from all nodes there */
+        double node;
+        double value[DALCS_MAX_NODES]; /* of the polynomials */
+        double
+            factor; /* how much more their derivative may be off than the filter of the error estimate lets through */
+    } worst;
+
     double
         spread; /* a polynomial leaves the range of its values at the nodes by at most this part */
-    double binomial[DALCS_MAX_NODES];                      /* s over 0..s */
-    double to_bernstein[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* [node][coefficient] */
-    double bernstein_spread; /* coefficients leave the range of the values by at most this part */
+
+    struct {
+        double binomial[DALCS_MAX_NODES];                    /* s over 0..s */
+        double from_nodes[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* [node][coefficient] */
+        double spread; /* coefficients leave the range of the values by at most this part */
+    } bernstein;
 };
 
 /* NULL: there is none. */

@@ -75,32 +75,32 @@ static void print_method(const struct dalcs_collocation *c) {
     printf("        .lambda = %.17g,\n        .mu = ", c->lambda);
     print_complexes(pairs, c->mu);
     printf(",\n");
-    printf("        .exact_lambda = %.21LgL,\n        .exact_mu = ", c->exact_lambda);
-    print_exact_complexes(pairs, c->exact_mu);
+    printf("        .exact.lambda = %.21LgL,\n        .exact.mu = ", c->exact.lambda);
+    print_exact_complexes(pairs, c->exact.mu);
     printf(",\n");
-    print_exacts("exact_back", c->n_stages, c->exact_back);
-    print_rows("exact_to", 1 + 2 * c->n_pairs, c->exact_to);
-    print_rows("exact_from", c->n_stages, c->exact_from);
-    print_reals("binomial", s + 1, c->binomial);
+    print_exacts("exact.back", c->n_stages, c->exact.back);
+    print_rows("exact.to", 1 + 2 * c->n_pairs, c->exact.to);
+    print_rows("exact.from", c->n_stages, c->exact.from);
+    print_reals("bernstein.binomial", s + 1, c->bernstein.binomial);
     print_reals("barycentric", s + 1, c->barycentric);
-    printf("        .newton_order = {");
+    printf("        .differences.order = {");
     for (int k = 0; k <= s; k++) {
-        printf("%s%d", k > 0 ? ", " : "", c->newton_order[k]);
+        printf("%s%d", k > 0 ? ", " : "", c->differences.order[k]);
     }
     printf("},\n");
-    print_reals("newton_node", s + 1, c->newton_node);
-    print_square("newton", s, c->newton);
+    print_reals("differences.node", s + 1, c->differences.node);
+    print_square("differences.coefficient", s, c->differences.coefficient);
     print_reals("back", c->n_stages, c->back);
     print_reals("weight", c->n_stages, c->weight);
-    print_reals("gauss", DALCS_MAX_NODES, c->gauss);
-    print_reals("gauss_weight", DALCS_MAX_NODES, c->gauss_weight);
-    print_reals("test", s + 1, c->test);
-    printf("        .test_size = %.17g,\n", c->test_size);
-    printf("        .test_node = %.17g,\n        .test_factor = %.17g,\n", c->test_node,
-           c->test_factor);
+    print_reals("quadrature.node", DALCS_MAX_NODES, c->quadrature.node);
+    print_reals("quadrature.weight", DALCS_MAX_NODES, c->quadrature.weight);
+    print_reals("worst.value", s + 1, c->worst.value);
+    printf("        .worst.size = %.17g,\n", c->worst.size);
+    printf("        .worst.node = %.17g,\n        .worst.factor = %.17g,\n", c->worst.node,
+           c->worst.factor);
     printf("        .spread = %.17g,\n", c->spread);
-    printf("        .bernstein_spread = %.17g,\n", c->bernstein_spread);
-    print_square("to_bernstein", s, c->to_bernstein);
+    printf("        .bernstein.spread = %.17g,\n", c->bernstein.spread);
+    print_square("bernstein.from_nodes", s, c->bernstein.from_nodes);
     printf("    },\n");
 }
 

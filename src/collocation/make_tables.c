@@ -162,21 +162,21 @@ static void diagonalise(struct dalcs_collocation *c, real A[MAX][MAX]) {
             complex_real back = left[i] / of_one;
             complex_real forth = right[i] * of_one / product;
             if (is_real) {
-                put(&c->exact_from[i], 0, __real__(back));
-                put(&c->exact_to[0], i, __real__(forth));
+                put(&c->exact.from[i], 0, __real__(back));
+                put(&c->exact.to[0], i, __real__(forth));
             } else {
                 int part = 1 + 2 * c->n_pairs;
-                put(&c->exact_from[i], part, __real__(back));
-                put(&c->exact_from[i], part + 1, __imag__(back));
-                put(&c->exact_to[part], i, 2 * __real__(forth)); /* 2 Re(to W) */
-                put(&c->exact_to[part + 1], i, -2 * __imag__(forth));
+                put(&c->exact.from[i], part, __real__(back));
+                put(&c->exact.from[i], part + 1, __imag__(back));
+                put(&c->exact.to[part], i, 2 * __real__(forth)); /* 2 Re(to W) */
+                put(&c->exact.to[part + 1], i, -2 * __imag__(forth));
             }
         }
         if (is_real) {
-            c->exact_lambda = __real__(mu[k]);
+            c->exact.lambda = __real__(mu[k]);
             c->lambda = (double)__real__(mu[k]);
         } else {
-            c->exact_mu[c->n_pairs] = mu[k];
+            c->exact.mu[c->n_pairs] = mu[k];
             c->mu[c->n_pairs++] = (double complex)mu[k];
         }
     }
@@ -198,22 +198,22 @@ static void choose_test_node(struct dalcs_collocation *c, const real *node) {
         real size = dalcs_size_of(product_of_differences(n, node, x));
         if (size > worst) {
             worst = size;
-            c->test_size = (double)size;
-            c->test_node = (double)x;
+            c->worst.size = (double)size;
+            c->worst.node = (double)x;
         }
     }
     real value[MAX];
-    dalcs_lagrange(n, node, c->test_node, value);
+    dalcs_lagrange(n, node, c->worst.node, value);
     real steepest = 0.0L;
     for (int i = 0; i < n; i++) {
-        c->test[i] = (double)value[i];
+        c->worst.value[i] = (double)value[i];
         real slope = 1.0L;
         for (int k = 0; k < n; k++) {
             slope *= k != i ? node[i] - node[k] : 1.0L;
         }
         steepest = i > 0 ? dalcs_larger_real(steepest, dalcs_size_of(slope)) : 0.0L;
     }
-    c->test_factor = fmax(1.0, (double)(steepest / worst) / c->lambda);
+    c->worst.factor = fmax(1.0, (double)(steepest / worst) / c->lambda);
 }
 
 /* Values at the nodes to coefficients of Bernstein's polynomials, between whose least and largest
@@ -235,20 +235,20 @@ static void bernstein_matrix(struct dalcs_collocation *c, const real *node) {
         }
         solve_small(n, a, b);
         for (int j = 0; j < n; j++) {
-            c->to_bernstein[k][j] = (double)__real__(b[j]);
+            c->bernstein.from_nodes[k][j] = (double)__real__(b[j]);
         }
     }
     for (int j = 0; j < n; j++) {
         real sum = 0.0L;
         for (int k = 0; k < n; k++) {
-            sum += dalcs_size_of(c->to_bernstein[k][j]);
+            sum += dalcs_size_of(c->bernstein.from_nodes[k][j]);
         }
         spread = dalcs_larger_real(spread, 0.5L * (sum - 1.0L));
     }
-    c->bernstein_spread = (double)spread;
-    c->binomial[0] = 1.0;
+    c->bernstein.spread = (double)spread;
+    c->bernstein.binomial[0] = 1.0;
     for (int j = 0; j < c->s; j++) {
-        c->binomial[j + 1] = c->binomial[j] * (c->s - j) / (j + 1);
+        c->bernstein.binomial[j + 1] = c->bernstein.binomial[j] * (c->s - j) / (j + 1);
     }
 }
 
@@ -278,22 +278,22 @@ static void order_nodes(struct dalcs_collocation *c, const real *node) {
         for (int i = 0; i <= c->s; i++) {
             real product = 1.0L;
             for (int j = 0; j < k; j++) {
-                product *= dalcs_size_of(node[i] - node[c->newton_order[j]]);
+                product *= dalcs_size_of(node[i] - node[c->differences.order[j]]);
             }
             if (!used[i] && product > largest) {
                 largest = product;
-                c->newton_order[k] = i;
+                c->differences.order[k] = i;
             }
         }
-        used[c->newton_order[k]] = true;
-        c->newton_node[k] = (double)node[c->newton_order[k]];
+        used[c->differences.order[k]] = true;
+        c->differences.node[k] = (double)node[c->differences.order[k]];
     }
     for (int k = 1; k <= c->s; k++) {
         real inverse = 1.0L;
         for (int coefficient = 1; coefficient <= c->s; coefficient++) {
             int other = coefficient <= k ? coefficient - 1 : coefficient;
-            inverse /= node[c->newton_order[k]] - node[c->newton_order[other]];
-            c->newton[k][coefficient] = coefficient >= k ? (double)inverse : 0.0;
+            inverse /= node[c->differences.order[k]] - node[c->differences.order[other]];
+            c->differences.coefficient[k][coefficient] = coefficient >= k ? (double)inverse : 0.0;
         }
     }
 }
@@ -326,22 +326,22 @@ void dalcs_make_tables(struct dalcs_collocation *c, enum dalcs_family family, in
         c->weight[i] = (double)A[s - 1][i];
     }
     for (int i = 0; i < MAX; i++) {
-        c->gauss[i] = i < n_stages ? (double)gauss[i] : 1.0;
-        c->gauss_weight[i] = i < n_stages ? (double)gauss_weight[i] : 0.0;
+        c->quadrature.node[i] = i < n_stages ? (double)gauss[i] : 1.0;
+        c->quadrature.weight[i] = i < n_stages ? (double)gauss_weight[i] : 0.0;
     }
     diagonalise(c, A);
     real value[MAX];
     dalcs_lagrange(n_stages, node + 1, 0.0L, value);
     for (int i = 0; i < n_stages; i++) {
-        c->exact_back[i] = value[i];
+        c->exact.back[i] = value[i];
         c->back[i] = (double)value[i];
     }
     for (int part = 0; part < 1 + 2 * c->n_pairs && !starts; part++) {
         real at_0 = 0;
         for (int i = 0; i < s; i++) {
-            at_0 += value[i] * ((real)c->exact_to[part].high[i] + c->exact_to[part].low[i]);
+            at_0 += value[i] * ((real)c->exact.to[part].high[i] + c->exact.to[part].low[i]);
         }
-        put(&c->exact_to[part], s, at_0);
+        put(&c->exact.to[part], s, at_0);
     }
     choose_test_node(c, node);
     bernstein_matrix(c, node);

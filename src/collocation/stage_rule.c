@@ -22,8 +22,8 @@ DALCS_TWICE(void, set_cut,
     dalcs_points before[DALCS_POINT_GROUPS]; /* products of the distances from the stages before */
     dalcs_points behind[DALCS_POINT_GROUPS];
     dalcs_points slope[DALCS_POINT_GROUPS];
-    memcpy(point, m->gauss, sizeof(point));
-    memcpy(rule->weight, m->gauss_weight, sizeof(rule->weight));
+    memcpy(point, m->quadrature.node, sizeof(point));
+    memcpy(rule->weight, m->quadrature.weight, sizeof(rule->weight));
     for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
         point[g] *= end;
         rule->weight[g] *= end;

@@ -57,7 +57,7 @@ static enum dalcs_status stamp_direct_controls(struct stamps *b, const struct da
         if (d->kind != DALCS_SWITCH || !b->s->pair[l->pair[m->device[i]]].is_direct) {
             continue;
         }
-        double sign = dalcs_stamp_control_sign(&l->circuit->switch_model[d->model]);
+        double sign = dalcs_stamp_control_sign(&l->circuit->models.of_switch[d->model]);
         DALCS_TRY(add_potential(b, l->pair[m->device[i]], d->node[2], sign));
         DALCS_TRY(add_potential(b, l->pair[m->device[i]], d->node[3], -sign));
     }
@@ -80,7 +80,7 @@ static enum dalcs_status stamp_current_controls(struct stamps *b, const struct d
         } else if (d->kind == DALCS_SWITCH && d->control >= 0) {
             DALCS_TRY(
                 dalcs_stamp_add(&b->control, l->pair[m->device[i]], l->current_column[d->control],
-                                dalcs_stamp_control_sign(&l->circuit->switch_model[d->model])));
+                                dalcs_stamp_control_sign(&l->circuit->models.of_switch[d->model])));
         }
     }
     return DALCS_OK;

@@ -18,7 +18,7 @@ static void merge(const struct dalcs_circuit *c, int *whole) {
             dalcs_union_join(whole, d->node[0], d->node[1]);
         }
     }
-    for (int k = 0; k < c->n_initial_conditions && !c->operating_point; k++) {
+    for (int k = 0; k < c->n_initial_conditions && !c->analyses.operating_point; k++) {
         dalcs_union_join(whole, c->initial_condition[k].node[0], c->initial_condition[k].node[1]);
     }
 }
@@ -53,7 +53,8 @@ static void note_parts(const struct dalcs_circuit *c, int *whole, struct border 
 
 enum dalcs_status dalcs_capacitive_parts_note(const struct dalcs_circuit *c,
                                               struct dalcs_diag *diag) {
-    if (!c->operating_point && (!c->transient.present || c->transient.use_initial_conditions)) {
+    if (!c->analyses.operating_point &&
+        (!c->analyses.transient.present || c->analyses.transient.use_initial_conditions)) {
         return DALCS_OK;
     }
     int *whole = dalcs_alloc((size_t)c->n_nodes, sizeof(*whole));

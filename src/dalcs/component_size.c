@@ -17,9 +17,9 @@ static double conductance_of(const struct dalcs_circuit *c, const struct dalcs_d
     case DALCS_RESISTOR:
         return d->value == 0.0 ? 0.0 : 1.0 / fabs(d->value);
     case DALCS_DIODE:
-        return 1.0 / c->diode_model[d->model].roff;
+        return 1.0 / c->models.of_diode[d->model].roff;
     case DALCS_SWITCH:
-        return 1.0 / c->switch_model[d->model].roff;
+        return 1.0 / c->models.of_switch[d->model].roff;
     default:
         return 0.0;
     }
@@ -75,7 +75,7 @@ static void count_device(struct stamps *b, int device) {
         s->n_z++;
         break;
     case DALCS_DIODE:
-        s->n_pairs += isfinite(l->circuit->diode_model[d->model].vrev) ? 2 : 1;
+        s->n_pairs += isfinite(l->circuit->models.of_diode[d->model].vrev) ? 2 : 1;
         break;
     case DALCS_SWITCH:
         s->n_pairs++;

@@ -66,8 +66,8 @@ static void add_diode(struct reduction *r, const struct dalcs_device *d, const c
                       double threshold) {
     struct dalcs_device *copy = add(r, d);
     copy->name = name;
-    copy->model = r->to->n_diode_models;
-    r->to->diode_model[r->to->n_diode_models++] = (struct dalcs_diode_model){
+    copy->model = r->to->models.n_diodes;
+    r->to->models.of_diode[r->to->models.n_diodes++] = (struct dalcs_diode_model){
         .name = name, .roff = INFINITY, .vfwd = threshold, .vrev = INFINITY};
 }
 
@@ -95,12 +95,12 @@ static enum dalcs_status reduce_to_charge(struct reduction *r, const struct dalc
         }
         break;
     case DALCS_SWITCH:
-        if (r->from->switch_model[d->model].ron == 0.0) {
+        if (r->from->models.of_switch[d->model].ron == 0.0) {
             add(r, d);
         }
         break;
     case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &r->from->diode_model[d->model];
+        const struct dalcs_diode_model *m = &r->from->models.of_diode[d->model];
         if (m->ron == 0.0) {
             add_diode(r, d, d->name, m->vfwd);
         }
@@ -145,14 +145,14 @@ static void reduce_to_flux(struct reduction *r, const struct dalcs_device *d) {
         }
         break;
     case DALCS_SWITCH:
-        if (isfinite(r->from->switch_model[d->model].roff)) {
+        if (isfinite(r->from->models.of_switch[d->model].roff)) {
             add_short(r, d);
         } else {
             add(r, d);
         }
         break;
     case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &r->from->diode_model[d->model];
+        const struct dalcs_diode_model *m = &r->from->models.of_diode[d->model];
         if (isfinite(m->roff) || isfinite(m->vrev)) {
             add_short(r, d);
         } else {
@@ -173,9 +173,9 @@ static void let_go_of_controls(struct dalcs_circuit *to) {
             to->device[i].control = -1;
         }
     }
-    for (int k = 0; k < to->n_switch_models; k++) {
-        to->switch_model[k].ron = 0.0;
-        to->switch_model[k].roff = INFINITY;
+    for (int k = 0; k < to->models.n_switches; k++) {
+        to->models.of_switch[k].ron = 0.0;
+        to->models.of_switch[k].roff = INFINITY;
     }
 }
 
@@ -198,8 +198,10 @@ static void add_signals(struct dalcs_circuit *to, enum dalcs_impulse_kind kind) 
                                              .name = d->name,
                                              .node = {d->node[0], d->node[1]},
                                              .device = -1};
-        to->signal[to->n_signals++] = kind == DALCS_IMPULSE_CHARGE ? current : voltage;
-        to->signal[to->n_signals++] = kind == DALCS_IMPULSE_CHARGE ? voltage : current;
+        to->results.signal[to->results.n_signals++] =
+            kind == DALCS_IMPULSE_CHARGE ? current : voltage;
+        to->results.signal[to->results.n_signals++] =
+            kind == DALCS_IMPULSE_CHARGE ? voltage : current;
     }
 }
 
@@ -223,15 +225,15 @@ static enum dalcs_status reduce(struct reduction *r) {
                                  .node_name = from->node_name,
                                  .n_stimuli = from->n_stimuli,
                                  .stimulus = from->stimulus,
-                                 .n_switch_models = from->n_switch_models};
+                                 .models.n_switches = from->models.n_switches};
     to->device = dalcs_arena_alloc(&to->arena, 2 * n, sizeof(*to->device));
-    to->diode_model = dalcs_arena_alloc(&to->arena, 2 * n, sizeof(*to->diode_model));
-    to->switch_model =
-        dalcs_arena_alloc(&to->arena, (size_t)from->n_switch_models, sizeof(*to->switch_model));
+    to->models.of_diode = dalcs_arena_alloc(&to->arena, 2 * n, sizeof(*to->models.of_diode));
+    to->models.of_switch = dalcs_arena_alloc(&to->arena, (size_t)from->models.n_switches,
+                                             sizeof(*to->models.of_switch));
     to->coupling = dalcs_arena_alloc(&to->arena, (size_t)from->n_couplings, sizeof(*to->coupling));
-    to->signal = dalcs_arena_alloc(&to->arena, 2 * n, sizeof(*to->signal));
-    if (to->device == NULL || to->diode_model == NULL || to->switch_model == NULL ||
-        to->coupling == NULL || to->signal == NULL) {
+    to->results.signal = dalcs_arena_alloc(&to->arena, 2 * n, sizeof(*to->results.signal));
+    if (to->device == NULL || to->models.of_diode == NULL || to->models.of_switch == NULL ||
+        to->coupling == NULL || to->results.signal == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int i = 0; i < from->n_devices; i++) {

@@ -56,14 +56,14 @@ static enum dalcs_status node_probe(struct dalcs_network *network, const struct 
 enum dalcs_status dalcs_network_build_outputs(struct dalcs_network *network,
                                               const struct dalcs_layout *l) {
     const struct dalcs_circuit *c = l->circuit;
-    network->n_outputs = c->n_signals;
+    network->n_outputs = c->results.n_signals;
     network->output =
-        dalcs_arena_alloc(&network->arena, (size_t)c->n_signals, sizeof(*network->output));
+        dalcs_arena_alloc(&network->arena, (size_t)c->results.n_signals, sizeof(*network->output));
     if (network->output == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int i = 0; i < c->n_signals; i++) {
-        const struct dalcs_signal *signal = &c->signal[i];
+    for (int i = 0; i < c->results.n_signals; i++) {
+        const struct dalcs_signal *signal = &c->results.signal[i];
         struct dalcs_output *out = &network->output[i];
         out->name = signal->name;
         out->is_current = signal->kind == DALCS_SIGNAL_CURRENT;

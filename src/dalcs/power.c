@@ -104,7 +104,7 @@ static void put_controlled_source(const struct dalcs_layout *l, struct terms *t,
 static void put_diode(const struct dalcs_layout *l, struct terms *t, const struct dalcs_system *s,
                       int device) {
     const struct dalcs_device *d = &l->circuit->device[device];
-    const struct dalcs_diode_model *m = &l->circuit->diode_model[d->model];
+    const struct dalcs_diode_model *m = &l->circuit->models.of_diode[d->model];
     put_pair(t, s, l->pair[device], DALCS_POWER_DIODES, m->vfwd, m->ron);
     if (isfinite(m->vrev)) {
         put_pair(t, s, l->pair[device] + 1, DALCS_POWER_DIODES, m->vrev, m->rrev);
@@ -115,7 +115,7 @@ static void put_diode(const struct dalcs_layout *l, struct terms *t, const struc
 static void put_switch(const struct dalcs_layout *l, struct terms *t, const struct dalcs_system *s,
                        int device) {
     const struct dalcs_device *d = &l->circuit->device[device];
-    const struct dalcs_switch_model *m = &l->circuit->switch_model[d->model];
+    const struct dalcs_switch_model *m = &l->circuit->models.of_switch[d->model];
     put_pair(t, s, l->pair[device], DALCS_POWER_RESISTORS, 0.0,
              dalcs_stamp_series_part(m->ron, m->roff));
     put_resistance(l, t, d, m->roff);

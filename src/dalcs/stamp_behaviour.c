@@ -135,7 +135,7 @@ static enum dalcs_status stamp_smooth(struct stamps *b, int device) {
     const int input = b->next_input++;
     const char *name = l->circuit->device[device].name;
     l->input[device] = input;
-    s->stimulus[input] = l->circuit->smooth_stimulus;
+    s->stimulus[input] = l->circuit->control.smooth_stimulus;
     s->input_element[input] = name;
     struct dalcs_smooth_input *of = &s->smooth[s->n_smooth++];
     *of = (struct dalcs_smooth_input){.input = input,

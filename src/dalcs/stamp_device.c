@@ -233,7 +233,7 @@ static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, do
 static enum dalcs_status stamp_diode(struct stamps *b, int device) {
     const struct dalcs_circuit *c = b->layout->circuit;
     const struct dalcs_device *d = &c->device[device];
-    const struct dalcs_diode_model *m = &c->diode_model[d->model];
+    const struct dalcs_diode_model *m = &c->models.of_diode[d->model];
     b->layout->pair[device] = b->next_pair;
     struct dalcs_pair pair = {.kind = DALCS_PAIR_DIODE, .element = d->name};
     DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd, m->ron, pair));
@@ -258,7 +258,7 @@ double dalcs_stamp_control_sign(const struct dalcs_switch_model *m) {
 static enum dalcs_status stamp_switch(struct stamps *b, int device) {
     const struct dalcs_circuit *c = b->layout->circuit;
     const struct dalcs_device *d = &c->device[device];
-    const struct dalcs_switch_model *m = &c->switch_model[d->model];
+    const struct dalcs_switch_model *m = &c->models.of_switch[d->model];
     struct dalcs_pair pair = {.kind = DALCS_PAIR_SWITCH,
                               .element = d->name,
                               .initially_on = d->initially_on,

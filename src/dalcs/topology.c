@@ -24,7 +24,8 @@ static void note_terminal(void *to, const struct dalcs_affine_term *term) {
         return;
     }
     r->found = term->index == r->device->node[0] || term->index == r->device->node[1];
-    for (int i = 0; r->circuit->n_smooth > 0 && i < r->circuit->n_devices && !r->found; i++) {
+    for (int i = 0; r->circuit->control.n_smooth > 0 && i < r->circuit->n_devices && !r->found;
+         i++) {
         const struct dalcs_device *part = &r->circuit->device[i];
         if (part->behaviour != NULL && part->behaviour->is_part && part->node[0] == term->index) {
             dalcs_behaviour_visit(part->behaviour, note_terminal, r);
@@ -78,7 +79,7 @@ static void join_term(void *to, const struct dalcs_affine_term *term) {
 }
 
 static void join_all(const struct dalcs_circuit *c, int *parent) {
-    for (int i = 1; i < c->n_devices && c->is_whole; i++) {
+    for (int i = 1; i < c->n_devices && c->control.is_whole; i++) {
         dalcs_union_join(parent, c->n_nodes, c->n_nodes + i);
     }
 }

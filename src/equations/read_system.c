@@ -143,11 +143,13 @@ static enum dalcs_status finish_circuit(struct dalcs_reading *r) {
     const struct dalcs_network *n = &r->description->network;
     c->stimulus = dalcs_arena_alloc(&c->arena, r->n_inputs, sizeof *c->stimulus);
     c->node_name = dalcs_arena_alloc(&c->arena, 1, sizeof *c->node_name);
-    c->signal = dalcs_arena_alloc(&c->arena, (size_t)n->n_outputs, sizeof *c->signal);
+    c->results.signal =
+        dalcs_arena_alloc(&c->arena, (size_t)n->n_outputs, sizeof *c->results.signal);
     const char *title = r->builder.netlist->title + sizeof MAGIC - 1;
     title += strspn(title, " \t");
     c->title = dalcs_arena_copy(&c->arena, title, strlen(title));
-    if (c->stimulus == NULL || c->node_name == NULL || c->signal == NULL || c->title == NULL) {
+    if (c->stimulus == NULL || c->node_name == NULL || c->results.signal == NULL ||
+        c->title == NULL) {
         return DALCS_E_NOMEM;
     }
     c->node_name[0] = "0";
@@ -156,9 +158,9 @@ static enum dalcs_status finish_circuit(struct dalcs_reading *r) {
     }
     c->n_stimuli = (int)r->n_inputs;
     for (int k = 0; k < n->n_outputs; k++) {
-        c->signal[k] = (struct dalcs_signal){.name = n->output[k].name, .device = -1};
+        c->results.signal[k] = (struct dalcs_signal){.name = n->output[k].name, .device = -1};
     }
-    c->n_signals = n->n_outputs;
+    c->results.n_signals = n->n_outputs;
     for (size_t k = 0; k < r->n_inputs; k++) {
         dalcs_stimulus_check(&r->builder, r->input_token[k], &c->stimulus[k]);
     }
@@ -167,7 +169,7 @@ static enum dalcs_status finish_circuit(struct dalcs_reading *r) {
 
 /* Values of states are where the run starts: there is no operating point to start from then. */
 static void start_from_values(struct dalcs_reading *r, bool has_values) {
-    struct dalcs_transient *t = &r->description->circuit.transient;
+    struct dalcs_transient *t = &r->description->circuit.analyses.transient;
     t->use_initial_conditions = t->use_initial_conditions || has_values;
 }
 

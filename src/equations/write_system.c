@@ -172,8 +172,8 @@ static void put_network(struct dalcs_card_writer *w, const char *name,
 /* ---- What is asked for ---------------------------------------------------------------------- */
 
 static void put_analyses(struct dalcs_card_writer *w, const struct dalcs_circuit *c) {
-    const struct dalcs_transient *t = &c->transient;
-    if (c->operating_point) {
+    const struct dalcs_transient *t = &c->analyses.transient;
+    if (c->analyses.operating_point) {
         dalcs_card_begin(w, ".op");
         dalcs_card_end(w);
     }
@@ -260,7 +260,8 @@ static void put_head(struct dalcs_card_writer *w, const struct dalcs_equations *
 static void put_all(struct dalcs_card_writer *w, const struct dalcs_equations *e) {
     const struct dalcs_network *n = e->network;
     put_head(w, e);
-    put_network(w, "main", n, e->circuit->transient.use_initial_conditions, e->jumps_are_covered);
+    put_network(w, "main", n, e->circuit->analyses.transient.use_initial_conditions,
+                e->jumps_are_covered);
     static const char *const name[] = {
         [DALCS_IMPULSE_CHARGE] = "charge", [DALCS_IMPULSE_FLUX] = "flux"};
     for (int kind = 0; kind < DALCS_N_IMPULSES; kind++) {

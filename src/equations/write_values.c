@@ -25,7 +25,7 @@ static bool put_sources(struct dalcs_text_writer *w, bool begun) {
     for (int i = 0; i < c->n_stimuli; i++) {
         const struct dalcs_stimulus *stimulus = &c->stimulus[i];
         const char *name = input_of(w->e->network, i);
-        if (name == NULL || (c->n_smooth > 0 && i == c->smooth_stimulus)) {
+        if (name == NULL || (c->control.n_smooth > 0 && i == c->control.smooth_stimulus)) {
             continue;
         }
         begun = begin_values(w, begun);

@@ -104,7 +104,7 @@ static enum dalcs_status find(struct dalcs_bystanders *b, const struct dalcs_cir
         }
     }
     /* what delayed sources read, whatever it is, has to be known at the nodes of steps */
-    if (b->n == 0 || b->n > MOST_BYSTANDERS || circuit->n_delayed > 0) {
+    if (b->n == 0 || b->n > MOST_BYSTANDERS || circuit->control.n_delayed > 0) {
         return DALCS_SINGULAR;
     }
     for (int r = 0; r < n_equations; r++) {

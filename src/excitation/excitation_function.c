@@ -48,7 +48,7 @@ double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, d
 /* What it adds at the test node. */
 static double next_derivative(const struct dalcs_excitation_function *f,
                               const struct dalcs_collocation *method, double h) {
-    double derivative = method->test_size;
+    double derivative = method->worst.size;
     double rate = hypot(f->decay, f->omega) * h;
     for (int k = 0; k <= method->s; k++) {
         derivative *= rate / (k + 1);
@@ -66,11 +66,11 @@ double dalcs_excitation_missed(const struct dalcs_excitation_function *f,
     if (f->shape == DALCS_EXCITATION_BETWEEN) {
         return 1.0;
     }
-    double missed = dalcs_excitation_function_at(f, h, method->test_node);
+    double missed = dalcs_excitation_function_at(f, h, method->worst.node);
     double size = fabs(missed);
     for (int k = 0; k <= method->s; k++) {
-        missed -= method->test[k] * value[k];
-        size += fabs(method->test[k] * value[k]);
+        missed -= method->worst.value[k] * value[k];
+        size += fabs(method->worst.value[k] * value[k]);
     }
     return fabs(missed) > dalcs_rounded * size ? missed : next_derivative(f, method, h);
 }

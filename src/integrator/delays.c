@@ -7,8 +7,8 @@
 #include "recurrence.h"
 
 void dalcs_delays_setup(struct dalcs_radau *r, const struct dalcs_circuit *circuit) {
-    for (int k = 0; k < circuit->n_delayed; k++) {
-        struct dalcs_history *history = circuit->delayed[k].history;
+    for (int k = 0; k < circuit->control.n_delayed; k++) {
+        struct dalcs_history *history = circuit->control.delayed[k].history;
         dalcs_history_start(history, 0.0);
         history->tolerance = r->inner_tolerance;
     }
@@ -44,13 +44,13 @@ static void add_probe(const struct dalcs_radau_part *part, const struct dalcs_pr
 enum dalcs_status dalcs_delays_note(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     const struct dalcs_circuit *circuit = part->component->circuit;
     const struct dalcs_collocation *method = part->stages.method;
-    if (circuit->n_delayed > 0) {
+    if (circuit->control.n_delayed > 0) {
         dalcs_recurrence_complete(part);
     }
-    for (int k = 0; k < circuit->n_delayed; k++) {
-        const struct dalcs_delayed *delayed = &circuit->delayed[k];
+    for (int k = 0; k < circuit->control.n_delayed; k++) {
+        const struct dalcs_delayed *delayed = &circuit->control.delayed[k];
         const struct dalcs_output *output =
-            &r->base->network->output[circuit->measured[delayed->signal]];
+            &r->base->network->output[circuit->results.measured[delayed->signal]];
         struct dalcs_history_piece piece = {
             .t = part->segment.t, .h = part->segment.h, .end = part->segment.t_end};
         delayed->history->degree = method->s;

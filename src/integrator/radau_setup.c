@@ -33,7 +33,7 @@ static double inner_tolerance_of(double tolerance) {
 }
 
 static bool has_memory_or_sides(const struct dalcs_circuit *c, const struct dalcs_system *s) {
-    return s->n_x > 0 || s->n_pairs > 0 || c->n_delayed > 0;
+    return s->n_x > 0 || s->n_pairs > 0 || c->control.n_delayed > 0;
 }
 
 /* Inputs that probes of this system read. */
@@ -145,7 +145,7 @@ static double fit_rung(double promising) {
 
 /* What gates do, what comes from outside, and what was before, is not known to recur. */
 static bool is_known(const struct dalcs_circuit *c) {
-    return c->n_gates == 0 && c->n_externals == 0 && c->n_delayed == 0;
+    return c->control.n_gates == 0 && c->control.n_externals == 0 && c->control.n_delayed == 0;
 }
 
 /* Steps with smooth sources are no maps of their states. */
@@ -225,7 +225,7 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
         r->part[k].index = k;
         status = part_setup(r, &r->part[k], osnsp);
     }
-    const bool may_leap = is_known(base->circuit) && base->circuit->n_smooth == 0;
+    const bool may_leap = is_known(base->circuit) && base->circuit->control.n_smooth == 0;
     status = status == DALCS_OK && may_leap ? dalcs_cycle_setup(r) : status;
     if (status != DALCS_OK) {
         dalcs_radau_finish(r);

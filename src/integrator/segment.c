@@ -57,7 +57,8 @@ static bool is_commutation(const struct dalcs_radau_part *part) {
 
 static double step_to_try(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                           double limit) {
-    if (part->component->circuit->n_delayed > 0) { /* nothing is known of their sources beyond */
+    if (part->component->circuit->control.n_delayed >
+        0) { /* nothing is known of their sources beyond */
         return dalcs_smaller(dalcs_radau_ladder(part, part->length.level), limit - part->segment.t);
     }
     return is_at_command(part) && limit < r->options.stop

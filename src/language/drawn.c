@@ -29,13 +29,13 @@ static void read_seed(const struct dalcs_card *card, uint64_t *seed) {
 void dalcs_drawn_start(struct dalcs_language *language) {
     const struct dalcs_netlist *netlist = language->netlist;
     const struct dalcs_deck *deck = language->deck;
-    language->drawing.seed = netlist->has_seed ? netlist->seed : USUAL_SEED;
+    language->drawing.seed = netlist->asks.has_seed ? netlist->asks.seed : USUAL_SEED;
     language->drawing.run = 1;
     for (size_t k = 0; k < netlist->n_cards; k++) {
         const struct dalcs_card *card = &netlist->card[k];
         const bool is_mc = is_word(card, 0, ".mc");
-        if (!netlist->has_seed && (is_mc || is_word(card, 0, ".options") ||
-                                   is_word(card, 0, ".option") || is_word(card, 0, ".opt"))) {
+        if (!netlist->asks.has_seed && (is_mc || is_word(card, 0, ".options") ||
+                                        is_word(card, 0, ".option") || is_word(card, 0, ".opt"))) {
             read_seed(card, &language->drawing.seed);
         }
         const bool is_worst = is_word(card, 0, ".wcase") || is_word(card, 0, ".wc");

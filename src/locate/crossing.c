@@ -38,8 +38,8 @@ static void weigh(const struct dalcs_collocation *c, const double *coefficient,
     p->n = c->s + 1;
     p->value[0] = coefficient[0];
     for (int i = 0; i < c->s; i++) {
-        p->value[i + 1] = c->binomial[i + 1] * coefficient[i + 1];
-        p->slope[i] = c->binomial[i] * (c->s - i) * (coefficient[i + 1] - coefficient[i]);
+        p->value[i + 1] = c->bernstein.binomial[i + 1] * coefficient[i + 1];
+        p->slope[i] = c->bernstein.binomial[i] * (c->s - i) * (coefficient[i + 1] - coefficient[i]);
     }
 }
 
@@ -193,7 +193,7 @@ DALCS_TWICE(void, find_coefficients,
     for (int k = 0; k <= c->s; k++) {
         for (int i = 0; i < DALCS_MAX_NODES / DALCS_QUAD; i++) {
             dalcs_quad of_node;
-            dalcs_quad_load(&of_node, c->to_bernstein[k] + i * DALCS_QUAD);
+            dalcs_quad_load(&of_node, c->bernstein.from_nodes[k] + i * DALCS_QUAD);
             sum[i] += value[k * stride] * of_node;
         }
     }
@@ -206,7 +206,7 @@ static double rounding_of(const struct dalcs_collocation *c, const double *value
     for (int k = 0; k <= c->s; k++) {
         largest = dalcs_larger(largest, fabs(value[k * stride]));
     }
-    return dalcs_rounded * (1.0 + c->bernstein_spread) * largest;
+    return dalcs_rounded * (1.0 + c->bernstein.spread) * largest;
 }
 
 /* The largest coefficient above 0, which the polynomial does not exceed. */

@@ -50,7 +50,7 @@ static int count_due(const struct dalcs_logic_gate *g, double period) {
 
 enum dalcs_status dalcs_logic_memory_setup(struct dalcs_logic_memory *m, struct dalcs_arena *arena,
                                            const struct dalcs_circuit *circuit, double period) {
-    const size_t n = (size_t)circuit->n_gates;
+    const size_t n = (size_t)circuit->control.n_gates;
     *m = (struct dalcs_logic_memory){.circuit = circuit};
     m->pin = dalcs_arena_alloc(arena, 2 * n + 1, sizeof *m->pin);
     m->taken = dalcs_arena_alloc(arena, n + 1, sizeof *m->taken);
@@ -58,8 +58,8 @@ enum dalcs_status dalcs_logic_memory_setup(struct dalcs_logic_memory *m, struct 
     if (m->pin == NULL || m->taken == NULL || m->pulse == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int k = 0; k < circuit->n_gates; k++) {
-        const struct dalcs_logic_gate *g = &circuit->gate[k];
+    for (int k = 0; k < circuit->control.n_gates; k++) {
+        const struct dalcs_logic_gate *g = &circuit->control.gate[k];
         for (int which = 0; which < 2; which++) {
             if (g->output[which] >= 0) {
                 const bool holds = g->kind == DALCS_GATE_SAMPLE && which == 0;
@@ -75,7 +75,7 @@ enum dalcs_status dalcs_logic_memory_setup(struct dalcs_logic_memory *m, struct 
         m->n_due += count_due(g, period);
     }
     m->n_numbers = m->n_pins + m->n_taken + m->n_pulses + m->n_due;
-    m->n_bits = BITS * circuit->n_gates;
+    m->n_bits = BITS * circuit->control.n_gates;
     return DALCS_OK;
 }
 

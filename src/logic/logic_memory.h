@@ -41,7 +41,7 @@ static inline const struct dalcs_output *
 dalcs_logic_read_by(const struct dalcs_logic_memory *memory, const struct dalcs_network *network,
                     int k) {
     const struct dalcs_circuit *c = memory->circuit;
-    return &network->output[c->measured[c->gate[memory->taken[k]].sampled]];
+    return &network->output[c->results.measured[c->control.gate[memory->taken[k]].sampled]];
 }
 
 /* period: s, over which changes come back. */

@@ -29,8 +29,9 @@ enum dalcs_status dalcs_logic_find_comparators(const struct dalcs_circuit *circu
     struct dalcs_names names = {0};
     struct dalcs_logic_place *all = NULL;
     enum dalcs_status status = list_switches(euler, &names, &all);
-    for (int k = 0; k < circuit->n_comparators && status == DALCS_OK; k++) {
-        const int at = dalcs_names_find(&names, circuit->device[circuit->comparator[k]].name);
+    for (int k = 0; k < circuit->control.n_comparators && status == DALCS_OK; k++) {
+        const int at =
+            dalcs_names_find(&names, circuit->device[circuit->control.comparator[k]].name);
         status = at >= 0 ? DALCS_OK : DALCS_E_INTERNAL;
         place[k] = at >= 0 ? all[at] : (struct dalcs_logic_place){0};
     }
@@ -40,8 +41,8 @@ enum dalcs_status dalcs_logic_find_comparators(const struct dalcs_circuit *circu
 }
 
 static enum dalcs_status allocate(struct dalcs_logic_run *l) {
-    const size_t n = (size_t)l->circuit->n_gates;
-    const size_t n_comparators = (size_t)l->circuit->n_comparators;
+    const size_t n = (size_t)l->circuit->control.n_gates;
+    const size_t n_comparators = (size_t)l->circuit->control.n_comparators;
     const size_t n_stimuli = (size_t)l->circuit->n_stimuli;
     l->bit = dalcs_alloc(n_comparators + 1, sizeof(*l->bit));
     l->change = dalcs_alloc(n_comparators + 1, sizeof(*l->change));
@@ -67,7 +68,7 @@ static enum dalcs_status allocate(struct dalcs_logic_run *l) {
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
                                         struct dalcs_euler *euler, struct dalcs_radau *radau) {
     *l = (struct dalcs_logic_run){.euler = euler, .radau = radau};
-    if (circuit->n_gates == 0 && circuit->n_externals == 0) {
+    if (circuit->control.n_gates == 0 && circuit->control.n_externals == 0) {
         return DALCS_OK;
     }
     l->circuit = circuit;
@@ -75,20 +76,20 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
         radau->decider =
             (struct dalcs_radau_decider){.user = l, .decide = dalcs_logic_decide_early};
     }
-    l->n_comparators = circuit->n_comparators;
-    l->network.n = circuit->n_gates;
-    l->network.gate = circuit->gate;
+    l->n_comparators = circuit->control.n_comparators;
+    l->network.n = circuit->control.n_gates;
+    l->network.gate = circuit->control.gate;
     enum dalcs_status status = allocate(l);
     status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, euler, l->place) : status;
     for (int k = 0; k < l->network.n && status == DALCS_OK; k++) {
         struct dalcs_logic_state *state = &l->network.state[k];
-        state->q = state->seen = circuit->gate[k].initial;
-        state->count = circuit->gate[k].first;
+        state->q = state->seen = circuit->control.gate[k].initial;
+        state->count = circuit->control.gate[k].first;
         l->output[k].ends = INFINITY;
-        if (circuit->gate[k].sampled >= 0) {
+        if (circuit->control.gate[k].sampled >= 0) {
             l->sample[l->n_samples++] = k;
         }
-        if (circuit->gate[k].kind == DALCS_GATE_MONOSTABLE) {
+        if (circuit->control.gate[k].kind == DALCS_GATE_MONOSTABLE) {
             l->pulse[l->n_pulses++] = k;
         }
     }

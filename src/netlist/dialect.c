@@ -182,7 +182,7 @@ static void judge(struct dalcs_netlist *netlist, const struct signs *signs,
 void dalcs_dialect_settle(struct dalcs_netlist *netlist, struct dalcs_diag *diag) {
     const struct dalcs_token *told = NULL;
     struct signs signs = {NULL, NULL, NULL};
-    const bool looks = !netlist->dialect.is_told && netlist->n_script_lines == 0;
+    const bool looks = !netlist->dialect.is_told && netlist->commands.n == 0;
     for (size_t k = 0; k < netlist->n_cards; k++) {
         const struct dalcs_card *card = &netlist->card[k];
         const struct dalcs_token *name = is_options(card) ? find_told(card) : NULL;

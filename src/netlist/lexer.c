@@ -279,12 +279,9 @@ static enum dalcs_status continue_card(struct dalcs_lexer *lexer, size_t plus, s
 
 /* A line of .control ... .endc, kept for the script. */
 static enum dalcs_status add_script_line(struct dalcs_lexer *lexer, size_t begin) {
-    struct dalcs_netlist *netlist = lexer->netlist;
-    DALCS_TRY(dalcs_grow(&netlist->script, &netlist->script_capacity, netlist->n_script_lines + 1,
-                         sizeof *netlist->script));
-    netlist->script[netlist->n_script_lines++] = (struct dalcs_source_line){
+    const struct dalcs_source_line line = {
         .source = lexer->source, .text = lexer->raw + begin, .number = lexer->line_number};
-    return DALCS_OK;
+    return dalcs_source_lines_add(&lexer->netlist->commands, line);
 }
 
 enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin, size_t end) {

@@ -260,8 +260,8 @@ enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const c
 
 void dalcs_netlist_finish(struct dalcs_netlist *netlist) {
     free(netlist->card);
-    free(netlist->script);
-    free(netlist->second);
+    free(netlist->commands.line);
+    free(netlist->later.line);
     dalcs_arena_finish(&netlist->arena);
     *netlist = (struct dalcs_netlist){0};
 }
@@ -341,4 +341,11 @@ struct dalcs_location dalcs_token_end(const struct dalcs_token *token) {
 
 bool dalcs_token_is_word(const struct dalcs_token *token, const char *word) {
     return token->kind == DALCS_TOKEN_WORD && strcmp(token->text, word) == 0;
+}
+
+enum dalcs_status dalcs_source_lines_add(struct dalcs_source_lines *lines,
+                                         struct dalcs_source_line line) {
+    DALCS_TRY(dalcs_grow(&lines->line, &lines->capacity, lines->n + 1, sizeof *lines->line));
+    lines->line[lines->n++] = line;
+    return DALCS_OK;
 }

@@ -80,19 +80,30 @@ struct dalcs_losses_request {
 };
 
 /* Zero-initialise, set what stands before `name` if wanted, read, then finish. */
+/* What a caller asks beside what the netlist says. */
+struct dalcs_asks {
+    struct dalcs_losses_request losses;
+    bool steady;        /* the steady state, so that the netlist needs no analysis of its own, */
+    bool response;      /* the response around it, */
+    bool sensitivities; /* or how it depends on values */
+    bool has_seed;      /* the next is told, whatever .options seed= says */
+    uint64_t seed;      /* of random values */
+    const char *transient, *transient_stop; /* in place of the netlist's .tran, or NULL; borrowed */
+};
+
+struct dalcs_source_lines {
+    struct dalcs_source_line *line; /* [n] heap */
+    size_t n, capacity;
+};
+
+enum dalcs_status dalcs_source_lines_add(struct dalcs_source_lines *lines,
+                                         struct dalcs_source_line line) DALCS_MUST_CHECK;
+
 struct dalcs_netlist {
     bool no_includes;             /* refuse .include and .lib: no other file is read */
     size_t most_cards;            /* that subcircuit calls may expand to; 0: DALCS_MOST_CARDS */
     struct dalcs_dialect dialect; /* once it is read: what it is written in */
-    struct dalcs_losses_request losses;
-    bool
-        asks_steady; /* the caller computes a steady state, so the netlist needs no analysis of its own */
-    bool asks_response;      /* and the response around it */
-    bool asks_sensitivities; /* or how it depends on values */
-    bool has_seed;           /* the next is told, whatever .options seed= says */
-    uint64_t seed;           /* of random values */
-    const char *transient,
-        *transient_stop; /* what .tran has in place of the netlist's, or NULL; borrowed */
+    struct dalcs_asks asks;
 
     const char *name; /* the file's path, or what read_text was told */
     const char *title;
@@ -100,10 +111,8 @@ struct dalcs_netlist {
     struct dalcs_card *card;
     size_t n_cards;
     size_t capacity;
-    struct dalcs_source_line *script; /* the lines between .control and .endc, as written */
-    size_t n_script_lines, script_capacity;
-    struct dalcs_source_line *second; /* analyses of a kind that was there before, as commands */
-    size_t n_second, second_capacity;
+    struct dalcs_source_lines commands; /* the lines between .control and .endc, as written */
+    struct dalcs_source_lines later;    /* analyses of a kind that was there before, as commands */
     bool has_errors;  /* of spelling: a circuit cannot be built, but may be looked at for more */
     bool misses_file; /* one that it includes could not be read: much may be undefined */
     const char *missing_library; /* the last one that is left out because it is not here; or NULL */

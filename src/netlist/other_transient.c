@@ -22,7 +22,7 @@ static struct dalcs_source_line *make_line(struct dalcs_netlist *netlist, const 
 
 /* The one card for all that there are, between .if and .endif, too. */
 static enum dalcs_status replace_all(struct dalcs_netlist *netlist, struct dalcs_diag *diag) {
-    const char *times = netlist->transient;
+    const char *times = netlist->asks.transient;
     size_t n = 0;
     for (size_t k = 0; k < netlist->n_cards; k++) {
         if (!is_transient(&netlist->card[k])) {
@@ -59,7 +59,7 @@ static enum dalcs_status replace_stop(struct dalcs_netlist *netlist, struct dalc
 }
 
 static enum dalcs_status replace_stops(struct dalcs_netlist *netlist, struct dalcs_diag *diag) {
-    const char *text = netlist->transient_stop;
+    const char *text = netlist->asks.transient_stop;
     const struct dalcs_source_line *line = make_line(netlist, "--tstop", text);
     if (line == NULL) {
         return DALCS_E_NOMEM;
@@ -85,8 +85,8 @@ static enum dalcs_status replace_stops(struct dalcs_netlist *netlist, struct dal
 }
 
 enum dalcs_status dalcs_other_transient(struct dalcs_netlist *netlist, struct dalcs_diag *diag) {
-    if (netlist->transient != NULL) {
+    if (netlist->asks.transient != NULL) {
         DALCS_TRY(replace_all(netlist, diag));
     }
-    return netlist->transient_stop != NULL ? replace_stops(netlist, diag) : DALCS_OK;
+    return netlist->asks.transient_stop != NULL ? replace_stops(netlist, diag) : DALCS_OK;
 }

@@ -16,12 +16,13 @@ static int kind_of(const struct dalcs_card *card) {
     return -1;
 }
 
-static enum dalcs_status add_line(struct dalcs_source_line **lines, size_t *n, size_t *capacity,
-                                  const struct dalcs_token *place, const char *text) {
-    DALCS_TRY(dalcs_grow(lines, capacity, *n + 1, sizeof **lines));
-    (*lines)[(*n)++] = (struct dalcs_source_line){
-        .source = place->line->source, .text = text, .number = place->line->number};
-    return DALCS_OK;
+/* At the card's place. */
+static enum dalcs_status add_command(struct dalcs_source_lines *lines,
+                                     const struct dalcs_card *card, const char *text) {
+    const struct dalcs_source_line *at = card->token->line;
+    return dalcs_source_lines_add(
+        lines,
+        (struct dalcs_source_line){.source = at->source, .text = text, .number = at->number});
 }
 
 /* The card as a command: "tran 1m {2*t}". NULL: out of memory. */
@@ -66,11 +67,9 @@ enum dalcs_status dalcs_second_analyses(struct dalcs_netlist *netlist, struct da
         if (text == NULL) {
             return DALCS_E_NOMEM;
         }
-        DALCS_TRY(add_line(&netlist->second, &netlist->n_second, &netlist->second_capacity,
-                           card->token, text));
-        if (netlist->n_script_lines == 0) {
-            DALCS_TRY(add_line(&netlist->script, &netlist->n_script_lines,
-                               &netlist->script_capacity, card->token, "run"));
+        DALCS_TRY(add_command(&netlist->later, card, text));
+        if (netlist->commands.n == 0) {
+            DALCS_TRY(add_command(&netlist->commands, card, "run"));
         }
     }
     netlist->n_cards = n;

@@ -62,7 +62,7 @@ static enum dalcs_status decided(void *user, double t, long number) {
                                                 .pulse = w->pulse};
     const enum dalcs_status status = w->seen(w->user, &instant);
     w->n_causes = w->n_pulses = 0;
-    memset(w->takes, 0, (size_t)w->memory->circuit->n_gates * sizeof *w->takes);
+    memset(w->takes, 0, (size_t)w->memory->circuit->control.n_gates * sizeof *w->takes);
     return status;
 }
 
@@ -72,7 +72,7 @@ enum dalcs_status dalcs_logic_watch_start(
     enum dalcs_status (*seen)(void *user, const struct dalcs_logic_instant *instant)) {
     *w = (struct dalcs_logic_watch){.memory = memory, .logic = logic, .user = user, .seen = seen};
     w->pin = dalcs_alloc((size_t)memory->n_pins + 1, sizeof *w->pin);
-    w->takes = dalcs_alloc((size_t)memory->circuit->n_gates + 1, sizeof *w->takes);
+    w->takes = dalcs_alloc((size_t)memory->circuit->control.n_gates + 1, sizeof *w->takes);
     if (w->pin == NULL || w->takes == NULL) {
         dalcs_logic_watch_finish(w);
         return DALCS_E_NOMEM;

@@ -83,7 +83,7 @@ enum dalcs_status dalcs_orbit_gates_note(struct dalcs_orbit_gates *g,
         const int gate = instant->pulse[k].gate;
         at->pulse[k] = instant->pulse[k];
         at->is_positive[k] =
-            g->memory->circuit->gate[gate].sampled >= 0 && g->logic->taken[gate] > 0.0;
+            g->memory->circuit->control.gate[gate].sampled >= 0 && g->logic->taken[gate] > 0.0;
     }
     find_resting(g, instant->t, at->rests);
     return DALCS_OK;

@@ -27,7 +27,7 @@ size_of(const struct dalcs_collocation *c, const double *coefficient, double par
     dalcs_quad value = {0.0};
     value += coefficient[c->s];
     for (int k = c->s - 1; k >= 0; k--) {
-        value = value * (theta - c->newton_node[k]) + coefficient[k];
+        value = value * (theta - c->differences.node[k]) + coefficient[k];
     }
     dalcs_quad_unsign(&value);
     return dalcs_quad_largest(&value);

@@ -17,7 +17,7 @@ static void make_basis(struct dalcs_row_basis *basis, const struct dalcs_colloca
             basis->fourth[k][place] = derivative[FOURTH];
             for (int order = FOURTH; order >= 0; order--) {
                 double below = order > 0 ? order * derivative[order - 1] : 0.0;
-                derivative[order] = (theta - c->newton_node[k]) * derivative[order] + below;
+                derivative[order] = (theta - c->differences.node[k]) * derivative[order] + below;
             }
         }
     }

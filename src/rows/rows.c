@@ -35,7 +35,7 @@ static inline __attribute__((always_inline)) void expand(int s, const struct dal
 #pragma GCC unroll 3
         for (int q = k / DALCS_QUAD; q <= s / DALCS_QUAD; q++) {
             dalcs_quad factor;
-            dalcs_quad_load(&factor, c->newton[k] + q * DALCS_QUAD);
+            dalcs_quad_load(&factor, c->differences.coefficient[k] + q * DALCS_QUAD);
             sum[q] += factor * difference;
         }
     }
@@ -62,7 +62,7 @@ DALCS_TWICE(void, add_polynomial,
         dalcs_four value = {0.0};
         value += coefficient[c->s];
         for (int k = c->s - 1; k >= 0; k--) {
-            value = value * (theta->group[g] - c->newton_node[k]) + coefficient[k];
+            value = value * (theta->group[g] - c->differences.node[k]) + coefficient[k];
         }
         sum->group[g] += value;
     }

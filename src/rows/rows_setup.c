@@ -128,7 +128,7 @@ static enum dalcs_status part_setup(struct dalcs_rows_part *p, const struct dalc
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k <= part->stages.method->s; k++) {
-        p->offset[k] = part->stages.method->newton_order[k] * part->stages.layout.stride;
+        p->offset[k] = part->stages.method->differences.order[k] * part->stages.layout.stride;
     }
     return DALCS_OK;
 }

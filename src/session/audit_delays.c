@@ -37,27 +37,27 @@ enum dalcs_status dalcs_audit_delays_start(struct dalcs_audit_delays *a,
                                            struct dalcs_radau *radau,
                                            const struct dalcs_readout *readout) {
     *a = (struct dalcs_audit_delays){.circuit = circuit, .radau = radau, .readout = readout};
-    if (circuit->n_delayed == 0) {
+    if (circuit->control.n_delayed == 0) {
         return DALCS_OK;
     }
-    a->delay = dalcs_alloc((size_t)circuit->n_delayed, sizeof(*a->delay));
+    a->delay = dalcs_alloc((size_t)circuit->control.n_delayed, sizeof(*a->delay));
     if (a->delay == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int k = 0; k < circuit->n_delayed; k++) {
-        const struct dalcs_delayed *d = &circuit->delayed[k];
+    for (int k = 0; k < circuit->control.n_delayed; k++) {
+        const struct dalcs_delayed *d = &circuit->control.delayed[k];
         const int device = source_of(circuit, d->history);
-        a->delay[k] =
-            (struct audit_delay){.device = device,
-                                 .input = circuit->signal[circuit->measured[d->signal]].node[0],
-                                 .system = readout->device_system[device],
-                                 .seconds = d->history->delay};
+        a->delay[k] = (struct audit_delay){
+            .device = device,
+            .input = circuit->results.signal[circuit->results.measured[d->signal]].node[0],
+            .system = readout->device_system[device],
+            .seconds = d->history->delay};
     }
     return DALCS_OK;
 }
 
 void dalcs_audit_delays_finish(struct dalcs_audit_delays *a) {
-    for (int k = 0; a->delay != NULL && k < a->circuit->n_delayed; k++) {
+    for (int k = 0; a->delay != NULL && k < a->circuit->control.n_delayed; k++) {
         free(a->delay[k].sample);
     }
     free(a->delay);
@@ -99,7 +99,7 @@ static void compare(struct dalcs_audit_delays *a, struct dalcs_audit *audit, str
 
 enum dalcs_status dalcs_audit_delays_leave(struct dalcs_audit_delays *a, struct dalcs_audit *audit,
                                            int part, double to, bool samples, double at) {
-    for (int k = 0; a->delay != NULL && k < a->circuit->n_delayed; k++) {
+    for (int k = 0; a->delay != NULL && k < a->circuit->control.n_delayed; k++) {
         struct audit_delay *d = &a->delay[k];
         const struct dalcs_radau_part *p = &a->radau->part[part];
         if (d->system != part) {

@@ -38,7 +38,7 @@ static void read_both(const struct dalcs_audit_run *a, int part, double t) {
 /* What was told last of a device, of the first n events and not too long ago; NULL: nothing was. */
 static const struct dalcs_event *last_event(const struct dalcs_audit_run *a, const char *name,
                                             size_t n) {
-    const struct dalcs_event_log *r = &a->run->s->recorder.log;
+    const struct dalcs_event_log *r = &a->run->s->results.recorder.log;
     const size_t first = r->n_events > MOST_EVENTS ? r->n_events - MOST_EVENTS : 0;
     const struct dalcs_event *last = NULL;
     for (size_t k = n; k > first && last == NULL; k--) {
@@ -51,11 +51,11 @@ static const struct dalcs_event *last_event(const struct dalcs_audit_run *a, con
 static bool has_one_pair(const struct dalcs_audit_run *a, int device) {
     const struct dalcs_circuit *c = &a->run->s->circuit;
     const struct dalcs_device *d = &c->device[device];
-    return d->kind == DALCS_SWITCH || !isfinite(c->diode_model[d->model].vrev);
+    return d->kind == DALCS_SWITCH || !isfinite(c->models.of_diode[d->model].vrev);
 }
 
 static void check_event(const struct dalcs_audit_run *a, int device, double t) {
-    const struct dalcs_event_log *r = &a->run->s->recorder.log;
+    const struct dalcs_event_log *r = &a->run->s->results.recorder.log;
     const char *name = a->run->s->circuit.device[device].name;
     const struct dalcs_event *last = last_event(a, name, r->n_events);
     if (last == NULL) {
@@ -113,7 +113,7 @@ static const struct dalcs_jump_state *state_in(const struct dalcs_event_log *r, 
 }
 
 static void check_jump(struct dalcs_audit_run *a, size_t number, double t) {
-    const struct dalcs_event_log *r = &a->run->s->recorder.log;
+    const struct dalcs_event_log *r = &a->run->s->results.recorder.log;
     const struct dalcs_jump *jump = &r->jump[number];
     const size_t apart = 1 + (jump->n_states - 1) / MOST_STATES;
     for (size_t i = (size_t)(dalcs_audit_run_chance(a) * (double)apart); i < jump->n_states;
@@ -143,7 +143,7 @@ static void check_jump(struct dalcs_audit_run *a, size_t number, double t) {
 /* ---- At an instant -------------------------------------------------------------------------------- */
 
 void dalcs_audit_run_told_now(struct dalcs_audit_run *a, double t) {
-    const struct dalcs_event_log *r = &a->run->s->recorder.log;
+    const struct dalcs_event_log *r = &a->run->s->results.recorder.log;
     struct audit_told *told = &a->told;
     const int n = a->run->s->circuit.n_devices;
     const bool is_full = a->run->options->audit == DALCS_AUDIT_FULL;
@@ -164,7 +164,7 @@ void dalcs_audit_run_told_now(struct dalcs_audit_run *a, double t) {
 }
 
 void dalcs_audit_run_tell(struct dalcs_audit_run *a, double t) {
-    a->told.n_events = a->run->s->recorder.log.n_events;
-    a->told.n_jumps = a->run->s->recorder.log.n_jumps;
+    a->told.n_events = a->run->s->results.recorder.log.n_events;
+    a->told.n_jumps = a->run->s->results.recorder.log.n_jumps;
     a->told.time = t;
 }

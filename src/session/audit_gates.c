@@ -34,19 +34,19 @@ enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
                                           const struct dalcs_readout *readout) {
     bool has_samples = false;
     *a = (struct dalcs_audit_gates){.circuit = circuit, .radau = radau, .readout = readout};
-    if (circuit->n_gates == 0) {
+    if (circuit->control.n_gates == 0) {
         return DALCS_OK;
     }
-    a->gate = dalcs_alloc((size_t)circuit->n_gates, sizeof(*a->gate));
-    a->place = dalcs_alloc((size_t)circuit->n_comparators + 1, sizeof(*a->place));
+    a->gate = dalcs_alloc((size_t)circuit->control.n_gates, sizeof(*a->gate));
+    a->place = dalcs_alloc((size_t)circuit->control.n_comparators + 1, sizeof(*a->place));
     enum dalcs_status status = a->gate != NULL && a->place != NULL ? DALCS_OK : DALCS_E_NOMEM;
     status =
         status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau->base, a->place) : status;
-    for (int k = 0; status == DALCS_OK && k < circuit->n_gates; k++) {
+    for (int k = 0; status == DALCS_OK && k < circuit->control.n_gates; k++) {
         a->gate[k].is_lost = true; /* until it is looked at for the first time */
-        a->gate[k].count = circuit->gate[k].first;
-        a->gate[k].held = circuit->gate[k].held;
-        has_samples = has_samples || circuit->gate[k].sampled >= 0;
+        a->gate[k].count = circuit->control.gate[k].first;
+        a->gate[k].held = circuit->control.gate[k].held;
+        has_samples = has_samples || circuit->control.gate[k].sampled >= 0;
     }
     if (has_samples && status == DALCS_OK) {
         status = find_systems(a);
@@ -58,7 +58,7 @@ enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
 }
 
 void dalcs_audit_gates_finish(struct dalcs_audit_gates *a) {
-    for (int k = 0; a->gate != NULL && k < a->circuit->n_gates; k++) {
+    for (int k = 0; a->gate != NULL && k < a->circuit->control.n_gates; k++) {
         free(a->gate[k].due);
     }
     free(a->gate);
@@ -73,7 +73,7 @@ static int shown_by(const struct dalcs_logic_gate *g) {
 
 /* In the source that shows q or its complement: the last level that was written. */
 static bool shows(const struct dalcs_audit_gates *a, int k) {
-    const struct dalcs_logic_gate *g = &a->circuit->gate[k];
+    const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
     const struct dalcs_stimulus *s = &a->circuit->stimulus[shown_by(g)];
     const double last = s->u.pwl.v[s->u.pwl.n - 1];
     return (last > 0.5 * (g->low + g->high)) == (g->output[0] >= 0);
@@ -86,7 +86,7 @@ bool audit_gate_reads(const struct dalcs_audit_gates *a, const struct dalcs_logi
         const struct dalcs_logic_place *p = &a->place[input->index];
         bit = dalcs_osnsp_is_on(&a->radau->part[p->part].component->osnsp, p->pair);
     } else if (input->from == DALCS_GATE_GATE) {
-        const bool is_shown = shown_by(&a->circuit->gate[input->index]) >= 0;
+        const bool is_shown = shown_by(&a->circuit->control.gate[input->index]) >= 0;
         *is_known = *is_known && is_shown;
         bit = is_shown && shows(a, input->index);
     }
@@ -110,12 +110,12 @@ static void go_to(struct audit_gate *s, double t, double near, bool *is_near, do
 
 /* The time of the last change that was written; its ramp may go on. */
 static double changed_at(const struct dalcs_audit_gates *a, int k) {
-    const struct dalcs_stimulus *s = &a->circuit->stimulus[shown_by(&a->circuit->gate[k])];
+    const struct dalcs_stimulus *s = &a->circuit->stimulus[shown_by(&a->circuit->control.gate[k])];
     return s->u.pwl.n > 1 ? s->u.pwl.t[s->u.pwl.n - 2] : -INFINITY;
 }
 
 static struct audit_verdict decide(const struct dalcs_audit_gates *a, int k, bool now, double t) {
-    const struct dalcs_logic_gate *g = &a->circuit->gate[k];
+    const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
     struct audit_gate *s = &a->gate[k];
     return g->kind == DALCS_GATE_COUNTER      ? audit_gate_of_counter(a, g, s, now)
            : g->kind == DALCS_GATE_MONOSTABLE ? audit_gate_of_monostable(a, g, s, t)
@@ -129,7 +129,7 @@ static double longest_delay(const struct dalcs_logic_gate *g) {
 
 /* Gate k at t; is_wrong: it does not show what it has to. */
 static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, bool *is_wrong) {
-    const struct dalcs_logic_gate *g = &a->circuit->gate[k];
+    const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
     struct audit_gate *s = &a->gate[k];
     const bool has_memory = g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g);
     const bool now = shows(a, k);
@@ -174,8 +174,8 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
 
 enum dalcs_status dalcs_audit_gates_go_on(struct dalcs_audit_gates *a,
                                           const struct dalcs_logic_run *logic) {
-    for (int k = 0; a->gate != NULL && k < a->circuit->n_gates; k++) {
-        const struct dalcs_logic_gate *g = &a->circuit->gate[k];
+    for (int k = 0; a->gate != NULL && k < a->circuit->control.n_gates; k++) {
+        const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
         const struct dalcs_logic_state *state = &logic->network.state[k];
         const struct dalcs_logic_output *o = &logic->output[k];
         struct audit_gate *s = &a->gate[k];
@@ -219,9 +219,10 @@ enum dalcs_status dalcs_audit_gates_sample(struct dalcs_audit_gates *a, double t
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_radau_evaluate(a->radau, t, DALCS_LEFT));
-    for (int k = 0; k < c->n_gates; k++) {
-        if (c->gate[k].sampled >= 0) {
-            const struct dalcs_signal *s = &c->signal[c->measured[c->gate[k].sampled]];
+    for (int k = 0; k < c->control.n_gates; k++) {
+        if (c->control.gate[k].sampled >= 0) {
+            const struct dalcs_signal *s =
+                &c->results.signal[c->results.measured[c->control.gate[k].sampled]];
             a->gate[k].before = potential(a, s->node[0]) - potential(a, s->node[1]);
         }
     }
@@ -231,7 +232,8 @@ enum dalcs_status dalcs_audit_gates_sample(struct dalcs_audit_gates *a, double t
 /* V, the errors that waveforms of the nodes may have that a gate samples: none where these are one. */
 static double doubt_of(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g) {
     const struct dalcs_circuit *c = a->circuit;
-    const struct dalcs_signal *s = g->sampled >= 0 ? &c->signal[c->measured[g->sampled]] : NULL;
+    const struct dalcs_signal *s =
+        g->sampled >= 0 ? &c->results.signal[c->results.measured[g->sampled]] : NULL;
     double doubt = 0.0;
     for (int k = 0; s != NULL && k < 2; k++) {
         const int system = a->node_system[s->node[k]];
@@ -244,7 +246,7 @@ static double doubt_of(const struct dalcs_audit_gates *a, const struct dalcs_log
 /* A sample at t; does it hold and show what it has to? */
 static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
     const struct dalcs_circuit *c = a->circuit;
-    const struct dalcs_logic_gate *g = &c->gate[k];
+    const struct dalcs_logic_gate *g = &c->control.gate[k];
     struct audit_gate *s = &a->gate[k];
     const struct dalcs_stimulus *held = &c->stimulus[g->output[0]];
     const struct dalcs_stimulus *mode = g->output[1] >= 0 ? &c->stimulus[g->output[1]] : NULL;
@@ -269,17 +271,17 @@ static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
 enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dalcs_audit *audit,
                                          const struct dalcs_logic_run *logic, double t) {
     a->logic = logic;
-    for (int k = 0; a->gate != NULL && k < a->circuit->n_gates; k++) {
-        if (shown_by(&a->circuit->gate[k]) >= 0) {
+    for (int k = 0; a->gate != NULL && k < a->circuit->control.n_gates; k++) {
+        if (shown_by(&a->circuit->control.gate[k]) >= 0) {
             bool is_wrong;
-            a->gate[k].flashes = audit_gate_flashes(a, &a->circuit->gate[k], audit, t);
-            if (a->circuit->gate[k].kind == DALCS_GATE_SAMPLE) {
+            a->gate[k].flashes = audit_gate_flashes(a, &a->circuit->control.gate[k], audit, t);
+            if (a->circuit->control.gate[k].kind == DALCS_GATE_SAMPLE) {
                 is_wrong = is_sample_wrong(a, k);
             } else {
                 DALCS_TRY(look_at(a, k, t, &is_wrong));
             }
-            if (is_wrong && a->circuit->gate[k].device >= 0) {
-                dalcs_audit_add_position(audit, a->circuit->gate[k].device, 1.0, t);
+            if (is_wrong && a->circuit->control.gate[k].device >= 0) {
+                dalcs_audit_add_position(audit, a->circuit->control.gate[k].device, 1.0, t);
             }
         }
     }

@@ -142,7 +142,8 @@ struct audit_verdict audit_gate_of_monostable(const struct dalcs_audit_gates *a,
 
 /* May there be pulses of no width? What has a delay shows none. */
 static bool is_instant(const struct dalcs_audit_gates *a, const struct dalcs_logic_input *input) {
-    return input->from == DALCS_GATE_GATE && !dalcs_gate_has_delay(&a->circuit->gate[input->index]);
+    return input->from == DALCS_GATE_GATE &&
+           !dalcs_gate_has_delay(&a->circuit->control.gate[input->index]);
 }
 
 bool audit_gate_may_have_missed(const struct dalcs_audit_gates *a,

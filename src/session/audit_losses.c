@@ -27,7 +27,7 @@ static double signal_of(const struct asked *q, int which, double t, double *doub
     const struct dalcs_stretch *s = q->stretch;
     const struct dalcs_circuit *c = &q->a->run->run->s->circuit;
     if (q->reads[which]) {
-        return dalcs_audit_signal(q->a->run->audit, c->measured[q->signal[which]], t,
+        return dalcs_audit_signal(q->a->run->audit, c->results.measured[q->signal[which]], t,
                                   t > s->from ? DALCS_LEFT : DALCS_RIGHT, doubt);
     }
     const double *coefficient = s->coefficient[q->signal[which]];
@@ -57,7 +57,7 @@ static double value_of(void *user, double t, double *doubt) {
 static bool can_read(const struct dalcs_audit_losses *a, const struct dalcs_stretch *s,
                      int signal) {
     const struct dalcs_audit_run *run = a->run;
-    const int part = dalcs_audit_part_of(run->audit, run->run->s->circuit.measured[signal]);
+    const int part = dalcs_audit_part_of(run->audit, run->run->s->circuit.results.measured[signal]);
     return part >= 0 && run->radau->part[part].kind == DALCS_PART_STEPPED &&
            (s->to - s->from) * dalcs_audit_most_allowed(run) > 4.0 * DBL_EPSILON * s->to;
 }
@@ -65,7 +65,7 @@ static bool can_read(const struct dalcs_audit_losses *a, const struct dalcs_stre
 static int next_device(const struct dalcs_losses_sum *sum, int from) {
     const struct dalcs_circuit *c = sum->circuit;
     int k = from;
-    while (k < c->n_devices && c->losses->device[k].voltage < 0) {
+    while (k < c->n_devices && c->results.losses->device[k].voltage < 0) {
         k++;
     }
     return k;
@@ -100,7 +100,7 @@ static double scale_of(const struct dalcs_audit_losses *a, const struct dalcs_st
                        int signal) {
     const double *coefficient = s->coefficient[signal];
     const double largest = fabs(coefficient[0]) + dalcs_stretch_spread(coefficient);
-    const int index = a->run->run->s->circuit.measured[signal];
+    const int index = a->run->run->s->circuit.results.measured[signal];
     return fmax(largest, dalcs_audit_signal_scale(a->run->audit, index));
 }
 
@@ -109,7 +109,7 @@ void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_los
     if (a->device < 0) {
         return;
     }
-    const struct dalcs_loss_device *of = &sum->circuit->losses->device[a->device];
+    const struct dalcs_loss_device *of = &sum->circuit->results.losses->device[a->device];
     const struct dalcs_loss *now = &sum->device[a->device], *then = &a->before;
     const double from = fmax(stretch->from, sum->from);
     const double to = fmin(stretch->to, sum->to);
@@ -161,7 +161,8 @@ void dalcs_audit_losses_told(const struct dalcs_audit_losses *a, const struct da
     const struct dalcs_circuit *c = sum->circuit;
     const struct dalcs_device *d = &c->device[k];
     const struct dalcs_loss *l = &sum->device[k];
-    const double length = fmin(c->losses->to, a->run->radau->options.stop) - c->losses->from;
+    const double length =
+        fmin(c->results.losses->to, a->run->radau->options.stop) - c->results.losses->from;
     double worst = part_off(told->v_average * length, l->v, 0.0);
     worst = fmax(worst, part_off(told->v_rms * told->v_rms * length, l->v_square, 0.0));
     worst = fmax(worst, part_off(told->i_average * length, l->i, 0.0));

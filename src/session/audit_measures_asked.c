@@ -51,7 +51,7 @@ bool audit_measures_reads_all(const struct dalcs_audit_run *run,
     for (int k = 0; k < formula->n && reads; k++) {
         if (formula->step[k].push == DALCS_PUT_SIGNAL) {
             const int part = dalcs_audit_part_of(
-                run->audit, run->run->s->circuit.measured[formula->step[k].index]);
+                run->audit, run->run->s->circuit.results.measured[formula->step[k].index]);
             reads = part >= 0 && run->radau->part[part].kind == DALCS_PART_STEPPED;
         }
     }

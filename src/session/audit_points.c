@@ -203,7 +203,7 @@ static const struct dalcs_table_law *worst_of(const struct point *p,
 }
 
 void dalcs_audit_add_points(struct dalcs_run *r) {
-    struct dalcs_report *report = &r->s->report;
+    struct dalcs_report *report = &r->s->results.report;
     const struct dalcs_audited_points *points = &r->points;
     if (points->where == NULL) {
         return;

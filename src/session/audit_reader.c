@@ -20,8 +20,8 @@ static bool is_mean(const struct dalcs_audit_run *a, const struct dalcs_componen
         return false;
     }
     const int n = d->behaviour != NULL ? d->behaviour->n_pairs
-                  : d->kind == DALCS_DIODE && isfinite(circuit->diode_model[d->model].vrev) ? 2
-                                                                                            : 1;
+                  : d->kind == DALCS_DIODE && isfinite(circuit->models.of_diode[d->model].vrev) ? 2
+                                                                                                : 1;
     bool is = false;
     for (int k = 0; k < n && !is; k++) {
         is = dalcs_sliding_turns(&c->positions, first + k);

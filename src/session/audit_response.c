@@ -165,7 +165,7 @@ static bool is_row_right(const struct dalcs_audit_response *a, const double *row
     const struct dalcs_circuit *c = &a->run->s->circuit;
     const struct dalcs_network *network = &a->run->s->network;
     for (int k = 0; k < network->n_outputs; k++) {
-        const struct dalcs_signal *s = &c->signal[k];
+        const struct dalcs_signal *s = &c->results.signal[k];
         const double complex is = row[2 * k] + row[2 * k + 1] * I;
         const bool is_current = s->kind == DALCS_SIGNAL_CURRENT;
         if (is_current && a->values.size[s->device] < 0.0) {
@@ -189,7 +189,7 @@ static bool is_row_right(const struct dalcs_audit_response *a, const double *row
 
 static enum dalcs_status refute(struct dalcs_audit_response *a, double frequency, const char *what,
                                 double off, const char *unit) {
-    dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, &a->run->s->circuit.ac.where,
+    dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, &a->run->s->circuit.analyses.ac.where,
                    "please report this netlist",
                    "the response at %.9g Hz seems wrong: the audit finds %s off by %.3g %s",
                    frequency, what != NULL ? what : "a law", off, unit);
@@ -229,5 +229,5 @@ enum dalcs_status dalcs_audit_response_look(struct dalcs_audit_response *a, int 
     return is_row_right(a, row, &wrong, &off)
                ? DALCS_OK
                : refute(a, frequency, a->run->signals.name[wrong], off,
-                        c->signal[wrong].kind == DALCS_SIGNAL_CURRENT ? "A" : "V");
+                        c->results.signal[wrong].kind == DALCS_SIGNAL_CURRENT ? "A" : "V");
 }

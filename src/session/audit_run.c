@@ -38,10 +38,10 @@ static enum dalcs_audit_origin origin_of(const struct dalcs_run *run, struct dal
     if (run->orbit != NULL || run->s->network.held != NULL || c->n_initial_conditions > 0) {
         return DALCS_AUDIT_FROM_ANYWHERE;
     }
-    if (c->transient.use_initial_conditions) {
+    if (c->analyses.transient.use_initial_conditions) {
         return DALCS_AUDIT_FROM_INITIAL;
     }
-    return c->n_gates > 0 || dalcs_transient_begins_with_a_jump(c, radau)
+    return c->control.n_gates > 0 || dalcs_transient_begins_with_a_jump(c, radau)
                ? DALCS_AUDIT_FROM_ANYWHERE
                : DALCS_AUDIT_FROM_REST;
 }
@@ -244,7 +244,7 @@ static void look_at_delays(struct dalcs_audit_run *a, int k, double to) {
     if (a->delays.delay == NULL) {
         return;
     }
-    const double work = 2.0 * a->run->s->circuit.n_delayed * dalcs_audit_state_work(a, k);
+    const double work = 2.0 * a->run->s->circuit.control.n_delayed * dalcs_audit_state_work(a, k);
     const bool samples =
         a->run->options->audit == DALCS_AUDIT_FULL || dalcs_audit_may(a->audit, work);
     if (dalcs_audit_delays_leave(&a->delays, a->audit, k, to, samples, dalcs_audit_run_chance(a)) !=

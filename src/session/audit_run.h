@@ -87,7 +87,7 @@ static inline void dalcs_audit_run_enter(struct dalcs_audit_run *a) {
 void dalcs_audit_run_told_now(struct dalcs_audit_run *a, double t);
 
 static inline void dalcs_audit_run_told(struct dalcs_audit_run *a, double t) {
-    const struct dalcs_event_log *r = &a->run->s->recorder.log;
+    const struct dalcs_event_log *r = &a->run->s->results.recorder.log;
     if (a->audit != NULL && (r->n_events > a->told.n_events || r->n_jumps > a->told.n_jumps)) {
         dalcs_audit_run_told_now(a, t);
     }

@@ -23,7 +23,7 @@ static enum dalcs_status take_run(struct dalcs_session *s, size_t run) {
         return DALCS_E_OPTION;
     }
     DALCS_TRY(dalcs_steps_find(s));
-    return s->steps.n > 0 ? dalcs_session_take_step(s, run, &plot) : DALCS_OK;
+    return s->source.steps.n > 0 ? dalcs_session_take_step(s, run, &plot) : DALCS_OK;
 }
 
 enum dalcs_status dalcs_session_audit_table(struct dalcs_session *s,

@@ -41,7 +41,7 @@ static enum dalcs_status list_laws(const struct dalcs_audit_run *a, struct dalcs
 }
 
 static enum dalcs_status report_laws(const struct dalcs_audit_run *a) {
-    struct dalcs_report *report = &a->run->s->report;
+    struct dalcs_report *report = &a->run->s->results.report;
     size_t n;
     DALCS_TRY(list_laws(a, NULL, &n));
     struct dalcs_audited *list = dalcs_arena_alloc(&a->run->s->arena, n, sizeof *list);
@@ -58,11 +58,11 @@ static const struct dalcs_location *place_of(const struct dalcs_audit_run *a,
     const struct dalcs_circuit *c = &a->run->s->circuit;
     switch (found->law) {
     case DALCS_AUDIT_MEASURE:
-        return &c->measure[found->index].where;
+        return &c->results.measure[found->index].where;
     case DALCS_AUDIT_FOURIER:
-        return &c->fourier[found->index].where;
+        return &c->results.fourier[found->index].where;
     case DALCS_AUDIT_LOSSES:
-        return &c->losses->where;
+        return &c->results.losses->where;
     default:
         return NULL;
     }
@@ -152,17 +152,17 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
     if (found.index >= 0) {
         dalcs_audit_law_name(a->audit, found.law, found.index, name, sizeof name);
     }
-    s->report.audit.mode = a->run->options->audit == DALCS_AUDIT_FULL ? "full" : "sample";
-    s->report.audit.instants = found.instants;
-    s->report.audit.segments = found.stretches;
-    s->report.audit.audited = found.audited;
-    s->report.audit.screened = found.screened;
-    s->report.audit.positions = found.positions;
-    s->report.audit.worst = found.defect;
-    s->report.audit.allowed = found.allowed;
-    s->report.audit.time = found.time;
-    s->report.audit.where = dalcs_arena_copy(&s->arena, name, strlen(name));
-    if (s->report.audit.where == NULL) {
+    s->results.report.audit.mode = a->run->options->audit == DALCS_AUDIT_FULL ? "full" : "sample";
+    s->results.report.audit.instants = found.instants;
+    s->results.report.audit.segments = found.stretches;
+    s->results.report.audit.audited = found.audited;
+    s->results.report.audit.screened = found.screened;
+    s->results.report.audit.positions = found.positions;
+    s->results.report.audit.worst = found.defect;
+    s->results.report.audit.allowed = found.allowed;
+    s->results.report.audit.time = found.time;
+    s->results.report.audit.where = dalcs_arena_copy(&s->arena, name, strlen(name));
+    if (s->results.report.audit.where == NULL) {
         return DALCS_E_NOMEM;
     }
     dalcs_audit_add_points(a->run);

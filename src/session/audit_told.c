@@ -91,7 +91,7 @@ static void check_extreme(const struct told *q) {
 static double told_of(const struct dalcs_run *r, const char *name) {
     double value = NAN;
     int n = 0;
-    for (size_t k = 0; k < r->s->report.n_measurements; k++) {
+    for (size_t k = 0; k < r->s->results.report.n_measurements; k++) {
         const struct dalcs_measurement *m = &r->measures.reported[k];
         if (strcmp(m->name, name) == 0) {
             value = m->found ? m->value : (double)NAN;
@@ -107,12 +107,12 @@ static void check_formula(const struct told *q) {
     const struct dalcs_circuit *c = &r->s->circuit;
     const struct dalcs_signal_formula *formula = &q->item->card->formula;
     double *result =
-        dalcs_arena_alloc(&q->a->run->arena, (size_t)c->n_measures + 1, sizeof(*result));
+        dalcs_arena_alloc(&q->a->run->arena, (size_t)c->results.n_measures + 1, sizeof(*result));
     bool is_known = result != NULL;
     for (int k = 0; k < formula->n && is_known; k++) {
         const struct dalcs_signal_formula_step *step = &formula->step[k];
         if (step->push == DALCS_PUT_RESULT) {
-            result[step->index] = told_of(r, c->measure[step->index].name);
+            result[step->index] = told_of(r, c->results.measure[step->index].name);
             is_known = !isnan(result[step->index]);
         }
     }

@@ -75,7 +75,7 @@ static enum dalcs_status find_jumps(const struct dalcs_session *s,
 /* ---- The check ------------------------------------------------------------------------------- */
 
 static double choose_step(const struct dalcs_session *s, double given) {
-    const struct dalcs_transient *t = &s->circuit.transient;
+    const struct dalcs_transient *t = &s->circuit.analyses.transient;
     return given > 0.0                     ? given
            : s->circuit.options.step > 0.0 ? s->circuit.options.step
            : t->max_step > 0.0             ? t->max_step
@@ -153,7 +153,7 @@ enum dalcs_status dalcs_session_check(struct dalcs_session *s, double step,
     if (check == NULL || part == NULL || of == NULL || jumps_of == NULL) {
         return DALCS_E_NOMEM;
     }
-    const struct dalcs_transient *t = &s->circuit.transient;
+    const struct dalcs_transient *t = &s->circuit.analyses.transient;
     for (int i = 0; i < s->circuit.n_stimuli; i++) {
         jumps_of[i] = ever_jumps(&s->circuit.stimulus[i], t->present ? t->stop : INFINITY);
     }

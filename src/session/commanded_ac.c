@@ -28,7 +28,7 @@ static int find_clock_of_system(const struct dalcs_circuit *c, const struct dalc
 
 static enum dalcs_status refuse(struct dalcs_run *r, const char *element, int clock) {
     dalcs_diag_add(
-        &r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
+        &r->s->diag, DALCS_ERROR, &r->s->circuit.analyses.ac.where,
         "add .pss, and .ac is the response around the periodic steady state; or use "
         "'dalcs bode'",
         "'%s' switches with '%s' in time: .ac around an operating point would leave it as it "

@@ -16,7 +16,7 @@ static double signal_at(const struct dalcs_signal_formula_point *point, int inde
                         enum dalcs_signal_part part) {
     const struct asked *asked = point->user;
     const struct dalcs_computing *c = asked->c;
-    const size_t k = c->n_before + (size_t)c->session->circuit.measured[index];
+    const size_t k = c->n_before + (size_t)c->session->circuit.results.measured[index];
     if (!c->is_complex) {
         return asked->row[k];
     }
@@ -40,8 +40,9 @@ static double signal_at(const struct dalcs_signal_formula_point *point, int inde
 
 /* Does computed column number `done` stand before the named signal number `named`? */
 static bool is_due(const struct dalcs_circuit *circuit, size_t done, size_t named) {
-    return done < (size_t)circuit->n_computed &&
-           ((size_t)circuit->computed[done].at <= named || named >= (size_t)circuit->n_named);
+    return done < (size_t)circuit->results.n_computed &&
+           ((size_t)circuit->results.computed[done].at <= named ||
+            named >= (size_t)circuit->results.n_named);
 }
 
 static void fill(const struct dalcs_computing *c, double time, const double *from, double *to) {
@@ -50,19 +51,19 @@ static void fill(const struct dalcs_computing *c, double time, const double *fro
     const struct dalcs_signal_formula_point point = {
         .time = time, .user = &asked, .signal = signal_at};
     const size_t each = c->is_complex ? 2 : 1;
-    const size_t n_shown = (size_t)circuit->n_shown;
+    const size_t n_shown = (size_t)circuit->results.n_shown;
     size_t done = 0;
     for (size_t k = 0; k <= c->n_in; k++) {
         const size_t named = k > c->n_before ? k - c->n_before : 0;
         while (k >= c->n_before && is_due(circuit, done, named)) {
-            const struct dalcs_computed *column = &circuit->computed[done++];
+            const struct dalcs_computed *column = &circuit->results.computed[done++];
             *to++ = dalcs_signal_formula_value(&column->formula, &point) + 0.0; /* no -0 */
             if (c->is_complex) {
                 *to++ = 0.0;
             }
         }
         const bool is_hidden =
-            k >= c->n_before && named >= (size_t)circuit->n_named && named < n_shown;
+            k >= c->n_before && named >= (size_t)circuit->results.n_named && named < n_shown;
         if (k < c->n_in && !is_hidden) {
             memcpy(to, from + each * k, each * sizeof *to);
             to += each;
@@ -73,13 +74,13 @@ static void fill(const struct dalcs_computing *c, double time, const double *fro
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct dalcs_computing *c = user;
     const struct dalcs_circuit *circuit = &c->session->circuit;
-    const size_t n_shown = (size_t)circuit->n_shown;
-    const size_t n_named = (size_t)circuit->n_named;
+    const size_t n_shown = (size_t)circuit->results.n_shown;
+    const size_t n_named = (size_t)circuit->results.n_named;
     struct dalcs_arena *arena = &c->session->arena; /* a plot lives as long as the session */
     c->is_complex = plot->is_complex;
     c->n_in = plot->n_signals;
     c->n_before = plot->analysis == DALCS_DC_SWEEP ? plot->n_signals - n_shown : 0;
-    c->n_out = plot->n_signals - n_shown + n_named + (size_t)circuit->n_computed;
+    c->n_out = plot->n_signals - n_shown + n_named + (size_t)circuit->results.n_computed;
     const char **name = dalcs_arena_alloc(arena, c->n_out, sizeof *name);
     enum dalcs_unit *unit = dalcs_arena_alloc(arena, c->n_out, sizeof *unit);
     c->row = dalcs_arena_alloc(arena, 2 * c->n_out, sizeof *c->row);
@@ -91,7 +92,7 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     for (size_t k = 0; k <= c->n_in; k++) {
         const size_t named = k > c->n_before ? k - c->n_before : 0;
         while (k >= c->n_before && is_due(circuit, done, named)) {
-            const char *own = circuit->computed[done++].name;
+            const char *own = circuit->results.computed[done++].name;
             unit[n] = DALCS_UNIT_NONE;
             name[n] = dalcs_arena_copy(arena, own, strlen(own));
             if (name[n++] == NULL) {

@@ -29,13 +29,13 @@ enum dalcs_status dalcs_session_couple(struct dalcs_session *session,
                                        enum dalcs_status (*exchange)(void *user,
                                                                      struct dalcs_exchange *e),
                                        void *user) {
-    if (session->circuit.n_externals == 0) {
+    if (session->circuit.control.n_externals == 0) {
         dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, "V1 in 0 EXTERNAL",
                        "the netlist has no external source");
         return DALCS_E_OPTION;
     }
-    session->exchange = exchange;
-    session->exchange_user = user;
+    session->outside.exchange = exchange;
+    session->outside.user = user;
     return DALCS_OK;
 }
 
@@ -43,12 +43,14 @@ enum dalcs_status dalcs_cosimulation_check(const struct dalcs_run *r,
                                            enum dalcs_analysis analysis) {
     const struct dalcs_circuit *c = &r->s->circuit;
     const bool has_orbit =
-        (analysis == DALCS_PERIODIC && (c->periodic.present || r->options->steady)) ||
-        (analysis == DALCS_AC && (r->options->bode || (c->ac.n > 0 && c->periodic.present))) ||
-        (analysis == DALCS_TRANSIENT &&
-         (r->options->envelope || c->envelope.present || c->transient.starts_steady));
-    const bool is_tran = analysis == DALCS_TRANSIENT && c->transient.present && !has_orbit;
-    if (c->n_externals == 0 || (!has_orbit && (!is_tran || r->s->exchange != NULL))) {
+        (analysis == DALCS_PERIODIC && (c->analyses.periodic.present || r->options->steady)) ||
+        (analysis == DALCS_AC &&
+         (r->options->bode || (c->analyses.ac.n > 0 && c->analyses.periodic.present))) ||
+        (analysis == DALCS_TRANSIENT && (r->options->envelope || c->analyses.envelope.present ||
+                                         c->analyses.transient.starts_steady));
+    const bool is_tran = analysis == DALCS_TRANSIENT && c->analyses.transient.present && !has_orbit;
+    if (c->control.n_externals == 0 ||
+        (!has_orbit && (!is_tran || r->s->outside.exchange != NULL))) {
         return DALCS_OK;
     }
     const struct dalcs_device *first = external_at(c, 0);
@@ -78,7 +80,7 @@ static enum dalcs_status call(struct dalcs_cosimulation *c, double t, const doub
     e->time = t;
     e->value = value;
     e->next = INFINITY;
-    DALCS_TRY(s->exchange(s->exchange_user, e));
+    DALCS_TRY(s->outside.exchange(s->outside.user, e));
     if (!(e->next > t)) {
         dalcs_diag_add(
             &s->diag, DALCS_ERROR, NULL, "say when it is to be called again, or never: INFINITY",
@@ -102,8 +104,8 @@ static enum dalcs_status call(struct dalcs_cosimulation *c, double t, const doub
 static enum dalcs_status allocate(struct dalcs_cosimulation *c) {
     const struct dalcs_run *r = c->run;
     const struct dalcs_circuit *circuit = &r->s->circuit;
-    const size_t n = (size_t)circuit->n_externals;
-    const size_t n_signals = (size_t)circuit->n_shown;
+    const size_t n = (size_t)circuit->control.n_externals;
+    const size_t n_signals = (size_t)circuit->results.n_shown;
     c->inputs.source = dalcs_alloc(n, sizeof(*c->inputs.source));
     c->input = dalcs_alloc(n, sizeof(*c->input));
     c->given = dalcs_alloc(n, sizeof(*c->given));
@@ -129,7 +131,7 @@ static enum dalcs_status allocate(struct dalcs_cosimulation *c) {
 enum dalcs_status dalcs_cosimulation_start(struct dalcs_cosimulation *c, struct dalcs_run *r,
                                            struct dalcs_logic_run *logic) {
     c->inputs.next = INFINITY;
-    if (r->s->circuit.n_externals == 0) {
+    if (r->s->circuit.control.n_externals == 0) {
         return DALCS_OK;
     }
     c->run = r;

@@ -151,8 +151,8 @@ static enum dalcs_status solve_point(struct sweep *s, struct dalcs_euler *e,
 
 static bool are_sources(const struct dalcs_circuit *circuit) {
     bool all = true;
-    for (int i = 0; i < circuit->n_dc; i++) {
-        const int device = circuit->dc[i].device;
+    for (int i = 0; i < circuit->analyses.n_dc; i++) {
+        const int device = circuit->analyses.dc[i].device;
         all = all && device >= 0 && circuit->device[device].stimulus >= 0;
     }
     return all;
@@ -302,11 +302,11 @@ static enum dalcs_status start_measures(struct sweep *s) {
 enum dalcs_status dalcs_dc_sweep_run(struct dalcs_run *r) {
     const struct dalcs_circuit *circuit = &r->s->circuit;
     struct sweep s = {.run = r,
-                      .dc = circuit->dc,
-                      .n_dc = circuit->n_dc,
+                      .dc = circuit->analyses.dc,
+                      .n_dc = circuit->analyses.n_dc,
                       .n = 1,
                       .n_outputs = (size_t)r->s->network.n_outputs,
-                      .n_shown = (size_t)circuit->n_shown};
+                      .n_shown = (size_t)circuit->results.n_shown};
     for (int i = 0; i < s.n_dc; i++) {
         s.n *= s.dc[i].n;
     }

@@ -17,9 +17,9 @@ static enum dalcs_status write_document(struct dalcs_session *session,
                                         const struct subject *subject, const char **json) {
     size_t length = 0;
     *json = NULL;
-    free(session->document);
-    session->document = NULL;
-    FILE *f = open_memstream(&session->document, &length);
+    free(session->results.document);
+    session->results.document = NULL;
+    FILE *f = open_memstream(&session->results.document, &length);
     if (f == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -29,18 +29,20 @@ static enum dalcs_status write_document(struct dalcs_session *session,
         dalcs_report_write(f, subject->report, subject->status);
     }
     bool lost = ferror(f) != 0;
-    lost = fclose(f) != 0 || lost || session->document == NULL;
-    *json = lost ? NULL : session->document;
+    lost = fclose(f) != 0 || lost || session->results.document == NULL;
+    *json = lost ? NULL : session->results.document;
     return lost ? DALCS_E_NOMEM : DALCS_OK;
 }
 
 enum dalcs_status dalcs_session_report_json(struct dalcs_session *session, const char **json) {
     *json = NULL;
-    if (!session->has_report) {
+    if (!session->results.has_report) {
         return DALCS_E_OPTION;
     }
     return write_document(
-        session, &(struct subject){.report = &session->report, .status = session->ended}, json);
+        session,
+        &(struct subject){.report = &session->results.report, .status = session->results.ended},
+        json);
 }
 
 enum dalcs_status dalcs_session_check_json(struct dalcs_session *session, double step,
@@ -55,12 +57,12 @@ static enum dalcs_status take_text(void *user, const char *suffix, const char *t
                                    size_t length) {
     struct dalcs_session *session = user;
     (void)suffix;
-    free(session->document);
-    session->document = dalcs_alloc(length + 1, 1);
-    if (session->document == NULL) {
+    free(session->results.document);
+    session->results.document = dalcs_alloc(length + 1, 1);
+    if (session->results.document == NULL) {
         return DALCS_E_NOMEM;
     }
-    memcpy(session->document, text, length);
+    memcpy(session->results.document, text, length);
     return DALCS_OK;
 }
 
@@ -74,6 +76,6 @@ enum dalcs_status dalcs_session_equations_json(struct dalcs_session *session,
                                                    .step = step,
                                                    .user = session,
                                                    .file = take_text}));
-    *json = session->document;
+    *json = session->results.document;
     return DALCS_OK;
 }

@@ -7,12 +7,12 @@
 #include <string.h>
 
 static const struct dalcs_drawn_value *drawn_of(const struct dalcs_session *session, size_t *n) {
-    *n = session->has_circuit ? (size_t)session->circuit.n_drawn : session->n_unbuilt;
-    return session->has_circuit ? session->circuit.drawn : session->unbuilt;
+    *n = session->has_circuit ? (size_t)session->circuit.random.n_drawn : session->source.n_unbuilt;
+    return session->has_circuit ? session->circuit.random.drawn : session->source.unbuilt;
 }
 
 const char *dalcs_session_drawn(const struct dalcs_session *session, size_t index, double *value) {
-    const struct dalcs_steps *steps = &session->steps;
+    const struct dalcs_steps *steps = &session->source.steps;
     size_t n;
     const struct dalcs_drawn_value *drawn = drawn_of(session, &n);
     if (!steps->is_known) {
@@ -38,17 +38,18 @@ enum dalcs_status dalcs_drawn_keep_unbuilt(struct dalcs_session *session,
     struct dalcs_deck deck = {.override = override, .n_overrides = n_overrides};
     struct dalcs_diag unheard = {0}; /* all of it has been said */
     struct dalcs_arena *arena = &session->arena;
-    enum dalcs_status status = dalcs_deck_expand(&deck, &session->netlist, &unheard);
+    enum dalcs_status status = dalcs_deck_expand(&deck, &session->source.netlist, &unheard);
     bool complete = status == DALCS_OK;
-    session->unbuilt = dalcs_arena_alloc(arena, deck.n_drawn, sizeof *session->unbuilt);
-    complete = complete && session->unbuilt != NULL;
+    session->source.unbuilt =
+        dalcs_arena_alloc(arena, deck.n_drawn, sizeof *session->source.unbuilt);
+    complete = complete && session->source.unbuilt != NULL;
     for (size_t k = 0; k < deck.n_drawn && complete; k++) {
         const char *name = deck.drawn[k].name;
-        session->unbuilt[k] = (struct dalcs_drawn_value){
+        session->source.unbuilt[k] = (struct dalcs_drawn_value){
             dalcs_arena_copy(arena, name, strlen(name)), deck.drawn[k].value};
-        complete = session->unbuilt[k].name != NULL;
+        complete = session->source.unbuilt[k].name != NULL;
     }
-    session->n_unbuilt = complete ? deck.n_drawn : 0;
+    session->source.n_unbuilt = complete ? deck.n_drawn : 0;
     dalcs_deck_finish(&deck);
     dalcs_diag_finish(&unheard);
     return complete ? DALCS_E_NETLIST : DALCS_E_NOMEM;

@@ -27,7 +27,7 @@ static void add_arc(struct search *g, int device, int from, int to, double gain)
 
 static void add_diode(struct search *g, const struct dalcs_circuit *c, int device) {
     const struct dalcs_device *d = &c->device[device];
-    const struct dalcs_diode_model *m = &c->diode_model[d->model];
+    const struct dalcs_diode_model *m = &c->models.of_diode[d->model];
     if (m->ron == 0.0) {
         add_arc(g, device, d->node[0], d->node[1], -m->vfwd);
     }

@@ -12,7 +12,7 @@
 
 /* Is that a period with rows? *next: the first such behind it. */
 static bool is_written(const struct dalcs_envelope *e, long n, long *next) {
-    const struct dalcs_envelope_card *card = &e->run->s->circuit.envelope;
+    const struct dalcs_envelope_card *card = &e->run->s->circuit.analyses.envelope;
     bool is = false;
     *next = e->n_all;
     for (int k = 0; k < card->n_at; k++) {
@@ -97,10 +97,11 @@ static enum dalcs_status check(struct dalcs_run *r) {
         return refuse(r, "leave the method, or the step, to the program",
                       ".env needs steps whose error is controlled");
     }
-    bool measures = c->n_fouriers > 0;
-    measures = measures || (c->losses != NULL && c->losses->present && !c->periodic.present);
-    for (int k = 0; k < c->n_measures; k++) {
-        measures = measures || c->measure[k].analysis == DALCS_MEASURED_TRAN;
+    bool measures = c->results.n_fouriers > 0;
+    measures = measures || (c->results.losses != NULL && c->results.losses->present &&
+                            !c->analyses.periodic.present);
+    for (int k = 0; k < c->results.n_measures; k++) {
+        measures = measures || c->results.measure[k].analysis == DALCS_MEASURED_TRAN;
     }
     if (measures || r->options->n_at > 0) {
         return refuse(
@@ -153,7 +154,7 @@ static enum dalcs_status run_beginning(struct dalcs_envelope *e,
 
 static enum dalcs_status walk(struct dalcs_envelope *e, const struct dalcs_steady_kept *kept) {
     struct dalcs_steady *st = &e->st;
-    struct dalcs_report *report = &e->run->s->report;
+    struct dalcs_report *report = &e->run->s->results.report;
     report->envelope.present = true;
     report->envelope.period = st->period;
     report->envelope.allowed = e->tolerance;
@@ -199,9 +200,10 @@ static enum dalcs_status run(struct dalcs_envelope *e, const struct dalcs_steady
     e->sources.period = period;
     r->h = 1e-2 * period; /* no step depends on it */
     DALCS_TRY(dalcs_steady_setup(&e->st, r, period));
-    DALCS_TRY(c->n_gates > 0 ? take_repeats(e) : DALCS_OK);
-    e->rows.stop = c->transient.stop;
-    e->tolerance = c->envelope.tolerance > 0.0 ? c->envelope.tolerance : r->tolerance;
+    DALCS_TRY(c->control.n_gates > 0 ? take_repeats(e) : DALCS_OK);
+    e->rows.stop = c->analyses.transient.stop;
+    e->tolerance =
+        c->analyses.envelope.tolerance > 0.0 ? c->analyses.envelope.tolerance : r->tolerance;
     e->n_all = (long)fmax(0.0, ceil(e->rows.stop / e->st.period * (1.0 - 1e-12)) - 1.0);
     return make_room(e) ? walk(e, kept) : DALCS_E_NOMEM;
 }

@@ -9,36 +9,36 @@ static enum dalcs_status refuse(struct dalcs_run *r, const char *hint, const cha
 }
 
 const struct dalcs_location *dalcs_envelope_place(const struct dalcs_run *r) {
-    const struct dalcs_location *where = &r->s->circuit.transient.where;
+    const struct dalcs_location *where = &r->s->circuit.analyses.transient.where;
     return where->line > 0 ? where : NULL; /* else the netlist has no such card */
 }
 
 /* Of all periods, which an envelope leaves most of out: what another run of the netlist measures. */
 static void leave_out(struct dalcs_run *r) {
     struct dalcs_circuit *c = &r->s->circuit;
-    const bool losses = c->losses != NULL && c->losses->present;
+    const bool losses = c->results.losses != NULL && c->results.losses->present;
     int n = 0;
-    for (int k = 0; k < c->n_measures; k++) {
-        n += c->measure[k].analysis == DALCS_MEASURED_TRAN ? 1 : 0;
+    for (int k = 0; k < c->results.n_measures; k++) {
+        n += c->results.measure[k].analysis == DALCS_MEASURED_TRAN ? 1 : 0;
     }
-    if ((n > 0 || c->n_fouriers > 0 || losses) && (r->step == NULL || r->step->step == 0)) {
+    if ((n > 0 || c->results.n_fouriers > 0 || losses) && (r->step == NULL || r->step->step == 0)) {
         dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL, "'dalcs run' measures a run of all periods",
                        "%s: left out, since an envelope computes few of the periods",
-                       n > 0               ? ".meas"
-                       : c->n_fouriers > 0 ? ".four"
-                                           : ".losses");
+                       n > 0                       ? ".meas"
+                       : c->results.n_fouriers > 0 ? ".four"
+                                                   : ".losses");
     }
-    c->n_measures = c->n_fouriers = 0;
+    c->results.n_measures = c->results.n_fouriers = 0;
     if (losses) {
-        c->losses->present = false;
+        c->results.losses->present = false;
     }
 }
 
 /* Those of the card, if none are given. */
 static enum dalcs_status take_times(struct dalcs_run *r) {
     const struct dalcs_run_options *o = r->options;
-    struct dalcs_envelope_card *card = &r->s->circuit.envelope;
-    const double stop = r->s->circuit.transient.stop;
+    struct dalcs_envelope_card *card = &r->s->circuit.analyses.envelope;
+    const double stop = r->s->circuit.analyses.transient.stop;
     if (o->n_envelope_at > 0) {
         card->at = dalcs_arena_alloc(&r->s->circuit.arena, o->n_envelope_at, sizeof(double));
         if (card->at == NULL) {
@@ -59,7 +59,7 @@ static enum dalcs_status take_times(struct dalcs_run *r) {
 
 enum dalcs_status dalcs_envelope_ask(struct dalcs_run *r) {
     struct dalcs_circuit *c = &r->s->circuit;
-    struct dalcs_transient *t = &c->transient;
+    struct dalcs_transient *t = &c->analyses.transient;
     if (r->options->envelope_stop > 0.0) {
         t->stop = r->options->envelope_stop;
         t->present = true;
@@ -73,8 +73,9 @@ enum dalcs_status dalcs_envelope_ask(struct dalcs_run *r) {
                       "an envelope computes a start, and uic=steady begins on the orbit itself");
     }
     t->start = t->step = t->first_step = 0.0;
-    t->use_initial_conditions = t->use_initial_conditions || c->periodic.use_initial_conditions;
-    c->envelope.present = true;
+    t->use_initial_conditions =
+        t->use_initial_conditions || c->analyses.periodic.use_initial_conditions;
+    c->analyses.envelope.present = true;
     leave_out(r);
     return take_times(r);
 }

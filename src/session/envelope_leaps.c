@@ -22,7 +22,7 @@ enum dalcs_status dalcs_envelope_pass(struct dalcs_envelope *e, long n, bool *fa
     for (int x = 0; x < st->layout.n_x && !*fails; x++) {
         e->at.scale[x] = fmax(e->at.scale[x], st->scale[x]);
     }
-    e->run->s->report.envelope.run++;
+    e->run->s->results.report.envelope.run++;
     return DALCS_OK;
 }
 
@@ -121,14 +121,14 @@ enum dalcs_status dalcs_envelope_try_leaps(struct dalcs_envelope *e, long n, lon
         DALCS_TRY(dalcs_envelope_pass(e, n + (1L << e->level), &fails));
         const double error = fails || !dalcs_envelope_returns(e) ? INFINITY : error_of(e);
         if (error <= share * e->tolerance) {
-            struct dalcs_report *report = &e->run->s->report;
+            struct dalcs_report *report = &e->run->s->results.report;
             report->envelope.leaps++;
             report->envelope.worst = fmax(report->envelope.worst, error);
             *by = 1L << e->level;
             e->level += next_error * error <= share * e->tolerance && e->level < MOST_LEVEL ? 1 : 0;
             return DALCS_OK;
         }
-        e->run->s->report.envelope.rejected++;
+        e->run->s->results.report.envelope.rejected++;
     }
     e->level = 1; /* to be tried again behind the next two periods */
     memcpy(st->at.x, e->at.base, (size_t)st->layout.n_x * sizeof(double));

@@ -34,19 +34,20 @@ enum dalcs_status dalcs_envelope_write(struct dalcs_envelope *e, double duration
     const struct dalcs_run_options *options = r->options;
     const struct dalcs_sink *sink = r->sink;
     struct dalcs_run_options own = *options;
-    const struct dalcs_envelope_card *card = &r->s->circuit.envelope;
+    const struct dalcs_envelope_card *card = &r->s->circuit.analyses.envelope;
     const double period = e->st.period;
     own.at = all ? NULL : beginning;
     own.n_at = all ? 0 : 1;
     own.energy = own.record = false; /* of a period: that of all is not known */
-    r->s->circuit.transient.stop = duration;
-    r->s->circuit.transient.step = card->step > 0.0 ? card->step : period / rows_in_a_period;
+    r->s->circuit.analyses.transient.stop = duration;
+    r->s->circuit.analyses.transient.step =
+        card->step > 0.0 ? card->step : period / rows_in_a_period;
     r->options = &own;
     r->sink = &e->rows.sink;
     r->orbit = from;
     r->orbit_end = from == NULL ? &e->st.at : NULL;
     r->leaves_orbit = true;
-    struct dalcs_losses_card *losses = r->s->circuit.losses;
+    struct dalcs_losses_card *losses = r->s->circuit.results.losses;
     const bool is_asked = losses != NULL && losses->present; /* of a .pss beside it */
     if (losses != NULL) {
         losses->present = false;

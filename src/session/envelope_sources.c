@@ -57,7 +57,8 @@ static double curved_until(const struct dalcs_stimulus *s) {
 
 /* A pulse that would not come again before the end. */
 static bool is_once(const struct dalcs_run *r, const struct dalcs_stimulus *s) {
-    return s->kind == DALCS_STIMULUS_PULSE && s->u.pulse.period >= r->s->circuit.transient.stop;
+    return s->kind == DALCS_STIMULUS_PULSE &&
+           s->u.pulse.period >= r->s->circuit.analyses.transient.stop;
 }
 
 /* One pulse or some of them. */

@@ -47,7 +47,7 @@ static enum dalcs_status complete(struct whole *w, struct dalcs_session *s) {
         e->jump[1] = w->jumps.network[1];
         e->jumps_are_covered = w->jumps.is_covered;
     }
-    const struct dalcs_transient *t = &s->circuit.transient;
+    const struct dalcs_transient *t = &s->circuit.analyses.transient;
     if (s->circuit.n_initial_conditions > 0 && t->present && !t->use_initial_conditions) {
         DALCS_TRY(dalcs_network_build(
             &w->held, &s->circuit,
@@ -59,7 +59,7 @@ static enum dalcs_status complete(struct whole *w, struct dalcs_session *s) {
 
 static enum dalcs_status eliminate(struct whole *w, struct dalcs_session *s) {
     const char *because;
-    if (s->circuit.n_smooth > 0) {
+    if (s->circuit.control.n_smooth > 0) {
         dalcs_diag_add(&s->diag, DALCS_WARNING, NULL, "the DALCS can be written: --form dalcs",
                        "z cannot be eliminated: products and functions in formulas read it");
         return DALCS_OK;
@@ -200,9 +200,9 @@ static enum dalcs_status write_equations(struct whole *w, const struct dalcs_equ
 
 enum dalcs_status dalcs_session_equations(struct dalcs_session *session,
                                           const struct dalcs_equations_options *options) {
-    if (session->circuit.n_delayed > 0) {
+    if (session->circuit.control.n_delayed > 0) {
         dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, NULL, "'%s' is a delay: a DALCS has none",
-                       session->circuit.delayed[0].name);
+                       session->circuit.control.delayed[0].name);
         return DALCS_E_NETLIST;
     }
     DALCS_TRY(dalcs_session_apply_values(session));
@@ -220,7 +220,7 @@ enum dalcs_status dalcs_session_equations(struct dalcs_session *session,
     const bool is_file = options->format == DALCS_EQUATIONS_SYSTEM ||
                          options->format == DALCS_EQUATIONS_JSON ||
                          options->format == DALCS_EQUATIONS_MATRIX_MARKET;
-    if (session->circuit.n_smooth > 0 && is_file) {
+    if (session->circuit.control.n_smooth > 0 && is_file) {
         dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, "--format text and latex write them",
                        "a system file has no products and functions of columns");
         return DALCS_E_OPTION;

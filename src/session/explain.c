@@ -119,12 +119,12 @@ static void report_infeasible(struct dalcs_session *s, const struct dalcs_refusa
                                        [DALCS_WITNESS_MODE] = "mode",
                                        [DALCS_WITNESS_EQUATIONS] = "equations",
                                        [DALCS_WITNESS_DERIVATIVE] = "derivative"};
-    s->report.infeasible.present = true;
-    s->report.infeasible.time = x->time;
-    s->report.infeasible.kind = kind[x->kind];
-    s->report.infeasible.n_elements = x->n_elements;
-    s->report.infeasible.element = x->element;
-    s->report.infeasible.because = x->because;
+    s->results.report.infeasible.present = true;
+    s->results.report.infeasible.time = x->time;
+    s->results.report.infeasible.kind = kind[x->kind];
+    s->results.report.infeasible.n_elements = x->n_elements;
+    s->results.report.infeasible.element = x->element;
+    s->results.report.infeasible.because = x->because;
 }
 
 /* DALCS_NOT_CONVERGED where it is not certain. */

@@ -31,7 +31,7 @@ const char *dalcs_step_text(struct dalcs_session *s, const struct dalcs_plot *st
 /* The sentence of the first error since `before`; what a step that could not be built says was perhaps said of another one. */
 static const char *find_reason(struct dalcs_session *s, enum dalcs_status status,
                                const struct dalcs_diag_mark *before) {
-    const char *text = status == DALCS_E_NETLIST ? s->why_unbuilt : NULL;
+    const char *text = status == DALCS_E_NETLIST ? s->source.why_unbuilt : NULL;
     for (size_t k = before->n; k < s->diag.n && text == NULL; k++) {
         text = s->diag.item[k].severity == DALCS_ERROR ? s->diag.item[k].text : NULL;
     }
@@ -44,15 +44,15 @@ static const char *find_reason(struct dalcs_session *s, enum dalcs_status status
 /* The circuit that the names are of goes. */
 static enum dalcs_status keep_infeasible(struct dalcs_failed_steps *failed,
                                          struct dalcs_session *s) {
-    const size_t n = s->report.infeasible.n_elements;
+    const size_t n = s->results.report.infeasible.n_elements;
     const char **element = dalcs_arena_alloc(&s->arena, n, sizeof(*element));
     bool complete = element != NULL;
     for (size_t k = 0; k < n && complete; k++) {
-        const char *name = s->report.infeasible.element[k];
+        const char *name = s->results.report.infeasible.element[k];
         element[k] = dalcs_arena_copy(&s->arena, name, strlen(name));
         complete = element[k] != NULL;
     }
-    failed->report.infeasible = s->report.infeasible;
+    failed->report.infeasible = s->results.report.infeasible;
     failed->report.infeasible.element = element;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
@@ -87,7 +87,7 @@ static int by_number(const void *a, const void *b) {
 
 enum dalcs_status dalcs_failed_steps_report(const struct dalcs_failed_steps *failed,
                                             struct dalcs_session *s, size_t n_steps) {
-    s->report.n_steps = n_steps;
+    s->results.report.n_steps = n_steps;
     if (failed->n == 0) {
         return DALCS_OK;
     }
@@ -104,9 +104,9 @@ enum dalcs_status dalcs_failed_steps_report(const struct dalcs_failed_steps *fai
     }
     memcpy(step, failed->step, failed->n * sizeof(*step));
     qsort(step, failed->n, sizeof(*step), by_number);
-    s->report.infeasible = failed->report.infeasible; /* goes with the status */
-    s->report.failed_step = step;
-    s->report.n_failed_steps = failed->n;
+    s->results.report.infeasible = failed->report.infeasible; /* goes with the status */
+    s->results.report.failed_step = step;
+    s->results.report.n_failed_steps = failed->n;
     return DALCS_OK;
 }
 

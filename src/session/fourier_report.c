@@ -16,7 +16,7 @@ static const struct dalcs_measure_card *failed_in(const struct dalcs_circuit *c,
     for (int k = 0; k < formula->n; k++) {
         const struct dalcs_signal_formula_step *step = &formula->step[k];
         if (step->push == DALCS_PUT_RESULT && isnan(results[step->index])) {
-            return &c->measure[step->index];
+            return &c->results.measure[step->index];
         }
     }
     return NULL;
@@ -48,7 +48,7 @@ static void warn_of_frequency(struct dalcs_run *r, const struct dalcs_measuring 
                               const struct dalcs_harmonics *h) {
     const double asked = h->card->frequency;
     char text[2][DALCS_QUANTITY_SIZE];
-    if (m->analysis == DALCS_MEASURED_PSS && !r->s->report.steady.self_oscillating &&
+    if (m->analysis == DALCS_MEASURED_PSS && !r->s->results.report.steady.self_oscillating &&
         fabs(h->frequency / asked - 1.0) > same_frequency) {
         dalcs_diag_add(&r->s->diag, DALCS_WARNING, &h->card->where, NULL,
                        "the orbit has no component at %s: these are multiples of %s",
@@ -74,12 +74,12 @@ enum dalcs_status dalcs_measures_tell_harmonics(struct dalcs_measures *measures,
                                                 struct dalcs_run *r) {
     const struct dalcs_measuring *m = &measures->measuring;
     size_t n = (size_t)m->n_harmonics;
-    const size_t n_before = r->s->report.n_fourier; /* of .pss before a .tran */
+    const size_t n_before = r->s->results.report.n_fourier; /* of .pss before a .tran */
     struct dalcs_fourier *fourier = dalcs_arena_alloc(&r->s->arena, n_before + n, sizeof(*fourier));
     for (size_t k = 0; fourier != NULL && k < n_before; k++) {
-        fourier[k] = r->s->report.fourier[k];
+        fourier[k] = r->s->results.report.fourier[k];
     }
-    r->s->report.fourier = fourier;
+    r->s->results.report.fourier = fourier;
     for (size_t k = 0; fourier != NULL && k < n; k++) {
         const struct dalcs_harmonics *h = &m->harmonics[k];
         size_t n_lines = (size_t)h->card->n_harmonics + 1;
@@ -104,15 +104,17 @@ enum dalcs_status dalcs_measures_tell_harmonics(struct dalcs_measures *measures,
         if (signal == NULL) {
             return DALCS_E_NOMEM;
         }
-        fourier[r->s->report.n_fourier++] = (struct dalcs_fourier){.signal = signal,
-                                                                   .frequency = h->frequency,
-                                                                   .from = h->from,
-                                                                   .to = h->to,
-                                                                   .thd = thd,
-                                                                   .n_harmonics = n_lines,
-                                                                   .magnitude = magnitude,
-                                                                   .phase = phase};
-        dalcs_audit_fourier_told(&measures->audit, m, (int)k, &fourier[r->s->report.n_fourier - 1]);
+        fourier[r->s->results.report.n_fourier++] =
+            (struct dalcs_fourier){.signal = signal,
+                                   .frequency = h->frequency,
+                                   .from = h->from,
+                                   .to = h->to,
+                                   .thd = thd,
+                                   .n_harmonics = n_lines,
+                                   .magnitude = magnitude,
+                                   .phase = phase};
+        dalcs_audit_fourier_told(&measures->audit, m, (int)k,
+                                 &fourier[r->s->results.report.n_fourier - 1]);
     }
     return fourier == NULL ? DALCS_E_NOMEM : DALCS_OK;
 }

@@ -77,7 +77,7 @@ enum dalcs_status dalcs_gate_samples_setup(struct dalcs_gate_samples *s,
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k < logic->n_samples; k++) {
-        output[k] = circuit->measured[circuit->gate[logic->sample[k]].sampled];
+        output[k] = circuit->results.measured[circuit->control.gate[logic->sample[k]].sampled];
     }
     const enum dalcs_status status =
         dalcs_rows_setup(&s->rows, logic->radau, output, logic->n_samples);
@@ -113,7 +113,7 @@ void dalcs_gates_read_euler(const struct dalcs_network *network, struct dalcs_lo
     for (int k = 0; k < logic->n_samples; k++) {
         const int gate = logic->sample[k];
         logic->taken[gate] = dalcs_gates_read_output(
-            logic->euler, &network->output[c->measured[c->gate[gate].sampled]]);
+            logic->euler, &network->output[c->results.measured[c->control.gate[gate].sampled]]);
     }
 }
 

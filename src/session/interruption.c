@@ -35,8 +35,9 @@ struct cut {
 
 /* Was the pair closed until this instant? At the start nothing was yet. */
 static bool was_closed(const struct dalcs_run *r, const struct dalcs_euler_jump *j, int pair) {
-    const struct dalcs_event_log *log = &r->s->recorder.log;
-    if (!log->keep || !r->s->recorder.have_before || dalcs_mode_has(log->seen[j->system], pair)) {
+    const struct dalcs_event_log *log = &r->s->results.recorder.log;
+    if (!log->keep || !r->s->results.recorder.have_before ||
+        dalcs_mode_has(log->seen[j->system], pair)) {
         return true;
     }
     const char *name = r->s->network.system[j->system].pair[pair].element;
@@ -67,8 +68,8 @@ static bool is_open(const struct dalcs_system *s, const uint64_t *mode, int pair
 }
 
 static bool leaks(const struct dalcs_circuit *c, const struct dalcs_device *d) {
-    return isfinite(d->kind == DALCS_DIODE ? c->diode_model[d->model].roff
-                                           : c->switch_model[d->model].roff);
+    return isfinite(d->kind == DALCS_DIODE ? c->models.of_diode[d->model].roff
+                                           : c->models.of_switch[d->model].roff);
 }
 
 static void add(struct cut *cut, const struct dalcs_device *d, struct member member) {
@@ -249,5 +250,5 @@ enum dalcs_status dalcs_note_jump(void *user, const struct dalcs_euler_jump *j) 
     if (r->transient.losses != NULL) {
         DALCS_TRY(dalcs_losses_run_jump(r->transient.losses, j));
     }
-    return dalcs_event_log_jump(&r->s->recorder.log, j);
+    return dalcs_event_log_jump(&r->s->results.recorder.log, j);
 }

@@ -148,7 +148,7 @@ static bool is_resistor_card(const struct dalcs_device *d) {
 /* W of what is named, or else of what gives (in) or, resistors and sources, takes (out). */
 static enum dalcs_status add_side(struct account *a, bool is_out, double *power,
                                   const char **names) {
-    const struct dalcs_losses_card *card = a->sum->circuit->losses;
+    const struct dalcs_losses_card *card = a->sum->circuit->results.losses;
     const int *list = is_out ? card->out : card->in;
     const int n = is_out ? card->n_out : card->n_in;
     const double sign = is_out ? 1.0 : -1.0;
@@ -216,7 +216,7 @@ static void tell(const struct account *a) {
 enum dalcs_status dalcs_losses_run_report(struct dalcs_losses_run *losses, struct dalcs_run *r) {
     const struct dalcs_losses_sum *sum = &losses->sum;
     const struct dalcs_circuit *c = sum->circuit;
-    struct dalcs_report *report = &r->s->report;
+    struct dalcs_report *report = &r->s->results.report;
     struct dalcs_losses *all = dalcs_arena_alloc(&r->s->arena, report->n_losses + 1, sizeof(*all));
     if (all == NULL) {
         return DALCS_E_NOMEM;
@@ -235,7 +235,7 @@ enum dalcs_status dalcs_losses_run_report(struct dalcs_losses_run *losses, struc
                                .to = sum->to,
                                .element = a.element};
     for (int k = 0; k < c->n_devices; k++) {
-        if (c->losses->device[k].voltage >= 0) {
+        if (c->results.losses->device[k].voltage >= 0) {
             DALCS_TRY(add_element(&a, k));
             dalcs_audit_losses_told(&losses->audit, sum, k, &a.element[l->n_elements - 1]);
         }

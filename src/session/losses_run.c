@@ -42,7 +42,7 @@ enum dalcs_status dalcs_losses_run_start(struct dalcs_losses_run *losses, struct
     r->transient.losses = losses;
     losses->engine = e;
     losses->is_euler = is_euler;
-    DALCS_TRY(dalcs_losses_sum_setup(&losses->sum, c, c->transient.stop, near));
+    DALCS_TRY(dalcs_losses_sum_setup(&losses->sum, c, c->analyses.transient.stop, near));
     losses->forward = dalcs_alloc((size_t)c->n_devices, sizeof(*losses->forward));
     losses->device_of = dalcs_alloc((size_t)r->s->network.n_systems, sizeof(*losses->device_of));
     losses->on = dalcs_alloc((size_t)c->n_devices, sizeof(bool));
@@ -126,7 +126,7 @@ enum dalcs_status dalcs_losses_run_jump(struct dalcs_losses_run *losses,
         const bool back = s->pair[d].is_breakdown;
         *i = (struct dalcs_loss_impulse){.device = k, .charge = j->charge[d]};
         if (c->device[k].kind == DALCS_DIODE) {
-            const struct dalcs_diode_model *m = &c->diode_model[c->device[k].model];
+            const struct dalcs_diode_model *m = &c->models.of_diode[c->device[k].model];
             i->in_thresholds =
                 j->charge[d] == 0.0 ? 0.0 : (back ? m->vrev : m->vfwd) * j->charge[d];
         }

@@ -25,7 +25,7 @@ struct dalcs_losses_run {
 };
 
 static inline bool dalcs_run_wants_losses(const struct dalcs_run *r) {
-    return r->s->circuit.losses != NULL && r->s->circuit.losses->present;
+    return r->s->circuit.results.losses != NULL && r->s->circuit.results.losses->present;
 }
 
 /* Before the start of a transient; `near`: s, times that are the same. */

@@ -221,8 +221,8 @@ static void tell(struct result *r, const double *results) {
 }
 
 static enum dalcs_status make_room(struct dalcs_run *r) {
-    struct dalcs_report *report = &r->s->report;
-    size_t n = (size_t)r->s->circuit.n_measures;
+    struct dalcs_report *report = &r->s->results.report;
+    size_t n = (size_t)r->s->circuit.results.n_measures;
     if (r->measures.reported == NULL) {
         r->measures.reported = dalcs_arena_alloc(&r->s->arena, n, sizeof(*r->measures.reported));
         r->measures.result = dalcs_arena_alloc(&r->s->arena, n, sizeof(*r->measures.result));
@@ -244,8 +244,9 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
     DALCS_TRY(make_room(r));
     DALCS_TRY(dalcs_measuring_close(m));
     for (int k = 0; k < m->n; k++) {
-        const struct dalcs_measure_card *card = &c->measure[k];
-        struct dalcs_measurement *measurement = &r->measures.reported[r->s->report.n_measurements];
+        const struct dalcs_measure_card *card = &c->results.measure[k];
+        struct dalcs_measurement *measurement =
+            &r->measures.reported[r->s->results.report.n_measurements];
         struct result result = {
             .s = r->s, .measuring = m, .item = &m->item[k], .measurement = measurement};
         if (card->analysis != m->analysis) {
@@ -273,7 +274,7 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
             return DALCS_E_NOMEM;
         }
         r->measures.result[k] = measurement->found ? measurement->value : (double)NAN;
-        r->s->report.n_measurements++;
+        r->s->results.report.n_measurements++;
         if (!measurement->found && status == DALCS_OK) {
             dalcs_diag_add(&r->s->diag, DALCS_WARNING, &card->where, NULL, "%s: %s", card->name,
                            measurement->failure);

@@ -25,8 +25,8 @@ static enum dalcs_status allocate(struct dalcs_measures *measures, const struct 
     measures->reads = dalcs_alloc((size_t)n->n_systems, sizeof(bool));
     measures->stimulus = dalcs_alloc((size_t)c->n_stimuli, sizeof(const struct dalcs_stimulus *));
     measures->term = dalcs_alloc((size_t)n_terms, sizeof(*measures->term));
-    measures->before = dalcs_alloc((size_t)c->n_measured, sizeof(double));
-    measures->now = dalcs_alloc((size_t)c->n_measured, sizeof(double));
+    measures->before = dalcs_alloc((size_t)c->results.n_measured, sizeof(double));
+    measures->now = dalcs_alloc((size_t)c->results.n_measured, sizeof(double));
     bool complete = measures->reads != NULL && measures->stimulus != NULL &&
                     measures->term != NULL && measures->before != NULL && measures->now != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
@@ -35,8 +35,8 @@ static enum dalcs_status allocate(struct dalcs_measures *measures, const struct 
 /* Which components, and what drives them. */
 static void find_sources(struct dalcs_measures *measures, const struct dalcs_circuit *circuit,
                          const struct dalcs_euler *e) {
-    for (int k = 0; k < circuit->n_measured; k++) {
-        const struct dalcs_output *out = &measures->network->output[circuit->measured[k]];
+    for (int k = 0; k < circuit->results.n_measured; k++) {
+        const struct dalcs_output *out = &measures->network->output[circuit->results.measured[k]];
         const int system[2] = {out->plus.system, out->minus.system};
         for (int side = 0; side < 2; side++) {
             if (system[side] >= 0) {
@@ -71,8 +71,8 @@ static double edge_after(const struct dalcs_measures *measures, double t) {
 static void read_signals(const struct dalcs_measures *measures, const struct dalcs_euler *e,
                          double *value) {
     const struct dalcs_circuit *c = measures->measuring.circuit;
-    for (int k = 0; k < c->n_measured; k++) {
-        value[k] = dalcs_recorder_signal(measures->network, e, c->measured[k]);
+    for (int k = 0; k < c->results.n_measured; k++) {
+        value[k] = dalcs_recorder_signal(measures->network, e, c->results.measured[k]);
     }
 }
 
@@ -88,8 +88,8 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
     if (!dalcs_measuring_is_wanted(c, analysis)) {
         return DALCS_OK;
     }
-    DALCS_TRY(dalcs_measuring_setup(&measures->measuring, c, analysis, c->transient.start,
-                                    c->transient.stop));
+    DALCS_TRY(dalcs_measuring_setup(&measures->measuring, c, analysis, c->analyses.transient.start,
+                                    c->analyses.transient.stop));
     measures->wanted = true;
     measures->begin = dalcs_measuring_begin(&measures->measuring);
     measures->losses = r->transient.losses;
@@ -98,10 +98,10 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
         measures->begin = fmin(measures->begin, dalcs_losses_run_begin(r->transient.losses));
     }
     DALCS_TRY(allocate(measures, c, &r->s->network));
-    const struct dalcs_recorder *recorder = &r->s->recorder;
+    const struct dalcs_recorder *recorder = &r->s->results.recorder;
     if (recorder->starts_on_edge) {
-        for (int k = 0; k < c->n_measured; k++) {
-            measures->before[k] = recorder->before[c->measured[k]];
+        for (int k = 0; k < c->results.n_measured; k++) {
+            measures->before[k] = recorder->before[c->results.measured[k]];
         }
         dalcs_measuring_before_start(&measures->measuring, measures->before);
         if (measures->losses != NULL) {
@@ -115,7 +115,7 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
         }
         return DALCS_OK;
     }
-    DALCS_TRY(dalcs_rows_setup(&measures->rows, radau, c->measured, c->n_measured));
+    DALCS_TRY(dalcs_rows_setup(&measures->rows, radau, c->results.measured, c->results.n_measured));
     find_sources(measures, c, e);
     measures->next_edge = edge_after(measures, 0.0);
     return dalcs_audit_measures_start(&measures->audit, audit, &measures->measuring);
@@ -287,8 +287,8 @@ void dalcs_measures_row(struct dalcs_measures *measures, double at, const double
     if (!measures->wanted) {
         return;
     }
-    for (int k = 0; k < c->n_measured; k++) {
-        measures->now[k] = value[c->measured[k]];
+    for (int k = 0; k < c->results.n_measured; k++) {
+        measures->now[k] = value[c->results.measured[k]];
     }
     dalcs_measuring_row(&measures->measuring, at, measures->now, NULL);
 }
@@ -298,9 +298,10 @@ void dalcs_measures_complex_row(struct dalcs_measures *measures, double at, cons
     if (!measures->wanted) {
         return;
     }
-    for (int k = 0; k < c->n_measured; k++) {
-        measures->now[k] = value[2 * c->measured[k]];
-        measures->before[k] = value[2 * c->measured[k] + 1]; /* which rows have no other use for */
+    for (int k = 0; k < c->results.n_measured; k++) {
+        measures->now[k] = value[2 * c->results.measured[k]];
+        measures->before[k] =
+            value[2 * c->results.measured[k] + 1]; /* which rows have no other use for */
     }
     dalcs_measuring_row(&measures->measuring, at, measures->now, measures->before);
 }

@@ -83,16 +83,16 @@ static enum dalcs_status say(struct dalcs_run *r, const struct dalcs_finding *f)
 static enum dalcs_status entry_of(struct dalcs_session *s, const char *name,
                                   struct dalcs_nonunique **entry) {
     *entry = NULL;
-    for (size_t k = 0; k < s->n_nonunique; k++) {
-        if (s->nonunique[k].signal == name) {
-            *entry = &s->nonunique[k];
+    for (size_t k = 0; k < s->results.n_nonunique; k++) {
+        if (s->results.nonunique[k].signal == name) {
+            *entry = &s->results.nonunique[k];
             return DALCS_OK;
         }
     }
-    if (s->n_nonunique < MOST_REPORTED) {
-        DALCS_TRY(dalcs_grow(&s->nonunique, &s->nonunique_capacity, s->n_nonunique + 1,
-                             sizeof(*s->nonunique)));
-        *entry = &s->nonunique[s->n_nonunique++];
+    if (s->results.n_nonunique < MOST_REPORTED) {
+        DALCS_TRY(dalcs_grow(&s->results.nonunique, &s->results.nonunique_capacity,
+                             s->results.n_nonunique + 1, sizeof(*s->results.nonunique)));
+        *entry = &s->results.nonunique[s->results.n_nonunique++];
     }
     return DALCS_OK;
 }
@@ -145,7 +145,7 @@ void dalcs_nonunique_count_rest(struct dalcs_run *r) {
                            r->nonunique.n_untold[kind],
                            r->nonunique.n_untold[kind] == 1 ? " is" : "s are", like[kind],
                            r->nonunique.n_unreported > 0 ? "the first " : "",
-                           (int)r->s->n_nonunique);
+                           (int)r->s->results.n_nonunique);
         }
     }
 }

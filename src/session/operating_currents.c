@@ -21,26 +21,26 @@ static const double USUAL = 1;
 const struct dalcs_exponential *dalcs_exponential_of(const struct dalcs_circuit *c, int device) {
     const struct dalcs_device *d = &c->device[device];
     const struct dalcs_exponential *e =
-        d->kind == DALCS_DIODE ? &c->diode_model[d->model].exponential : NULL;
+        d->kind == DALCS_DIODE ? &c->models.of_diode[d->model].exponential : NULL;
     return e != NULL && e->voltage > 0 ? e : NULL;
 }
 
 /* A model of its own for each exponential diode, at the current that the netlist's models are taken at. */
 static enum dalcs_status part_models(struct dalcs_circuit *c, int n) {
     struct dalcs_diode_model *all =
-        dalcs_arena_alloc(&c->arena, (size_t)(c->n_diode_models + n), sizeof *all);
+        dalcs_arena_alloc(&c->arena, (size_t)(c->models.n_diodes + n), sizeof *all);
     if (all == NULL) {
         return DALCS_E_NOMEM;
     }
-    memcpy(all, c->diode_model, (size_t)c->n_diode_models * sizeof *all);
+    memcpy(all, c->models.of_diode, (size_t)c->models.n_diodes * sizeof *all);
     for (int k = 0; k < c->n_devices; k++) {
         if (dalcs_exponential_of(c, k) != NULL) {
-            all[c->n_diode_models] = c->diode_model[c->device[k].model];
-            c->device[k].model = c->n_diode_models++;
+            all[c->models.n_diodes] = c->models.of_diode[c->device[k].model];
+            c->device[k].model = c->models.n_diodes++;
         }
     }
-    c->diode_model = all;
-    c->has_own_tangents = true;
+    c->models.of_diode = all;
+    c->models.has_own_tangents = true;
     return DALCS_OK;
 }
 
@@ -59,7 +59,8 @@ enum dalcs_status dalcs_operating_currents_keep(struct dalcs_circuit *to,
         const struct dalcs_exponential *was =
             dalcs_exponential_of(to, k) != NULL ? dalcs_exponential_of(from, k) : NULL;
         if (was != NULL) {
-            dalcs_exponential_take(&to->diode_model[to->device[k].model], was->at, was->back_at);
+            dalcs_exponential_take(&to->models.of_diode[to->device[k].model], was->at,
+                                   was->back_at);
         }
     }
     return DALCS_OK;
@@ -111,8 +112,8 @@ static double retake_all(struct dalcs_circuit *c, const struct dalcs_charge_coll
     int k = 0;
     for (int d = 0; d < c->n_devices; d++) {
         if (dalcs_exponential_of(c, d) != NULL) {
-            most = fmax(
-                most, retake(&c->diode_model[c->device[d].model], &found->charge[k++], tolerance));
+            most = fmax(most, retake(&c->models.of_diode[c->device[d].model], &found->charge[k++],
+                                     tolerance));
         }
     }
     return most;
@@ -128,7 +129,7 @@ static void note(struct dalcs_session *s, int n, int n_passes) {
         if (dalcs_exponential_of(c, d) == NULL) {
             continue;
         }
-        const struct dalcs_diode_model *m = &c->diode_model[c->device[d].model];
+        const struct dalcs_diode_model *m = &c->models.of_diode[c->device[d].model];
         first = first != NULL ? first : &c->device[d];
         list = dalcs_arena_printf(&s->arena, "%s%s'%s' at %.4g A (Vfwd = %.4g V, Ron = %.4g ohm)",
                                   list, n_named++ > 0 ? ", " : "", c->device[d].name,
@@ -158,9 +159,9 @@ static enum dalcs_status rebuild_network(struct dalcs_session *s) {
 static void take_all(struct dalcs_circuit *c, bool ideal) {
     for (int k = 0; k < c->n_devices; k++) {
         if (dalcs_exponential_of(c, k) != NULL && ideal) {
-            idealise(&c->diode_model[c->device[k].model]);
+            idealise(&c->models.of_diode[c->device[k].model]);
         } else if (dalcs_exponential_of(c, k) != NULL) {
-            dalcs_exponential_take(&c->diode_model[c->device[k].model], USUAL, USUAL);
+            dalcs_exponential_take(&c->models.of_diode[c->device[k].model], USUAL, USUAL);
         }
     }
 }
@@ -195,13 +196,13 @@ enum dalcs_status dalcs_operating_currents(struct dalcs_session *s,
                                            const struct dalcs_sink *sink) {
     struct dalcs_circuit *c = &s->circuit;
     int n = 0;
-    for (int k = 0; k < c->n_devices && c->n_diode_models > 0; k++) {
+    for (int k = 0; k < c->n_devices && c->models.n_diodes > 0; k++) {
         n += dalcs_exponential_of(c, k) != NULL ? 1 : 0;
     }
     if (n == 0 || c->options.has_diode_current) {
         return DALCS_OK;
     }
-    if (!c->has_own_tangents) {
+    if (!c->models.has_own_tangents) {
         DALCS_TRY(part_models(c, n));
     }
     take_all(c, true);

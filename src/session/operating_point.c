@@ -28,7 +28,7 @@ static enum dalcs_status solve(struct dalcs_run *r, const struct dalcs_network *
     struct dalcs_logic_run logic;
     enum dalcs_status status = dalcs_logic_run_setup(&logic, &s->circuit, &e, NULL);
     if (status == DALCS_OK) {
-        status = dalcs_gates_operating_point(&e, &logic, s->circuit.transient.present);
+        status = dalcs_gates_operating_point(&e, &logic, s->circuit.analyses.transient.present);
         dalcs_warn_of_restless_gates(r, &logic);
     }
     if (status == DALCS_OK) {
@@ -58,9 +58,9 @@ static enum dalcs_status solve(struct dalcs_run *r, const struct dalcs_network *
     if (status == DALCS_OK) {
         status = r->sink->end(r->sink->user);
     }
-    if (status == DALCS_OK && !s->circuit.transient.present) {
-        dalcs_recorder_states(network, &e, s->start);
-        dalcs_recorder_states(network, &e, s->final);
+    if (status == DALCS_OK && !s->circuit.analyses.transient.present) {
+        dalcs_recorder_states(network, &e, s->results.start);
+        dalcs_recorder_states(network, &e, s->results.final);
     }
     free(row);
     status = dalcs_explain_failure(r, &e, status);
@@ -72,7 +72,7 @@ static enum dalcs_status solve(struct dalcs_run *r, const struct dalcs_network *
 
 enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
-    if (s->circuit.n_delayed == 0) {
+    if (s->circuit.control.n_delayed == 0) {
         return solve(r, &s->network);
     }
     struct dalcs_network at_rest;

@@ -105,7 +105,7 @@ static enum dalcs_status choose_accuracy(struct dalcs_run *r) {
 
 static enum dalcs_status check_output_times(struct dalcs_session *s,
                                             const struct dalcs_run_options *o) {
-    const struct dalcs_transient *t = &s->circuit.transient;
+    const struct dalcs_transient *t = &s->circuit.analyses.transient;
     for (size_t k = 0; o->at != NULL && k < o->n_at; k++) {
         if (!(o->at[k] >= (k > 0 ? o->at[k - 1] : 0.0)) || !isfinite(o->at[k])) {
             return option_error(s, "output times must be ascending and not negative");
@@ -195,7 +195,7 @@ static bool has_memory(const struct dalcs_network *n) {
 
 static enum dalcs_status choose_step(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
-    const struct dalcs_transient *t = &s->circuit.transient;
+    const struct dalcs_transient *t = &s->circuit.analyses.transient;
     const double given = r->options->step;
     if (!(given >= 0.0) || !isfinite(given)) {
         return option_error(s, "the step must be positive");
@@ -230,16 +230,16 @@ static enum dalcs_status choose_step(struct dalcs_run *r) {
 
 enum dalcs_status dalcs_run_choose(struct dalcs_run *r) {
     DALCS_TRY(choose_method(r));
-    r->s->report.method = METHODS[r->method];
+    r->s->results.report.method = METHODS[r->method];
     DALCS_TRY(choose_accuracy(r));
-    r->s->report.tolerance = r->method == DALCS_METHOD_EULER ? 0.0 : r->tolerance;
+    r->s->results.report.tolerance = r->method == DALCS_METHOD_EULER ? 0.0 : r->tolerance;
     DALCS_TRY(check_output_times(r->s, r->options));
     DALCS_TRY(choose_compression(r));
     DALCS_TRY(check_tolerances(r->s, r->options));
     r->osnsp = dalcs_osnsp_options_of(r->options);
     r->osnsp.is_cancelled =
         r->s->is_cancelled_with != NULL ? r->s->is_cancelled_with : &r->s->is_cancelled;
-    r->osnsp.patterns = r->s->steps.n > 0 ? &r->s->patterns : NULL;
+    r->osnsp.patterns = r->s->source.steps.n > 0 ? &r->s->patterns : NULL;
     DALCS_TRY(choose_step(r));
     return choose_filling(r);
 }

@@ -23,7 +23,7 @@ static double probe(const struct dalcs_periodic_ac *a, const struct dalcs_probe 
 
 static enum dalcs_status refuse_frequency(const struct dalcs_periodic_ac *a, double frequency) {
     struct dalcs_run *r = a->run;
-    dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.analyses.ac.where,
                    "a quantity that no period changes, such as the charge of a floating node, has "
                    "an unbounded response there: add a path for it, or begin at another frequency",
                    "at %.9g Hz the response is not unique", frequency);
@@ -66,7 +66,7 @@ static enum dalcs_status gain_at(void *user, double frequency, double complex *g
 static enum dalcs_status put_row(struct dalcs_periodic_ac *a, double frequency) {
     struct dalcs_run *r = a->run;
     const struct dalcs_network *network = &r->s->network;
-    const size_t n_shown = (size_t)r->s->circuit.n_shown;
+    const size_t n_shown = (size_t)r->s->circuit.results.n_shown;
     DALCS_TRY(solve(a, frequency));
     for (int i = 0; i < network->n_outputs; i++) {
         const struct dalcs_output *out = &network->output[i];
@@ -91,7 +91,7 @@ static enum dalcs_status put_row(struct dalcs_periodic_ac *a, double frequency) 
 static enum dalcs_status announce(struct dalcs_periodic_ac *a) {
     struct dalcs_run *r = a->run;
     struct dalcs_arena *arena = &r->s->arena;
-    const size_t n_shown = (size_t)r->s->circuit.n_shown;
+    const size_t n_shown = (size_t)r->s->circuit.results.n_shown;
     const size_t n = n_shown + (a->loop.device >= 0 ? 1 : 0);
     a->name = dalcs_arena_alloc(arena, n_shown + 1, sizeof *a->name);
     a->unit = dalcs_arena_alloc(arena, n_shown + 1, sizeof *a->unit);
@@ -170,7 +170,7 @@ static enum dalcs_status go_on(void *user) {
 static enum dalcs_status refuse_rough(const struct dalcs_periodic_ac *a) {
     struct dalcs_run *r = a->run;
     dalcs_diag_add(
-        &r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
+        &r->s->diag, DALCS_ERROR, &r->s->circuit.analyses.ac.where,
         "leave out elements of nearly no effect, or make nearly ideal ones ideal, such as a "
         "coupling next to 1; or inject a small sine in .tran",
         "the response was not found: small signals are not accurate enough over a period, "
@@ -240,21 +240,22 @@ static enum dalcs_status setup(struct dalcs_periodic_ac *a) {
 
 static void report(struct dalcs_periodic_ac *a) {
     struct dalcs_session *s = a->run->s;
-    s->report.response.present = true;
-    s->report.response.period = a->st->period;
-    s->report.response.sideband = a->sideband;
-    s->report.response.exact = a->log.is_exact && a->st->is_exact;
+    s->results.report.response.present = true;
+    s->results.report.response.period = a->st->period;
+    s->results.report.response.sideband = a->sideband;
+    s->results.report.response.exact = a->log.is_exact && a->st->is_exact;
     for (int k = 0; k < a->n_parts; k++) {
-        s->report.response.tail = fmax(s->report.response.tail, a->part[k].flow.worst);
+        s->results.report.response.tail =
+            fmax(s->results.report.response.tail, a->part[k].flow.worst);
     }
-    if (!s->report.response.exact) {
+    if (!s->results.report.response.exact) {
         dalcs_diag_add(
-            &s->diag, DALCS_WARNING, &s->circuit.ac.where, NULL,
+            &s->diag, DALCS_WARNING, &s->circuit.analyses.ac.where, NULL,
             "the response is not exact: the mode is not known all the time, an event only "
             "touches its threshold, or commands at one time move apart");
     }
-    if (s->report.steady.present && dalcs_steady_is_unstable(&s->report)) {
-        dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.ac.where, NULL,
+    if (s->results.report.steady.present && dalcs_steady_is_unstable(&s->results.report)) {
+        dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.analyses.ac.where, NULL,
                        "the orbit is unstable: this is the response around it, which no run and no "
                        "analyser would show");
     }
@@ -271,7 +272,7 @@ static enum dalcs_status look_around(struct dalcs_periodic_ac *a, bool *is_off) 
     struct dalcs_radau_options options = dalcs_transient_options(r, a->st->period);
     options.tolerance = fmin(options.tolerance, tolerance_of_log);
     a->sideband =
-        r->options->sideband != 0 ? r->options->sideband : r->s->circuit.orbit_ac.sideband;
+        r->options->sideband != 0 ? r->options->sideband : r->s->circuit.analyses.orbit_ac.sideband;
     DALCS_TRY(dalcs_periodic_frequencies_choose(a));
     DALCS_TRY(dalcs_periodic_loop_find(a));
     DALCS_TRY(dalcs_radau_setup(&a->radau, &a->euler, &options, &r->osnsp));

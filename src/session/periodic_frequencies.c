@@ -37,7 +37,7 @@ static enum dalcs_status take_list(struct dalcs_periodic_ac *a, const double *at
 enum dalcs_status dalcs_periodic_frequencies_choose(struct dalcs_periodic_ac *a) {
     const struct dalcs_run_options *o = a->run->options;
     struct dalcs_sweep *f = &a->own_sweep;
-    a->sweep = &a->run->s->circuit.ac;
+    a->sweep = &a->run->s->circuit.analyses.ac;
     if (o->n_bode_at > 0) {
         return take_list(a, o->bode_at, o->n_bode_at);
     }

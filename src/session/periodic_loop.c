@@ -16,7 +16,8 @@
 
 static enum dalcs_status refuse(struct dalcs_periodic_ac *ac, const char *hint, const char *text,
                                 const char *name) {
-    dalcs_diag_add(&ac->run->s->diag, DALCS_ERROR, &ac->run->s->circuit.ac.where, hint, text, name);
+    dalcs_diag_add(&ac->run->s->diag, DALCS_ERROR, &ac->run->s->circuit.analyses.ac.where, hint,
+                   text, name);
     return DALCS_E_OPTION;
 }
 
@@ -71,16 +72,17 @@ static enum dalcs_status add_probe(struct dalcs_circuit *c, int node) {
 
 static const char *asked_loop(const struct dalcs_session *s,
                               const struct dalcs_run_options *options) {
-    return options->loop != NULL ? options->loop : s->circuit.orbit_ac.loop;
+    return options->loop != NULL ? options->loop : s->circuit.analyses.orbit_ac.loop;
 }
 
 enum dalcs_status dalcs_periodic_loop_prepare(struct dalcs_session *s,
                                               const struct dalcs_run_options *options) {
     struct dalcs_circuit *c = &s->circuit;
     const char *asked = asked_loop(s, options);
-    const bool is_loaded = options->loop_is_loaded || c->orbit_ac.is_loaded;
+    const bool is_loaded = options->loop_is_loaded || c->analyses.orbit_ac.is_loaded;
     const bool is_asked =
-        is_loaded && (options->bode || (c->periodic.present && c->ac.n > 0)) && c->n_devices > 0;
+        is_loaded && (options->bode || (c->analyses.periodic.present && c->analyses.ac.n > 0)) &&
+        c->n_devices > 0;
     const int device = is_asked && asked != NULL ? find_device(c, asked) : -1;
     if (device < 0 || c->device[device].kind != DALCS_VSOURCE ||
         is_probe(&c->device[c->n_devices - 1])) {
@@ -115,7 +117,7 @@ static void tell_load(struct dalcs_periodic_ac *ac) {
     const struct dalcs_device *load = ac->loop.is_loaded ? NULL : find_load(c, ac->loop.device);
     if (load != NULL) {
         dalcs_diag_add(
-            &ac->run->s->diag, DALCS_NOTE, &c->ac.where,
+            &ac->run->s->diag, DALCS_NOTE, &c->analyses.ac.where,
             "injection=both, or --injection both, accounts for that current",
             "loop: '%s' may draw a current behind '%s', and the gain is that of the loop "
             "only if this current is small",
@@ -155,7 +157,7 @@ enum dalcs_status dalcs_periodic_loop_find(struct dalcs_periodic_ac *ac) {
     if (asked != NULL) {
         return find_loop(ac, asked);
     }
-    if (ac->run->options->loop_is_loaded || c->orbit_ac.is_loaded) {
+    if (ac->run->options->loop_is_loaded || c->analyses.orbit_ac.is_loaded) {
         return refuse(ac, "name the voltage source in it: loop=vloop, or --loop vloop",
                       "%s: injection needs the gain of a loop", "no loop is asked for");
     }
@@ -240,11 +242,12 @@ enum dalcs_status dalcs_periodic_loop_report(struct dalcs_periodic_ac *ac) {
         return DALCS_OK;
     }
     const char *name = s->circuit.device[ac->loop.device].name;
-    s->report.response.loop = dalcs_arena_copy(&s->arena, name, strlen(name));
-    s->report.response.loop_is_loaded = ac->loop.is_loaded;
-    s->report.response.n_crossovers = m->n_crossovers;
-    s->report.response.n_reversals = m->n_reversals;
-    DALCS_TRY(copy(&s->arena, m->crossover, m->n_crossovers, &s->report.response.crossover));
-    DALCS_TRY(copy(&s->arena, m->reversal, m->n_reversals, &s->report.response.reversal));
-    return s->report.response.loop != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    s->results.report.response.loop = dalcs_arena_copy(&s->arena, name, strlen(name));
+    s->results.report.response.loop_is_loaded = ac->loop.is_loaded;
+    s->results.report.response.n_crossovers = m->n_crossovers;
+    s->results.report.response.n_reversals = m->n_reversals;
+    DALCS_TRY(
+        copy(&s->arena, m->crossover, m->n_crossovers, &s->results.report.response.crossover));
+    DALCS_TRY(copy(&s->arena, m->reversal, m->n_reversals, &s->results.report.response.reversal));
+    return s->results.report.response.loop != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }

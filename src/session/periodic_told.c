@@ -11,8 +11,8 @@ static void tell_resting(struct dalcs_periodic_ac *a) {
         element = a->part[k].response.resting != NULL ? a->part[k].response.resting : element;
     }
     if (element != NULL) {
-        s->report.response.exact = false;
-        dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.ac.where,
+        s->results.report.response.exact = false;
+        dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.analyses.ac.where,
                        "give it a path of leakage, which decides its side; or inject a small sine "
                        "in .tran",
                        "there is no linear response: '%s' has neither voltage nor current for a "
@@ -37,10 +37,10 @@ static void tell_near(struct dalcs_periodic_ac *a) {
     }
     const struct dalcs_orbit_low *low = of->near.low;
     const struct dalcs_pair *pair = &of->flow->system->pair[low->pair];
-    s->report.response.exact = false;
+    s->results.report.response.exact = false;
     if (low->gap > 0.0) {
         dalcs_diag_add(
-            &s->diag, DALCS_WARNING, &s->circuit.ac.where,
+            &s->diag, DALCS_WARNING, &s->circuit.analyses.ac.where,
             "inject a sine of the size that counts in .tran",
             "only signals below %.2g of the AC values have this response: at %.9g s '%s' "
             "%s, %.2g s before a switch or an edge acts on it, and a larger one takes "
@@ -52,7 +52,7 @@ static void tell_near(struct dalcs_periodic_ac *a) {
             low->gap);
         return;
     }
-    dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.ac.where,
+    dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.analyses.ac.where,
                    "add the loss that keeps it away from there, as of a resistor across a ring "
                    "or a diode; or inject a sine of the size that counts in .tran",
                    "only signals below %.2g of the AC values have this response: at %.9g s '%s' "

@@ -46,7 +46,7 @@ static void warn_of_switches(struct dalcs_run *r, const struct dalcs_component *
 
 /* The counts of one engine run into the report. */
 void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e) {
-    struct dalcs_report *report = &r->s->report;
+    struct dalcs_report *report = &r->s->results.report;
     report->work.steps += e->steps;
     for (int k = 0; k < e->n_components; k++) {
         const struct dalcs_osnsp_counters *c = &e->component[k].osnsp.counters;
@@ -71,8 +71,8 @@ enum dalcs_status dalcs_transient_run_thinned(struct dalcs_run *r) {
         return dalcs_transient_run(r);
     }
     const struct dalcs_sink *sink = r->sink;
-    DALCS_TRY(
-        dalcs_thinning_setup(&thinning, sink, (size_t)r->s->circuit.n_shown, r->rows.compress));
+    DALCS_TRY(dalcs_thinning_setup(&thinning, sink, (size_t)r->s->circuit.results.n_shown,
+                                   r->rows.compress));
     r->sink = &thinning.sink;
     enum dalcs_status status = dalcs_transient_run(r);
     enum dalcs_status flushed = dalcs_thinning_flush(&thinning); /* of a run that stopped early */
@@ -108,24 +108,24 @@ static enum dalcs_status prepare_report(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     const struct dalcs_network *n = &s->network;
     const char **name = dalcs_arena_alloc(&s->arena, (size_t)n->n_states, sizeof(*name));
-    s->start = dalcs_alloc((size_t)n->n_states, sizeof(double));
-    s->final = dalcs_alloc((size_t)n->n_states, sizeof(double));
-    if (name == NULL || s->start == NULL || s->final == NULL) {
+    s->results.start = dalcs_alloc((size_t)n->n_states, sizeof(double));
+    s->results.final = dalcs_alloc((size_t)n->n_states, sizeof(double));
+    if (name == NULL || s->results.start == NULL || s->results.final == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int i = 0; i < n->n_states; i++) {
         name[i] = n->state[i].element;
     }
-    s->report = (struct dalcs_report){.netlist = s->name,
-                                      .title = s->circuit.title,
-                                      .method = dalcs_method_name(0),
-                                      .certificate = {.where = ""},
-                                      .n_states = (size_t)n->n_states,
-                                      .state_name = name,
-                                      .start = s->start,
-                                      .final = s->final};
-    report_size(&s->report, n);
-    s->has_report = true;
+    s->results.report = (struct dalcs_report){.netlist = s->name,
+                                              .title = s->circuit.title,
+                                              .method = dalcs_method_name(0),
+                                              .certificate = {.where = ""},
+                                              .n_states = (size_t)n->n_states,
+                                              .state_name = name,
+                                              .start = s->results.start,
+                                              .final = s->results.final};
+    report_size(&s->results.report, n);
+    s->results.has_report = true;
     return DALCS_OK;
 }
 
@@ -160,31 +160,32 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
     DALCS_TRY(dalcs_delayed_check(r, analysis));
     switch (analysis) {
     case DALCS_OPERATING_POINT:
-        return circuit->operating_point ? dalcs_operating_point_run(r) : DALCS_OK;
+        return circuit->analyses.operating_point ? dalcs_operating_point_run(r) : DALCS_OK;
     case DALCS_DC_SWEEP:
-        return circuit->n_dc > 0 ? dalcs_dc_sweep_run(r) : DALCS_OK;
+        return circuit->analyses.n_dc > 0 ? dalcs_dc_sweep_run(r) : DALCS_OK;
     case DALCS_AC:
-        if (circuit->ac.n == 0 && !r->options->bode) {
+        if (circuit->analyses.ac.n == 0 && !r->options->bode) {
             return DALCS_OK;
         }
-        return circuit->periodic.present || r->options->bode ? dalcs_periodic_ac_run(r)
-                                                             : dalcs_small_signal_run(r);
+        return circuit->analyses.periodic.present || r->options->bode ? dalcs_periodic_ac_run(r)
+                                                                      : dalcs_small_signal_run(r);
     case DALCS_PERIODIC:
-        if (r->s->stroboscope != NULL) {
+        if (r->s->steady.stroboscope != NULL) {
             return dalcs_stroboscope_run(r);
         }
-        return circuit->periodic.present || r->options->steady ? dalcs_steady_run(r) : DALCS_OK;
+        return circuit->analyses.periodic.present || r->options->steady ? dalcs_steady_run(r)
+                                                                        : DALCS_OK;
     default:
         if (r->options->envelope) {
             DALCS_TRY(dalcs_envelope_ask(r));
         }
-        if (!circuit->transient.present) {
+        if (!circuit->analyses.transient.present) {
             return DALCS_OK;
         }
-        if (circuit->envelope.present) {
+        if (circuit->analyses.envelope.present) {
             return dalcs_envelope_run(r);
         }
-        if (circuit->transient.starts_steady) {
+        if (circuit->analyses.transient.starts_steady) {
             return dalcs_steady_leave(r);
         }
         return dalcs_transient_run_thinned(r);
@@ -205,28 +206,28 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
                             dalcs_nonunique_found);
     enum dalcs_status status = dalcs_run_choose(&r);
     if (status == DALCS_OK) {
-        status = dalcs_run_name_signals(&r, session->has_netlist);
+        status = dalcs_run_name_signals(&r, session->source.has_netlist);
     }
     for (size_t k = 0; k < n && status == DALCS_OK; k++) {
         status =
             atomic_load(&session->is_cancelled) ? DALCS_E_CANCELLED : run_analysis(&r, analysis[k]);
     }
-    if (session->report.audit.mode == NULL) {
+    if (session->results.report.audit.mode == NULL) {
         dalcs_audit_add_points(&r);
     }
     dalcs_steady_forget(&r);
     dalcs_names_finish(&r.interrupting);
     dalcs_undetermined_finish(&r.nonunique.undetermined);
     dalcs_nonunique_count_rest(&r);
-    struct dalcs_report *report = &session->report;
-    report->n_nonunique = session->n_nonunique;
-    report->nonunique = session->nonunique;
-    report->n_events = session->recorder.log.n_events;
-    report->n_events_dropped = session->recorder.log.n_events_dropped;
-    report->event = session->recorder.log.event;
-    report->n_jumps = session->recorder.log.n_jumps;
-    report->n_jumps_dropped = session->recorder.log.n_jumps_dropped;
-    report->jump = session->recorder.log.jump;
+    struct dalcs_report *report = &session->results.report;
+    report->n_nonunique = session->results.n_nonunique;
+    report->nonunique = session->results.nonunique;
+    report->n_events = session->results.recorder.log.n_events;
+    report->n_events_dropped = session->results.recorder.log.n_events_dropped;
+    report->event = session->results.recorder.log.event;
+    report->n_jumps = session->results.recorder.log.n_jumps;
+    report->n_jumps_dropped = session->results.recorder.log.n_jumps_dropped;
+    report->jump = session->results.recorder.log.jump;
     report->work.cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
     report->work.wall_s = seconds(CLOCK_MONOTONIC) - wall;
     return status;
@@ -271,15 +272,15 @@ static enum dalcs_status run_stroboscope(struct dalcs_session *session,
                                          const struct dalcs_run_options *options,
                                          const struct dalcs_sink *sink) {
     struct dalcs_stroboscope stroboscope = {0};
-    if (session->steps.n == 0 || !options->steady) {
+    if (session->source.steps.n == 0 || !options->steady) {
         dalcs_diag_add(&session->diag, DALCS_ERROR, NULL,
                        "write a card such as: .step param load 1 10 0.1",
                        "samples need one value after the other, and the netlist has no .step");
         return DALCS_E_OPTION;
     }
-    session->stroboscope = &stroboscope;
+    session->steady.stroboscope = &stroboscope;
     const enum dalcs_status status = dalcs_stepped_run(session, options, sink);
-    session->stroboscope = NULL;
+    session->steady.stroboscope = NULL;
     dalcs_stroboscope_finish(&stroboscope);
     return status;
 }
@@ -290,21 +291,23 @@ static enum dalcs_status run_circuit(struct dalcs_session *session,
                                      const struct dalcs_sink *sink) {
     const bool is_alone = options->steady || options->bode || options->envelope;
     if (is_alone) {
-        session->circuit.periodic.present =
-            session->circuit.periodic.present || !options->envelope; /* as if there were a .pss */
+        session->circuit.analyses.periodic.present =
+            session->circuit.analyses.periodic.present ||
+            !options->envelope; /* as if there were a .pss */
         DALCS_TRY(dalcs_steady_prepare(session));
     }
     DALCS_TRY(dalcs_steps_find(session));
     if (options->samples > 0) {
         return run_stroboscope(session, options, sink);
     }
-    if (session->steps.n > 0) {
+    if (session->source.steps.n > 0) {
         return dalcs_stepped_run(session, options, sink);
     }
     DALCS_TRY(dalcs_operating_currents(session, options, sink));
     DALCS_TRY(dalcs_run_asked(session, options, sink));
-    return session->circuit.worst_case.present ? dalcs_worst_case_run(session, options, sink)
-                                               : DALCS_OK;
+    return session->circuit.analyses.worst_case.present
+               ? dalcs_worst_case_run(session, options, sink)
+               : DALCS_OK;
 }
 
 static enum dalcs_status run_all(struct dalcs_session *session,
@@ -312,7 +315,7 @@ static enum dalcs_status run_all(struct dalcs_session *session,
                                  const struct dalcs_sink *sink) {
     DALCS_TRY(dalcs_session_apply_values(session));
     const struct dalcs_sink complete = completed(sink);
-    if (session->circuit.n_computed == 0) {
+    if (session->circuit.results.n_computed == 0) {
         return run_circuit(session, options, &complete);
     }
     struct dalcs_computing computing;
@@ -324,10 +327,11 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) {
     struct dalcs_run_options own;
-    session->ended = dalcs_run_options_take(session, options, &own);
-    session->ended = session->ended == DALCS_OK ? run_all(session, &own, sink) : session->ended;
+    session->results.ended = dalcs_run_options_take(session, options, &own);
+    session->results.ended =
+        session->results.ended == DALCS_OK ? run_all(session, &own, sink) : session->results.ended;
     atomic_store(&session->is_cancelled, false);
-    return session->ended;
+    return session->results.ended;
 }
 
 void dalcs_session_cancel(struct dalcs_session *session) {

@@ -260,7 +260,7 @@ void dalcs_refusal_explain(struct dalcs_refusal *r) {
 }
 
 bool dalcs_refusal_is_of_start(const struct dalcs_refusal *r) {
-    const struct dalcs_transient *t = &r->circuit->transient;
+    const struct dalcs_transient *t = &r->circuit->analyses.transient;
     struct dalcs_fed_part part = {0};
     if (!r->is_static || !t->present || t->use_initial_conditions ||
         (r->kind == DALCS_WITNESS_CUTSET && dalcs_fed_part_find(r, &part) != DALCS_OK)) {

@@ -26,12 +26,13 @@ enum dalcs_status dalcs_run_name_signals(struct dalcs_run *r, bool copies) {
 }
 
 enum dalcs_status dalcs_run_begin_plot(struct dalcs_run *r, enum dalcs_analysis analysis) {
-    return dalcs_run_announce(r, &(struct dalcs_plot){.analysis = analysis,
-                                                      .scale = "time",
-                                                      .scale_unit = DALCS_UNIT_SECOND,
-                                                      .n_signals = (size_t)r->s->circuit.n_shown,
-                                                      .name = r->signals.name,
-                                                      .unit = r->signals.unit});
+    return dalcs_run_announce(
+        r, &(struct dalcs_plot){.analysis = analysis,
+                                .scale = "time",
+                                .scale_unit = DALCS_UNIT_SECOND,
+                                .n_signals = (size_t)r->s->circuit.results.n_shown,
+                                .name = r->signals.name,
+                                .unit = r->signals.unit});
 }
 
 enum dalcs_status dalcs_run_announce(struct dalcs_run *r, const struct dalcs_plot *about) {
@@ -42,7 +43,7 @@ enum dalcs_status dalcs_run_announce(struct dalcs_run *r, const struct dalcs_plo
         return DALCS_E_NOMEM;
     }
     *plot = *about;
-    plot->title = r->s->has_netlist ? dalcs_arena_copy(arena, title, strlen(title)) : title;
+    plot->title = r->s->source.has_netlist ? dalcs_arena_copy(arena, title, strlen(title)) : title;
     plot->n_steps = 1;
     if (plot->title == NULL) {
         return DALCS_E_NOMEM;

@@ -6,23 +6,24 @@
 #include <string.h>
 
 size_t dalcs_session_n_script_lines(const struct dalcs_session *session) {
-    return session->has_netlist ? session->netlist.n_script_lines : 0;
+    return session->source.has_netlist ? session->source.netlist.commands.n : 0;
 }
 
 const char *dalcs_session_script_line(const struct dalcs_session *session, size_t index) {
-    return index < dalcs_session_n_script_lines(session) ? session->netlist.script[index].text
-                                                         : NULL;
+    return index < dalcs_session_n_script_lines(session)
+               ? session->source.netlist.commands.line[index].text
+               : NULL;
 }
 
 /* As messages call the lines that are added. */
 static const char COMMANDS[] = "command";
 
 enum dalcs_status dalcs_session_add_script_line(struct dalcs_session *session, const char *text) {
-    struct dalcs_netlist *netlist = &session->netlist;
+    struct dalcs_netlist *netlist = &session->source.netlist;
     if (dalcs_session_n_script_lines(session) == 0) {
         return DALCS_E_OPTION;
     }
-    const struct dalcs_source_line last = netlist->script[netlist->n_script_lines - 1];
+    const struct dalcs_source_line last = netlist->commands.line[netlist->commands.n - 1];
     const struct dalcs_source *source = last.source;
     int number = last.number + 1;
     if (strcmp(source->name, COMMANDS) != 0) {
@@ -39,12 +40,9 @@ enum dalcs_status dalcs_session_add_script_line(struct dalcs_session *session, c
         return DALCS_E_NOMEM;
     }
     /* the circuit of the last run may name places in the lines that move here: it is built again */
-    session->is_altered = true;
-    DALCS_TRY(dalcs_grow(&netlist->script, &netlist->script_capacity, netlist->n_script_lines + 1,
-                         sizeof *netlist->script));
-    netlist->script[netlist->n_script_lines++] =
-        (struct dalcs_source_line){.source = source, .text = own, .number = number};
-    return DALCS_OK;
+    session->source.is_altered = true;
+    const struct dalcs_source_line added = {.source = source, .text = own, .number = number};
+    return dalcs_source_lines_add(&netlist->commands, added);
 }
 
 void dalcs_session_script_message(struct dalcs_session *session, size_t line, size_t column,
@@ -58,8 +56,9 @@ void dalcs_session_script_message(struct dalcs_session *session, size_t line, si
         dalcs_diag_add(&session->diag, severity[level], NULL, hint, "%s", text);
         return;
     }
-    const struct dalcs_token place = {
-        .line = &session->netlist.script[line], .offset = (int)column - 1, .length = (int)length};
+    const struct dalcs_token place = {.line = &session->source.netlist.commands.line[line],
+                                      .offset = (int)column - 1,
+                                      .length = (int)length};
     const struct dalcs_location where = dalcs_token_location(&place);
     dalcs_diag_add(&session->diag, severity[level], &where, hint, "%s", text);
 }
@@ -78,7 +77,7 @@ static bool is_analysis(const struct dalcs_card *card) {
 
 /* Keeps the analyses among the last cards and drops those before; undone by `before`. */
 static enum dalcs_status use_own_analyses(struct dalcs_session *s, size_t first) {
-    struct dalcs_netlist *netlist = &s->netlist;
+    struct dalcs_netlist *netlist = &s->source.netlist;
     bool has_own = false;
     for (size_t k = first; k < netlist->n_cards; k++) {
         has_own = has_own || is_analysis(&netlist->card[k]);
@@ -104,7 +103,7 @@ static enum dalcs_status run_with(struct dalcs_session *session,
             return DALCS_E_OPTION;
         }
     }
-    struct dalcs_netlist *netlist = &session->netlist;
+    struct dalcs_netlist *netlist = &session->source.netlist;
     const struct dalcs_netlist before = *netlist;
     struct dalcs_card *kept = dalcs_alloc(before.n_cards, sizeof *kept);
     if (kept == NULL) {
@@ -113,8 +112,8 @@ static enum dalcs_status run_with(struct dalcs_session *session,
     memcpy(kept, before.card, before.n_cards * sizeof *kept);
     enum dalcs_status status = DALCS_OK;
     for (size_t k = 0; k < n_cards && status == DALCS_OK; k++) {
-        status = dalcs_netlist_add_card(netlist, &netlist->script[card[k].line], card[k].text,
-                                        &session->diag);
+        status = dalcs_netlist_add_card(netlist, &netlist->commands.line[card[k].line],
+                                        card[k].text, &session->diag);
     }
     if (status == DALCS_OK && second != NULL) {
         status = dalcs_netlist_add_card(netlist, second, second->text, &session->diag);
@@ -123,14 +122,14 @@ static enum dalcs_status run_with(struct dalcs_session *session,
         status = use_own_analyses(session, before.n_cards);
     }
     if (status == DALCS_OK) {
-        session->is_altered = true;
+        session->source.is_altered = true;
         status = dalcs_session_run(session, options, sink);
     }
     memcpy(netlist->card, kept, before.n_cards * sizeof *kept);
     netlist->n_cards = before.n_cards;
     netlist->has_errors = before.has_errors;
     netlist->has_language = before.has_language;
-    session->is_altered = true;
+    session->source.is_altered = true;
     free(kept);
     return status;
 }
@@ -139,12 +138,12 @@ enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
                                           const struct dalcs_extra_card *card, size_t n_cards,
                                           const struct dalcs_run_options *options,
                                           const struct dalcs_sink *sink) {
-    return session->has_netlist ? run_with(session, NULL, card, n_cards, options, sink)
-                                : DALCS_E_OPTION;
+    return session->source.has_netlist ? run_with(session, NULL, card, n_cards, options, sink)
+                                       : DALCS_E_OPTION;
 }
 
 size_t dalcs_session_n_second_analyses(const struct dalcs_session *session) {
-    return session->has_netlist ? session->netlist.n_second : 0;
+    return session->source.has_netlist ? session->source.netlist.later.n : 0;
 }
 
 enum dalcs_status dalcs_session_run_second(struct dalcs_session *session, size_t index,
@@ -152,7 +151,8 @@ enum dalcs_status dalcs_session_run_second(struct dalcs_session *session, size_t
                                            const struct dalcs_run_options *options,
                                            const struct dalcs_sink *sink) {
     return index < dalcs_session_n_second_analyses(session)
-               ? run_with(session, &session->netlist.second[index], card, n_cards, options, sink)
+               ? run_with(session, &session->source.netlist.later.line[index], card, n_cards,
+                          options, sink)
                : DALCS_E_OPTION;
 }
 
@@ -168,9 +168,9 @@ static enum dalcs_status keep_override(struct dalcs_session *s,
         }
         memcpy(list, override->list, override->n_list * sizeof *list);
     }
-    s->is_altered = true;
-    for (size_t k = 0; k < s->n_altered; k++) {
-        struct dalcs_override *known = &s->override[k];
+    s->source.is_altered = true;
+    for (size_t k = 0; k < s->source.n_altered; k++) {
+        struct dalcs_override *known = &s->source.override[k];
         const bool same_field =
             (known->field == NULL) == (override->field == NULL) &&
             (known->field == NULL || strcmp(known->field, override->field) == 0);
@@ -182,8 +182,8 @@ static enum dalcs_status keep_override(struct dalcs_session *s,
             return DALCS_OK;
         }
     }
-    DALCS_TRY(
-        dalcs_grow(&s->override, &s->override_capacity, s->n_altered + 1, sizeof *s->override));
+    DALCS_TRY(dalcs_grow(&s->source.override, &s->source.override_capacity, s->source.n_altered + 1,
+                         sizeof *s->source.override));
     struct dalcs_override own = *override;
     own.list = list;
     own.name = dalcs_arena_copy(&s->arena, override->name, strlen(override->name));
@@ -193,7 +193,7 @@ static enum dalcs_status keep_override(struct dalcs_session *s,
     if (own.name == NULL || (override->field != NULL && own.field == NULL)) {
         return DALCS_E_NOMEM;
     }
-    s->override[s->n_altered++] = own;
+    s->source.override[s->source.n_altered++] = own;
     return DALCS_OK;
 }
 
@@ -255,19 +255,19 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
         .kind = DALCS_OVERRIDE_ELEMENT, .name = name, .field = field, .value = value};
     bool found;
     *like = NULL;
-    if (!session->has_netlist) {
+    if (!session->source.has_netlist) {
         return DALCS_E_OPTION;
     }
     dalcs_steady_anchor_forget(session);
     if (is_parameter) {
         override.kind = DALCS_OVERRIDE_PARAMETER;
-        found = has_parameter(&session->netlist, name, like);
+        found = has_parameter(&session->source.netlist, name, like);
     } else if (field != NULL) {
         override.kind = DALCS_OVERRIDE_MODEL;
-        found = has_card(&session->netlist, ".model", 1, name, like);
+        found = has_card(&session->source.netlist, ".model", 1, name, like);
     } else {
         found = (session->has_circuit && has_device(&session->circuit, name, like)) ||
-                has_card(&session->netlist, NULL, 0, name, like);
+                has_card(&session->source.netlist, NULL, 0, name, like);
     }
     return found ? keep_override(session, &override) : DALCS_E_OPTION;
 }
@@ -296,12 +296,13 @@ enum dalcs_status dalcs_session_alter_waveform(struct dalcs_session *session, co
 enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, const char *name,
                                           double *value) {
     const char *nearest = NULL;
-    if (!session->has_netlist || !has_parameter(&session->netlist, name, &nearest)) {
+    if (!session->source.has_netlist || !has_parameter(&session->source.netlist, name, &nearest)) {
         return DALCS_E_OPTION;
     }
-    struct dalcs_deck deck = {.override = session->override, .n_overrides = session->n_altered};
+    struct dalcs_deck deck = {.override = session->source.override,
+                              .n_overrides = session->source.n_altered};
     struct dalcs_diag unheard = {0}; /* the circuit was built: all of it has been said */
-    enum dalcs_status status = dalcs_deck_settle(&deck, &session->netlist, &unheard);
+    enum dalcs_status status = dalcs_deck_settle(&deck, &session->source.netlist, &unheard);
     if (status == DALCS_OK && !dalcs_deck_parameter(&deck, name, value)) {
         status = DALCS_E_OPTION;
     }
@@ -312,13 +313,14 @@ enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, c
 
 void dalcs_session_reset(struct dalcs_session *session) {
     size_t n = 0;
-    for (size_t k = 0; k < session->n_altered; k++) {
-        if (session->override[k].kind == DALCS_OVERRIDE_PARAMETER) {
-            session->override[n++] = session->override[k];
+    for (size_t k = 0; k < session->source.n_altered; k++) {
+        if (session->source.override[k].kind == DALCS_OVERRIDE_PARAMETER) {
+            session->source.override[n++] = session->source.override[k];
         }
     }
-    const bool draws = session->has_circuit && session->circuit.is_random;
-    session->is_altered = session->is_altered || n < session->n_altered || draws;
-    session->n_altered = n;
-    session->n_resets += draws ? 1 : 0; /* as ngspice, whose .param are evaluated again */
+    const bool draws = session->has_circuit && session->circuit.random.is_random;
+    session->source.is_altered =
+        session->source.is_altered || n < session->source.n_altered || draws;
+    session->source.n_altered = n;
+    session->source.n_resets += draws ? 1 : 0; /* as ngspice, whose .param are evaluated again */
 }

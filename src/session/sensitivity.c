@@ -65,7 +65,7 @@ static enum dalcs_status run_orbit(struct dalcs_sensitivities *s,
         status = dalcs_sensitivity_run(s, &other, &near, same);
     }
     if (status == DALCS_OK && is_first) {
-        status = list_results(s, &other.report);
+        status = list_results(s, &other.results.report);
     }
     if (status == DALCS_OK) {
         dalcs_sensitivity_take(s, &other, which, same);
@@ -206,7 +206,7 @@ static enum dalcs_status differentiate_all(struct dalcs_sensitivities *s,
 
 static enum dalcs_status fill_report(struct dalcs_sensitivities *s) {
     struct dalcs_session *session = s->run->s;
-    const struct dalcs_sensitivity_card *card = &session->circuit.sensitivity;
+    const struct dalcs_sensitivity_card *card = &session->circuit.analyses.sensitivity;
     const size_t n = (size_t)card->n;
     struct dalcs_sensitivity_parameter *parameter =
         dalcs_arena_alloc(&session->arena, n + 1, sizeof *parameter);
@@ -228,11 +228,11 @@ static enum dalcs_status fill_report(struct dalcs_sensitivities *s) {
     for (size_t p = 0; p < n; p++) {
         DALCS_TRY(differentiate_all(s, &card->item[p], derivative, p));
     }
-    session->report.sensitivity.present = true;
-    session->report.sensitivity.n_parameters = n;
-    session->report.sensitivity.n_results = s->n_results;
-    session->report.sensitivity.parameter = parameter;
-    session->report.sensitivity.result = s->result;
+    session->results.report.sensitivity.present = true;
+    session->results.report.sensitivity.n_parameters = n;
+    session->results.report.sensitivity.n_results = s->n_results;
+    session->results.report.sensitivity.parameter = parameter;
+    session->results.report.sensitivity.result = s->result;
     return DALCS_OK;
 }
 

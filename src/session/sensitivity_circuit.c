@@ -31,11 +31,11 @@ enum dalcs_status dalcs_sensitivity_build(struct dalcs_sensitivities *s,
     struct dalcs_session *of = s->run->s;
     bool any;
     other->name = of->name;
-    other->asks_steady = of->asks_steady;
+    other->asks.steady = of->asks.steady;
     DALCS_TRY(dalcs_session_build(of, override, n, &other->circuit, &other->network));
     other->has_circuit = other->has_network = true;
-    other->circuit.sensitivity.present = false;
-    other->circuit.periodic.present = true;
+    other->circuit.analyses.sensitivity.present = false;
+    other->circuit.analyses.periodic.present = true;
     DALCS_TRY(dalcs_operating_currents_keep(&other->circuit, &of->circuit, &any));
     if (any) {
         const struct dalcs_network_options again = {.silent = true, .with_readout = true};
@@ -55,10 +55,10 @@ enum dalcs_status dalcs_sensitivity_run(struct dalcs_sensitivities *s, struct da
     const bool is_first = near->orbit != NULL;
     near->n_x = s->st->layout.n_x;
     near->n_pairs = s->st->layout.n_pairs;
-    other->near = near;
+    other->steady.near = near;
     const enum dalcs_status status =
         dalcs_session_run_analysis(other, &s->options, &sink, DALCS_PERIODIC);
-    other->near = NULL;
+    other->steady.near = NULL;
     s->signature = is_first ? near->signature : s->signature;
     *same = status == DALCS_OK && (s->may_differ || near->signature == s->signature);
     return status > DALCS_OK && !is_first ? DALCS_OK : status;
@@ -66,8 +66,8 @@ enum dalcs_status dalcs_sensitivity_run(struct dalcs_sensitivities *s, struct da
 
 void dalcs_sensitivity_take(struct dalcs_sensitivities *s, const struct dalcs_session *other,
                             int which, bool *same) {
-    *same = *same && dalcs_sensitivity_count(&other->report) == s->n_results;
+    *same = *same && dalcs_sensitivity_count(&other->results.report) == s->n_results;
     for (size_t k = 0; *same && k < s->n_results; k++) {
-        s->value[which][k] = dalcs_sensitivity_get(&other->report, k).value;
+        s->value[which][k] = dalcs_sensitivity_get(&other->results.report, k).value;
     }
 }

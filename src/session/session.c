@@ -22,19 +22,19 @@ enum dalcs_status dalcs_session_create(struct dalcs_session **session) {
 }
 
 void dalcs_session_forget_run(struct dalcs_session *s) {
-    if (s->recorder.network != NULL) {
-        dalcs_recorder_finish(&s->recorder);
+    if (s->results.recorder.network != NULL) {
+        dalcs_recorder_finish(&s->results.recorder);
     }
-    free(s->start);
-    free(s->final);
-    free(s->nonunique);
-    s->start = NULL;
-    s->final = NULL;
-    s->nonunique = NULL;
-    s->n_nonunique = 0;
-    s->nonunique_capacity = 0;
-    s->report = (struct dalcs_report){0};
-    s->has_report = false;
+    free(s->results.start);
+    free(s->results.final);
+    free(s->results.nonunique);
+    s->results.start = NULL;
+    s->results.final = NULL;
+    s->results.nonunique = NULL;
+    s->results.n_nonunique = 0;
+    s->results.nonunique_capacity = 0;
+    s->results.report = (struct dalcs_report){0};
+    s->results.has_report = false;
 }
 
 void dalcs_session_finish_other(struct dalcs_session *other) {
@@ -58,14 +58,14 @@ void dalcs_session_destroy(struct dalcs_session *session) {
     klu_common klu;
     dalcs_lu_common_init(&klu);
     dalcs_lu_patterns_finish(&session->patterns, &klu);
-    if (session->has_netlist) {
-        dalcs_netlist_finish(&session->netlist);
+    if (session->source.has_netlist) {
+        dalcs_netlist_finish(&session->source.netlist);
     }
-    free(session->override);
-    free(session->own);
-    free(session->state);
-    free(session->document);
-    dalcs_spice_names_finish(&session->spice);
+    free(session->source.override);
+    free(session->source.own);
+    free(session->initial.state);
+    free(session->results.document);
+    dalcs_spice_names_finish(&session->results.spice);
     dalcs_arena_finish(&session->checked);
     dalcs_arena_finish(&session->audited);
     free(session);
@@ -74,10 +74,10 @@ void dalcs_session_destroy(struct dalcs_session *session) {
 /* Steps, sweeps of what is no source, and scripts need other circuits of the same netlist. */
 static bool is_built_again(const struct dalcs_circuit *circuit, const struct dalcs_netlist *netlist,
                            bool is_kept) {
-    bool again = circuit->n_steps > 0 || circuit->sensitivity.present ||
-                 circuit->worst_case.present || netlist->n_script_lines > 0 || is_kept;
-    for (int k = 0; k < circuit->n_dc; k++) {
-        const int device = circuit->dc[k].device;
+    bool again = circuit->analyses.n_steps > 0 || circuit->analyses.sensitivity.present ||
+                 circuit->analyses.worst_case.present || netlist->commands.n > 0 || is_kept;
+    for (int k = 0; k < circuit->analyses.n_dc; k++) {
+        const int device = circuit->analyses.dc[k].device;
         again = again || device < 0 || circuit->device[device].stimulus < 0;
     }
     return again;
@@ -86,7 +86,7 @@ static bool is_built_again(const struct dalcs_circuit *circuit, const struct dal
 static enum dalcs_status read_system(struct dalcs_session *s, const char *name, const char *text,
                                      size_t length) {
     struct dalcs_description d;
-    if (s->transient != NULL || s->transient_stop != NULL) {
+    if (s->asks.transient != NULL || s->asks.transient_stop != NULL) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "change the .tran in the file",
                        "--tran and --tstop apply to netlists, not to system files");
         return DALCS_E_OPTION;
@@ -94,7 +94,7 @@ static enum dalcs_status read_system(struct dalcs_session *s, const char *name, 
     DALCS_TRY(dalcs_description_read_text(&d, name, text, length, &s->diag));
     s->circuit = d.circuit;
     s->network = d.network;
-    s->circuit.n_shown = d.network.n_outputs;
+    s->circuit.results.n_shown = d.network.n_outputs;
     s->has_circuit = true;
     s->has_network = true;
     return DALCS_OK;
@@ -115,9 +115,9 @@ static enum dalcs_status build(struct dalcs_session *s, struct dalcs_netlist *ne
         status = dalcs_circuit_build(&s->circuit, netlist, &s->diag);
         s->has_circuit = status == DALCS_OK;
     }
-    if (status == DALCS_OK && is_built_again(&s->circuit, netlist, s->keeps_netlist)) {
-        s->netlist = *netlist;
-        s->has_netlist = true;
+    if (status == DALCS_OK && is_built_again(&s->circuit, netlist, s->source.keeps_netlist)) {
+        s->source.netlist = *netlist;
+        s->source.has_netlist = true;
     } else {
         dalcs_netlist_finish(netlist);
     }
@@ -136,15 +136,7 @@ static enum dalcs_status build(struct dalcs_session *s, struct dalcs_netlist *ne
 
 /* A netlist to be read, with what was asked for beside it. */
 static struct dalcs_netlist asked_of(const struct dalcs_session *session) {
-    return (struct dalcs_netlist){.dialect = session->dialect,
-                                  .losses = session->losses,
-                                  .asks_steady = session->asks_steady,
-                                  .asks_response = session->asks_response,
-                                  .asks_sensitivities = session->asks_sensitivities,
-                                  .has_seed = session->has_seed,
-                                  .seed = session->seed,
-                                  .transient = session->transient,
-                                  .transient_stop = session->transient_stop};
+    return (struct dalcs_netlist){.dialect = session->dialect, .asks = session->asks};
 }
 
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const char *path) {
@@ -177,7 +169,7 @@ size_t dalcs_session_n_messages(const struct dalcs_session *session) {
 }
 
 size_t dalcs_session_n_events(const struct dalcs_session *session) {
-    return session->recorder.log.n_events + session->recorder.log.n_events_dropped;
+    return session->results.recorder.log.n_events + session->results.recorder.log.n_events_dropped;
 }
 
 const char *dalcs_session_message(const struct dalcs_session *session, size_t index,
@@ -196,21 +188,21 @@ const char *dalcs_session_message(const struct dalcs_session *session, size_t in
 }
 
 struct dalcs_request dalcs_session_request(const struct dalcs_session *session) {
-    const struct dalcs_transient *t = &session->circuit.transient;
+    const struct dalcs_transient *t = &session->circuit.analyses.transient;
     const struct dalcs_circuit_options *o = &session->circuit.options;
-    return (struct dalcs_request){.operating_point = session->circuit.operating_point,
+    return (struct dalcs_request){.operating_point = session->circuit.analyses.operating_point,
                                   .transient = t->present,
-                                  .dc_sweep = session->circuit.n_dc > 0,
-                                  .ac = session->circuit.ac.n > 0,
+                                  .dc_sweep = session->circuit.analyses.n_dc > 0,
+                                  .ac = session->circuit.analyses.ac.n > 0,
                                   .n_steps = dalcs_steps_count(session),
                                   .step = t->step,
                                   .stop = t->stop,
                                   .start = t->start,
                                   .max_step = t->max_step,
-                                  .n_prints = (size_t)session->circuit.n_prints,
+                                  .n_prints = (size_t)session->circuit.results.n_prints,
                                   .ascii = session->circuit.options.ascii,
-                                  .periodic = session->circuit.periodic.present,
-                                  .worst_case = session->circuit.worst_case.present,
+                                  .periodic = session->circuit.analyses.periodic.present,
+                                  .worst_case = session->circuit.analyses.worst_case.present,
                                   .euler = o->method != NULL && strcmp(o->method, "euler") == 0,
                                   .compresses = o->compress > 0.0};
 }
@@ -228,10 +220,10 @@ bool dalcs_session_print(const struct dalcs_session *session, size_t card, int a
         [DALCS_PART_DECIBEL] = DALCS_PRINT_DECIBEL, [DALCS_PART_PHASE] = DALCS_PRINT_PHASE,
         [DALCS_PART_REAL] = DALCS_PRINT_REAL,       [DALCS_PART_IMAGINARY] = DALCS_PRINT_IMAGINARY};
     const struct dalcs_circuit *circuit = &session->circuit;
-    if (card >= (size_t)circuit->n_prints || analysis < 0 || analysis >= DALCS_N_ANALYSES) {
+    if (card >= (size_t)circuit->results.n_prints || analysis < 0 || analysis >= DALCS_N_ANALYSES) {
         return false;
     }
-    const struct dalcs_print_card *found = &circuit->print[card];
+    const struct dalcs_print_card *found = &circuit->results.print[card];
     if (!found->is_of[measured[analysis]] || column >= (size_t)found->n) {
         return false;
     }
@@ -245,15 +237,15 @@ const char *dalcs_session_measure_name(const struct dalcs_session *session, size
                                                             DALCS_MEASURED_PSS, DALCS_MEASURED_AC,
                                                             DALCS_MEASURED_TRAN};
     const struct dalcs_circuit *circuit = &session->circuit;
-    const bool asked[] = {[DALCS_MEASURED_OP] = circuit->operating_point,
-                          [DALCS_MEASURED_DC] = circuit->n_dc > 0,
-                          [DALCS_MEASURED_PSS] = circuit->periodic.present,
-                          [DALCS_MEASURED_AC] = circuit->ac.n > 0,
-                          [DALCS_MEASURED_TRAN] = circuit->transient.present};
+    const bool asked[] = {[DALCS_MEASURED_OP] = circuit->analyses.operating_point,
+                          [DALCS_MEASURED_DC] = circuit->analyses.n_dc > 0,
+                          [DALCS_MEASURED_PSS] = circuit->analyses.periodic.present,
+                          [DALCS_MEASURED_AC] = circuit->analyses.ac.n > 0,
+                          [DALCS_MEASURED_TRAN] = circuit->analyses.transient.present};
     for (size_t a = 0; a < sizeof in_order / sizeof in_order[0]; a++) {
-        for (int k = 0; asked[in_order[a]] && k < circuit->n_measures; k++) {
-            if (circuit->measure[k].analysis == in_order[a] && index-- == 0) {
-                return circuit->measure[k].name;
+        for (int k = 0; asked[in_order[a]] && k < circuit->results.n_measures; k++) {
+            if (circuit->results.measure[k].analysis == in_order[a] && index-- == 0) {
+                return circuit->results.measure[k].name;
             }
         }
     }
@@ -261,13 +253,13 @@ const char *dalcs_session_measure_name(const struct dalcs_session *session, size
 }
 
 const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session) {
-    return session->has_report ? &session->report : NULL;
+    return session->results.has_report ? &session->results.report : NULL;
 }
 
 const struct dalcs_measurement *dalcs_session_measurement(const struct dalcs_session *session,
                                                           size_t index) {
-    const bool has = session->has_report && index < session->report.n_measurements;
-    return has ? &session->report.measurement[index] : NULL;
+    const bool has = session->results.has_report && index < session->results.report.n_measurements;
+    return has ? &session->results.report.measurement[index] : NULL;
 }
 
 enum dalcs_status dalcs_parse_number(const char *text, double *value) {

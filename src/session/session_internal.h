@@ -55,19 +55,9 @@ struct dalcs_set_state {
     double value; /* V or A */
 };
 
-struct dalcs_session {
-    char *name;
-    struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
-    struct dalcs_losses_request losses;
-    bool asks_steady, asks_response, asks_sensitivities;
-    struct dalcs_stroboscope *stroboscope; /* while .step is looked at with it; else NULL */
-    struct dalcs_steady_near *near; /* where the search for an orbit begins; NULL: as it does */
-    bool keeps_netlist;             /* it may be run with other values */
-    struct dalcs_diag diag;
-    struct dalcs_circuit circuit;
-    bool has_circuit;
-    struct dalcs_network network;
-    bool has_network;
+/* What the circuit is built from, again where values change. */
+struct dalcs_session_source {
+    bool keeps_netlist;           /* it may be run with other values */
     struct dalcs_netlist netlist; /* kept where the circuit may have to be built again */
     bool has_netlist;
     bool is_altered;                 /* the circuit is not the netlist's with what alter said */
@@ -76,37 +66,63 @@ struct dalcs_session {
     struct dalcs_override *own; /* of the present step; heap */
     size_t n_own;
     struct dalcs_steps steps;
-    struct dalcs_lu_patterns patterns; /* of modes, kept from step to step: values do not matter */
     struct dalcs_drawn_value *unbuilt; /* [n_unbuilt] drawn for a step that could not be built */
     size_t n_unbuilt;
     const char *why_unbuilt; /* the first error of that; the arena's */
-    /* What external sources are told by, or NULL. */
-    enum dalcs_status (*exchange)(void *user, struct dalcs_exchange *e);
-    void *exchange_user;
-    struct dalcs_set_state
-        *state; /* [n_set_states] that runs start with; heap, names are the arena's */
-    size_t n_set_states, state_capacity;
-    size_t n_resets; /* of a circuit with random values: each draws them anew */
-    bool has_seed;
-    uint64_t seed;
-    const char *transient, *transient_stop; /* in place of the netlist's .tran, or NULL */
-    struct dalcs_recorder recorder;         /* owns the report's events and jumps */
-    struct dalcs_report report;
-    bool has_report;
-    enum dalcs_status ended; /* how the last run did */
-    atomic_bool
-        is_cancelled; /* written by other threads and signal handlers, which may write nothing else */
-    const atomic_bool *is_cancelled_with; /* of the session that it works for; NULL: its own */
-    char *document;                       /* the last one handed out as text; heap */
-    double *start, *final;
+    size_t n_resets;         /* of a circuit with random values: each draws them anew */
+};
+
+/* Where the search for an orbit begins. */
+struct dalcs_session_steady {
+    struct dalcs_stroboscope *stroboscope; /* while .step is looked at with it; else NULL */
+    struct dalcs_steady_near *near;        /* NULL: as it does */
     struct dalcs_steady_anchor anchor;
     struct dalcs_run_options anchor_options; /* that it was looked for with */
-    struct dalcs_nonunique *nonunique;       /* of the report */
+};
+
+/* Of the last run. */
+struct dalcs_session_results {
+    enum dalcs_status ended;
+    struct dalcs_recorder recorder; /* owns the report's events and jumps */
+    struct dalcs_report report;
+    bool has_report;
+    char *document; /* the last one handed out as text; heap */
+    double *start, *final;
+    struct dalcs_nonunique *nonunique; /* of the report */
     size_t n_nonunique, nonunique_capacity;
     struct dalcs_spice_names spice; /* made when first asked for */
-    struct dalcs_arena arena;       /* names of the report and of the plots */
-    struct dalcs_arena checked;     /* the last check */
-    struct dalcs_arena audited;     /* the last audit of a table */
+};
+
+struct dalcs_session {
+    char *name;
+    struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
+    struct dalcs_asks asks;       /* of the next run */
+    struct dalcs_session_source source;
+    struct dalcs_diag diag;
+    struct dalcs_circuit circuit;
+    bool has_circuit;
+    struct dalcs_network network;
+    bool has_network;
+    struct dalcs_lu_patterns patterns; /* of modes, kept from step to step: values do not matter */
+
+    struct { /* what external sources are told by; exchange may be NULL */
+        enum dalcs_status (*exchange)(void *user, struct dalcs_exchange *e);
+        void *user;
+    } outside;
+
+    struct { /* what runs start with; heap, names are the arena's */
+        struct dalcs_set_state *state;
+        size_t n, capacity;
+    } initial;
+
+    struct dalcs_session_steady steady;
+    struct dalcs_session_results results;
+    atomic_bool
+        is_cancelled; /* written by other threads and signal handlers, which write nothing else */
+    const atomic_bool *is_cancelled_with; /* of the session that it works for; NULL: its own */
+    struct dalcs_arena arena;             /* names of the report and of the plots */
+    struct dalcs_arena checked;           /* the last check */
+    struct dalcs_arena audited;           /* the last audit of a table */
 };
 
 /* In the order of dalcs_method_name. */

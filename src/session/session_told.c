@@ -29,8 +29,8 @@ enum dalcs_status dalcs_session_set_seed(struct dalcs_session *session, double s
                        "a seed is a whole number from 0 to 2^53, not %.17g", seed);
         return DALCS_E_OPTION;
     }
-    session->seed = (uint64_t)seed;
-    session->has_seed = true;
+    session->asks.seed = (uint64_t)seed;
+    session->asks.has_seed = true;
     return DALCS_OK;
 }
 
@@ -38,7 +38,7 @@ enum dalcs_status dalcs_session_ask_losses(struct dalcs_session *session, double
     if (session->name != NULL) {
         return DALCS_E_OPTION; /* it is read */
     }
-    session->losses = (struct dalcs_losses_request){true, !isnan(from), from, to};
+    session->asks.losses = (struct dalcs_losses_request){true, !isnan(from), from, to};
     return DALCS_OK;
 }
 
@@ -46,17 +46,17 @@ enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) {
     if (session->name != NULL) {
         return DALCS_E_OPTION; /* it is read */
     }
-    session->asks_steady = true;
+    session->asks.steady = true;
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_session_ask_response(struct dalcs_session *session) {
-    session->asks_response = session->name == NULL;
+    session->asks.response = session->name == NULL;
     return dalcs_session_ask_steady(session);
 }
 
 enum dalcs_status dalcs_session_ask_sensitivities(struct dalcs_session *session) {
-    session->asks_sensitivities = session->name == NULL;
+    session->asks.sensitivities = session->name == NULL;
     return dalcs_session_ask_steady(session);
 }
 
@@ -65,12 +65,12 @@ enum dalcs_status dalcs_session_set_transient(struct dalcs_session *session, con
     if (session->name != NULL) {
         return DALCS_E_OPTION; /* it is read */
     }
-    session->transient =
+    session->asks.transient =
         times != NULL ? dalcs_arena_copy(&session->arena, times, strlen(times)) : NULL;
-    session->transient_stop =
+    session->asks.transient_stop =
         stop != NULL ? dalcs_arena_copy(&session->arena, stop, strlen(stop)) : NULL;
-    const bool complete = (times == NULL || session->transient != NULL) &&
-                          (stop == NULL || session->transient_stop != NULL);
+    const bool complete = (times == NULL || session->asks.transient != NULL) &&
+                          (stop == NULL || session->asks.transient_stop != NULL);
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -78,6 +78,6 @@ enum dalcs_status dalcs_session_keep_netlist(struct dalcs_session *session) {
     if (session->name != NULL) {
         return DALCS_E_OPTION; /* it is read */
     }
-    session->keeps_netlist = true;
+    session->source.keeps_netlist = true;
     return DALCS_OK;
 }

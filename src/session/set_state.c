@@ -39,12 +39,12 @@ static enum dalcs_status refuse(struct dalcs_session *s, const char *name) {
 
 enum dalcs_status dalcs_session_set_state(struct dalcs_session *session, const char *element,
                                           double value) {
-    if (!session->has_netlist || !isfinite(value)) {
+    if (!session->source.has_netlist || !isfinite(value)) {
         dalcs_diag_add(
-            &session->diag, DALCS_ERROR, NULL, session->has_netlist ? NULL : DALCS_KEEP_HINT,
-            session->has_netlist ? "the state of '%s' cannot be %g"
-                                 : "the state of '%s' cannot be set to %g: no netlist was "
-                                   "read that keeps its cards",
+            &session->diag, DALCS_ERROR, NULL, session->source.has_netlist ? NULL : DALCS_KEEP_HINT,
+            session->source.has_netlist ? "the state of '%s' cannot be %g"
+                                        : "the state of '%s' cannot be set to %g: no netlist was "
+                                          "read that keeps its cards",
             element, value);
         return DALCS_E_OPTION;
     }
@@ -56,25 +56,25 @@ enum dalcs_status dalcs_session_set_state(struct dalcs_session *session, const c
         return refuse(session, name);
     }
     size_t at = 0;
-    while (at < session->n_set_states && strcmp(session->state[at].element, name) != 0) {
+    while (at < session->initial.n && strcmp(session->initial.state[at].element, name) != 0) {
         at++;
     }
-    DALCS_TRY(
-        dalcs_grow(&session->state, &session->state_capacity, at + 1, sizeof(*session->state)));
-    session->state[at] = (struct dalcs_set_state){name, value};
-    session->n_set_states = at == session->n_set_states ? at + 1 : session->n_set_states;
-    session->is_altered = true;
+    DALCS_TRY(dalcs_grow(&session->initial.state, &session->initial.capacity, at + 1,
+                         sizeof(*session->initial.state)));
+    session->initial.state[at] = (struct dalcs_set_state){name, value};
+    session->initial.n = at == session->initial.n ? at + 1 : session->initial.n;
+    session->source.is_altered = true;
     return DALCS_OK;
 }
 
 void dalcs_session_apply_states(const struct dalcs_session *session,
                                 struct dalcs_circuit *circuit) {
-    for (size_t k = 0; k < session->n_set_states; k++) {
-        struct dalcs_device *d = find_storage(circuit, session->state[k].element);
+    for (size_t k = 0; k < session->initial.n; k++) {
+        struct dalcs_device *d = find_storage(circuit, session->initial.state[k].element);
         if (d != NULL) {
-            d->initial = session->state[k].value;
+            d->initial = session->initial.state[k].value;
             d->has_initial = true;
-            circuit->transient.use_initial_conditions = true;
+            circuit->analyses.transient.use_initial_conditions = true;
         }
     }
 }

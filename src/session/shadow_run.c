@@ -60,42 +60,43 @@ double dalcs_charge_mean(const struct dalcs_charge *c, int side, double toleranc
 
 /* Which of the analyses shows what the diodes carry. */
 static enum dalcs_analysis telling_analysis(const struct dalcs_circuit *c) {
-    bool sweeps_sources = c->n_dc > 0;
-    for (int k = 0; k < c->n_dc; k++) {
-        sweeps_sources =
-            sweeps_sources && c->dc[k].device >= 0 && c->device[c->dc[k].device].stimulus >= 0;
+    bool sweeps_sources = c->analyses.n_dc > 0;
+    for (int k = 0; k < c->analyses.n_dc; k++) {
+        sweeps_sources = sweeps_sources && c->analyses.dc[k].device >= 0 &&
+                         c->device[c->analyses.dc[k].device].stimulus >= 0;
     }
-    return c->transient.present ? DALCS_TRANSIENT
-           : sweeps_sources     ? DALCS_DC_SWEEP
-                                : DALCS_OPERATING_POINT;
+    return c->analyses.transient.present ? DALCS_TRANSIENT
+           : sweeps_sources              ? DALCS_DC_SWEEP
+                                         : DALCS_OPERATING_POINT;
 }
 
 /* The diodes' currents are what rows show. Behind them are the measured signals where there are gates, which may sample
  * some of them. */
 static enum dalcs_status list_signals(struct dalcs_arena *arena, struct dalcs_circuit *c, int n) {
-    const struct dalcs_signal *all = c->signal;
-    const int *measured = c->measured;
-    const int n_measured = c->n_gates > 0 || c->n_delayed > 0 ? c->n_measured : 0;
+    const struct dalcs_signal *all = c->results.signal;
+    const int *measured = c->results.measured;
+    const int n_measured =
+        c->control.n_gates > 0 || c->control.n_delayed > 0 ? c->results.n_measured : 0;
     struct dalcs_signal *signal =
         dalcs_arena_alloc(arena, (size_t)(n + n_measured), sizeof *signal);
     int *place = dalcs_arena_alloc(arena, (size_t)n_measured, sizeof *place);
     if (signal == NULL || place == NULL) {
         return DALCS_E_NOMEM;
     }
-    c->n_signals = 0;
+    c->results.n_signals = 0;
     for (int k = 0; k < c->n_devices; k++) {
         if (dalcs_exponential_of(c, k) != NULL) {
-            signal[c->n_signals++] = (struct dalcs_signal){
+            signal[c->results.n_signals++] = (struct dalcs_signal){
                 .name = c->device[k].name, .kind = DALCS_SIGNAL_CURRENT, .device = k};
         }
     }
-    c->n_shown = c->n_signals;
+    c->results.n_shown = c->results.n_signals;
     for (int k = 0; k < n_measured; k++) {
-        place[k] = c->n_signals;
-        signal[c->n_signals++] = all[measured[k]];
+        place[k] = c->results.n_signals;
+        signal[c->results.n_signals++] = all[measured[k]];
     }
-    c->signal = signal;
-    c->measured = place;
+    c->results.signal = signal;
+    c->results.measured = place;
     return DALCS_OK;
 }
 
@@ -107,12 +108,13 @@ static enum dalcs_status make_shadow(struct dalcs_session *s, int n, struct dalc
     shadow->name = s->name;
     shadow->is_cancelled_with = &s->is_cancelled;
     DALCS_TRY(list_signals(&shadow->arena, c, n));
-    c->losses = NULL;
-    c->n_computed = c->n_measured = c->n_measures = c->n_fouriers = c->n_prints = c->n_steps = 0;
-    c->operating_point = true;
+    c->results.losses = NULL;
+    c->results.n_computed = c->results.n_measured = c->results.n_measures = c->results.n_fouriers =
+        c->results.n_prints = c->analyses.n_steps = 0;
+    c->analyses.operating_point = true;
     c->options.compress = c->options.fill = 0;
-    c->transient.step = 0; /* no more rows than are asked for */
-    c->transient.start = 0;
+    c->analyses.transient.step = 0; /* no more rows than are asked for */
+    c->analyses.transient.start = 0;
     const struct dalcs_network_options options = {.silent = true,
                                                   .with_readout = dalcs_circuit_is_audited(c)};
     const enum dalcs_status status =
@@ -143,7 +145,7 @@ enum dalcs_status dalcs_shadow_run(struct dalcs_session *s, const struct dalcs_r
     options.record = options.energy = false;
     options.audit = DALCS_AUDIT_OFF;
     options.dump_path = NULL;
-    const struct dalcs_transient *t = &s->circuit.transient;
+    const struct dalcs_transient *t = &s->circuit.analyses.transient;
     c->is_transient = analysis == DALCS_TRANSIENT;
     c->from = t->start > 0 ? t->start : t->stop / 2;
     c->has_row = false;

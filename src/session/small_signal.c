@@ -292,7 +292,7 @@ static enum dalcs_status solve_frequency(struct small_signal *a, int k, double f
     for (int p = 0; p < a->n_parts; p++) {
         const enum dalcs_status status = solve_part(&a->part[p], frequency, r->osnsp.rcond_min);
         if (status == DALCS_SINGULAR) {
-            dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
+            dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.analyses.ac.where,
                            "an undamped resonance at this frequency, or a loop of conducting ideal "
                            "diodes or closed switches; a resistance in it makes it one",
                            "at %.9g Hz the response is not unique", frequency);
@@ -328,7 +328,7 @@ static enum dalcs_status warn_of_degenerate(struct dalcs_run *r,
         }
     }
     if (n_found > 0) {
-        dalcs_diag_add(&r->s->diag, DALCS_WARNING, &r->s->circuit.ac.where,
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, &r->s->circuit.analyses.ac.where,
                        "give them a current or a reverse voltage at the operating point",
                        "at the operating point %zu diode%s neither current nor voltage; .ac takes "
                        "%s%s",
@@ -363,8 +363,8 @@ static enum dalcs_status report_sides(struct dalcs_run *r, struct dalcs_euler *e
             }
         }
     }
-    r->s->report.n_sides = n_sides;
-    r->s->report.side = side;
+    r->s->results.report.n_sides = n_sides;
+    r->s->results.report.side = side;
     return warn_of_degenerate(r, side, n_sides);
 }
 
@@ -390,14 +390,15 @@ static enum dalcs_status find_operating_point(struct dalcs_run *r, struct dalcs_
 
 static enum dalcs_status walk(struct small_signal *a) {
     struct dalcs_run *r = a->run;
-    const struct dalcs_sweep *f = &r->s->circuit.ac;
-    DALCS_TRY(dalcs_run_announce(r, &(struct dalcs_plot){.analysis = DALCS_AC,
-                                                         .scale = "frequency",
-                                                         .scale_unit = DALCS_UNIT_HERTZ,
-                                                         .n_signals = (size_t)r->s->circuit.n_shown,
-                                                         .name = r->signals.name,
-                                                         .unit = r->signals.unit,
-                                                         .is_complex = true}));
+    const struct dalcs_sweep *f = &r->s->circuit.analyses.ac;
+    DALCS_TRY(dalcs_run_announce(
+        r, &(struct dalcs_plot){.analysis = DALCS_AC,
+                                .scale = "frequency",
+                                .scale_unit = DALCS_UNIT_HERTZ,
+                                .n_signals = (size_t)r->s->circuit.results.n_shown,
+                                .name = r->signals.name,
+                                .unit = r->signals.unit,
+                                .is_complex = true}));
     DALCS_TRY(dalcs_measures_start_rows(&a->measures, r, DALCS_MEASURED_AC, dalcs_sweep_value(f, 0),
                                         dalcs_sweep_value(f, f->n - 1)));
     for (int k = 0; k < f->n; k++) {
@@ -423,14 +424,16 @@ static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler 
         a->n_parts = k + 1;
         const enum dalcs_status status = part_setup(&a->part[k], &e->component[k]);
         if (status == DALCS_SINGULAR) {
-            dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, &a->run->s->circuit.ac.where, NULL,
+            dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, &a->run->s->circuit.analyses.ac.where,
+                           NULL,
                            "the circuit around its operating point has no unique response at any "
                            "frequency");
         }
         DALCS_TRY(status);
         a->columns[k] = (struct dalcs_response_columns){{a->part[k].y[0], a->part[k].y[1]}};
     }
-    return dalcs_audit_response_start(&a->audit, a->run, &point, a->columns, s->circuit.ac.n);
+    return dalcs_audit_response_start(&a->audit, a->run, &point, a->columns,
+                                      s->circuit.analyses.ac.n);
 }
 
 enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) {

@@ -5,7 +5,9 @@
 
 static enum dalcs_status choose_names(struct dalcs_session *s) {
     DALCS_TRY(dalcs_session_apply_values(s));
-    return s->spice.circuit != NULL ? DALCS_OK : dalcs_spice_names_build(&s->spice, &s->circuit);
+    return s->results.spice.circuit != NULL
+               ? DALCS_OK
+               : dalcs_spice_names_build(&s->results.spice, &s->circuit);
 }
 
 enum dalcs_status dalcs_session_write_spice(struct dalcs_session *session,
@@ -17,16 +19,16 @@ enum dalcs_status dalcs_session_write_spice(struct dalcs_session *session,
         return DALCS_E_NETLIST;
     }
     DALCS_TRY(choose_names(session));
-    return dalcs_spice_write(&session->spice, options, stream, &session->diag);
+    return dalcs_spice_write(&session->results.spice, options, stream, &session->diag);
 }
 
 enum dalcs_status dalcs_session_spice_columns(struct dalcs_session *session, const char *signal,
                                               const char **plus, const char **minus) {
     DALCS_TRY(choose_names(session));
-    for (int i = 0; i < session->circuit.n_signals; i++) {
-        if (strcmp(session->circuit.signal[i].name, signal) == 0) {
-            *plus = session->spice.column[i][0];
-            *minus = session->spice.column[i][1];
+    for (int i = 0; i < session->circuit.results.n_signals; i++) {
+        if (strcmp(session->circuit.results.signal[i].name, signal) == 0) {
+            *plus = session->results.spice.column[i][0];
+            *minus = session->results.spice.column[i][1];
             return DALCS_OK;
         }
     }

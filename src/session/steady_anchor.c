@@ -30,18 +30,18 @@ static bool serves(struct dalcs_steady *st) {
 }
 
 void dalcs_steady_anchor_forget(struct dalcs_session *s) {
-    free(s->anchor.x);
-    free(s->anchor.closed);
-    s->anchor = (struct dalcs_steady_anchor){0};
+    free(s->steady.anchor.x);
+    free(s->steady.anchor.closed);
+    s->steady.anchor = (struct dalcs_steady_anchor){0};
 }
 
 void dalcs_steady_anchor_enter(struct dalcs_session *s, const struct dalcs_run_options *options) {
     struct dalcs_run_options all = *options;
     all.only_step = 0;
-    if (memcmp(&all, &s->anchor_options, sizeof all) != 0 || options->only_step == 0) {
+    if (memcmp(&all, &s->steady.anchor_options, sizeof all) != 0 || options->only_step == 0) {
         dalcs_steady_anchor_forget(s);
     }
-    memcpy(&s->anchor_options, &all, sizeof all);
+    memcpy(&s->steady.anchor_options, &all, sizeof all);
 }
 
 enum dalcs_status dalcs_steady_anchor_keep(struct dalcs_steady *st, bool leaves) {
@@ -51,20 +51,20 @@ enum dalcs_status dalcs_steady_anchor_keep(struct dalcs_steady *st, bool leaves)
         return DALCS_OK;
     }
     dalcs_steady_anchor_forget(s);
-    s->anchor.is_known = true;
-    s->anchor.step = st->run->step->step;
-    s->anchor.leaves = leaves;
-    s->anchor.x = dalcs_alloc((size_t)l->n_x, sizeof(double));
-    s->anchor.closed = dalcs_alloc((size_t)l->n_pairs, sizeof(bool));
-    if (s->anchor.x == NULL || s->anchor.closed == NULL) {
+    s->steady.anchor.is_known = true;
+    s->steady.anchor.step = st->run->step->step;
+    s->steady.anchor.leaves = leaves;
+    s->steady.anchor.x = dalcs_alloc((size_t)l->n_x, sizeof(double));
+    s->steady.anchor.closed = dalcs_alloc((size_t)l->n_pairs, sizeof(bool));
+    if (s->steady.anchor.x == NULL || s->steady.anchor.closed == NULL) {
         return DALCS_E_NOMEM;
     }
-    s->anchor.n_x = l->n_x;
-    s->anchor.n_pairs = l->n_pairs;
-    s->anchor.period = st->period;
-    s->anchor.serves = serves(st);
-    memcpy(s->anchor.x, st->at.x, (size_t)l->n_x * sizeof(double));
-    memcpy(s->anchor.closed, st->at.closed, (size_t)l->n_pairs * sizeof(bool));
+    s->steady.anchor.n_x = l->n_x;
+    s->steady.anchor.n_pairs = l->n_pairs;
+    s->steady.anchor.period = st->period;
+    s->steady.anchor.serves = serves(st);
+    memcpy(s->steady.anchor.x, st->at.x, (size_t)l->n_x * sizeof(double));
+    memcpy(s->steady.anchor.closed, st->at.closed, (size_t)l->n_pairs * sizeof(bool));
     return DALCS_OK;
 }
 
@@ -75,7 +75,7 @@ static bool is_of(const struct dalcs_steady_anchor *anchor, const struct dalcs_r
 
 enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves, bool is_free,
                                           bool *found) {
-    const struct dalcs_steady_anchor *a = &st->run->s->anchor;
+    const struct dalcs_steady_anchor *a = &st->run->s->steady.anchor;
     const double period = st->period;
     struct dalcs_orbit_point best;
     *found = false;
@@ -107,12 +107,12 @@ static enum dalcs_status find_anchor(struct dalcs_session *s,
                                      const struct dalcs_sink *sink, enum dalcs_analysis analysis,
                                      size_t step) {
     struct dalcs_plot plot;
-    s->anchor.is_sought = true;
+    s->steady.anchor.is_sought = true;
     enum dalcs_status status = dalcs_session_take_step(s, step, &plot);
     status = status == DALCS_OK ? dalcs_operating_currents(s, options, sink) : status;
     status =
         status == DALCS_OK ? dalcs_run_analyses(s, options, sink, &plot, &analysis, 1) : status;
-    s->anchor.is_sought = false;
+    s->steady.anchor.is_sought = false;
     return status;
 }
 
@@ -123,10 +123,12 @@ enum dalcs_status dalcs_steady_anchor_prepare(struct dalcs_session *s,
     const struct dalcs_circuit *c = &s->circuit;
     const bool leaves = analysis == DALCS_TRANSIENT;
     const size_t anchor = step - step % DALCS_STEPS_OF_AN_ANCHOR;
-    const bool asks = (leaves && c->transient.starts_steady) || analysis == DALCS_PERIODIC ||
-                      (analysis == DALCS_AC && (c->periodic.present || options->bode));
-    if (!asks || s->stroboscope != NULL || anchor == step ||
-        (s->anchor.is_known && s->anchor.step == anchor && s->anchor.leaves == leaves)) {
+    const bool asks = (leaves && c->analyses.transient.starts_steady) ||
+                      analysis == DALCS_PERIODIC ||
+                      (analysis == DALCS_AC && (c->analyses.periodic.present || options->bode));
+    if (!asks || s->steady.stroboscope != NULL || anchor == step ||
+        (s->steady.anchor.is_known && s->steady.anchor.step == anchor &&
+         s->steady.anchor.leaves == leaves)) {
         return DALCS_OK;
     }
     const struct dalcs_diag diag = s->diag; /* what the anchor says is not of this step */
@@ -136,9 +138,9 @@ enum dalcs_status dalcs_steady_anchor_prepare(struct dalcs_session *s,
     s->diag = diag;
     if (status != DALCS_OK) {
         dalcs_steady_anchor_forget(s);
-        s->anchor.is_known = true; /* that there is none */
-        s->anchor.step = anchor;
-        s->anchor.leaves = leaves;
+        s->steady.anchor.is_known = true; /* that there is none */
+        s->steady.anchor.step = anchor;
+        s->steady.anchor.leaves = leaves;
     }
     return status == DALCS_E_NOMEM || status == DALCS_E_CANCELLED ? status : DALCS_OK;
 }

@@ -81,7 +81,7 @@ static void begin(struct follow *f, struct dalcs_steady *st) {
     *f = (struct follow){.is_bounded = true,
                          .st = st,
                          .one = st->period,
-                         .before = (double)st->run->s->report.work.steps};
+                         .before = (double)st->run->s->results.report.work.steps};
     for (int k = 0; k < network->n_systems; k++) {
         f->work_of_a_step += network->system[k].n_x + network->system[k].n_z;
     }
@@ -89,7 +89,7 @@ static void begin(struct follow *f, struct dalcs_steady *st) {
 
 /* Is there enough left for so many periods more, of those that took `steps`? */
 static bool may_go_on(const struct follow *f, double steps, double periods) {
-    const double so_far = (double)f->st->run->s->report.work.steps - f->before;
+    const double so_far = (double)f->st->run->s->results.report.work.steps - f->before;
     return (so_far + steps * periods) * f->work_of_a_step <= most_work;
 }
 
@@ -287,10 +287,10 @@ static enum dalcs_status follow_free(struct follow *f, double wait, double steps
 static enum dalcs_status follow(struct follow *f, double growth, struct dalcs_steady_attractor *a) {
     struct dalcs_steady *st = f->st;
     const double leaving = growth > 1.0 ? ceil(log(grown) / log(growth)) : 0.0;
-    double steps = (double)st->run->s->report.work.steps;
+    double steps = (double)st->run->s->results.report.work.steps;
     bool found = false;
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN));
-    steps = (double)st->run->s->report.work.steps - steps;
+    steps = (double)st->run->s->results.report.work.steps - steps;
     if (st->is_free) {
         return follow_free(f, fmax((double)waits[0], leaving), steps, a);
     }

@@ -19,7 +19,7 @@ static void speak_again(struct dalcs_steady *st, struct dalcs_diag diag) {
 
 /* From st->at, which is on the orbit of the report. */
 static enum dalcs_status look(struct dalcs_steady *st) {
-    struct dalcs_report *report = &st->run->s->report;
+    struct dalcs_report *report = &st->run->s->results.report;
     const struct dalcs_floquet *m = report->steady.multiplier;
     const double one = st->period;
     struct dalcs_steady_attractor a;

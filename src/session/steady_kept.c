@@ -8,7 +8,7 @@
 enum dalcs_status dalcs_steady_keep(struct dalcs_run *r, struct dalcs_steady_kept *kept) {
     const struct dalcs_circuit *c = &r->s->circuit;
     *kept = (struct dalcs_steady_kept){
-        .transient = c->transient, .h = r->h, .max_step = r->radau.max_step};
+        .transient = c->analyses.transient, .h = r->h, .max_step = r->radau.max_step};
     kept->stimulus = dalcs_alloc((size_t)c->n_stimuli, sizeof(*kept->stimulus));
     for (int i = 0; i < c->n_stimuli && kept->stimulus != NULL; i++) {
         kept->stimulus[i] = c->stimulus[i];
@@ -23,7 +23,7 @@ void dalcs_steady_put_back(struct dalcs_run *r, const struct dalcs_steady_kept *
             c->stimulus[i] = kept->stimulus[i];
         }
     }
-    c->transient = kept->transient;
+    c->analyses.transient = kept->transient;
     r->h = kept->h;
     r->radau.max_step = kept->max_step;
 }

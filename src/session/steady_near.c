@@ -72,15 +72,15 @@ enum dalcs_status dalcs_steady_at_near(struct dalcs_steady *st, bool is_free,
         memcpy(near->image, st->then.x, (size_t)near->n_x * sizeof(double));
         return DALCS_OK;
     }
-    st->run->s->report.steady.self_oscillating = is_free;
-    st->run->s->report.steady.period = st->period;
+    st->run->s->results.report.steady.self_oscillating = is_free;
+    st->run->s->results.report.steady.period = st->period;
     return dalcs_steady_report_signals(st);
 }
 
 bool dalcs_steady_near_measures(const struct dalcs_circuit *circuit) {
-    bool does = circuit->n_fouriers > 0;
-    for (int k = 0; k < circuit->n_measures; k++) {
-        does = does || circuit->measure[k].analysis == DALCS_MEASURED_PSS;
+    bool does = circuit->results.n_fouriers > 0;
+    for (int k = 0; k < circuit->results.n_measures; k++) {
+        does = does || circuit->results.measure[k].analysis == DALCS_MEASURED_PSS;
     }
     return does;
 }

@@ -260,7 +260,7 @@ static enum dalcs_status start(struct dalcs_steady *st, struct pass *p) {
 static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,
                                      enum dalcs_steady_asked asked) {
     const bool with_M = asked == DALCS_STEADY_M;
-    const bool with_modes = st->run->s->near != NULL && !with_M; /* to compare two runs */
+    const bool with_modes = st->run->s->steady.near != NULL && !with_M; /* to compare two runs */
     struct dalcs_variation variation = {0};
     struct dalcs_observer observer;
     if (with_M || with_modes) {
@@ -343,7 +343,7 @@ enum dalcs_status dalcs_steady_pass_watched(struct dalcs_steady *st, double dura
     p.watch = watch;
     if (status == DALCS_OK) {
         status = run_watched(st, &p);
-        r->s->report.work.steps += radau.steps;
+        r->s->results.report.work.steps += radau.steps;
     }
     if (status == DALCS_OK && watch != NULL) {
         *recurs = dalcs_steady_watch_recurs(watch, &radau, from, to);
@@ -375,7 +375,7 @@ enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
     if (status == DALCS_OK) {
         status = run_periods(st, &p, asked);
         st->n.periods += n;
-        r->s->report.work.steps += radau.steps;
+        r->s->results.report.work.steps += radau.steps;
         dalcs_steady_count_crowd(st, &radau);
     }
     status = asked == DALCS_STEADY_M ? status : dalcs_explain_failure(r, &e, status);

@@ -25,9 +25,10 @@ static const char *name_of_number(struct dalcs_steady *st, int number) {
         [DALCS_NUMBER_PIN] = "q", [DALCS_NUMBER_TAKEN] = "sample", [DALCS_NUMBER_PULSE] = "pulse"};
     int gate;
     const enum dalcs_logic_number kind = dalcs_logic_number_kind(&st->layout.memory, number, &gate);
-    return kind == DALCS_NUMBER_DUE ? "an edge on its way"
-                                    : dalcs_arena_printf(&st->run->s->arena, "%s(%s)", what[kind],
-                                                         st->run->s->circuit.gate[gate].name);
+    return kind == DALCS_NUMBER_DUE
+               ? "an edge on its way"
+               : dalcs_arena_printf(&st->run->s->arena, "%s(%s)", what[kind],
+                                    st->run->s->circuit.control.gate[gate].name);
 }
 
 const char *dalcs_steady_name(struct dalcs_steady *st, int state) {
@@ -221,15 +222,15 @@ static enum dalcs_status tell_conserved(struct dalcs_steady *st) {
         dalcs_diag_add(&s->diag, DALCS_WARNING, NULL, "IC= or .ic with uic choose another one",
                        "the steady state is not unique: %s keeps its initial value", conserved[k]);
     }
-    s->report.steady.conserved = conserved;
-    s->report.steady.n_conserved = (size_t)st->n_conserved;
+    s->results.report.steady.conserved = conserved;
+    s->results.report.steady.n_conserved = (size_t)st->n_conserved;
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_steady_report_signals(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
     const struct dalcs_circuit *c = &s->circuit;
-    const size_t n = (size_t)(c->n_computed > 0 ? c->n_named : c->n_shown);
+    const size_t n = (size_t)(c->results.n_computed > 0 ? c->results.n_named : c->results.n_shown);
     struct dalcs_steady_signal *signal = dalcs_arena_alloc(&s->arena, n + 1, sizeof(*signal));
     if (signal == NULL) {
         return DALCS_E_NOMEM;
@@ -238,9 +239,9 @@ enum dalcs_status dalcs_steady_report_signals(struct dalcs_steady *st) {
         signal[k] = (struct dalcs_steady_signal){st->run->signals.name[k], st->found.average[k],
                                                  st->found.rms[k]};
     }
-    s->report.steady.signal = signal;
-    s->report.steady.state = st->found.state;
-    s->report.steady.n_signals = n;
+    s->results.report.steady.signal = signal;
+    s->results.report.steady.state = st->found.state;
+    s->results.report.steady.n_signals = n;
     return DALCS_OK;
 }
 
@@ -275,7 +276,7 @@ double dalcs_steady_largest_multiplier(struct dalcs_steady *st) {
 }
 
 enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one) {
-    struct dalcs_report *report = &st->run->s->report;
+    struct dalcs_report *report = &st->run->s->results.report;
     struct dalcs_arena *arena = &st->run->s->arena;
     struct dalcs_floquet *m;
     size_t n;
@@ -337,7 +338,7 @@ enum dalcs_status dalcs_steady_report_attractor(struct dalcs_steady *st, double 
     static const char *const kind[] = {[DALCS_STEADY_ORBIT] = "orbit",
                                        [DALCS_STEADY_TORUS] = "quasi-periodic",
                                        [DALCS_STEADY_CHAOS] = "chaos"};
-    struct dalcs_report *report = &st->run->s->report;
+    struct dalcs_report *report = &st->run->s->results.report;
     const double period = a->n * one;
     const char *text = attractor_text(&st->run->s->arena, a, period);
     report->steady.attractor.kind = kind[a->kind];
@@ -356,23 +357,25 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
     size_t n;
     DALCS_TRY(find_multipliers(st, &m, &n));
     if (st->is_free) {
-        s->report.steady.self_oscillating = true;
-        s->report.steady.flow = take_out_flow(m, &n);
+        s->results.report.steady.self_oscillating = true;
+        s->results.report.steady.flow = take_out_flow(m, &n);
     }
     n = count_lasting(m, n);
-    s->report.steady.present = true;
-    s->report.steady.period = st->period;
-    s->report.steady.newton = st->n.newton;
-    s->report.steady.bursts = st->n.bursts;
-    s->report.steady.leaps = st->n.leaps;
-    s->report.steady.periods = st->n.periods;
-    s->report.steady.residual = st->residual;
-    s->report.steady.distance = st->distance;
-    s->report.steady.exact = st->is_exact;
-    s->report.steady.multiplier = m;
-    s->report.steady.n_multipliers = n;
-    s->report.steady.stable = st->n_conserved == 0 && st->n_free == 0 && outside(m, n) < 0.0;
-    s->report.steady.verdict = verdict_of(st, m, n);
+    s->results.report.steady.present = true;
+    s->results.report.steady.period = st->period;
+    s->results.report.steady.newton = st->n.newton;
+    s->results.report.steady.bursts = st->n.bursts;
+    s->results.report.steady.leaps = st->n.leaps;
+    s->results.report.steady.periods = st->n.periods;
+    s->results.report.steady.residual = st->residual;
+    s->results.report.steady.distance = st->distance;
+    s->results.report.steady.exact = st->is_exact;
+    s->results.report.steady.multiplier = m;
+    s->results.report.steady.n_multipliers = n;
+    s->results.report.steady.stable =
+        st->n_conserved == 0 && st->n_free == 0 && outside(m, n) < 0.0;
+    s->results.report.steady.verdict = verdict_of(st, m, n);
     DALCS_TRY(tell_conserved(st));
-    return s->report.steady.verdict != NULL ? dalcs_steady_report_signals(st) : DALCS_E_NOMEM;
+    return s->results.report.steady.verdict != NULL ? dalcs_steady_report_signals(st)
+                                                    : DALCS_E_NOMEM;
 }

@@ -27,7 +27,7 @@ bool dalcs_steady_returns(struct dalcs_steady *st) {
 enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
     const bool returns = dalcs_steady_returns(st);
-    s->report.steady.defect = st->residual;
+    s->results.report.steady.defect = st->residual;
     if (!returns) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "a smaller --tol",
                        "after one more period the states are off by %.3g", st->residual);
@@ -45,7 +45,7 @@ static enum dalcs_status run_period(struct dalcs_steady *st, bool is_silent) {
     r->options = &all;
     r->orbit = &st->at;
     r->orbit_end = &st->then;
-    struct dalcs_losses_card *losses = r->s->circuit.losses;
+    struct dalcs_losses_card *losses = r->s->circuit.results.losses;
     const struct dalcs_losses_card of_tran =
         losses != NULL ? *losses : (struct dalcs_losses_card){0};
     if (losses != NULL) { /* the window is all of it */
@@ -60,7 +60,8 @@ static enum dalcs_status run_period(struct dalcs_steady *st, bool is_silent) {
     r->orbit = NULL;
     r->orbit_end = NULL;
     r->options = options;
-    const bool is_beside = r->s->near != NULL && r->s->near->asked != DALCS_NEAR_ORBIT;
+    const bool is_beside =
+        r->s->steady.near != NULL && r->s->steady.near->asked != DALCS_NEAR_ORBIT;
     return status == DALCS_OK && !is_beside ? dalcs_steady_find_defect(st) : status;
 }
 
@@ -68,12 +69,13 @@ static enum dalcs_status run_period(struct dalcs_steady *st, bool is_silent) {
 
 static void take_period(struct dalcs_run *r, double period, bool uic) {
     struct dalcs_circuit *c = &r->s->circuit;
-    const double step = c->periodic.step > 0.0 ? c->periodic.step : period / rows_in_a_period;
-    c->transient = (struct dalcs_transient){.present = true,
-                                            .step = step,
-                                            .stop = period,
-                                            .use_initial_conditions = uic,
-                                            .where = c->transient.where};
+    const double step =
+        c->analyses.periodic.step > 0.0 ? c->analyses.periodic.step : period / rows_in_a_period;
+    c->analyses.transient = (struct dalcs_transient){.present = true,
+                                                     .step = step,
+                                                     .stop = period,
+                                                     .use_initial_conditions = uic,
+                                                     .where = c->analyses.transient.where};
     r->h = period / rows_in_a_period;
     r->radau.max_step = r->options->step;
 }
@@ -84,9 +86,9 @@ static void take_period(struct dalcs_run *r, double period, bool uic) {
 static enum dalcs_status take_repeats(struct dalcs_steady *st, bool uic) {
     struct dalcs_run *r = st->run;
     int n = 1;
-    if (r->s->near != NULL) {
-        n = (int)rint(r->s->near->period / st->period);
-    } else if (r->s->circuit.n_gates > 0) {
+    if (r->s->steady.near != NULL) {
+        n = (int)rint(r->s->steady.near->period / st->period);
+    } else if (r->s->circuit.control.n_gates > 0) {
         DALCS_TRY(dalcs_steady_find_repeats(st, &n));
         dalcs_steady_note_repeats(st, n);
     }
@@ -132,7 +134,7 @@ static enum dalcs_status search(struct dalcs_steady *st, bool is_free, bool leav
 /* st: set up from here on, to be finished by the caller. */
 static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dalcs_steady *st) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
+    double period = r->options->period > 0.0 ? r->options->period : c->analyses.periodic.period;
     bool is_fixed = r->method != DALCS_METHOD_AUTO && r->options->step > 0.0;
     if (r->method == DALCS_METHOD_EULER || r->radau.fixed_step > 0.0 || is_fixed) {
         return dalcs_steady_refuse(r, "leave the method, or the step, to the program",
@@ -140,42 +142,45 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     }
     bool is_free;
     DALCS_TRY(dalcs_steady_find_period(r, period, leaves, &period, &is_free));
-    const double n_periods = fmax(1.0, c->periodic.n_periods);
+    const double n_periods = fmax(1.0, c->analyses.periodic.n_periods);
     period *= is_free ? 1.0 : n_periods;
-    if (c->periodic.oscillates && !is_free) {
+    if (c->analyses.periodic.oscillates && !is_free) {
         return dalcs_steady_refuse(
             r, "leave osc out: the period follows from the sources",
             "osc is for circuits that oscillate by themselves, and here a source repeats");
     }
-    const bool uic = c->transient.use_initial_conditions || c->periodic.use_initial_conditions;
+    const bool uic =
+        c->analyses.transient.use_initial_conditions || c->analyses.periodic.use_initial_conditions;
     take_period(r, period, uic);
     DALCS_TRY(dalcs_steady_setup(st, r, period));
-    if (!leaves && r->s->near == NULL && dalcs_steady_recall(st)) {
+    if (!leaves && r->s->steady.near == NULL && dalcs_steady_recall(st)) {
         take_period(r, st->period, uic);
         return DALCS_OK;
     }
     DALCS_TRY(is_free ? DALCS_OK : take_repeats(st, uic));
-    if (r->s->near != NULL && r->s->near->asked != DALCS_NEAR_ORBIT) {
-        DALCS_TRY(dalcs_steady_at_near(st, is_free, r->s->near));
+    if (r->s->steady.near != NULL && r->s->steady.near->asked != DALCS_NEAR_ORBIT) {
+        DALCS_TRY(dalcs_steady_at_near(st, is_free, r->s->steady.near));
         take_period(r, st->period, uic);
         return DALCS_OK;
     }
-    if (r->s->near != NULL) {
-        DALCS_TRY(dalcs_steady_from_near(st, is_free, r->s->near));
+    if (r->s->steady.near != NULL) {
+        DALCS_TRY(dalcs_steady_from_near(st, is_free, r->s->steady.near));
         take_period(r, st->period, uic);
     } else {
         DALCS_TRY(search(st, is_free, leaves, n_periods));
         take_period(r, st->period, uic);
     }
     DALCS_TRY(is_free && n_periods > 1.0 ? DALCS_OK : dalcs_steady_anchor_keep(st, leaves));
-    DALCS_TRY(leaves || r->s->near != NULL ? DALCS_OK : dalcs_steady_remember(st));
-    if (r->s->anchor.is_sought || r->s->report.steady.present) { /* no .pss, or it has reported */
+    DALCS_TRY(leaves || r->s->steady.near != NULL ? DALCS_OK : dalcs_steady_remember(st));
+    if (r->s->steady.anchor.is_sought ||
+        r->s->results.report.steady.present) { /* no .pss, or it has reported */
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_steady_next_step(st)); /* how far it may be off, and what is conserved */
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
     DALCS_TRY(dalcs_steady_report(st));
-    return n_periods == 1.0 && r->s->near == NULL && dalcs_steady_is_unstable(&r->s->report)
+    return n_periods == 1.0 && r->s->steady.near == NULL &&
+                   dalcs_steady_is_unstable(&r->s->results.report)
                ? dalcs_steady_look_beside(st)
                : DALCS_OK;
 }
@@ -196,16 +201,17 @@ enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     struct dalcs_steady st = {0};
     struct dalcs_steady_kept kept;
     DALCS_TRY(dalcs_steady_keep(r, &kept));
-    const struct dalcs_steady_near *near = r->s->near;
+    const struct dalcs_steady_near *near = r->s->steady.near;
     const bool is_run =
         near == NULL || near->asked == DALCS_NEAR_ORBIT ||
         (near->asked == DALCS_NEAR_MEASURE && dalcs_steady_near_measures(&r->s->circuit));
     enum dalcs_status status = find_orbit(r, false, &st);
-    status =
-        status == DALCS_OK && !r->s->anchor.is_sought && is_run ? run_period(&st, false) : status;
+    status = status == DALCS_OK && !r->s->steady.anchor.is_sought && is_run ? run_period(&st, false)
+                                                                            : status;
     dalcs_steady_put_back(r, &kept, true);
     free(kept.stimulus);
-    if (status == DALCS_OK && r->s->circuit.sensitivity.present && r->s->near == NULL) {
+    if (status == DALCS_OK && r->s->circuit.analyses.sensitivity.present &&
+        r->s->steady.near == NULL) {
         status = dalcs_sensitivities_run(&st);
     }
     dalcs_steady_finish(&st);
@@ -216,7 +222,7 @@ static enum dalcs_status look_at(struct dalcs_run *r,
                                  enum dalcs_status (*look)(struct dalcs_steady *st),
                                  struct dalcs_steady *st) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
+    double period = r->options->period > 0.0 ? r->options->period : c->analyses.periodic.period;
     bool is_free;
     DALCS_TRY(dalcs_steady_find_period(r, period, false, &period, &is_free));
     if (is_free) {
@@ -224,7 +230,8 @@ static enum dalcs_status look_at(struct dalcs_run *r,
                                    "samples are taken once in each period, and no source repeats");
     }
     take_period(r, period,
-                c->transient.use_initial_conditions || c->periodic.use_initial_conditions);
+                c->analyses.transient.use_initial_conditions ||
+                    c->analyses.periodic.use_initial_conditions);
     DALCS_TRY(dalcs_steady_setup(st, r, period));
     return look(st);
 }
@@ -277,10 +284,10 @@ static enum dalcs_status check_period(struct dalcs_steady *st) {
 enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
     struct dalcs_steady st = {0};
     struct dalcs_steady_kept kept;
-    const bool is_checked = r->s->report.steady.present;
+    const bool is_checked = r->s->results.report.steady.present;
     DALCS_TRY(dalcs_steady_keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
-    if (status == DALCS_OK && !r->s->anchor.is_sought) {
+    if (status == DALCS_OK && !r->s->steady.anchor.is_sought) {
         status = is_checked ? DALCS_OK : check_period(&st);
         status = status == DALCS_OK ? dalcs_periodic_ac_walk(&st) : status;
     }
@@ -296,7 +303,7 @@ enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) {
     DALCS_TRY(dalcs_steady_keep(r, &kept));
     enum dalcs_status status = find_orbit(r, true, &st);
     dalcs_steady_put_back(r, &kept, false);
-    if (status == DALCS_OK && !r->s->anchor.is_sought) {
+    if (status == DALCS_OK && !r->s->steady.anchor.is_sought) {
         r->orbit = &st.at;
         r->leaves_orbit = true;
         status = dalcs_transient_run_thinned(r);

@@ -32,7 +32,7 @@ struct measured {
 
 static enum dalcs_status collect_measured(struct measured *all, struct dalcs_session *s,
                                           const struct dalcs_plot *step) {
-    const struct dalcs_report *one = &s->report;
+    const struct dalcs_report *one = &s->results.report;
     if (one->n_measurements + one->n_fourier + one->n_losses == 0) {
         return DALCS_OK;
     }
@@ -115,12 +115,12 @@ static enum dalcs_status report_measured(struct measured *all, struct dalcs_sess
     for (size_t k = 0; k < all->n_fourier && status == DALCS_OK; k++) {
         f[k] = all->fourier[k];
     }
-    s->report.measurement = m;
-    s->report.n_measurements = status == DALCS_OK ? all->n : 0;
-    s->report.fourier = f;
-    s->report.n_fourier = status == DALCS_OK ? all->n_fourier : 0;
-    s->report.losses = l;
-    s->report.n_losses = status == DALCS_OK ? all->n_losses : 0;
+    s->results.report.measurement = m;
+    s->results.report.n_measurements = status == DALCS_OK ? all->n : 0;
+    s->results.report.fourier = f;
+    s->results.report.n_fourier = status == DALCS_OK ? all->n_fourier : 0;
+    s->results.report.losses = l;
+    s->results.report.n_losses = status == DALCS_OK ? all->n_losses : 0;
     free(all->measurement);
     free(all->fourier);
     free(all->losses);
@@ -134,11 +134,11 @@ static bool is_asked(const struct dalcs_circuit *circuit, const struct dalcs_run
                             : options->bode ? DALCS_AC
                                             : DALCS_TRANSIENT);
     }
-    const bool asked[] = {[DALCS_OPERATING_POINT] = circuit->operating_point,
-                          [DALCS_TRANSIENT] = circuit->transient.present,
-                          [DALCS_DC_SWEEP] = circuit->n_dc > 0,
-                          [DALCS_AC] = circuit->ac.n > 0,
-                          [DALCS_PERIODIC] = circuit->periodic.present};
+    const bool asked[] = {[DALCS_OPERATING_POINT] = circuit->analyses.operating_point,
+                          [DALCS_TRANSIENT] = circuit->analyses.transient.present,
+                          [DALCS_DC_SWEEP] = circuit->analyses.n_dc > 0,
+                          [DALCS_AC] = circuit->analyses.ac.n > 0,
+                          [DALCS_PERIODIC] = circuit->analyses.periodic.present};
     return asked[analysis];
 }
 
@@ -171,14 +171,14 @@ static enum dalcs_status run_step(struct stepping *g, enum dalcs_analysis analys
     DALCS_TRY(dalcs_operating_currents(session, g->options, g->sink));
     const enum dalcs_status status =
         dalcs_run_analyses(session, g->options, g->sink, step, &analysis, 1);
-    add_work(&g->sum, &session->report);
+    add_work(&g->sum, &session->results.report);
     const enum dalcs_status kept = collect_measured(&g->measured, session, step);
     return status == DALCS_OK ? kept : status;
 }
 
 /* May the steps behind one that ended so be run? What is looked at once a period goes on from value to value. */
 static bool goes_on(const struct stepping *g, enum dalcs_status status) {
-    return dalcs_step_lets_go_on(status) && g->session->stroboscope == NULL;
+    return dalcs_step_lets_go_on(status) && g->session->steady.stroboscope == NULL;
 }
 
 static enum dalcs_status run_steps(struct stepping *g, enum dalcs_analysis analysis,
@@ -206,12 +206,12 @@ static enum dalcs_status run_steps(struct stepping *g, enum dalcs_analysis analy
 /* There is one, too, where the last step could not be built. */
 static void make_report(struct stepping *g) {
     struct dalcs_session *s = g->session;
-    if (!s->has_report && g->title != NULL) {
-        s->report = (struct dalcs_report){.netlist = s->name,
-                                          .title = g->title,
-                                          .method = dalcs_method_name(0),
-                                          .certificate = {.where = ""}};
-        s->has_report = true;
+    if (!s->results.has_report && g->title != NULL) {
+        s->results.report = (struct dalcs_report){.netlist = s->name,
+                                                  .title = g->title,
+                                                  .method = dalcs_method_name(0),
+                                                  .certificate = {.where = ""}};
+        s->results.has_report = true;
     }
 }
 
@@ -250,7 +250,7 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
                          .end = only > 0 ? only : n_all};
     enum dalcs_status status = run_all_steps(&g);
     make_report(&g);
-    session->report.work = g.sum.work;
+    session->results.report.work = g.sum.work;
     const enum dalcs_status told = report_measured(&g.measured, session);
     const enum dalcs_status listed = dalcs_failed_steps_report(&g.failed, session, g.end - g.first);
     status = status != DALCS_OK ? status : g.failed.first;

@@ -35,20 +35,21 @@ static bool copy_sweep(struct dalcs_arena *arena, const struct dalcs_sweep *from
 
 enum dalcs_status dalcs_steps_find(struct dalcs_session *session) {
     const struct dalcs_circuit *circuit = &session->circuit;
-    struct dalcs_steps *steps = &session->steps;
+    struct dalcs_steps *steps = &session->source.steps;
     struct dalcs_arena *arena = &session->arena;
     if (steps->is_known) {
         return DALCS_OK;
     }
-    *steps = (struct dalcs_steps){.n = circuit->n_steps, .n_drawn = (size_t)circuit->n_drawn};
+    *steps = (struct dalcs_steps){.n = circuit->analyses.n_steps,
+                                  .n_drawn = (size_t)circuit->random.n_drawn};
     steps->sweep = dalcs_arena_alloc(arena, (size_t)steps->n, sizeof *steps->sweep);
     steps->drawn = dalcs_arena_alloc(arena, steps->n_drawn, sizeof *steps->drawn);
     bool complete = steps->sweep != NULL && steps->drawn != NULL;
     for (int k = 0; k < steps->n && complete; k++) {
-        complete = copy_sweep(arena, &circuit->step[k], &steps->sweep[k]);
+        complete = copy_sweep(arena, &circuit->analyses.step[k], &steps->sweep[k]);
     }
     for (size_t k = 0; k < steps->n_drawn && complete; k++) {
-        const char *name = circuit->drawn[k].name;
+        const char *name = circuit->random.drawn[k].name;
         steps->drawn[k] = dalcs_arena_copy(arena, name, strlen(name));
         complete = steps->drawn[k] != NULL;
     }
@@ -57,9 +58,10 @@ enum dalcs_status dalcs_steps_find(struct dalcs_session *session) {
 }
 
 size_t dalcs_steps_count(const struct dalcs_session *session) {
-    const bool is_known = session->steps.is_known;
-    const struct dalcs_sweep *sweep = is_known ? session->steps.sweep : session->circuit.step;
-    const int n_sweeps = is_known ? session->steps.n : session->circuit.n_steps;
+    const bool is_known = session->source.steps.is_known;
+    const struct dalcs_sweep *sweep =
+        is_known ? session->source.steps.sweep : session->circuit.analyses.step;
+    const int n_sweeps = is_known ? session->source.steps.n : session->circuit.analyses.n_steps;
     size_t n = 1;
     for (int k = 0; k < n_sweeps; k++) {
         n *= (size_t)sweep[k].n;
@@ -94,10 +96,10 @@ static bool was_said(const struct dalcs_diag *diag, const char *text) {
 
 /* Messages of a circuit that is built once more; most of them have been said. */
 static void take_messages(struct dalcs_session *s, const struct dalcs_diag *diag) {
-    s->why_unbuilt = NULL;
+    s->source.why_unbuilt = NULL;
     for (size_t k = 0; k < diag->n; k++) {
-        if (diag->item[k].severity == DALCS_ERROR && s->why_unbuilt == NULL) {
-            s->why_unbuilt =
+        if (diag->item[k].severity == DALCS_ERROR && s->source.why_unbuilt == NULL) {
+            s->source.why_unbuilt =
                 dalcs_arena_copy(&s->arena, diag->item[k].text, strlen(diag->item[k].text));
         }
         if (!was_said(&s->diag, diag->item[k].text)) {
@@ -112,17 +114,17 @@ static struct dalcs_override *all_overrides(const struct dalcs_session *session,
                                             const struct dalcs_override *more, size_t n_more,
                                             size_t *n_all) {
     struct dalcs_override *all =
-        dalcs_alloc(session->n_altered + session->n_own + n_more + 1, sizeof *all);
+        dalcs_alloc(session->source.n_altered + session->source.n_own + n_more + 1, sizeof *all);
     size_t n = 0;
-    for (size_t k = 0; all != NULL && k < session->n_altered; k++) {
-        all[n++] = session->override[k];
+    for (size_t k = 0; all != NULL && k < session->source.n_altered; k++) {
+        all[n++] = session->source.override[k];
     }
-    if (all != NULL && session->n_resets > 0) {
+    if (all != NULL && session->source.n_resets > 0) {
         all[n++] = (struct dalcs_override){
-            .kind = DALCS_OVERRIDE_RUN, .name = "", .value = (double)session->n_resets + 1};
+            .kind = DALCS_OVERRIDE_RUN, .name = "", .value = (double)session->source.n_resets + 1};
     }
-    for (size_t k = 0; all != NULL && k < session->n_own; k++) {
-        all[n++] = session->own[k];
+    for (size_t k = 0; all != NULL && k < session->source.n_own; k++) {
+        all[n++] = session->source.own[k];
     }
     for (size_t k = 0; all != NULL && k < n_more; k++) {
         all[n++] = more[k];
@@ -141,14 +143,15 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
     if (all == NULL) {
         return DALCS_E_NOMEM;
     }
-    enum dalcs_status status = dalcs_circuit_build_with(circuit, &session->netlist, all, n, &diag);
+    enum dalcs_status status =
+        dalcs_circuit_build_with(circuit, &session->source.netlist, all, n, &diag);
     if (status == DALCS_OK) {
         dalcs_session_apply_states(session, circuit);
         status = dalcs_source_conflicts(circuit, &diag);
         if (status == DALCS_OK) {
             const struct dalcs_network_options options = {
                 .silent = true,
-                .with_readout = dalcs_circuit_is_audited(circuit) || session->asks_steady};
+                .with_readout = dalcs_circuit_is_audited(circuit) || session->asks.steady};
             status = dalcs_network_build(network, circuit, &options, &diag);
         }
         if (status != DALCS_OK) {
@@ -178,16 +181,16 @@ static enum dalcs_status keep_own(struct dalcs_session *session, const struct da
         free(own);
         return DALCS_E_NOMEM;
     }
-    free(session->own);
-    session->own = own;
-    session->n_own = n_more;
+    free(session->source.own);
+    session->source.own = own;
+    session->source.n_own = n_more;
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_session_rebuild(struct dalcs_session *session,
                                         const struct dalcs_override *more, size_t n_more) {
     dalcs_session_forget_run(session);
-    session->n_unbuilt = 0;
+    session->source.n_unbuilt = 0;
     DALCS_TRY(keep_own(session, more, n_more));
     if (session->has_network) {
         dalcs_network_finish(&session->network);
@@ -200,15 +203,17 @@ enum dalcs_status dalcs_session_rebuild(struct dalcs_session *session,
     const enum dalcs_status status =
         dalcs_session_build(session, NULL, 0, &session->circuit, &session->network);
     session->has_circuit = session->has_network = status == DALCS_OK;
-    session->is_altered = session->is_altered || status != DALCS_OK;
+    session->source.is_altered = session->source.is_altered || status != DALCS_OK;
     return status;
 }
 
 const char *dalcs_session_step_parameter(const struct dalcs_session *session, size_t step,
                                          size_t index, double *value) {
-    const bool is_known = session->steps.is_known;
-    const struct dalcs_sweep *sweep = is_known ? session->steps.sweep : session->circuit.step;
-    const size_t n = (size_t)(is_known ? session->steps.n : session->circuit.n_steps);
+    const bool is_known = session->source.steps.is_known;
+    const struct dalcs_sweep *sweep =
+        is_known ? session->source.steps.sweep : session->circuit.analyses.step;
+    const size_t n =
+        (size_t)(is_known ? session->source.steps.n : session->circuit.analyses.n_steps);
     if (step >= dalcs_steps_count(session) || index >= n) {
         return NULL;
     }
@@ -235,7 +240,7 @@ static size_t run_of(const struct dalcs_steps *steps, size_t k) {
 /* Names and values of the step's parameters. */
 static enum dalcs_status describe_step(struct dalcs_session *session, size_t k,
                                        struct dalcs_plot *plot) {
-    const size_t n = (size_t)session->steps.n;
+    const size_t n = (size_t)session->source.steps.n;
     const char **name = dalcs_arena_alloc(&session->arena, n, sizeof *name);
     double *value = dalcs_arena_alloc(&session->arena, n, sizeof *value);
     if (name == NULL || value == NULL) {
@@ -254,7 +259,7 @@ static enum dalcs_status describe_step(struct dalcs_session *session, size_t k,
 
 enum dalcs_status dalcs_session_take_step(struct dalcs_session *session, size_t k,
                                           struct dalcs_plot *plot) {
-    const struct dalcs_steps *steps = &session->steps;
+    const struct dalcs_steps *steps = &session->source.steps;
     DALCS_TRY(dalcs_steps_find(session));
     DALCS_TRY(describe_step(session, k, plot));
     struct dalcs_override *override = dalcs_alloc((size_t)steps->n + 1, sizeof *override);

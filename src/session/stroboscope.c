@@ -108,7 +108,7 @@ static enum dalcs_status write_rows(struct rows *rows) {
 }
 
 static enum dalcs_status look(struct dalcs_steady *st) {
-    struct dalcs_stroboscope *b = st->run->s->stroboscope;
+    struct dalcs_stroboscope *b = st->run->s->steady.stroboscope;
     const long settle = st->run->options->settle > 0 ? st->run->options->settle : 1;
     struct rows rows;
     DALCS_TRY(make_rows(&rows, st));

@@ -12,19 +12,19 @@
 static const double notable = 0.1;
 
 static const struct dalcs_exponential *exponential_of(const struct dalcs_circuit *c, int output) {
-    const struct dalcs_signal *signal = &c->signal[output];
+    const struct dalcs_signal *signal = &c->results.signal[output];
     if (signal->kind != DALCS_SIGNAL_CURRENT || c->device[signal->device].kind != DALCS_DIODE) {
         return NULL;
     }
-    const struct dalcs_diode_model *m = &c->diode_model[c->device[signal->device].model];
+    const struct dalcs_diode_model *m = &c->models.of_diode[c->device[signal->device].model];
     return m->exponential.voltage > 0.0 ? &m->exponential : NULL;
 }
 
 static const struct dalcs_saturation *saturation_of(const struct dalcs_circuit *c, int output) {
-    const struct dalcs_signal *signal = &c->signal[output];
-    for (int k = 0; k < c->n_saturations && signal->kind == DALCS_SIGNAL_CURRENT; k++) {
-        if (c->saturation[k].device == signal->device) {
-            return &c->saturation[k];
+    const struct dalcs_signal *signal = &c->results.signal[output];
+    for (int k = 0; k < c->models.n_saturations && signal->kind == DALCS_SIGNAL_CURRENT; k++) {
+        if (c->models.saturation[k].device == signal->device) {
+            return &c->models.saturation[k];
         }
     }
     return NULL;
@@ -32,12 +32,12 @@ static const struct dalcs_saturation *saturation_of(const struct dalcs_circuit *
 
 enum dalcs_status dalcs_currents_watch(struct dalcs_run *r) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    struct dalcs_recorder *recorder = &r->s->recorder;
-    if (c->n_diode_models == 0 && c->n_saturations == 0) {
+    struct dalcs_recorder *recorder = &r->s->results.recorder;
+    if (c->models.n_diodes == 0 && c->models.n_saturations == 0) {
         return DALCS_OK;
     }
     int n = 0;
-    for (int i = 0; i < c->n_shown; i++) {
+    for (int i = 0; i < c->results.n_shown; i++) {
         n += exponential_of(c, i) != NULL || saturation_of(c, i) != NULL ? 1 : 0;
     }
     if (n == 0) {
@@ -47,7 +47,7 @@ enum dalcs_status dalcs_currents_watch(struct dalcs_run *r) {
     if (recorder->watched == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int i = 0; i < c->n_shown; i++) {
+    for (int i = 0; i < c->results.n_shown; i++) {
         const struct dalcs_saturation *s = saturation_of(c, i);
         if (exponential_of(c, i) != NULL || s != NULL) {
             recorder->watched[recorder->n_watched++] = (struct dalcs_watched){
@@ -60,7 +60,7 @@ enum dalcs_status dalcs_currents_watch(struct dalcs_run *r) {
 /* The switch in its place carries any current. */
 static void judge_saturations(struct dalcs_run *r) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    const struct dalcs_recorder *recorder = &r->s->recorder;
+    const struct dalcs_recorder *recorder = &r->s->results.recorder;
     for (int k = 0; k < recorder->n_watched; k++) {
         const struct dalcs_watched *w = &recorder->watched[k];
         const struct dalcs_saturation *s = saturation_of(c, w->output);
@@ -77,7 +77,7 @@ static void judge_saturations(struct dalcs_run *r) {
 
 static void judge_tangents(struct dalcs_run *r) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    const struct dalcs_recorder *recorder = &r->s->recorder;
+    const struct dalcs_recorder *recorder = &r->s->results.recorder;
     int worst = -1;
     double most = notable;
     double over = 0.0; /* V */
@@ -85,8 +85,8 @@ static void judge_tangents(struct dalcs_run *r) {
         if (exponential_of(c, recorder->watched[k].output) == NULL) {
             continue;
         }
-        int device = c->signal[recorder->watched[k].output].device;
-        const struct dalcs_diode_model *m = &c->diode_model[c->device[device].model];
+        int device = c->results.signal[recorder->watched[k].output].device;
+        const struct dalcs_diode_model *m = &c->models.of_diode[c->device[device].model];
         double i = recorder->watched[k].largest;
         double v = dalcs_exponential_voltage(&m->exponential, i);
         double off = m->vfwd + m->ron * i - v;
@@ -100,14 +100,15 @@ static void judge_tangents(struct dalcs_run *r) {
         return;
     }
     char text[DALCS_QUANTITY_SIZE];
-    const struct dalcs_device *d = &c->device[c->signal[recorder->watched[worst].output].device];
+    const struct dalcs_device *d =
+        &c->device[c->results.signal[recorder->watched[worst].output].device];
     dalcs_diag_add(&r->s->diag, DALCS_NOTE, &d->where,
                    dalcs_arena_printf(&r->s->arena, ".options diodecurrent=%.2g takes it there",
                                       recorder->watched[worst].largest),
                    "'%s' carries %.3g A at most, where its tangent at %.3g A is %s %s the "
                    "exponential diode",
                    d->name, recorder->watched[worst].largest,
-                   c->diode_model[d->model].exponential.at,
+                   c->models.of_diode[d->model].exponential.at,
                    dalcs_quantity_write(text, fabs(over), "V", 3), over > 0.0 ? "above" : "below");
 }
 

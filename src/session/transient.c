@@ -18,14 +18,14 @@
 static const double ROWS_WITHOUT_A_STEP = 1000.0;
 
 static double row_distance(const struct dalcs_circuit *c) {
-    const struct dalcs_transient *t = &c->transient;
+    const struct dalcs_transient *t = &c->analyses.transient;
     return c->options.initial_interval > 0.0 ? c->options.initial_interval
            : t->step > 0.0                   ? t->step
                                              : t->stop / ROWS_WITHOUT_A_STEP;
 }
 
 static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
-    const struct dalcs_transient *t = &r->s->circuit.transient;
+    const struct dalcs_transient *t = &r->s->circuit.analyses.transient;
     struct dalcs_schedule schedule = {.start = t->start, .step = t->step, .stop = t->stop};
     double ratio = t->step / r->h;
     if (r->options->at != NULL) {
@@ -92,14 +92,14 @@ static enum dalcs_status cross(struct dalcs_run *r, struct parts *p) {
         dalcs_grid_disturb(&e->grid, next_written(p));
     }
     if (e->at_jump || (has_gates && dalcs_sources_jump(&r->s->circuit, e->t))) {
-        DALCS_TRY(dalcs_recorder_cross(&r->s->recorder, e));
+        DALCS_TRY(dalcs_recorder_cross(&r->s->results.recorder, e));
         dalcs_measures_cross(&p->measures, e);
     }
     return DALCS_OK;
 }
 
 static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct parts *p) {
-    struct dalcs_recorder *recorder = &r->s->recorder;
+    struct dalcs_recorder *recorder = &r->s->results.recorder;
     struct dalcs_euler *e = &p->euler;
     const long interval = dalcs_transient_progress_interval(&r->s->network);
     if (p->logic.circuit != NULL) {
@@ -132,16 +132,16 @@ static enum dalcs_status set_up_rows(struct dalcs_run *r) {
     struct dalcs_schedule schedule = choose_schedule(r);
     dalcs_transient_warn_of_coarse_rows(r, &schedule,
                                         isinf(r->rows.fill) ? schedule.start : INFINITY);
-    dalcs_recorder_finish(&s->recorder); /* of a .pss before */
-    DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
+    dalcs_recorder_finish(&s->results.recorder); /* of a .pss before */
+    DALCS_TRY(dalcs_recorder_setup(&s->results.recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
-    s->recorder.n_shown = s->circuit.n_shown;
+    s->results.recorder.n_shown = s->circuit.results.n_shown;
     return dalcs_currents_watch(r);
 }
 
 static enum dalcs_status set_up_euler(struct dalcs_run *r, struct parts *p) {
     struct dalcs_session *s = r->s;
-    const double stop = s->circuit.transient.stop;
+    const double stop = s->circuit.analyses.transient.stop;
     struct dalcs_euler *e = &p->euler;
     DALCS_TRY(dalcs_euler_setup(e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
     e->listener.detects_jumps =
@@ -150,8 +150,8 @@ static enum dalcs_status set_up_euler(struct dalcs_run *r, struct parts *p) {
     e->listener.on_jump = dalcs_note_jump;
     e->listener.open_user = &r->nonunique.undetermined;
     e->listener.on_open = dalcs_undetermined_at;
-    s->report.step = p->is_euler ? r->h : r->radau.fixed_step;
-    s->report.stop = stop;
+    s->results.report.step = p->is_euler ? r->h : r->radau.fixed_step;
+    s->results.report.stop = stop;
     return DALCS_OK;
 }
 
@@ -159,7 +159,7 @@ static enum dalcs_status set_up_others(struct dalcs_run *r, struct parts *p) {
     struct dalcs_session *s = r->s;
     if (!p->is_euler) {
         const struct dalcs_radau_options options =
-            dalcs_transient_options(r, s->circuit.transient.stop);
+            dalcs_transient_options(r, s->circuit.analyses.transient.stop);
         DALCS_TRY(dalcs_radau_setup(&p->radau, &p->euler, &options, &r->osnsp));
     }
     DALCS_TRY(dalcs_logic_run_setup(&p->logic, &s->circuit, &p->euler, radau_of(p)));
@@ -189,11 +189,12 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
     if (radau != NULL) {
         DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));
     }
-    DALCS_TRY(dalcs_undetermined_several(&r->nonunique.undetermined, e, s->circuit.transient.stop));
-    dalcs_recorder_states(&s->network, e, s->start);
+    DALCS_TRY(dalcs_undetermined_several(&r->nonunique.undetermined, e,
+                                         s->circuit.analyses.transient.stop));
+    dalcs_recorder_states(&s->network, e, s->results.start);
     DALCS_TRY(dalcs_run_begin_plot(r, r->orbit != NULL && !r->leaves_orbit ? DALCS_PERIODIC
                                                                            : DALCS_TRANSIENT));
-    DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
+    DALCS_TRY(dalcs_recorder_start(&s->results.recorder, e));
     DALCS_TRY(dalcs_measures_start(&p->measures, r, e, radau, &p->audit));
     enum dalcs_status status =
         radau != NULL ? dalcs_transient_walk(r, radau, &p->measures, &p->audit, &p->logic)
@@ -201,10 +202,11 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
     if (status == DALCS_OK && radau != NULL) {
         status = dalcs_radau_evaluate(radau, radau->options.stop, DALCS_LEFT);
     }
-    dalcs_recorder_states(&s->network, e, s->final);
+    dalcs_recorder_states(&s->network, e, s->results.final);
     DALCS_TRY(status);
     if (r->orbit_end != NULL) {
-        DALCS_TRY(dalcs_steady_read(e, &p->logic, s->circuit.transient.stop, r->orbit_end));
+        DALCS_TRY(
+            dalcs_steady_read(e, &p->logic, s->circuit.analyses.transient.stop, r->orbit_end));
     }
     if (dalcs_audit_run_fails(&p->audit)) {
         return DALCS_REFUTED; /* the rows stay what they are: partial */

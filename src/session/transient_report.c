@@ -51,8 +51,8 @@ enum dalcs_status dalcs_transient_report_methods(struct dalcs_run *r,
             component[k].because = part->because;
         }
     }
-    r->s->report.component = component;
-    r->s->report.n_components = n;
+    r->s->results.report.component = component;
+    r->s->results.report.n_components = n;
     return DALCS_OK;
 }
 
@@ -86,7 +86,7 @@ static void warn_of_wrong_sign(struct dalcs_run *r, const struct dalcs_radau *ra
 }
 
 void dalcs_transient_add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau) {
-    struct dalcs_report *report = &r->s->report;
+    struct dalcs_report *report = &r->s->results.report;
     report->work.steps += radau->steps;
     report->work.rejected += radau->rejected;
     report->work.restarts += radau->restarts;
@@ -124,7 +124,7 @@ enum dalcs_status dalcs_transient_close_ledger(struct dalcs_run *r, struct dalcs
         return DALCS_OK;
     }
     DALCS_TRY(status);
-    struct dalcs_report *report = &r->s->report;
+    struct dalcs_report *report = &r->s->results.report;
     if (!isfinite(energy->sum.turnover)) { /* an unstable circuit, beyond what doubles hold */
         return DALCS_OK;
     }

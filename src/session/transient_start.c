@@ -71,12 +71,12 @@ static enum dalcs_status rest_held(struct dalcs_run *r, struct dalcs_euler *e,
 
 /* What delayed sources put out first: their signals in the operating point; NULL: what the card says. */
 static void remember(const struct dalcs_circuit *c, const struct dalcs_euler *held) {
-    for (int k = 0; k < c->n_delayed; k++) {
-        const struct dalcs_delayed *d = &c->delayed[k];
+    for (int k = 0; k < c->control.n_delayed; k++) {
+        const struct dalcs_delayed *d = &c->control.delayed[k];
         const double before =
-            held != NULL
-                ? dalcs_gates_read_output(held, &held->network->output[c->measured[d->signal]])
-                : d->initial;
+            held != NULL ? dalcs_gates_read_output(
+                               held, &held->network->output[c->results.measured[d->signal]])
+                         : d->initial;
         dalcs_history_start(d->history, before);
     }
 }
@@ -135,19 +135,19 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
         bool changed;
         DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
     }
-    if (c->transient.use_initial_conditions) {
+    if (c->analyses.transient.use_initial_conditions) {
         remember(c, NULL);
         return start_at(e, radau, r->s->network.initial);
     }
     if (r->s->network.held != NULL) {
         return start_from(r, e, radau, logic, r->s->network.held);
     }
-    if (c->n_initial_conditions > 0 || c->n_delayed > 0) {
+    if (c->n_initial_conditions > 0 || c->control.n_delayed > 0) {
         return start_from_clamps(r, e, radau, logic);
     }
     DALCS_TRY(dalcs_gates_operating_point(e, logic, true));
     if (has_rows && dalcs_transient_begins_with_a_jump(c, radau)) {
-        DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
+        DALCS_TRY(dalcs_recorder_before_start(&r->s->results.recorder, e));
         if (r->transient.losses != NULL) {
             dalcs_losses_run_before_start(r->transient.losses);
         }

@@ -278,7 +278,7 @@ static void note_end_of_filling(struct dalcs_run *r, const struct dalcs_filling 
             "%zu added rows, and %zu for each row of .tran, are the limit: it is reached at "
             "t = %.9g s, and no rows are added after that",
             FILLING_LIMIT.most, FILLING_LIMIT.for_each, filling->ended);
-        dalcs_transient_warn_of_coarse_rows(r, &r->s->recorder.schedule, filling->ended);
+        dalcs_transient_warn_of_coarse_rows(r, &r->s->results.recorder.schedule, filling->ended);
     }
 }
 
@@ -287,7 +287,7 @@ enum dalcs_status dalcs_transient_walk(struct dalcs_run *r, struct dalcs_radau *
                                        struct dalcs_audit_run *audit,
                                        struct dalcs_logic_run *logic) {
     struct transient c = {.run = r,
-                          .recorder = &r->s->recorder,
+                          .recorder = &r->s->results.recorder,
                           .radau = radau,
                           .measures = measures,
                           .audit = audit,

@@ -21,10 +21,10 @@ static int change_of_depth(const struct dalcs_card *card) {
 }
 
 const char *dalcs_session_parameter_name(const struct dalcs_session *session, size_t index) {
-    const size_t n_cards = session->has_netlist ? session->netlist.n_cards : 0;
+    const size_t n_cards = session->source.has_netlist ? session->source.netlist.n_cards : 0;
     int depth = 0;
     for (size_t k = 0; k < n_cards; k++) {
-        const struct dalcs_card *card = &session->netlist.card[k];
+        const struct dalcs_card *card = &session->source.netlist.card[k];
         depth += change_of_depth(card);
         for (int i = 1; depth == 0 && declares_parameters(card) && i + 1 < card->n; i++) {
             if (card->token[i + 1].kind == DALCS_TOKEN_EQUAL && index-- == 0) {
@@ -69,8 +69,8 @@ static bool is_element(const struct dalcs_session *s, const char *name) {
         is = strcmp(known, name) == 0;
     }
     int depth = 0;
-    for (size_t k = 0; !is && k < s->netlist.n_cards; k++) {
-        const struct dalcs_card *card = &s->netlist.card[k];
+    for (size_t k = 0; !is && k < s->source.netlist.n_cards; k++) {
+        const struct dalcs_card *card = &s->source.netlist.card[k];
         depth += change_of_depth(card);
         is = depth == 0 && name[0] != '.' && name[0] != 'x' && is_word(card, name);
     }
@@ -96,7 +96,7 @@ static void tell_unknown(struct dalcs_session *s, const char *name, const char *
 
 enum dalcs_status dalcs_session_set_value(struct dalcs_session *session, const char *name,
                                           double value) {
-    if (!session->has_netlist) {
+    if (!session->source.has_netlist) {
         dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, DALCS_KEEP_HINT,
                        "'%s' cannot be set: no netlist was read that keeps its cards", name);
         return DALCS_E_OPTION;
@@ -126,9 +126,9 @@ enum dalcs_status dalcs_session_set_value(struct dalcs_session *session, const c
 }
 
 enum dalcs_status dalcs_session_apply_values(struct dalcs_session *session) {
-    if (session->is_altered) {
-        session->is_altered = false;
-        session->steps.is_known = false;
+    if (session->source.is_altered) {
+        session->source.is_altered = false;
+        session->source.steps.is_known = false;
         DALCS_TRY(dalcs_session_rebuild(session, NULL, 0));
     }
     return session->has_network ? DALCS_OK : DALCS_E_NETLIST;

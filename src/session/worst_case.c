@@ -7,7 +7,7 @@
 
 static enum dalcs_status list_all(struct dalcs_worst_case *w) {
     struct dalcs_arena *arena = &w->session->arena;
-    const struct dalcs_report *report = &w->session->report;
+    const struct dalcs_report *report = &w->session->results.report;
     w->n_results = report->n_measurements;
     w->parameter = dalcs_arena_alloc(arena, w->n + 1, sizeof *w->parameter);
     w->result = dalcs_arena_alloc(arena, w->n_results + 1, sizeof *w->result);
@@ -28,7 +28,7 @@ static enum dalcs_status list_all(struct dalcs_worst_case *w) {
 /* The run that the session has done already. */
 static enum dalcs_status take_nominal(struct dalcs_worst_case *w, const signed char *at) {
     DALCS_TRY(dalcs_worst_case_add(w, at));
-    dalcs_worst_case_take(w, &w->session->report, 0);
+    dalcs_worst_case_take(w, &w->session->results.report, 0);
     w->n_done = 1;
     return DALCS_OK;
 }
@@ -103,22 +103,22 @@ static enum dalcs_status report(struct dalcs_worst_case *w, bool has_corners) {
     memcpy(run, w->run, w->n_runs * sizeof *run);
     DALCS_TRY(fill_alone(w));
     dalcs_worst_case_judge(w);
-    s->report.worst_case.present = true;
-    s->report.worst_case.has_corners = has_corners;
-    s->report.worst_case.n_parameters = w->n;
-    s->report.worst_case.n_results = w->n_results;
-    s->report.worst_case.n_runs = w->n_runs;
-    s->report.worst_case.n_failed = w->n_failed;
-    s->report.worst_case.parameter = w->parameter;
-    s->report.worst_case.result = w->result;
-    s->report.worst_case.run = run;
+    s->results.report.worst_case.present = true;
+    s->results.report.worst_case.has_corners = has_corners;
+    s->results.report.worst_case.n_parameters = w->n;
+    s->results.report.worst_case.n_results = w->n_results;
+    s->results.report.worst_case.n_runs = w->n_runs;
+    s->results.report.worst_case.n_failed = w->n_failed;
+    s->results.report.worst_case.parameter = w->parameter;
+    s->results.report.worst_case.result = w->result;
+    s->results.report.worst_case.run = run;
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_worst_case_run(struct dalcs_session *session,
                                        const struct dalcs_run_options *options,
                                        const struct dalcs_sink *sink) {
-    const struct dalcs_worst_case_card *card = &session->circuit.worst_case;
+    const struct dalcs_worst_case_card *card = &session->circuit.analyses.worst_case;
     struct dalcs_run_options of_runs = *options;
     struct dalcs_worst_case w = {.session = session,
                                  .options = &of_runs,

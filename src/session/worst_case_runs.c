@@ -58,15 +58,15 @@ static enum dalcs_status build(const struct dalcs_worst_case *w,
                                const struct dalcs_override *corner, struct dalcs_session *other) {
     const struct dalcs_session *of = w->session;
     other->name = of->name;
-    other->asks_steady = of->asks_steady;
-    other->netlist = of->netlist;
-    other->override = of->override;
-    other->n_altered = of->n_altered;
-    other->n_resets = of->n_resets;
+    other->asks.steady = of->asks.steady;
+    other->source.netlist = of->source.netlist;
+    other->source.override = of->source.override;
+    other->source.n_altered = of->source.n_altered;
+    other->source.n_resets = of->source.n_resets;
     DALCS_TRY(dalcs_session_build(other, corner, 1, &other->circuit, &other->network));
     other->has_circuit = other->has_network = true;
-    other->circuit.worst_case.present = false;
-    other->circuit.periodic.present = of->circuit.periodic.present;
+    other->circuit.analyses.worst_case.present = false;
+    other->circuit.analyses.periodic.present = of->circuit.analyses.periodic.present;
     return DALCS_OK;
 }
 
@@ -92,9 +92,10 @@ void dalcs_worst_case_read(struct dalcs_worst_case *w, const struct dalcs_circui
         double *value = place < 0   ? &parameter->low
                         : place > 0 ? &parameter->high
                                     : &parameter->nominal;
-        for (int k = 0; k < circuit->n_drawn && (only == w->n || p == only); k++) {
-            *value = strcmp(circuit->drawn[k].name, parameter->name) == 0 ? circuit->drawn[k].value
-                                                                          : *value;
+        for (int k = 0; k < circuit->random.n_drawn && (only == w->n || p == only); k++) {
+            *value = strcmp(circuit->random.drawn[k].name, parameter->name) == 0
+                         ? circuit->random.drawn[k].value
+                         : *value;
         }
     }
 }
@@ -145,7 +146,7 @@ static enum dalcs_status run_one(struct worker *worker, size_t k) {
     struct dalcs_worst_case_run *run = &w->run[k];
     struct dalcs_session other = {0};
     enum dalcs_status status = run_other(worker, run->place, &other);
-    dalcs_worst_case_take(w, &other.report, k);
+    dalcs_worst_case_take(w, &other.results.report, k);
     if (status != DALCS_OK && status != DALCS_E_CANCELLED && status != DALCS_E_NOMEM) {
         pthread_mutex_lock(&w->lock); /* of the arena */
         run->error = reason_of(&w->session->arena, &other.diag, status);

@@ -86,8 +86,8 @@ static enum dalcs_status write_source(const struct writer *w, int i) {
         return DALCS_OK;
     }
     write_head(w, i);
-    const char *trouble =
-        dalcs_spice_write_source(w->stream, stimulus, w->options->edge, w->circuit->transient.stop);
+    const char *trouble = dalcs_spice_write_source(w->stream, stimulus, w->options->edge,
+                                                   w->circuit->analyses.transient.stop);
     fputc('\n', w->stream);
     return trouble == NULL ? DALCS_OK : refuse(w, device, trouble);
 }
@@ -109,7 +109,7 @@ static void write_controlled(const struct writer *w, int i) {
  * mirror, beside it. */
 static void write_exponential(const struct writer *w, int i) {
     const struct dalcs_device *device = &w->circuit->device[i];
-    const struct dalcs_diode_model *model = &w->circuit->diode_model[device->model];
+    const struct dalcs_diode_model *model = &w->circuit->models.of_diode[device->model];
     char buffer[32];
     const char *anode = first_node(w, i, buffer), *cathode = node_of(w, device->node[1]);
     if (model->vfwd != 0.0) {
@@ -154,7 +154,7 @@ static void write_diode(const struct writer *w, int i) {
  * by a source that makes a voltage of it. */
 static void write_switch(const struct writer *w, int i) {
     const struct dalcs_device *device = &w->circuit->device[i];
-    const struct dalcs_switch_model *model = &w->circuit->switch_model[device->model];
+    const struct dalcs_switch_model *model = &w->circuit->models.of_switch[device->model];
     bool by_current = device->control >= 0;
     write_sense(w, i);
     if (by_current && model->is_inverted) {
@@ -249,7 +249,7 @@ static enum dalcs_status write_initial_conditions(const struct writer *w) {
 }
 
 static void write_analysis(const struct writer *w) {
-    const struct dalcs_transient *t = &w->circuit->transient;
+    const struct dalcs_transient *t = &w->circuit->analyses.transient;
     const struct dalcs_spice_options *o = w->options;
     double netlists = t->max_step > 0.0     ? t->max_step
                       : t->step > 0.0       ? t->step
@@ -275,7 +275,7 @@ static void write_analysis(const struct writer *w) {
 
 /* Only what is compared: the file with all there is would cost ngspice time. */
 static void write_save(const struct writer *w) {
-    for (int i = 0; i < w->circuit->n_signals; i++) {
+    for (int i = 0; i < w->circuit->results.n_signals; i++) {
         for (int k = 0; k < 2; k++) {
             if (w->names->column[i][k] != NULL) {
                 fprintf(w->stream, ".save %s\n", w->names->column[i][k]);
@@ -294,10 +294,10 @@ enum dalcs_status dalcs_spice_write(const struct dalcs_spice_names *names,
         DALCS_TRY(write_device(&w, i));
     }
     write_couplings(&w);
-    for (int k = 0; k < circuit->n_diode_models; k++) {
+    for (int k = 0; k < circuit->models.n_diodes; k++) {
         dalcs_spice_write_diode_model(stream, circuit, options, k);
     }
-    for (int k = 0; k < circuit->n_switch_models; k++) {
+    for (int k = 0; k < circuit->models.n_switches; k++) {
         dalcs_spice_write_switch_model(stream, circuit, options, k);
     }
     DALCS_TRY(write_initial_conditions(&w));

@@ -223,7 +223,8 @@ const char *dalcs_spice_write_stimulus(const struct dalcs_circuit *circuit, FILE
         dalcs_spice_write_expression(stream, stimulus);
     } else {
         fprintf(stream, "vq__%d q__%d 0 ", k, k);
-        trouble = dalcs_spice_write_source(stream, stimulus, edge, circuit->transient.stop);
+        trouble =
+            dalcs_spice_write_source(stream, stimulus, edge, circuit->analyses.transient.stop);
     }
     fputc('\n', stream);
     return trouble;

@@ -10,7 +10,7 @@ void dalcs_spice_write_value(FILE *stream, const char *before, double value) {
 
 void dalcs_spice_write_diode_model(FILE *stream, const struct dalcs_circuit *circuit,
                                    const struct dalcs_spice_options *o, int k) {
-    const struct dalcs_diode_model *model = &circuit->diode_model[k];
+    const struct dalcs_diode_model *model = &circuit->models.of_diode[k];
     switch (o->diode) {
     case DALCS_SPICE_STOCK:
         fprintf(stream, ".model m__%d d", k);
@@ -45,7 +45,7 @@ void dalcs_spice_write_diode_model(FILE *stream, const struct dalcs_circuit *cir
 
 void dalcs_spice_write_switch_model(FILE *stream, const struct dalcs_circuit *circuit,
                                     const struct dalcs_spice_options *o, int k) {
-    const struct dalcs_switch_model *model = &circuit->switch_model[k];
+    const struct dalcs_switch_model *model = &circuit->models.of_switch[k];
     for (int by_current = 0; by_current < 2; by_current++) {
         fprintf(stream, by_current ? ".model mw__%d csw(" : ".model ms__%d sw(", k);
         dalcs_spice_write_value(stream, "ron=", model->ron > 0.0 ? model->ron : o->on);

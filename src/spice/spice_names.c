@@ -101,8 +101,8 @@ static void join_shorts(struct dalcs_spice_names *names) {
 
 /* Of a voltage: its nodes. */
 static enum dalcs_status name_columns(struct dalcs_spice_names *names) {
-    for (int i = 0; i < names->circuit->n_signals; i++) {
-        const struct dalcs_signal *signal = &names->circuit->signal[i];
+    for (int i = 0; i < names->circuit->results.n_signals; i++) {
+        const struct dalcs_signal *signal = &names->circuit->results.signal[i];
         bool is_voltage = signal->kind == DALCS_SIGNAL_VOLTAGE;
         for (int k = 0; k < (is_voltage ? 2 : 1); k++) {
             int node = is_voltage ? names->node_of[signal->node[k]] : 0, d = signal->device;
@@ -129,8 +129,8 @@ static enum dalcs_status choose_all(struct dalcs_spice_names *names) {
     names->node = dalcs_arena_alloc(&names->arena, n_nodes, sizeof(*names->node));
     names->device = dalcs_arena_alloc(&names->arena, n_devices, sizeof(*names->device));
     names->is_sensed = dalcs_arena_alloc(&names->arena, n_devices, sizeof(*names->is_sensed));
-    names->column =
-        dalcs_arena_alloc(&names->arena, (size_t)circuit->n_signals, sizeof(*names->column));
+    names->column = dalcs_arena_alloc(&names->arena, (size_t)circuit->results.n_signals,
+                                      sizeof(*names->column));
     if (names->node_of == NULL || names->node == NULL || names->device == NULL ||
         names->is_sensed == NULL || names->column == NULL) {
         return DALCS_E_NOMEM;

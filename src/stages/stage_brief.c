@@ -16,7 +16,7 @@ static double *fill_guard(const struct dalcs_stages *stages, const double *colum
     for (int k = 0; k < l->n_nodes; k++) {
         double value = column[k * l->stride + place];
         for (int i = 0; i < l->n_nodes; i++) {
-            coefficient[i] += value * stages->method->to_bernstein[k][i];
+            coefficient[i] += value * stages->method->bernstein.from_nodes[k][i];
         }
     }
     return coefficient + l->n_nodes;

@@ -70,13 +70,13 @@ static void find_function_shares(const struct dalcs_stages *stages, double h,
     long double drift = share[0];
     double missed = dalcs_excitation_missed(function, m, h, share);
     for (int i = 1; i <= m->n_stages; i++) {
-        drift -= m->exact_back[i - 1] * share[i];
+        drift -= m->exact.back[i - 1] * share[i];
     }
     dalcs_collocation_parts(m, share + 1, &part);
     share[DALCS_SHARE_REAL] = part.high[0];
     share[DALCS_SHARE_DRIFT] = (double)drift;
     share[DALCS_SHARE_RIPPLE] = missed;
-    share[DALCS_SHARE_RIPPLE_RATE] = missed * m->test_factor;
+    share[DALCS_SHARE_RIPPLE_RATE] = missed * m->worst.factor;
     for (int k = 0; k < 2 * m->n_pairs; k++) {
         share[DALCS_SHARE_PAIR + k] = part.high[1 + k];
     }

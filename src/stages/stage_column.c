@@ -157,7 +157,7 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     int n_missed = column < n_x ? n_x : n_x + 1; /* a source has its own */
     long double source_drift = share[0];
     for (int i = 1; i <= m->n_stages; i++) {
-        source_drift -= m->exact_back[i - 1] * share[i];
+        source_drift -= m->exact.back[i - 1] * share[i];
     }
     b->column.missed[n_x] = dalcs_extended_of(source_drift);
     b->column.of_missed[n_x] = rhs_column;
@@ -180,7 +180,7 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
             dalcs_extended_plus(b->column.start[r], filtered(b, r)).high;
     }
     const double *real = b->solved.real + 2 * b->solved.room * (size_t)rhs_column;
-    double ripple = share[DALCS_RIPPLE_LANE] * m->test_factor;
+    double ripple = share[DALCS_RIPPLE_LANE] * m->worst.factor;
     for (int r = 0; r < n; r++) {
         b->column.lanes[r * DALCS_LANES + DALCS_RIPPLE_LANE] =
             real[r] * b->eq.column_scale[r] * ripple;

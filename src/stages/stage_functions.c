@@ -16,20 +16,20 @@ static void find_factors(const struct dalcs_collocation *m, struct dalcs_stage_f
     struct dalcs_extended_row weight;
     long double start = 0.0L;
     for (int i = 0; i < m->n_stages; i++) {
-        start += m->exact_back[i] * of->share[i + 1];
+        start += m->exact.back[i] * of->share[i + 1];
     }
     memset(&of->stages, 0, sizeof(of->stages));
     memcpy(of->stages.high, of->share + 1, (size_t)m->s * sizeof(double));
     dalcs_extended_put(&of->stages, m->s, start);
     dalcs_collocation_parts(m, of->share + 1, &weight);
     struct dalcs_extended real = {weight.high[0], weight.low[0]};
-    dalcs_extended_combine(m->s + 1, 1, &real, m->exact_to, NULL, &of->of_part[0]);
+    dalcs_extended_combine(m->s + 1, 1, &real, m->exact.to, NULL, &of->of_part[0]);
     for (int part = 1; part < n_parts; part += 2) {
         struct dalcs_extended re = {weight.high[part], weight.low[part]};
         struct dalcs_extended im = {weight.high[part + 1], weight.low[part + 1]};
         struct dalcs_extended of_re[2] = {re, im};
         struct dalcs_extended of_im[2] = {{-im.high, -im.low}, re};
-        const struct dalcs_extended_row *to = m->exact_to + part;
+        const struct dalcs_extended_row *to = m->exact.to + part;
         dalcs_extended_combine(m->s + 1, 2, of_re, to, NULL, &of->of_part[part]);
         dalcs_extended_combine(m->s + 1, 2, of_im, to, NULL, &of->of_part[part + 1]);
     }

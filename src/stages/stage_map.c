@@ -18,7 +18,7 @@ static void fill_map(struct dalcs_stage_workshop *b, const struct dalcs_stage_fu
     static const struct dalcs_extended_row one = {
         .high = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0}};
     double share[DALCS_LANES] = {0.0};
-    const struct dalcs_stage_drive constant = {share, &one, m->exact_to};
+    const struct dalcs_stage_drive constant = {share, &one, m->exact.to};
     struct dalcs_map_column to = {b->entry->map, b->entry->maps.current};
     memset(b->column.lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int x = 0; x < b->n_x; x++) {

@@ -107,9 +107,9 @@ static void fill_combination(struct dalcs_stage_plan *plan) {
     plan->n_parts = 1 + 2 * m->n_pairs;
     for (int q = 0; q < plan->n_parts; q++) {
         for (int i = 0; i < m->s; i++) {
-            plan->to[i + 1][q] = m->exact_to[q].high[i];
+            plan->to[i + 1][q] = m->exact.to[q].high[i];
         }
-        plan->to[0][q] = plan->to[m->s + 1][q] = m->exact_to[q].high[m->s];
+        plan->to[0][q] = plan->to[m->s + 1][q] = m->exact.to[q].high[m->s];
     }
 }
 

@@ -126,7 +126,7 @@ void dalcs_stage_workshop_destroy(struct dalcs_stage_workshop *workshop) {
 
 /* The real system of what is kept, with its right-hand sides. */
 static void fill_real(const struct dalcs_stage_workshop *b) {
-    long double sigma = b->stages->method->exact_lambda / b->entry->h;
+    long double sigma = b->stages->method->exact.lambda / b->entry->h;
     int n = b->kept.n_kept;
     for (int i = 0; i < n; i++) {
         long double *row = b->solved.of_real + i * (n + b->n_rhs);
@@ -245,7 +245,7 @@ static void take_well(const struct dalcs_stage_workshop *b, int lane) {
 static bool solve_kept_well(struct dalcs_stage_workshop *b) {
     long double complex sigma[DALCS_QUAD];
     for (int p = 0; p < DALCS_QUAD; p++) {
-        sigma[p] = b->stages->method->exact_lambda / b->entry->h;
+        sigma[p] = b->stages->method->exact.lambda / b->entry->h;
     }
     fill_four(b, sigma);
     if (!(dalcs_extended_solve_four(b->kept.n_kept, b->n_rhs, b->solved.of_pairs,
@@ -291,10 +291,10 @@ static enum dalcs_status solve_pairs(struct dalcs_stage_workshop *b, bool is_los
     }
     long double complex sigma[DALCS_QUAD]; /* where there are fewer, the first stands in */
     for (int p = 0; p < DALCS_QUAD; p++) {
-        sigma[p] = m->exact_mu[p < m->n_pairs ? p : 0] / b->entry->h;
+        sigma[p] = m->exact.mu[p < m->n_pairs ? p : 0] / b->entry->h;
     }
     if (has_place) {
-        sigma[m->n_pairs] = m->exact_lambda / b->entry->h;
+        sigma[m->n_pairs] = m->exact.lambda / b->entry->h;
     }
     fill_four(b, sigma);
     double pivot =

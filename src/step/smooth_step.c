@@ -125,9 +125,9 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
             const int q = node * s->n_smooth + k;
             terms = dalcs_larger(terms, n->terms[q][0]);
             for (int j = 0; j < of->n; j++) {
-                x[j] += of->column[j] >= 0 ? m->test[node] * n->x[q][j] : 0.0;
+                x[j] += of->column[j] >= 0 ? m->worst.value[node] * n->x[q][j] : 0.0;
             }
-            phi += m->test[node] * n->phi[q];
+            phi += m->worst.value[node] * n->phi[q];
         }
         for (int j = 0; j < of->n; j++) {
             x[j] += of->column[j] >= 0 ? ripple[of->column[j]] : 0.0;

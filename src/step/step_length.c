@@ -101,7 +101,7 @@ double dalcs_length_promising(const struct dalcs_radau_part *part) {
     for (int k = 2; k <= m->s + 1; k++) {
         factorial *= k;
     }
-    double size = m->test_size * m->test_factor * m->lambda / factorial;
+    double size = m->worst.size * m->worst.factor * m->lambda / factorial;
     double angle = pow(part->inner_tolerance / size, 1.0 / (m->s + 1));
     return angle * part->excitation.shortest_period / dalcs_two_pi;
 }

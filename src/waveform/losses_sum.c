@@ -27,8 +27,8 @@ enum dalcs_status dalcs_losses_sum_setup(struct dalcs_losses_sum *sum,
                                          double near) {
     const size_t n = (size_t)circuit->n_devices;
     *sum = (struct dalcs_losses_sum){.circuit = circuit,
-                                     .from = circuit->losses->from,
-                                     .to = fmin(circuit->losses->to, stop),
+                                     .from = circuit->results.losses->from,
+                                     .to = fmin(circuit->results.losses->to, stop),
                                      .near = near};
     sum->device = dalcs_alloc(n, sizeof(*sum->device));
     sum->impulse = dalcs_alloc(n, sizeof(double));
@@ -59,7 +59,7 @@ void dalcs_losses_sum_finish(struct dalcs_losses_sum *sum) {
 
 void dalcs_losses_sum_before_start(struct dalcs_losses_sum *sum, const double *value) {
     for (int k = 0; k < sum->circuit->n_devices; k++) {
-        const struct dalcs_loss_device *d = &sum->circuit->losses->device[k];
+        const struct dalcs_loss_device *d = &sum->circuit->results.losses->device[k];
         if (d->voltage >= 0) {
             sum->device[k].last[0] = value[d->voltage];
             sum->device[k].last[1] = value[d->current];
@@ -98,7 +98,7 @@ struct dalcs_loss_jump *dalcs_losses_sum_jump(struct dalcs_losses_sum *sum, int 
 /* ---- Instants ---------------------------------------------------------------------------------- */
 
 static void switch_by_table(const struct dalcs_losses_sum *sum, int k, bool on) {
-    const struct dalcs_losses_card *card = sum->circuit->losses;
+    const struct dalcs_losses_card *card = sum->circuit->results.losses;
     struct dalcs_loss *d = &sum->device[k];
     const int table = card->device[k].table[on ? 0 : 1];
     bool clamped = false;
@@ -159,7 +159,7 @@ static void add_fundamental(struct dalcs_loss *d, const struct cut *cut, double 
 
 static void add_cut(const struct dalcs_losses_sum *sum, const struct dalcs_stretch *stretch, int k,
                     const struct cut *cut) {
-    const struct dalcs_loss_device *of = &sum->circuit->losses->device[k];
+    const struct dalcs_loss_device *of = &sum->circuit->results.losses->device[k];
     const double *v = stretch->coefficient[of->voltage];
     const double *i = stretch->coefficient[of->current];
     bool is_whole = cut->a == -1.0 && cut->b == 1.0;
@@ -186,7 +186,7 @@ static void add_cut(const struct dalcs_losses_sum *sum, const struct dalcs_stret
 /* Both sides of the instant at which the stretch begins. */
 static void enter(struct dalcs_losses_sum *sum, const struct dalcs_stretch *stretch) {
     for (int k = 0; k < sum->circuit->n_devices; k++) {
-        const struct dalcs_loss_device *of = &sum->circuit->losses->device[k];
+        const struct dalcs_loss_device *of = &sum->circuit->results.losses->device[k];
         if (of->voltage >= 0) {
             sum->device[k].now[0] = dalcs_stretch_at(stretch->coefficient[of->voltage], -1.0);
             sum->device[k].now[1] = dalcs_stretch_at(stretch->coefficient[of->current], -1.0);
@@ -201,7 +201,7 @@ static void enter(struct dalcs_losses_sum *sum, const struct dalcs_stretch *stre
 static void begin(struct dalcs_losses_sum *sum, const struct dalcs_stretch *stretch, double x) {
     const bool is_at_start = stretch->from >= sum->from - sum->near;
     for (int k = 0; k < sum->circuit->n_devices; k++) {
-        const struct dalcs_loss_device *of = &sum->circuit->losses->device[k];
+        const struct dalcs_loss_device *of = &sum->circuit->results.losses->device[k];
         struct dalcs_loss *d = &sum->device[k];
         if (of->voltage >= 0) {
             d->begin[0] =
@@ -227,7 +227,7 @@ void dalcs_losses_sum_stretch(struct dalcs_losses_sum *sum, const struct dalcs_s
     }
     pass(sum, stretch->from, on);
     for (int k = 0; k < sum->circuit->n_devices; k++) {
-        const struct dalcs_loss_device *of = &sum->circuit->losses->device[k];
+        const struct dalcs_loss_device *of = &sum->circuit->results.losses->device[k];
         struct dalcs_loss *d = &sum->device[k];
         if (of->voltage < 0) {
             continue;

@@ -12,11 +12,11 @@ bool dalcs_measuring_has_time(enum dalcs_measured_analysis analysis) {
 
 bool dalcs_measuring_is_wanted(const struct dalcs_circuit *circuit,
                                enum dalcs_measured_analysis analysis) {
-    bool wanted =
-        dalcs_measuring_has_time(analysis) &&
-        (circuit->n_fouriers > 0 || (circuit->losses != NULL && circuit->losses->present));
-    for (int k = 0; k < circuit->n_measures && !wanted; k++) {
-        wanted = circuit->measure[k].analysis == analysis;
+    bool wanted = dalcs_measuring_has_time(analysis) &&
+                  (circuit->results.n_fouriers > 0 ||
+                   (circuit->results.losses != NULL && circuit->results.losses->present));
+    for (int k = 0; k < circuit->results.n_measures && !wanted; k++) {
+        wanted = circuit->results.measure[k].analysis == analysis;
     }
     return wanted;
 }
@@ -26,13 +26,13 @@ static enum dalcs_status set_up_harmonics(struct dalcs_measuring *m, double stop
     if (!dalcs_measuring_has_time(m->analysis)) {
         return DALCS_OK;
     }
-    m->harmonics = dalcs_alloc((size_t)c->n_fouriers, sizeof(*m->harmonics));
+    m->harmonics = dalcs_alloc((size_t)c->results.n_fouriers, sizeof(*m->harmonics));
     if (m->harmonics == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int k = 0; k < c->n_fouriers; k++) {
+    for (int k = 0; k < c->results.n_fouriers; k++) {
         const bool is_orbit = m->analysis == DALCS_MEASURED_PSS;
-        DALCS_TRY(dalcs_harmonics_setup(&m->harmonics[k], &c->fourier[k], stop, is_orbit));
+        DALCS_TRY(dalcs_harmonics_setup(&m->harmonics[k], &c->results.fourier[k], stop, is_orbit));
         m->n_harmonics++;
     }
     return DALCS_OK;
@@ -42,7 +42,7 @@ static enum dalcs_status set_up_harmonics(struct dalcs_measuring *m, double stop
 static bool start_items(struct dalcs_measuring *m) {
     bool keeps = false;
     for (int k = 0; k < m->n; k++) {
-        const struct dalcs_measure_card *card = &m->circuit->measure[k];
+        const struct dalcs_measure_card *card = &m->circuit->results.measure[k];
         m->item[k] = (struct dalcs_measured){.card = card,
                                              .instant = {dalcs_instant_start(&card->instant[0]),
                                                          dalcs_instant_start(&card->instant[1])},
@@ -61,12 +61,12 @@ enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
                                         const struct dalcs_circuit *circuit,
                                         enum dalcs_measured_analysis analysis, double start,
                                         double stop) {
-    size_t n_signals = (size_t)circuit->n_measured;
+    size_t n_signals = (size_t)circuit->results.n_measured;
     *m = (struct dalcs_measuring){.circuit = circuit,
                                   .analysis = analysis,
                                   .start = start,
                                   .stop = stop,
-                                  .n = circuit->n_measures};
+                                  .n = circuit->results.n_measures};
     m->rule = dalcs_stretch_rule;
     m->values = dalcs_alloc(3 * n_signals, sizeof(*m->values));
     m->row = dalcs_alloc(n_signals, sizeof(double));
@@ -81,7 +81,7 @@ enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
         return status;
     }
     m->stretch = (struct dalcs_stretch){.rule = &m->rule,
-                                        .n_signals = circuit->n_measured,
+                                        .n_signals = circuit->results.n_measured,
                                         .value = m->values,
                                         .coefficient = m->values + n_signals};
     if (analysis == DALCS_MEASURED_AC) {

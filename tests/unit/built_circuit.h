@@ -17,9 +17,9 @@ static inline int node_named(const char *name) {
 }
 
 static inline void check_signals(const char *const *name, int n) {
-    ck_assert_int_eq(circuit.n_signals, n);
+    ck_assert_int_eq(circuit.results.n_signals, n);
     for (int k = 0; k < n; k++) {
-        ck_assert_str_eq(circuit.signal[k].name, name[k]);
+        ck_assert_str_eq(circuit.results.signal[k].name, name[k]);
     }
 }
 

@@ -24,12 +24,12 @@ START_TEST(test_signals) {
     static const char *const by_default[] = {"v(b)",  "v(c)",  "v(a)",  "v(e)",  "v(h)", "i(d1)",
                                              "i(v1)", "i(l1)", "i(s1)", "i(e1)", "i(h1)"};
     check_signals(by_default, 11);
-    ck_assert_int_eq(circuit.signal[2].kind, DALCS_SIGNAL_VOLTAGE);
-    ck_assert_int_eq(circuit.signal[2].node[0], node_named("a"));
-    ck_assert_int_eq(circuit.signal[2].node[1], 0);
-    ck_assert_int_eq(circuit.signal[2].device, -1);
-    ck_assert_int_eq(circuit.signal[6].kind, DALCS_SIGNAL_CURRENT);
-    ck_assert_str_eq(circuit.device[circuit.signal[6].device].name, "v1");
+    ck_assert_int_eq(circuit.results.signal[2].kind, DALCS_SIGNAL_VOLTAGE);
+    ck_assert_int_eq(circuit.results.signal[2].node[0], node_named("a"));
+    ck_assert_int_eq(circuit.results.signal[2].node[1], 0);
+    ck_assert_int_eq(circuit.results.signal[2].device, -1);
+    ck_assert_int_eq(circuit.results.signal[6].kind, DALCS_SIGNAL_CURRENT);
+    ck_assert_str_eq(circuit.device[circuit.results.signal[6].device].name, "v1");
     dalcs_circuit_finish(&circuit);
 
     char named[1000];
@@ -38,15 +38,15 @@ START_TEST(test_signals) {
     build_good_circuit(&circuit, named);
     static const char *const wanted[] = {"v(a)", "v(a,b)", "i(r1)", "v(0,c)", "v(b)", "i(d1)"};
     check_signals(wanted, 6);
-    ck_assert_int_eq(circuit.signal[1].node[1], node_named("b"));
-    ck_assert_int_eq(circuit.signal[3].node[0], 0);
+    ck_assert_int_eq(circuit.results.signal[1].node[1], node_named("b"));
+    ck_assert_int_eq(circuit.results.signal[3].node[0], 0);
     dalcs_circuit_finish(&circuit);
 
     snprintf(named, sizeof named, "%s%s", netlist, ".save i(R1) v(c)\n.probe\n.save all\n");
     build_good_circuit(&circuit, named);
-    ck_assert_int_eq(circuit.n_signals, 12);
-    ck_assert_str_eq(circuit.signal[0].name, "i(r1)");
-    ck_assert_str_eq(circuit.signal[2].name, "v(b)");
+    ck_assert_int_eq(circuit.results.n_signals, 12);
+    ck_assert_str_eq(circuit.results.signal[0].name, "i(r1)");
+    ck_assert_str_eq(circuit.results.signal[2].name, "v(b)");
     dalcs_circuit_finish(&circuit);
 
     snprintf(named, sizeof named, "%s%s", netlist, "C2 a 0 1 Rser=1 Rpar=2\n.save i(*) alli\n");
@@ -64,7 +64,7 @@ START_TEST(test_signals) {
 
     snprintf(named, sizeof named, "%s%s", netlist, ".probe alli\n");
     build_good_circuit(&circuit, named);
-    ck_assert_int_eq(circuit.n_signals, 16); /* 5 voltages and all elements */
+    ck_assert_int_eq(circuit.results.n_signals, 16); /* 5 voltages and all elements */
     dalcs_circuit_finish(&circuit);
 }
 
@@ -117,7 +117,7 @@ START_TEST(test_options) {
     dalcs_circuit_finish(&circuit);
     build_good_circuit(&circuit, "options\nV1 a 0 1\nR1 a 0 1\n.options method=gear\n.op\n");
     ck_assert_ptr_null(circuit.options.method);
-    ck_assert(!circuit.transient.present);
+    ck_assert(!circuit.analyses.transient.present);
     dalcs_circuit_finish(&circuit);
 }
 
@@ -214,16 +214,16 @@ START_TEST(test_spellings) {
     ck_assert_str_eq(circuit.title, "A card as the title");
     ck_assert_double_eq(circuit.device[2].value, 1000);
     ck_assert_str_eq(circuit.device[circuit.device[3].control].name, "e1");
-    ck_assert_double_eq(circuit.diode_model[circuit.device[4].model].vfwd, 0.7);
+    ck_assert_double_eq(circuit.models.of_diode[circuit.device[4].model].vfwd, 0.7);
     ck_assert_int_eq(circuit.n_couplings, 1);
     ck_assert_double_eq(circuit.device[7].value, 43);
     check_signals((const char *[]){"i(d1)", "i(r1)", "v(r1)", "v(a)"}, 4);
-    ck_assert_int_eq(circuit.n_named, 2);
-    ck_assert_int_eq(circuit.n_shown, 4); /* rows have what p(r1) is computed from */
-    ck_assert_int_eq(circuit.n_computed, 1);
-    ck_assert_str_eq(circuit.computed[0].name, "p(r1)");
-    ck_assert_int_eq(circuit.computed[0].at, 1);
-    ck_assert_int_eq(circuit.n_measures, 1);
+    ck_assert_int_eq(circuit.results.n_named, 2);
+    ck_assert_int_eq(circuit.results.n_shown, 4); /* rows have what p(r1) is computed from */
+    ck_assert_int_eq(circuit.results.n_computed, 1);
+    ck_assert_str_eq(circuit.results.computed[0].name, "p(r1)");
+    ck_assert_int_eq(circuit.results.computed[0].at, 1);
+    ck_assert_int_eq(circuit.results.n_measures, 1);
     dalcs_circuit_finish(&circuit);
 }
 

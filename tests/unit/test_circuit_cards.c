@@ -87,13 +87,13 @@ START_TEST(test_elements) {
     ck_assert_str_eq(circuit.device[circuit.coupling[0].inductor[1]].name, "l1");
     ck_assert_double_eq(circuit.coupling[0].k, -0.99);
 
-    ck_assert(circuit.operating_point);
-    ck_assert(circuit.transient.present);
-    ck_assert(circuit.transient.use_initial_conditions);
-    ck_assert_double_eq(circuit.transient.step, 1e-6);
-    ck_assert_double_eq(circuit.transient.stop, 1e-3);
-    ck_assert_double_eq(circuit.transient.start, 2e-6);
-    ck_assert_double_eq(circuit.transient.max_step, 0.5e-6);
+    ck_assert(circuit.analyses.operating_point);
+    ck_assert(circuit.analyses.transient.present);
+    ck_assert(circuit.analyses.transient.use_initial_conditions);
+    ck_assert_double_eq(circuit.analyses.transient.step, 1e-6);
+    ck_assert_double_eq(circuit.analyses.transient.stop, 1e-3);
+    ck_assert_double_eq(circuit.analyses.transient.start, 2e-6);
+    ck_assert_double_eq(circuit.analyses.transient.max_step, 0.5e-6);
     dalcs_circuit_finish(&circuit);
     dalcs_circuit_finish(&circuit);
 }
@@ -116,35 +116,36 @@ START_TEST(test_models) {
                                  ".model ideal SW\n"
                                  ".model full2 SW ( Ron = 1m , Roff = 1Meg , Vt = -2 , Vh = 1 )\n"
                                  ".op\n");
-    const struct dalcs_diode_model *m = &circuit.diode_model[device_named(&circuit, "d1")->model];
+    const struct dalcs_diode_model *m =
+        &circuit.models.of_diode[device_named(&circuit, "d1")->model];
     ck_assert_double_eq(m->ron, 0);
     ck_assert(isinf(m->roff) && isinf(m->vrev));
     ck_assert_double_eq(m->vfwd, 0);
     ck_assert_int_eq(device_named(&circuit, "d4")->model, device_named(&circuit, "d1")->model);
-    m = &circuit.diode_model[device_named(&circuit, "d2")->model];
+    m = &circuit.models.of_diode[device_named(&circuit, "d2")->model];
     ck_assert_str_eq(m->name, "di");
     ck_assert_double_eq(m->ron, 0);
     ck_assert(isinf(m->roff) && isinf(m->vrev));
-    m = &circuit.diode_model[device_named(&circuit, "d3")->model];
+    m = &circuit.models.of_diode[device_named(&circuit, "d3")->model];
     ck_assert_double_eq(m->ron, 1e-3);
     ck_assert_double_eq(m->roff, 1e6);
     ck_assert_double_eq(m->vfwd, 0.7);
     ck_assert_double_eq(m->vrev, 100);
     ck_assert_double_eq(m->rrev, 2);
-    m = &circuit.diode_model[device_named(&circuit, "d5")->model];
+    m = &circuit.models.of_diode[device_named(&circuit, "d5")->model];
     ck_assert_double_eq(m->rrev, 5e-3); /* as Ron when left out */
     ck_assert_double_eq(m->vfwd, -1);
     ck_assert(isinf(m->roff) && isinf(m->vrev));
 
     const struct dalcs_device *s1 = device_named(&circuit, "s1");
-    const struct dalcs_switch_model *w = &circuit.switch_model[s1->model];
+    const struct dalcs_switch_model *w = &circuit.models.of_switch[s1->model];
     ck_assert_double_eq(w->ron, 0);
     ck_assert(isinf(w->roff));
     ck_assert_double_eq(w->vt, 0);
     ck_assert_double_eq(w->vh, 0);
     ck_assert(!s1->has_initial_state);
     const struct dalcs_device *s2 = device_named(&circuit, "s2");
-    w = &circuit.switch_model[s2->model];
+    w = &circuit.models.of_switch[s2->model];
     ck_assert_double_eq(w->ron, 1e-3);
     ck_assert_double_eq(w->vt, -2);
     ck_assert_double_eq(w->vh, 1);
@@ -242,8 +243,8 @@ START_TEST(test_unusual_networks) {
     build_good_circuit(&circuit, "loops\nV1 a 0 1\nV2 a 0 1\nR1 a 0 0\nR2 a a 0\nD1 0 0\n.op\n");
     dalcs_circuit_finish(&circuit);
     build_good_circuit(&circuit, "one time\nV1 a 0 1\nR1 a 0 1\n.tran 5m\n");
-    ck_assert_double_eq(circuit.transient.stop, 5e-3);
-    ck_assert_double_eq(circuit.transient.step, 0);
+    ck_assert_double_eq(circuit.analyses.transient.stop, 5e-3);
+    ck_assert_double_eq(circuit.analyses.transient.step, 0);
     dalcs_circuit_finish(&circuit);
     build_good_circuit(&circuit, "perfect coils\nL1 a 0 1\nL2 b 0 4\nL3 c 0 9\nR1 a b 1\nR2 b c 1\n"
                                  "K1 L1 L2 1\nK2 L2 L3 -1\nK3 L1 L3 -1\nL4 d 0 1\nR4 d a 1\n.op\n");

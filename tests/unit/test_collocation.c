@@ -47,8 +47,8 @@ START_TEST(test_closed_forms) {
     }
     const struct dalcs_collocation *euler = dalcs_collocation_of(DALCS_RADAU_IIA, 1);
     ck_assert_double_eq(euler->lambda, 1.0);
-    ck_assert_double_eq(euler->exact_to[0].high[0], 1.0);
-    ck_assert_double_eq(euler->exact_from[0].high[0], 1.0);
+    ck_assert_double_eq(euler->exact.to[0].high[0], 1.0);
+    ck_assert_double_eq(euler->exact.from[0].high[0], 1.0);
     /* Hairer and Wanner, Solving ODEs II, sec. IV.8 */
     const struct dalcs_collocation *three = dalcs_collocation_of(DALCS_RADAU_IIA, 3);
     double a = cbrt(81.0);
@@ -67,23 +67,23 @@ END_TEST
 
 /* What stage i takes of the pair's (re, im) parts is 2 Re(to W): the number `to`. */
 static long double complex to_pair(const struct dalcs_collocation *c, int i, int p) {
-    long double re = dalcs_extended_at(&c->exact_to[1 + 2 * p], i) / 2.0L;
-    long double im = -dalcs_extended_at(&c->exact_to[2 + 2 * p], i) / 2.0L;
+    long double re = dalcs_extended_at(&c->exact.to[1 + 2 * p], i) / 2.0L;
+    long double im = -dalcs_extended_at(&c->exact.to[2 + 2 * p], i) / 2.0L;
     return re + im * I;
 }
 
 static long double complex from_pair(const struct dalcs_collocation *c, int p, int j) {
-    long double re = dalcs_extended_at(&c->exact_from[j], 1 + 2 * p);
-    long double im = dalcs_extended_at(&c->exact_from[j], 2 + 2 * p);
+    long double re = dalcs_extended_at(&c->exact.from[j], 1 + 2 * p);
+    long double im = dalcs_extended_at(&c->exact.from[j], 2 + 2 * p);
     return re + im * I;
 }
 
 /* Node i as the table has it to the last digit: A 1 = c. */
 static long double butcher(const struct dalcs_collocation *c, int i, int j) {
-    long double sum = dalcs_extended_at(&c->exact_to[0], i) *
-                      dalcs_extended_at(&c->exact_from[j], 0) / c->exact_lambda;
+    long double sum = dalcs_extended_at(&c->exact.to[0], i) *
+                      dalcs_extended_at(&c->exact.from[j], 0) / c->exact.lambda;
     for (int p = 0; p < c->n_pairs; p++) {
-        sum += 2.0L * creall(to_pair(c, i, p) * from_pair(c, p, j) / c->exact_mu[p]);
+        sum += 2.0L * creall(to_pair(c, i, p) * from_pair(c, p, j) / c->exact.mu[p]);
     }
     return sum;
 }
@@ -141,7 +141,7 @@ START_TEST(test_coordinates) {
         for (int i = 0; i < c->n_stages; i++) {
             for (int j = 0; j < c->n_stages; j++) {
                 long double exact =
-                    dalcs_extended_at(&c->exact_to[0], i) * dalcs_extended_at(&c->exact_from[j], 0);
+                    dalcs_extended_at(&c->exact.to[0], i) * dalcs_extended_at(&c->exact.from[j], 0);
                 for (int p = 0; p < c->n_pairs; p++) {
                     exact += 2.0L * creall(to_pair(c, i, p) * from_pair(c, p, j));
                 }
@@ -150,17 +150,17 @@ START_TEST(test_coordinates) {
         }
         long double one = 0.0L;
         for (int i = 0; i < c->n_stages; i++) {
-            one += dalcs_extended_at(&c->exact_from[i], 0);
+            one += dalcs_extended_at(&c->exact.from[i], 0);
         }
         check_near(one, 1.0L, 1e-17);
-        check_near(c->exact_lambda, c->lambda, DBL_EPSILON * c->lambda);
+        check_near(c->exact.lambda, c->lambda, DBL_EPSILON * c->lambda);
         for (int p = 0; p < c->n_pairs; p++) {
             long double complex sum = 0.0L;
             for (int i = 0; i < c->n_stages; i++) {
                 sum += from_pair(c, p, i);
             }
             check_near(cabsl(sum - 1.0L), 0.0L, 1e-17);
-            check_near(cabsl(c->exact_mu[p] - c->mu[p]), 0.0L, DBL_EPSILON * cabs(c->mu[p]));
+            check_near(cabsl(c->exact.mu[p] - c->mu[p]), 0.0L, DBL_EPSILON * cabs(c->mu[p]));
         }
     }
 }
@@ -199,17 +199,17 @@ START_TEST(test_newton) {
             double value[DALCS_MAX_NODES] = {0.0};
             double coefficient[DALCS_MAX_NODES] = {0.0};
             for (int k = 0; k <= c->s; k++) {
-                ck_assert_double_eq(c->newton_node[k], c->node[c->newton_order[k]]);
-                value[k] = pow(c->newton_node[k], power);
+                ck_assert_double_eq(c->differences.node[k], c->node[c->differences.order[k]]);
+                value[k] = pow(c->differences.node[k], power);
                 for (int i = k; i > 0 && i <= c->s; i++) {
-                    coefficient[i] += c->newton[k][i] * (value[k] - value[0]);
+                    coefficient[i] += c->differences.coefficient[k][i] * (value[k] - value[0]);
                 }
             }
             coefficient[0] = value[0];
             for (double theta = 0.0; theta <= 1.0; theta += 0.0625) {
                 double sum = coefficient[c->s];
                 for (int k = c->s - 1; k >= 0; k--) {
-                    sum = sum * (theta - c->newton_node[k]) + coefficient[k];
+                    sum = sum * (theta - c->differences.node[k]) + coefficient[k];
                 }
                 ck_assert_double_le(fabs(sum - pow(theta, power)), power == 0 ? 0.0 : 2e-15);
             }
@@ -225,31 +225,31 @@ START_TEST(test_extrapolation) {
         for (int seed = 0; seed < 4; seed++) {
             long double start = 0.0L;
             long double exact = 0.0L;
-            long double between = c->test[0] * polynomial(c->s, seed, 0.0L);
+            long double between = c->worst.value[0] * polynomial(c->s, seed, 0.0L);
             int degree = c->n_stages - 1;
             for (int k = 1; k <= c->n_stages; k++) {
                 double node = k <= c->s ? c->node[k] : 0.0;
-                exact += c->exact_back[k - 1] * polynomial(degree, seed, node);
+                exact += c->exact.back[k - 1] * polynomial(degree, seed, node);
                 start += c->back[k - 1] * polynomial(degree, seed, node);
-                between += k <= c->s ? c->test[k] * polynomial(c->s, seed, node) : 0.0;
+                between += k <= c->s ? c->worst.value[k] * polynomial(c->s, seed, node) : 0.0;
             }
             check_near(exact, polynomial(degree, seed, 0.0L), 1e-13); /* nodes are rounded */
             check_near(start, polynomial(degree, seed, 0.0L), 1e-13);
-            check_near(between, polynomial(c->s, seed, c->test_node), 1e-14);
+            check_near(between, polynomial(c->s, seed, c->worst.node), 1e-14);
         }
         for (int at = 0; at <= 1000; at++) {
             double product = 1.0;
             for (int k = 0; k <= c->s; k++) {
                 product *= fabs(at / 1000.0 - c->node[k]);
             }
-            ck_assert(product <= c->test_size * (1.0 + 1e-12));
+            ck_assert(product <= c->worst.size * (1.0 + 1e-12));
         }
         double product = 1.0;
         for (int k = 0; k <= c->s; k++) {
-            product *= fabs(c->test_node - c->node[k]);
+            product *= fabs(c->worst.node - c->node[k]);
         }
-        check_near(product, c->test_size, 1e-14 * c->test_size);
-        ck_assert(c->test_factor >= 1.0);
+        check_near(product, c->worst.size, 1e-14 * c->worst.size);
+        ck_assert(c->worst.factor >= 1.0);
     }
 }
 
@@ -266,11 +266,11 @@ START_TEST(test_bernstein) {
                 least = fmin(least, value);
                 most = fmax(most, value);
                 for (int i = 0; i <= c->s; i++) {
-                    coefficient[i] += c->to_bernstein[k][i] * value;
+                    coefficient[i] += c->bernstein.from_nodes[k][i] * value;
                 }
             }
             for (int i = 0; i <= c->s; i++) {
-                double room = c->bernstein_spread * (most - least) + 1e-13;
+                double room = c->bernstein.spread * (most - least) + 1e-13;
                 ck_assert(coefficient[i] >= least - room && coefficient[i] <= most + room);
             }
             for (int at = 0; at <= 20; at++) {
@@ -289,11 +289,11 @@ START_TEST(test_bernstein) {
         for (int i = 0; i <= c->s; i++) {
             double sum = 0.0;
             for (int k = 0; k <= c->s; k++) {
-                sum += fabs(c->to_bernstein[k][i]);
+                sum += fabs(c->bernstein.from_nodes[k][i]);
             }
             worst = fmax(worst, sum);
         }
-        check_near(1.0 + 2.0 * c->bernstein_spread, worst, 1e-12 * worst);
+        check_near(1.0 + 2.0 * c->bernstein.spread, worst, 1e-12 * worst);
     }
 }
 

@@ -169,7 +169,7 @@ static double only_fall(const struct dalcs_collocation *c, const double *value, 
     double coefficient[DALCS_MAX_NODES] = {0.0};
     for (int k = 0; k <= c->s; k++) {
         for (int i = 0; i <= c->s; i++) {
-            coefficient[i] += value[k] * c->to_bernstein[k][i];
+            coefficient[i] += value[k] * c->bernstein.from_nodes[k][i];
         }
     }
     return dalcs_crossing_only(c, coefficient, end, depth);
