@@ -30,6 +30,7 @@ static bool is_ideal(const struct dalcs_audit *audit, const struct audit_part *p
         return d->value == 0.0;
     case DALCS_SWITCH:
         return first->is_closed[device] && c->models.of_switch[d->model].ron == 0.0;
+    case DALCS_INDUCTOR: /* without leakage it hands on what another one carries */
     case DALCS_DIODE: /* one at its knee may have carried at rest what a source that moves takes from it at once */
         return audit_ways_of_charge(audit, part, before, first, device) != 0;
     default:

@@ -52,6 +52,14 @@ CIRCUITS = {
     "a source on a capacitor, from rest": (
         "v1 a 0 SIN(1 5 1k)\nc1 a 0 1u\nr1 a b 10\nc2 b 0 1u\nd1 b c\nc3 c 0 1u\nr3 c 0 1k\nl1 b d 1m\nr4 d 0 10\n"
         ".tran 20u 2m\n", [], {}),
+    "a capacitor across an ideal transformer, from rest": (
+        "v1 p 0 SIN(0 4 50)\nlp p 0 1\nls a b 1\nk1 lp ls 1\nc1 a b 300u\nr1 a b 100\n.tran 40m\n", [], {}),
+    "capacitors across three windings, from rest": (
+        "v1 p 0 PULSE(0 10 0 1m 1m 3m 10m)\nr1 p q 0\nlp q 0 1m\nls a b 4m\nlt c d 1\nk1 lp ls 1\nk2 lp lt 1\nk3 ls lt 1\n"
+        "c1 a b 1u\nr2 a b 50\nc2 c d 10n\nr3 c d 1meg\nr4 d 0 1k\n.tran 20m\n", [], {}),
+    "a bridge with a snubber behind an ideal transformer, from rest": (
+        "v1 p 0 SIN(0 325 50)\nlp p 0 10\nls a b 0.1\nk1 lp ls 1\nc1 a b 100n\nd1 a o d\nd2 b o d\nd3 0 a d\nd4 0 b d\n"
+        "c2 o 0 1m\nr1 o 0 100\n.model d D(ron=10m)\n.tran 40m\n", [], {}),
     "a current source in a coil, from rest": (
         "i1 0 a SIN(1 5 1k)\nl1 a b 1m\nr1 b 0 10\nd1 0 b\n.tran 20u 2m\n", [], {}),
     "an ideal peak detector, from rest": (
