@@ -11,7 +11,8 @@ struct choices {
     const struct dalcs_whole *whole;
     const struct dalcs_system *s;
     size_t n_columns, n_pairs;
-    double root; /* of a conductance in S: pairs all have one norm */
+    const double *error; /* [n_columns] */
+    double root;         /* of a conductance in S: pairs all have one norm */
 };
 
 static double *vector_of(const struct choices *c, int k) {
@@ -29,8 +30,7 @@ static bool is_closed(const struct choices *c, int d) {
 
 /* That of an entry which is as rounded as this one is. */
 static double size_of(const struct choices *c, const double *vector, size_t column) {
-    return fabs(vector[column]) +
-           c->whole->error[column] / dalcs_least_norm_rounding((int)c->n_columns);
+    return fabs(vector[column]) + c->error[column] / dalcs_least_norm_rounding((int)c->n_columns);
 }
 
 /* What pairs of one kind have in a vector: lambda of closed ones, w of open ones. Returns the norm of its terms' sizes. */
@@ -130,12 +130,13 @@ static int choose_in_kind(const struct choices *c, enum dalcs_pair_kind kind, do
     return first + n_seen;
 }
 
-enum dalcs_status dalcs_choices_make(struct dalcs_whole *whole) {
+enum dalcs_status dalcs_choices_make(struct dalcs_whole *whole, const double *error) {
     const struct dalcs_system *s = whole->p->system;
     struct choices c = {.whole = whole,
                         .s = s,
                         .n_columns = (size_t)dalcs_system_n_columns(s),
                         .n_pairs = (size_t)s->n_pairs,
+                        .error = error,
                         .root = sqrt(whole->p->cache.form[0]->pair_conductance)};
     double *size = dalcs_arena_alloc(&whole->arena, (size_t)whole->n_choices, sizeof(double));
     if (size == NULL) {

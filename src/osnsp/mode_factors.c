@@ -6,8 +6,6 @@
 #include "null_space.h"
 #include "osnsp_internal.h"
 
-#include <float.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -192,13 +190,11 @@ static enum dalcs_status look_for_rounding(const struct dalcs_columns *a) {
     return status;
 }
 
-/* May the least pivot be what rounding leaves of 0? Beside the largest pivot that is n eps of the largest element that was
- * eliminated (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2002, theorem 9.3), which is up to 1/tol of the
- * pivot that was taken in its column. At rest capacitors block, and what they alone tie to the rest floats. */
-static bool may_be_singular(const struct dalcs_osnsp *p, int n) {
-    const klu_common *klu = &p->cache.klu;
-    return p->cache.form[0]->sigma == 0.0 ||
-           klu->rcond < fmax(p->options.rcond_min, n * DBL_EPSILON / klu->tol);
+/* At rest capacitors block, and what they alone tie to the rest floats: the pivot of such an island is rounding of its
+ * conductances, which may be far larger than rcond_min of another pivot. In a step it is told from rounding by the estimate
+ * alone: with the states eliminated entries have lost digits, and of a leak more than it is may count as rounding. */
+static bool may_be_singular(const struct dalcs_osnsp *p) {
+    return p->cache.form[0]->sigma == 0.0 || p->cache.klu.rcond < p->options.rcond_min;
 }
 
 enum dalcs_status dalcs_modes_factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
@@ -206,7 +202,7 @@ enum dalcs_status dalcs_modes_factor_plain(struct dalcs_osnsp *p, struct dalcs_m
     DALCS_TRY(fill_plain_matrix(p, e, &a));
     p->cache.klu.rcond = 1.0; /* what small ones without KLU tell */
     enum dalcs_status status = factor(p, e, &a);
-    if (status == DALCS_OK && may_be_singular(p, a.n)) {
+    if (status == DALCS_OK && may_be_singular(p)) {
         status = look_for_rounding(&a);
     }
     dalcs_columns_finish(&a);

@@ -12,7 +12,6 @@
 #include "whole.h"
 
 #include <math.h>
-#include <string.h>
 
 struct open_mode {
     const struct dalcs_osnsp *p;
@@ -57,31 +56,15 @@ static void add(double *a, double factor, const double *b, size_t n) {
     }
 }
 
-/* In amperes or volts: what rounding of an entry of a direction is of. */
-static double entry_size(const struct open_mode *m, const double *direction, size_t c) {
-    return fabs(direction[c]) + m->whole->error[c] / dalcs_least_norm_rounding((int)m->n_columns);
-}
-
-/* What rounding of the parts of a direction is of, in their units: the norm of their terms' sizes. */
+/* The largest element of a direction, in the same units: what its parts are known by. */
 static double size_of(const struct open_mode *m, const double *direction) {
-    const struct dalcs_osnsp *p = m->p;
-    const struct dalcs_csr *C = &p->system->C;
-    const double root = sqrt(p->cache.form[0]->pair_conductance);
-    double square = 0.0;
-    for (int d = 0; d < p->system->n_pairs; d++) {
-        const bool is_on = dalcs_osnsp_is_on(p, d);
-        double size =
-            is_on ? entry_size(m, direction, m->n_columns - m->n_pairs + (size_t)d) / root : 0.0;
-        for (int k = C->p[d]; !is_on && k < C->p[d + 1]; k++) {
-            size += root * fabs(C->x[k]) * entry_size(m, direction, (size_t)C->j[k]);
-        }
-        square += p->lists.is_diode[d] ? size * size : 0.0;
+    double root = sqrt(m->p->cache.form[0]->pair_conductance);
+    double largest = 0.0;
+    for (size_t c = 0; c < m->n_columns; c++) {
+        double size = fabs(direction[c]);
+        largest = fmax(largest, m->p->system->column_is_current[c] ? size / root : size * root);
     }
-    for (int k = 0; k < p->lists.n_references; k++) {
-        const double size = entry_size(m, direction, (size_t)p->lists.reference[k]) / root;
-        square += size * size;
-    }
-    return sqrt(square);
+    return largest;
 }
 
 /* Those that the parts see come first, orthogonal to each other and of length 1 to the parts. */
@@ -94,8 +77,7 @@ static void find_directions(struct open_mode *m) {
                                     .size = m->size};
     for (int k = 0; k < open.n; k++) {
         double *direction = dalcs_least_norm_vector(&open, k);
-        memcpy(direction, m->whole->open + (size_t)k * m->n_columns,
-               m->n_columns * sizeof(*direction));
+        dalcs_whole_direction(m->whole, k, direction);
         look_at_parts(m, direction, false, dalcs_least_norm_part(&open, k));
         m->size[k] = size_of(m, direction);
     }

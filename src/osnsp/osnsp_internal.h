@@ -196,8 +196,10 @@ enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, doub
 
 /* ---- choices.c ----------------------------------------------------------------------------- */
 
-/* Vectors that are open, in `choice`, become the equations that choose among them. */
-enum dalcs_status dalcs_choices_make(struct dalcs_whole *whole) DALCS_MUST_CHECK;
+/* Vectors that are open, in `choice`, become the equations that choose among them. error[n_columns]: how far off an entry of
+ * any of them may be. */
+enum dalcs_status dalcs_choices_make(struct dalcs_whole *whole,
+                                     const double *error) DALCS_MUST_CHECK;
 
 /* ---- ties.c -------------------------------------------------------------------------------- */
 

@@ -105,16 +105,18 @@ static enum dalcs_status factor(struct dalcs_whole *whole, const struct dalcs_tr
     return status;
 }
 
-/* The vectors that the mode maps to 0, and their errors. */
-static void take_open(struct dalcs_whole *whole, const struct dalcs_null_space *space) {
+/* The vectors that the mode maps to 0, and how far off an entry of any of them may be. */
+static void take_open(struct dalcs_whole *whole, const struct dalcs_null_space *space,
+                      double *error) {
     const int n_columns = dalcs_system_n_columns(whole->p->system);
     for (int k = 0; k < space->n_free; k++) {
         dalcs_null_space_vector(space, k, whole->residual);
-        double *vector = whole->open + (size_t)k * (size_t)n_columns;
+        double *vector = whole->choice + (size_t)k * (size_t)n_columns;
         for (int c = 0; c < n_columns; c++) {
             const int place = whole->place[c];
             vector[c] = place >= 0 ? whole->residual[place] : 0.0;
-            whole->error[c] = fmax(whole->error[c], place >= 0 ? space->error[place] : 0.0);
+            error[c] = fmax(error[c], place >= 0 ? space->error[place] : 0.0);
+            whole->moves[c] = whole->moves[c] || vector[c] != 0.0;
         }
     }
 }
@@ -130,17 +132,16 @@ static enum dalcs_status choose(struct dalcs_whole *whole, const struct dalcs_nu
     whole->redundant = dalcs_arena_alloc(arena, n_choices, sizeof(int));
     whole->choice = dalcs_arena_alloc(arena, n_choices * n_columns, sizeof(double));
     whole->choice_w = dalcs_arena_alloc(arena, n_choices * (size_t)s->n_pairs, sizeof(double));
-    whole->open = dalcs_arena_alloc(arena, n_choices * n_columns, sizeof(double));
-    whole->error = dalcs_arena_alloc(arena, n_columns, sizeof(double));
+    whole->moves = dalcs_arena_alloc(arena, n_columns, sizeof(bool));
+    double *error = dalcs_arena_alloc(arena, n_columns, sizeof(double));
     if (whole->redundant == NULL || whole->choice == NULL || whole->choice_w == NULL ||
-        whole->open == NULL || whole->error == NULL) {
+        whole->moves == NULL || error == NULL) {
         return DALCS_E_NOMEM;
     }
     whole->n_choices = space->n_free;
     memcpy(whole->redundant, space->redundant, n_choices * sizeof(int));
-    take_open(whole, space);
-    memcpy(whole->choice, whole->open, n_choices * n_columns * sizeof(double));
-    return dalcs_choices_make(whole);
+    take_open(whole, space, error);
+    return dalcs_choices_make(whole, error);
 }
 
 /* The rows that follow from others, chosen with voltages of one size, and currents of what the least conductance makes of it:
@@ -295,11 +296,20 @@ void dalcs_whole_refine(const struct dalcs_whole *whole, const double *u, double
     }
 }
 
+void dalcs_whole_direction(const struct dalcs_whole *whole, int k, double *y) {
+    memset(whole->residual, 0, (size_t)whole->n * sizeof(double));
+    whole->residual[whole->redundant[k]] = 1.0;
+    dalcs_lu_solve(&whole->lu, whole->residual);
+    for (int c = 0; c < dalcs_system_n_columns(whole->p->system); c++) {
+        y[c] = whole->moves[c] ? whole->residual[whole->place[c]] : 0.0;
+    }
+}
+
 size_t dalcs_whole_bytes(const struct dalcs_whole *whole) {
     size_t n_columns = (size_t)dalcs_system_n_columns(whole->p->system);
     size_t n_choices = (size_t)whole->n_choices;
     return sizeof(*whole) + dalcs_lu_bytes(&whole->lu) +
-           n_columns * (sizeof(int) + (2 + 3 * n_choices) * sizeof(double));
+           n_columns * (sizeof(int) + sizeof(bool) + (2 + 2 * n_choices) * sizeof(double));
 }
 
 void dalcs_whole_finish(struct dalcs_whole *whole) {

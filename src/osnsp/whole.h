@@ -23,8 +23,7 @@ struct dalcs_whole {
     int *redundant;   /* [n_choices] rows that choices stand in for */
     double *choice;   /* [n_choices][n_columns] coefficients of unknowns */
     double *choice_w; /* [n_choices][n_pairs] of w - knee, which are in `choice` as well */
-    double *open;     /* [n_choices][n_columns] what the mode maps to 0 */
-    double *error;    /* [n_columns] how far off an entry of any of these may be */
+    bool *moves;      /* [n_columns] is it other than 0 in something that is open? */
     double *residual; /* [n] work */
     struct dalcs_arena arena;
 };
@@ -44,8 +43,11 @@ enum dalcs_status dalcs_whole_null_space(const struct dalcs_osnsp *p, int *place
 void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const double *line,
                        double *y);
 
-/* The same from y on, which keeps what it has chosen: that of a mode where what is open was added to its answer. */
+/* The same from y on, which keeps what it has chosen: that of a mode where directions below were added to its answer. */
 void dalcs_whole_refine(const struct dalcs_whole *whole, const double *u, double *y);
+
+/* What choice k leaves open: the answers of the mode that differ from one in this choice alone, into y[n_columns]. */
+void dalcs_whole_direction(const struct dalcs_whole *whole, int k, double *y);
 
 size_t dalcs_whole_bytes(const struct dalcs_whole *whole);
 
