@@ -7,7 +7,6 @@
 #include "magnitudes.h"
 
 #include <math.h>
-#include <string.h>
 
 double dalcs_tied_nothing(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double limit = dalcs_doubt_noise_about(part, pair, dalcs_guard_scale(part, pair, unit), unit);
@@ -115,6 +114,19 @@ static bool is_above(const struct dalcs_radau_part *part, int pair, double end,
            dalcs_tied_nothing(part, pair, unit);
 }
 
+/* The tied diodes that are open close, all of them: where there are many answers they may have a part of a current. */
+static bool close_tied(struct dalcs_radau_part *part, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        if (!dalcs_osnsp_is_on(p, d) && dalcs_tied_is(part, d, unit)) {
+            dalcs_osnsp_command(p, d, true);
+            found = true;
+        }
+    }
+    return found;
+}
+
 bool dalcs_tied_open_idle(struct dalcs_radau_part *part, const uint64_t *before, double end,
                           const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
@@ -129,38 +141,19 @@ bool dalcs_tied_open_idle(struct dalcs_radau_part *part, const uint64_t *before,
     return found;
 }
 
-/* Tied diodes that were open close, and with them those that are open now because their current does not grow: where there are
- * many answers all of them may have a part of a current. Those that have none are open as they are now. */
-static bool share(struct dalcs_radau_part *part, bool any_was_open) {
-    struct dalcs_osnsp *p = &part->component->osnsp;
-    if (!any_was_open || dalcs_osnsp_is_unique(p)) {
-        return false;
-    }
-    memcpy(part->work.mode_tied, p->mode, (size_t)p->n_words * sizeof(uint64_t));
-    for (int d = 0; d < p->system->n_pairs; d++) {
-        if (part->guards.tied[d]) {
-            dalcs_osnsp_command(p, d, true);
-        }
-    }
-    return true;
-}
-
 bool dalcs_tied_turn(struct dalcs_radau_part *part, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
-    const int n_pairs = p->system->n_pairs <= DALCS_MANY_PAIRS ? p->system->n_pairs : 0;
     bool found = false;
-    bool any_was_open = false;
-    for (int d = 0; d < n_pairs; d++) {
-        part->guards.tied[d] = dalcs_tied_is(part, d, unit);
-    }
-    for (int d = 0; d < n_pairs; d++) {
-        const bool is_on = dalcs_osnsp_is_on(p, d);
-        any_was_open = any_was_open || (part->guards.tied[d] && !is_on);
-        if (part->guards.tied[d] &&
-            (is_on ? !grows(part, d, unit) : dalcs_tied_leaves(part, d, -1.0))) {
+    for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= DALCS_MANY_PAIRS; d++) {
+        if (!dalcs_tied_is(part, d, unit)) {
+            continue;
+        }
+        bool is_on = dalcs_osnsp_is_on(p, d);
+        if (is_on ? !grows(part, d, unit) : dalcs_tied_leaves(part, d, -1.0)) {
             dalcs_osnsp_command(p, d, !is_on);
             found = true;
         }
     }
-    return share(part, any_was_open) || found;
+    bool may_share = p->system->n_pairs <= DALCS_MANY_PAIRS && !dalcs_osnsp_is_unique(p);
+    return found || (may_share && close_tied(part, unit));
 }
