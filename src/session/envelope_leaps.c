@@ -37,7 +37,7 @@ static void find_g(struct dalcs_envelope *e) {
         const int first = st->layout.first[k];
         const int n = st->layout.first[k + 1] - first;
         const double *M = e->M + st->layout.first_of_M[k];
-        const double *now = st->M + st->layout.first_of_M[k];
+        const double *now = st->pass.M + st->layout.first_of_M[k];
         for (int x = 0; x < n; x++) {
             double G = st->then.x[first + x] - st->at.x[first + x];
             double bent = 0.0;
@@ -56,7 +56,7 @@ static void find_g(struct dalcs_envelope *e) {
 
 static void keep_map(struct dalcs_envelope *e) {
     const struct dalcs_steady *st = &e->st;
-    memcpy(e->M, st->M, st->layout.first_of_M[st->layout.n_systems] * sizeof(double));
+    memcpy(e->M, st->pass.M, st->layout.first_of_M[st->layout.n_systems] * sizeof(double));
     for (int x = 0; x < st->layout.n_x; x++) {
         e->at.F[x] = st->then.x[x] - st->at.x[x];
     }

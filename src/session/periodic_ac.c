@@ -243,7 +243,7 @@ static void report(struct dalcs_periodic_ac *a) {
     s->results.report.response.present = true;
     s->results.report.response.period = a->st->period;
     s->results.report.response.sideband = a->sideband;
-    s->results.report.response.exact = a->log.is_exact && a->st->is_exact;
+    s->results.report.response.exact = a->log.is_exact && a->st->pass.is_exact;
     for (int k = 0; k < a->n_parts; k++) {
         s->results.report.response.tail =
             fmax(s->results.report.response.tail, a->part[k].flow.worst);

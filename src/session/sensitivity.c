@@ -141,7 +141,7 @@ static enum dalcs_status find_orbits(struct dalcs_sensitivities *s, const struct
 static enum dalcs_status vary(struct dalcs_sensitivities *s, const struct dalcs_sweep *item,
                               double by, bool *found) {
     *found = false;
-    if (s->st->is_exact && !s->may_differ) {
+    if (s->st->pass.is_exact && !s->may_differ) {
         DALCS_TRY(dalcs_sensitivity_along_tangent(s, item, by, found));
     }
     return *found ? DALCS_OK : find_orbits(s, item, by, found);

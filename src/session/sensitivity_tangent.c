@@ -52,9 +52,9 @@ static enum dalcs_status find_tangent(struct dalcs_sensitivities *s, struct besi
     }
     const enum dalcs_status status = dalcs_steady_next_step(st);
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-    *same = status == DALCS_OK && !st->is_stuck;
+    *same = status == DALCS_OK && !st->kept.is_stuck;
     memcpy(s->step, st->step, (size_t)st->layout.n_x * sizeof(double));
-    b->longer = st->longer;
+    b->longer = st->own.longer;
     return DALCS_OK;
 }
 

@@ -53,14 +53,14 @@ bool dalcs_steady_comes_back(const struct dalcs_steady *st, double distance) {
     for (int k = 0; k < st->layout.n_systems; k++) {
         const int first = st->layout.first[k];
         const int n = st->layout.first[k + 1] - first;
-        const double *M = st->M + st->layout.first_of_M[k];
+        const double *M = st->pass.M + st->layout.first_of_M[k];
         for (int x = 0; x < n; x++) {
             const double *scale = st->scale + first;
             double most = off * scale[x]; /* M - 1 of what the states are off by */
             for (int i = 0; i < n; i++) {
                 most += off * fabs(M[i * n + x]) * scale[i];
             }
-            most += st->is_free ? off * st->period * fabs(st->last[first + x]) : 0.0;
+            most += st->own.is_free ? off * st->period * fabs(st->pass.last[first + x]) : 0.0;
             does = does && fabs(st->then.x[first + x] - st->at.x[first + x]) <= most;
         }
     }
@@ -68,19 +68,21 @@ bool dalcs_steady_comes_back(const struct dalcs_steady *st, double distance) {
 }
 
 enum dalcs_status dalcs_steady_next_step(struct dalcs_steady *st) {
-    st->longer = 0.0;
-    return st->is_free ? dalcs_steady_newton_free(st, &st->longer) : dalcs_steady_newton(st);
+    st->own.longer = 0.0;
+    return st->own.is_free ? dalcs_steady_newton_free(st, &st->own.longer)
+                           : dalcs_steady_newton(st);
 }
 
 static void take_step(struct dalcs_steady *st) {
     go_by(st, st->at.x, st->step, 1.0);
-    st->period += st->longer;
+    st->period += st->own.longer;
     st->n.newton++;
 }
 
 /* Is the last pass an answer, and no further step better? `before`: the residual before it. */
 static bool is_done(const struct dalcs_steady *st, double before) {
-    bool is = st->residual <= converged || (st->residual <= good && st->residual >= before);
+    bool is = st->pass.residual <= converged ||
+              (st->pass.residual <= good && st->pass.residual >= before);
     return is && switches_return(st);
 }
 
@@ -113,24 +115,25 @@ static enum dalcs_status go_on(struct dalcs_steady *st, struct burst *b) {
 
 /* One step, and plain periods where it did not help. */
 static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
-    const double before = st->residual;
+    const double before = st->pass.residual;
     take_step(st);
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
     b->done = is_done(st, before);
-    if (!b->done && !(st->residual <= 0.5 * before)) {
+    if (!b->done && !(st->pass.residual <= 0.5 * before)) {
         b->unhelpful++;
         DALCS_TRY(go_on(st, b));
         b->done = is_done(st, INFINITY);
     }
-    b->far += st->residual > far * b->first ? 1 : 0;
-    b->waited = st->residual <= 0.5 * b->best ? 0 : b->waited + 1;
-    b->best = fmin(b->best, st->residual);
+    b->far += st->pass.residual > far * b->first ? 1 : 0;
+    b->waited = st->pass.residual <= 0.5 * b->best ? 0 : b->waited + 1;
+    b->best = fmin(b->best, st->pass.residual);
     return DALCS_OK;
 }
 
 /* The last pass is the first one of it. */
 static enum dalcs_status burst_on(struct dalcs_steady *st, bool *done) {
-    struct burst b = {.first = st->residual, .best = st->residual, .done = is_done(st, 0.0)};
+    struct burst b = {
+        .first = st->pass.residual, .best = st->pass.residual, .done = is_done(st, 0.0)};
     bool is_stuck = false; /* where the run has come to: steps may lead to where no run does */
     st->n.bursts++;
     for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING &&
@@ -138,7 +141,7 @@ static enum dalcs_status burst_on(struct dalcs_steady *st, bool *done) {
          k++) {
         enum dalcs_status status = dalcs_steady_next_step(st);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        is_stuck = st->is_stuck && k == 0;
+        is_stuck = st->kept.is_stuck && k == 0;
         if (status != DALCS_OK || is_stuck) {
             break;
         }
@@ -148,7 +151,7 @@ static enum dalcs_status burst_on(struct dalcs_steady *st, bool *done) {
             break;
         }
     }
-    st->is_stuck = is_stuck;
+    st->kept.is_stuck = is_stuck;
     *done = b.done;
     return DALCS_OK;
 }
@@ -164,7 +167,7 @@ static bool goes_on(const struct dalcs_steady *st, const double *moved) {
     bool does = true;
     for (int x = 0; x < st->layout.n_x; x++) {
         const double now = st->then.x[x] - st->at.x[x];
-        does = does && (st->drift[x] == 0.0 || fabs(now - moved[x]) <= 0.5 * fabs(moved[x]));
+        does = does && (st->kept.drift[x] == 0.0 || fabs(now - moved[x]) <= 0.5 * fabs(moved[x]));
     }
     return does;
 }
@@ -172,7 +175,7 @@ static bool goes_on(const struct dalcs_steady *st, const double *moved) {
 /* Along st->drift from where the last pass has come to, as far as the same modes follow each other and take it as far.
  * *endless: that is as far as it was tried. `from`, `moved`: work. */
 static enum dalcs_status leap(struct dalcs_steady *st, double *from, double *moved, bool *endless) {
-    const uint64_t signature = st->signature;
+    const uint64_t signature = st->pass.signature;
     for (int x = 0; x < st->layout.n_x; x++) {
         from[x] = st->then.x[x];
         moved[x] = st->then.x[x] - st->at.x[x];
@@ -180,14 +183,14 @@ static enum dalcs_status leap(struct dalcs_steady *st, double *from, double *mov
     bool same = true;
     int k = 0;
     for (; k < MOST_LEAPS && same; k++) {
-        go_by(st, from, st->drift, ldexp(1.0, k));
+        go_by(st, from, st->kept.drift, ldexp(1.0, k));
         enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        same = status == DALCS_OK && st->signature == signature && goes_on(st, moved);
+        same = status == DALCS_OK && st->pass.signature == signature && goes_on(st, moved);
     }
     *endless = same;
     st->n.leaps++;
-    go_by(st, from, st->drift, ldexp(1.0, k - (same ? 1 : 2)));
+    go_by(st, from, st->kept.drift, ldexp(1.0, k - (same ? 1 : 2)));
     return DALCS_OK;
 }
 
@@ -195,7 +198,7 @@ static enum dalcs_status leap(struct dalcs_steady *st, double *from, double *mov
 static double rest(const struct dalcs_steady *st) {
     double most = 0.0;
     for (int x = 0; x < st->layout.n_x; x++) {
-        const double off = fabs(st->then.x[x] - st->at.x[x] - st->drift[x]);
+        const double off = fabs(st->then.x[x] - st->at.x[x] - st->kept.drift[x]);
         most = off > 0.0 ? fmax(most, off / st->scale[x]) : most;
     }
     return most;
@@ -210,11 +213,11 @@ static enum dalcs_status drifts(struct dalcs_steady *st, const struct dalcs_orbi
     dalcs_steady_copy_point(st, &st->at, point);
     for (int k = 0; k < MOST_STEPS && !*does; k++) {
         enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
-        const bool same = k == 0 || st->signature == signature;
-        signature = st->signature;
+        const bool same = k == 0 || st->pass.signature == signature;
+        signature = st->pass.signature;
         status = status == DALCS_OK ? dalcs_steady_next_step(st) : status;
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        if (status != DALCS_OK || !same || !st->is_stuck) {
+        if (status != DALCS_OK || !same || !st->kept.is_stuck) {
             return DALCS_OK;
         }
         *does = rest(st) <= good;
@@ -227,7 +230,7 @@ static enum dalcs_status drifts(struct dalcs_steady *st, const struct dalcs_orbi
 
 enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st, struct dalcs_orbit_point *best) {
     for (int k = 0; k < MOST_STEPS; k++) {
-        const double before = st->residual;
+        const double before = st->pass.residual;
         const double period = st->period;
         enum dalcs_status status = dalcs_steady_next_step(st);
         if (status != DALCS_OK || !(st->distance > good)) {
@@ -237,7 +240,7 @@ enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st, struct dalcs_orbi
         take_step(st);
         status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        if (status != DALCS_OK || !(st->residual <= 0.5 * before) || !switches_return(st)) {
+        if (status != DALCS_OK || !(st->pass.residual <= 0.5 * before) || !switches_return(st)) {
             dalcs_steady_copy_point(st, &st->at, best);
             st->period = period;
             return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
@@ -304,15 +307,15 @@ static enum dalcs_status leave(struct dalcs_steady *st, struct search *s, bool *
 static enum dalcs_status try_from_run(struct dalcs_steady *st, const struct search *s,
                                       bool *found) {
     bool is_near;
-    st->is_stuck = false;
+    st->kept.is_stuck = false;
     DALCS_TRY(dalcs_steady_burst(st, found));
-    if (*found || st->is_stuck) {
+    if (*found || st->kept.is_stuck) {
         return DALCS_OK;
     }
     dalcs_steady_copy_point(st, &st->at, &s->run);
     DALCS_TRY(dalcs_steady_continue(st, s->total, &is_near));
     DALCS_TRY(is_near ? burst_on(st, found) : DALCS_OK); /* the last pass is from there, with M */
-    st->is_stuck = false;                                /* the run is not */
+    st->kept.is_stuck = false;                           /* the run is not */
     return DALCS_OK;
 }
 
@@ -333,7 +336,7 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool
         dalcs_steady_copy_point(st, &s.run, &st->at);
         DALCS_TRY(try_from_run(st, &s, found));
         s.wait = s.total;
-        if (!*found && st->is_stuck) {
+        if (!*found && st->kept.is_stuck) {
             DALCS_TRY(leave(st, &s, endless));
         } else if (!*found) {
             dalcs_steady_copy_point(st, &st->at, &s.run);

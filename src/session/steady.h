@@ -39,28 +39,33 @@ struct dalcs_steady {
     struct dalcs_steady_layout layout;
     double period;                     /* s */
     struct dalcs_orbit_point at, then; /* now, and after the pass */
+    bool has_point;                    /* `at` is known; else the run starts as any does */
     struct dalcs_stage_store store;    /* maps, from pass to pass */
-    double *M;                         /* of the last pass with one */
     double *scale;                     /* [n_x] of each state on the way */
     double *step;                      /* [n_x] the last one of Newton's method */
-    double *drift;                     /* [n_x] what grows by as much each period */
-    double *first,
-        *last; /* [n_x] derivatives of the states where the last pass with M began and ended */
-    double *
-        phase; /* [n_x] how the first event of that pass moves with the state where it began; 0: there was none */
-    uint64_t signature; /* of the modes that followed each other */
+    double distance;                   /* how far the orbit is from `at`, over the scales */
+
+    struct dalcs_steady_pass { /* the last one */
+        double residual;       /* over the scales */
+        double *M;             /* of the last one with it */
+        bool is_exact;         /* M is */
+        double *first, *last;  /* [n_x] derivatives of the states where that pass began and ended */
+        double *
+            phase; /* [n_x] how the first event of that pass moves with the state where it began; 0: there was none */
+        uint64_t signature; /* of the modes that followed each other */
+    } pass;
 
     struct dalcs_steady_found { /* by the last pass with means */
         double *average, *rms;  /* [n_outputs] */
         double *state;          /* [n_states] of the network, where it ended; the session's */
     } found;
 
-    double longer; /* s, what that step adds to the period, where is_free */
-    bool is_free;  /* no source has a period: Newton's method looks for it, too (steady_free.h) */
-    bool is_free_of_events; /* and no event comes again and again */
-    bool has_point;         /* `at` is known; else the run starts as any does */
-    bool is_exact;          /* M is */
-    bool is_stuck;          /* a conserved quantity grows by `drift` */
+    struct dalcs_steady_own { /* period */
+        bool is_free; /* no source has one: Newton's method looks for it, too (steady_free.h) */
+        bool is_free_of_events; /* and no event comes again and again */
+        double longer;          /* s, what a step of the method adds to it */
+        int n;                  /* directions, beside that of the flow, in which nothing decides */
+    } own;
 
     struct dalcs_steady_count {
         int newton, bursts, leaps;
@@ -72,16 +77,18 @@ struct dalcs_steady {
         double work, most;
     } crowd;
 
-    double residual; /* of the last pass, over the scales */
-    double distance; /* how far the orbit is from there, likewise */
+    struct dalcs_steady_conservation { /* quantities that are conserved */
+        int n;
 
-    struct dalcs_steady_conserved {
-        int system;
-        double *weight; /* [n] of the system's states */
-    } * conserved;      /* [n_conserved] */
+        struct dalcs_steady_conserved {
+            int system;
+            double *weight; /* [n] of the system's states */
+        } * of;             /* [n] */
 
-    int n_conserved;
-    int n_free; /* where is_free: directions, beside that of the flow, in which nothing decides */
+        bool is_stuck; /* one grows by `drift` */
+        double *drift; /* [n_x] what grows by as much each period */
+    } kept;
+
     struct dalcs_arena arena;
 };
 

@@ -26,7 +26,7 @@ static bool is_anchor(const struct dalcs_run *r) {
 
 /* May an orbit stand for others nearby? The last pass is of it. */
 static bool serves(struct dalcs_steady *st) {
-    return st->n_conserved == 0 && st->n_free == 0 && dalcs_steady_largest_multiplier(st) < 1.0;
+    return st->kept.n == 0 && st->own.n == 0 && dalcs_steady_largest_multiplier(st) < 1.0;
 }
 
 void dalcs_steady_anchor_forget(struct dalcs_session *s) {
@@ -89,7 +89,7 @@ enum dalcs_status dalcs_steady_anchor_try(struct dalcs_steady *st, bool leaves, 
     memcpy(st->at.x, a->x, (size_t)a->n_x * sizeof(double));
     memcpy(st->at.closed, a->closed, (size_t)a->n_pairs * sizeof(bool));
     st->has_point = true;
-    st->is_free = is_free;
+    st->own.is_free = is_free;
     st->period = is_free ? a->period : period;
     DALCS_TRY(dalcs_steady_burst(st, found));
     DALCS_TRY(*found ? dalcs_steady_refine(st, &best) : DALCS_OK);

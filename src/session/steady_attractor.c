@@ -193,7 +193,7 @@ static double multiply(struct follow *f) {
     for (int k = 0; k < st->layout.n_systems; k++) {
         const int first = st->layout.first[k];
         const int n = st->layout.first[k + 1] - first;
-        const double *M = st->M + st->layout.first_of_M[k];
+        const double *M = st->pass.M + st->layout.first_of_M[k];
         for (int x = 0; x < n; x++) {
             double sum = 0.0;
             for (int i = 0; i < n; i++) {
@@ -229,7 +229,7 @@ static enum dalcs_status find_growth(struct follow *f, int n, struct growth *g) 
         for (int i = 0; i < n; i++) {
             DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
             dalcs_steady_take(st);
-            g->known = g->known && st->is_exact;
+            g->known = g->known && st->pass.is_exact;
             sum += multiply(f) / n;
         }
         g->mean += k >= 0 ? sum / SUMS : 0.0;
@@ -291,7 +291,7 @@ static enum dalcs_status follow(struct follow *f, double growth, struct dalcs_st
     bool found = false;
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN));
     steps = (double)st->run->s->results.report.work.steps - steps;
-    if (st->is_free) {
+    if (st->own.is_free) {
         return follow_free(f, fmax((double)waits[0], leaving), steps, a);
     }
     for (size_t k = 0; k < sizeof waits / sizeof waits[0]; k++) {

@@ -48,7 +48,7 @@ static enum dalcs_status look(struct dalcs_steady *st) {
 enum dalcs_status dalcs_steady_look_beside(struct dalcs_steady *st) {
     const double one = st->period;
     const struct dalcs_steady_count count = st->n;
-    const bool is_exact = st->is_exact;
+    const bool is_exact = st->pass.is_exact;
     struct dalcs_orbit_point orbit;
     if (!dalcs_steady_make_point(st, &orbit)) {
         return DALCS_E_NOMEM;
@@ -60,7 +60,7 @@ enum dalcs_status dalcs_steady_look_beside(struct dalcs_steady *st) {
     DALCS_TRY(status);
     DALCS_TRY(dalcs_steady_go_back(st, &orbit, one));
     st->n = count;
-    st->is_exact = is_exact;
+    st->pass.is_exact = is_exact;
     return DALCS_OK;
 }
 

@@ -59,7 +59,7 @@ static enum dalcs_status leap_of(struct dalcs_steady *st, int system, double k,
                                  struct dalcs_arena *arena) {
     const int first = st->layout.first[system];
     const int n = st->layout.first[system + 1] - first;
-    const double *M = st->M + st->layout.first_of_M[system];
+    const double *M = st->pass.M + st->layout.first_of_M[system];
     const size_t size = (size_t)n;
     double *A = dalcs_arena_alloc(arena, size * size + 1, sizeof(double));
     double *unit = dalcs_arena_alloc(arena, size + 1, sizeof(double));

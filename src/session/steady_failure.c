@@ -86,7 +86,7 @@ enum dalcs_status dalcs_steady_tell_failure(struct dalcs_steady *st, bool endles
     }
     if (endless) {
         for (int x = 0; x < st->layout.n_x; x++) {
-            st->step[x] = st->drift[x];
+            st->step[x] = st->kept.drift[x];
         }
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
                        "a source charges a state that nothing discharges: give it a way out, or "
@@ -144,7 +144,7 @@ enum dalcs_status dalcs_steady_find_oscillation(struct dalcs_steady *st, double 
             states_text(st));
         return DALCS_NOT_CONVERGED;
     }
-    if (!found && st->is_free_of_events) {
+    if (!found && st->own.is_free_of_events) {
         dalcs_diag_add(
             &s->diag, DALCS_ERROR, NULL,
             "a linear circuit oscillates at any amplitude, or drifts; look at it with "

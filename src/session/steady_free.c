@@ -40,7 +40,7 @@ static bool make_room(struct bordered *w, struct dalcs_arena *arena) {
 static void fill_system(const struct dalcs_steady *st, int system, struct bordered *w) {
     const int first = st->layout.first[system];
     const int n = st->layout.first[system + 1] - first;
-    const double *M = st->M + st->layout.first_of_M[system];
+    const double *M = st->pass.M + st->layout.first_of_M[system];
     for (int k = 0; k < n; k++) {
         for (int x = 0; x < n; x++) {
             w->A[(first + k) * w->n + first + x] =
@@ -55,14 +55,14 @@ static bool fill_border(const struct dalcs_steady *st, struct bordered *w) {
     double size = 0.0;
     double of_event = 0.0;
     for (int x = 0; x < n; x++) {
-        size = hypot(size, w->unit[x] * st->first[x]);
-        of_event = hypot(of_event, st->phase[x] / w->unit[x]);
+        size = hypot(size, w->unit[x] * st->pass.first[x]);
+        of_event = hypot(of_event, st->pass.phase[x] / w->unit[x]);
         w->b[x] = w->unit[x] * (st->then.x[x] - st->at.x[x]);
-        w->A[n * w->n + x] = -w->unit[x] * st->last[x] * st->period;
+        w->A[n * w->n + x] = -w->unit[x] * st->pass.last[x] * st->period;
     }
     for (int x = 0; x < n && size > 0.0; x++) {
-        w->A[x * w->n + n] = of_event > 0.0 ? st->phase[x] / w->unit[x] / of_event
-                                            : w->unit[x] * st->first[x] / size;
+        w->A[x * w->n + n] = of_event > 0.0 ? st->pass.phase[x] / w->unit[x] / of_event
+                                            : w->unit[x] * st->pass.first[x] / size;
     }
     return size > 0.0;
 }
@@ -88,7 +88,7 @@ static enum dalcs_status solve(struct dalcs_steady *st, struct bordered *w, doub
         return failed == LAPACK_WORK_MEMORY_ERROR ? DALCS_E_NOMEM : DALCS_SINGULAR;
     }
     const double factor = fmin(1.0, most_change / fabs(w->b[n]));
-    st->n_free = w->n - rank;
+    st->own.n = w->n - rank;
     *by = factor * w->b[n] * st->period;
     st->distance = fabs(w->b[n]);
     for (int x = 0; x < n; x++) {

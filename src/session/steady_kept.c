@@ -59,8 +59,8 @@ enum dalcs_status dalcs_steady_remember(const struct dalcs_steady *st) {
     memcpy(k->at.closed, st->at.closed, n_pairs * sizeof(bool));
     memcpy(k->scale, st->scale, n_x * sizeof(double));
     k->period = st->period;
-    k->is_free = st->is_free;
-    k->is_exact = st->is_exact;
+    k->is_free = st->own.is_free;
+    k->is_exact = st->pass.is_exact;
     return DALCS_OK;
 }
 
@@ -73,8 +73,8 @@ bool dalcs_steady_recall(struct dalcs_steady *st) {
     memcpy(st->at.closed, k->at.closed, (size_t)st->layout.n_pairs * sizeof(bool));
     memcpy(st->scale, k->scale, (size_t)st->layout.n_x * sizeof(double));
     st->period = k->period;
-    st->is_free = k->is_free;
-    st->is_exact = k->is_exact;
+    st->own.is_free = k->is_free;
+    st->pass.is_exact = k->is_exact;
     st->has_point = true;
     return true;
 }

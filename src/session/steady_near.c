@@ -9,7 +9,7 @@ static enum dalcs_status polish(struct dalcs_steady *st) {
     for (int x = 0; x < st->layout.n_x && status == DALCS_OK; x++) {
         st->at.x[x] += st->step[x];
     }
-    st->period += status == DALCS_OK ? st->longer : 0.0;
+    st->period += status == DALCS_OK ? st->own.longer : 0.0;
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
     return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
 }
@@ -22,7 +22,7 @@ static enum dalcs_status take_point(struct dalcs_steady *st, bool is_free,
     memcpy(st->at.x, near->point.x, (size_t)near->n_x * sizeof(double));
     memcpy(st->at.closed, near->point.closed, (size_t)near->n_pairs * sizeof(bool));
     st->has_point = true;
-    st->is_free = is_free;
+    st->own.is_free = is_free;
     st->period = is_free ? near->period : st->period;
     return DALCS_OK;
 }
@@ -32,13 +32,13 @@ static void hand_on(const struct dalcs_steady *st, struct dalcs_steady *to) {
     const struct dalcs_steady_layout *l = &st->layout;
     const size_t n = (size_t)l->n_x;
     dalcs_steady_copy_point(st, &to->at, &st->at);
-    memcpy(to->M, st->M, l->first_of_M[l->n_systems] * sizeof(double));
+    memcpy(to->pass.M, st->pass.M, l->first_of_M[l->n_systems] * sizeof(double));
     memcpy(to->scale, st->scale, n * sizeof(double));
-    memcpy(to->first, st->first, n * sizeof(double));
-    memcpy(to->last, st->last, n * sizeof(double));
-    memcpy(to->phase, st->phase, n * sizeof(double));
+    memcpy(to->pass.first, st->pass.first, n * sizeof(double));
+    memcpy(to->pass.last, st->pass.last, n * sizeof(double));
+    memcpy(to->pass.phase, st->pass.phase, n * sizeof(double));
     to->period = st->period;
-    to->is_exact = st->is_exact;
+    to->pass.is_exact = st->pass.is_exact;
 }
 
 enum dalcs_status dalcs_steady_from_near(struct dalcs_steady *st, bool is_free,
@@ -54,7 +54,7 @@ enum dalcs_status dalcs_steady_from_near(struct dalcs_steady *st, bool is_free,
         return DALCS_NOT_CONVERGED;
     }
     DALCS_TRY(dalcs_steady_refine(st, &best));
-    near->signature = st->signature;
+    near->signature = st->pass.signature;
     DALCS_TRY(polish(st));
     if (near->orbit != NULL) {
         hand_on(st, near->orbit);
@@ -67,7 +67,7 @@ enum dalcs_status dalcs_steady_at_near(struct dalcs_steady *st, bool is_free,
     const bool measures = near->asked == DALCS_NEAR_MEASURE;
     DALCS_TRY(take_point(st, is_free, near));
     DALCS_TRY(dalcs_steady_pass(st, 1, measures ? DALCS_STEADY_MEANS : DALCS_STEADY_PLAIN));
-    near->signature = st->signature;
+    near->signature = st->pass.signature;
     if (!measures) {
         memcpy(near->image, st->then.x, (size_t)near->n_x * sizeof(double));
         return DALCS_OK;

@@ -101,7 +101,7 @@ static bool part_conserved(struct newton *w, int m, double *vector) {
 
 static enum dalcs_status note_conserved(struct dalcs_steady *st, int system, const struct newton *w,
                                         int vector) {
-    struct dalcs_steady_conserved *c = &st->conserved[st->n_conserved];
+    struct dalcs_steady_conserved *c = &st->kept.of[st->kept.n];
     c->system = system;
     c->weight = dalcs_arena_alloc(&st->arena, (size_t)w->n, sizeof(double));
     if (c->weight == NULL) {
@@ -110,7 +110,7 @@ static enum dalcs_status note_conserved(struct dalcs_steady *st, int system, con
     for (int x = 0; x < w->n; x++) {
         c->weight[x] = w->U[vector * w->n + x] * w->unit[x];
     }
-    st->n_conserved++;
+    st->kept.n++;
     return DALCS_OK;
 }
 
@@ -224,7 +224,7 @@ static enum dalcs_status solve(struct dalcs_steady *st, int system, struct newto
         DALCS_TRY(note_conserved(st, system, w, k));
     }
     const bool is_kept = part_conserved(w, m, w->d) || !has_conserved(w, m, w->d);
-    st->is_stuck = st->is_stuck || !is_kept || has_conserved(w, m, w->F);
+    st->kept.is_stuck = st->kept.is_stuck || !is_kept || has_conserved(w, m, w->F);
     return DALCS_OK;
 }
 
@@ -284,7 +284,7 @@ static enum dalcs_status solve_or_part(struct dalcs_steady *st, int system, stru
 
 static enum dalcs_status newton_of(struct dalcs_steady *st, int system, struct dalcs_arena *arena) {
     const int first = st->layout.first[system];
-    const double *M = st->M + st->layout.first_of_M[system];
+    const double *M = st->pass.M + st->layout.first_of_M[system];
     struct newton w = {.n = st->layout.first[system + 1] - first};
     if (w.n == 0) {
         return DALCS_OK;
@@ -300,7 +300,7 @@ static enum dalcs_status newton_of(struct dalcs_steady *st, int system, struct d
     DALCS_TRY(solve_or_part(st, system, &w, M));
     for (int x = 0; x < w.n; x++) {
         st->step[first + x] = w.d[x] / w.unit[x];
-        st->drift[first + x] = (w.F[x] - w.rest[x]) / w.unit[x];
+        st->kept.drift[first + x] = (w.F[x] - w.rest[x]) / w.unit[x];
     }
     return DALCS_OK;
 }
@@ -308,8 +308,8 @@ static enum dalcs_status newton_of(struct dalcs_steady *st, int system, struct d
 enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) {
     struct dalcs_arena arena = {0};
     enum dalcs_status status = DALCS_OK;
-    st->is_stuck = false;
-    st->n_conserved = 0;
+    st->kept.is_stuck = false;
+    st->kept.n = 0;
     st->distance = 0.0;
     for (int k = 0; k < st->layout.n_systems && status == DALCS_OK; k++) {
         status = newton_of(st, k, &arena);
@@ -325,7 +325,7 @@ enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) {
 bool dalcs_steady_has_drift(const struct dalcs_steady *st) {
     bool has = false;
     for (int x = 0; x < st->layout.n_x; x++) {
-        has = has || st->drift[x] != 0.0;
+        has = has || st->kept.drift[x] != 0.0;
     }
     return has;
 }

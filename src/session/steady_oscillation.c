@@ -174,7 +174,7 @@ enum dalcs_status dalcs_steady_oscillation(struct dalcs_steady *st, double guess
     struct search s = {.st = st, .span = guess > 0.0 ? guess : first_span};
     enum dalcs_status status = DALCS_OK;
     *found = *rests = false;
-    st->is_free = true;
+    st->own.is_free = true;
     s.largest = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_x + 1, sizeof(double));
     if (s.largest == NULL || !dalcs_steady_make_point(st, &s.run)) {
         return DALCS_E_NOMEM;
@@ -189,6 +189,6 @@ enum dalcs_status dalcs_steady_oscillation(struct dalcs_steady *st, double guess
         dalcs_steady_watch_finish(&s.watch);
         DALCS_TRY(status);
     }
-    st->is_free_of_events = s.rings || s.bursts == 0;
+    st->own.is_free_of_events = s.rings || s.bursts == 0;
     return DALCS_OK;
 }

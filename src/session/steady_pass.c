@@ -188,9 +188,9 @@ static enum dalcs_status read_point(struct dalcs_steady *st, const struct pass *
 }
 
 static void read_signature(struct dalcs_steady *st, const struct dalcs_variation *variation) {
-    st->signature = 0;
+    st->pass.signature = 0;
     for (int k = 0; k < variation->n_parts; k++) {
-        st->signature = st->signature * 31 + variation->part[k].signature;
+        st->pass.signature = st->pass.signature * 31 + variation->part[k].signature;
     }
 }
 
@@ -198,7 +198,7 @@ static void read_signature(struct dalcs_steady *st, const struct dalcs_variation
 static void read_phase(struct dalcs_steady *st, const struct dalcs_variation *variation) {
     const struct dalcs_variation_part *first = NULL;
     int index = 0;
-    memset(st->phase, 0, (size_t)st->layout.n_x * sizeof(double));
+    memset(st->pass.phase, 0, (size_t)st->layout.n_x * sizeof(double));
     for (int k = 0; k < variation->n_parts; k++) {
         const struct dalcs_variation_part *v = &variation->part[k];
         if (v->n_x > 0 && isfinite(v->moved) && (first == NULL || v->moved < first->moved)) {
@@ -207,20 +207,20 @@ static void read_phase(struct dalcs_steady *st, const struct dalcs_variation *va
         }
     }
     if (first != NULL) {
-        memcpy(st->phase + st->layout.first[index], first->moves,
+        memcpy(st->pass.phase + st->layout.first[index], first->moves,
                (size_t)first->n_columns * sizeof(double));
     }
 }
 
 static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variation) {
-    st->is_exact = true;
+    st->pass.is_exact = true;
     for (int k = 0; k < variation->n_parts; k++) {
         const struct dalcs_variation_part *v = &variation->part[k];
         const size_t n_x = (size_t)v->n_x;
         const size_t n_rows = (size_t)(st->layout.first[k + 1] - st->layout.first[k]);
-        double *M = st->M + st->layout.first_of_M[k];
-        double *first = st->first + st->layout.first[k];
-        double *last = st->last + st->layout.first[k];
+        double *M = st->pass.M + st->layout.first_of_M[k];
+        double *first = st->pass.first + st->layout.first[k];
+        double *last = st->pass.last + st->layout.first[k];
         for (int c = 0; c < v->n_columns; c++) {
             memcpy(M + (size_t)c * n_rows, v->v + (size_t)c * n_x, n_x * sizeof(double));
         }
@@ -229,7 +229,7 @@ static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variat
         if (variation->gates != NULL) {
             dalcs_gate_variation_put(variation->gates, M, first, last);
         }
-        st->is_exact = st->is_exact && v->is_exact;
+        st->pass.is_exact = st->pass.is_exact && v->is_exact;
     }
 }
 
@@ -356,10 +356,11 @@ enum dalcs_status dalcs_steady_pass_watched(struct dalcs_steady *st, double dura
 }
 
 void dalcs_steady_find_residual(struct dalcs_steady *st) {
-    st->residual = 0.0;
+    st->pass.residual = 0.0;
     for (int x = 0; x < st->layout.n_x; x++) {
         double off = fabs(st->then.x[x] - st->at.x[x]);
-        st->residual = off > 0.0 ? fmax(st->residual, off / st->scale[x]) : st->residual;
+        st->pass.residual =
+            off > 0.0 ? fmax(st->pass.residual, off / st->scale[x]) : st->pass.residual;
     }
 }
 

@@ -90,7 +90,7 @@ static enum dalcs_status multipliers_of(struct dalcs_steady *st, int system,
     if (A == NULL || vector == NULL || value == NULL) {
         return DALCS_E_NOMEM;
     }
-    memcpy(A, st->M + st->layout.first_of_M[system], square * sizeof(double));
+    memcpy(A, st->pass.M + st->layout.first_of_M[system], square * sizeof(double));
     if (n == 0) {
         return DALCS_OK;
     }
@@ -172,10 +172,10 @@ static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floque
     if (by > 0.0) {
         return growth_text(arena, m, st->period);
     }
-    if (st->is_free && st->n_free > 0) {
+    if (st->own.is_free && st->own.n > 0) {
         return "not unique: nothing determines its amplitude, or another conserved quantity";
     }
-    if (st->n_conserved > 0) {
+    if (st->kept.n > 0) {
         return "not unique: a conserved quantity keeps its initial value";
     }
     return by < 0.0 ? "stable" : "at the border of stability";
@@ -210,12 +210,12 @@ static const char *conserved_text(struct dalcs_steady *st, const struct dalcs_st
 static enum dalcs_status tell_conserved(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
     const char **conserved =
-        dalcs_arena_alloc(&s->arena, (size_t)st->n_conserved + 1, sizeof(*conserved));
+        dalcs_arena_alloc(&s->arena, (size_t)st->kept.n + 1, sizeof(*conserved));
     if (conserved == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int k = 0; k < st->n_conserved; k++) {
-        conserved[k] = conserved_text(st, &st->conserved[k]);
+    for (int k = 0; k < st->kept.n; k++) {
+        conserved[k] = conserved_text(st, &st->kept.of[k]);
         if (conserved[k] == NULL) {
             return DALCS_E_NOMEM;
         }
@@ -223,7 +223,7 @@ static enum dalcs_status tell_conserved(struct dalcs_steady *st) {
                        "the steady state is not unique: %s keeps its initial value", conserved[k]);
     }
     s->results.report.steady.conserved = conserved;
-    s->results.report.steady.n_conserved = (size_t)st->n_conserved;
+    s->results.report.steady.n_conserved = (size_t)st->kept.n;
     return DALCS_OK;
 }
 
@@ -269,7 +269,7 @@ double dalcs_steady_largest_multiplier(struct dalcs_steady *st) {
     if (find_multipliers(st, &m, &n) != DALCS_OK) {
         return 0.0;
     }
-    if (st->is_free) {
+    if (st->own.is_free) {
         (void)take_out_flow(m, &n);
     }
     return n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
@@ -282,7 +282,7 @@ enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one
     size_t n;
     char text[DALCS_QUANTITY_SIZE];
     DALCS_TRY(find_multipliers(st, &m, &n));
-    if (st->is_free) {
+    if (st->own.is_free) {
         (void)take_out_flow(m, &n);
     }
     n = count_lasting(m, n);
@@ -296,7 +296,7 @@ enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one
         growth_text(arena, report->steady.multiplier, one),
         dalcs_quantity_write(text, st->period, "s", 12),
         report->steady.doubled.stable ? "stable" : "unstable too", size,
-        st->is_free ? "" : "; .pss periods=2 gives it");
+        st->own.is_free ? "" : "; .pss periods=2 gives it");
     return report->steady.verdict != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -356,7 +356,7 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
     struct dalcs_floquet *m;
     size_t n;
     DALCS_TRY(find_multipliers(st, &m, &n));
-    if (st->is_free) {
+    if (st->own.is_free) {
         s->results.report.steady.self_oscillating = true;
         s->results.report.steady.flow = take_out_flow(m, &n);
     }
@@ -367,13 +367,12 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
     s->results.report.steady.bursts = st->n.bursts;
     s->results.report.steady.leaps = st->n.leaps;
     s->results.report.steady.periods = st->n.periods;
-    s->results.report.steady.residual = st->residual;
+    s->results.report.steady.residual = st->pass.residual;
     s->results.report.steady.distance = st->distance;
-    s->results.report.steady.exact = st->is_exact;
+    s->results.report.steady.exact = st->pass.is_exact;
     s->results.report.steady.multiplier = m;
     s->results.report.steady.n_multipliers = n;
-    s->results.report.steady.stable =
-        st->n_conserved == 0 && st->n_free == 0 && outside(m, n) < 0.0;
+    s->results.report.steady.stable = st->kept.n == 0 && st->own.n == 0 && outside(m, n) < 0.0;
     s->results.report.steady.verdict = verdict_of(st, m, n);
     DALCS_TRY(tell_conserved(st));
     return s->results.report.steady.verdict != NULL ? dalcs_steady_report_signals(st)

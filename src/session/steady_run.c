@@ -20,17 +20,17 @@ static const double most_defect = 1e-10;
 
 bool dalcs_steady_returns(struct dalcs_steady *st) {
     dalcs_steady_find_residual(st);
-    return st->residual <= most_defect;
+    return st->pass.residual <= most_defect;
 }
 
 /* Is the run that has just ended, in st->then, where it began? */
 enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
     const bool returns = dalcs_steady_returns(st);
-    s->results.report.steady.defect = st->residual;
+    s->results.report.steady.defect = st->pass.residual;
     if (!returns) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "a smaller --tol",
-                       "after one more period the states are off by %.3g", st->residual);
+                       "after one more period the states are off by %.3g", st->pass.residual);
         return DALCS_NOT_CONVERGED;
     }
     return DALCS_OK;

@@ -36,25 +36,25 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
     l->n_pairs += l->memory.n_bits;
     if (complete) {
         const size_t n_x = (size_t)l->n_x + 1;
-        st->M = dalcs_arena_alloc(&st->arena, l->first_of_M[l->n_systems] + 1, sizeof(double));
+        st->pass.M = dalcs_arena_alloc(&st->arena, l->first_of_M[l->n_systems] + 1, sizeof(double));
         st->scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->step = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->first = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->last = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->phase = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->kept.drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->pass.first = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->pass.last = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->pass.phase = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->found.state =
             dalcs_arena_alloc(&r->s->arena, (size_t)network->n_states + 1, sizeof(double));
         st->found.average =
             dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
         st->found.rms =
             dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
-        st->conserved = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->conserved));
+        st->kept.of = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->kept.of));
         complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
-                   st->M != NULL && st->phase != NULL && st->first != NULL && st->last != NULL &&
-                   st->scale != NULL && st->step != NULL && st->drift != NULL &&
-                   st->found.state != NULL && st->found.average != NULL && st->found.rms != NULL &&
-                   st->conserved != NULL;
+                   st->pass.M != NULL && st->pass.phase != NULL && st->pass.first != NULL &&
+                   st->pass.last != NULL && st->scale != NULL && st->step != NULL &&
+                   st->kept.drift != NULL && st->found.state != NULL && st->found.average != NULL &&
+                   st->found.rms != NULL && st->kept.of != NULL;
     }
     if (!complete) {
         dalcs_steady_finish(st);
