@@ -107,6 +107,17 @@ bool dalcs_stage_has_map(const struct dalcs_stage_entry *entry) {
     return entry->map != NULL;
 }
 
+/* What an input is known to a rounding of. A source that passes through 0 is known to one of what it swings to, for its time
+ * is rounded: the cosine's part as well as the sine's, which comes behind it. */
+static double input_size(const struct dalcs_stages *stages, const double *in, int k) {
+    const struct dalcs_excitation *e = stages->excitation;
+    const int f = k - stages->workshop->n_x - 1;
+    const bool swings = f >= 0 && f + 1 < e->n_functions &&
+                        e->function[f].shape == DALCS_EXCITATION_COSINE &&
+                        e->function[f].omega != 0.0;
+    return swings ? dalcs_larger(fabs(in[k]), fabs(in[k + 1])) : fabs(in[k]);
+}
+
 /* Of a row of a map. */
 static double spread(const struct dalcs_stages *stages, const double *element, int rows,
                      const double *in, const double *scale) {
@@ -116,7 +127,7 @@ static double spread(const struct dalcs_stages *stages, const double *element, i
         if (k == b->n_x && !b->has_constants) {
             continue;
         }
-        double size = fabs(in[k]);
+        double size = input_size(stages, in, k);
         sum += fabs(*element) * (k < b->n_x ? dalcs_larger(scale[k], size) : size);
         element += rows;
     }
