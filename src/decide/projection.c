@@ -293,12 +293,14 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
 }
 
 bool dalcs_projection_settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                             const double *unit) {
+                             const double *unit, bool within_unit) {
     bool moves = false;
     find_beginning(part, -1, &moves);
     const struct dalcs_system *s = part->component->system;
     for (int x = 0; x < s->n_x; x++) {
-        double most = part->inner_tolerance * unit[s->column_is_current[x]];
+        double scale =
+            within_unit ? unit[s->column_is_current[x]] : dalcs_step_scale(part, x, unit);
+        double most = part->inner_tolerance * scale;
         if (!(fabs(part->work.after[x] - part->x[x]) <= most)) {
             return false;
         }
