@@ -153,8 +153,8 @@ static enum dalcs_status look_shorter(struct dalcs_radau *r, struct dalcs_radau_
     while (differs && note_beginnings(part)) {
         const double h = part->segment.h;
         bool means_something = false;
-        part->segment.h = ldexp(h, -DALCS_FAR_SHORTER);
-        if (part->segment.h >= dalcs_length_shortest(r)) {
+        part->segment.h = fmax(ldexp(h, -DALCS_FAR_SHORTER), dalcs_length_shortest(r));
+        if (part->segment.h < h) {
             DALCS_TRY(try_projection(part, limit, &means_something));
         }
         differs = means_something && begins_elsewhere(part);
@@ -293,12 +293,14 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
 }
 
 bool dalcs_projection_settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                             const double *unit) {
+                             const double *unit, bool within_unit) {
     bool moves = false;
     find_beginning(part, -1, &moves);
     const struct dalcs_system *s = part->component->system;
     for (int x = 0; x < s->n_x; x++) {
-        double most = part->inner_tolerance * unit[s->column_is_current[x]];
+        double scale =
+            within_unit ? unit[s->column_is_current[x]] : dalcs_step_scale(part, x, unit);
+        double most = part->inner_tolerance * scale;
         if (!(fabs(part->work.after[x] - part->x[x]) <= most)) {
             return false;
         }

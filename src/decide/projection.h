@@ -27,8 +27,8 @@ bool dalcs_projection_sees(struct dalcs_radau_part *part, bool fixed);
 /* For one that is off by so little that it moves farther in the shortest of steps, and dalcs_projection_try
  * cannot tell: rounding of voltages across milliohms, on factors, may be more current than is allowed. It goes
  * to where the polynomial of the step starts that was tried last. False: that is farther away than an error
- * may be, over unit[2], V and A; then the state is right, and something much faster than the step goes on. */
+ * may be, over its own scale, or, within_unit, over unit[2], V and A; then something much faster than the step goes on. */
 bool dalcs_projection_settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                             const double *unit);
+                             const double *unit, bool within_unit);
 
 #endif

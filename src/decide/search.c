@@ -105,10 +105,12 @@ static bool may_be_left(double ratio) {
 /* Where dalcs_search_project() cannot decide. */
 static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                    struct dalcs_search *search, const double *unit) {
-    if (!dalcs_projection_settle(r, part, unit)) {
+    const bool is_last = search->settling == DALCS_SETTLES_WITHIN_UNIT;
+    if (!dalcs_projection_settle(r, part, unit, is_last)) {
+        search->settling = is_last ? DALCS_SETTLES_WITHIN_UNIT : DALCS_SETTLES_LATER;
         return false;
     }
-    search->settled = true;
+    search->settling = DALCS_SETTLED;
     dalcs_search_start_over(part, search, search->level_before_stuck);
     return true;
 }
@@ -210,6 +212,28 @@ static bool spares_levered(const struct dalcs_radau_part *part, struct dalcs_sea
     return true;
 }
 
+/* Is the next step too short? In it time would stand still, or a transient passes that nobody tells from a jump: the slow part
+ * is the limit of such ones (Tikhonov 1952; Kokotovic, Khalil and O'Reilly 1986, sec. 1.3). */
+static bool shows_nothing(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                          const struct dalcs_search *search) {
+    const double h = dalcs_radau_ladder(part, part->length.level);
+    return part->segment.t + h <= part->segment.t ||
+           (search->settling == DALCS_SETTLES_LATER && h < dalcs_length_shortest(r));
+}
+
+/* No shorter step mends the error, so it is no transient, which a short enough step follows: the state is off by it. Where
+ * that is more than its own scale allows it may settle now. */
+static enum dalcs_status give_up(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                 struct dalcs_search *search, bool *done) {
+    if (search->settling == DALCS_SETTLES_LATER && !search->fixed) {
+        search->settling = DALCS_SETTLES_WITHIN_UNIT;
+        dalcs_search_start_over(part, search, search->level_before_stuck);
+        return DALCS_OK;
+    }
+    *done = true;
+    return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
+}
+
 enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        struct dalcs_search *search,
                                        const struct dalcs_step_quality *quality, bool *done) {
@@ -226,22 +250,16 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
         part->length.level = search->level_before_stuck;
         return DALCS_OK;
     }
-    bool may_be_off =
-        search->stuck >= STUCK && !search->settled && !search->states_free && !search->fixed;
+    bool may_be_off = search->stuck >= STUCK && search->settling != DALCS_SETTLES_LATER &&
+                      search->settling != DALCS_SETTLED && !search->states_free && !search->fixed;
     if (may_be_off && settle(r, part, search, quality->unit)) {
         return DALCS_OK;
     }
     if (is_hopeless(r, part, search, quality)) {
-        *done = true;
-        return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
+        return give_up(r, part, search, done);
     }
     dalcs_length_shorten(part, quality->ratio, search->stuck);
-    if (part->segment.t + dalcs_radau_ladder(part, part->length.level) <=
-        part->segment.t) { /* time would stand still */
-        *done = true;
-        return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
-    }
-    return DALCS_OK;
+    return shows_nothing(r, part, search) ? give_up(r, part, search, done) : DALCS_OK;
 }
 
 bool dalcs_search_may_refine(const struct dalcs_search *search) {

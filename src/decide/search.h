@@ -8,6 +8,14 @@
 #include "radau_state.h"
 #include "step_error.h"
 
+/* Of a state that is off by what shorter steps do not mend: within what it is put on its mode. */
+enum dalcs_settling {
+    DALCS_SETTLES_WITHIN_OWN,  /* the tolerance of its own scale */
+    DALCS_SETTLES_LATER,       /* it is off by more: a shorter step may show a transient */
+    DALCS_SETTLES_WITHIN_UNIT, /* none has: the tolerance of the largest of its unit */
+    DALCS_SETTLED
+};
+
 /* The search for a segment from one point. */
 struct dalcs_search {
     double limit;    /* s: edge, command or stop */
@@ -34,7 +42,7 @@ struct dalcs_search {
     bool untied; /* tied diodes have been looked at */
     bool opened; /* and are on their other sides now, to try */
     bool projected;
-    bool settled;     /* the state has been moved by what no shorter step mended */
+    enum dalcs_settling settling;
     bool states_free; /* in the mode of the last step, which has nothing to project on */
     int stuck;
     double ratio_before;

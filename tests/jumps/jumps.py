@@ -140,6 +140,51 @@ R1 o 0 10
 .tran 0.1u 500u
 """
 
+# Where s1 closes, the 17 uA of a coil behind leaks go on and end within L / Roff = 0.25 ps, beside 1 A in the other coil.
+BESIDE_LARGE = """* snubber of a buck
+Vin in 0 48
+S1 in x g 0 sw
+D1 0 x DI
+L1 x o 437u ic=1.189
+C1 o 0 5.36u ic=24
+R1 o 0 20
+Cs in y 1.34n
+Ds1 y x DI
+Ls y z 1.03u
+Ds2 z2 z DI
+Cr z2 0 1.34n
+Ds3 0 z2 DI
+Vg g 0 PULSE(0 1 0 27n 27n 5.4u 10.8u)
+.model sw SW(Ron=1m Roff=4.142meg Vt=0.5)
+.model DI D(Ron=1m Roff=4.142meg Vfwd=0.7)
+.tran 0.4u 20u uic
+"""
+
+# A current that a leak of Roff takes to V1 / Roff within L / Roff, from a half to twice the shortest step: no jump.
+LEAK = """* a switch that leaks opens
+V1 in 0 10
+S1 in p g 0 sw
+Vg g 0 PULSE(0 1 0 1n 1n 2.5u 10u)
+.model sw sw(roff={ohms} vt=0.5)
+L1 p 0 {henries}
+.tran 0.1u 300u
+"""
+
+# The same of what a thyristor holds: 0.1 A, which end at 9.99 ms.
+LATCH = """* a thyristor that leaks
+V1 a 0 SIN(0 325 50)
+D1 a w di
+Vs w v 0
+S1 v b l 0 sw
+L1 b c {henries}
+R1 c 0 10
+Bl l 0 V=v(g)+u(i(Vs)-0.1)
+Rl l 0 1k
+Vg g 0 PULSE(0 1 4m 2u 2u 2m 20m)
+.model sw sw(ron=1m roff={ohms} vt=0.5)
+.model di d(ron=1m roff=10meg)
+.tran 0.2m 80m uic
+"""
 
 # What a source of time is, then what a formula says of it.
 FORMULAS = [
@@ -279,10 +324,34 @@ class Jumps:
                 self.check.check(abs(found - wanted) < 1e-10, f"{found} A behind a transformer, not {wanted}")
             self.check.check("c9" not in jump["states"], "c9, in series with s1, jumps")
 
+    def beside_large(self):
+        result = self.run(BESIDE_LARGE)
+        if result.status != 0:
+            return
+        times, current = result.column("time"), result.column("i(ls)")
+        twice = [k for k in range(1, len(times)) if 0 < times[k] == times[k - 1]]
+        self.check.check(twice or self.method == "euler", "no event")
+        for k in twice:
+            size = max(abs(current[k]), abs(current[k - 1]))
+            self.check.check(abs(current[k] - current[k - 1]) <= 1e-8 * size,
+                             f"ls: {current[k - 1]} A, then {current[k]} A at {times[k]} s")
+
+    def leak(self):
+        for netlist, ohms, henries, seen, wanted in (
+                (LEAK, "1e11", "1u", 5e-6, 1e-10), (LEAK, "1e12", "30u", 5e-6, 1e-11), (LEAK, "1e14", "1m", 5e-6, 1e-13),
+                (LATCH, "1e9", "1u", 15e-3, -325e-9), (LATCH, "1e10", "30u", 15e-3, -325e-10),
+                (LATCH, "1e12", "1m", 15e-3, -325e-12)):
+            result = self.run(netlist.format(ohms=ohms, henries=henries))
+            if self.method != "euler" and result.status == 0:
+                self.check.check(result.report["jumps"] == [], f"{ohms}: {result.report['jumps']}")
+                found = result.at("i(l1)", seen)
+                self.check.close(found, wanted, 0.02 * abs(wanted), f"the leak of {ohms}, {henries}")
+
     def all(self):
         for case in (self.source, self.interruption, self.no_jump, self.beside, self.many,
                      self.doubler, self.derivative, self.impact, self.edge, self.open,
-                     self.behind_transformer, self.formulas):
+                     self.behind_transformer, self.beside_large, self.leak,
+                     self.formulas):
             case()
         return self.check.finish()
 
