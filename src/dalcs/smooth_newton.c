@@ -165,6 +165,26 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
     return worst <= 1.0 && !newton->limits;
 }
 
+double dalcs_smooth_newton_excused(const struct dalcs_smooth_newton *newton, int q) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    double gradient[2];
+    double by_line = 0.0;
+    double by_tangent = fabs(dalcs_smooth_value(of->kind, newton->x[q]));
+    dalcs_smooth_finite_gradient(of, newton->x[q], gradient);
+    for (int j = 0; j < of->n; j++) {
+        const bool is_read = of->column[j] >= 0;
+        by_line += fabs(dalcs_smooth_line(of, j)) * newton->terms[q][j];
+        by_tangent += is_read ? fabs(gradient[j]) * newton->terms[q][j] : 0.0;
+    }
+    return by_line > dalcs_beyond * by_tangent ? dalcs_answer_rounded * by_line : 0.0;
+}
+
+double dalcs_smooth_newton_tried(const struct dalcs_smooth_newton *newton, int q) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    return newton->phi[q] + dalcs_smooth_line(of, 0) * newton->x[q][0] +
+           dalcs_smooth_line(of, 1) * newton->x[q][1];
+}
+
 /* Have all functions values there, and slopes? `newton->worst` has none. */
 static bool is_finite(struct dalcs_smooth_newton *newton, bool *has_slopes) {
     bool is = true;
