@@ -173,10 +173,11 @@ double dalcs_smooth_newton_excused(const struct dalcs_smooth_newton *newton, int
     dalcs_smooth_finite_gradient(of, newton->x[q], gradient);
     for (int j = 0; j < of->n; j++) {
         const bool is_read = of->column[j] >= 0;
-        by_line += fabs(dalcs_smooth_line(of, j)) * newton->terms[q][j];
-        by_tangent += is_read ? fabs(gradient[j]) * newton->terms[q][j] : 0.0;
+        by_line += fabs(dalcs_smooth_line(of, j) * newton->x[q][j]);
+        by_tangent += is_read ? fabs(gradient[j] * newton->x[q][j]) : 0.0;
     }
-    return by_line > dalcs_beyond * by_tangent ? dalcs_answer_rounded * by_line : 0.0;
+    const double off = fabs(dalcs_smooth_rest(of, newton->x[q]) - newton->phi[q]);
+    return by_line > dalcs_beyond * by_tangent ? off + dalcs_answer_rounded * by_line : 0.0;
 }
 
 double dalcs_smooth_newton_tried(const struct dalcs_smooth_newton *newton, int q) {

@@ -121,8 +121,8 @@ static enum dalcs_status find_shift(struct dalcs_osnsp *p, int k, double off, co
     const enum dalcs_status status = dalcs_osnsp_try_mode(p, u, p->smooth.other, &clash);
     for (int c = 0; c < dalcs_system_n_columns(s) && status == DALCS_OK; c++) {
         const double moved = fabs(p->smooth.other[c] - y[c]);
-        *is_seen =
-            *is_seen || (!s->is_part[c] && moved > dalcs_alike * largest[s->column_is_current[c]]);
+        *is_seen = *is_seen ||
+                   (!s->is_part[c] && moved > dalcs_nothing * largest[s->column_is_current[c]]);
     }
     return status < DALCS_OK ? status : DALCS_OK;
 }
@@ -132,25 +132,29 @@ static enum dalcs_status find_shift(struct dalcs_osnsp *p, int k, double off, co
  * diode's sign is to be measured on them. */
 static enum dalcs_status certify(struct dalcs_osnsp *p, const double *y) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_smooth_newton *n = p->smooth.newton;
+    struct dalcs_smooth_newton *n = p->smooth.newton;
     double *u = p->smooth.given;
     const bool is_least_norm = p->least_norm;
+    bool is_steep = false;
+    bool is_seen = false;
+    for (int k = 0; k < n->n && !is_seen; k++) {
+        const double off = dalcs_smooth_newton_excused(n, k);
+        is_steep = is_steep || off > 0.0;
+        DALCS_TRY(off > 0.0 ? find_shift(p, k, off, y, &is_seen) : DALCS_OK);
+    }
+    if (!is_steep) {
+        return DALCS_OK;
+    }
     for (int k = 0; k < n->n; k++) {
         u[s->n_x + s->smooth[k].input] = dalcs_smooth_value(s->smooth[k].kind, n->x[k]);
     }
-    bool holds = dalcs_certificate_pairs_hold(p, u, y);
-    for (int k = 0; k < n->n && holds; k++) {
-        const double off = dalcs_smooth_newton_excused(n, k);
-        bool is_seen = false;
-        DALCS_TRY(off > 0.0 ? find_shift(p, k, off, y, &is_seen) : DALCS_OK);
-        holds = !is_seen;
-    }
-    put_sources(p, u);
+    const bool holds = !is_seen && dalcs_certificate_pairs_hold(p, u, y);
     bool clash;
+    put_sources(p, u);
     memcpy(p->smooth.other, y, (size_t)dalcs_system_n_columns(s) * sizeof(*y));
     dalcs_certificate_evaluate_either(p, u, p->smooth.other, &clash); /* as it was */
     p->least_norm = is_least_norm;
-    p->smooth.newton->is_refused = !holds;
+    n->is_refused = !holds;
     return holds ? DALCS_OK : DALCS_NOT_CONVERGED;
 }
 
