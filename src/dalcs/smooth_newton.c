@@ -48,8 +48,10 @@ static double counted(const struct dalcs_smooth_newton *newton, double value) {
 
 static double rest_of(const struct dalcs_smooth_newton *newton, const struct dalcs_smooth_input *of,
                       const double *x) {
-    return counted(newton, dalcs_smooth_value(of->kind, x)) - dalcs_smooth_line(of, 0) * x[0] -
-           dalcs_smooth_line(of, 1) * x[1];
+    return newton->share == 1.0
+               ? dalcs_smooth_rest(of, x)
+               : counted(newton, dalcs_smooth_value(of->kind, x)) -
+                     dalcs_smooth_line(of, 0) * x[0] - dalcs_smooth_line(of, 1) * x[1];
 }
 
 static void find_gradient_of_rest(const struct dalcs_smooth_newton *newton, int q, const double *x,
