@@ -62,7 +62,11 @@ static double smooth_value(const struct dalcs_audit *audit, const struct audit_p
             x[k] = node_value(audit, part, s, smooth->node[k], false, &scale[k]);
         }
     }
-    x[0] = dalcs_smooth_held(smooth->kind, x, audit->options.failure * fmax(scale[0], fabs(x[0])));
+    /* at the start nothing has a scale of its own: a voltage is known to the rounding of the largest one */
+    const double rounding = AUDIT_ROUNDING * part->floor.largest_volt;
+    const double slack = fmax(audit->options.failure * fmax(scale[0], fabs(x[0])),
+                              smooth->node[0] >= 0 ? rounding : 0.0);
+    x[0] = dalcs_smooth_held(smooth->kind, x, slack);
     const double value = dalcs_smooth_value(smooth->kind, x);
     dalcs_smooth_gradient(smooth->kind, x, gradient);
     *size = fabs(value);

@@ -48,8 +48,10 @@ static double counted(const struct dalcs_smooth_newton *newton, double value) {
 
 static double rest_of(const struct dalcs_smooth_newton *newton, const struct dalcs_smooth_input *of,
                       const double *x) {
-    return counted(newton, dalcs_smooth_value(of->kind, x)) - dalcs_smooth_line(of, 0) * x[0] -
-           dalcs_smooth_line(of, 1) * x[1];
+    return newton->share == 1.0
+               ? dalcs_smooth_rest(of, x)
+               : counted(newton, dalcs_smooth_value(of->kind, x)) -
+                     dalcs_smooth_line(of, 0) * x[0] - dalcs_smooth_line(of, 1) * x[1];
 }
 
 static void find_gradient_of_rest(const struct dalcs_smooth_newton *newton, int q, const double *x,
@@ -163,6 +165,27 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
     }
     *is_done = newton->defect <= 1.0 || !(newton->defect < 0.5 * newton->defect_before);
     return worst <= 1.0 && !newton->limits;
+}
+
+double dalcs_smooth_newton_excused(const struct dalcs_smooth_newton *newton, int q) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    double gradient[2];
+    double by_line = 0.0;
+    double by_tangent = fabs(dalcs_smooth_value(of->kind, newton->x[q]));
+    dalcs_smooth_finite_gradient(of, newton->x[q], gradient);
+    for (int j = 0; j < of->n; j++) {
+        const bool is_read = of->column[j] >= 0;
+        by_line += fabs(dalcs_smooth_line(of, j) * newton->x[q][j]);
+        by_tangent += is_read ? fabs(gradient[j] * newton->x[q][j]) : 0.0;
+    }
+    const double off = fabs(dalcs_smooth_rest(of, newton->x[q]) - newton->phi[q]);
+    return by_line > dalcs_beyond * by_tangent ? off + dalcs_answer_rounded * by_line : 0.0;
+}
+
+double dalcs_smooth_newton_tried(const struct dalcs_smooth_newton *newton, int q) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    return newton->phi[q] + dalcs_smooth_line(of, 0) * newton->x[q][0] +
+           dalcs_smooth_line(of, 1) * newton->x[q][1];
 }
 
 /* Have all functions values there, and slopes? `newton->worst` has none. */

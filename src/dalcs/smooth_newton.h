@@ -83,6 +83,12 @@ void dalcs_smooth_arguments(const struct dalcs_system *system, const double *y, 
 bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double tolerance,
                                 bool *is_done);
 
+/* What the answer for value q may be off by as its line is rounded, where its own tangent is rounded far less; else 0. */
+double dalcs_smooth_newton_excused(const struct dalcs_smooth_newton *newton, int q);
+
+/* The value of a source that was tried last, its line included. */
+double dalcs_smooth_newton_tried(const struct dalcs_smooth_newton *newton, int q);
+
 /* Can anything be done with what was read? If not, the last step was too long, and is halved; before the first one,
  * functions that have a value are given it, until those that read them have one: false where that was done too often.
  * *repeats: it was; the arguments are to be read again. */

@@ -110,7 +110,11 @@ enum dalcs_status dalcs_euler_operating_point(struct dalcs_euler *e, bool transi
     for (int k = 0; k < e->n_components; k++) {
         struct dalcs_component *c = &e->component[k];
         dalcs_component_sample_operating(c, transient_follows, c->u);
-        DALCS_TRY(dalcs_euler_solve(e, k, 0.0, c->u, c->y));
+        const bool refines = c->osnsp.asks.refines;
+        c->osnsp.asks.refines = true; /* one answer, to the digits that the file has */
+        const enum dalcs_status status = dalcs_euler_solve(e, k, 0.0, c->u, c->y);
+        c->osnsp.asks.refines = refines;
+        DALCS_TRY(status);
         memcpy(c->u, c->y, (size_t)c->system->n_x * sizeof(double));
     }
     if (e->listener.on_operating_point != NULL) {

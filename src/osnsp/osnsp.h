@@ -141,6 +141,7 @@ struct dalcs_osnsp_asks {
 struct dalcs_osnsp_smooth {
     struct dalcs_smooth_newton *newton; /* NULL: the system has no smooth sources */
     double *given;                      /* [n_x + n_inputs] inputs with their values */
+    double *other;                      /* [n_columns] an answer beside another */
     int n_tangents;                     /* times that their lines in the equations were changed */
     double *reached; /* [n_smooth] values that agreed last on the way to an operating point */
     double (*reached_x)[2]; /* [n_smooth] ... and arguments */

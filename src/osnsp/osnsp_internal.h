@@ -107,6 +107,9 @@ static inline bool dalcs_certificate_holds(const struct dalcs_osnsp *p, bool sou
            p->certificate.worst <= p->options.certificate_tolerance;
 }
 
+/* Do all pairs hold in an answer that was accepted, where these inputs u drive the circuit? */
+bool dalcs_certificate_pairs_hold(struct dalcs_osnsp *p, const double *u, const double *y);
+
 /* Of the answer evaluated last: is each wrong sign of a diode rounding beside what is next to that very diode?
  * The certificate measures it by the largest voltage and current anywhere, beside which a true one may be small. */
 bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, const double *y);

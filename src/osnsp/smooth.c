@@ -33,8 +33,10 @@ enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
         dalcs_arena_alloc(&p->arena, (size_t)p->system->n_smooth, sizeof(*p->smooth.reached));
     p->smooth.reached_x =
         dalcs_arena_alloc(&p->arena, (size_t)p->system->n_smooth, sizeof(*p->smooth.reached_x));
-    if (p->smooth.newton == NULL || p->smooth.given == NULL || p->smooth.reached == NULL ||
-        p->smooth.reached_x == NULL) {
+    p->smooth.other = dalcs_arena_alloc(&p->arena, (size_t)(dalcs_system_n_columns(p->system)),
+                                        sizeof(*p->smooth.other));
+    if (p->smooth.newton == NULL || p->smooth.given == NULL || p->smooth.other == NULL ||
+        p->smooth.reached == NULL || p->smooth.reached_x == NULL) {
         return DALCS_E_NOMEM;
     }
     struct dalcs_smooth_newton *n = p->smooth.newton;
@@ -104,6 +106,56 @@ static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, double *y)
         u[s->n_x + s->smooth[k].input] = n->phi[k];
     }
     return DALCS_OK;
+}
+
+/* Is the answer y the same to what can be seen, where source k is off by so much? */
+static enum dalcs_status find_shift(struct dalcs_osnsp *p, int k, double off, const double *y,
+                                    bool *is_seen) {
+    const struct dalcs_system *s = p->system;
+    double largest[2];
+    bool clash;
+    double *u = p->smooth.given;
+    find_largest(s, y, largest);
+    put_sources(p, u);
+    u[s->n_x + s->smooth[k].input] += off;
+    const enum dalcs_status status = dalcs_osnsp_try_mode(p, u, p->smooth.other, &clash);
+    for (int c = 0; c < dalcs_system_n_columns(s) && status == DALCS_OK; c++) {
+        const double moved = fabs(p->smooth.other[c] - y[c]);
+        *is_seen = *is_seen ||
+                   (!s->is_part[c] && moved > dalcs_nothing * largest[s->column_is_current[c]]);
+    }
+    return status < DALCS_OK ? status : DALCS_OK;
+}
+
+/* Does an answer hold where functions themselves drive the circuit? What was solved has their lines and what these leave of
+ * them: where a line is far steeper than the function, both are large, and neither rounding of their difference nor a
+ * diode's sign is to be measured on them. */
+static enum dalcs_status certify(struct dalcs_osnsp *p, const double *y) {
+    const struct dalcs_system *s = p->system;
+    struct dalcs_smooth_newton *n = p->smooth.newton;
+    double *u = p->smooth.given;
+    const bool is_least_norm = p->least_norm;
+    bool is_steep = false;
+    bool is_seen = false;
+    for (int k = 0; k < n->n && !is_seen; k++) {
+        const double off = dalcs_smooth_newton_excused(n, k);
+        is_steep = is_steep || off > 0.0;
+        DALCS_TRY(off > 0.0 ? find_shift(p, k, off, y, &is_seen) : DALCS_OK);
+    }
+    if (!is_steep) {
+        return DALCS_OK;
+    }
+    for (int k = 0; k < n->n; k++) {
+        u[s->n_x + s->smooth[k].input] = dalcs_smooth_value(s->smooth[k].kind, n->x[k]);
+    }
+    const bool holds = !is_seen && dalcs_certificate_pairs_hold(p, u, y);
+    bool clash;
+    put_sources(p, u);
+    memcpy(p->smooth.other, y, (size_t)dalcs_system_n_columns(s) * sizeof(*y));
+    dalcs_certificate_evaluate_either(p, u, p->smooth.other, &clash); /* as it was */
+    p->least_norm = is_least_norm;
+    n->is_refused = !holds;
+    return holds ? DALCS_OK : DALCS_NOT_CONVERGED;
 }
 
 /* From the present values and lines. */
@@ -213,5 +265,5 @@ enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, 
     for (int k = 0; status == DALCS_OK && dalcs_osnsp_retangent(p, y); k++) {
         status = k < MOST_STEEPER ? iterate(p, sigma, y, solve, MOST_STEPS) : DALCS_NOT_CONVERGED;
     }
-    return status;
+    return status == DALCS_OK && p->smooth.n_tangents > 0 ? certify(p, y) : status;
 }

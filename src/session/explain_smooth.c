@@ -108,13 +108,14 @@ void dalcs_explain_smooth(struct dalcs_session *s, const struct dalcs_component 
                        name_owner(s, of->element), pole_of(of->kind));
         return;
     }
-    const double x = newton->x[newton->worst][of->column[0] >= 0 ? 0 : 1] + 0.0; /* no -0 */
+    const double *at = newton->x[newton->worst];
+    const double x = at[of->column[0] >= 0 ? 0 : 1] + 0.0; /* no -0 */
     dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
-                   hint_of_smooth(of->kind, x, newton->x[newton->worst][1]),
+                   hint_of_smooth(of->kind, x, at[1]),
                    "%s no solution was found: Newton's method finds no value of %s in '%s' that "
                    "agrees with the circuit; the last one tried was %.6g, for an argument of %.6g",
                    when, text == NULL ? "" : text, name_owner(s, of->element),
-                   newton->phi[newton->worst], x);
+                   dalcs_smooth_newton_tried(newton, newton->worst), x);
 }
 
 bool dalcs_failed_at_pole(const struct dalcs_euler *e, enum dalcs_status status) {

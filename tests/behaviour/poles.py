@@ -130,12 +130,30 @@ def check_ends(checker, program):
         checker.close(float(told or "nan"), time, 1e-6 * time, f"{text}: its time")
 
 
+# ---- What is 0/0 at the start: nothing has a scale of its own there --------------------------------
+
+def check_meters(checker, program):
+    for volts, hertz in ((15.0, 2e6), (1e-3, 50.0), (325.0, 1e3)):
+        w = 2 * math.pi * hertz
+        netlist = (f"rms meter\nvsig s 0 sin(0 {volts!r} {hertz!r})\nb1 rms 0 v=sqrt(v(x)/time)\nc1 x 0 1 rpar=1g\n"
+                   f"b2 0 x i=v(s)**2\nbc c 0 v=v(rms)*1.4142\nd1 s vr\nc2 vr 0 {20 / hertz!r} rpar=1\n"
+                   f".tran {2e-3 / hertz!r} {4 / hertz!r}\n.end\n")
+        result = run(program, netlist, method=None)
+        what = f"a meter of {volts} V at {hertz} Hz"
+        if not checker.check(result.status == 0, f"{what}: {result.stderr}"):
+            continue
+        for t in (0.1 / hertz, 0.33 / hertz, 1.0 / hertz, 3.7 / hertz):
+            wanted = volts * math.sqrt(0.5 - math.sin(2 * w * t) / (4 * w * t))
+            checker.close(result.at("v(rms)", t), wanted, 1e-6 * volts, f"{what}: at {t}")
+
+
 def main():
     checker = Checker("poles")
     program = sys.argv[1]
     check_poles(checker, program)
     check_values(checker, program)
     check_ends(checker, program)
+    check_meters(checker, program)
     return checker.finish()
 
 

@@ -8,6 +8,7 @@ import math
 import pathlib
 import sys
 import tempfile
+from fractions import Fraction
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from dalcs_program import Checker, run  # noqa: E402
@@ -34,6 +35,39 @@ class Case:
     def says(self, text):
         self.checker.check(text in self.result.stderr,
                            f"{self.title}: '{text}' is not in\n{self.result.stderr}")
+
+
+# ---- Operating points ---------------------------------------------------------------------------
+
+
+def operating_point_balances(checker, program):
+    """Microamperes beside 400 V and 0.1 ohm: the answer is refined until the currents of a node balance to six digits."""
+    netlist = """a controlled source in a mesh of resistors
+v1 n1 0 400
+r2 n2 n1 137.8
+r3 n3 0 3.854e+05
+r4 n4 n3 21.07
+r5 n5 n2 466.9
+r6 n6 n1 7.967
+r7 n7 n5 12.79
+r8 n8 n5 0.02365
+gx1 n1 n6 n4 n8 0.009008
+sa2 n5 n8 n5 n3 s0
+ra3 n8 n4 7388
+da4 n7 n3 d1
+da5 n8 n6 d1
+ca6 n8 n2 7.369e-12
+ca7 n3 n5 9.709e-10
+.model d1 D(ron=0.1 vfwd=0.7 roff=1meg)
+.model s0 SW(vt=0.5 ron=1m roff=1meg)
+.op
+.end
+"""
+    done = run(program, netlist, method=None, options=("--audit", "off"))
+    if checker.check(done.status == 0, f"an operating point: {done.stderr}"):
+        v = {name: Fraction(done.at(f"v({name})", 0.0)) for name in ("n3", "n4")}
+        left = (v["n4"] - v["n3"]) / Fraction("21.07") + Fraction(done.at("i(da4)", 0.0)) - v["n3"] / Fraction("385400")
+        checker.check(abs(left) < 1e-10, f"an operating point: {float(left)} A are lost at n3")
 
 
 # ---- Couplings ---------------------------------------------------------------------------------
@@ -486,7 +520,7 @@ def products(checker, program):
 def main():
     checker = Checker("elements")
     for part in (couplings, switches, controls, many, sources, parasitics, diodes, polynomials,
-                 nested_choices, products):
+                 nested_choices, products, operating_point_balances):
         part(checker, sys.argv[1])
     return checker.finish()
 

@@ -6,7 +6,9 @@ usage: smooth_switches.py PROGRAM
 A resistance R(v) by a gate is a product with its current, a conductance is a product with its voltage, and both are the
 same element. They are compared with each other at the rows, and once the gate rests with a resistor of that value. Steps
 are counted: what was rounded by the largest resistance took attoseconds, and implicit Euler in the place of accurate
-steps."""
+steps.
+
+A circuit without a solution has none where functions only read it."""
 
 import itertools
 import math
@@ -31,6 +33,26 @@ CIRCUITS = {
 GATE = "vg g 0 pulse(0 1 1u {edge} {edge} 4u 10u)"
 EDGES = ["1n", "100n"]
 
+# In the first a negative conductance of 1/80k asks for 77 V where the diode conducts, and for a current against it where it
+# is at 0.7 V; the second loses one volt in two at each turn of a loop whose diode conducts backwards; the third is cut.
+UNSOLVABLE = {
+    "a negative conductance beside a diode": "v1 n1 0 -3\nr3 a n1 80k\nix n1 a 1m\nfx a n1 v1 2\nda a b dm\nl1 b 0 1m\n"
+                                             ".model dm D(ron=0.1 vfwd=0.7 roff=1meg)",
+    "a loop of current": "v1 n1 0 100\nr1 n1 b 1m\nr5 b a 10\nfx 0 a v1 2\nd6 c a\nr3 c b 0.04\nr7 a m 7\nv7 m 0 0.3",
+    "a source into diodes that block": "i1 0 a 1m\nd1 0 a\nr2 b 0 1k\nv2 b 0 2",
+}
+READERS = ["v(a)*v(b)", "tanh(v(a)/10)", "sqrt(abs(v(b))+1)", "v(a)**2", "exp(v(b)/100)", "atan(v(a))*v(b)",
+           "v(b)/(1+v(a)**2)", "ln(2+abs(v(a)))"]
+
+
+def check_unsolvable(checker):
+    for (what, circuit), scale in itertools.product(UNSOLVABLE.items(), (1e-3, 1.0, 1e3)):
+        for one, two in some_of(list(itertools.combinations(READERS, 2)), 4):
+            readers = "\n".join(f"b{k} o{k} 0 v={{{scale}*({f})}}\nr{k}o o{k} 0 1k" for k, f in enumerate((one, two)))
+            outcome = run(sys.argv[1], f"{what}\n{circuit}\n{readers}\n.op\n.end\n", method=None, options=("--audit", "off"))
+            checker.check(outcome.status == 1 and "no solution" in outcome.stderr,
+                          f"{what}, {scale} {one}, {two}: {outcome.status} {outcome.stderr}")
+
 
 def outcome_of(volts, load, part, edge):
     text = "\n".join(["switches", f"v1 a 0 {volts!r}", GATE.format(edge=edge), part, load, ".tran 50n 9u", ".end", ""])
@@ -39,6 +61,7 @@ def outcome_of(volts, load, part, edge):
 
 def main():
     checker = Checker("smooth_switches")
+    check_unsolvable(checker)
     cases = itertools.product(LAWS.items(), DECADES.items(), CIRCUITS.items(), EDGES)
     for (law, formula), (decades, (high, low)), (circuit, (volts, load, ohms, farads)), edge in some_of(cases):
         what = f"{law}, {decades}, {circuit}, {edge}"
