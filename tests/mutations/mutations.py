@@ -351,8 +351,8 @@ MUTATIONS = {
         "logic/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
         "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
     "a smooth function is too steep by 1e-5": (
-        "dalcs/smooth_tangents.c", "return dalcs_smooth_value(of->kind, x) - dalcs_smooth_line(of, 0)",
-        "return 1.00001 * dalcs_smooth_value(of->kind, x) - dalcs_smooth_line(of, 0)", SATURABLE),
+        "dalcs/stamp_behaviour.c", "    return dalcs_triplets_add(&b->E, l->branch_row[device], input, -1.0);",
+        "    return dalcs_triplets_add(&b->E, l->branch_row[device], input, -1.00001);", SATURABLE),
     "the values of one segment beside a smooth function are too large by 1e-5": (
         "step/present.c", "    part->segment.by_euler = false;\n",
         "    part->segment.by_euler = false;\n"
