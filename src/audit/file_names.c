@@ -1,6 +1,6 @@
 /* file_names.c - which column is what of the circuit.
  *
- * v(out), V(x1:n), v(a,b), out; i(d1), I(x1:D1), @d1[id], i(@r1[i]), v1#branch, @d.x1.d1[id]: what dalcs,
+ * v(out), V(x1:n), v(a,b), out; i(d1), I(x1:D1), @d1[id], @i1[current], i(@r1[i]), v1#branch, @d.x1.d1[id]: what dalcs,
  * ngspice, LTspice and Xyce call them, in any case. */
 #include "file_internal.h"
 
@@ -197,13 +197,23 @@ static void share_potentials(struct file_audit *a) {
     }
 }
 
-static void find_currents(struct finder *f) {
+/* ngspice writes the current of a coil or a source twice with savecurrents: i(l1) and i(@l1[i]). */
+static void find_currents(struct finder *f, struct dalcs_diag *diag) {
     struct file_audit *a = f->a;
     for (size_t c = 1; c < a->table->n_columns; c++) {
         const int device = take_name(f, a->table->name[c]) ? device_of(f) : -1;
-        if (device >= 0 && a->columns.current[device] < 0) {
+        if (device < 0) {
+            continue;
+        }
+        a->columns.is_used[c] = true;
+        if (a->columns.current[device] < 0) {
             a->columns.current[device] = (long)c;
-            a->columns.is_used[c] = true;
+        } else if (!are_equal(a->table, (size_t)a->columns.current[device], c)) {
+            dalcs_diag_add(diag, DALCS_WARNING, NULL, NULL,
+                           "columns '%s' and '%s' are both the current of '%s', and differ: the "
+                           "first one is taken",
+                           a->table->name[a->columns.current[device]], a->table->name[c],
+                           a->circuit->device[device].name);
         }
     }
 }
@@ -245,7 +255,7 @@ enum dalcs_status file_find_columns(struct file_audit *a, struct dalcs_diag *dia
     if (status == DALCS_OK) {
         find_potentials(&f, diag);
         share_potentials(a);
-        find_currents(&f);
+        find_currents(&f, diag);
         bool any = false;
         for (size_t c = 1; c < a->table->n_columns; c++) {
             any = any || a->columns.is_used[c];

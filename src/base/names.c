@@ -201,7 +201,8 @@ bool dalcs_names_is_inner(const char *name) {
 size_t dalcs_names_current_of(const char *text) {
     const char *bracket = text[0] == '@' ? strchr(text, '[') : NULL;
     const bool is_current =
-        bracket != NULL && (strcmp(bracket, "[i]") == 0 || strcmp(bracket, "[id]") == 0);
+        bracket != NULL && (strcmp(bracket, "[i]") == 0 || strcmp(bracket, "[id]") == 0 ||
+                            strcmp(bracket, "[current]") == 0);
     return is_current ? (size_t)(bracket - text) - 1 : 0;
 }
 

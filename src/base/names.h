@@ -35,7 +35,7 @@ const char *dalcs_names_nearest(const struct dalcs_names *names, const char *nam
 /* The same among candidate[0..n-1]. */
 const char *dalcs_names_nearest_of(const char *const *candidate, size_t n, const char *name);
 
-/* Bytes of the element's name in @name[i] or, of a diode, @name[id], as ngspice calls its current; 0
+/* Bytes of the element's name in @name[i], of a diode @name[id] or of a source @name[current], as ngspice calls its current; 0
  * where `text` is something else. The name begins at text + 1. */
 size_t dalcs_names_current_of(const char *text);
 

@@ -26,10 +26,16 @@ static bool list_diodes(const struct dalcs_osnsp *p, int *diode, int *n) {
     return true;
 }
 
+/* All modes of n diodes. */
+static bool may_try_all(const struct dalcs_osnsp *p, int n) {
+    const long work = (long)dalcs_system_n_columns(p->system) << n;
+    return p->asks.most_enumerated == 0 || work <= p->asks.most_enumerated;
+}
+
 enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double *y) {
     int diode[ENUMERATION_LIMIT];
     int n;
-    if (!list_diodes(p, diode, &n)) {
+    if (!list_diodes(p, diode, &n) || !may_try_all(p, n)) {
         return DALCS_NOT_CONVERGED;
     }
     for (unsigned code = 1; code <= 1u << n; code++) {
@@ -42,6 +48,7 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
             dalcs_osnsp_flip(p, diode[bit]);
         }
         bool sources_clash;
+        p->counters.enumerated += dalcs_system_n_columns(p->system);
         enum dalcs_status status = dalcs_exact_try_mode(p, u, y, &sources_clash);
         if (status == DALCS_OK && !dalcs_certificate_holds(p, sources_clash)) {
             status = dalcs_open_mode_solve(p, u, y);

@@ -91,6 +91,7 @@ static void go_in(const struct dalcs_osnsp *p, struct dalcs_block *b, const doub
     }
     b->osnsp.asks.refines = p->asks.refines;
     b->osnsp.asks.is_passing = p->asks.is_passing;
+    b->osnsp.asks.most_enumerated = p->asks.most_enumerated;
 }
 
 static void come_back(struct dalcs_osnsp *p, const struct dalcs_block *b, double *y) {
@@ -112,6 +113,7 @@ static void add_counters(struct dalcs_osnsp *p, const struct dalcs_osnsp_counter
     p->counters.factorizations += now->factorizations - before->factorizations;
     p->counters.cache_hits += now->cache_hits - before->cache_hits;
     p->counters.singular += now->singular - before->singular;
+    p->counters.enumerated += now->enumerated - before->enumerated;
 }
 
 static void take_witness(struct dalcs_osnsp *p, const struct dalcs_block *b) {

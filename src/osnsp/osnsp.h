@@ -39,6 +39,7 @@ struct dalcs_osnsp_options dalcs_osnsp_options_of(const struct dalcs_run_options
 
 struct dalcs_osnsp_counters {
     long solved, pivots, factorizations, cache_hits, singular;
+    long enumerated; /* unknowns of all modes that were tried one after the other (enumerate.c) */
 };
 
 /* How good an answer is. */
@@ -127,6 +128,7 @@ struct dalcs_osnsp_signs {
 /* How answers are looked for; all but the first are set by the caller. */
 struct dalcs_osnsp_asks {
     bool insists; /* modes of small pivots are tried, too: nothing else has found an answer */
+    long most_enumerated; /* unknowns of modes that may be tried one after the other; 0: of all */
     bool
         refines; /* each answer of a regular mode is refined once, for small currents next to large ones, which the
                      certificate does not bound */
@@ -143,7 +145,9 @@ struct dalcs_osnsp_smooth {
     double *given;                      /* [n_x + n_inputs] inputs with their values */
     double *other;                      /* [n_columns] an answer beside another */
     int n_tangents;                     /* times that their lines in the equations were changed */
-    double *reached; /* [n_smooth] values that agreed last on the way to an operating point */
+    long may_enumerate; /* up to which counters.enumerated may grow in this problem */
+    long answered_at;   /* counters.enumerated behind the last problem that had an answer */
+    double *reached;    /* [n_smooth] values that agreed last on the way to an operating point */
     double (*reached_x)[2]; /* [n_smooth] ... and arguments */
 };
 

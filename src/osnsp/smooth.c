@@ -18,6 +18,12 @@ enum { MOST_STEPS = 1000 };
  * digits. */
 enum { MOST_STEEPER = 8 };
 
+/* Where pivoting finds no mode all are tried (enumerate.c), and iterates that go from mode to mode without an end have that
+ * done in each step. Since the last answer they may try what one problem of 12 diodes and two hundred unknowns has, in modes
+ * times unknowns: each takes an elimination for its null space. A problem leaves half of that to those behind it, as where
+ * positions of switches or lengths of steps are tried in turn. The first of all is always tried. */
+static const long most_enumerated = 200L << 12;
+
 /* On the way to functions that count in full Newton's method begins near its answer, where it doubles digits; what has not
  * agreed after as many steps as a limited exponential takes for a change by a factor of 1e17 is too far away. */
 enum { MOST_STEPS_NEAR = 40 };
@@ -158,6 +164,12 @@ static enum dalcs_status certify(struct dalcs_osnsp *p, const double *y) {
     return holds ? DALCS_OK : DALCS_NOT_CONVERGED;
 }
 
+static void limit_modes(struct dalcs_osnsp *p) {
+    const bool has_tried = p->counters.enumerated > p->smooth.answered_at;
+    const long left = p->smooth.may_enumerate - p->counters.enumerated;
+    p->asks.most_enumerated = !has_tried ? 0 : left > 0 ? left : 1;
+}
+
 /* From the present values and lines. */
 static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y, given_solve *solve,
                                  int most_steps) {
@@ -168,6 +180,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
         false; /* what holds no flux but its current is rounded like a flux: one step more */
     dalcs_smooth_newton_begin(n, n->x);
     for (int step = 0; step < most_steps; step++) {
+        limit_modes(p);
         put_sources(p, p->smooth.given);
         enum dalcs_status status = solve(p, sigma, p->smooth.given, y);
         if (status > DALCS_OK && n->share == 1.0 && p->smooth.n_tangents > 0 &&
@@ -244,8 +257,8 @@ static enum dalcs_status follow(struct dalcs_osnsp *p, double *y, given_solve *s
     return status;
 }
 
-enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, const double *u,
-                                           double *y, given_solve *solve) {
+static enum dalcs_status solve_by_newton(struct dalcs_osnsp *p, double sigma, const double *u,
+                                         double *y, given_solve *solve) {
     const struct dalcs_system *s = p->system;
     memcpy(p->smooth.given, u, (size_t)(s->n_x + s->n_inputs) * sizeof(*p->smooth.given));
     enum dalcs_status status = iterate(p, sigma, y, solve, MOST_STEPS);
@@ -266,4 +279,15 @@ enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, 
         status = k < MOST_STEEPER ? iterate(p, sigma, y, solve, MOST_STEPS) : DALCS_NOT_CONVERGED;
     }
     return status == DALCS_OK && p->smooth.n_tangents > 0 ? certify(p, y) : status;
+}
+
+enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, const double *u,
+                                           double *y, given_solve *solve) {
+    const long most = p->asks.most_enumerated;
+    const long left = most_enumerated - (p->counters.enumerated - p->smooth.answered_at);
+    p->smooth.may_enumerate = p->counters.enumerated + left / 2;
+    const enum dalcs_status status = solve_by_newton(p, sigma, u, y, solve);
+    p->smooth.answered_at = status == DALCS_OK ? p->counters.enumerated : p->smooth.answered_at;
+    p->asks.most_enumerated = most;
+    return status;
 }

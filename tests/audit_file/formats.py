@@ -114,6 +114,22 @@ def check_names(checker, program, folder):
     checker.check(found.status == 0 and found.answer["signals"] == 7, f"a difference: {found.broken}")
 
 
+def check_twin_currents(checker, program, folder):
+    """Currents that a file has twice, as ngspice's savecurrents writes them, and that of a source."""
+    netlist = "twins\ni1 0 a 1m\nl1 a b 1m\nr1 b 0 10\nr2 a 0 1k\n.tran 1u 100u\n"
+    table = simulate(program, netlist)
+    current = table.index("i(l1)")
+    for factor in (1.0, 1.1):
+        twins = Table([*table.names, "i(@l1[i])", "i(@i1[current])"],
+                      [[*row, factor * row[current], 1e-3] for row in table.rows])
+        found = audit(program, folder, netlist, twins)
+        checker.check(found.status == 0 and not found.answer["foreign"], f"twins: {found.answer} {found.stderr}")
+        checker.check(("both the current of 'l1', and differ" in found.stderr) == (factor != 1.0),
+                      f"twins, times {factor}: {found.stderr}")
+    found = audit(program, folder, netlist, twins.scaled("i(@i1[current])", 1.1))
+    checker.check(found.status == 1 and ("CURRENT", "i1") in found.broken, f"the current of i1: {found.broken}")
+
+
 def check_missing(checker, program, folder):
     table = simulate(program, BRIDGE)
     found = audit(program, folder, BRIDGE, table.without("i(d1)", "i(d2)", "i(d3)", "i(d4)"))
@@ -303,7 +319,7 @@ def main(program, root):
     checker = dalcs_program.Checker("files of other programs")
     with tempfile.TemporaryDirectory() as folder:
         for check in (check_ltspice, check_names, check_missing, check_digits, check_round_times, check_refusals, check_text,
-                      check_steps, check_rest, check_units, check_rows, check_twins, check_two_rests):
+                      check_steps, check_rest, check_units, check_rows, check_twins, check_twin_currents, check_two_rests):
             check(checker, program, folder)
         check_schema(checker, program, folder, root)
     return checker.finish()

@@ -59,6 +59,22 @@ B2 0 bc I=1m*v(n)
 R7 bc 0 1k
 .tran 1u 3m
 """,
+    "all currents, some of them twice": """savecurrents
+I1 0 a 1m
+I2 a 0 SIN(0 1m 1k)
+R1 a 0 1k
+L1 a b 1m
+R2 b 0 10
+C1 a 0 1u
+B1 a 0 I=1m*v(a)
+B2 c 0 V=2*v(a)
+R3 c 0 1k
+E1 d 0 a 0 2
+R4 d 0 1k
+G1 a 0 c 0 1m
+.options savecurrents
+.tran 2u 1m
+""",
     "a switch with hysteresis": """relay
 V1 c 0 SIN(0 2 100)
 V2 s 0 10
@@ -163,6 +179,7 @@ def main(program, ngspice):
             found = audit(program, folder, netlist, simulate(ngspice, folder, netlist), "waves.raw")
             checker.check(found.status == 0, f"{what}: {found.answer and found.answer['laws'][:3]} {found.stderr}")
             checker.check(found.answer and not found.not_asked, f"{what}: {found.not_asked}")
+            checker.check(found.answer and not found.answer["foreign"], f"{what}: {found.answer and found.answer['foreign']}")
         check_diodes(checker, program, ngspice, folder)
         check_faults(checker, program, ngspice, folder)
     return checker.finish()

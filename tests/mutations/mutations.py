@@ -351,8 +351,8 @@ MUTATIONS = {
         "logic/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
         "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
     "a smooth function is too steep by 1e-5": (
-        "dalcs/smooth_tangents.c", "return dalcs_smooth_value(of->kind, x) - dalcs_smooth_line(of, 0)",
-        "return 1.00001 * dalcs_smooth_value(of->kind, x) - dalcs_smooth_line(of, 0)", SATURABLE),
+        "dalcs/stamp_behaviour.c", "    return dalcs_triplets_add(&b->E, l->branch_row[device], input, -1.0);",
+        "    return dalcs_triplets_add(&b->E, l->branch_row[device], input, -1.00001);", SATURABLE),
     "the values of one segment beside a smooth function are too large by 1e-5": (
         "step/present.c", "    part->segment.by_euler = false;\n",
         "    part->segment.by_euler = false;\n"
@@ -446,7 +446,8 @@ def verdict_of(program, netlist):
         return verdict(program, netlist, pathlib.Path(directory))
 
 
-def run_all(mutations, suite):
+def run_all(mutations, suite, refused=()):
+    """refused: netlists without a solution, which the program as it is says."""
     build, source = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
     if shutil.which("ninja") is None:
         return SKIPPED
@@ -458,7 +459,8 @@ def run_all(mutations, suite):
         with tempfile.TemporaryDirectory() as directory:
             where = pathlib.Path(directory)
             found, said = sound(netlist)
-            checker.check(found == "passes", f"{name}: without it: {found}: {said}")
+            is_sound = found == "fails otherwise" and "no solution exists" in said if netlist in refused else found == "passes"
+            checker.check(is_sound, f"{name}: without it: {found}: {said}")
             broken = mutant(build, source, file, old, new, where)
             found, said = verdict(broken, netlist, where)
             line = next((x for x in said.splitlines() if "the audit finds" in x or x.startswith("  proof")), "")

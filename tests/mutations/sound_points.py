@@ -18,6 +18,23 @@ ANALYSES = re.compile(r"\.(tran|pss|env|ac|dc|op|four|meas|measure|losses|step|s
 AT_LEAST = 70  # netlists with an operating point
 LEAST_RESPONSES = 30
 
+BALANCED = """a part into which sources bring nothing, and only capacitors tie it to the rest
+i0 0 a {current}
+i1 b 0 {current}
+r1 a b {ohms}
+c1 b 0 1u
+c2 a d 1n
+v1 d 0 5
+r2 d 0 1k
+i2 0 p {current}
+i3 0 q {current}
+i4 p 0 2*{current}
+r3 p q {ohms}
+c3 p 0 1
+.op
+""".replace("2*{current}", "{{2*{current}}}")
+BALANCES = (("2", "0.1m"), ("1m", "1k"), ("1n", "1g"), ("33k", "1"), ("0.1", "1u"), ("-7", "3meg"))
+
 
 def at_rest(text, card):
     """The netlist without its analyses, and with `card`; a continued card goes with its first line."""
@@ -62,6 +79,10 @@ def main():
                     checker.check("the audit finds" not in ran.stderr, f"{path.name} {card}: {ran.stderr}")
                 elif ran.returncode == 0:
                     checker.check("audited at" in ran.stdout, f"{path.name} {card}: {ran.stdout}")
+        for current, ohms in BALANCES:
+            text = BALANCED.format(current=current, ohms=ohms)
+            ran = run(program, pathlib.Path(name) / "balanced.cir", text, pathlib.Path(name))
+            checker.check(ran.returncode == 0 and "audited at" in ran.stdout, f"{current} A: {ran.stdout}{ran.stderr}")
     checker.check(n >= AT_LEAST, f"only {n} netlists have an operating point")
     checker.check(n_responses >= LEAST_RESPONSES, f"only {n_responses} netlists have a response around it")
     return checker.finish()
