@@ -97,6 +97,20 @@ int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_to
     return node;
 }
 
+int dalcs_builder_find_node_or_warn(struct dalcs_builder *builder, const struct dalcs_token *token,
+                                    const char *lost) {
+    const int node = dalcs_builder_look_up_node(builder, token->text);
+    if (node < 0 && (builder->hidden & DALCS_HIDDEN_ELEMENTS) != 0) {
+        builder->failed = true;
+    } else if (node < 0) {
+        dalcs_builder_warn(
+            builder, token,
+            dalcs_builder_suggest(builder, &builder->elements.nodes, token->text, "nodes"),
+            "no element is connected to a node '%s': %s", token->text, lost);
+    }
+    return node;
+}
+
 /* x1:d1 is x1.d1, and so are d.x1.d1 and d:x1:d1, as ngspice and LTspice call it. */
 static int find_device_alias(struct dalcs_builder *builder, const char *name) {
     if (strpbrk(name, ".:") == NULL) {
