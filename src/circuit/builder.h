@@ -248,6 +248,11 @@ int dalcs_builder_look_up_device(struct dalcs_builder *builder, const char *name
 /* The index of a node that an element names; else an error, and -1. */
 int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token);
 
+/* The same of a card that other simulators take without the node: a warning that ends with `lost`, "it
+ * is left out", and -1. */
+int dalcs_builder_find_node_or_warn(struct dalcs_builder *builder, const struct dalcs_token *token,
+                                    const char *lost);
+
 /* The index of a device; else an error, and -1. */
 int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_token *token);
 

@@ -97,6 +97,20 @@ int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_to
     return node;
 }
 
+int dalcs_builder_find_node_or_warn(struct dalcs_builder *builder, const struct dalcs_token *token,
+                                    const char *lost) {
+    const int node = dalcs_builder_look_up_node(builder, token->text);
+    if (node < 0 && (builder->hidden & DALCS_HIDDEN_ELEMENTS) != 0) {
+        builder->failed = true;
+    } else if (node < 0) {
+        dalcs_builder_warn(
+            builder, token,
+            dalcs_builder_suggest(builder, &builder->elements.nodes, token->text, "nodes"),
+            "no element is connected to a node '%s': %s", token->text, lost);
+    }
+    return node;
+}
+
 /* x1:d1 is x1.d1, and so are d.x1.d1 and d:x1:d1, as ngspice and LTspice call it. */
 static int find_device_alias(struct dalcs_builder *builder, const char *name) {
     if (strpbrk(name, ".:") == NULL) {
@@ -110,9 +124,33 @@ static int find_device_alias(struct dalcs_builder *builder, const char *name) {
     return dalcs_names_find(&builder->elements.devices, dotted + 2);
 }
 
+/* LTspice writes an element whose name does not begin with the letter of its kind as "b\u00a7vm", and
+ * finds it by the name that was drawn, i(vm). -1 also when two elements were drawn so. */
+static int find_drawn(struct dalcs_builder *builder, const char *name) {
+    const char *dotted = with_dots(builder, name);
+    if (dotted == NULL || builder->netlist->dialect.name != DALCS_DIALECT_LTSPICE) {
+        return -1;
+    }
+    const char *dot = strrchr(dotted, '.');
+    const char *drawn = dot != NULL ? dot + 1 : dotted;
+    int found = -1;
+    for (char letter = 'a'; letter <= 'z'; letter++) {
+        const char *written = dalcs_builder_hint(builder, "%.*s%c\u00a7%s", (int)(drawn - dotted),
+                                                 dotted, letter, drawn);
+        const int device =
+            written != NULL ? dalcs_names_find(&builder->elements.devices, written) : -1;
+        if (device >= 0 && found >= 0) {
+            return -1;
+        }
+        found = device >= 0 ? device : found;
+    }
+    return found;
+}
+
 int dalcs_builder_look_up_device(struct dalcs_builder *builder, const char *name) {
-    const int device = dalcs_names_find(&builder->elements.devices, name);
-    return device < 0 ? find_device_alias(builder, name) : device;
+    int device = dalcs_names_find(&builder->elements.devices, name);
+    device = device < 0 ? find_device_alias(builder, name) : device;
+    return device < 0 ? find_drawn(builder, name) : device;
 }
 
 int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {

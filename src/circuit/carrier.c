@@ -136,7 +136,7 @@ static const struct dalcs_form *steps_of(struct dalcs_compiler *c, const struct 
 
 const struct dalcs_form *dalcs_carrier(struct dalcs_compiler *c, const struct dalcs_formula *f) {
     static const char *const steps[] = {"int", "floor", "ceil", "nint", "round", NULL};
-    static const char *const remainder[] = {"fmod", NULL};
+    static const char *const remainder[] = {"fmod", "mod", NULL};
     const bool is_remainder =
         (f->kind == DALCS_FORMULA_OPERATION && f->code == DALCS_REMAINDER) || is_call(f, remainder);
     return is_remainder && f->n == 2 ? remainder_of(c, f)

@@ -23,8 +23,9 @@ static const struct dalcs_form *table(struct dalcs_compiler *c, const struct dal
     }
     for (int k = 0; k < 2 * n; k++) {
         if (!dalcs_form_is_number(argument[k + 1])) {
-            return dalcs_compile_refuse(c, f->argument[k + 1], NULL,
-                                        "the points of a table are numbers");
+            return dalcs_compile_refuse(c, f->argument[k + 1],
+                                        "those of table() may vary, up to 16 of them",
+                                        "the points of this table are numbers");
         }
         const double number = argument[k + 1]->affine.constant;
         struct dalcs_knot *point = &knot[k / 2];

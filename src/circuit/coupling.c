@@ -98,7 +98,8 @@ static bool read_factor(struct dalcs_reader *reader, double *k) {
     const struct dalcs_token *core = dalcs_reader_peek(reader, 0);
     if (core != NULL && core->kind == DALCS_TOKEN_WORD) {
         dalcs_builder_error(reader->builder, core,
-                            "the values of its coils are turns: write henries, and no core",
+                            "the values of its coils are turns: write henries and no core, or a "
+                            "coil that saturates, L1 a b Hc=16 Bs=0.44 Br=0.1 A=1e-4 Lm=0.1 N=100",
                             "the core '%s' is not supported", core->text);
         return false;
     }

@@ -74,9 +74,10 @@ static bool read_voltage(struct dalcs_reader *reader, const struct dalcs_token *
         return false;
     }
     double value;
-    int node[2] = {dalcs_builder_find_node(builder, name[0]), 0};
+    static const char LOST[] = "this initial value is left out";
+    int node[2] = {dalcs_builder_find_node_or_warn(builder, name[0], LOST), 0};
     if (is_pair) {
-        node[1] = dalcs_builder_find_node(builder, name[1]);
+        node[1] = dalcs_builder_find_node_or_warn(builder, name[1], LOST);
     }
     if (!read_value(reader, DALCS_VOLTAGE, &value)) {
         return false;
@@ -162,7 +163,7 @@ void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dal
             dalcs_reader_missing(&reader, "')'");
             return;
         }
-        (void)dalcs_builder_find_node(builder, node);
+        (void)dalcs_builder_find_node_or_warn(builder, node, "this value is left out");
         if (!read_value(&reader, DALCS_VOLTAGE, &value)) {
             return;
         }

@@ -2,6 +2,7 @@
  *
  * Functions of the netlist are written out where they are called: their arguments are on the stack
  * then, and how high it is there is known. */
+#include "pi.h"
 #include "result_cards.h"
 #include "signal_formula_card.h"
 
@@ -157,6 +158,32 @@ static bool write_out(struct dalcs_signal_compilation *c, const struct dalcs_exp
     return true;
 }
 
+/* LTspice's measurements have angles in degrees, unless a setting outside of the netlist says radians;
+ * the formulas of its elements have radians. */
+static bool has_degrees(const struct dalcs_signal_compilation *c, const char *name,
+                        bool *is_inverse) {
+    static const char *const of_angles[] = {"sin", "cos", "tan"};
+    static const char *const to_angles[] = {"asin",   "acos",   "atan",  "atan2",
+                                            "arcsin", "arccos", "arctan"};
+    *is_inverse = dalcs_builder_is_one_of(name, to_angles, sizeof to_angles / sizeof to_angles[0]);
+    return c->builder->netlist->dialect.name == DALCS_DIALECT_LTSPICE &&
+           (*is_inverse ||
+            dalcs_builder_is_one_of(name, of_angles, sizeof of_angles / sizeof of_angles[0]));
+}
+
+static void add_factor(struct dalcs_signal_compilation *c, double factor) {
+    add(c, (struct dalcs_signal_formula_step){.push = DALCS_PUT_VALUE, .number = factor}, 1);
+    add(c, (struct dalcs_signal_formula_step){.code = DALCS_MULTIPLY}, -1);
+}
+
+static void note_degrees(const struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                         const struct dalcs_operation *o) {
+    const struct dalcs_location where = dalcs_expression_place(&e->text, o->begin, o->length);
+    dalcs_diag_add(c->builder->diag, DALCS_NOTE, &where,
+                   "for radians: sin(x*180/pi), atan(x)*pi/180",
+                   "angles of measurements are in degrees, as LTspice has them");
+}
+
 static void add_call(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
                      const struct dalcs_operation *o) {
     if (write_out(c, e, o)) {
@@ -173,10 +200,21 @@ static void add_call(struct dalcs_signal_compilation *c, const struct dalcs_expr
         return;
     }
     check_count(c, e, o, function->least, function->most);
+    bool is_inverse;
+    const bool in_degrees = has_degrees(c, o->u.name, &is_inverse);
+    if (in_degrees && !is_inverse) {
+        add_factor(c, dalcs_pi / 180);
+    }
     add(c,
         (struct dalcs_signal_formula_step){
             .code = o->code, .count = o->count, .function = function},
         1 - o->count);
+    if (in_degrees && is_inverse) {
+        add_factor(c, 180 / dalcs_pi);
+    }
+    if (in_degrees) {
+        note_degrees(c, e, o);
+    }
 }
 
 /* Of a function that other simulators have: is it the netlist's own? */

@@ -6,24 +6,19 @@
 #include <string.h>
 
 /* A signal that does not exist is left out, as in ngspice and LTspice: the run is the same without it. */
-static void leave_out_unknown(struct dalcs_builder *builder, const struct dalcs_token *token,
-                              const struct dalcs_names *names, const char *what,
-                              const char *message) {
+static void leave_out_unknown(struct dalcs_builder *builder, const struct dalcs_token *token) {
     if ((builder->hidden & DALCS_HIDDEN_ELEMENTS) != 0) {
         builder->failed = true;
         return;
     }
-    dalcs_builder_warn(builder, token, dalcs_builder_suggest(builder, names, token->text, what),
-                       message, token->text);
+    dalcs_builder_warn(
+        builder, token,
+        dalcs_builder_suggest(builder, &builder->elements.devices, token->text, "elements"),
+        "there is no element '%s': it is left out", token->text);
 }
 
 static int find_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
-    const int node = dalcs_builder_look_up_node(builder, token->text);
-    if (node < 0) {
-        leave_out_unknown(builder, token, &builder->elements.nodes, "nodes",
-                          "no element is connected to a node '%s': it is left out");
-    }
-    return node;
+    return dalcs_builder_find_node_or_warn(builder, token, "it is left out");
 }
 
 static int find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {
@@ -32,8 +27,7 @@ static int find_device(struct dalcs_builder *builder, const struct dalcs_token *
         return dalcs_builder_find_device(builder, token); /* a coupling, with a message */
     }
     if (device < 0) {
-        leave_out_unknown(builder, token, &builder->elements.devices, "elements",
-                          "there is no element '%s': it is left out");
+        leave_out_unknown(builder, token);
     }
     return device;
 }

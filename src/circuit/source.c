@@ -72,15 +72,31 @@ static bool read_dc(struct dalcs_reader *reader, enum dalcs_quantity quantity,
 
 /* A word that is neither DC, AC nor the name of a function. */
 static void report_word(struct dalcs_reader *reader, const struct dalcs_token *token) {
-    static const char *const later[] = {"trnoise", "trrandom", "port",   "value",
-                                        "poly",    "table",    "laplace"};
+    static const struct {
+        const char *name, *hint;
+    } later[] = {
+        {"trnoise", NULL},
+        {"trrandom", NULL},
+        {"port", NULL},
+        {"value", NULL},
+        {"poly", NULL},
+        {"table", NULL},
+        {"laplace", NULL},
+        {"wavefile", "write its samples as lines of time and value: PWL FILE=\"points.txt\""},
+        {"trigger", "B with idt(1,0,v(a)<0.5) has the time since v(a) rose: "
+                    "V=table(idt(1,0,v(a)<0.5), 0,0, 1m,1)"},
+        {"step", "write the steps of a load as PWL(...)"},
+    };
+
     static const char *const known[] = {"sin",  "pulse", "pwl", "exp",     "am",
                                         "sffm", "dc",    "ac",  "external"};
     struct dalcs_builder *builder = reader->builder;
-    if (dalcs_builder_is_one_of(token->text, later, sizeof later / sizeof later[0])) {
-        dalcs_builder_error(builder, token, NULL, "'%s' on a source is not supported yet",
-                            token->text);
-        return;
+    for (size_t k = 0; k < sizeof later / sizeof later[0]; k++) {
+        if (strcmp(token->text, later[k].name) == 0) {
+            dalcs_builder_error(builder, token, later[k].hint,
+                                "'%s' on a source is not supported yet", token->text);
+            return;
+        }
     }
     const char *hint = dalcs_builder_suggest_of(builder, known, sizeof known / sizeof known[0],
                                                 token->text, USAGE);

@@ -78,7 +78,7 @@ static const struct dalcs_form *staircase(struct dalcs_compiler *c, const struct
 }
 
 bool dalcs_staircase_is(const struct dalcs_formula *f) {
-    static const char *const names[] = {"int", "floor", "ceil", "nint", "round", "fmod"};
+    static const char *const names[] = {"int", "floor", "ceil", "nint", "round", "fmod", "mod"};
     return (f->kind == DALCS_FORMULA_OPERATION && f->code == DALCS_REMAINDER) ||
            (f->kind == DALCS_FORMULA_CALL &&
             dalcs_builder_is_one_of(f->function, names, sizeof names / sizeof names[0]));

@@ -202,10 +202,10 @@ static bool is_passive_model(const struct dalcs_scope *scope, const struct dalcs
 
 /* Cards that steer the run belong to the whole netlist. */
 static bool belongs_outside(const struct dalcs_card *card) {
-    /* the last five are LTspice's state machine, which is refused as one block wherever it stands */
-    static const char *const inside[] = {".model", ".ic",    ".save",    ".print",
-                                         ".plot",  ".probe", ".nodeset", ".machine",
-                                         ".state", ".rule",  ".output",  ".endmachine"};
+    /* five are those of LTspice's state machine, which is refused as one block wherever it stands */
+    static const char *const inside[] = {".model",  ".ic",         ".save",    ".print", ".plot",
+                                         ".probe",  ".nodeset",    ".machine", ".state", ".rule",
+                                         ".output", ".endmachine", ".backanno"};
     for (size_t k = 0; k < sizeof inside / sizeof inside[0]; k++) {
         if (strcmp(card->token->text, inside[k]) == 0) {
             return false;

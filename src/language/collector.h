@@ -35,6 +35,20 @@ bool dalcs_collector_is_conditional(const struct dalcs_collector *c);
 /* The same line of a file that was included twice? */
 bool dalcs_token_is_same_place(const struct dalcs_token *a, const struct dalcs_token *b);
 
+/* Reports the .if that are open in the present definition. */
+void dalcs_collector_close_conditions(struct dalcs_collector *c);
+
+/* .ends and .eom */
+void dalcs_collector_end(struct dalcs_collector *c, const struct dalcs_card *card);
+
+/* Are more subcircuits begun than ended? */
+bool dalcs_collector_lacks_end(const struct dalcs_netlist *netlist);
+
+/* LTspice ends a subcircuit that lacks its .ends with the file that holds it. This ends those whose file
+ * ends before the card `next`. Only for a netlist that lacks an .ends: in any other it may stand in another
+ * file than its .subckt. */
+void dalcs_collector_end_with_file(struct dalcs_collector *c, const struct dalcs_card *next);
+
 /* name=value ... from token `at` of the card on; is_formal: of a .subckt card, where there are no functions. */
 enum dalcs_status dalcs_collector_read_assignments(struct dalcs_collector *c,
                                                    const struct dalcs_card *card, int at,

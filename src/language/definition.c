@@ -133,45 +133,6 @@ static enum dalcs_status begin_subcircuit(struct dalcs_collector *c,
     return dalcs_collector_read_assignments(c, card, ports, true);
 }
 
-/* Reports the .if that are open in the present definition. */
-static void close_conditions(struct dalcs_collector *c) {
-    while (dalcs_collector_is_conditional(c)) {
-        const struct dalcs_open_if *open = &c->open[--c->n_open];
-        dalcs_collector_error(c, c->definition->item[open->first].card->token, "add a line: .endif",
-                              "this .if is never closed");
-    }
-}
-
-static bool ends_outer(const struct dalcs_definition *d, const char *name) {
-    for (const struct dalcs_definition *outer = d->enclosing;
-         outer != NULL && outer->enclosing != NULL; outer = outer->enclosing) {
-        if (strcmp(outer->name->text, name) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static void end_subcircuit(struct dalcs_collector *c, const struct dalcs_card *card) {
-    struct dalcs_definition *d = c->definition;
-    if (d->enclosing == NULL) {
-        dalcs_collector_error(c, card->token, NULL, ".ends without a .subckt");
-        return;
-    }
-    if (card->n > 1 && card->token[1].kind == DALCS_TOKEN_WORD &&
-        strcmp(card->token[1].text, d->name->text) != 0) {
-        /* Of one around it, this one lacks its own .ends; another name is a slip without a meaning, as elsewhere. */
-        const bool is_outer = ends_outer(d, card->token[1].text);
-        dalcs_language_report(c->language, is_outer ? DALCS_ERROR : DALCS_WARNING, NULL,
-                              &card->token[1], NULL,
-                              "the subcircuit that ends here is '%s', from %s", d->name->text,
-                              dalcs_language_place(c->language, d->card));
-    }
-    close_conditions(c);
-    c->definition = d->enclosing;
-    c->depth--;
-}
-
 /* ---- Conditions -------------------------------------------------------------------------------- */
 
 static enum dalcs_status read_condition(struct dalcs_collector *c, const struct dalcs_card *card,
@@ -266,7 +227,7 @@ static enum dalcs_status read_card(struct dalcs_collector *c, const struct dalcs
         case SUBCKT:
             return begin_subcircuit(c, card);
         case ENDS:
-            end_subcircuit(c, card);
+            dalcs_collector_end(c, card);
             return DALCS_OK;
         case GLOBAL:
             return read_global(c, card);
@@ -287,19 +248,24 @@ static enum dalcs_status read_card(struct dalcs_collector *c, const struct dalcs
 
 enum dalcs_status dalcs_definition_collect(struct dalcs_language *language) {
     struct dalcs_collector c = {.language = language, .definition = &language->root};
+    const struct dalcs_netlist *netlist = language->netlist;
+    const bool lacks_end = dalcs_collector_lacks_end(netlist);
     enum dalcs_status status = DALCS_OK;
-    for (size_t k = 0; k < language->netlist->n_cards && status == DALCS_OK; k++) {
-        status = read_card(&c, &language->netlist->card[k]);
+    for (size_t k = 0; k < netlist->n_cards && status == DALCS_OK; k++) {
+        if (lacks_end) {
+            dalcs_collector_end_with_file(&c, &netlist->card[k]);
+        }
+        status = read_card(&c, &netlist->card[k]);
     }
     while (status == DALCS_OK && c.definition->enclosing != NULL) {
-        close_conditions(&c);
+        dalcs_collector_close_conditions(&c);
         dalcs_collector_error(&c, c.definition->card, "add a line: .ends",
                               "this subcircuit is never closed");
         c.definition = c.definition->enclosing;
         c.depth--;
     }
     if (status == DALCS_OK) {
-        close_conditions(&c);
+        dalcs_collector_close_conditions(&c);
     }
     free(c.open);
     return status;

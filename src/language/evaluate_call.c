@@ -60,6 +60,9 @@ static enum dalcs_outcome call_user(const struct dalcs_evaluation *r,
 }
 
 static const char *suggest_function(const struct dalcs_evaluation *r, const char *name) {
+    if (strncmp(name, "spice_", strlen("spice_")) == 0) {
+        return "write it as a source, Vname n 0 PULSE(...), and v(n) in the formula";
+    }
     for (const struct dalcs_scope *s = r->scope; s != NULL; s = s->caller) {
         const char *nearest = dalcs_names_nearest(&s->definition->functions.names, name);
         if (nearest != NULL) {

@@ -241,8 +241,12 @@ void dalcs_parser_next(struct dalcs_parser *p) {
     } else if (!read_operator(p, t)) {
         p->symbol = DALCS_SYMBOL_WRONG;
         p->length = 1;
-        dalcs_parser_report(p, DALCS_ERROR, p->begin, 1,
-                            *t == '=' ? "a comparison is written ==" : NULL,
-                            "'%c' is not a character of expressions", *t);
+        dalcs_parser_report(
+            p, DALCS_ERROR, p->begin, 1,
+            *t == '='   ? "a comparison is written =="
+            : *t == '"' ? "points over time from a file are a source, PWL FILE=\"name\", and "
+                          "its v(node) stands in the formula"
+                        : NULL,
+            "'%c' is not a character of expressions", *t);
     }
 }

@@ -119,11 +119,20 @@ static void call_memory(struct dalcs_formula_work *w, const struct dalcs_formula
     }
 }
 
+/* A table some of whose points are no numbers. */
+static bool is_varying_table(const struct dalcs_formula_work *w, const struct dalcs_operation *o) {
+    return (strcmp(o->u.name, "table") == 0 || strcmp(o->u.name, "tbl") == 0) && o->count >= 5 &&
+           o->count % 2 == 1 && !dalcs_formula_are_numbers(w, o->count - 1);
+}
+
 void dalcs_formula_push_call(struct dalcs_formula_work *w, const struct dalcs_formula_frame *f,
                              const struct dalcs_operation *o) {
     struct dalcs_user_function *user = dalcs_language_function(w->language, w->scope, o->u.name);
     int least;
     int most;
+    user = user == NULL && is_varying_table(w, o)
+               ? dalcs_language_table(w->language, (o->count - 1) / 2)
+               : user;
     if (user != NULL) {
         call_user(w, f, o, user);
         return;

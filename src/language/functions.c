@@ -199,6 +199,7 @@ static const struct dalcs_function FUNCTIONS[] = {
     {"nint", 1, 1, call_rint, NULL, NULL},
     {"round", 1, 1, call_round, NULL, NULL},
     {"fmod", 2, 2, NULL, call_fmod, NULL},
+    {"mod", 2, 2, NULL, call_fmod, NULL},
     {"pow", 2, 2, NULL, call_pow, NULL},
     {"pwr", 2, 2, NULL, magnitude_power, NULL},
     {"pwrs", 2, 2, NULL, signed_power, NULL},

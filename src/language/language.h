@@ -42,7 +42,7 @@ struct dalcs_sought {
     size_t n, capacity;
 };
 
-enum { DALCS_WRITTEN_FUNCTIONS = 2 };
+enum { DALCS_WRITTEN_FUNCTIONS = 2, DALCS_VARYING_POINTS = 16 };
 
 struct dalcs_language {
     struct dalcs_deck *deck;
@@ -53,6 +53,7 @@ struct dalcs_language {
     struct dalcs_scope *top;
     struct dalcs_names globals;
     struct dalcs_user_function written[DALCS_WRITTEN_FUNCTIONS]; /* made when first named */
+    struct dalcs_user_function table[DALCS_VARYING_POINTS + 1];  /* of so many points that vary */
     size_t n_emitted;
     int depth;
     bool too_large;
@@ -141,6 +142,10 @@ struct dalcs_user_function *dalcs_scope_find_function(struct dalcs_scope *scope,
 /* The same, or one that is written in others for every netlist (written.c). NULL: there is none, or no memory. */
 struct dalcs_user_function *dalcs_language_function(struct dalcs_language *language,
                                                     struct dalcs_scope *scope, const char *name);
+/* table(x, x1, y1, ...) of n points, some of which vary, as a formula; NULL: more than DALCS_VARYING_POINTS,
+ * or no memory. */
+struct dalcs_user_function *dalcs_language_table(struct dalcs_language *language, int n);
+
 void dalcs_language_finish_written(struct dalcs_language *language);
 
 /* Is the item in a branch that counts? */

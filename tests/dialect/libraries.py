@@ -67,15 +67,32 @@ OPAMPS = [("UniversalOpamps2.sub", ("level.1", "level.2", "level.3a", "level.3b"
           ("C:\\Users\\me\\AppData\\Local\\LTspice\\lib\\sub\\UniversalOpAmp3b.lib", ("level3b",)),
           ("UniversalOpAmp1.lib\n.lib UniversalOpAmp2.lib\n.lib UniversalOpAmp3a.lib", ("level1", "level3a"))]
 
+# Subcircuits whose .ends is missing in the file that is included; nested ones; an .ends in another file is none that is
+# missing. The divider's half of 10 V.
+HALF = "R1 a b 1k\nR2 b 0 1k\n"
+HALVES = "V1 in 0 10\nX1 in b half\n.op\n.save v(b)\n.end\n"
+UNENDED = [
+    (".include half.sub", ".subckt half a b\n" + HALF, True),
+    (".include half.sub", ".subckt half a b\n" + HALF + ".end half\n", True),
+    (".lib half.sub", "* half\n.subckt half a b\n" + HALF + ".backanno\n.end\n", True),
+    (".include half.sub", ".subckt half a b\nX1 a b inner\n.subckt inner a b\n" + HALF, True),
+    (".include half.sub", ".subckt half a b\nX1 a b inner\n.subckt inner a b\n" + HALF + ".ends\n", True),
+    (".include half.sub", ".macro half a b\n" + HALF, True),
+    (".include half.sub\n.subckt other a\nR1 a 0 1\n.ends", ".subckt half a b\n" + HALF, True),
+    (".include half.sub\n.ends", ".subckt half a b\n" + HALF, False),
+    (".subckt half a b\n.include half.sub\n.ends", HALF, False),
+    (".include half.sub\nR2 b 0 1k\n.eom half", ".subckt half a b\nR1 a b 1k\n", False),
+]
 
-def attempt(program, card, body, file=None, libraries="/nowhere"):
+
+def attempt(program, card, body, file=None, libraries="/nowhere", part=PART):
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         (folder / "sub").mkdir()
         (folder / "sub/main.cir").write_text(f"title\n{card}\n{body}")
         if file is not None:
             (folder / file).parent.mkdir(exist_ok=True)
-            (folder / file).write_text(PART)
+            (folder / file).write_text(part)
         done = subprocess.run([program, "run", "sub/main.cir", "-o", "out.csv"], cwd=folder,
                               env={**os.environ, "DALCS_LIBRARIES": libraries},
                               capture_output=True, text=True, check=False)
@@ -101,6 +118,10 @@ def main():
         status, value, said = attempt(program, card, body)
         checker.check(status == 3 and value is None and words in said,
                       f"{card}: {status}, without '{words}'\n{said}")
+    for card, part, lacks in UNENDED:
+        status, value, said = attempt(program, card, HALVES, "sub/half.sub", part=part)
+        checker.check(status == 0 and value == 5 and lacks == ("it ends with its file" in said),
+                      f"{card} of {part}: {status}, {value}\n{said}")
     for file, names in OPAMPS:
         for name in names:
             status, value, said = attempt(program, f".lib {file}", OPAMP.format(name), None, libraries)

@@ -530,6 +530,40 @@ SOURCES = [
         "B1 b 0 V={2*v(a)} NOJACOB",
         "X1 a b s\n.subckt s p q\nB1 q 0 V=2*v(p) NoJacob\n.ends",
     ]),
+    # Straight lines between points that move: below, between and above them, in one line and in many, of points in any
+    # of their numbers.
+    Kind("tables of points that vary", "V1 a 0 1.5\nV2 h 0 3\nV3 n 0 -2\n@\nR9 b 0 1k\n.op\n", "B1 b 0 V=5", "v(b)", 5.0, [
+        "B1 b 0 V=table(v(a), 0,v(h)-1, v(h),8)",
+        "B1 b 0 V=table(v(a), v(n),v(n), v(h),v(h))+3.5",
+        "B1 b 0 V=table(v(a), v(h),5, 2*v(h),9)",
+        "B1 b 0 V=table(v(a), v(n),1, -1,v(h)+2)",
+        "B1 b 0 V=tbl(v(a), v(n),1, -1,7, 1,v(h)+v(n)+3, 2,6)",
+        "B1 b 0 V=table(v(a), v(n),0, 0,0, 1,v(h), v(h)-1,7)",
+        "B1 b 0 V={table(v(a), -9,v(n), -8,v(n), -7,v(n), -6,v(n), -5,v(n), 0,v(h)-1, v(h),8)}",
+        "B1 b 0 V=1.25*table(v(a)*v(h)/3, 0,0, v(h),v(h)*v(h)-1)",
+        "B1 0 b I=table(v(a), 0,2m, v(h),8m)",
+        "X1 a b h s\n.subckt s p q r\nB1 q 0 V=table(v(p), 0,v(r)-1, v(r),8)\n.ends",
+        ".func f(x,y) {table(x, 0,y-1, y,8)}\nB1 b 0 V=f(v(a),v(h))",
+        "B1 b 0 V=table(table(v(a), 0,0, v(h),v(h)), 0,v(h)-1, v(h),8)",
+        "E1 b 0 VALUE={table(v(a), (0,v(h)-1), (v(h),8))}",
+    ], [("B1 b 0 V=pwl(v(a), 0,0, v(h),1)", "are numbers"),
+        ("B1 b 0 V=table(v(a), 0,0, v(h))", "not in order")]),
+    # LTspice puts the letter of the kind before a name that lacks it, and finds the element by the drawn name.
+    Kind("names as they were drawn", "V1 a 0 10\nB\u00a7src c 0 V=2*v(a)\nR1 c 0 4\nR\u00a7load a 0 5\n@\n"
+         ".options dialect=ltspice\n.op\n", "B1 b 0 V=-i(b\u00a7src)", "v(b)", 5.0, [
+        "B1 b 0 V=-i(src)",
+        "B1 b 0 V={-I(SRC)}",
+        "B1 b 0 V=2.5*i(load)",
+        "B1 b 0 V=i(load)*i(load)+1",
+        "B1 b 0 V=if(i(load)>1,5,0)",
+        "B1 0 b I=i(load)/2 Rpar=5",
+        "X1 a b s\n.subckt s p q\nR\u00a7load p 0 2\nB1 q 0 V=i(load)\n.ends",
+        "X1 a b s\n.subckt s p q\nB\u00a7vm p r V=0\nR1 r 0 2\nB1 q 0 V=i(vm)\n.ends",
+        "H1 b 0 src -1",
+        "F1 0 b src -1\nR2 b 0 1",
+        "E1 b 0 VALUE={2.5*i(load)}",
+    ], [("R\u00a7src a 0 1\nB1 b 0 V=i(src)", "there is no element 'src'"),
+        ("B1 b 0 V=i(rload)", "there is no element 'rload'")]),
     Kind("tc1 behind a formula", "V1 a 0 1\n@\nR1 b 0 1k\n.op\n", "B1 b 0 V=2*v(a)", "v(b)", 2.0, [
         "B1 b 0 V = 2*v(a) tc1=0.001",
         "B1 b 0 V={2*v(a)} tc1=0.001 tc2=0",

@@ -577,6 +577,39 @@ Ve c 0 5
     checker.close(float(constant.group(1)), mean, 2e-9, "windows: constant of .four")
 
 
+def degrees(program, checker):
+    """LTspice's measurements have angles in degrees, those of others in radians; its sources have radians. The gain of an RC
+    filter between two nodes, as LTspice's users measure it."""
+    netlist = """degrees
+V1 a 0 SIN(0 1 1k)
+R1 a b 1k
+C1 b 0 {1/(2*pi*1k*1k)}
+B1 s 0 V=sin(2*pi*1k*time)
+.param Freq=1k
+.func turned(x) {cos(x)}
+.tran 0 20m 12m
+.options dialect=DIALECT
+.measure Are avg v(a)*turned(360*time*Freq)
+.measure Aim avg -v(a)*sin(360*time*Freq)
+.measure Bre avg v(b)*cos(360*time*Freq)
+.measure Bim avg -v(b)*sin(360*time*Freq)
+.measure gain param 20*log10(hypot(Are,Aim)/hypot(Bre,Bim))
+.measure phase param mod(atan2(Aim,Are)-atan2(Bim,Bre)+180,360)-180
+.meas sum param sin(30)+cos(60)+tan(45)
+.meas back param asin(1)+arccos(0)+atan(1)+arctan(-1)+acos(1)
+.meas chosen param if(1>2, sin(90), cos(90)+3)
+.meas tran most max v(s)
+.end
+"""
+    r = Results(program, checker, netlist.replace("DIALECT", "ltspice"))
+    for name, wanted in (("gain", 10 * math.log10(2)), ("phase", 45), ("sum", 2), ("back", 180), ("chosen", 3), ("most", 1)):
+        r.close(name, wanted, tolerance=1e-8)
+    r = Results(program, checker, netlist.replace("DIALECT", "ngspice"))
+    for name, wanted in (("sum", math.sin(30) + math.cos(60) + math.tan(45)), ("back", PI), ("chosen", math.cos(90) + 3),
+                         ("most", 1)):
+        r.close(name, wanted, tolerance=1e-8)
+
+
 def rounding(program, checker):
     """What cancels in a formula leaves noise, which no halving resolves: each stretch has to be let go soon."""
     r = Results(program, checker, """rounding
@@ -612,7 +645,7 @@ def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
     for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels,
-                 one_point, powers, windows, rounding, thresholds):
+                 one_point, powers, windows, degrees, rounding, thresholds):
         test(program, checker)
     return checker.finish()
 

@@ -126,7 +126,7 @@ END_TEST
 /* All errors at once, sorted, and nothing to free. */
 START_TEST(test_errors) {
     ck_assert_int_eq(build_circuit(&circuit, &diag,
-                                   "errors\nR1 a 0 1,5\n.ic v(bb)=1\nD1 a 0 DX\n"
+                                   "errors\nR1 a 0 1,5\n.ic i(bb)=1\nD1 a 0 DX\n"
                                    "F1 a 0 V9 1\nC1 a 0 'x\n.tran 1 0\n"),
                      DALCS_E_NETLIST);
     static const int line[] = {2, 3, 4, 5, 6, 7};

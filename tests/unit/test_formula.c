@@ -331,7 +331,7 @@ START_TEST(test_refusals_have_a_place) {
     check_error("v(a)==v(b)", 10, "single points");
     check_error("v(a) ? 1 : 0", 10, "exactly 0");
     check_error("floor(i(va))", 10, "steps without end");
-    check_error("table(v(a),0,0,v(b),1)", 25, "numbers");
+    check_error("pwl(v(a),0,0,v(b),1)", 23, "numbers");
     check_error("delay(v(a),-1)", 10, "a delay is a number");
     check_error("v(zz)", 12, "no element is connected");
     check_error("i(zz)", 12, "there is no element");
