@@ -143,8 +143,12 @@ static void check_coils(struct dalcs_audit *audit, const struct audit_part *part
                 part->at.step;
             const double off = fabs(audit_voltage(first, d)) - 2.0 * audit->sums.volts -
                                audit->options.vntol - reach * slope * d->value * part->floor.least;
+            /* What is 0 at the start has the scale that the first step gives it, as it has in the engine. */
+            const double *later = audit->state.shifted.v;
+            const double scale = fmax(audit_volts(audit, part, d->node[0], d->node[1]),
+                                      fabs(later[d->node[0]]) + fabs(later[d->node[1]]));
             audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off * part->at.step,
-                       audit_volts(audit, part, d->node[0], d->node[1]) * part->at.step, first->t);
+                       scale * part->at.step, first->t);
         }
     }
 }

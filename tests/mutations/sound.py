@@ -60,6 +60,9 @@ CIRCUITS = {
     "a bridge with a snubber behind an ideal transformer, from rest": (
         "v1 p 0 SIN(0 325 50)\nlp p 0 10\nls a b 0.1\nk1 lp ls 1\nc1 a b 100n\nd1 a o d\nd2 b o d\nd3 0 a d\nd4 0 b d\n"
         "c2 o 0 1m\nr1 o 0 100\n.model d D(ron=10m)\n.tran 40m\n", [], {}),
+    "a coil before two knees, from rest": (
+        "v1 a 0 PULSE(0 325 0 1e-05 1e-05 0.0004 0.001)\nr1 a b 0.1\nl1 b c 0.000159\nc1 c d 1.59e-05\nr2 d e 10\nr3 e f 100\n"
+        "d1 0 f d\n.model d D(ron=10m vfwd=0.6 vrev=3 rrev=0.1)\n.tran 0.001\n", [], {}),
     "a current source in a coil, from rest": (
         "i1 0 a SIN(1 5 1k)\nl1 a b 1m\nr1 b 0 10\nd1 0 b\n.tran 20u 2m\n", [], {}),
     "an ideal peak detector, from rest": (
