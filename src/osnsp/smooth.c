@@ -164,6 +164,7 @@ static enum dalcs_status certify(struct dalcs_osnsp *p, const double *y) {
     return holds ? DALCS_OK : DALCS_NOT_CONVERGED;
 }
 
+/* Of the next problem of this step of Newton's method. */
 static void limit_modes(struct dalcs_osnsp *p) {
     const bool has_tried = p->counters.enumerated > p->smooth.answered_at;
     const long left = p->smooth.may_enumerate - p->counters.enumerated;
