@@ -153,8 +153,8 @@ static enum dalcs_status look_shorter(struct dalcs_radau *r, struct dalcs_radau_
     while (differs && note_beginnings(part)) {
         const double h = part->segment.h;
         bool means_something = false;
-        part->segment.h = fmax(ldexp(h, -DALCS_FAR_SHORTER), dalcs_length_shortest(r));
-        if (part->segment.h < h) {
+        part->segment.h = ldexp(h, -DALCS_FAR_SHORTER);
+        if (part->segment.h >= dalcs_length_shortest(r)) {
             DALCS_TRY(try_projection(part, limit, &means_something));
         }
         differs = means_something && begins_elsewhere(part);
