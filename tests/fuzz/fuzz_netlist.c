@@ -43,13 +43,13 @@ static void check_device(const struct dalcs_circuit *circuit, const struct dalcs
         require(device->value > 0);
         break;
     case DALCS_DIODE:
-        require(device->model >= 0 && device->model < circuit->n_diode_models);
-        require(circuit->diode_model[device->model].ron >= 0);
-        require(circuit->diode_model[device->model].roff > 0);
+        require(device->model >= 0 && device->model < circuit->models.n_diodes);
+        require(circuit->models.of_diode[device->model].ron >= 0);
+        require(circuit->models.of_diode[device->model].roff > 0);
         break;
     case DALCS_SWITCH:
-        require(device->model >= 0 && device->model < circuit->n_switch_models);
-        require(circuit->switch_model[device->model].vh >= 0);
+        require(device->model >= 0 && device->model < circuit->models.n_switches);
+        require(circuit->models.of_switch[device->model].vh >= 0);
         break;
     default:
         break;
@@ -68,8 +68,8 @@ static void check_stimulus(const struct dalcs_stimulus *s) {
 }
 
 static bool has_analysis(const struct dalcs_circuit *circuit) {
-    return circuit->operating_point || circuit->n_dc > 0 || circuit->ac.n > 0 ||
-           dalcs_circuit_has_waves(circuit);
+    return circuit->analyses.operating_point || circuit->analyses.n_dc > 0 ||
+           circuit->analyses.ac.n > 0 || dalcs_circuit_has_waves(circuit);
 }
 
 static void check_circuit(const struct dalcs_circuit *circuit) {
@@ -92,8 +92,8 @@ static void check_circuit(const struct dalcs_circuit *circuit) {
         require(ic->node[0] < circuit->n_nodes && ic->node[1] < circuit->n_nodes);
         require(ic->node[0] != ic->node[1] && isfinite(ic->value));
     }
-    for (int k = 0; k < circuit->n_signals; k++) {
-        const struct dalcs_signal *signal = &circuit->signal[k];
+    for (int k = 0; k < circuit->results.n_signals; k++) {
+        const struct dalcs_signal *signal = &circuit->results.signal[k];
         require(signal->name != NULL && signal->device < circuit->n_devices);
         require(signal->node[0] < circuit->n_nodes && signal->node[1] < circuit->n_nodes);
         require(signal->kind == DALCS_SIGNAL_VOLTAGE || signal->device >= 0);
@@ -168,13 +168,13 @@ static void follow(struct dalcs_radau *r) {
 
 static void run_the_default(const struct dalcs_circuit *circuit,
                             const struct dalcs_network *network) {
-    double stop = circuit->transient.present ? circuit->transient.stop : 1.0;
+    double stop = circuit->analyses.transient.present ? circuit->analyses.transient.stop : 1.0;
     const struct dalcs_radau_options accuracy = {.tolerance = 1e-6,
                                                  .abstol = circuit->options.abstol,
                                                  .vntol = circuit->options.vntol,
                                                  .stages = circuit->options.stages,
                                                  .fixed_step = circuit->options.step,
-                                                 .max_step = circuit->transient.max_step,
+                                                 .max_step = circuit->analyses.transient.max_step,
                                                  .stop = stop};
     struct dalcs_euler e;
     struct dalcs_radau r;
@@ -189,7 +189,7 @@ static void run_the_default(const struct dalcs_circuit *circuit,
         return;
     }
     if (dalcs_radau_setup(&r, &e, &accuracy, &options) == DALCS_OK) {
-        bool from_initial = circuit->transient.use_initial_conditions;
+        bool from_initial = circuit->analyses.transient.use_initial_conditions;
         enum dalcs_status status = from_initial ? DALCS_OK : dalcs_euler_operating_point(&e, true);
         if (status == DALCS_OK) {
             dalcs_radau_start(&r, from_initial ? network->initial : NULL);
@@ -204,16 +204,16 @@ static void run_the_default(const struct dalcs_circuit *circuit,
 }
 
 static void run_a_little(const struct dalcs_circuit *circuit, const struct dalcs_network *network) {
-    double stop = circuit->transient.present ? circuit->transient.stop : 1.0;
+    double stop = circuit->analyses.transient.present ? circuit->analyses.transient.stop : 1.0;
     struct dalcs_euler e;
     if (dalcs_euler_setup(&e, circuit, network, &options, stop / 7.0, stop) != DALCS_OK) {
         return;
     }
     e.listener.detects_jumps = true;
     enum dalcs_status status = dalcs_euler_operating_point(&e, true);
-    if (status == DALCS_OK || circuit->transient.use_initial_conditions) {
-        status = dalcs_euler_start(&e, circuit->transient.use_initial_conditions ? network->initial
-                                                                                 : NULL);
+    if (status == DALCS_OK || circuit->analyses.transient.use_initial_conditions) {
+        status = dalcs_euler_start(
+            &e, circuit->analyses.transient.use_initial_conditions ? network->initial : NULL);
     }
     for (int k = 0; k < 20 && status == DALCS_OK && !dalcs_grid_at_end(&e.grid); k++) {
         status = dalcs_euler_step(&e);
@@ -250,7 +250,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     require(netlist.has_errors == (diag.n_errors > 0));
     const enum dalcs_status status = dalcs_circuit_build(&circuit, &netlist, &diag);
     /* A script of .control may ask for the analysis, and --steady for one around .tran. */
-    const bool is_asked = netlist.n_script_lines > 0 || netlist.asks_steady;
+    const bool is_asked = netlist.commands.n > 0 || netlist.asks.steady;
     dalcs_netlist_finish(&netlist);
 
     require(status == (diag.n_errors > 0 ? DALCS_E_NETLIST : DALCS_OK));
