@@ -86,7 +86,7 @@ struct dalcs_builder_models {
     struct dalcs_names names; /* name -> index of model */
     struct dalcs_model *model;
     int n, capacity;
-    size_t switch_capacity; /* of circuit->switch_model */
+    size_t switch_capacity; /* of circuit->models.of_switch */
     int ideal_diode;        /* the model of diodes without one, -1 before the first */
     bool bipolar_is_switch; /* .options bjt=switch */
     struct dalcs_transistor_use *last_transistor; /* NULL: there is none */

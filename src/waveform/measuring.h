@@ -40,7 +40,7 @@ struct dalcs_measuring {
     struct dalcs_stretch stretch; /* to be filled */
     double (*values)[DALCS_STRETCH_NODES];
     int n;
-    struct dalcs_measured *item; /* [circuit->n_measures], those of other analyses unused */
+    struct dalcs_measured *item; /* [circuit->results.n_measures], those of other analyses unused */
     int n_harmonics;
     struct dalcs_harmonics *harmonics; /* one for each .four; in a .tran and a period */
     double *row, *row_imaginary;       /* [n_signals] the last one */
@@ -81,7 +81,7 @@ void dalcs_measuring_row(struct dalcs_measuring *m, double at, const double *re,
 /* After the last: what was still waited for. */
 enum dalcs_status dalcs_measuring_close(struct dalcs_measuring *m) DALCS_MUST_CHECK;
 
-/* Measurement k, which is late, with result[circuit->n_measures] of those before it: goes through the
+/* Measurement k, which is late, with result[circuit->results.n_measures] of those before it: goes through the
  * run again. False when a time has no value. */
 bool dalcs_measuring_late(struct dalcs_measuring *m, int k, const double *result);
 
