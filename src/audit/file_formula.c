@@ -55,15 +55,6 @@ static double tolerance_of(const struct file_audit *a, const struct file_row *ro
     return sum;
 }
 
-static double coefficient_of(const struct dalcs_affine *f, int pair) {
-    for (int k = 0; k < f->n; k++) {
-        if (f->term[k].kind == DALCS_QUANTITY_PAIR && f->term[k].index == pair) {
-            return f->term[k].coefficient;
-        }
-    }
-    return 0.0;
-}
-
 static void set_lambda(struct file_audit *a, int pair, double low, double high) {
     a->formulas.value[pair] = 0.5 * (low + high);
     a->formulas.error[pair] = 0.5 * (high - low);
@@ -84,8 +75,8 @@ static int solve_cell(struct file_audit *a, const struct file_row *row,
     *is_known = *is_known && argument.known;
     argument.value = -argument.value;
     argument.error += tolerance_of(a, row, &b->w[k]);
-    const double resistance = coefficient_of(&b->w[k], k);
-    const bool is_cell = k + 1 < b->n_pairs && coefficient_of(&b->w[k], k + 1) != 0.0;
+    const double resistance = dalcs_affine_of_pair(&b->w[k], k);
+    const bool is_cell = k + 1 < b->n_pairs && dalcs_affine_of_pair(&b->w[k], k + 1) != 0.0;
     const double height = is_cell ? b->w[k + 1].constant : INFINITY;
     const double low = argument.value - argument.error, high = argument.value + argument.error;
     set_lambda(a, k, lambda_at(low, resistance, height, false),

@@ -43,17 +43,8 @@ static struct response_sum evaluate(struct dalcs_response_audit *a,
     return sum;
 }
 
-static double coefficient_of(const struct dalcs_affine *f, int pair) {
-    for (int k = 0; k < f->n; k++) {
-        if (f->term[k].kind == DALCS_QUANTITY_PAIR && f->term[k].index == pair) {
-            return f->term[k].coefficient;
-        }
-    }
-    return 0.0;
-}
-
 static bool is_cell(const struct dalcs_behaviour *b, int k) {
-    return k + 1 < b->n_pairs && coefficient_of(&b->w[k], k + 1) != 0.0;
+    return k + 1 < b->n_pairs && dalcs_affine_of_pair(&b->w[k], k + 1) != 0.0;
 }
 
 /* ---- At the operating point ---------------------------------------------------------------------- */
@@ -68,7 +59,7 @@ static void find_cell(struct dalcs_response_audit *a, const struct dalcs_respons
     const struct response_sum sum = evaluate(a, at, &b->w[k], k, true);
     const double argument = -creal(sum.value) - b->w[k].constant;
     const double margin = a->tolerance * (sum.scale + fabs(b->w[k].constant));
-    const double resistance = coefficient_of(&b->w[k], k);
+    const double resistance = dalcs_affine_of_pair(&b->w[k], k);
     const double height = is_cell(b, k) ? b->w[k + 1].constant : INFINITY;
     const double top = resistance > 0.0 ? height * resistance : 0.0;
     const bool is_corner =
@@ -164,7 +155,8 @@ bool response_formula(struct dalcs_response_audit *a, const struct dalcs_respons
         const struct response_sum argument = evaluate(a, is, &b->w[k], k, false);
         const int n = is_cell(b, k) ? 2 : 1;
         for (int m = k; m < k + n; m++) {
-            const bool may_slide = coefficient_of(&b->w[k], k) == 0.0; /* a jump: then any lambda */
+            const bool may_slide =
+                dalcs_affine_of_pair(&b->w[k], k) == 0.0; /* a jump: then any lambda */
             if (isnan(slope[m]) && (argument.value != 0.0 || may_slide)) {
                 return false;
             }

@@ -41,6 +41,16 @@ struct dalcs_affine {
     } * term; /* [n] ascending by kind and index, none 0 */
 };
 
+/* The coefficient of a pair's current. */
+static inline double dalcs_affine_of_pair(const struct dalcs_affine *f, int pair) {
+    for (int k = 0; k < f->n; k++) {
+        if (f->term[k].kind == DALCS_QUANTITY_PAIR && f->term[k].index == pair) {
+            return f->term[k].coefficient;
+        }
+    }
+    return 0.0;
+}
+
 /* What B, and E and G with VALUE or TABLE, put out: a piecewise-linear function, with
  * 0 <= lambda_k _|_ w_k >= 0 for k = 0..n_pairs-1; or a smooth one. */
 struct dalcs_behaviour {

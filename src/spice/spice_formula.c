@@ -17,19 +17,9 @@ struct formula {
     const struct dalcs_behaviour *behaviour;
 };
 
-static double coefficient_of(const struct dalcs_affine *a, int pair) {
-    double coefficient = 0.0;
-    for (int k = 0; k < a->n; k++) {
-        if (a->term[k].kind == DALCS_QUANTITY_PAIR && a->term[k].index == pair) {
-            coefficient = a->term[k].coefficient;
-        }
-    }
-    return coefficient;
-}
-
 /* Is pair k the second of a saturation or a jump? */
 static bool is_second(const struct formula *f, int k) {
-    return k > 0 && coefficient_of(&f->behaviour->w[k - 1], k) != 0.0;
+    return k > 0 && dalcs_affine_of_pair(&f->behaviour->w[k - 1], k) != 0.0;
 }
 
 static bool has_second(const struct formula *f, int k) {
@@ -42,7 +32,7 @@ static bool has_node(const struct formula *f, int k) {
     bool asked = false;
     for (int j = 0; j < f->behaviour->n_pairs; j++) {
         asked = asked || (j != first && !(j == first + 1 && is_second(f, j)) &&
-                          coefficient_of(&f->behaviour->w[j], k) != 0.0);
+                          dalcs_affine_of_pair(&f->behaviour->w[j], k) != 0.0);
     }
     return asked;
 }
@@ -101,14 +91,14 @@ static void write_affine(const struct formula *f, const struct dalcs_affine *a, 
 static void write_kink(const struct formula *f, int k) {
     const struct dalcs_affine *w = &f->behaviour->w[k];
     fputs("max(", f->stream);
-    write_affine(f, w, -1.0 / coefficient_of(w, k), k, k);
+    write_affine(f, w, -1.0 / dalcs_affine_of_pair(w, k), k, k);
     fputs(", 0)", f->stream);
 }
 
 /* 0 <= lambda _|_ nu + resistance lambda - argument >= 0, 0 <= nu _|_ height - lambda >= 0 */
 static void write_saturation(const struct formula *f, int k) {
     const struct dalcs_affine *w = &f->behaviour->w[k];
-    const double height = f->behaviour->w[k + 1].constant, resistance = coefficient_of(w, k);
+    const double height = f->behaviour->w[k + 1].constant, resistance = dalcs_affine_of_pair(w, k);
     if (resistance == 0.0 && f->options->diode == DALCS_SPICE_STOCK) {
         dalcs_spice_write_number(f->stream, height);
         fputs("*u(", f->stream);
@@ -132,7 +122,8 @@ static void write_beyond(const struct formula *f, int k) {
     fputs("max(", f->stream);
     write_affine(f, w, -1.0, k, k + 1);
     fputs("-", f->stream);
-    dalcs_spice_write_number(f->stream, coefficient_of(w, k) * f->behaviour->w[k + 1].constant);
+    dalcs_spice_write_number(f->stream,
+                             dalcs_affine_of_pair(w, k) * f->behaviour->w[k + 1].constant);
     fputs(", 0)", f->stream);
 }
 
