@@ -114,6 +114,12 @@ void file_note_covered(struct file_audit *a) {
     }
 }
 
+/* Does as much flow into a set as out of it? */
+static void ask_set(struct file_audit *a, const struct file_row *row, int set) {
+    file_find_set(a, set, "A", fabs(a->sets.sum[set].value),
+                  a->sets.sum[set].error + a->sets.largest[set], row->t, row->t);
+}
+
 /* At rest sources alone feed a part that capacitors and current sources join to the rest, whatever the file says. Its
  * potential may be anything, and KCL at its nodes is held to a scale that grows with that. */
 static void check_islands(struct file_audit *a, const struct file_row *row) {
@@ -132,8 +138,7 @@ static void check_islands(struct file_audit *a, const struct file_row *row) {
     file_describe_sets(a, NULL);
     for (int n = 1; n < a->circuit->n_nodes; n++) {
         if (a->sets.count[n] > 0 && a->sets.sum[n].known) {
-            file_find_set(a, n, "A", fabs(a->sets.sum[n].value),
-                          a->sets.sum[n].error + a->sets.largest[n], row->t, row->t);
+            ask_set(a, row, n);
         }
     }
 }
@@ -150,8 +155,7 @@ void file_check_nodes(struct file_audit *a, const struct file_row *row) {
         a->coverage.is_checked[n] =
             n > 0 && a->sets.count[n] > 0 && a->sets.sum[n].known && a->sets.has_unspent[n];
         if (a->coverage.is_checked[n]) {
-            file_find_set(a, n, "A", fabs(a->sets.sum[n].value),
-                          a->sets.sum[n].error + a->sets.largest[n], row->t, row->t);
+            ask_set(a, row, n);
         }
     }
     file_note_covered(a);

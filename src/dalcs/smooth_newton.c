@@ -41,28 +41,6 @@ static const struct dalcs_smooth_input *input_of(const struct dalcs_smooth_newto
     return &newton->system->smooth[q % newton->system->n_smooth];
 }
 
-/* What of a function, or of its slope, counts; at 0 it may have none. */
-static double counted(const struct dalcs_smooth_newton *newton, double value) {
-    return newton->share == 0.0 ? 0.0 : newton->share * value;
-}
-
-static double rest_of(const struct dalcs_smooth_newton *newton, const struct dalcs_smooth_input *of,
-                      const double *x) {
-    return newton->share == 1.0
-               ? dalcs_smooth_rest(of, x)
-               : counted(newton, dalcs_smooth_value(of->kind, x)) -
-                     dalcs_smooth_line(of, 0) * x[0] - dalcs_smooth_line(of, 1) * x[1];
-}
-
-static void find_gradient_of_rest(const struct dalcs_smooth_newton *newton, int q, const double *x,
-                                  double *gradient) {
-    const struct dalcs_smooth_input *of = input_of(newton, q);
-    dalcs_smooth_finite_gradient(of, x, gradient);
-    for (int j = 0; j < 2; j++) {
-        gradient[j] = counted(newton, gradient[j]) - dalcs_smooth_line(of, j);
-    }
-}
-
 void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double (*x)[2]) {
     for (int q = 0; q < newton->n; q++) {
         newton->before[q] = newton->phi[q];
@@ -146,17 +124,19 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
     for (int q = 0; q < newton->n; q++) {
         const struct dalcs_smooth_input *of = input_of(newton, q);
         double gradient[2];
-        double f = counted(newton, dalcs_smooth_value(of->kind, newton->x[q]));
+        double f = dalcs_smooth_share(newton->share, dalcs_smooth_value(of->kind, newton->x[q]));
         dalcs_smooth_finite_gradient(of, newton->x[q], gradient);
         double least = tolerance * fabs(f);
         double most = least;
         for (int j = 0; j < of->n; j++) {
             bool is_read = of->column[j] >= 0;
-            double slope = fabs(counted(newton, gradient[j])) + fabs(dalcs_smooth_line(of, j));
+            double slope = fabs(dalcs_smooth_share(newton->share, gradient[j])) +
+                           fabs(dalcs_smooth_line(of, j));
             least += is_read ? dalcs_rounded * slope * fabs(newton->x[q][j]) : 0.0;
             most += is_read ? dalcs_answer_rounded * slope * newton->terms[q][j] : 0.0;
         }
-        double off = fabs(rest_of(newton, of, newton->x[q]) - newton->phi[q]);
+        double off =
+            fabs(dalcs_smooth_rest_of_share(of, newton->share, newton->x[q]) - newton->phi[q]);
         double ratio = over(off, most);
         newton->worst = ratio > worst ? q % newton->system->n_smooth : newton->worst;
         worst = ratio <= worst ? worst : ratio; /* NAN stays */
@@ -260,8 +240,8 @@ static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
         a[j] = dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
         newton->limits = newton->limits || a[j] != newton->x[q][j];
     }
-    find_gradient_of_rest(newton, q, a, gradient);
-    newton->step[q] = rest_of(newton, of, a) - newton->phi[q];
+    dalcs_smooth_gradient_of_rest(of, newton->share, a, gradient);
+    newton->step[q] = dalcs_smooth_rest_of_share(of, newton->share, a) - newton->phi[q];
     for (int j = 0; j < of->n; j++) {
         newton->step[q] += of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
     }
@@ -295,7 +275,7 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
 bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton) {
     for (int q = 0; q < newton->n; q++) {
         double gradient[2];
-        find_gradient_of_rest(newton, q, newton->x[q], gradient);
+        dalcs_smooth_gradient_of_rest(input_of(newton, q), newton->share, newton->x[q], gradient);
         put_row(newton, q, gradient);
     }
     return factor(newton);
@@ -306,7 +286,7 @@ void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const do
     for (int q = 0; q < newton->n; q++) {
         const struct dalcs_smooth_input *of = input_of(newton, q);
         double gradient[2];
-        find_gradient_of_rest(newton, q, newton->x[q], gradient);
+        dalcs_smooth_gradient_of_rest(input_of(newton, q), newton->share, newton->x[q], gradient);
         change[q] = 0.0;
         for (int j = 0; j < of->n; j++) {
             change[q] += of->column[j] >= 0 ? gradient[j] * dx[q][j] : 0.0;

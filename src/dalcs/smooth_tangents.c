@@ -11,9 +11,14 @@ double dalcs_smooth_line(const struct dalcs_smooth_input *of, int j) {
     return of->entry[j] != NULL ? -*of->entry[j] : 0.0;
 }
 
+double dalcs_smooth_rest_of_share(const struct dalcs_smooth_input *of, double share,
+                                  const double *x) {
+    return dalcs_smooth_share(share, dalcs_smooth_value(of->kind, x)) -
+           dalcs_smooth_line(of, 0) * x[0] - dalcs_smooth_line(of, 1) * x[1];
+}
+
 double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x) {
-    return dalcs_smooth_value(of->kind, x) - dalcs_smooth_line(of, 0) * x[0] -
-           dalcs_smooth_line(of, 1) * x[1];
+    return dalcs_smooth_rest_of_share(of, 1.0, x);
 }
 
 void dalcs_smooth_finite_gradient(const struct dalcs_smooth_input *of, const double *x,
@@ -25,11 +30,12 @@ void dalcs_smooth_finite_gradient(const struct dalcs_smooth_input *of, const dou
     }
 }
 
-void dalcs_smooth_gradient_of_rest(const struct dalcs_smooth_input *of, const double *x,
-                                   double *gradient) {
+void dalcs_smooth_gradient_of_rest(const struct dalcs_smooth_input *of, double share,
+                                   const double *x, double *gradient) {
     dalcs_smooth_finite_gradient(of, x, gradient);
-    gradient[0] -= dalcs_smooth_line(of, 0);
-    gradient[1] -= dalcs_smooth_line(of, 1);
+    for (int j = 0; j < 2; j++) {
+        gradient[j] = dalcs_smooth_share(share, gradient[j]) - dalcs_smooth_line(of, j);
+    }
 }
 
 /* The lines of the tangent at x; an argument that both read has one line. */

@@ -11,8 +11,16 @@ double dalcs_smooth_line(const struct dalcs_smooth_input *of, int j);
 void dalcs_smooth_finite_gradient(const struct dalcs_smooth_input *of, const double *x,
                                   double *gradient);
 
-void dalcs_smooth_gradient_of_rest(const struct dalcs_smooth_input *of, const double *x,
-                                   double *gradient);
+/* What of a function, or of its slope, counts; where none does it may have none. */
+static inline double dalcs_smooth_share(double share, double value) {
+    return share == 0.0 ? 0.0 : share * value;
+}
+
+/* As dalcs_smooth_rest(), of a function of which a share counts; and the slopes of that. */
+double dalcs_smooth_rest_of_share(const struct dalcs_smooth_input *of, double share,
+                                  const double *x);
+void dalcs_smooth_gradient_of_rest(const struct dalcs_smooth_input *of, double share,
+                                   const double *x, double *gradient);
 
 /* Does it have a value at x? */
 void dalcs_smooth_take_rest(const struct dalcs_smooth_input *of, const double *x, double *phi);

@@ -236,6 +236,7 @@ static void go_back(const struct dalcs_osnsp *p) {
 /* By a path of answers from functions that count nothing to those that count in full: a homotopy in an artificial
  * parameter (R. Melville et al., Artificial parameter homotopy methods for the DC operating point problem, 1993). */
 static enum dalcs_status follow(struct dalcs_osnsp *p, double *y, given_solve *solve) {
+    /* Of the first step; the others follow from what is found, so that it decides no answer. */
     static const double first = 0.125;
     struct dalcs_smooth_newton *n = p->smooth.newton;
     memset(n->phi, 0, (size_t)n->n * sizeof(*n->phi));
