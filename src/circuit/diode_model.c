@@ -110,6 +110,17 @@ static void note_limit(struct dalcs_builder *builder, const struct dalcs_paramet
     }
 }
 
+/* LTspice's idealised diode has Vrev; a BV beside it is read by nobody. */
+static void warn_of_breakdown(struct dalcs_builder *builder, const struct dalcs_parameter *bv,
+                              const struct dalcs_parameter *vrev) {
+    if (bv->place != NULL && isfinite(bv->value) && vrev->place == NULL) {
+        dalcs_builder_warn(builder, bv->place,
+                           dalcs_builder_hint(builder, "write Vrev=%g in place of it", bv->value),
+                           "an idealised diode (LTspice) breaks down at Vrev, not at '%s'",
+                           bv->name);
+    }
+}
+
 static bool set_ideal(struct dalcs_builder *builder, struct dalcs_parameter *p,
                       struct dalcs_diode_card *card, struct dalcs_diode_model *model) {
     if (p[DALCS_DIODE_RREV].place == NULL) {
@@ -205,6 +216,7 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
     if (ignored[0] != '\0') {
         dalcs_builder_note(builder, type, NULL, "an idealised diode (LTspice)%s", ignored);
     }
+    warn_of_breakdown(builder, &parameter[DALCS_DIODE_BV], &parameter[DALCS_DIODE_VREV]);
     if (is_block && parameter[DALCS_DIODE_ROFF].place == NULL) {
         dalcs_builder_note(builder, type, NULL,
                            "a sidiode follows LTspice's idealised diode here: without Roff it does "
