@@ -50,7 +50,19 @@ static double affine_value(const struct dalcs_audit *audit, const struct audit_p
     return sum;
 }
 
-/* Of a smooth function terms are what each argument's part of the gradient makes of its own. */
+/* What an argument's scale makes of a smooth function, by its tangent, or by what the function itself changes over the error
+ * that fails a run where that is less: a root near 0 is steep, and for no longer than it is near. */
+static double reach_of(const struct dalcs_audit *audit, const struct dalcs_smooth *smooth,
+                       const double *x, int k, double slope, double scale) {
+    const double failure = audit->options.failure;
+    const double by_slope = slope * scale;
+    if (by_slope <= fabs(dalcs_smooth_value(smooth->kind, x))) {
+        return by_slope;
+    }
+    return fmin(by_slope, dalcs_smooth_variation(smooth->kind, x, k, failure * scale) / failure);
+}
+
+/* Of a smooth function terms are what each argument makes of its own. */
 static double smooth_value(const struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *s, const struct dalcs_smooth *smooth,
                            double *size) {
@@ -71,15 +83,10 @@ static double smooth_value(const struct dalcs_audit *audit, const struct audit_p
     dalcs_smooth_gradient(smooth->kind, x, gradient);
     *size = fabs(value);
     for (int k = 0; k < smooth->n; k++) {
-        const bool is_read = smooth->node[k] >= 0 && isfinite(gradient[k]);
-        *size += is_read ? fabs(gradient[k]) * fmax(scale[k], fabs(x[k])) : 0.0;
-    }
-    if (isinf(
-            gradient
-                [0])) { /* a root of 0: rounding of what it is of makes of it what a difference tells */
-        const double beside[2] = {x[0] + AUDIT_ROUNDING * scale[0], x[1]};
-        const double differs = fabs(dalcs_smooth_value(smooth->kind, beside) - value);
-        *size += isfinite(differs) ? differs / AUDIT_ROUNDING : 0.0;
+        const double reach = fmax(scale[k], fabs(x[k]));
+        *size += smooth->node[k] >= 0 && !isnan(gradient[k])
+                     ? reach_of(audit, smooth, x, k, fabs(gradient[k]), reach)
+                     : 0.0;
     }
     return value;
 }

@@ -164,6 +164,18 @@ double dalcs_smooth_held(enum dalcs_smooth_kind kind, const double *x, double sl
     return fabs(x[0] - held) <= slack ? held : x[0];
 }
 
+double dalcs_smooth_variation(enum dalcs_smooth_kind kind, const double *x, int j, double off) {
+    const double here = dalcs_smooth_value(kind, x);
+    double most = 0.0;
+    for (int side = -1; side <= 1; side += 2) {
+        double moved[2] = {x[0], x[1]};
+        moved[j] += side * off;
+        const double differs = fabs(dalcs_smooth_value(kind, moved) - here);
+        most = isfinite(differs) && differs > most ? differs : most;
+    }
+    return most;
+}
+
 /* x^y by y; a power whose exponent is a number has no use for it. */
 static double by_exponent(double power, double x) {
     return power == 0.0 ? 0.0 : power * log(x);

@@ -61,6 +61,10 @@ void dalcs_smooth_gradient(enum dalcs_smooth_kind kind, const double *x, double 
  * error that is allowed, makes of a root of 0 none of a number below. */
 double dalcs_smooth_held(enum dalcs_smooth_kind kind, const double *x, double slack);
 
+/* How far f is from f(x) where argument j is off by no more than `off`, one way or the other; near an end of its domain, where
+ * a root is steep, that is far less than the tangent says. */
+double dalcs_smooth_variation(enum dalcs_smooth_kind kind, const double *x, int j, double off);
+
 /* Where Newton's method takes a function's tangent next, on the way from one argument to another: an exponential above 1
  * grows e-fold with each unit, and its tangent says nothing of what is more than one above. */
 double dalcs_smooth_tangent_point(enum dalcs_smooth_kind kind, double from, double to);

@@ -60,6 +60,18 @@ const struct dalcs_formula *dalcs_storage_formula_copy(struct dalcs_formula_writ
 const struct dalcs_formula *dalcs_storage_integral(struct dalcs_formula_writer *w,
                                                    const struct dalcs_formula *f);
 
+/* ---- storage_ends.c ------------------------------------------------------------------------------ */
+
+struct dalcs_storage_function;
+
+/* Where a smooth law begins to fall from 0 on in the direction of sign; 0: nowhere. It ends where it has no value. */
+double dalcs_storage_find_fall(const struct dalcs_builder *builder,
+                               const struct dalcs_storage_function *f, double sign);
+
+/* A smooth law that does not rise any more somewhere rises a little, and a note says how much. */
+void dalcs_storage_keep_slope(struct dalcs_formula_writer *w, const struct dalcs_token *place,
+                              bool is_flux, struct dalcs_storage_function *f);
+
 /* ---- storage_law.c ------------------------------------------------------------------------------- */
 
 /* The flux or charge as a function of one argument. */

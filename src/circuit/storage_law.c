@@ -160,29 +160,8 @@ static bool check_lines(struct dalcs_builder *builder, const struct dalcs_token 
     return true;
 }
 
-enum { DECADES = 9, PER_DECADE = 16 };
-
 /* Nearer to 0 than this part of an ampere or a volt no circuit is: a law that falls there falls from 0 on. */
 static const double NEAREST = 1e-8;
-
-/* Where a law begins to fall from 0 on in one direction; 0: nowhere. It ends where it has no value. */
-static double find_fall(const struct dalcs_builder *builder, const struct dalcs_storage_function *f,
-                        double sign) {
-    double before = raw_at(builder, f, 0);
-    for (int k = -DECADES * PER_DECADE; k <= DECADES * PER_DECADE; k++) {
-        const double x = sign * pow(10, (double)k / PER_DECADE);
-        const double value = raw_at(builder, f, x);
-        const double rise = sign * (value - before);
-        if (!isfinite(value)) {
-            return 0;
-        }
-        if (rise < -1e-12 * fmax(fabs(value), fabs(before))) {
-            return x;
-        }
-        before = value;
-    }
-    return 0;
-}
 
 /* The slope around 0 of a smooth law, wherever it has one. */
 static double find_unit(const struct dalcs_builder *builder,
@@ -211,7 +190,7 @@ static bool check_smooth(struct dalcs_builder *builder, const struct dalcs_token
         return false;
     }
     for (int k = 0; k < 2; k++) {
-        const double fall = find_fall(builder, f, k == 0 ? 1 : -1);
+        const double fall = dalcs_storage_find_fall(builder, f, k == 0 ? 1 : -1);
         if (fall != 0 && fabs(fall) < NEAREST) {
             dalcs_builder_error(builder, place, "it has to rise", "the %s falls %s a %s of 0",
                                 word->what, fall > 0 ? "above" : "below", word->of);
@@ -271,6 +250,18 @@ static bool integrate(struct dalcs_builder *builder, struct dalcs_formula_writer
     return ok;
 }
 
+/* What a smooth law does not choose has no part in it. False when out of memory. */
+static bool guard(struct dalcs_formula_writer *w, struct dalcs_storage_function *f) {
+    if (f->formula != NULL) {
+        const struct dalcs_formula *guarded = dalcs_formula_guard(&w->builder->scratch, f->formula);
+        f->formula = guarded != NULL
+                         ? dalcs_storage_formula_copy(w, NULL, guarded, variable(w), false)
+                         : NULL;
+        w->builder->out_of_memory = w->builder->out_of_memory || f->formula == NULL;
+    }
+    return !w->builder->out_of_memory;
+}
+
 /* The slope around 0 of lines, or else the steepest. */
 static double unit_of_lines(const struct dalcs_piecewise *f) {
     int base = 0;
@@ -297,7 +288,8 @@ bool dalcs_storage_function_make(struct dalcs_builder *builder, const struct dal
     }
     if (!law->is_curve) {
         f->formula = read(&w, card, law, m);
-        if (f->formula == NULL || (law->is_slope && !integrate(builder, &w, place, &word, f))) {
+        if (f->formula == NULL || (law->is_slope && !integrate(builder, &w, place, &word, f)) ||
+            !guard(&w, f)) {
             return false;
         }
     }
@@ -311,6 +303,9 @@ bool dalcs_storage_function_make(struct dalcs_builder *builder, const struct dal
     }
     f->unit = f->formula != NULL ? find_unit(builder, f) : unit_of_lines(&f->curve);
     f->at_0 = raw_at(builder, f, 0);
+    if (f->formula != NULL) {
+        dalcs_storage_keep_slope(&w, place, *word.unit == 'A', f);
+    }
     if (!(f->unit > 0)) {
         dalcs_builder_error(builder, place, "it has to rise", "the %s does not rise with the %s",
                             word.what, word.of);

@@ -116,6 +116,23 @@ static double over(double off, double size) {
     return off == 0.0 ? 0.0 : isfinite(size) ? off / size : INFINITY;
 }
 
+/* What argument j may be off by makes so much of the function; and of its line, which is no steeper than ten times the
+ * function there: a value on a steeper one is none of the function's. */
+static double excused_by(const struct dalcs_smooth_newton *newton, int q, int j, double slope,
+                         double tolerance) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const double *x = newton->x[q];
+    const double off = dalcs_answer_rounded * newton->terms[q][j];
+    const double line = fabs(dalcs_smooth_line(of, j));
+    double differs = slope * off;
+    if (!(differs <= tolerance * fabs(dalcs_smooth_value(of->kind, x)))) {
+        differs = dalcs_smaller(differs, dalcs_smooth_variation(of->kind, x, j, off));
+    }
+    differs = fabs(dalcs_smooth_share(newton->share, differs));
+    return differs + dalcs_smaller(line * off, dalcs_beyond * differs) +
+           dalcs_answer_rounded * line * fabs(x[j]);
+}
+
 bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double tolerance,
                                 bool *is_done) {
     double worst = 0.0;
@@ -133,7 +150,7 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
             double slope = fabs(dalcs_smooth_share(newton->share, gradient[j])) +
                            fabs(dalcs_smooth_line(of, j));
             least += is_read ? dalcs_rounded * slope * fabs(newton->x[q][j]) : 0.0;
-            most += is_read ? dalcs_answer_rounded * slope * newton->terms[q][j] : 0.0;
+            most += is_read ? excused_by(newton, q, j, fabs(gradient[j]), tolerance) : 0.0;
         }
         double off =
             fabs(dalcs_smooth_rest_of_share(of, newton->share, newton->x[q]) - newton->phi[q]);

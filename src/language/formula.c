@@ -99,6 +99,24 @@ void dalcs_formula_run(struct dalcs_formula_work *w, const struct dalcs_formula_
     }
 }
 
+/* As it is solved. A flux or a charge, of a variable, is integrated first where it is written by its slope. */
+static const struct dalcs_formula *rewrite(struct dalcs_formula_work *w,
+                                           const struct dalcs_formula *formula, bool is_transfer) {
+    struct dalcs_arena *arena = w->language->arena;
+    const enum dalcs_dialect_name dialect = w->language->netlist->dialect.name;
+    const bool takes_real_part = dialect == DALCS_DIALECT_LTSPICE || dialect == DALCS_DIALECT_XYCE;
+    const struct dalcs_formula *made =
+        is_transfer ? formula : dalcs_formula_signed_powers(arena, formula);
+    if (made != NULL && w->has_choices && w->variable == NULL) {
+        made = dalcs_formula_guard(arena, made);
+    }
+    if (made != NULL && w->variable == NULL && takes_real_part) {
+        made = dalcs_formula_real_part(arena, made);
+    }
+    w->language->out_of_memory = w->language->out_of_memory || made == NULL;
+    return made;
+}
+
 const struct dalcs_formula *dalcs_formula_make_of(struct dalcs_language *language,
                                                   struct dalcs_scope *scope,
                                                   const struct dalcs_token *token, int n,
@@ -126,14 +144,7 @@ const struct dalcs_formula *dalcs_formula_make_of(struct dalcs_language *languag
     const struct dalcs_formula_frame f = {expression, 0};
     dalcs_formula_run(&w, &f, 0, expression->n);
     const struct dalcs_formula *formula = w.failed ? NULL : w.stack[0];
-    if (formula != NULL && w.has_choices && variable == NULL) {
-        formula = dalcs_formula_guard(language, formula, w.n_parts);
-    }
-    const enum dalcs_dialect_name dialect = language->netlist->dialect.name;
-    if (formula != NULL && variable == NULL &&
-        (dialect == DALCS_DIALECT_LTSPICE || dialect == DALCS_DIALECT_XYCE)) {
-        formula = dalcs_formula_real_part(language, formula);
-    }
+    formula = formula != NULL ? rewrite(&w, formula, context.is_transfer) : NULL;
     free(w.stack);
     language->deck->has_errors = language->deck->has_errors || formula == NULL;
     return formula;

@@ -45,4 +45,15 @@ bool dalcs_formula_reads_value(const char *text);
 /* Where CONTROL= of a switch starts, whose formula makes the control; card->n when there is none. */
 int dalcs_formula_find_control(const struct dalcs_card *card);
 
+/* Formulas written differently, in the arena; NULL: out of memory. The first has pwrs(x, y) where it is sgn(x)*abs(x)^y. The
+ * second has values where parts are not chosen, too. The third has functions held in their domains, as in LTspice and Xyce,
+ * which take the real part beyond. */
+struct dalcs_arena;
+const struct dalcs_formula *dalcs_formula_signed_powers(struct dalcs_arena *arena,
+                                                        const struct dalcs_formula *formula);
+const struct dalcs_formula *dalcs_formula_guard(struct dalcs_arena *arena,
+                                                const struct dalcs_formula *formula);
+const struct dalcs_formula *dalcs_formula_real_part(struct dalcs_arena *arena,
+                                                    const struct dalcs_formula *formula);
+
 #endif

@@ -2,14 +2,15 @@
  *
  * Where a branch is chosen only where a quantity x is above a positive number c, x counts there as max(x, c/2), where it
  * divides or is the argument of a root, a logarithm or a power: the same function where it is chosen, and one with a
- * value elsewhere. Below a negative c it is min(x, c/2). Any number between 0 and c would do. Where it is chosen where |x|
- * is above c, n/x is n x / max(x^2, c^2/4).
+ * value elsewhere. Below a negative c it is min(x, c/2). Any number between 0 and c would do. A root and a power of what is
+ * above 0 begin there. Where it is chosen where |x| is above c, n/x is n x / max(x^2, c^2/4).
+ *
+ * In a branch that is chosen below c, exp(x) counts as exp(min(x, c + 1)): elsewhere it would grow without end, and a sum
+ * with it, of which it is taken away again, keeps no digit of the branch that is chosen.
  *
  * What is divided by a choice of numbers is a product with the choice of what is 1 over them: a product with steps has an
  * exact value, a quotient of what jumps would be found by Newton's method. */
-#include "language.h"
-
-#include "formula.h"
+#include "rewriting.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,73 +18,59 @@
 
 /* A quantity, as a branch sees it. */
 struct guard {
-    const struct dalcs_formula *quantity;
-    double bound;    /* above 0: it is larger; below 0: it is smaller */
-    bool is_of_size; /* its magnitude is larger than the bound */
+    const struct dalcs_formula *quantity; /* no sum or product with a number */
+    double limit;
+    bool is_above;   /* it is above the limit, else below */
+    bool is_of_size; /* its magnitude is above the limit, which is positive */
     const struct guard *outer;
 };
 
 struct guarding {
-    struct dalcs_arena *arena;
-    int n_parts;     /* the next number */
+    struct dalcs_rewriting r;
     size_t n_before; /* parts that have memo[] */
-    bool failed;     /* out of memory */
 };
 
-static bool is_same_name(const struct dalcs_token *a, const struct dalcs_token *b) {
-    return a == b || (a != NULL && b != NULL && strcmp(a->text, b->text) == 0);
-}
-
-static bool is_same(const struct dalcs_formula *a, const struct dalcs_formula *b) {
-    bool is = a == b;
-    if (!is && a->kind == b->kind && a->code == b->code && a->n == b->n &&
-        (a->kind != DALCS_FORMULA_NUMBER || a->number == b->number) &&
-        is_same_name(a->signal[0], b->signal[0]) && is_same_name(a->signal[1], b->signal[1]) &&
-        (a->kind != DALCS_FORMULA_CALL || strcmp(a->function, b->function) == 0)) {
-        is = true;
-        for (int k = 0; k < a->n && is; k++) {
-            is = is_same(a->argument[k], b->argument[k]);
-        }
-    }
-    return is;
-}
-
-static const struct guard *add_guard_of_size(struct guarding *g, const struct guard *outer,
-                                             const struct dalcs_formula *quantity, double bound) {
-    struct guard *guard = dalcs_arena_alloc(g->arena, 1, sizeof *guard);
+static const struct guard *add(struct guarding *g, struct guard what) {
+    struct guard *guard = dalcs_arena_alloc(g->r.arena, 1, sizeof *guard);
     if (guard == NULL) {
-        g->failed = true;
-        return outer;
+        g->r.failed = true;
+        return what.outer;
     }
-    *guard = (struct guard){quantity, bound, true, outer};
+    *guard = what;
     return guard;
+}
+
+/* Does its limit keep it away from 0? */
+static bool is_clear_of_0(const struct guard *guard) {
+    return guard->is_above ? guard->limit > 0 : guard->limit < 0;
 }
 
 static const struct guard *add_guard(struct guarding *g, const struct guard *outer,
                                      const struct dalcs_formula *quantity, double limit,
                                      bool is_above) {
-    if (quantity->kind == DALCS_FORMULA_NUMBER || !(is_above ? limit > 0 : limit < 0)) {
+    const struct dalcs_formula_line line = dalcs_formula_read_line(quantity);
+    struct guard what = {line.of, (limit - line.constant) / line.slope,
+                         is_above == (line.slope > 0), false, outer};
+    if (line.of->kind == DALCS_FORMULA_NUMBER || !isfinite(what.limit)) {
         return outer;
     }
-    struct guard *guard = dalcs_arena_alloc(g->arena, 1, sizeof *guard);
-    if (guard == NULL) {
-        g->failed = true;
-        return outer;
+    const struct guard *guard = add(g, what);
+    if (is_clear_of_0(&what) && what.is_above && dalcs_formula_is_call(line.of, "abs")) {
+        what = (struct guard){line.of->argument[0], what.limit, true, true, guard};
+        guard = add(g, what);
     }
-    *guard = (struct guard){quantity, 0.5 * limit, false, outer};
-    const bool is_size = is_above && quantity->kind == DALCS_FORMULA_CALL && quantity->n == 1 &&
-                         strcmp(quantity->function, "abs") == 0;
-    return is_size ? add_guard_of_size(g, guard, quantity->argument[0], 0.5 * limit) : guard;
+    return guard;
 }
 
 /* Of two that are known each in its own case: what is known in both. */
 static const struct guard *join_guards(struct guarding *g, const struct guard *outer,
                                        const struct guard *a, const struct guard *b) {
-    if (a == outer || b == outer || a->is_of_size || b->is_of_size ||
-        !is_same(a->quantity, b->quantity)) {
+    if (a == outer || b == outer || a->is_of_size || b->is_of_size || !is_clear_of_0(a) ||
+        !is_clear_of_0(b) || !dalcs_formula_is_same(a->quantity, b->quantity)) {
         return outer;
     }
-    return add_guard_of_size(g, outer, a->quantity, fmin(fabs(a->bound), fabs(b->bound)));
+    return add(
+        g, (struct guard){a->quantity, fmin(fabs(a->limit), fabs(b->limit)), true, true, outer});
 }
 
 /* What is known where a condition is true, or where it is not. */
@@ -131,42 +118,37 @@ static bool is_narrow(const struct dalcs_formula *f, int k) {
     return is;
 }
 
-/* A part as another one is, of other arguments; NULL: out of memory. */
-static struct dalcs_formula *make_like(struct guarding *g, const struct dalcs_formula *f, int n,
-                                       const struct dalcs_formula *const *argument) {
-    struct dalcs_formula *made = dalcs_arena_alloc(g->arena, 1, sizeof *made);
-    const struct dalcs_formula **list =
-        dalcs_arena_alloc(g->arena, (size_t)n + 1, sizeof(const struct dalcs_formula *));
-    if (made == NULL || list == NULL) {
-        g->failed = true;
-        return NULL;
-    }
-    for (int k = 0; k < n; k++) {
-        list[k] = argument[k];
-    }
-    *made = *f;
-    made->number_of = g->n_parts++;
-    made->n = n;
-    made->argument = list;
-    return made;
+/* Has a part a value at 0 of the argument that it has none below? */
+static bool begins_at_0(const struct dalcs_formula *f) {
+    const bool is_power =
+        dalcs_formula_is_operation(f, DALCS_POWER) || dalcs_formula_is_call(f, "pow");
+    return dalcs_formula_is_call(f, "sqrt") ||
+           (is_power && f->argument[1]->kind == DALCS_FORMULA_NUMBER && f->argument[1]->number > 0);
 }
 
 /* max(x, bound) or min(x, bound). */
 static const struct dalcs_formula *hold(struct guarding *g, const struct dalcs_formula *x,
-                                        double bound) {
-    struct dalcs_formula *number = make_like(g, x, 0, NULL);
-    if (number == NULL) {
-        return x;
+                                        double bound, bool is_above) {
+    const struct dalcs_formula *number = dalcs_rewriting_number(&g->r, x, bound);
+    const struct dalcs_formula *held =
+        dalcs_rewriting_call(&g->r, x, is_above ? "max" : "min", x, number);
+    return held != NULL ? held : x;
+}
+
+/* Argument k of a part, which is above or below a number in the branch where the part is: as it counts there. */
+static const struct dalcs_formula *held_argument(struct guarding *g, const struct dalcs_formula *f,
+                                                 int k, const struct dalcs_formula *x, double end,
+                                                 bool is_above) {
+    const bool is_narrow_there = is_narrow(f, k);
+    if (is_narrow_there && (is_above ? end > 0 : end < 0)) {
+        return hold(g, x, 0.5 * end, is_above);
     }
-    number->kind = DALCS_FORMULA_NUMBER;
-    number->number = bound;
-    struct dalcs_formula *held = make_like(g, x, 2, (const struct dalcs_formula *[]){x, number});
-    if (held == NULL) {
-        return x;
+    if (is_narrow_there && is_above && end == 0 && begins_at_0(f)) {
+        return hold(g, x, 0, true);
     }
-    held->kind = DALCS_FORMULA_CALL;
-    held->function = bound > 0 ? "max" : "min";
-    return held;
+    const bool grows_up = !is_above && dalcs_formula_is_call(f, "exp");
+    const bool grows = dalcs_formula_is_call(f, "sinh") || dalcs_formula_is_call(f, "cosh");
+    return grows_up || grows ? hold(g, x, is_above ? end - 1 : end + 1, is_above) : x;
 }
 
 static const struct dalcs_formula *rebuild(struct guarding *g, const struct dalcs_formula *f,
@@ -184,15 +166,21 @@ static const struct dalcs_formula *argument_of(struct guarding *g, const struct 
     if (known != guards) { /* in this branch parts have other values */
         const struct dalcs_formula **own =
             dalcs_alloc(g->n_before, sizeof(const struct dalcs_formula *));
-        g->failed = g->failed || own == NULL;
+        g->r.failed = g->r.failed || own == NULL;
         const struct dalcs_formula *made = own != NULL ? rebuild(g, x, known, own) : x;
         free(own);
         return made;
     }
     const struct dalcs_formula *made = rebuild(g, x, guards, memo);
-    for (const struct guard *at = guards; at != NULL && is_narrow(f, k); at = at->outer) {
-        if (!at->is_of_size && is_same(at->quantity, x)) {
-            return hold(g, made, at->bound);
+    const struct dalcs_formula_line line = dalcs_formula_read_line(x);
+    for (const struct guard *at = guards; at != NULL; at = at->outer) {
+        if (!at->is_of_size && dalcs_formula_is_same(at->quantity, line.of)) {
+            const struct dalcs_formula *held =
+                held_argument(g, f, k, made, line.slope * at->limit + line.constant,
+                              at->is_above == (line.slope > 0));
+            if (held != made) {
+                return held;
+            }
         }
     }
     return made;
@@ -209,24 +197,17 @@ static bool is_choice_of_numbers(const struct dalcs_formula *f) {
 /* 1 over such a choice; NULL: out of memory. */
 static const struct dalcs_formula *reciprocal(struct guarding *g, const struct dalcs_formula *f) {
     if (f->kind == DALCS_FORMULA_NUMBER) {
-        struct dalcs_formula *number = make_like(g, f, 0, NULL);
-        if (number != NULL) {
-            number->number = 1 / f->number;
-        }
-        return number;
+        return dalcs_rewriting_number(&g->r, f, 1 / f->number);
     }
     const struct dalcs_formula *argument[3] = {f->argument[0], reciprocal(g, f->argument[1]),
                                                reciprocal(g, f->argument[2])};
-    return g->failed ? NULL : make_like(g, f, 3, argument);
+    return g->r.failed ? NULL : dalcs_rewriting_like(&g->r, f, 3, argument);
 }
 
 static const struct dalcs_formula *multiply(struct guarding *g, const struct dalcs_formula *f,
                                             const struct dalcs_formula *a,
                                             const struct dalcs_formula *b) {
-    struct dalcs_formula *made = make_like(g, f, 2, (const struct dalcs_formula *[]){a, b});
-    if (made != NULL) {
-        made->code = DALCS_MULTIPLY;
-    }
+    const struct dalcs_formula *made = dalcs_rewriting_product(&g->r, f, a, b);
     return made != NULL ? made : a;
 }
 
@@ -235,10 +216,10 @@ static bool divide_by_size(struct guarding *g, const struct dalcs_formula *f,
                            const struct guard *guards, const struct dalcs_formula **argument) {
     const bool divides = f->kind == DALCS_FORMULA_OPERATION && f->code == DALCS_DIVIDE;
     for (const struct guard *at = guards; at != NULL && divides; at = at->outer) {
-        if (at->is_of_size && is_same(at->quantity, f->argument[1])) {
+        if (at->is_of_size && dalcs_formula_is_same(at->quantity, f->argument[1])) {
             const struct dalcs_formula *x = argument[1];
             argument[0] = multiply(g, f, argument[0], x);
-            argument[1] = hold(g, multiply(g, f, x, x), at->bound * at->bound);
+            argument[1] = hold(g, multiply(g, f, x, x), 0.25 * at->limit * at->limit, true);
             return true;
         }
     }
@@ -257,7 +238,7 @@ static const struct dalcs_formula *with_arguments(struct guarding *g, const stru
         argument[1] = reciprocal(g, argument[1]);
     }
     struct dalcs_formula *made =
-        (is_new || divides) && !g->failed ? make_like(g, f, f->n, argument) : NULL;
+        (is_new || divides) && !g->r.failed ? dalcs_rewriting_like(&g->r, f, f->n, argument) : NULL;
     if (made != NULL && divides) {
         made->code = DALCS_MULTIPLY;
     }
@@ -268,32 +249,31 @@ static const struct dalcs_formula *rebuild(struct guarding *g, const struct dalc
                                            const struct guard *guards,
                                            const struct dalcs_formula **memo) {
     const struct dalcs_formula **known = &memo[f->number_of];
-    if (f->n == 0 || *known != NULL || g->failed) {
+    if (f->n == 0 || *known != NULL || g->r.failed) {
         return *known != NULL ? *known : f;
     }
     const struct dalcs_formula **argument =
         dalcs_alloc((size_t)f->n, sizeof(const struct dalcs_formula *));
     bool is_new = false;
-    g->failed = g->failed || argument == NULL;
-    for (int k = 0; k < f->n && !g->failed; k++) {
+    g->r.failed = g->r.failed || argument == NULL;
+    for (int k = 0; k < f->n && !g->r.failed; k++) {
         argument[k] = argument_of(g, f, k, guards, memo);
         is_new = is_new || argument[k] != f->argument[k];
     }
-    is_new = (!g->failed && divide_by_size(g, f, guards, argument)) || is_new;
-    *known = g->failed ? f : with_arguments(g, f, argument, is_new);
+    is_new = (!g->r.failed && divide_by_size(g, f, guards, argument)) || is_new;
+    *known = g->r.failed ? f : with_arguments(g, f, argument, is_new);
     free(argument);
     return *known;
 }
 
-const struct dalcs_formula *dalcs_formula_guard(struct dalcs_language *language,
-                                                const struct dalcs_formula *formula, int n_parts) {
-    struct guarding g = {
-        .arena = language->arena, .n_parts = n_parts, .n_before = (size_t)formula->number_of + 1};
+const struct dalcs_formula *dalcs_formula_guard(struct dalcs_arena *arena,
+                                                const struct dalcs_formula *formula) {
+    struct guarding g = {.r = {.arena = arena, .n_parts = formula->number_of + 1},
+                         .n_before = (size_t)formula->number_of + 1};
     const struct dalcs_formula **memo =
         dalcs_alloc(g.n_before, sizeof(const struct dalcs_formula *));
-    g.failed = memo == NULL;
+    g.r.failed = memo == NULL;
     const struct dalcs_formula *made = memo != NULL ? rebuild(&g, formula, NULL, memo) : formula;
     free(memo);
-    language->out_of_memory = language->out_of_memory || g.failed;
-    return made;
+    return g.r.failed ? NULL : made;
 }

@@ -222,14 +222,6 @@ bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n);
 /* The same of LAPLACE: what is an expression of s. */
 bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n);
 
-/* The same formula, whose parts have values where they are not chosen, too: n_parts are made. */
-const struct dalcs_formula *dalcs_formula_guard(struct dalcs_language *language,
-                                                const struct dalcs_formula *formula, int n_parts);
-
-/* A formula with functions held in their domains: as in LTspice and Xyce, which take the real part beyond. */
-const struct dalcs_formula *dalcs_formula_real_part(struct dalcs_language *language,
-                                                    const struct dalcs_formula *formula);
-
 /* The formula of token[0..n-1]; NULL when an error was reported or out of memory. */
 const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
                                                struct dalcs_scope *scope,

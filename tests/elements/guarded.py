@@ -109,6 +109,39 @@ def averaged(checker, program):
             checker.close(done.column("v(out)")[0], averaged_buck(vin, ohms, gain, coil, volts), 1e-9 * vin, name)
 
 
+SIGNED = ("sgn(v(a))*{k}*abs(v(a))**{p}", "{k}*sgn(2*v(a))*pow(abs(v(a)),{p})", "if(v(a)>0,{k}*pow(v(a),{p}),-{k}*pow(-v(a),{p}))",
+          "v(a)<0 ? -{k}*(-v(a))**{p} : {k}*v(a)**{p}", "{k}*pwrs(v(a),{p})", "0 <= v(a) ? {k}*abs(v(a))**{p} : -({k}*abs(v(a))**{p})")
+ROOTS = ("{k}*sgn(v(a))*sqrt(abs(v(a)))", "-sgn(-v(a))*sqrt({k}*{k}*abs(v(a)))", "if(v(a)>=0,{k}*sqrt(v(a)),-{k}*sqrt(-v(a)))")
+
+
+def signed_powers(checker, program):
+    """Roots and powers with the sign of what they are of, as flow through an orifice is written: behind a resistance, and
+    from a current."""
+    for volts, k, ohms, power in ((10, 0.05, 10, 0.5), (1e3, 2e-3, 470, 0.5), (5, 0.3, 1, 1.5), (0.1, 4, 0.02, 0.7)):
+        for form in SIGNED + (ROOTS if power == 0.5 else ()):
+            law = form.format(k=k, p=power)
+            done = run_cards(program, law, [f"v1 in 0 sin(0 {volts} 50)", f"r1 in a {ohms}", f"b1 a 0 i={law}", f"i2 0 b sin(0 {volts / ohms!r} 50)",
+                                            f"b2 b 0 i={law.replace('v(a)', 'v(b)')}", ".tran 0.37m 19m"])
+            if runs(checker, done, law):
+                for v, out, b in zip(*(done.column(n) for n in ("v(in)", "v(a)", "v(b)"))):
+                    checker.close(out + ohms * k * math.copysign(abs(out) ** power, out), v, 1e-8 * volts, f"{law} at {v} V")
+                    checker.close(ohms * k * math.copysign(abs(b) ** power, b), v, 1e-8 * volts, f"{law} of a current, at {v} V")
+
+
+def growing(checker, program):
+    """An exponential that grows without end where it is not chosen is no part of what is."""
+    for s in (1, 1e-3, 40):
+        for form, wanted in ((f"if(v(x)>0,1-exp(-v(x)/{s}),exp(v(x)/{s})-1)", lambda x: math.copysign(-math.expm1(-abs(x)), x)),
+                             (f"v(x)-{s} < 0 ? exp((v(x)+{s})/{s}) : 7", lambda x: math.exp(x + 1) if x < 1 else 7),
+                             (f"if(v(x)<{0.5 * s},sinh(v(x)/{s}/8),2)", lambda x: math.sinh(x / 8) if x < 0.5 else 2)):
+            done = run_cards(program, form, [f"v1 x 0 pwl(0 {-80 * s} 1 {80 * s})", f"b1 o 0 v={form}", "r1 o 0 1", ".tran 0.0131 1"])
+            if runs(checker, done, form):
+                largest = max(abs(wanted(x / s)) for x in done.column("v(x)"))
+                for x, o in zip(done.column("v(x)"), done.column("v(o)")):
+                    if min(abs(x / s - c) for c in (0, 0.5, 1)) > 1e-6:
+                        checker.close(o, wanted(x / s), 1e-9 * largest, f"{form} at {x} V")
+
+
 def still_wrong(checker, program):
     """What a condition does not exclude is said as before."""
     for form in ("1/v(x)", "if(v(x) > -1, 1/v(x), 0)", "if(v(y) > 1, 1/v(x), 0)", "if(v(x) > 0, 0, sqrt(v(x)))"):
@@ -119,7 +152,7 @@ def still_wrong(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("guarded")
-    for part in (functions, loads, roots, averaged, still_wrong):
+    for part in (functions, loads, roots, averaged, signed_powers, growing, still_wrong):
         part(checker, program)
     return checker.finish()
 

@@ -1,0 +1,170 @@
+/* rewriting.c - parts of formulas that stand for others. */
+#include "rewriting.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_same_name(const struct dalcs_token *a, const struct dalcs_token *b) {
+    return a == b || (a != NULL && b != NULL && strcmp(a->text, b->text) == 0);
+}
+
+bool dalcs_formula_is_same(const struct dalcs_formula *a, const struct dalcs_formula *b) {
+    bool is = a == b;
+    if (!is && a->kind == b->kind && a->code == b->code && a->n == b->n &&
+        (a->kind != DALCS_FORMULA_NUMBER || a->number == b->number) &&
+        is_same_name(a->signal[0], b->signal[0]) && is_same_name(a->signal[1], b->signal[1]) &&
+        (a->kind != DALCS_FORMULA_CALL || strcmp(a->function, b->function) == 0)) {
+        is = true;
+        for (int k = 0; k < a->n && is; k++) {
+            is = dalcs_formula_is_same(a->argument[k], b->argument[k]);
+        }
+    }
+    return is;
+}
+
+bool dalcs_formula_is_call(const struct dalcs_formula *f, const char *name) {
+    return f->kind == DALCS_FORMULA_CALL && strcmp(f->function, name) == 0;
+}
+
+bool dalcs_formula_is_operation(const struct dalcs_formula *f, enum dalcs_operation_code code) {
+    return f->kind == DALCS_FORMULA_OPERATION && f->code == code;
+}
+
+static bool is_number(const struct dalcs_formula *f) {
+    return f->kind == DALCS_FORMULA_NUMBER;
+}
+
+/* One operation with a number, taken off the outside; false: there is none. */
+static bool take_off(struct dalcs_formula_line *line) {
+    const struct dalcs_formula *f = line->of;
+    const struct dalcs_formula *a = f->n > 0 ? f->argument[0] : NULL;
+    const struct dalcs_formula *b = f->n > 1 ? f->argument[1] : NULL;
+    const bool is_sum = dalcs_formula_is_operation(f, DALCS_ADD);
+    const bool is_product = dalcs_formula_is_operation(f, DALCS_MULTIPLY);
+    double factor = 1.0;
+    double shift = 0.0;
+    if (dalcs_formula_is_operation(f, DALCS_NEGATE)) {
+        factor = -1.0;
+        line->of = a;
+    } else if ((is_sum || is_product) && (is_number(a) || is_number(b))) {
+        const double number = is_number(b) ? b->number : a->number;
+        factor = is_product ? number : 1.0;
+        shift = is_sum ? number : 0.0;
+        line->of = is_number(b) ? a : b;
+    } else if (dalcs_formula_is_operation(f, DALCS_SUBTRACT) && (is_number(a) || is_number(b))) {
+        factor = is_number(b) ? 1.0 : -1.0;
+        shift = is_number(b) ? -b->number : a->number;
+        line->of = is_number(b) ? a : b;
+    } else if (dalcs_formula_is_operation(f, DALCS_DIVIDE) && is_number(b)) {
+        factor = 1.0 / b->number;
+        line->of = a;
+    }
+    if (factor == 0.0 || !isfinite(factor)) {
+        line->of = f;
+    }
+    if (line->of != f) {
+        line->constant += line->slope * shift;
+        line->slope *= factor;
+    }
+    return line->of != f;
+}
+
+struct dalcs_formula_line dalcs_formula_read_line(const struct dalcs_formula *f) {
+    struct dalcs_formula_line line = {f, 1.0, 0.0};
+    while (take_off(&line)) {
+    }
+    return line;
+}
+
+struct dalcs_formula *dalcs_rewriting_like(struct dalcs_rewriting *r, const struct dalcs_formula *f,
+                                           int n, const struct dalcs_formula *const *argument) {
+    struct dalcs_formula *made = dalcs_arena_alloc(r->arena, 1, sizeof *made);
+    const struct dalcs_formula **list =
+        dalcs_arena_alloc(r->arena, (size_t)n + 1, sizeof(const struct dalcs_formula *));
+    if (made == NULL || list == NULL) {
+        r->failed = true;
+        return NULL;
+    }
+    for (int k = 0; k < n; k++) {
+        list[k] = argument[k];
+    }
+    *made = *f;
+    made->number_of = r->n_parts++;
+    made->n = n;
+    made->argument = list;
+    return made;
+}
+
+struct dalcs_formula *dalcs_rewriting_number(struct dalcs_rewriting *r,
+                                             const struct dalcs_formula *f, double value) {
+    struct dalcs_formula *number = dalcs_rewriting_like(r, f, 0, NULL);
+    if (number != NULL) {
+        number->kind = DALCS_FORMULA_NUMBER;
+        number->number = value;
+    }
+    return number;
+}
+
+struct dalcs_formula *dalcs_rewriting_call(struct dalcs_rewriting *r, const struct dalcs_formula *f,
+                                           const char *function, const struct dalcs_formula *a,
+                                           const struct dalcs_formula *b) {
+    struct dalcs_formula *call =
+        a != NULL && b != NULL
+            ? dalcs_rewriting_like(r, f, 2, (const struct dalcs_formula *[]){a, b})
+            : NULL;
+    if (call != NULL) {
+        call->kind = DALCS_FORMULA_CALL;
+        call->function = function;
+    }
+    return call;
+}
+
+struct dalcs_formula *dalcs_rewriting_product(struct dalcs_rewriting *r,
+                                              const struct dalcs_formula *f,
+                                              const struct dalcs_formula *a,
+                                              const struct dalcs_formula *b) {
+    struct dalcs_formula *product =
+        a != NULL && b != NULL
+            ? dalcs_rewriting_like(r, f, 2, (const struct dalcs_formula *[]){a, b})
+            : NULL;
+    if (product != NULL) {
+        product->kind = DALCS_FORMULA_OPERATION;
+        product->code = DALCS_MULTIPLY;
+    }
+    return product;
+}
+
+static const struct dalcs_formula *rebuild(struct dalcs_rewriting *r, const struct dalcs_formula *f,
+                                           const struct dalcs_formula **memo,
+                                           dalcs_rewriting_change *change) {
+    if (f->n == 0 || memo[f->number_of] != NULL || r->failed) {
+        return f->n == 0 || r->failed ? f : memo[f->number_of];
+    }
+    const struct dalcs_formula **argument =
+        dalcs_alloc((size_t)f->n, sizeof(const struct dalcs_formula *));
+    bool is_new = false;
+    r->failed = argument == NULL;
+    for (int k = 0; k < f->n && !r->failed; k++) {
+        argument[k] = rebuild(r, f->argument[k], memo, change);
+        is_new = is_new || argument[k] != f->argument[k];
+    }
+    const struct dalcs_formula *made =
+        is_new && !r->failed ? dalcs_rewriting_like(r, f, f->n, argument) : f;
+    free(argument);
+    const struct dalcs_formula *changed = made != NULL && !r->failed ? change(r, made) : NULL;
+    memo[f->number_of] = changed != NULL ? changed : f;
+    return memo[f->number_of];
+}
+
+const struct dalcs_formula *dalcs_formula_rewrite(struct dalcs_arena *arena,
+                                                  const struct dalcs_formula *formula,
+                                                  dalcs_rewriting_change *change) {
+    struct dalcs_rewriting r = {.arena = arena, .n_parts = formula->number_of + 1};
+    const struct dalcs_formula **memo =
+        dalcs_alloc((size_t)r.n_parts, sizeof(const struct dalcs_formula *));
+    r.failed = memo == NULL;
+    const struct dalcs_formula *made = memo != NULL ? rebuild(&r, formula, memo, change) : formula;
+    free(memo);
+    return r.failed ? NULL : made;
+}
