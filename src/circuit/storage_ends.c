@@ -1,7 +1,8 @@
 /* storage_ends.c - smooth laws of flux and charge that fall, or do not rise any more, from some argument on.
  *
- * Where one is flat, as a tanh, the state tells nothing of the argument: what a coil carries is known from the derivative of a flux that rounding
- * holds, and in a step of length h the rounding of that flux over h is a voltage. So a slope is left. */
+ * Where one is flat, as a tanh, the state tells nothing of the argument: what a coil carries is known from the
+ * derivative of a flux that rounding holds, and in a step of length h the rounding of that flux over h is a voltage. So a
+ * slope is left. */
 #include "formula_writer.h"
 #include "storage.h"
 
