@@ -103,6 +103,18 @@ R1 out 0 5
 .end
 """
 
+BULK = """a buck converter whose high side has its bulk on ground
+V1 in 0 12
+VG g s PULSE(0 10 1u 20n 20n 10u 25u)
+M1 in g s 0 MX
+L1 s out 100u
+C1 out 0 10u
+R1 out 0 5
+.model MX NMOS(Level=1 Vto=2 Kp=20u W=1 L=2u)
+.tran 0.1u 1m 0 20n
+.end
+"""
+
 HALF_BRIDGE = """two VDMOS with dead times
 V1 in 0 48
 VH gh s PULSE(0 12 1u 20n 20n 4u 10u)
@@ -346,6 +358,7 @@ def main():
                 compare(checker, program, netlist, ["v(out)"], 2e-3, 4e-3)
         compare(checker, program, LOW_SIDE, ["v(d)", "i(l1)"], 100e-6, 0.03)
         compare(checker, program, HIGH_SIDE, ["v(out)", "i(l1)"], 1e-3, 0.03)
+        compare(checker, program, BULK, ["v(out)", "i(l1)"], 1e-3, 0.03)
         compare(checker, program, HALF_BRIDGE, ["v(x)", "i(l1)"], 100e-6, 0.03)
         compare(checker, program, DIGITAL, [f"v(a{x})" for x in ("q", "nq", "j", "t", "g", "x")], 800e-9, 2e-2)
         compare(checker, program, GATES, [f"v({x}{k})" for x, n in (("a", 9), ("b", 5)) for k in range(1, n + 1)] + ["v(u)", "v(d0)"],
