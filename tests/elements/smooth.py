@@ -240,6 +240,9 @@ def check_refusals(checker, program, method):
         says = words if words != "not a smooth function" else "steps without end"
         checker.check(result.status == status and says in result.stderr and "1 " in result.stderr,
                       f"{words}: exit {result.status}: {result.stderr}")
+    netlist = "an initial voltage that a formula holds\nv1 a 0 5\nb1 x 0 v=1.25-1.25*tanh(1e4*v(a))\nc1 x 0 1u\n.ic v(x)=0\n.tran 1u 1m\n"
+    result = run(program, netlist, method=method)
+    checker.check(result.status == 1 and "give .ic another voltage there, or none" in result.stderr, f"held: {result.stderr}")
     netlist = "it ends\nc1 x 0 1 ic=1\nb1 0 x i=v(x)*v(x)\n.tran 10m 2 uic\n"
     result = run(program, netlist, method=method, at=[0.5, 0.9])
     checker.check(result.status == 1, f"x' = x^2 beyond t = 1: exit {result.status}: {result.stderr}")
