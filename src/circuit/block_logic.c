@@ -177,6 +177,12 @@ static void parse_flip_flop(struct dalcs_block_card *c, enum dalcs_logic_kind ki
                         : "a flip-flop is: Aname j k clock set reset q complement model")) {
         return;
     }
+    const char *delay = kind == DALCS_GATE_DATA_LATCH ? "data_delay" : "sr_delay";
+    const double data = dalcs_block_number(c->block, delay, usual_delay);
+    if (is_latch && dalcs_block_number(c->block, "enable_delay", data) != data) {
+        dalcs_builder_warn(c->builder, dalcs_block_find(c->block, "enable_delay")->name,
+                           "give both the same value", "%s is the delay of the enable, too", delay);
+    }
     add_flip_flop(c, kind, 0);
     add_flip_flop(c, kind, 1);
 }

@@ -123,8 +123,10 @@ void dalcs_block_parse_integrator(const struct dalcs_block_card *c) {
     const double gain = dalcs_block_number(c->block, "gain", 1);
     const double first = fmin(fmax(dalcs_block_number(c->block, "out_ic", 0), low), high);
     const double offset = dalcs_block_number(c->block, "in_offset", 0);
-    if (gain == 0) {
-        dalcs_builder_error(c->builder, c->block->type, NULL, "the gain of an integrator is not 0");
+    if (gain == 0) { /* a controller without that part */
+        const struct dalcs_block_end *out = &c->port[1].end[0];
+        (void)dalcs_block_add_constant(c, DALCS_VSOURCE, "constant",
+                                       (int[]){out->node, out->reference}, first);
         return;
     }
     const double farad = dalcs_charging / fabs(gain);

@@ -172,9 +172,12 @@ static void refuse_block(struct dalcs_builder *builder, const struct dalcs_card 
     const char *name = card->token->text;
     const struct dalcs_token *last = function_of(card);
     builder->hidden |= DALCS_HIDDEN_ELEMENTS;
+    const bool is_switch = type != NULL && strstr(type->text, "sw") != NULL;
     if (type != NULL) {
         dalcs_builder_error(
-            builder, card->token, "write it with B sources, switches, gates or other code models",
+            builder, card->token,
+            is_switch ? "a switch is: Sname node node control control model"
+                      : "write it with B sources, switches, gates or other code models",
             "'%s' is an A element with a model of type %s, which dalcs does not have", name,
             type->text);
     } else if (dalcs_builder_is_one_of(last->text, functions, n)) {

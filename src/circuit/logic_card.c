@@ -50,7 +50,7 @@ struct card {
     const struct function *function;
     struct dalcs_logic_card *of;
     int node[N_PINS];
-    bool is_schmitt;
+    bool is_schmitt, reads_common;
     double lower, upper; /* V, of a sample */
     struct dalcs_parameter p[N_PARAMETERS];
 };
@@ -208,7 +208,7 @@ static void take_parameters(struct card *c) {
 /* ---- Pins ------------------------------------------------------------------------------------------------ */
 
 /* Pins that mean nothing for this function, which LTspice ignores, too, and inputs that it must have. */
-static bool check_pins(struct dalcs_builder *builder, const struct card *c) {
+static bool check_pins(struct dalcs_builder *builder, struct card *c) {
     const struct dalcs_token *name = c->card->token;
     const unsigned may = c->function->pins | (c->is_schmitt ? 2U : 0U);
     int n = 0;
@@ -223,9 +223,15 @@ static bool check_pins(struct dalcs_builder *builder, const struct card *c) {
             n -= pin < DALCS_GATE_PINS;
         }
     }
-    if (n == 0) {
+    /* A call may have put all ports of a subcircuit that it reads on com: then its input is that voltage. */
+    if (n == 0 && strchr(name->text, '.') == NULL) {
         dalcs_builder_error(builder, name, USAGE, "no input of '%s' is wired", name->text);
         return false;
+    }
+    if (n == 0) {
+        dalcs_builder_warn(builder, name, NULL, "all inputs of '%s' are on com: they are low",
+                           name->text);
+        c->reads_common = true;
     }
     return true;
 }
@@ -280,8 +286,9 @@ static void take_pins(struct dalcs_builder *builder, struct card *c) {
         of->pin[pin] = (struct dalcs_logic_pin){
             .is_wired = is_wired(c, pin), .node = c->node[pin], .reference = common};
     }
+    of->pin[0].is_wired = of->pin[0].is_wired || (c->reads_common && !is_sample);
     if (c->is_schmitt) {
-        of->pin[0].is_wired = is_wired(c, 0) || is_wired(c, 1);
+        of->pin[0].is_wired = is_wired(c, 0) || is_wired(c, 1) || c->reads_common;
         of->pin[0].reference = c->node[1];
         of->pin[1].is_wired = false;
     }

@@ -73,8 +73,13 @@ static void add_name(struct dalcs_signal_compilation *c, const struct dalcs_expr
         step.index = result;
     } else if (strcmp(o->u.name, rules->variable) == 0 && rules->no_signals == NULL) {
         step.push = DALCS_PUT_TIME;
-    } else if (!dalcs_deck_parameter(c->builder->deck, o->u.name, &step.number) &&
-               !dalcs_constant_find(o->u.name, &step.number)) {
+    } else if (dalcs_deck_parameter(c->builder->deck, o->u.name, &step.number) ||
+               dalcs_constant_find(o->u.name, &step.number)) {
+        step.push = DALCS_PUT_VALUE;
+    } else if (strcmp(o->u.name, "freq") == 0 && strcmp(rules->variable, "frequency") == 0 &&
+               rules->no_signals == NULL) { /* LTspice's name for it, where no parameter has it */
+        step.push = DALCS_PUT_TIME;
+    } else {
         report(c, e, o, hint_for_name(c, o->u.name),
                rules->results != NULL ? "there is no parameter and no earlier measurement '%s'"
                                       : "there is no parameter '%s'",

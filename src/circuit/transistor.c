@@ -1,6 +1,7 @@
 /* transistor.c - M, Z and Q elements: MOSFETs, IGBTs and bipolar transistors as switches.
  *
- *     MOSFET    a switch between drain and source that v(gate, source) commands, and a body diode across it
+ *     MOSFET    a switch between drain and source that v(gate, source) commands, and a body diode across it; where
+ *               the bulk is elsewhere a diode from there to each, and the channel backwards from its threshold on
  *     IGBT      a diode with the knee Vce0 in series with a switch, and a diode across both where the card has one
  *     bipolar   a switch between collector and emitter, and a diode from base to emitter: only with .options bjt=switch
  *
@@ -208,6 +209,47 @@ static bool add_knee(struct dalcs_builder *builder, const struct dalcs_transisto
     return true;
 }
 
+/* One more diode; its direction is that of an n channel. */
+static struct dalcs_device *add_other(struct dalcs_builder *builder,
+                                      const struct dalcs_transistor_use *use, const char *what,
+                                      int from, int to) {
+    struct dalcs_device *diode =
+        dalcs_builder_add_inner_device(builder, DALCS_DIODE, what, use->name);
+    if (diode != NULL) {
+        diode->node[0] = use->of->is_p ? to : from;
+        diode->node[1] = use->of->is_p ? from : to;
+    }
+    return diode;
+}
+
+/* The bulk is not on the source: then the channel has two ends that are alike. While the gate is at the source it conducts
+ * backwards from v(source, drain) = Vto on, as one whose gate is at its drain. */
+static bool add_bulk(struct dalcs_builder *builder, struct dalcs_transistor_use *use) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    const struct dalcs_transistor *t = use->of;
+    const int drain = circuit->device[use->device].node[0];
+    const int ends[2] = {t->is_p ? drain : use->bulk, t->is_p ? use->bulk : drain};
+    if (use->bulk != use->drain && t->has_diode) {
+        struct dalcs_device *to_source = add_other(builder, use, "bulk", use->bulk, use->source);
+        if (to_source == NULL || !add_diode(builder, use, "body", ends)) {
+            return false;
+        }
+        to_source->model = use->diode;
+    }
+    struct dalcs_device *channel = add_other(builder, use, "channel", use->source, drain);
+    if (channel == NULL) {
+        return false;
+    }
+    circuit->models.of_diode[circuit->models.n_diodes] =
+        (struct dalcs_diode_model){.name = circuit->device[use->device].name,
+                                   .ron = t->series / use->parallel,
+                                   .roff = INFINITY,
+                                   .vfwd = fabs(t->threshold),
+                                   .vrev = INFINITY};
+    channel->model = circuit->models.n_diodes++;
+    return true;
+}
+
 static bool expand(struct dalcs_builder *builder, struct dalcs_transistor_use *use) {
     struct dalcs_device *device = &builder->circuit->device[use->device];
     const struct dalcs_transistor *t = use->of;
@@ -222,7 +264,9 @@ static bool expand(struct dalcs_builder *builder, struct dalcs_transistor_use *u
     const int from = is_bipolar ? use->gate : use->source;
     const int to = is_bipolar ? use->source : device->node[0];
     const int diode[2] = {t->is_p ? to : from, t->is_p ? from : to};
-    if (t->has_diode && !add_diode(builder, use, is_bipolar ? "base" : "body", diode)) {
+    const bool has_bulk = use->bulk != use->source;
+    if (has_bulk ? !add_bulk(builder, use)
+                 : t->has_diode && !add_diode(builder, use, is_bipolar ? "base" : "body", diode)) {
         return false;
     }
     const struct dalcs_switch_model model = {.name = device->name, .is_inverted = t->is_p};
@@ -230,16 +274,25 @@ static bool expand(struct dalcs_builder *builder, struct dalcs_transistor_use *u
     return device->model >= 0 && (t->kind != DALCS_IGBT || add_knee(builder, use));
 }
 
-static bool is_bulk_right(struct dalcs_builder *builder, const struct dalcs_card *card, int bulk,
-                          int source) {
-    if (bulk == source || card->letter != 'm') {
+/* Of a model that is not there nothing is known, nor of a bulk on the drain. */
+static bool is_bulk_right(struct dalcs_builder *builder, const struct dalcs_card *card,
+                          const struct dalcs_transistor_use *use) {
+    static const char hint[] = "connect it to the source: that is where a power MOSFET has it";
+    const char *name = card->token->text;
+    if (use->bulk == use->source) {
         return true;
     }
-    dalcs_builder_error(builder, &card->token[4],
-                        "connect it to the source: that is where a power MOSFET has it",
-                        "the bulk of '%s' is not on its source: its body diodes would be others",
-                        card->token->text);
-    return false;
+    if (use->of->typical != NULL || use->bulk == use->drain) {
+        dalcs_builder_error(
+            builder, &card->token[4], hint,
+            "the bulk of '%s' is not on its source: its body diodes would be others", name);
+        return false;
+    }
+    dalcs_builder_warn(builder, &card->token[4], hint,
+                       "the bulk of '%s' is not on its source: it has a diode from there to drain "
+                       "and source each, and none from source to drain",
+                       name);
+    return true;
 }
 
 void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -273,19 +326,20 @@ void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_ca
         builder->out_of_memory = builder->out_of_memory || use == NULL;
         return;
     }
+    const bool has_bulk = n_nodes == 4 && card->letter == 'm';
     *use = (struct dalcs_transistor_use){.device = (int)(device - builder->circuit->device),
                                          .name = card->token,
                                          .of = t,
                                          .drain = node[0],
                                          .gate = node[1],
                                          .source = node[2],
+                                         .bulk = has_bulk ? node[3] : node[2],
                                          .width = t->width,
                                          .length = t->length,
                                          .parallel = 1,
                                          .diode = -1,
                                          .before = builder->models.last_transistor};
-    if (read_rest(&reader, use) &&
-        (n_nodes == 3 || is_bulk_right(builder, card, node[3], node[2])) && expand(builder, use)) {
+    if (read_rest(&reader, use) && is_bulk_right(builder, card, use) && expand(builder, use)) {
         builder->models.last_transistor = use;
     }
 }

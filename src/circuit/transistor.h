@@ -34,7 +34,7 @@ struct dalcs_transistor_use {
     int device;
     const struct dalcs_token *name;
     struct dalcs_transistor *of;
-    int drain, gate, source;        /* nodes */
+    int drain, gate, source, bulk;  /* nodes */
     double width, length, parallel; /* m, m; so many of them */
     int diode, diode_device;        /* its model among the circuit's and the diode; -1: none */
     struct dalcs_transistor_use *before;

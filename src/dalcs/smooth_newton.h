@@ -50,7 +50,7 @@ void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double 
 /* Lines g that are those of the tangents at x[n_smooth][2], as far as these are finite, where one differs from the present
  * one by a factor beyond ten, or rounding of the present one hides a function that is something beside scale[2], the largest
  * V and A: what was solved with the others is to be forgotten, phi[n_smooth] is those that go with x. */
-bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2],
+bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double volt,
                             const double *scale, double *phi);
 
 /* Lines as good as any before anything is known: of all functions, or of those that start on one, which say what flux

@@ -47,11 +47,16 @@ static void find_lines(const struct dalcs_smooth_input *of, const double *gradie
 
 /* Those at x, as far as they are finite and not 0, else the present ones. Returns by how much the steepest is steeper; of
  * a product also by how much it is flatter: i R, of a resistance that falls, is next to the line of the R before a small
- * difference of large numbers. A diode that blocks is flat as well, but there nothing else is as small. */
-static double find_tangent(const struct dalcs_smooth_input *of, const double *x, double *line) {
+ * difference of large numbers. A diode that blocks is flat as well, but there nothing else is as small. A root of what is
+ * rounding beside `volt`, the largest V, is one of 0. */
+static double find_tangent(const struct dalcs_smooth_input *of, const double *x, double volt,
+                           double *line) {
     double gradient[2];
     double steeper = 0.0;
-    dalcs_smooth_gradient(of->kind, x, gradient);
+    dalcs_smooth_gradient(of->kind, (const double[]){0.0, x[1]}, gradient);
+    if (!isinf(gradient[0]) || fabs(x[0]) > dalcs_rounded * volt) {
+        dalcs_smooth_gradient(of->kind, x, gradient);
+    }
     find_lines(of, gradient, line);
     for (int j = 0; j < 2; j++) {
         const double present = dalcs_smooth_line(of, j);
@@ -90,18 +95,18 @@ static bool is_hidden(const struct dalcs_smooth_input *of, const double *x, cons
     return f > dalcs_nothing * scale && dalcs_answer_rounded * steeper > dalcs_nothing * f;
 }
 
-bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2],
+bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double volt,
                             const double *scale, double *phi) {
     double line[2];
     bool is_due = false;
     for (int k = 0; k < system->n_smooth && !is_due; k++) {
         const struct dalcs_smooth_input *of = &system->smooth[k];
-        is_due = find_tangent(of, x[k], line) > dalcs_beyond ||
+        is_due = find_tangent(of, x[k], volt, line) > dalcs_beyond ||
                  is_hidden(of, x[k], line, scale[system->row_is_current[of->row]]);
     }
     for (int k = 0; k < system->n_smooth && is_due; k++) {
         const struct dalcs_smooth_input *of = &system->smooth[k];
-        (void)find_tangent(of, x[k], line);
+        (void)find_tangent(of, x[k], volt, line);
         put_lines(of, line);
         dalcs_smooth_take_rest(of, x[k], &phi[k]);
     }
@@ -138,7 +143,7 @@ void dalcs_smooth_starting_tangents(const struct dalcs_system *system, double (*
         const struct dalcs_smooth_input *of = &system->smooth[k];
         if (of->starts_on_line) {
             put_nominal_line(of);
-            (void)find_tangent(of, of->start, line);
+            (void)find_tangent(of, of->start, 0.0, line);
             put_lines(of, line);
             memcpy(x[k], of->start, sizeof(of->start));
             dalcs_smooth_take_rest(of, x[k], &phi[k]);

@@ -65,20 +65,26 @@ void dalcs_radau_accept_implicit(const struct dalcs_radau *r, struct dalcs_radau
 
 /* Does half of the step, part->work.y2, lead at least a quarter as far as the step itself, the same way, and no farther?
  * Else a value of a smooth function may be one that no state goes to: c v' = v^3 has v = -(c / h)^1/2 on the other side of
- * infinity. */
-static bool is_on_way(const struct dalcs_radau_part *part) {
+ * infinity. A state that sources drive as a power t^p of more than the second goes 2^-p as far in any step: *share, of the
+ * least one, is what it was in a step four times as long. That of a state whose step alone is beyond infinity falls at least
+ * as h^3/2, which is h from where it was and h^1/2 from the other side. */
+static bool is_on_way(const struct dalcs_radau_part *part, double *share) {
     const struct dalcs_system *s = part->component->system;
     const double noticeable = dalcs_micro_noticeable(part);
+    const double before = *share;
     bool is = true;
+    *share = INFINITY;
     for (int x = 0; x < s->n_x && is; x++) {
         double whole = part->work.y1[x] - part->x[x];
         double half = part->work.y2[x] - part->x[x];
         double scale = fmax(part->scales.unit[s->column_is_current[x]], fabs(part->x[x]));
         double along = copysign(half, half * whole); /* below 0: the other way */
-        is = fabs(whole) <= noticeable * scale ||
-             (4.0 * along >= fabs(whole) && along <= (1.0 + dalcs_slight) * fabs(whole));
+        if (fabs(whole) > noticeable * scale) {
+            *share = fmin(*share, along / fabs(whole));
+            is = along > 0.0 && along <= (1.0 + dalcs_slight) * fabs(whole);
+        }
     }
-    return is;
+    return is && (4.0 * *share >= 1.0 || (0.5 * before <= *share && *share <= 2.0 * before));
 }
 
 /* part->work.y1 by a step of length *h, or of a part of it: where sources are smooth functions, so long that the state is
@@ -88,6 +94,7 @@ static enum dalcs_status solve_on_way(struct dalcs_radau *r, struct dalcs_radau_
     struct dalcs_osnsp *p = &part->component->osnsp;
     const size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
     bool is_shortest = false;
+    double share = 0.0;
     memcpy(part->work.mode_before, p->mode, bytes);
     while (!is_shortest) {
         DALCS_TRY(dalcs_radau_implicit_step(r, part, *h, *h, part->x, part->work.y1));
@@ -102,7 +109,7 @@ static enum dalcs_status solve_on_way(struct dalcs_radau *r, struct dalcs_radau_
         if (status < DALCS_OK) {
             return status;
         }
-        if (status == DALCS_OK && is_on_way(part)) {
+        if (status == DALCS_OK && is_on_way(part, &share)) {
             return dalcs_radau_implicit_step(r, part, *h, *h, part->x, part->work.y1);
         }
         is_shortest = 0.25 * *h < dalcs_length_shortest(r);

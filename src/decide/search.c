@@ -231,7 +231,11 @@ static enum dalcs_status give_up(struct dalcs_radau *r, struct dalcs_radau_part 
         return DALCS_OK;
     }
     *done = true;
-    return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
+    /* What begins as a broken power of the time, as a root does, has no polynomial that is right to so much of itself, on
+     * any length: the first step is to be nothing beside what follows, in steps that are shorter than the time since. */
+    const double most =
+        part->smooth != NULL ? ldexp(dalcs_length_shortest(r), DALCS_FAR_SHORTER) : INFINITY;
+    return dalcs_search_fall_back(r, part, search->limit, search->first_level, most);
 }
 
 enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,

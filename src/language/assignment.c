@@ -21,9 +21,11 @@ static bool is_kind(const struct dalcs_card *card, int k, enum dalcs_token_kind 
     return k >= 0 && k < card->n && card->token[k].kind == kind;
 }
 
+/* Some libraries have the name in braces: PARAMS: {RATIO}=1. */
 bool dalcs_assignment_starts(const struct dalcs_card *card, int k) {
-    return is_kind(card, k, DALCS_TOKEN_WORD) && is_name(card->token[k].text) &&
-           is_kind(card, k + 1, DALCS_TOKEN_EQUAL) && !is_kind(card, k + 2, DALCS_TOKEN_EQUAL);
+    return (is_kind(card, k, DALCS_TOKEN_WORD) || is_kind(card, k, DALCS_TOKEN_EXPRESSION)) &&
+           is_name(card->token[k].text) && is_kind(card, k + 1, DALCS_TOKEN_EQUAL) &&
+           !is_kind(card, k + 2, DALCS_TOKEN_EQUAL);
 }
 
 bool dalcs_assignment_is_params(const struct dalcs_token *token) {

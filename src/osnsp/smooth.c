@@ -76,7 +76,8 @@ bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, const double *y) {
     if (y != NULL) {
         find_largest(p->system, y, largest);
     }
-    if (!dalcs_smooth_retangent(p->system, p->smooth.newton->x, largest, p->smooth.newton->phi)) {
+    struct dalcs_smooth_newton *n = p->smooth.newton;
+    if (!dalcs_smooth_retangent(p->system, n->x, n->volt, largest, n->phi)) {
         return false;
     }
     forget(p);

@@ -24,6 +24,13 @@ const char *dalcs_explain_row(struct dalcs_session *s, const struct dalcs_euler 
                               d->row[where].element);
 }
 
+const char dalcs_leave_initial[] =
+    "give .ic another voltage there, or none: the elements named beside it hold that one";
+
+bool dalcs_is_initial(const char *element) {
+    return strncmp(element, ".ic", sizeof ".ic" - 1) == 0;
+}
+
 const struct dalcs_location *dalcs_place_of(const struct dalcs_circuit *c, const char *element) {
     for (int i = 0; i < c->n_devices; i++) {
         if (strcmp(c->device[i].name, element) == 0) {
@@ -158,8 +165,14 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
     list_values(&x, c);
     dalcs_refusal_explain(&x);
     const struct dalcs_location *where = NULL;
-    for (size_t k = 0; k < x.n_elements && where == NULL; k++) {
-        where = dalcs_place_of(&s->circuit, x.element[k]);
+    bool has_initial = false;
+    for (size_t k = 0; k < x.n_elements; k++) {
+        where = where == NULL ? dalcs_place_of(&s->circuit, x.element[k]) : where;
+        has_initial = has_initial || dalcs_is_initial(x.element[k]);
+    }
+    if (has_initial) {
+        hint = hint == NULL ? dalcs_leave_initial
+                            : dalcs_arena_printf(&s->arena, "%s; %s", dalcs_leave_initial, hint);
     }
     if (hint != NULL && dalcs_refusal_is_of_start(&x)) {
         hint = dalcs_arena_printf(

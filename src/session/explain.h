@@ -13,6 +13,10 @@ struct dalcs_location;
 struct dalcs_run;
 struct dalcs_session;
 
+/* Is it what holds a voltage of .ic at a start? Then this may help. */
+bool dalcs_is_initial(const char *element);
+extern const char dalcs_leave_initial[];
+
 /* Where the netlist has an element; NULL when it is no device. */
 const struct dalcs_location *dalcs_place_of(const struct dalcs_circuit *circuit,
                                             const char *element);

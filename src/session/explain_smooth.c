@@ -85,8 +85,11 @@ void dalcs_explain_smooth(struct dalcs_session *s, const struct dalcs_component 
     if (newton->is_refused && c->osnsp.witness.n_elements > 0) {
         const struct dalcs_witness *w = &c->osnsp.witness;
         const char *names = dalcs_join_names(&s->arena, (size_t)w->n_elements, w->element);
-        dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, w->element[0]),
-                       "a resistance in series limits a current, one across bounds a voltage",
+        const char *hint = "a resistance in series limits a current, one across bounds a voltage";
+        for (int k = 0; k < w->n_elements; k++) {
+            hint = dalcs_is_initial(w->element[k]) ? dalcs_leave_initial : hint;
+        }
+        dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, w->element[0]), hint,
                        "%s no solution was found: with the values that were tried of the products "
                        "and functions in formulas, the circuit around %s has none",
                        when, names == NULL ? "these elements" : names);

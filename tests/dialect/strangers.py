@@ -89,6 +89,7 @@ def measurements(checker):
             (".meas ac edge when mag(v(out)/v(in))=0.70710678118654752 fall=1", cutoff),
             (".measure edge when mag( v(out) )=1.4142135623730951 cross 1", cutoff),
             (".meas half when mag(v(out)/2)=0.70710678118654752 fall 1", cutoff),
+            (".meas ac low find freq*2 when mag(v(out)/v(in))=0.70710678118654752", 2 * cutoff),
             (".meas power find mag(v(out)*v(in)) at=1k", 4 / math.hypot(1, 1000 / cutoff)),
             (".meas f0 param 1/(2*pi*r*c)", cutoff)):
         checker.measures(LOWPASS + card, {card.split()[1 + (card.split()[1] == "ac")]: value}, 1e-5)

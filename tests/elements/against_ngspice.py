@@ -103,6 +103,18 @@ R1 out 0 5
 .end
 """
 
+BULK = """a buck converter whose high side has its bulk on ground
+V1 in 0 12
+VG g s PULSE(0 10 1u 20n 20n 10u 25u)
+M1 in g s 0 MX
+L1 s out 100u
+C1 out 0 10u
+R1 out 0 5
+.model MX NMOS(Level=1 Vto=2 Kp=20u W=1 L=2u)
+.tran 0.1u 1m 0 20n
+.end
+"""
+
 HALF_BRIDGE = """two VDMOS with dead times
 V1 in 0 48
 VH gh s PULSE(0 12 1u 20n 20n 4u 10u)
@@ -142,6 +154,69 @@ r4 at 0 1k
 r5 ag 0 1k
 r6 ax 0 1k
 .tran 0.1n 800n 0 0.1n
+.end
+"""
+
+GATES = """gates, latches and a divider, an oscillator's bits
+v1 clk 0 PULSE(0 5 10n 1p 1p 20n 50n)
+v2 d 0 PULSE(0 5 3n 1p 1p 80n 160n)
+v3 e 0 PULSE(0 5 33n 1p 1p 60n 130n)
+v4 k 0 2
+aadc [clk d e] [dclk dd de] adc
+.model adc adc_bridge(in_low=1 in_high=4 rise_delay=2n fall_delay=3n)
+a1 [dclk dd ~de] g1 and
+.model and d_and(rise_delay=2n fall_delay=4n)
+a2 [dclk dd de] g2 or
+.model or d_or(rise_delay=2n fall_delay=4n)
+a3 [dclk dd] g3 nor
+.model nor d_nor(rise_delay=3n fall_delay=1n)
+a4 [dclk dd de] g4 xnor
+.model xnor d_xnor(rise_delay=3n fall_delay=2n)
+a5 dd g5 buf
+.model buf d_buffer(rise_delay=5n fall_delay=2n)
+a6 dd g6 inv
+.model inv d_inverter(rise_delay=5n fall_delay=2n)
+a7 dclk g7 div
+.model div d_fdiv(div_factor=3 high_cycles=2 rise_delay=2n fall_delay=3n)
+a8 up pu
+.model pu d_pullup
+a9 down pd
+.model pd d_pulldown
+a10 sd rd dclk null null g8 g9 srff
+.model srff d_srff(clk_delay=3n reset_delay=5n rise_delay=1n fall_delay=2n)
+a11 dd dclk null null h1 h2 dl
+.model dl d_dlatch(data_delay=4n enable_delay=4n rise_delay=1n fall_delay=2n)
+a12 dd ~dd dclk null null h3 h4 sl
+.model sl d_srlatch(sr_delay=4n enable_delay=4n rise_delay=1n fall_delay=2n)
+a13 [dd ~de] sd and
+a14 [~dd de] rd and
+a15 k h5 osc
+.model osc d_osc(cntl_array=[0 1 3] freq_array=[3meg 7meg 19meg] duty_cycle=0.3 init_phase=90)
+adac [g1 g2 g3 g4 g5 g6 g7 g8 g9 h1 h2 h3 h4 h5 up down] [a1 a2 a3 a4 a5 a6 a7 a8 a9 b1 b2 b3 b4 b5 u d0] dac
+.model dac dac_bridge(out_low=-1 out_high=3 t_rise=1n t_fall=2n)
+.tran 0.1n 800n 0 0.1n
+.end
+"""
+
+PRODUCTS = """products, quotients, a diode of straight lines, a switch, a line
+v1 in 0 sin(0 2 1k)
+v2 b 0 sin(3 1 700)
+v3 p 0 pulse(0 1 0.1m 1n 1n 0.4m 1m)
+a1 [in b] m mm
+.model mm mult(in_offset=[0.1 -0.2] in_gain=[2 -1] out_gain=3 out_offset=-0.5)
+a2 in b q md
+.model md divide(num_offset=0.1 num_gain=2 den_offset=0.2 den_gain=1.5 out_gain=3 out_offset=0.1)
+a3 p %gd(in s) ms
+.model ms aswitch(cntl_off=0 cntl_on=1 r_off=1meg r_on=10 log=TRUE)
+a5 %gd(in d) msd
+.model msd sidiode(Ron=10 Roff=1meg Vfwd=0.6 Vrev=1.2 Rrev=30)
+t1 b 0 f 0 z0=50 td=50u
+rt f 0 150
+rs s 0 100
+rd d 0 100
+rm m 0 1k
+rq q 0 1k
+.tran 1u 4m 0 1u
 .end
 """
 
@@ -283,8 +358,12 @@ def main():
                 compare(checker, program, netlist, ["v(out)"], 2e-3, 4e-3)
         compare(checker, program, LOW_SIDE, ["v(d)", "i(l1)"], 100e-6, 0.03)
         compare(checker, program, HIGH_SIDE, ["v(out)", "i(l1)"], 1e-3, 0.03)
+        compare(checker, program, BULK, ["v(out)", "i(l1)"], 1e-3, 0.03)
         compare(checker, program, HALF_BRIDGE, ["v(x)", "i(l1)"], 100e-6, 0.03)
         compare(checker, program, DIGITAL, [f"v(a{x})" for x in ("q", "nq", "j", "t", "g", "x")], 800e-9, 2e-2)
+        compare(checker, program, GATES, [f"v({x}{k})" for x, n in (("a", 9), ("b", 5)) for k in range(1, n + 1)] + ["v(u)", "v(d0)"],
+                800e-9, 2e-3)
+        compare(checker, program, PRODUCTS, [f"v({x})" for x in "mqsdf"], 4e-3, 2e-3)
         compare(checker, program, BLOCKS, ["v(g1)", "v(s1)", "v(l1)", "v(i1)", "v(w1)", "v(p1)", "v(g2)"], 4e-3, 4e-3)
         compare(checker, program, OSCILLATORS, [f"v({x})" for x in ("t2", "s1", "s2", "q2", "h", "d", "b", "p")], 8e-3, 8e-3)
         compare(checker, program, STAIRCASES, [f"v({x})" for x in ("y", "xf", "yf", "zf", "mf")],

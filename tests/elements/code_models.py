@@ -38,16 +38,17 @@ def truth(checker, program):
 
 
 def ring(checker, program):
-    """Inverters in a ring: up and down take different times, and each turn has as many of both."""
+    """Inverters and a buffer in a ring: up and down take different times, and each turn has as many of both."""
     for n, rise, fall in ((3, 1e-9, 2e-9), (5, 3e-3, 1e-3), (11, 2e-6, 2e-6)):
         what = f"a ring of {n} d_inverter"
-        cards = [f"a{k} n{k} n{(k + 1) % n} m" for k in range(n)]
-        cards += [f".model m d_inverter(rise_delay={rise!r} fall_delay={fall!r})", f".tran {rise!r} {6 * n * (rise + fall)!r}"]
+        cards = [f"a{k} n{k} n{k + 1} m" for k in range(n)] + [f"ab n{n} n0 b"]
+        cards += [f".model m d_inverter(rise_delay={rise!r} fall_delay={fall!r})", f".model b d_buffer(rise_delay={fall!r} fall_delay={rise!r})",
+                  f".tran {rise!r} {6 * (n + 1) * (rise + fall)!r}"]
         done = run_cards(program, what, cards)
         if runs(checker, done, what):
             got = edges(done, "v(n1)", 0.5)
             for a, b in zip(got, got[2:]):
-                checker.close(b - a, n * (rise + fall), 1e-9 * n * (rise + fall), f"{what}: a turn")
+                checker.close(b - a, (n + 1) * (rise + fall), 1e-9 * n * (rise + fall), f"{what}: a turn")
             checker.check(len(got) >= 6, f"{what}: {got}")
 
 

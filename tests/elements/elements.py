@@ -144,6 +144,7 @@ def switches(checker, program):
             ("W1 d b Vm m OFF", "m CSW(It=2)", 2e-3, 4e-3),
             ("W1 d b Vm m", "m ISWITCH(Ion=2 Ioff=1)", 1.5e-3, 4.5e-3),
             ("W1 d b Vm m", "m ISWITCH(It=1.5 Ih=1)", 2.5e-3, 5.5e-3),
+            ("W1 d b Vm m", "m CSW(It=1.25 Ih=0.5)", 1.75e-3, 5.25e-3),
             ("W1 d b Vm m", "m ISWITCH(IHon=2 IHoff=0.5)", 2e-3, 5.5e-3)):
         case = Case(checker, program, BY_CURRENT.format(switch=switch, model=model),
                     around(on, off))

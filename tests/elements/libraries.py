@@ -88,12 +88,25 @@ def controllers(checker, program):
         times(checker, edges(done, "v(o)", 0), [x * 1e-3 / 12 for x in (1, 7, 13, 19)], what)
 
 
+def without_integral(checker, program):
+    """A controller of gain 2 whose integral has the gain 0, from its operating point on."""
+    what = "a controller without its integral"
+    done = run(program, what, [".lib control.lib", "v1 e 0 sin(0 2 1k)", "x1 e u pi kp=2 ki=0 high=3 low=-1", "r1 u 0 1k",
+                               "x2 e d pid kp=1 ki=0 kd=0 ic=0.5 high=5", "r2 d 0 1k", ".tran 10u 1m"])
+    if runs(checker, done, what):
+        for e, u, d in zip(done.column("v(e)"), done.column("v(u)"), done.column("v(d)")):
+            checker.close(u, min(max(2 * e, -1), 3), 1e-9, what)
+            checker.close(d, max(e + 0.5, -1), 1e-9, what)
+
+
 def amplifiers(checker, program):
     """A follower's pole; rails; slew, up and down; a short of the output; offset; level 1 has no limits."""
-    for gbw, level in ((1e6, "level.1"), (10e6, "level.2"), (1e4, "level.3a")):
+    for gbw, level in ((1e6, "level.1"), (10e6, "level.2"), (1e4, "level.3a"), (1e5, "level.3b"),
+                       (2e6, "level1"), (3e6, "level2"), (4e5, "level3a"), (5e7, "level3b")):
         what = f"a follower of {gbw} Hz, {level}"
+        library = "UniversalOpamps2.sub" if "." in level else "UniversalOpAmp2.lib"
         w = 2 * math.pi * gbw
-        cards = [".lib UniversalOpamps2.sub", "vp p 0 15", "vn n 0 -15", f"v1 in 0 pulse(0 1m {1 / w!r} 0 0 1 2)",
+        cards = [f".lib {library}", "vp p 0 15", "vn n 0 -15", f"v1 in 0 pulse(0 1m {1 / w!r} 0 0 1 2)",
                  f"x1 in o p n o {level} Avol=1Meg GBW={gbw} Slew=1T Vos=0", "r1 o 0 1k", f".tran {0.2 / w!r} {9 / w!r}"]
         done = run(program, what, cards)
         if runs(checker, done, what):
@@ -180,7 +193,7 @@ def places(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("libraries")
-    for part in (modulators, controllers, amplifiers, timers, places):
+    for part in (modulators, controllers, without_integral, amplifiers, timers, places):
         part(checker, program)
     return checker.finish()
 

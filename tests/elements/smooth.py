@@ -240,6 +240,9 @@ def check_refusals(checker, program, method):
         says = words if words != "not a smooth function" else "steps without end"
         checker.check(result.status == status and says in result.stderr and "1 " in result.stderr,
                       f"{words}: exit {result.status}: {result.stderr}")
+    netlist = "an initial voltage that a formula holds\nv1 a 0 5\nb1 x 0 v=1.25-1.25*tanh(1e4*v(a))\nc1 x 0 1u\n.ic v(x)=0\n.tran 1u 1m\n"
+    result = run(program, netlist, method=method)
+    checker.check(result.status == 1 and "give .ic another voltage there, or none" in result.stderr, f"held: {result.stderr}")
     netlist = "it ends\nc1 x 0 1 ic=1\nb1 0 x i=v(x)*v(x)\n.tran 10m 2 uic\n"
     result = run(program, netlist, method=method, at=[0.5, 0.9])
     checker.check(result.status == 1, f"x' = x^2 beyond t = 1: exit {result.status}: {result.stderr}")
@@ -270,13 +273,45 @@ def check_places(checker, program):
             checker.close(float(found.group(1)), time, 1e-7 * end, f"{formula}: its end")
 
 
+def check_powers(checker, program, method):
+    """What begins as a broken power of the time since an event, with a steep or a flat start: its integral in a capacitor, and
+    itself; an rms value from its start on; a root of a ramp down to 0 and up again."""
+    for k, p in enumerate((0.25, 0.5, 0.75, 1.2, 1.5, 2.5, 3.5)):
+        delay, rate, farads = ((0.3e-3, 1e3, 1e-6), (0, 1, 1), (1e-9, 1e9, 1e-12))[k % 3]
+        end = delay + 2 / rate
+        done = run(program, f"a power\nv1 a 0 pwl(0 0 {delay!r} 0 {end!r} 2)\nb1 0 z i=v(a)**{p}\nc1 z 0 {farads!r} ic=0\n"
+                   f"b2 y 0 v=v(a)**{p}\nr2 y 0 1k\n.tran {2 / rate / 50!r} {end!r} uic\n", method=method)
+        if checker.check(done.status == 0, f"t^{p}: {done.stderr}"):
+            largest = 2 ** (p + 1) / (p + 1) / rate / farads
+            for t, y, z in zip(done.time, done.column("v(y)"), done.column("v(z)")):
+                x = max(t - delay, 0) * rate
+                checker.close(z, x ** (p + 1) / (p + 1) / rate / farads, 1e-8 * largest, f"integral of t^{p} at {t}")
+                # by its first step, 1e-10 of the run and less
+                checker.close(y, x ** p, max(1e-8, 1.5e-10 ** p) * 2 ** p, f"t^{p} at {t}")
+    for volts, hertz in ((1, 1e3), (325, 50)):
+        w = 2 * math.pi * hertz
+        done = run(program, f"an rms value\nv1 a 0 sin(0 {volts} {hertz})\nb1 x 0 v=idt(v(a)**2)\nr1 x 0 1k\n"
+                   f"b2 y 0 v=sqrt(v(x))\nr2 y 0 1k\n.tran {0.02 / hertz!r} {2 / hertz!r}\n", method=method)
+        if checker.check(done.status == 0, f"an rms value: {done.stderr}"):
+            for t, y in zip(done.time, done.column("v(y)")):
+                exact = volts * math.sqrt(max(t / 2 - math.sin(2 * w * t) / (4 * w), 0))
+                checker.close(y, exact, 1e-7 * volts / math.sqrt(hertz), f"an rms value at {t}")
+    for top in (1, 5e-3):
+        done = run(program, f"a root\nv1 a 0 pulse(0 {top} 0.1m 0.2m 0.2m 0.4m 1m)\nb1 0 z i=sqrt(v(a))\nc1 z 0 1u ic=0\n"
+                   ".tran 10u 2.1m uic\n", method=method)
+        if checker.check(done.status == 0, f"a root of a trapezium: {done.stderr}"):
+            one = math.sqrt(top) * (0.4e-3 + 2 * 2 / 3 * 0.2e-3) / 1e-6
+            checker.close(done.at("v(z)", 1.05e-3), one, 1e-6 * one, "a root of a trapezium")
+            checker.close(done.column("v(z)")[-1], 2 * one, 1e-6 * one, "a root of two")
+
+
 def main():
     program, method = sys.argv[1:3]
     step = int(sys.argv[3]) if len(sys.argv) > 3 else 1
     checker = Checker("smooth")
     for name, scale in some_of([(name, scale) for name in list(EQUATIONS)[::step] for scale in SCALES]):
         check_equation(checker, program, method, name, scale)
-    for check in kinds_of((check_functions, check_loops, check_many, check_switched, check_polynomials, check_refusals)):
+    for check in kinds_of((check_functions, check_loops, check_many, check_switched, check_polynomials, check_powers, check_refusals)):
         check(checker, program, method)
     check_places(checker, program)
     return checker.finish()

@@ -230,11 +230,32 @@ def bipolars(checker, program):
             checker.close(value_of(done, "off"), sign * peak * math.exp(-7e-6 / 1e-5), 1e-7 * on, f"{sign * volts} V: the diode")
 
 
+def bulks(checker, program):
+    """A bulk on another node than the source: the channel when it is on, backwards from Vto on when it is off, and a diode from
+    the bulk to each end; a p channel is the same with all signs changed."""
+    vfwd, ron = 0.0258649 * math.log1p(1e14) - 0.0258649, 0.0258649  # the tangent of Is = 1e-14 at 1 A
+    for ohms, volts, vto, gain in ((1, 12, 2, 10), (50, 400, 4, 0.5), (0.2, 3.3, 1, 100)):
+        for sign, kind in ((1, "NMOS"), (-1, "PMOS")):
+            on = volts / ohms / (1 + 1 / (gain * (10 * vto - vto)) / ohms)
+            below = (volts - vfwd) / (ohms + ron)
+            # gate on for 10 us, then the load pulls the source below the bulk, then above the drain
+            load = f"0 0 10u 0 10u {-sign * volts!r} 20u {-sign * volts!r} 20u {sign * (2 * volts + vto)!r}"
+            text = (f"a bulk on ground\nv1 d 0 {sign * volts!r}\nvg g s pulse({sign * 10 * vto!r} 0 10u 0 0 1 2)\nm1 d g s 0 mx\n"
+                    f"r1 s l {ohms!r}\nv2 l 0 pwl({load})\n.model mx {kind}(Vto={sign * vto!r} Kp={gain!r} W=1 L=1 Rd=0)\n"
+                    ".save i(r1) v(s)\n.tran 1u 30u\n.end\n")
+            done = run_at(program, text)
+            what = f"{kind} at {volts} V"
+            if checker.check(done.status == 0 and "a diode from there to drain and source each" in done.stderr,
+                             f"{what}: {done.status} {done.stderr}"):
+                for t, current in ((5e-6, on), (15e-6, below), (25e-6, -volts / ohms)):
+                    checker.close(done.at("i(r1)", t), sign * current, 1e-4 * abs(current), f"{what} at {t}")
+
+
 REFUSED = (
     ("m1 d g 0 0 nothing", "there is no model 'nothing'"),
     ("m1 d g nx", "has 3 or 4 nodes"),
     ("m1 d g 0 x y nx", "has 3 or 4 nodes"),
-    ("m1 d g 0 in nx", "bulk of 'm1' is not on its source"),
+    ("m1 d g 0 d nx", "bulk of 'm1' is not on its source"),
     ("m1 d d 0 0 nx", "gate of 'm1' is connected to its drain"),
     ("m1 d g 0 0 nx\nvs g 0 sin(5 0.1 1k)", "it is an amplifier, not a switch"),
     ("m1 d g 0 0 nx\nvs g 0 pulse(5 8 0 1u 1u 5u 10u)", "it is an amplifier, not a switch"),
@@ -340,7 +361,7 @@ def logic_drives(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("transistors")
-    for part in (cards, circuits, saturations, igbts, bipolars, refusals, typical, logic_drives):
+    for part in (cards, circuits, saturations, bulks, igbts, bipolars, refusals, typical, logic_drives):
         part(checker, program)
     return checker.finish()
 
