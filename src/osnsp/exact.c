@@ -90,6 +90,9 @@ enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, doub
             }
             DALCS_TRY(dalcs_exact_try_mode(p, u, y, &sources_clash)); /* its signs again */
         }
+        if (round == limit) {
+            break;
+        }
         turned = wrong_alone(p);
         dalcs_osnsp_flip_violating(p, round < ROUNDS_AT_ONCE);
         p->counters.pivots++;
