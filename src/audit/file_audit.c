@@ -236,6 +236,7 @@ static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
         a->columns.current[d] = -1;
     }
     DALCS_TRY(file_find_columns(a, diag));
+    DALCS_TRY(file_take_tangents(a));
     a->is_before = file_rests_before(a);
     a->is_at_rest = a->table->n_rows == 1 && a->table->value[0] == 0.0;
     a->ramp = ramp_of(a);
