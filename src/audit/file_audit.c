@@ -236,7 +236,7 @@ static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
         a->columns.current[d] = -1;
     }
     DALCS_TRY(file_find_columns(a, diag));
-    merge_shorts(a, false);
+    merge_shorts(a, !a->promise.are_shorts_measured);
     list_branches(a);
     DALCS_TRY(file_take_tangents(a));
     a->is_before = file_rests_before(a);
