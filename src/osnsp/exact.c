@@ -149,5 +149,8 @@ enum dalcs_status dalcs_exact_least_norm(struct dalcs_osnsp *p, const double *u,
         memcpy(p->mode, p->work.regularised_mode, bytes);
         return status;
     }
-    return p->signs.n_tied > 0 && dalcs_osnsp_is_monotone(p) ? open_ties(p, u, y) : DALCS_OK;
+    /* In a step the mode is also what the next one begins in: there an island that only a tied pair holds stays held. */
+    const bool at_rest = p->cache.form[0]->sigma == 0.0;
+    return at_rest && p->signs.n_tied > 0 && dalcs_osnsp_is_monotone(p) ? open_ties(p, u, y)
+                                                                        : DALCS_OK;
 }
