@@ -81,14 +81,15 @@ static enum dalcs_status make_room(struct file_audit *a) {
 
 /* ---- The circuit -------------------------------------------------------------------------------- */
 
-static void merge_shorts(struct file_audit *a) {
+/* Nodes that shorts join have one potential. KCL holds at both ends of one whose current the file has. */
+static void merge_shorts(struct file_audit *a, bool with_measured) {
     const struct dalcs_circuit *c = a->circuit;
     dalcs_union_reset(a->node_of, c->n_nodes);
     dalcs_union_reset(a->fed_from, c->n_nodes);
     for (int d = 0; d < c->n_devices; d++) {
         const struct dalcs_device *device = &c->device[d];
         const bool is_short = dalcs_device_is_short(device);
-        if (is_short) {
+        if (is_short && (with_measured || a->columns.current[d] < 0)) {
             dalcs_union_join(a->node_of, device->node[0], device->node[1]);
         }
         if (is_short || device->kind == DALCS_VSOURCE) {
@@ -227,8 +228,7 @@ static enum dalcs_status check_times(const struct file_audit *a, struct dalcs_di
 static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
     DALCS_TRY(check_times(a, diag));
     DALCS_TRY(make_room(a));
-    merge_shorts(a);
-    list_branches(a);
+    merge_shorts(a, true);
     for (int n = 0; n < a->circuit->n_nodes; n++) {
         a->columns.potential_of[n] = -1;
     }
@@ -236,6 +236,9 @@ static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
         a->columns.current[d] = -1;
     }
     DALCS_TRY(file_find_columns(a, diag));
+    merge_shorts(a, !a->promise.are_shorts_measured);
+    list_branches(a);
+    DALCS_TRY(file_take_tangents(a));
     a->is_before = file_rests_before(a);
     a->is_at_rest = a->table->n_rows == 1 && a->table->value[0] == 0.0;
     a->ramp = ramp_of(a);

@@ -11,9 +11,10 @@
 
 /* What the table promises of each signal. */
 struct dalcs_file_promise {
-    double tolerance;        /* over its largest value */
-    double vntol, abstol;    /* V, A; besides */
-    bool are_gates_restless; /* they do not settle, as a warning has said */
+    double tolerance;         /* over its largest value */
+    double vntol, abstol;     /* V, A; besides */
+    bool are_shorts_measured; /* its currents of shorts are those of the elements behind them */
+    bool are_gates_restless;  /* they do not settle, as a warning has said */
     bool
         remembers; /* rows before the first one have left switches with hysteresis where they are */
 };

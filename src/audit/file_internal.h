@@ -156,6 +156,11 @@ struct file_audit {
 /* Finds columns of nodes and devices; DALCS_E_OPTION where no potential is found. */
 enum dalcs_status file_find_columns(struct file_audit *a, struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
+/* ---- file_tangents.c ---- */
+
+/* Lines of exponential diodes where the table has their currents; a->circuit may be another one after it. */
+enum dalcs_status file_take_tangents(struct file_audit *a) DALCS_MUST_CHECK;
+
 /* ---- file_values.c ---- */
 
 /* Is row k at the time of the row above it? Closer than a time of an edge is known (stimulus.h) is the same. */

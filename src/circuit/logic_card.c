@@ -330,6 +330,9 @@ void dalcs_logic_parse(struct dalcs_builder *builder, const struct dalcs_card *c
     bool ok = find_kind(builder, &c) && read_parameters(&reader, &c);
     if (ok) {
         take_limits(&c);
+        for (int k = VT; k <= VH && !c.is_schmitt; k++) {
+            dalcs_logic_ignore_threshold(&reader, &c.p[k], card->token[DALCS_LOGIC_MODEL].text);
+        }
         ok = check_parameters(builder, &c);
         if (ok && !has_output(builder, &c)) {
             return;

@@ -93,6 +93,15 @@ bool dalcs_logic_read_parameters(struct dalcs_reader *reader,
     return ok;
 }
 
+void dalcs_logic_ignore_threshold(const struct dalcs_reader *reader,
+                                  const struct dalcs_parameter *p, const char *function) {
+    if (p->place != NULL) {
+        dalcs_builder_warn(reader->builder, p->place,
+                           "Ref= is the threshold; SCHMTBUF and SCHMTINV have a hysteresis",
+                           "'%s' has no meaning for %s and is ignored", p->name, function);
+    }
+}
+
 bool dalcs_logic_check_signs(const struct dalcs_reader *reader,
                              const struct dalcs_logic_parameters *of) {
     for (int k = 0; k < of->n; k++) {

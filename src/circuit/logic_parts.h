@@ -37,6 +37,9 @@ struct dalcs_logic_parameters {
 /* False: an error was reported. */
 bool dalcs_logic_read_parameters(struct dalcs_reader *reader,
                                  const struct dalcs_logic_parameters *of);
+/* Vt or Vh, if it is given, of what compares with Ref. */
+void dalcs_logic_ignore_threshold(const struct dalcs_reader *reader,
+                                  const struct dalcs_parameter *p, const char *function);
 /* Voltages alone may be negative; false: an error was reported. */
 bool dalcs_logic_check_signs(const struct dalcs_reader *reader,
                              const struct dalcs_logic_parameters *of);

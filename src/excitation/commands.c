@@ -183,24 +183,32 @@ void dalcs_commands_start(struct dalcs_commands *commands) {
     find_earliest(commands);
 }
 
+/* Its next move, if it has one. */
+static void pass_one(const struct dalcs_commands *commands, struct dalcs_command *m) {
+    if (m->moves) {
+        m->n[m->is_on ? 1 : 0]++;
+        m->is_on = !m->is_on;
+    }
+    m->searched = m->next;
+    if (m->pulse != NULL) {
+        next_of_pulse(m);
+    } else {
+        search(commands, m);
+    }
+}
+
+/* A control that touches its threshold may cross it by rounding and come back at the same time. The switch has not moved
+ * then: if it were open for no time, it would cut off the current of a coil. */
 bool dalcs_commands_obey(struct dalcs_commands *commands, double until) {
+    const double last = until + dalcs_rounded * until;
     bool moved = false;
     for (int k = 0; k < commands->n; k++) {
         struct dalcs_command *m = &commands->command[k];
-        if (m->next > until + dalcs_rounded * until) {
-            continue;
+        const bool was_on = m->is_on;
+        for (int i = 0; i < EDGES_AT_A_TIME && m->next <= last; i++) {
+            pass_one(commands, m);
         }
-        if (m->moves) {
-            m->n[m->is_on ? 1 : 0]++;
-            m->is_on = !m->is_on;
-            moved = true;
-        }
-        m->searched = m->next;
-        if (m->pulse != NULL) {
-            next_of_pulse(m);
-        } else {
-            search(commands, m);
-        }
+        moved = moved || m->is_on != was_on;
     }
     find_earliest(commands);
     return moved;

@@ -1,8 +1,9 @@
-/* exact.c - the answer of one mode, singular or not, to all digits that it has. */
+/* exact.c - the answer of one mode, singular or not, to all digits that it has, and that of least norm where weights lead. */
 #include "osnsp_internal.h"
 #include "whole.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Changes of the mode that are of all pairs with a wrong sign at once, before they are of one. */
 enum { ROUNDS_AT_ONCE = 10 };
@@ -90,9 +91,66 @@ enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, doub
             }
             DALCS_TRY(dalcs_exact_try_mode(p, u, y, &sources_clash)); /* its signs again */
         }
+        if (round == limit) {
+            break;
+        }
         turned = wrong_alone(p);
         dalcs_osnsp_flip_violating(p, round < ROUNDS_AT_ONCE);
         p->counters.pivots++;
     }
     return DALCS_NOT_CONVERGED;
+}
+
+/* In a singular mode. */
+static enum dalcs_status try_singular(struct dalcs_osnsp *p, const double *u, double *y) {
+    const enum dalcs_status status = dalcs_exact_pivot(p, u, y, 0);
+    return status == DALCS_NOT_CONVERGED ? dalcs_open_mode_solve(p, u, y) : status;
+}
+
+/* Opens the closed pairs of the answer that have neither current nor voltage; false: there are none. */
+static bool open_tied_pairs(struct dalcs_osnsp *p) {
+    bool any = false;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        if (p->signs.tied[d] && dalcs_osnsp_is_on(p, d)) {
+            dalcs_osnsp_flip(p, d);
+            any = true;
+        }
+    }
+    return any;
+}
+
+/* With its tied pairs open the mode has the answer y, too, and the one of least norm is among its answers: the reverse
+ * voltage of a diode counts from 0 V, and at its knee it is not least. */
+static enum dalcs_status open_ties(struct dalcs_osnsp *p, const double *u, double *y) {
+    size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
+    memcpy(p->work.regularised_mode, p->mode, bytes);
+    if (!open_tied_pairs(p)) {
+        return DALCS_OK;
+    }
+    struct dalcs_mode_entry *entry;
+    enum dalcs_status status = dalcs_modes_get(p, DALCS_PLAIN, &entry);
+    if (status == DALCS_OK) {
+        status = entry->singular ? try_singular(p, u, y) : DALCS_NOT_CONVERGED;
+    }
+    if (status > DALCS_OK) {
+        memcpy(p->mode, p->work.regularised_mode, bytes);
+        status = try_singular(p, u, y);
+    }
+    return status;
+}
+
+enum dalcs_status dalcs_exact_least_norm(struct dalcs_osnsp *p, const double *u, double *y,
+                                         int limit) {
+    size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
+    memcpy(p->work.regularised_mode, p->mode, bytes);
+    const enum dalcs_status status =
+        limit == 0 ? try_singular(p, u, y) : dalcs_exact_pivot(p, u, y, limit);
+    if (status != DALCS_OK) {
+        memcpy(p->mode, p->work.regularised_mode, bytes);
+        return status;
+    }
+    /* In a step the mode is also what the next one begins in: there an island that only a tied pair holds stays held. */
+    const bool at_rest = p->cache.form[0]->sigma == 0.0;
+    return at_rest && p->signs.n_tied > 0 && dalcs_osnsp_is_monotone(p) ? open_ties(p, u, y)
+                                                                        : DALCS_OK;
 }

@@ -197,6 +197,11 @@ enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, d
 enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, double *y,
                                     int limit) DALCS_MUST_CHECK;
 
+/* Of the mode where a regularised problem ends, without weights: in a singular one the answer of least norm that has the
+ * right signs, which is what the iterates converge to; in a regular one, or one at most `limit` changes away, the only one. */
+enum dalcs_status dalcs_exact_least_norm(struct dalcs_osnsp *p, const double *u, double *y,
+                                         int limit) DALCS_MUST_CHECK;
+
 /* ---- choices.c ----------------------------------------------------------------------------- */
 
 /* Vectors that are open, in `choice`, become the equations that choose among them. error[n_columns]: how far off an entry of

@@ -229,22 +229,6 @@ static double move_centre(struct dalcs_osnsp *p, double *change, double *way) {
     return size;
 }
 
-/* The mode where a regularised problem ends answered without weights: in a singular one the answer of least
- * norm that has the right signs, which is what the iterates converge to; in a regular one, or one next to it, the only
- * one. */
-static enum dalcs_status try_exactly(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
-    size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
-    memcpy(p->work.regularised_mode, p->mode, bytes);
-    enum dalcs_status status = dalcs_exact_pivot(p, u, y, limit);
-    if (status != DALCS_OK) {
-        memcpy(p->mode, p->work.regularised_mode, bytes);
-    }
-    if (status == DALCS_NOT_CONVERGED && limit == 0) {
-        status = dalcs_open_mode_solve(p, u, y);
-    }
-    return status;
-}
-
 /* In balanced units no regular matrix makes of what drives it more than 1/eps of it. Iterates that have run so far away
  * satisfy all equations to rounding, which hides what drives them. */
 static bool is_driven(const struct dalcs_osnsp *p) {
@@ -295,7 +279,8 @@ enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, d
         if (outer == 0 || mode_changed) {
             struct dalcs_mode_entry *plain;
             DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
-            enum dalcs_status status = try_exactly(p, u, y, plain->singular ? 0 : REGULAR_ATTEMPTS);
+            enum dalcs_status status =
+                dalcs_exact_least_norm(p, u, y, plain->singular ? 0 : REGULAR_ATTEMPTS);
             if (status <= DALCS_OK) {
                 return status;
             }

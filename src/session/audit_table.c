@@ -6,7 +6,8 @@
 #include <math.h>
 
 /* SPICE's own reltol, vntol and abstol: what a simulator that was not asked for more promises of each signal. */
-static const struct dalcs_file_promise spice = {.tolerance = 1e-3, .vntol = 1e-6, .abstol = 1e-12};
+static const struct dalcs_file_promise spice = {
+    .tolerance = 1e-3, .vntol = 1e-6, .abstol = 1e-12, .are_shorts_measured = true};
 
 static enum dalcs_status refuse(struct dalcs_session *s, const char *what) {
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL, "%s", what);

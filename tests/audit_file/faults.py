@@ -85,6 +85,29 @@ R5 h 0 1k
 .tran 10u 2m
 """
 
+# elements that are several: their own current is that of all of their parts
+TRIAC = """a triac
+V1 in 0 SIN(0 48 1k)
+R1 in s 0.2
+V2 g 0 PULSE(0 1 0.1m 1u 1u 20u 0.5m)
+A1 s x g 0 tr
+L1 x y 1m
+R2 y 0 20
+.model tr triac(Vgt=0.5 Ih=2m)
+.tran 10u 4m
+"""
+PARTS = """a coil with parts beside it, and a MOSFET
+V1 in 0 12
+M1 in g x x nm
+V2 g x PULSE(0 10 0 10n 10n 4u 10u)
+D1 0 x
+L1 x o 100u Rpar=2k Rser=0.1
+C1 o 0 47u
+R1 o 0 5
+.model nm VDMOS(Vto=3 Kp=10)
+.tran 0.5u 200u uic
+"""
+
 # what is done to the table or the netlist: the law and the element that are then worst
 NETLIST_FAULTS = [
     ("amplitude 1 % off", RECTIFIER, ("SIN(0 10", "SIN(0 10.1"), ("BRANCH", "v1")),
@@ -135,6 +158,9 @@ NUDGES = [
     (RECTIFIER, "i(d1)", 21e-3, 5e-3, [("KCL", "in"), ("BRANCH", "c1"), ("CURRENT", "d1")]),
     (RECTIFIER, "i(d1)", 12e-3, -5e-3, [("KCL", "in"), ("CURRENT", "d1")]),
     (RECTIFIER, "i(v1)", 5e-3, 5e-3, [("KCL", "in")]),
+    (TRIAC, "i(a1)", 2.2e-3, 0.05, [("KCL", "s"), ("KCL", "x"), ("KCL", "x, terminal(a1) and 2 more")]),
+    (PARTS, "i(m1)", 101e-6, 0.05, [("KCL", "in"), ("KCL", "x")]),
+    (PARTS, "i(l1)", 101e-6, 0.05, [("KCL", "x"), ("KCL", "o"), ("KCL", "terminal(m1)")]),
     (CHOPPER, "i(l1)", 101e-6, 0.1, [("BRANCH", "l1"), ("KCL", "x")]),
     (CHOPPER, "v(x)", 101e-6, 0.5, [("BRANCH", "s1"), ("POSITION", "s1")]),
     (CHOPPER, "v(x)", 106e-6, 0.5, [("BRANCH", "d1"), ("CURRENT", "d1")]),

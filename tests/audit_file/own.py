@@ -40,6 +40,39 @@ R2 z 0 1
 """
 
 
+# the lines of exponential diodes follow from the currents that they carry, and so does what the file is held to
+EXPONENTIAL = {
+    "half wave": "V1 a 0 SIN(0 10 50)\nD1 a b dd\nR1 b 0 1k\n.tran 0.1m 40m\n",
+    "bridge": "V1 a b SIN(0 12 50)\nD1 a p dd\nD2 b p dd\nD3 m a dd\nD4 m b dd\nC1 p m 100u\nR1 p m 1k\nR2 m 0 1meg\n"
+              ".tran 0.1m 100m\n",
+    "from 60 ms on": "V1 a 0 SIN(0 12 50)\nD1 a p dd\nC1 p 0 100u\nR1 p 0 100\n.tran 0.1m 100m 60m\n",
+    "breakdown": "V1 a 0 SIN(0 20 50)\nR1 a b 470\nD1 0 b dz\nR2 b 0 10k\n.tran 0.1m 60m\n",
+    "boost": "V1 in 0 12\nL1 in x 100u\nS1 x 0 g 0 sw\nV2 g 0 PULSE(0 1 0 1n 1n 4u 10u)\nD1 x o dd\nC1 o 0 22u\n"
+             "R1 o 0 20\n.tran 1u 2m\n",
+    "at rest": "I1 0 a 10m\nD1 a 0 dd\n.op\n",
+    "cells": "V1 a 0 SIN(0 10 50)\nD1 a b dd n=3\nD2 b c dd m=2\nR1 c 0 100\n.tran 0.1m 40m\n",
+}
+EXPONENTIAL_MODELS = """.model dd D(IS={} N=1.75 RS=0.5)
+.model dz D(IS={} N=1.6 RS=1 BV=5.1 IBV=1m NBV=1.5)
+.model sw SW(Ron=10m Roff=1meg Vt=0.5)
+.end
+"""
+
+
+def exponential_diodes(program, checker):
+    for name, circuit in EXPONENTIAL.items():
+        with tempfile.TemporaryDirectory() as folder:
+            for netlist, saturation in (("x.cir", "2.5n"), ("other.cir", "5n")):
+                text = f"{name}\n{circuit}" + EXPONENTIAL_MODELS.format(saturation, saturation)
+                (pathlib.Path(folder) / netlist).write_text(text)
+            for output in ("x.raw", "x.csv"):
+                status = [subprocess.run([program, *arguments], cwd=folder, stdin=subprocess.DEVNULL,
+                                         capture_output=True, check=False).returncode
+                          for arguments in (("run", "x.cir", "-o", output, "--quiet"), ("audit", "x.cir", output),
+                                            ("audit", "other.cir", output))]
+                checker.check(status == [0, 0, 1], f"exponential diodes, {name}, {output}: {status}")
+
+
 def rows_without_values(program, checker):
     for options in (("-o", "x.raw"), ("-o", "x.csv"), ("--ascii", "-o", "x.raw")):
         with tempfile.TemporaryDirectory() as folder:
@@ -74,6 +107,7 @@ def main(program):
                               f"{netlist.name} as {ending}: status {done.returncode} {done.stderr}"
                               f"{[law for law in answer['laws'] if law['broken']]}")
     rows_without_values(program, checker)
+    exponential_diodes(program, checker)
     checker.check(asked > 3 * len(netlists), f"only {asked} laws were asked of {len(netlists)} netlists")
     return checker.finish()
 

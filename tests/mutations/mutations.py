@@ -309,10 +309,10 @@ MUTATIONS = {
         "locate/first_fall.c", "if (!(bound[g] >= 0.0) && ",
         "if (!(bound[g] >= 0.0) && (part->segment.t < 60e-6 || part->segment.t > 80e-6) && ", ALIKE),
     "a command among steps alike is lost": (
-        "excitation/commands.c", "            m->is_on = !m->is_on;\n",
+        "excitation/commands.c", "        m->is_on = !m->is_on;\n",
         "            " + once(13, "m->is_on = !m->is_on;", ""), FED_BACK),
     "one command of 4000 is lost": (
-        "excitation/commands.c", "            m->is_on = !m->is_on;\n",
+        "excitation/commands.c", "        m->is_on = !m->is_on;\n",
         "            " + once(3210, "m->is_on = !m->is_on;", ""), SLOW),
     "one command of 4000 comes 1e-3 of its time too early": (
         "excitation/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",

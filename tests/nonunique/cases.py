@@ -326,6 +326,24 @@ def compare(checker, name, netlist, wanted, program, method):
     return result
 
 
+# The reverse voltage of a diode counts from 0 V, not from its knee, whatever its resistance.
+KNEES = {
+    "a capacitor behind a diode": ("V1 in 0 700\nR1 in x 1k\nD1 x c DK\nC1 c 0 1u\n", {"v(c)": 700}),
+    "a charge pump at rest": ("V1 a 0 5\nR1 a x 1k\nD1 x n DK\nD2 n m DK\nD3 m c DK\nC1 n 0 1u\nC2 m h 1u\n"
+                              "C3 c 0 1u\nV2 h 0 5\n", {"v(n)": 5, "v(m)": 5, "v(c)": 5}),
+    "the other way round": ("V1 in 0 12\nR1 in x 1k\nD1 c x DK\nC1 c 0 1u\n", {"v(c)": 12}),
+}
+
+
+def compare_knees(checker, program):
+    for name, (circuit, wanted) in KNEES.items():
+        for resistance in ("0", "1m", "1", "30", "1k", "100k"):
+            result = run(program, f"{name}\n{circuit}.model DK D(Ron={resistance} Vfwd=0.7)\n.op\n.end\n", method=None)
+            found = {entry["signal"]: entry["value"] for entry in result.report["nonunique"]}
+            checker.check(all(abs(found.get(k, math.nan) - v) <= 1e-9 * v for k, v in wanted.items()),
+                          f"{name}, Ron={resistance}: {found}, not {wanted}")
+
+
 COMMUTATION = """A bridge that commutates: for a while all its diodes conduct, though neither at first nor at last
 V1 in m SIN(0 118 60)
 Rs in s 2
@@ -442,6 +460,7 @@ def main():
         compare_drives(checker, program, method)
     compare_many(checker, program)
     compare_functions(checker, program)
+    compare_knees(checker, program)
     return checker.finish()
 
 
