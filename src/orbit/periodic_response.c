@@ -199,6 +199,10 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
         }
         const struct dalcs_orbit_span *end = piece->end;
         dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;
+        if (means && r->listener.passed != NULL) {
+            const struct dalcs_piece_passed passed = {piece, r->now, phase, dt};
+            r->listener.passed(r->listener.user, &passed);
+        }
         if (p == flow->pieces.n - 1 && r->gates.log != NULL) {
             end_gates(r, w);
         }

@@ -1,0 +1,285 @@
+/* audit_periodic.c - what .ac behind .pss has found, piece after piece of the period. */
+#include "audit_periodic.h"
+
+#include "congruential.h"
+#include "magnitudes.h"
+#include "pi.h"
+#include "rounding.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- Events -------------------------------------------------------------------------------------- */
+
+/* Pairs of a device; 0: of one that is no switch and no diode of two sides. */
+static int n_simple(const struct dalcs_circuit *c, const struct dalcs_device *d) {
+    const bool is_diode = d->kind == DALCS_DIODE && !isfinite(c->models.of_diode[d->model].vrev);
+    const bool is_switch =
+        d->kind == DALCS_SWITCH && !isfinite(c->models.of_switch[d->model].ilimit);
+    return d->behaviour == NULL && (is_diode || is_switch) ? 1 : 0;
+}
+
+/* Which diodes and switches have another side behind; others are causes that no guard tells. */
+static void find_changes(struct dalcs_audit_periodic *a, struct dalcs_response_event *e,
+                         const struct dalcs_orbit_segment *before,
+                         const struct dalcs_orbit_segment *behind) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    const struct dalcs_system *s = a->look.response->flow->system;
+    int n_changed = 0;
+    for (int k = 0; k < s->n_pairs; k++) {
+        n_changed += dalcs_mode_has(before->mode, k) != dalcs_mode_has(behind->mode, k) ? 1 : 0;
+    }
+    for (int d = 0; d < c->n_devices; d++) {
+        const int pair =
+            a->of.are_there[d] && n_simple(c, &c->device[d]) > 0 ? a->readout->first_pair[d] : -1;
+        const bool was = pair >= 0 && dalcs_mode_has(before->mode, pair);
+        const bool is = pair >= 0 && dalcs_mode_has(behind->mode, pair);
+        a->of.change[d] = (signed char)(is - was);
+        n_changed -= is != was ? 1 : 0;
+    }
+    e->has_other_causes = n_changed > 0 || a->log->gates != NULL;
+}
+
+static bool has_edge(const struct dalcs_circuit *c, double t) {
+    bool any = false;
+    for (int k = 0; k < c->n_stimuli && !any; k++) {
+        any = dalcs_stimulus_jumps_at(&c->stimulus[k], t);
+    }
+    return any;
+}
+
+/* Impulses of what jumps there. */
+static void add_impulses(struct dalcs_audit_periodic *a, const struct dalcs_periodic_side *behind,
+                         double t) {
+    const struct dalcs_periodic_response *r = a->look.response;
+    const double complex turn = cexp(-I * fmod(a->look.other * t, dalcs_two_pi));
+    for (int m = 0; m < r->n_read; m++) {
+        const int column = r->read[m];
+        const double jump = a->end.y[column] - behind->y[column];
+        const double size = fabs(a->end.y[column]) + fabs(behind->y[column]);
+        a->look.mean += a->weight[column] * jump * a->look.late * turn;
+        a->look.size += fabs(jump) * cabs(a->look.late);
+        a->look.doubt += a->laws.orbit.tolerance * size * cabs(a->look.late);
+    }
+}
+
+/* From the end of a piece to the beginning of another one, at t before it and at `begin` behind: 0 of the period's end. */
+static void look_across(struct dalcs_audit_periodic *a, struct dalcs_periodic_side *behind,
+                        bool is_inside, double t, double begin) {
+    const double complex back = cexp(-I * fmod(a->look.w * t, dalcs_two_pi));
+    struct dalcs_response_event e = {
+        .is = {&a->end.is, &behind->is}, .late = a->look.late * back, .changes = a->of.change};
+    for (int d = 0; d < a->readout->n_devices; d++) {
+        a->of.change[d] = 0;
+    }
+    if (!is_inside) {
+        dalcs_periodic_values_orbit(a, t, DALCS_LEFT, &a->end);
+        dalcs_periodic_values_orbit(a, begin, DALCS_RIGHT, behind);
+        if (a->end.segment == NULL || behind->segment == NULL) {
+            a->laws.n_not_checked++;
+            return;
+        }
+        e.at[0] = &a->end.at;
+        e.at[1] = &behind->at;
+        e.is_at_edge = has_edge(&a->run->s->circuit, t) || has_edge(&a->run->s->circuit, begin);
+        find_changes(a, &e, a->end.segment, behind->segment);
+        add_impulses(a, behind, t);
+    }
+    dalcs_response_audit_event(&a->laws, &e);
+}
+
+/* ---- Pieces -------------------------------------------------------------------------------------- */
+
+/* All rows that are kept at all nodes: what starts from the states, and what sources add. */
+static enum dalcs_status find_rows(struct dalcs_audit_periodic *a,
+                                   const struct dalcs_piece_passed *passed) {
+    const struct dalcs_periodic_flow *flow = a->look.response->flow;
+    const struct dalcs_flow_map *map = passed->piece->map;
+    const size_t size = dalcs_periodic_flow_size(flow);
+    DALCS_TRY(dalcs_grow(&a->row, &a->row_capacity, size, sizeof *a->row));
+    for (size_t i = 0; i < size; i++) {
+        a->row[i] = passed->phase * map->driven[i];
+    }
+    for (int k = 0; k < flow->n_columns; k++) {
+        const double *state = map->state + (size_t)k * size;
+        for (size_t i = 0; i < size && passed->start[k] != 0.0; i++) {
+            a->row[i] += passed->start[k] * state[i];
+        }
+    }
+    return DALCS_OK;
+}
+
+/* The integral of the weighted sum over the piece, by Gauss' rule on parts of it in which the turning frame goes by no more than
+ * a radian: that is exact to rounding for polynomials of degree s. */
+static void add_integral(struct dalcs_audit_periodic *a, const struct dalcs_flow_piece *piece) {
+    const struct dalcs_periodic_response *r = a->look.response;
+    const struct dalcs_collocation *method = r->flow->stages.method;
+    const double h = piece->map->h;
+    const int n_parts = 1 + (int)(fabs(a->look.other) * h);
+    double complex value[DALCS_MAX_NODES] = {0.0};
+    for (int i = 0; i <= method->s; i++) {
+        for (int m = 0; m < r->n_read; m++) {
+            value[i] +=
+                a->weight[r->read[m]] * dalcs_periodic_values_row(a, piece->map, i, r->read[m]);
+        }
+    }
+    for (int part = 0; part < n_parts; part++) {
+        for (int q = 0; q < method->s; q++) {
+            const double theta = (part + method->quadrature.node[q]) / n_parts;
+            double weight[DALCS_MAX_NODES];
+            double complex sum = 0.0;
+            dalcs_collocation_weights(method, theta, weight);
+            for (int i = 0; i <= method->s; i++) {
+                sum += weight[i] * value[i];
+            }
+            const double share = h / n_parts * method->quadrature.weight[q];
+            const double turn = fmod(a->look.other * (piece->t + theta * h), dalcs_two_pi);
+            a->look.mean += share * sum * cexp(-I * turn);
+            a->look.size += share * cabs(sum);
+        }
+    }
+}
+
+/* At a node that is drawn, between the start and the end. */
+static enum dalcs_status look_inside(struct dalcs_audit_periodic *a,
+                                     const struct dalcs_flow_piece *piece) {
+    const struct dalcs_collocation *method = a->look.response->flow->stages.method;
+    const int node = 1 + (int)(dalcs_congruential_chance(&a->seed) * (method->s - 1));
+    const double t = piece->t + method->node[node] * piece->map->h;
+    dalcs_periodic_values_orbit(a, t, DALCS_LEFT, &a->start);
+    if (a->start.segment == NULL) {
+        a->laws.n_not_checked++;
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_response_audit_settle(&a->laws, t, &a->start.at));
+    dalcs_periodic_values_small(a, piece, node, &a->start.is);
+    dalcs_response_audit_look(&a->laws, a->look.w, &a->start.is);
+    return DALCS_OK;
+}
+
+static enum dalcs_status look_at(struct dalcs_audit_periodic *a,
+                                 const struct dalcs_piece_passed *passed) {
+    const struct dalcs_flow_piece *piece = passed->piece;
+    const int end = a->look.response->flow->stages.layout.n_nodes - 1;
+    DALCS_TRY(find_rows(a, passed));
+    struct dalcs_periodic_side *begin = a->look.n == 0 ? &a->first : &a->start;
+    dalcs_periodic_values_small(a, piece, 0, &begin->is);
+    if (a->look.n > 0) {
+        const bool is_inside =
+            a->look.last->end == NULL && dalcs_mode_is(a->look.last->map->mode, piece->map->mode,
+                                                       a->look.response->flow->stages.n_words);
+        look_across(a, begin, is_inside, piece->t, piece->t);
+    }
+    add_integral(a, piece);
+    DALCS_TRY(look_inside(a, piece));
+    dalcs_periodic_values_small(a, piece, end, &a->end.is);
+    a->look.late = passed->late;
+    a->look.last = piece;
+    a->look.n++;
+    return DALCS_OK;
+}
+
+static void passed(void *user, const struct dalcs_piece_passed *passed) {
+    struct dalcs_audit_periodic *a = user;
+    if (a->look.status == DALCS_OK) {
+        a->look.status = look_at(a, passed);
+    }
+}
+
+/* ---- Frequencies --------------------------------------------------------------------------------- */
+
+void dalcs_audit_periodic_begin(struct dalcs_audit_periodic *a, int part,
+                                struct dalcs_periodic_response *response, double w, int sideband) {
+    const double other = w + sideband * dalcs_two_pi / response->flow->period;
+    a->look =
+        (struct dalcs_periodic_look){.part = part, .response = response, .w = w, .other = other};
+    a->laws.worst = (struct dalcs_response_finding){0};
+    a->laws.small.volts = a->laws.small.amperes = 0.0;
+    dalcs_periodic_values_choose(a);
+    for (int m = 0; m < response->n_read; m++) {
+        a->weight[response->read[m]] = 0.5 + dalcs_congruential_chance(&a->seed);
+    }
+    response->listener.user = a;
+    response->listener.passed = passed;
+}
+
+/* The weighted sum of what is written against the integral. */
+static enum dalcs_status check_mean(struct dalcs_audit_periodic *a, double frequency) {
+    const struct dalcs_periodic_response *r = a->look.response;
+    double complex sum = 0.0;
+    double size = a->look.size;
+    for (int m = 0; m < r->n_read; m++) {
+        const double complex term = r->flow->period * a->weight[r->read[m]] * r->y[r->read[m]];
+        sum += term;
+        size += cabs(term);
+    }
+    const double off = cabs(sum - a->look.mean);
+    return off <= dalcs_alike * size + a->look.doubt
+               ? DALCS_OK
+               : dalcs_audit_response_refute(a->run, frequency, "the mean over a period",
+                                             off / size, "of its terms");
+}
+
+enum dalcs_status dalcs_audit_periodic_end(struct dalcs_audit_periodic *a,
+                                           struct dalcs_periodic_response *response,
+                                           double frequency) {
+    response->listener.passed = NULL;
+    DALCS_TRY(a->look.status);
+    if (response->resting != NULL) { /* there is no linear response, and a warning will say so */
+        return DALCS_OK;
+    }
+    if (a->look.n > 0) {
+        look_across(a, &a->first, false, response->flow->period, 0.0);
+    }
+    DALCS_TRY(dalcs_audit_response_tell(a->run, &a->laws, frequency));
+    return check_mean(a, frequency);
+}
+
+bool dalcs_audit_periodic_asks(struct dalcs_audit_periodic *a, int k) {
+    return a->readout != NULL && dalcs_audit_response_draws(&a->rows, k);
+}
+
+enum dalcs_status dalcs_audit_periodic_row(struct dalcs_audit_periodic *a, double frequency,
+                                           const double *row) {
+    dalcs_audit_response_read(&a->rows);
+    return dalcs_audit_response_row(&a->rows, frequency, row);
+}
+
+/* ---- Start --------------------------------------------------------------------------------------- */
+
+bool dalcs_audit_periodic_is_asked(const struct dalcs_run *r) {
+    return r->options->audit != DALCS_AUDIT_OFF && r->s->network.readout != NULL;
+}
+
+enum dalcs_status dalcs_audit_periodic_start(struct dalcs_audit_periodic *a,
+                                             const struct dalcs_audit_periodic_asked *asked) {
+    struct dalcs_run *r = asked->run;
+    const size_t n_stimuli = (size_t)r->s->circuit.n_stimuli;
+    *a = (struct dalcs_audit_periodic){.run = r, .log = asked->log};
+    if (!dalcs_audit_periodic_is_asked(r) || !asked->log->is_exact) {
+        return DALCS_OK;
+    }
+    a->readout = r->s->network.readout;
+    a->source = dalcs_arena_alloc(&a->arena, n_stimuli + 1, sizeof *a->source);
+    DALCS_TRY(a->source != NULL ? DALCS_OK : DALCS_E_NOMEM);
+    for (size_t k = 0; k < n_stimuli; k++) {
+        a->source[k] = asked->log->sources.of(asked->log->sources.user, (int)k);
+    }
+    DALCS_TRY(dalcs_periodic_values_make(a));
+    DALCS_TRY(dalcs_audit_response_rows(&a->rows, r, asked->euler, asked->of, asked->n));
+    const struct dalcs_response_devices devices = {a->of.are_there, a->of.are_restless};
+    DALCS_TRY(
+        dalcs_response_audit_start(&a->laws, &r->s->circuit, &devices, &a->first.at, r->tolerance));
+    a->laws.source = a->source;
+    a->laws.rounding *= dalcs_beyond; /* a period is a product of as many maps as it has pieces */
+    a->laws.orbit.tolerance = asked->orbit_tolerance;
+    return DALCS_OK;
+}
+
+void dalcs_audit_periodic_finish(struct dalcs_audit_periodic *a) {
+    dalcs_response_audit_finish(&a->laws);
+    dalcs_audit_response_finish(&a->rows);
+    free(a->row);
+    dalcs_arena_finish(&a->arena);
+    *a = (struct dalcs_audit_periodic){0};
+}

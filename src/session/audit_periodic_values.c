@@ -1,0 +1,308 @@
+/* audit_periodic_values.c - voltages and currents of an orbit, and of small signals around it, from the columns of a part. */
+#include "audit_periodic.h"
+
+#include "orbit_rates.h"
+#include "pi.h"
+#include "radau.h"
+
+#include <math.h>
+
+/* ---- Room ---------------------------------------------------------------------------------------- */
+
+static bool make_values(struct dalcs_audit_periodic *a, struct dalcs_response_values *v) {
+    const size_t n_nodes = (size_t)a->readout->n_nodes, n_devices = (size_t)a->readout->n_devices;
+    v->v = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *v->v);
+    v->v_rate = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *v->v_rate);
+    v->i = dalcs_arena_alloc(&a->arena, n_devices, sizeof *v->i);
+    v->i_rate = dalcs_arena_alloc(&a->arena, n_devices, sizeof *v->i_rate);
+    v->size = dalcs_arena_alloc(&a->arena, n_devices, sizeof *v->size);
+    v->u = dalcs_arena_alloc(&a->arena, n_devices, sizeof *v->u);
+    v->u_rate = dalcs_arena_alloc(&a->arena, n_devices, sizeof *v->u_rate);
+    return v->u != NULL && v->u_rate != NULL && v->v != NULL && v->v_rate != NULL && v->i != NULL &&
+           v->i_rate != NULL && v->size != NULL;
+}
+
+static bool make_side(struct dalcs_audit_periodic *a, struct dalcs_periodic_side *side,
+                      size_t n_columns) {
+    side->y = dalcs_arena_alloc(&a->arena, n_columns, sizeof *side->y);
+    return side->y != NULL && make_values(a, &side->is) && make_values(a, &side->at);
+}
+
+enum dalcs_status dalcs_periodic_values_make(struct dalcs_audit_periodic *a) {
+    const size_t n_devices = (size_t)a->readout->n_devices;
+    size_t n_columns = 1;
+    for (int k = 0; k < a->log->n_parts; k++) {
+        const struct dalcs_system *s = a->log->part[k].rates.part->component->system;
+        const size_t n = (size_t)dalcs_system_n_columns(s);
+        n_columns = n > n_columns ? n : n_columns;
+    }
+    a->of.are_there = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.are_there);
+    a->of.are_restless = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.are_restless);
+    a->of.change = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.change);
+    a->of.state = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.state);
+    a->of.fed = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.fed);
+    a->term = dalcs_arena_alloc(&a->arena, DALCS_STIMULUS_MOST_TERMS, sizeof *a->term);
+    a->rate = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->rate);
+    a->weight = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->weight);
+    a->column = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->column);
+    a->is_known = dalcs_arena_alloc(&a->arena, (size_t)a->readout->n_nodes, sizeof *a->is_known);
+    return a->of.are_there != NULL && a->of.are_restless != NULL && a->of.change != NULL &&
+                   a->of.fed != NULL && a->of.state != NULL && a->term != NULL && a->rate != NULL &&
+                   a->weight != NULL && a->column != NULL && a->is_known != NULL &&
+                   make_side(a, &a->first, n_columns) && make_side(a, &a->end, n_columns) &&
+                   make_side(a, &a->start, n_columns)
+               ? DALCS_OK
+               : DALCS_E_NOMEM;
+}
+
+/* ---- Who is there -------------------------------------------------------------------------------- */
+
+/* Does a linear E or a V source follow from nodes that are known? */
+static bool feeds(const struct dalcs_device *d, const bool *is_known) {
+    const bool is_source = d->kind == DALCS_VSOURCE && d->behaviour == NULL;
+    const bool is_amplifier = d->kind == DALCS_VCVS && d->behaviour == NULL &&
+                              is_known[d->node[2]] && is_known[d->node[3]];
+    return (is_source || is_amplifier) && is_known[d->node[0]] != is_known[d->node[1]];
+}
+
+static void find_fed(struct dalcs_audit_periodic *a) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    bool *is_known = a->is_known;
+    for (int n = 0; n < c->n_nodes; n++) {
+        is_known[n] = n == 0 || a->rows.node_system[n] == a->look.part;
+    }
+    a->of.n_fed = 0;
+    for (bool any = true; any;) {
+        any = false;
+        for (int d = 0; d < c->n_devices; d++) {
+            if (!a->of.are_there[d] && feeds(&c->device[d], is_known)) {
+                is_known[c->device[d].node[0]] = is_known[c->device[d].node[1]] = true;
+                a->of.fed[a->of.n_fed++] = d;
+                any = true;
+            }
+        }
+    }
+}
+
+static void find_states(struct dalcs_audit_periodic *a) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    int k = 0; /* states are in the order of their devices */
+    for (int d = 0; d < c->n_devices; d++) {
+        const enum dalcs_device_kind kind = c->device[d].kind;
+        a->of.state[d] = -1;
+        if (kind == DALCS_CAPACITOR || kind == DALCS_INDUCTOR) {
+            const struct dalcs_probe *probe = &a->run->s->network.state[k++].probe;
+            a->of.state[d] = kind == DALCS_CAPACITOR ? probe->term[0].index : -1;
+        }
+    }
+}
+
+/* The largest voltage and current of the part. */
+static void find_scales(struct dalcs_audit_periodic *a) {
+    const struct dalcs_orbit_part *p = &a->log->part[a->look.part];
+    const struct dalcs_radau_part *part = p->rates.part;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const struct dalcs_system *s = part->component->system;
+    a->laws.orbit.volts = a->laws.orbit.amperes = 0.0;
+    for (int k = 0; k < p->record.n; k++) {
+        for (int c = 0; c < dalcs_system_n_equations(s); c++) {
+            double *of = s->column_is_current[c] ? &a->laws.orbit.amperes : &a->laws.orbit.volts;
+            *of = fmax(*of, fabs(p->record.segment[k].out[c]));
+            *of = fmax(*of, fabs(p->record.segment[k].out[(l->n_nodes - 1) * l->stride + c]));
+        }
+    }
+}
+
+/* Outputs of gates are on their own; what they do to a small signal is known to gates alone. */
+void dalcs_periodic_values_choose(struct dalcs_audit_periodic *a) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    for (int d = 0; d < c->n_devices; d++) {
+        const struct dalcs_device *device = &c->device[d];
+        const bool is_source = device->kind == DALCS_VSOURCE || device->kind == DALCS_ISOURCE;
+        a->of.are_there[d] = a->readout->device_system[d] == a->look.part &&
+                             !(is_source && a->log->gates != NULL &&
+                               dalcs_logic_pin_of(a->log->gates->memory, device->stimulus) >= 0);
+    }
+    find_states(a);
+    find_fed(a);
+    find_scales(a);
+}
+
+/* ---- Values -------------------------------------------------------------------------------------- */
+
+/* Voltages that sources alone decide, outside of the part: of[0] is a source's, of[1] its derivative. */
+static void feed(const struct dalcs_audit_periodic *a, struct dalcs_response_values *v, int device,
+                 const double complex *of) {
+    const struct dalcs_device *d = &a->run->s->circuit.device[device];
+    const int known = isnan(creal(v->v[d->node[0]])) ? 1 : 0;
+    const double sign = known == 1 ? 1.0 : -1.0;
+    double complex u[2] = {of[0], of[1]};
+    if (d->kind == DALCS_VCVS) {
+        u[0] = d->value * (v->v[d->node[2]] - v->v[d->node[3]]);
+        u[1] = d->value * (v->v_rate[d->node[2]] - v->v_rate[d->node[3]]);
+    }
+    v->v[d->node[1 - known]] = v->v[d->node[known]] + sign * u[0];
+    v->v_rate[d->node[1 - known]] = v->v_rate[d->node[known]] + sign * u[1];
+}
+
+/* From a->column and a->rate. */
+static void take(const struct dalcs_audit_periodic *a, struct dalcs_response_values *v) {
+    const struct dalcs_readout *r = a->readout;
+    for (int n = 0; n < r->n_nodes; n++) {
+        const bool is_here = n > 0 && a->rows.node_system[n] == a->look.part;
+        const int column = is_here ? r->node_column[n] : -1;
+        v->v[n] = column >= 0 ? a->column[column] : n == 0 || is_here ? 0.0 : NAN;
+        v->v_rate[n] = column >= 0 ? a->rate[column] : 0.0;
+    }
+    for (int d = 0; d < r->n_devices; d++) {
+        const bool is_read = a->of.are_there[d] && r->start[d + 1] > r->start[d];
+        const int state = a->of.are_there[d] ? a->of.state[d] : -1;
+        v->u[d] = state >= 0 ? a->column[state] : 0.0;
+        v->u_rate[d] = state >= 0 ? a->rate[state] : 0.0;
+        v->i[d] = v->i_rate[d] = 0.0;
+        v->size[d] = is_read ? 0.0 : -1.0;
+        for (int k = r->start[d]; k < r->start[d + 1] && is_read; k++) {
+            const double complex term = r->term[k].coefficient * a->column[r->term[k].column];
+            v->i[d] += term;
+            v->i_rate[d] += r->term[k].coefficient * a->rate[r->term[k].column];
+            v->size[d] += cabs(term);
+        }
+    }
+}
+
+/* Resistors, whose currents no equation has and formulas may read. */
+static void complete(const struct dalcs_audit_periodic *a, struct dalcs_response_values *v) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    for (int d = 0; d < c->n_devices; d++) {
+        const struct dalcs_device *device = &c->device[d];
+        if (a->of.are_there[d] && v->size[d] < 0.0 && device->kind == DALCS_RESISTOR &&
+            device->value != 0.0) {
+            v->i[d] = (v->v[device->node[0]] - v->v[device->node[1]]) / device->value;
+            v->size[d] = cabs(v->i[d]);
+        }
+    }
+}
+
+/* Those that sources alone decide follow from these. */
+static void read_bystander(struct dalcs_audit_periodic *a, const struct dalcs_radau_part *part,
+                           int k, double t, enum dalcs_side side) {
+    const struct dalcs_bystanders *b = &part->excitation.bystanders;
+    const struct dalcs_system *s = part->component->system;
+    const double *gain = b->gain + (size_t)k * (size_t)s->n_inputs;
+    double rate = 0.0;
+    for (int i = 1; i < s->n_inputs; i++) {
+        const struct dalcs_stimulus *of = &a->run->s->circuit.stimulus[s->stimulus[i]];
+        rate += gain[i] == 0.0       ? 0.0
+                : side == DALCS_LEFT ? gain[i] * dalcs_slope_before(of, t, a->term)
+                                     : gain[i] * dalcs_slope_behind(of, t, a->term);
+    }
+    a->column[b->column[k]] = dalcs_radau_bystander(part, k, t, side);
+    a->rate[b->column[k]] = rate;
+}
+
+/* Outputs of gates are over with the run. In a segment they are straight. */
+static void read_bystanders(struct dalcs_audit_periodic *a, const struct dalcs_radau_part *part,
+                            const struct dalcs_orbit_segment *of, double t, enum dalcs_side side) {
+    const struct dalcs_bystanders *b = &part->excitation.bystanders;
+    for (int k = 0; k < b->n; k++) {
+        if (a->log->gates == NULL) {
+            read_bystander(a, part, k, t, side);
+            continue;
+        }
+        const double slope = (of->bystanders[1][k] - of->bystanders[0][k]) / (of->to - of->from);
+        a->column[b->column[k]] = of->bystanders[0][k] + (t - of->from) * slope;
+        a->rate[b->column[k]] = slope;
+    }
+}
+
+/* The columns of a segment at a time. */
+static void read_segment(struct dalcs_audit_periodic *a, const struct dalcs_radau_part *part,
+                         const struct dalcs_orbit_segment *segment, double t) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const struct dalcs_system *s = part->component->system;
+    const int n_equations = dalcs_system_n_equations(s);
+    double weight[DALCS_MAX_NODES];
+    double slope[DALCS_MAX_NODES];
+    dalcs_orbit_record_weights(part->stages.method, (t - segment->from) / segment->h, weight,
+                               slope);
+    for (int c = 0; c < dalcs_system_n_columns(s); c++) {
+        const bool is_open = c >= n_equations && !dalcs_mode_has(segment->mode, c - n_equations);
+        a->column[c] = a->rate[c] = 0.0;
+        for (int node = 0; node < l->n_nodes && !is_open; node++) {
+            const double value = segment->out[node * l->stride + c];
+            a->column[c] += weight[node] * value;
+            a->rate[c] += slope[node] / segment->h * value;
+        }
+    }
+}
+
+/* Markov's inequality, for the derivative of a polynomial of degree s on a step. */
+static double steepness_of(const struct dalcs_collocation *method, double h) {
+    return 2.0 * method->s * method->s / h;
+}
+
+void dalcs_periodic_values_orbit(struct dalcs_audit_periodic *a, double t, enum dalcs_side side,
+                                 struct dalcs_periodic_side *to) {
+    const struct dalcs_orbit_part *p = &a->log->part[a->look.part];
+    const struct dalcs_radau_part *part = p->rates.part;
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    const int k = dalcs_orbit_record_find(&p->record, t, side);
+    to->segment = k >= 0 ? &p->record.segment[k] : NULL;
+    if (to->segment == NULL) {
+        return;
+    }
+    read_segment(a, part, to->segment, t);
+    read_bystanders(a, part, to->segment, t, side);
+    for (int m = 0; m < dalcs_system_n_columns(part->component->system); m++) {
+        to->y[m] = creal(a->column[m]);
+    }
+    take(a, &to->at);
+    complete(a, &to->at);
+    to->at.steepness = steepness_of(part->stages.method, to->segment->h);
+    for (int m = 0; m < a->of.n_fed; m++) {
+        const struct dalcs_device *d = &c->device[a->of.fed[m]];
+        double complex of[2] = {0.0, 0.0};
+        if (d->kind == DALCS_VSOURCE) {
+            const struct dalcs_stimulus *s = &c->stimulus[d->stimulus];
+            of[0] = dalcs_stimulus_value(s, t, side);
+            of[1] = side == DALCS_LEFT ? dalcs_slope_before(s, t, a->term)
+                                       : dalcs_slope_behind(s, t, a->term);
+        }
+        feed(a, &to->at, a->of.fed[m], of);
+    }
+}
+
+double complex dalcs_periodic_values_row(const struct dalcs_audit_periodic *a,
+                                         const struct dalcs_flow_map *map, int node, int column) {
+    const struct dalcs_periodic_flow *flow = a->look.response->flow;
+    const int pair = column - dalcs_system_n_equations(flow->system);
+    const bool is_open = pair >= 0 && !dalcs_mode_has(map->mode, pair);
+    return is_open ? 0.0 : a->row[dalcs_periodic_flow_at(flow, node, column)];
+}
+
+void dalcs_periodic_values_small(struct dalcs_audit_periodic *a, const struct dalcs_flow_piece *at,
+                                 int node, struct dalcs_response_values *is) {
+    const struct dalcs_periodic_flow *flow = a->look.response->flow;
+    const struct dalcs_collocation *method = flow->stages.method;
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    const double h = at->map->h;
+    const double complex back =
+        cexp(-I * fmod(a->look.w * (at->t + method->node[node] * h), dalcs_two_pi));
+    double weight[DALCS_MAX_NODES];
+    double slope[DALCS_MAX_NODES];
+    dalcs_orbit_record_weights(method, method->node[node], weight, slope);
+    for (int m = 0; m < dalcs_system_n_columns(flow->system); m++) {
+        a->column[m] = back * dalcs_periodic_values_row(a, at->map, node, m);
+        a->rate[m] = 0.0;
+        for (int i = 0; i <= method->s; i++) {
+            a->rate[m] += slope[i] / h * back * dalcs_periodic_values_row(a, at->map, i, m);
+        }
+    }
+    take(a, is);
+    is->steepness = steepness_of(method, h);
+    for (int m = 0; m < a->of.n_fed; m++) {
+        const struct dalcs_device *d = &c->device[a->of.fed[m]];
+        const double complex s = d->kind == DALCS_VSOURCE ? a->source[d->stimulus] : 0.0;
+        feed(a, is, a->of.fed[m], (double complex[2]){s, I * a->look.w * s});
+    }
+}
