@@ -91,7 +91,7 @@ static void check_states(struct dalcs_response_audit *a, const struct dalcs_resp
     }
     response_find_small(a, e->is[0]);
     for (int d = 0; d < a->circuit->n_devices; d++) {
-        if (is_storage(a, d) && e->is[0]->size[d] >= 0.0 && e->is[1]->size[d] >= 0.0) {
+        if (is_storage(a, d)) {
             check_state(a, e, d);
         }
     }

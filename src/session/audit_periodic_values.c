@@ -246,7 +246,8 @@ void dalcs_periodic_values_orbit(struct dalcs_audit_periodic *a, double t, enum 
     const struct dalcs_orbit_part *p = &a->log->part[a->look.part];
     const struct dalcs_radau_part *part = p->rates.part;
     const struct dalcs_circuit *c = &a->run->s->circuit;
-    const int k = dalcs_orbit_record_find(&p->record, t, side);
+    const double until = p->record.n > 0 ? p->record.segment[p->record.n - 1].to : t;
+    const int k = dalcs_orbit_record_find(&p->record, fmin(t, until), side);
     to->segment = k >= 0 ? &p->record.segment[k] : NULL;
     if (to->segment == NULL) {
         return;
