@@ -94,6 +94,7 @@ struct dalcs_periodic_flow {
 
     struct {                 /* rows of answers, states first */
         int n, *row, *place; /* [n]; where a row is, or -1 */
+        int n_asked;         /* those behind are for the audit alone */
     } kept;
 
     struct {

@@ -24,10 +24,14 @@ static void find_driven(const struct dalcs_periodic_response *r, struct dalcs_fl
     for (size_t i = 0; i < size; i++) {
         map->driven[i] = 0.0;
     }
+    const size_t n = (size_t)flow->kept.n;
+    const size_t n_asked = (size_t)(r->listener.passed != NULL ? flow->kept.n : flow->kept.n_asked);
     for (int k = 0; k < flow->drive.n_turns * flow->stages.layout.n_nodes; k++) {
         const double *drive = map->drive + (size_t)k * size;
-        for (size_t i = 0; i < size; i++) {
-            map->driven[i] += coefficient[k] * drive[i];
+        for (size_t first = 0; first < size; first += n) {
+            for (size_t i = first; i < first + n_asked; i++) {
+                map->driven[i] += coefficient[k] * drive[i];
+            }
         }
     }
 }

@@ -7,7 +7,9 @@
 #include "rounding.h"
 
 #include <math.h>
-#include <stdlib.h>
+
+/* Of so many pieces of a period the laws inside are asked by default. */
+enum { MOST_PIECES = 8 };
 
 /* ---- Events -------------------------------------------------------------------------------------- */
 
@@ -90,92 +92,135 @@ static void look_across(struct dalcs_audit_periodic *a, struct dalcs_periodic_si
 
 /* ---- Pieces -------------------------------------------------------------------------------------- */
 
-/* All rows that are kept at all nodes: what starts from the states, and what sources add. */
-static enum dalcs_status find_rows(struct dalcs_audit_periodic *a,
-                                   const struct dalcs_piece_passed *passed) {
-    const struct dalcs_periodic_flow *flow = a->look.response->flow;
-    const struct dalcs_flow_map *map = passed->piece->map;
-    const size_t size = dalcs_periodic_flow_size(flow);
-    DALCS_TRY(dalcs_grow(&a->row, &a->row_capacity, size, sizeof *a->row));
-    for (size_t i = 0; i < size; i++) {
-        a->row[i] = passed->phase * map->driven[i];
+/* Of an integral over a step: of exp(-j kappa theta) times a polynomial by its values at the nodes. Gauss' rule on parts in which
+ * the turning frame goes by no more than a radian is exact to rounding for polynomials of degree s. */
+static void find_weights(const struct dalcs_collocation *method, double kappa,
+                         double complex *weight) {
+    const int n_parts = 1 + (int)fabs(kappa);
+    for (int i = 0; i <= method->s; i++) {
+        weight[i] = 0.0;
     }
-    for (int k = 0; k < flow->n_columns; k++) {
-        const double *state = map->state + (size_t)k * size;
-        for (size_t i = 0; i < size && passed->start[k] != 0.0; i++) {
-            a->row[i] += passed->start[k] * state[i];
+    for (int k = 0; k < n_parts * method->s; k++) {
+        const int q = k % method->s;
+        const double theta = (k / method->s + method->quadrature.node[q]) / n_parts;
+        const double complex share =
+            method->quadrature.weight[q] / n_parts * cexp(-I * kappa * theta);
+        double of[DALCS_MAX_NODES];
+        dalcs_collocation_weights(method, theta, of);
+        for (int i = 0; i <= method->s; i++) {
+            weight[i] += share * of[i];
         }
+    }
+}
+
+static struct dalcs_mean *new_mean(struct dalcs_audit_periodic *a,
+                                   const struct dalcs_flow_map *map) {
+    const size_t n = (size_t)a->look.response->flow->n_columns + 1;
+    struct dalcs_mean *mean = dalcs_arena_alloc(&a->arena, 1, sizeof *mean);
+    double complex *value = dalcs_arena_alloc(&a->arena, n, sizeof *value);
+    if (mean == NULL || value == NULL) {
+        return NULL;
+    }
+    *mean = (struct dalcs_mean){.map = map, .value = value};
+    HASH_ADD_PTR(a->means, map, mean);
+    return mean->hh.tbl != NULL ? mean : NULL;
+}
+
+static struct dalcs_mean *mean_of(struct dalcs_audit_periodic *a,
+                                  const struct dalcs_flow_map *map) {
+    const struct dalcs_periodic_response *r = a->look.response;
+    const struct dalcs_periodic_flow *flow = r->flow;
+    const size_t size = dalcs_periodic_flow_size(flow);
+    struct dalcs_mean *mean;
+    HASH_FIND_PTR(a->means, &map, mean);
+    mean = mean != NULL ? mean : new_mean(a, map);
+    if (mean == NULL || mean->look == a->look.number) {
+        return mean;
+    }
+    double complex weight[DALCS_MAX_NODES];
+    find_weights(flow->stages.method, a->look.other * map->h, weight);
+    for (int k = 0; k <= flow->n_columns; k++) {
+        mean->value[k] = 0.0;
+        for (int i = 0; i <= flow->stages.method->s; i++) {
+            double complex sum = 0.0;
+            for (int m = 0; m < r->n_read; m++) {
+                const size_t at = dalcs_periodic_flow_at(flow, i, r->read[m]);
+                const bool is_open = dalcs_periodic_values_is_open(flow, map, r->read[m]);
+                sum += is_open ? 0.0
+                       : k == flow->n_columns
+                           ? a->weight[r->read[m]] * map->driven[at]
+                           : a->weight[r->read[m]] * map->state[(size_t)k * size + at];
+            }
+            mean->value[k] += map->h * weight[i] * sum;
+        }
+    }
+    mean->look = a->look.number;
+    return mean;
+}
+
+static enum dalcs_status add_integral(struct dalcs_audit_periodic *a,
+                                      const struct dalcs_piece_passed *passed) {
+    const struct dalcs_flow_piece *piece = passed->piece;
+    const struct dalcs_mean *mean = mean_of(a, piece->map);
+    const int n_columns = a->look.response->flow->n_columns;
+    if (mean == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    const double complex turn = cexp(-I * fmod(a->look.other * piece->t, dalcs_two_pi));
+    for (int k = 0; k <= n_columns; k++) {
+        const double complex term =
+            mean->value[k] * (k < n_columns ? passed->start[k] : passed->phase);
+        a->look.mean += turn * term;
+        a->look.size += cabs(term);
     }
     return DALCS_OK;
 }
 
-/* The integral of the weighted sum over the piece, by Gauss' rule on parts of it in which the turning frame goes by no more than
- * a radian: that is exact to rounding for polynomials of degree s. */
-static void add_integral(struct dalcs_audit_periodic *a, const struct dalcs_flow_piece *piece) {
-    const struct dalcs_periodic_response *r = a->look.response;
-    const struct dalcs_collocation *method = r->flow->stages.method;
-    const double h = piece->map->h;
-    const int n_parts = 1 + (int)(fabs(a->look.other) * h);
-    double complex value[DALCS_MAX_NODES] = {0.0};
-    for (int i = 0; i <= method->s; i++) {
-        for (int m = 0; m < r->n_read; m++) {
-            value[i] +=
-                a->weight[r->read[m]] * dalcs_periodic_values_row(a, piece->map, i, r->read[m]);
-        }
-    }
-    for (int part = 0; part < n_parts; part++) {
-        for (int q = 0; q < method->s; q++) {
-            const double theta = (part + method->quadrature.node[q]) / n_parts;
-            double weight[DALCS_MAX_NODES];
-            double complex sum = 0.0;
-            dalcs_collocation_weights(method, theta, weight);
-            for (int i = 0; i <= method->s; i++) {
-                sum += weight[i] * value[i];
-            }
-            const double share = h / n_parts * method->quadrature.weight[q];
-            const double turn = fmod(a->look.other * (piece->t + theta * h), dalcs_two_pi);
-            a->look.mean += share * sum * cexp(-I * turn);
-            a->look.size += share * cabs(sum);
-        }
-    }
-}
-
 /* At a node that is drawn, between the start and the end. */
 static enum dalcs_status look_inside(struct dalcs_audit_periodic *a,
-                                     const struct dalcs_flow_piece *piece) {
+                                     const struct dalcs_piece_passed *passed) {
     const struct dalcs_collocation *method = a->look.response->flow->stages.method;
     const int node = 1 + (int)(dalcs_congruential_chance(&a->seed) * (method->s - 1));
-    const double t = piece->t + method->node[node] * piece->map->h;
+    const double t = passed->piece->t + method->node[node] * passed->piece->map->h;
     dalcs_periodic_values_orbit(a, t, DALCS_LEFT, &a->start);
     if (a->start.segment == NULL) {
         a->laws.n_not_checked++;
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_response_audit_settle(&a->laws, t, &a->start.at));
-    dalcs_periodic_values_small(a, piece, node, &a->start.is);
+    dalcs_periodic_values_small(a, passed, node, true, &a->start.is);
     dalcs_response_audit_look(&a->laws, a->look.w, &a->start.is);
     return DALCS_OK;
 }
 
+/* Does nothing happen between a piece and the next one? */
+static bool goes_on(const struct dalcs_periodic_flow *flow, const struct dalcs_flow_piece *piece) {
+    return piece->end == NULL && piece + 1 < flow->pieces.piece + flow->pieces.n &&
+           dalcs_mode_is(piece->map->mode, piece[1].map->mode, flow->stages.n_words);
+}
+
+/* Events are looked at all, of pieces some. */
 static enum dalcs_status look_at(struct dalcs_audit_periodic *a,
                                  const struct dalcs_piece_passed *passed) {
+    const struct dalcs_periodic_flow *flow = a->look.response->flow;
     const struct dalcs_flow_piece *piece = passed->piece;
-    const int end = a->look.response->flow->stages.layout.n_nodes - 1;
-    DALCS_TRY(find_rows(a, passed));
-    struct dalcs_periodic_side *begin = a->look.n == 0 ? &a->first : &a->start;
-    dalcs_periodic_values_small(a, piece, 0, &begin->is);
-    if (a->look.n > 0) {
-        const bool is_inside =
-            a->look.last->end == NULL && dalcs_mode_is(a->look.last->map->mode, piece->map->mode,
-                                                       a->look.response->flow->stages.n_words);
-        look_across(a, begin, is_inside, piece->t, piece->t);
+    const bool is_drawn =
+        a->run->options->audit == DALCS_AUDIT_FULL ||
+        dalcs_congruential_chance(&a->seed) * flow->pieces.n < (double)MOST_PIECES;
+    if (piece == flow->pieces.piece) {
+        dalcs_periodic_values_small(a, passed, 0, false, &a->first.is);
+    } else if (a->look.last != NULL) {
+        dalcs_periodic_values_small(a, passed, 0, false, &a->start.is);
+        look_across(a, &a->start, goes_on(flow, a->look.last), piece->t, piece->t);
     }
-    add_integral(a, piece);
-    DALCS_TRY(look_inside(a, piece));
-    dalcs_periodic_values_small(a, piece, end, &a->end.is);
-    a->look.late = passed->late;
-    a->look.last = piece;
-    a->look.n++;
+    DALCS_TRY(add_integral(a, passed));
+    DALCS_TRY(is_drawn ? look_inside(a, passed) : DALCS_OK);
+    a->look.last = NULL;
+    if (is_drawn || !goes_on(flow, piece)) {
+        dalcs_periodic_values_small(a, passed, flow->stages.layout.n_nodes - 1, false, &a->end.is);
+        a->look.late = passed->late;
+        a->look.last = piece;
+    }
     return DALCS_OK;
 }
 
@@ -190,9 +235,10 @@ static void passed(void *user, const struct dalcs_piece_passed *passed) {
 
 void dalcs_audit_periodic_begin(struct dalcs_audit_periodic *a, int part,
                                 struct dalcs_periodic_response *response, double w, int sideband) {
+    const long number = a->look.number + 1;
     const double other = w + sideband * dalcs_two_pi / response->flow->period;
-    a->look =
-        (struct dalcs_periodic_look){.part = part, .response = response, .w = w, .other = other};
+    a->look = (struct dalcs_periodic_look){
+        .part = part, .number = number, .response = response, .w = w, .other = other};
     a->laws.worst = (struct dalcs_response_finding){0};
     a->laws.small.volts = a->laws.small.amperes = 0.0;
     dalcs_periodic_values_choose(a);
@@ -228,7 +274,7 @@ enum dalcs_status dalcs_audit_periodic_end(struct dalcs_audit_periodic *a,
     if (response->resting != NULL) { /* there is no linear response, and a warning will say so */
         return DALCS_OK;
     }
-    if (a->look.n > 0) {
+    if (a->look.last != NULL) {
         look_across(a, &a->first, false, response->flow->period, 0.0);
     }
     DALCS_TRY(dalcs_audit_response_tell(a->run, &a->laws, frequency));
@@ -279,7 +325,7 @@ enum dalcs_status dalcs_audit_periodic_start(struct dalcs_audit_periodic *a,
 void dalcs_audit_periodic_finish(struct dalcs_audit_periodic *a) {
     dalcs_response_audit_finish(&a->laws);
     dalcs_audit_response_finish(&a->rows);
-    free(a->row);
+    HASH_CLEAR(hh, a->means);
     dalcs_arena_finish(&a->arena);
     *a = (struct dalcs_audit_periodic){0};
 }

@@ -15,6 +15,14 @@ struct dalcs_periodic_side {
     double *y;                                 /* [columns] of the orbit */
 };
 
+/* The integral over a piece of this map, of the weighted sum of columns, by what the piece begins with. */
+struct dalcs_mean {
+    UT_hash_handle hh;
+    const struct dalcs_flow_map *map;
+    long look;             /* of which it is */
+    double complex *value; /* [flow->n_columns + 1] the last of sources at the phase 0 */
+};
+
 struct dalcs_audit_periodic {
     struct dalcs_run *run;
     const struct dalcs_orbit_log *log;
@@ -35,21 +43,22 @@ struct dalcs_audit_periodic {
 
     struct dalcs_periodic_look { /* at one frequency of one part */
         int part;
+        long number; /* of looks */
         const struct dalcs_periodic_response *response;
-        double w, other; /* rad/s, of the sources, and of what is written */
-        long n;          /* pieces so far */
-        const struct dalcs_flow_piece *last;
+        double w, other;                     /* rad/s, of the sources, and of what is written */
+        long n;                              /* pieces so far */
+        const struct dalcs_flow_piece *last; /* of which a->end is known; NULL: of none */
         enum dalcs_status status;
         double complex late; /* s, at the end of the last one */
         double complex mean; /* of a sum of columns with random weights, times the period */
         double size, doubt;  /* of what the mean adds up */
     } look;
 
+    struct dalcs_mean *means; /* of maps, by the map */
     struct dalcs_periodic_side first, end,
-        start;           /* of the period; of the last piece; of the present one */
-    double complex *row; /* [kept rows at all nodes] of the present piece */
-    size_t row_capacity;
+        start;                     /* of the period; of the last piece; of the present one */
     double complex *column, *rate; /* [columns] work: values and derivatives */
+    double complex *kept;          /* [rows that are kept] work */
     double *weight;                /* [columns] random */
     bool *is_known;                /* [n_nodes] work */
     int n, next;                   /* frequencies; which is looked at next */
@@ -100,12 +109,13 @@ void dalcs_periodic_values_choose(struct dalcs_audit_periodic *a);
 void dalcs_periodic_values_orbit(struct dalcs_audit_periodic *a, double t, enum dalcs_side side,
                                  struct dalcs_periodic_side *to);
 
-/* Small signals over exp(j w t) at a node of a piece, whose values are in a->row. */
-void dalcs_periodic_values_small(struct dalcs_audit_periodic *a, const struct dalcs_flow_piece *at,
-                                 int node, struct dalcs_response_values *is);
+/* Small signals over exp(j w t) at a node of a piece; has_rates: with their derivatives. */
+void dalcs_periodic_values_small(struct dalcs_audit_periodic *a,
+                                 const struct dalcs_piece_passed *passed, int node, bool has_rates,
+                                 struct dalcs_response_values *is);
 
-/* Element of a->row; 0 of the current of an open pair. */
-double complex dalcs_periodic_values_row(const struct dalcs_audit_periodic *a,
-                                         const struct dalcs_flow_map *map, int node, int column);
+/* In the place of an open pair's current is its w. */
+bool dalcs_periodic_values_is_open(const struct dalcs_periodic_flow *flow,
+                                   const struct dalcs_flow_map *map, int column);
 
 #endif

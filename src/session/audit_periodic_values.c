@@ -31,10 +31,13 @@ static bool make_side(struct dalcs_audit_periodic *a, struct dalcs_periodic_side
 enum dalcs_status dalcs_periodic_values_make(struct dalcs_audit_periodic *a) {
     const size_t n_devices = (size_t)a->readout->n_devices;
     size_t n_columns = 1;
+    size_t n_rows = 1;
     for (int k = 0; k < a->log->n_parts; k++) {
         const struct dalcs_system *s = a->log->part[k].rates.part->component->system;
         const size_t n = (size_t)dalcs_system_n_columns(s);
+        const size_t stride = (size_t)a->log->part[k].rates.part->stages.layout.stride;
         n_columns = n > n_columns ? n : n_columns;
+        n_rows = stride > n_rows ? stride : n_rows;
     }
     a->of.are_there = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.are_there);
     a->of.are_restless = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.are_restless);
@@ -45,12 +48,13 @@ enum dalcs_status dalcs_periodic_values_make(struct dalcs_audit_periodic *a) {
     a->rate = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->rate);
     a->weight = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->weight);
     a->column = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->column);
+    a->kept = dalcs_arena_alloc(&a->arena, n_rows, sizeof *a->kept);
     a->is_known = dalcs_arena_alloc(&a->arena, (size_t)a->readout->n_nodes, sizeof *a->is_known);
     return a->of.are_there != NULL && a->of.are_restless != NULL && a->of.change != NULL &&
                    a->of.fed != NULL && a->of.state != NULL && a->term != NULL && a->rate != NULL &&
-                   a->weight != NULL && a->column != NULL && a->is_known != NULL &&
-                   make_side(a, &a->first, n_columns) && make_side(a, &a->end, n_columns) &&
-                   make_side(a, &a->start, n_columns)
+                   a->weight != NULL && a->column != NULL && a->kept != NULL &&
+                   a->is_known != NULL && make_side(a, &a->first, n_columns) &&
+                   make_side(a, &a->end, n_columns) && make_side(a, &a->start, n_columns)
                ? DALCS_OK
                : DALCS_E_NOMEM;
 }
@@ -273,32 +277,70 @@ void dalcs_periodic_values_orbit(struct dalcs_audit_periodic *a, double t, enum 
     }
 }
 
-double complex dalcs_periodic_values_row(const struct dalcs_audit_periodic *a,
-                                         const struct dalcs_flow_map *map, int node, int column) {
-    const struct dalcs_periodic_flow *flow = a->look.response->flow;
+bool dalcs_periodic_values_is_open(const struct dalcs_periodic_flow *flow,
+                                   const struct dalcs_flow_map *map, int column) {
     const int pair = column - dalcs_system_n_equations(flow->system);
-    const bool is_open = pair >= 0 && !dalcs_mode_has(map->mode, pair);
-    return is_open ? 0.0 : a->row[dalcs_periodic_flow_at(flow, node, column)];
+    return pair >= 0 && !dalcs_mode_has(map->mode, pair);
 }
 
-void dalcs_periodic_values_small(struct dalcs_audit_periodic *a, const struct dalcs_flow_piece *at,
-                                 int node, struct dalcs_response_values *is) {
+/* value[kept.n] += factor * the sum over the nodes of weight * rows of an answer. */
+static void add_rows(const struct dalcs_periodic_flow *flow, const double *weight,
+                     const double *rows, double complex factor, double complex *value) {
+    const int n = flow->kept.n;
+    for (int i = 0; i < flow->stages.layout.n_nodes; i++) {
+        const double complex by = weight[i] * factor;
+        for (int m = 0; m < n && by != 0.0; m++) {
+            value[m] += by * rows[(size_t)i * (size_t)n + (size_t)m];
+        }
+    }
+}
+
+/* What starts from the states of a piece, and what sources add, as a sum over its nodes, into the columns. */
+static void find_columns(const struct dalcs_audit_periodic *a,
+                         const struct dalcs_piece_passed *passed, const double *weight,
+                         double complex back, double complex *column) {
+    const struct dalcs_periodic_flow *flow = a->look.response->flow;
+    const struct dalcs_flow_map *map = passed->piece->map;
+    const size_t size = dalcs_periodic_flow_size(flow);
+    const int n = flow->kept.n;
+    for (int m = 0; m < n; m++) {
+        a->kept[m] = 0.0;
+    }
+    for (int i = 0; i < flow->stages.layout.n_nodes; i++) {
+        const double complex by = weight[i] * back * passed->phase;
+        for (int m = 0; m < n && by != 0.0; m++) {
+            a->kept[m] += by * map->driven[(size_t)i * (size_t)n + (size_t)m];
+        }
+    }
+    for (int k = 0; k < flow->n_columns; k++) {
+        add_rows(flow, weight, map->state + (size_t)k * size, back * passed->start[k], a->kept);
+    }
+    for (int c = 0; c < dalcs_system_n_columns(flow->system); c++) {
+        const bool is_open = dalcs_periodic_values_is_open(flow, map, c);
+        column[c] = is_open ? 0.0 : a->kept[flow->kept.place[c]];
+    }
+}
+
+void dalcs_periodic_values_small(struct dalcs_audit_periodic *a,
+                                 const struct dalcs_piece_passed *passed, int node, bool has_rates,
+                                 struct dalcs_response_values *is) {
     const struct dalcs_periodic_flow *flow = a->look.response->flow;
     const struct dalcs_collocation *method = flow->stages.method;
     const struct dalcs_circuit *c = &a->run->s->circuit;
-    const double h = at->map->h;
-    const double complex back =
-        cexp(-I * fmod(a->look.w * (at->t + method->node[node] * h), dalcs_two_pi));
-    double weight[DALCS_MAX_NODES];
-    double slope[DALCS_MAX_NODES];
-    dalcs_orbit_record_weights(method, method->node[node], weight, slope);
-    for (int m = 0; m < dalcs_system_n_columns(flow->system); m++) {
-        a->column[m] = back * dalcs_periodic_values_row(a, at->map, node, m);
-        a->rate[m] = 0.0;
-        for (int i = 0; i <= method->s; i++) {
-            a->rate[m] += slope[i] / h * back * dalcs_periodic_values_row(a, at->map, i, m);
-        }
+    const double h = passed->piece->map->h;
+    const double t = passed->piece->t + method->node[node] * h;
+    const double complex back = cexp(-I * fmod(a->look.w * t, dalcs_two_pi));
+    double weight[DALCS_MAX_NODES] = {0.0};
+    double slope[DALCS_MAX_NODES] = {0.0};
+    if (has_rates) {
+        dalcs_orbit_record_weights(method, method->node[node], weight, slope);
     }
+    for (int i = 0; i <= method->s; i++) {
+        weight[i] = i == node ? 1.0 : 0.0;
+        slope[i] /= h;
+    }
+    find_columns(a, passed, weight, back, a->column);
+    find_columns(a, passed, slope, back, a->rate);
     take(a, is);
     is->steepness = steepness_of(method, h);
     for (int m = 0; m < a->of.n_fed; m++) {

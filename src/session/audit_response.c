@@ -12,7 +12,7 @@
 
 /* Of so many frequencies one is looked at by default, and the first and the last: a look takes about a fifth of what a
  * frequency takes to solve. */
-enum { FREQUENCIES_APART = 16 };
+enum { FREQUENCIES_APART = 16, AROUND_ORBITS_APART = 32 };
 
 /* ---- Columns to voltages and currents ------------------------------------------------------------ */
 
@@ -165,7 +165,8 @@ bool dalcs_audit_response_draws(struct dalcs_audit_response *a, int k) {
     const bool is_next = k == a->next;
     if (is_next) {
         const double chance = dalcs_congruential_chance(&a->seed);
-        a->next = k + 1 + (int)(chance * (2 * FREQUENCIES_APART - 1));
+        const int apart = a->laws.circuit != NULL ? FREQUENCIES_APART : AROUND_ORBITS_APART;
+        a->next = k + 1 + (int)(chance * (2 * apart - 1));
     }
     return is_next || k + 1 == a->n || a->run->options->audit == DALCS_AUDIT_FULL;
 }
