@@ -21,11 +21,13 @@ static void find_driven(const struct dalcs_periodic_response *r, struct dalcs_fl
     const size_t size = dalcs_periodic_flow_size(flow);
     double complex coefficient[DALCS_MOST_DRIVES];
     dalcs_periodic_flow_drive(flow, w * map->h, coefficient);
-    for (size_t i = 0; i < size; i++) {
-        map->driven[i] = 0.0;
-    }
     const size_t n = (size_t)flow->kept.n;
     const size_t n_asked = (size_t)(r->listener.passed != NULL ? flow->kept.n : flow->kept.n_asked);
+    for (size_t first = 0; first < size; first += n) {
+        for (size_t i = first; i < first + n_asked; i++) {
+            map->driven[i] = 0.0;
+        }
+    }
     for (int k = 0; k < flow->drive.n_turns * flow->stages.layout.n_nodes; k++) {
         const double *drive = map->drive + (size_t)k * size;
         for (size_t first = 0; first < size; first += n) {

@@ -8,8 +8,8 @@
 
 #include <math.h>
 
-/* Of so many pieces of a period the laws inside are asked by default. */
-enum { MOST_PIECES = 8 };
+/* By default the laws of so many pieces of a period are asked, and as many events. */
+enum { MOST_PIECES = 4 };
 
 /* ---- Events -------------------------------------------------------------------------------------- */
 
@@ -50,19 +50,24 @@ static bool has_edge(const struct dalcs_circuit *c, double t) {
     return any;
 }
 
-/* Impulses of what jumps there. */
-static void add_impulses(struct dalcs_audit_periodic *a, const struct dalcs_periodic_side *behind,
-                         double t) {
+/* The weighted sum of what jumps there. */
+static void note_jump(struct dalcs_audit_periodic *a, const struct dalcs_periodic_side *behind) {
     const struct dalcs_periodic_response *r = a->look.response;
-    const double complex turn = cexp(-I * fmod(a->look.other * t, dalcs_two_pi));
+    struct dalcs_periodic_jump *jump = &a->seen[a->look.part].jump[a->look.event];
+    *jump = (struct dalcs_periodic_jump){0};
     for (int m = 0; m < r->n_read; m++) {
         const int column = r->read[m];
-        const double jump = a->end.y[column] - behind->y[column];
-        const double size = fabs(a->end.y[column]) + fabs(behind->y[column]);
-        a->look.mean += a->weight[column] * jump * a->look.late * turn;
-        a->look.size += fabs(jump) * cabs(a->look.late);
-        a->look.doubt += a->laws.orbit.tolerance * size * cabs(a->look.late);
+        jump->value += a->weight[column] * (a->end.y[column] - behind->y[column]);
+        jump->size += a->weight[column] * (fabs(a->end.y[column]) + fabs(behind->y[column]));
     }
+}
+
+/* What jumps at an event that is late has an impulse. */
+static void add_impulse(struct dalcs_audit_periodic *a, int event, double complex late, double t) {
+    const struct dalcs_periodic_jump *jump = &a->seen[a->look.part].jump[event];
+    a->look.mean += jump->value * late * cexp(-I * fmod(a->look.other * t, dalcs_two_pi));
+    a->look.size += fabs(jump->value) * cabs(late);
+    a->look.doubt += a->laws.orbit.tolerance * jump->size * cabs(late);
 }
 
 /* From the end of a piece to the beginning of another one, at t before it and at `begin` behind: 0 of the period's end. */
@@ -85,7 +90,7 @@ static void look_across(struct dalcs_audit_periodic *a, struct dalcs_periodic_si
         e.at[1] = &behind->at;
         e.is_at_edge = has_edge(&a->run->s->circuit, t) || has_edge(&a->run->s->circuit, begin);
         find_changes(a, &e, a->end.segment, behind->segment);
-        add_impulses(a, behind, t);
+        note_jump(a, behind);
     }
     dalcs_response_audit_event(&a->laws, &e);
 }
@@ -199,27 +204,39 @@ static bool goes_on(const struct dalcs_periodic_flow *flow, const struct dalcs_f
            dalcs_mode_is(piece->map->mode, piece[1].map->mode, flow->stages.n_words);
 }
 
-/* Events are looked at all, of pieces some. */
+/* The first time all events are looked at, later some, and the end of the period. */
+static bool is_event_drawn(struct dalcs_audit_periodic *a, int piece) {
+    const int n = a->look.response->flow->pieces.n;
+    return a->seen[a->look.part].looks == 0 || piece + 1 == n ||
+           a->run->options->audit == DALCS_AUDIT_FULL ||
+           dalcs_congruential_chance(&a->seed) * n < (double)MOST_PIECES;
+}
+
 static enum dalcs_status look_at(struct dalcs_audit_periodic *a,
                                  const struct dalcs_piece_passed *passed) {
     const struct dalcs_periodic_flow *flow = a->look.response->flow;
     const struct dalcs_flow_piece *piece = passed->piece;
+    const int k = (int)(piece - flow->pieces.piece);
+    const bool goes = goes_on(flow, piece);
     const bool is_drawn =
         a->run->options->audit == DALCS_AUDIT_FULL ||
         dalcs_congruential_chance(&a->seed) * flow->pieces.n < (double)MOST_PIECES;
-    if (piece == flow->pieces.piece) {
+    if (k == 0) {
         dalcs_periodic_values_small(a, passed, 0, false, &a->first.is);
     } else if (a->look.last != NULL) {
         dalcs_periodic_values_small(a, passed, 0, false, &a->start.is);
         look_across(a, &a->start, goes_on(flow, a->look.last), piece->t, piece->t);
     }
+    if (k > 0 && a->look.late != 0.0) {
+        add_impulse(a, k - 1, a->look.late, piece->t);
+    }
     DALCS_TRY(add_integral(a, passed));
     DALCS_TRY(is_drawn ? look_inside(a, passed) : DALCS_OK);
-    a->look.last = NULL;
-    if (is_drawn || !goes_on(flow, piece)) {
+    a->look.event = k;
+    a->look.late = passed->late;
+    a->look.last = (goes ? is_drawn : is_event_drawn(a, k)) ? piece : NULL;
+    if (a->look.last != NULL) {
         dalcs_periodic_values_small(a, passed, flow->stages.layout.n_nodes - 1, false, &a->end.is);
-        a->look.late = passed->late;
-        a->look.last = piece;
     }
     return DALCS_OK;
 }
@@ -242,8 +259,10 @@ void dalcs_audit_periodic_begin(struct dalcs_audit_periodic *a, int part,
     a->laws.worst = (struct dalcs_response_finding){0};
     a->laws.small.volts = a->laws.small.amperes = 0.0;
     dalcs_periodic_values_choose(a);
-    for (int m = 0; m < response->n_read; m++) {
-        a->weight[response->read[m]] = 0.5 + dalcs_congruential_chance(&a->seed);
+    if (a->seen[part].jump == NULL) {
+        a->seen[part].jump = dalcs_arena_alloc(&a->arena, (size_t)response->flow->pieces.n,
+                                               sizeof *a->seen[part].jump);
+        a->look.status = a->seen[part].jump != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     response->listener.user = a;
     response->listener.passed = passed;
@@ -276,7 +295,9 @@ enum dalcs_status dalcs_audit_periodic_end(struct dalcs_audit_periodic *a,
     }
     if (a->look.last != NULL) {
         look_across(a, &a->first, false, response->flow->period, 0.0);
+        add_impulse(a, a->look.event, a->look.late, response->flow->period);
     }
+    a->seen[a->look.part].looks++;
     DALCS_TRY(dalcs_audit_response_tell(a->run, &a->laws, frequency));
     return check_mean(a, frequency);
 }
@@ -312,6 +333,11 @@ enum dalcs_status dalcs_audit_periodic_start(struct dalcs_audit_periodic *a,
         a->source[k] = asked->log->sources.of(asked->log->sources.user, (int)k);
     }
     DALCS_TRY(dalcs_periodic_values_make(a));
+    a->seen = dalcs_arena_alloc(&a->arena, (size_t)asked->log->n_parts, sizeof *a->seen);
+    DALCS_TRY(a->seen != NULL ? DALCS_OK : DALCS_E_NOMEM);
+    for (size_t k = 0; k < a->n_columns; k++) {
+        a->weight[k] = 0.5 + dalcs_congruential_chance(&a->seed);
+    }
     DALCS_TRY(dalcs_audit_response_rows(&a->rows, r, asked->euler, asked->of, asked->n));
     const struct dalcs_response_devices devices = {a->of.are_there, a->of.are_restless};
     DALCS_TRY(

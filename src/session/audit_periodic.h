@@ -15,6 +15,11 @@ struct dalcs_periodic_side {
     double *y;                                 /* [columns] of the orbit */
 };
 
+/* A weighted sum of columns jumps where a piece ends, and what of. */
+struct dalcs_periodic_jump {
+    double value, size;
+};
+
 /* The integral over a piece of this map, of the weighted sum of columns, by what the piece begins with. */
 struct dalcs_mean {
     UT_hash_handle hh;
@@ -47,6 +52,7 @@ struct dalcs_audit_periodic {
         const struct dalcs_periodic_response *response;
         double w, other;                     /* rad/s, of the sources, and of what is written */
         long n;                              /* pieces so far */
+        int event;                           /* the last piece */
         const struct dalcs_flow_piece *last; /* of which a->end is known; NULL: of none */
         enum dalcs_status status;
         double complex late; /* s, at the end of the last one */
@@ -55,10 +61,17 @@ struct dalcs_audit_periodic {
     } look;
 
     struct dalcs_mean *means; /* of maps, by the map */
+
+    struct { /* [n_parts] */
+        long looks;
+        struct dalcs_periodic_jump *jump; /* [pieces] */
+    } * seen;
+
     struct dalcs_periodic_side first, end,
         start;                     /* of the period; of the last piece; of the present one */
     double complex *column, *rate; /* [columns] work: values and derivatives */
     double complex *kept;          /* [rows that are kept] work */
+    size_t n_columns;              /* the most of a part */
     double *weight;                /* [columns] random */
     bool *is_known;                /* [n_nodes] work */
     int n, next;                   /* frequencies; which is looked at next */

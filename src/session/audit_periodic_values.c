@@ -39,6 +39,7 @@ enum dalcs_status dalcs_periodic_values_make(struct dalcs_audit_periodic *a) {
         n_columns = n > n_columns ? n : n_columns;
         n_rows = stride > n_rows ? stride : n_rows;
     }
+    a->n_columns = n_columns;
     a->of.are_there = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.are_there);
     a->of.are_restless = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.are_restless);
     a->of.change = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.change);
@@ -340,7 +341,9 @@ void dalcs_periodic_values_small(struct dalcs_audit_periodic *a,
         slope[i] /= h;
     }
     find_columns(a, passed, weight, back, a->column);
-    find_columns(a, passed, slope, back, a->rate);
+    if (has_rates) {
+        find_columns(a, passed, slope, back, a->rate);
+    }
     take(a, is);
     is->steepness = steepness_of(method, h);
     for (int m = 0; m < a->of.n_fed; m++) {
