@@ -48,10 +48,13 @@ enum dalcs_status dalcs_periodic_flow_rows(struct dalcs_periodic_flow *flow) {
         take_probe(flow, &out->minus);
     }
     for (int c = 0; c < dalcs_system_n_columns(flow->system); c++) {
-        if (flow->asked.is_read[c] || flow->asked.keeps_all || orbit->rest.any ||
-            orbit->near.n > 0) {
+        if (flow->asked.is_read[c] || orbit->rest.any || orbit->near.n > 0) {
             take_row(flow, c);
         }
+    }
+    flow->kept.n_asked = flow->kept.n;
+    for (int c = 0; c < dalcs_system_n_columns(flow->system) && flow->asked.keeps_all; c++) {
+        take_row(flow, c);
     }
     return DALCS_OK;
 }

@@ -11,8 +11,8 @@
 #include <math.h>
 
 /* Of so many frequencies one is looked at by default, and the first and the last: a look takes about a fifth of what a
- * frequency takes to solve. */
-enum { FREQUENCIES_APART = 16, AROUND_ORBITS_APART = 32 };
+ * frequency takes to solve; around an orbit, where events and pieces of a period are looked at, four times as much as one. */
+enum { FREQUENCIES_APART = 16, AROUND_ORBITS_APART = 64 };
 
 /* ---- Columns to voltages and currents ------------------------------------------------------------ */
 
