@@ -273,8 +273,11 @@ static enum dalcs_status check_mean(struct dalcs_audit_periodic *a, double frequ
     const struct dalcs_periodic_response *r = a->look.response;
     double complex sum = 0.0;
     double size = a->look.size;
+    const struct dalcs_response_columns *of = &a->rows.of[a->look.part];
     for (int m = 0; m < r->n_read; m++) {
-        const double complex term = r->flow->period * a->weight[r->read[m]] * r->y[r->read[m]];
+        const int column = r->read[m];
+        const double complex y = of->part[0][column] + of->part[1][column] * I;
+        const double complex term = r->flow->period * a->weight[column] * y;
         sum += term;
         size += cabs(term);
     }

@@ -30,15 +30,20 @@ static enum dalcs_status refuse_frequency(const struct dalcs_periodic_ac *a, dou
     return DALCS_SINGULAR;
 }
 
+/* Once more, as the audit sees it: what is written is what was found unseen. */
+static enum dalcs_status audit_part(struct dalcs_periodic_ac *a, struct dalcs_periodic_ac_part *p,
+                                    double frequency) {
+    const double w = dalcs_two_pi * frequency;
+    dalcs_audit_periodic_begin(&a->audit, (int)(p - a->part), &p->response, w, a->sideband);
+    p->response.last_look++; /* diodes that rest are looked for at as many frequencies */
+    DALCS_TRY(dalcs_periodic_response_at(&p->response, w, a->sideband));
+    return dalcs_audit_periodic_end(&a->audit, &p->response, frequency);
+}
+
 static enum dalcs_status solve_part(struct dalcs_periodic_ac *a, struct dalcs_periodic_ac_part *p,
                                     double frequency) {
     if (p->rests) {
         return DALCS_OK;
-    }
-    const bool is_audited = a->is_audited && p != &a->by_current;
-    if (is_audited) {
-        dalcs_audit_periodic_begin(&a->audit, (int)(p - a->part), &p->response,
-                                   dalcs_two_pi * frequency, a->sideband);
     }
     const enum dalcs_status status =
         dalcs_periodic_response_at(&p->response, dalcs_two_pi * frequency, a->sideband);
@@ -51,7 +56,7 @@ static enum dalcs_status solve_part(struct dalcs_periodic_ac *a, struct dalcs_pe
         p->y[0][column] = creal(p->response.y[column]);
         p->y[1][column] = cimag(p->response.y[column]);
     }
-    return is_audited ? dalcs_audit_periodic_end(&a->audit, &p->response, frequency) : DALCS_OK;
+    return a->is_audited && p != &a->by_current ? audit_part(a, p, frequency) : DALCS_OK;
 }
 
 static enum dalcs_status solve(struct dalcs_periodic_ac *a, double frequency) {

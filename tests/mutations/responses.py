@@ -147,6 +147,8 @@ MUTATIONS = {
     "the second source is left out": ("orbit/periodic_flow.c", "if (flow->drive.source[k] != 0.0) {", "if (flow->drive.source[k] != 0.0 && e->n_waves < 1) {", CONTROLLED),
     "drives of sources are 1e-4 too large": (
         AROUND, "map->driven[i] += coefficient[k] * drive[i];", "map->driven[i] += 1.0001 * coefficient[k] * drive[i];", CONTROLLED),
+    "sources are left out where the audit does not look": (
+        AROUND, "flow->kept.n : flow->kept.n_asked", "flow->kept.n : 0", CONTROLLED),
     "the event at t = 0 is lost": ("orbit/orbit_commands.c", "last->rate < 0.0 ? row : -1;", "-1;", BRIDGE),
     "a piece has the map of another mode": (
         "orbit/periodic_map.c", "DALCS_TRY(dalcs_stages_get(&flow->stages, span->mode, h, &entry));",
