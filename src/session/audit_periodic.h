@@ -131,4 +131,21 @@ void dalcs_periodic_values_small(struct dalcs_audit_periodic *a,
 bool dalcs_periodic_values_is_open(const struct dalcs_periodic_flow *flow,
                                    const struct dalcs_flow_map *map, int column);
 
+/* ---- audit_periodic_means.c ---------------------------------------------------------------------- */
+
+/* To a->look.mean: the integral over a piece, and the impulse of what jumps at an event that is late. */
+enum dalcs_status
+dalcs_periodic_means_add_piece(struct dalcs_audit_periodic *a,
+                               const struct dalcs_piece_passed *passed) DALCS_MUST_CHECK;
+void dalcs_periodic_means_add_impulse(struct dalcs_audit_periodic *a, int event,
+                                      double complex late, double t);
+
+/* What jumps between a->end and what is behind it. */
+void dalcs_periodic_means_note_jump(struct dalcs_audit_periodic *a,
+                                    const struct dalcs_periodic_side *behind);
+
+/* Is what is written of the frequency what they add up to? */
+enum dalcs_status dalcs_periodic_means_check(struct dalcs_audit_periodic *a,
+                                             double frequency) DALCS_MUST_CHECK;
+
 #endif

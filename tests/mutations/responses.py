@@ -95,7 +95,7 @@ r1 q m 5
 .ac dec 4 1 1k
 """
 
-ENGINE = "session/small_signal.c"
+ENGINE = "session/small_signal_part.c"
 AROUND = "orbit/periodic_response.c"
 
 # name: (file, what to replace, by what, netlist)
@@ -128,7 +128,7 @@ MUTATIONS = {
         ENGINE, "entry[n++] = (struct entry){i, s->P.j[k], 0.0, s->P.x[k]};",
         "entry[n++] = (struct entry){i, s->P.j[k], 0.0, 1.00001 * s->P.x[k]};", CIRCUIT),
     "a row has its imaginary part twice": (
-        ENGINE, "probe(a, &out->plus, which) - probe(a, &out->minus, which);",
+        "session/small_signal.c", "probe(a, &out->plus, which) - probe(a, &out->minus, which);",
         "probe(a, &out->plus, 1) - probe(a, &out->minus, which);", CIRCUIT),
     # around an orbit
     "events move the wrong way": (AROUND, "? -at_end(r, piece->map, phase, end->row)", "? at_end(r, piece->map, phase, end->row)", CONTROLLED),
