@@ -111,12 +111,14 @@ enum dalcs_status dalcs_audit_periodic_end(struct dalcs_audit_periodic *a,
 enum dalcs_status dalcs_audit_periodic_row(struct dalcs_audit_periodic *a, double frequency,
                                            const double *row) DALCS_MUST_CHECK;
 
-/* ---- audit_periodic_values.c --------------------------------------------------------------------- */
-
-enum dalcs_status dalcs_periodic_values_make(struct dalcs_audit_periodic *a) DALCS_MUST_CHECK;
+/* ---- audit_periodic_members.c -------------------------------------------------------------------- */
 
 /* Who is in the part of the look. */
 void dalcs_periodic_values_choose(struct dalcs_audit_periodic *a);
+
+/* ---- audit_periodic_values.c --------------------------------------------------------------------- */
+
+enum dalcs_status dalcs_periodic_values_make(struct dalcs_audit_periodic *a) DALCS_MUST_CHECK;
 
 /* to->at, to->y and to->segment: the orbit at a time. */
 void dalcs_periodic_values_orbit(struct dalcs_audit_periodic *a, double t, enum dalcs_side side,
