@@ -18,23 +18,6 @@ static void merge_shorts(struct dalcs_response_audit *a) {
     }
 }
 
-/* The largest of all, by which rounding that is carried from one law to others is measured. Where nothing flows, currents are
- * what the resistors make of the rounding of voltages. */
-static void find_largest(struct dalcs_response_audit *a, const struct dalcs_response_values *is) {
-    a->volts = a->amperes = 0.0;
-    for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->volts = fmax(a->volts, response_magnitude(is->v[n]));
-    }
-    for (int d = 0; d < a->circuit->n_devices; d++) {
-        const struct dalcs_device *device = &a->circuit->device[d];
-        const bool is_resistor = device->kind == DALCS_RESISTOR && device->value != 0.0;
-        const double of_rounding =
-            is_resistor ? dalcs_rounded * a->volts / fabs(device->value) : 0.0;
-        a->amperes = fmax(fmax(a->amperes, of_rounding / dalcs_answer_rounded),
-                          is->size[d] >= 0.0 ? response_magnitude(is->i[d]) : 0.0);
-    }
-}
-
 enum dalcs_status dalcs_response_audit_start(struct dalcs_response_audit *a,
                                              const struct dalcs_circuit *circuit,
                                              const struct dalcs_response_devices *of,
@@ -42,7 +25,11 @@ enum dalcs_status dalcs_response_audit_start(struct dalcs_response_audit *a,
                                              double tolerance) {
     const size_t n_nodes = (size_t)circuit->n_nodes, n_devices = (size_t)circuit->n_devices;
     size_t most = 1;
-    *a = (struct dalcs_response_audit){.circuit = circuit, .of = *of, .tolerance = tolerance};
+    *a = (struct dalcs_response_audit){.circuit = circuit,
+                                       .of = *of,
+                                       .tolerance = tolerance,
+                                       .rounding = dalcs_answer_rounded,
+                                       .t = NAN};
     for (int d = 0; d < circuit->n_devices; d++) {
         const struct dalcs_behaviour *b = dalcs_device_written(&circuit->device[d]);
         most = b != NULL && (size_t)b->n_pairs > most ? (size_t)b->n_pairs : most;
@@ -56,13 +43,20 @@ enum dalcs_status dalcs_response_audit_start(struct dalcs_response_audit *a,
     if (a->node_of != NULL && a->node != NULL && a->lines != NULL && a->lambda != NULL &&
         a->lambda_size != NULL) {
         merge_shorts(a);
-        find_largest(a, at);
+        response_find_largest(a, at);
         status = response_find_lines(a, at);
     }
     if (status != DALCS_OK) {
         dalcs_response_audit_finish(a);
     }
     return status;
+}
+
+enum dalcs_status dalcs_response_audit_settle(struct dalcs_response_audit *a, double t,
+                                              const struct dalcs_response_values *at) {
+    a->t = t;
+    response_find_largest(a, at);
+    return response_find_lines(a, at);
 }
 
 void dalcs_response_audit_finish(struct dalcs_response_audit *a) {
@@ -72,13 +66,12 @@ void dalcs_response_audit_finish(struct dalcs_response_audit *a) {
 
 /* ---- What is found ------------------------------------------------------------------------------- */
 
-static void find(struct dalcs_response_audit *a, bool is_node, int index, double defect,
-                 double allowed) {
+void response_found(struct dalcs_response_audit *a, enum dalcs_response_law law, int index,
+                    double defect, double allowed) {
     const struct dalcs_response_finding *w = &a->worst;
     a->n_checked++;
     if (defect > 0.0 && (w->allowed == 0.0 || defect * w->allowed > w->defect * allowed)) {
-        a->worst =
-            (struct dalcs_response_finding){is_node, index, defect, fmax(allowed, 0x1p-1022)};
+        a->worst = (struct dalcs_response_finding){law, index, defect, fmax(allowed, 0x1p-1022)};
     }
 }
 
@@ -100,9 +93,9 @@ static void check_voltage(struct dalcs_response_audit *a, const struct dalcs_res
     const struct dalcs_device *d = &a->circuit->device[device];
     const double complex u = across(is, d);
     const double size = voltage_size(a, is, d->node) + y.size;
-    find(a, false, device, response_magnitude(u - y.value),
-         a->tolerance * fmax(response_magnitude(u), y.scale) +
-             dalcs_answer_rounded * (size + a->volts) + doubt);
+    response_found(a, DALCS_RESPONSE_BRANCH, device, response_magnitude(u - y.value),
+                   a->tolerance * fmax(response_magnitude(u), y.scale) +
+                       a->rounding * (size + a->volts) + doubt);
 }
 
 /* i is y, or what is not known is it from now on. */
@@ -113,9 +106,10 @@ static void take_current(struct dalcs_response_audit *a, struct dalcs_response_v
         is->size[device] = y.size;
         return;
     }
-    find(a, false, device, response_magnitude(is->i[device] - y.value),
-         a->tolerance * fmax(response_magnitude(is->i[device]), response_magnitude(y.value)) +
-             dalcs_answer_rounded * (is->size[device] + y.size + a->amperes) + doubt);
+    response_found(a, DALCS_RESPONSE_BRANCH, device, response_magnitude(is->i[device] - y.value),
+                   a->tolerance *
+                           fmax(response_magnitude(is->i[device]), response_magnitude(y.value)) +
+                       a->rounding * (is->size[device] + y.size + a->amperes) + doubt);
 }
 
 static struct response_sum times(double complex factor, double complex x, double size) {
@@ -129,13 +123,32 @@ static struct response_sum read_voltage(const struct dalcs_response_audit *a,
     return times(factor, is->v[node[0]] - is->v[node[1]], voltage_size(a, is, node));
 }
 
-/* u = j omega sum M i. */
+/* The current of a capacitor: the derivative of its charge. */
+static struct response_sum charging(const struct dalcs_response_audit *a,
+                                    const struct dalcs_response_values *is, int device) {
+    const struct dalcs_device *d = &a->circuit->device[device];
+    if (is->u_rate == NULL) {
+        return read_voltage(a, is, a->omega * d->value * I, d->node);
+    }
+    return times(d->value, is->u_rate[device], response_magnitude(is->u_rate[device]));
+}
+
+/* That of the current of a coil. */
+static struct response_sum current_rate(const struct dalcs_response_audit *a,
+                                        const struct dalcs_response_values *is, double factor,
+                                        int device) {
+    if (is->i_rate == NULL) {
+        return times(a->omega * factor * I, is->i[device], is->size[device]);
+    }
+    return times(factor, is->i_rate[device], response_magnitude(is->i_rate[device]));
+}
+
+/* u is the derivative of sum M i. */
 static void check_coil(struct dalcs_response_audit *a, const struct dalcs_response_values *is,
                        int device) {
     const struct dalcs_circuit *c = a->circuit;
     const double l = c->device[device].value;
-    const double complex s = a->omega * I;
-    struct response_sum y = times(s * l, is->i[device], is->size[device]);
+    struct response_sum y = current_rate(a, is, l, device);
     bool is_known = is->size[device] >= 0.0;
     for (int k = 0; k < c->n_couplings && is_known; k++) {
         const struct dalcs_coupling *m = &c->coupling[k];
@@ -143,7 +156,7 @@ static void check_coil(struct dalcs_response_audit *a, const struct dalcs_respon
         if (end >= 0) {
             const int other = m->inductor[end];
             const double mutual = m->k * sqrt(l * c->device[other].value);
-            const struct response_sum part = times(s * mutual, is->i[other], is->size[other]);
+            const struct response_sum part = current_rate(a, is, mutual, other);
             is_known = is->size[other] >= 0.0;
             y.value += part.value;
             y.scale += part.scale;
@@ -168,7 +181,7 @@ static void check_lines(struct dalcs_response_audit *a, const struct dalcs_respo
         const double size = p * voltage_size(a, is, d->node) + q * is->size[device];
         const double allowed =
             a->tolerance * fmax(response_magnitude(p * u), response_magnitude(q * i)) +
-            dalcs_answer_rounded * (size + p * a->volts + q * a->amperes);
+            a->rounding * (size + p * a->volts + q * a->amperes);
         if (defect <= least * allowed) {
             least = allowed > 0.0 ? defect / allowed : 0.0;
             of[0] = defect;
@@ -176,7 +189,7 @@ static void check_lines(struct dalcs_response_audit *a, const struct dalcs_respo
         }
     }
     if (least < INFINITY) {
-        find(a, false, device, of[0], of[1]);
+        response_found(a, DALCS_RESPONSE_BRANCH, device, of[0], of[1]);
     } else {
         a->n_not_checked++;
     }
@@ -197,7 +210,8 @@ static void check_formula(struct dalcs_response_audit *a, struct dalcs_response_
 
 static struct response_sum source_of(const struct dalcs_response_audit *a, int stimulus) {
     const struct dalcs_stimulus *s = &a->circuit->stimulus[stimulus];
-    const double complex value = s->ac_real + s->ac_imaginary * I;
+    const double complex value =
+        a->source != NULL ? a->source[stimulus] : s->ac_real + s->ac_imaginary * I;
     return (struct response_sum){value, response_magnitude(value), response_magnitude(value)};
 }
 
@@ -228,7 +242,11 @@ static void check_branch(struct dalcs_response_audit *a, struct dalcs_response_v
         check_coil(a, is, device);
         break;
     case DALCS_CAPACITOR:
-        take_current(a, is, device, read_voltage(a, is, a->omega * d->value * I, d->node), 0.0);
+        take_current(a, is, device, charging(a, is, device), 0.0);
+        if (is->u != NULL) {
+            check_voltage(a, is, device,
+                          times(1.0, is->u[device], response_magnitude(is->u[device])), 0.0);
+        }
         break;
     case DALCS_VSOURCE:
         check_voltage(a, is, device, source_of(a, d->stimulus), 0.0);
@@ -280,8 +298,8 @@ static void check_nodes(struct dalcs_response_audit *a, const struct dalcs_respo
     for (int n = 1; n < c->n_nodes; n++) {
         const struct response_node *s = &a->node[n];
         if (a->node_of[n] == n && a->node_of[0] != n && !s->is_open) {
-            find(a, true, n, response_magnitude(s->sum),
-                 a->tolerance * s->scale + dalcs_answer_rounded * (s->size + a->amperes));
+            response_found(a, DALCS_RESPONSE_NODE, n, response_magnitude(s->sum),
+                           a->tolerance * s->scale + a->rounding * (s->size + a->amperes));
         }
     }
 }
@@ -289,7 +307,11 @@ static void check_nodes(struct dalcs_response_audit *a, const struct dalcs_respo
 void dalcs_response_audit_look(struct dalcs_response_audit *a, double omega,
                                struct dalcs_response_values *is) {
     a->omega = omega;
-    find_largest(a, is);
+    if (is->v_rate != NULL) {
+        response_find_small(a, is);
+    } else {
+        response_find_largest(a, is);
+    }
     for (int d = 0; d < a->circuit->n_devices; d++) {
         if (a->of.are_there[d]) {
             check_branch(a, is, d);

@@ -10,7 +10,11 @@
 static double complex stimulus_of(const struct dalcs_response_audit *a, int stimulus,
                                   bool is_point) {
     const struct dalcs_stimulus *s = &a->circuit->stimulus[stimulus];
-    return is_point ? dalcs_stimulus_operating_value(s, false) : s->ac_real + s->ac_imaginary * I;
+    if (is_point) {
+        return isnan(a->t) ? dalcs_stimulus_operating_value(s, false)
+                           : dalcs_stimulus_value(s, a->t, DALCS_RIGHT);
+    }
+    return a->source != NULL ? a->source[stimulus] : s->ac_real + s->ac_imaginary * I;
 }
 
 /* Without the constant and the lambdas from `first_left_out` on. */
@@ -56,14 +60,15 @@ static bool is_near(double x, double corner, double margin) {
 /* The slopes of a pair, or of two, and their values there. */
 static void find_cell(struct dalcs_response_audit *a, const struct dalcs_response_values *at,
                       const struct dalcs_behaviour *b, double *slope, int k) {
+    a->is_known = true;
     const struct response_sum sum = evaluate(a, at, &b->w[k], k, true);
     const double argument = -creal(sum.value) - b->w[k].constant;
     const double margin = a->tolerance * (sum.scale + fabs(b->w[k].constant));
     const double resistance = dalcs_affine_of_pair(&b->w[k], k);
     const double height = is_cell(b, k) ? b->w[k + 1].constant : INFINITY;
     const double top = resistance > 0.0 ? height * resistance : 0.0;
-    const bool is_corner =
-        is_near(argument, 0.0, margin) || (is_cell(b, k) && is_near(argument, top, margin));
+    const bool is_corner = !a->is_known || is_near(argument, 0.0, margin) ||
+                           (is_cell(b, k) && is_near(argument, top, margin));
     const bool is_between = resistance > 0.0 && argument > 0.0 && argument < top;
     slope[k] = is_corner ? NAN : is_between ? 1.0 / resistance : 0.0;
     a->lambda[k] = argument <= 0.0 ? 0.0 : is_between ? argument / resistance : height;
@@ -113,7 +118,9 @@ enum dalcs_status response_find_slopes(struct dalcs_response_audit *a,
         find_gradient(a, at, b->smooth, l->gradient);
         return DALCS_OK;
     }
-    l->slope = dalcs_arena_alloc(&a->arena, (size_t)b->n_pairs + 1, sizeof(double));
+    l->slope = l->slope != NULL
+                   ? l->slope
+                   : dalcs_arena_alloc(&a->arena, (size_t)b->n_pairs + 1, sizeof(double));
     if (l->slope == NULL) {
         return DALCS_E_NOMEM;
     }

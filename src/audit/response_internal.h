@@ -45,8 +45,22 @@ static inline double response_magnitude(double complex x) {
 /* What a voltage is known by: one within the rounding of the largest is not known at all. */
 static inline double response_size(const struct dalcs_response_audit *a, double complex v) {
     const double size = response_magnitude(v);
-    return size > dalcs_answer_rounded * a->volts ? size : size / dalcs_answer_rounded;
+    return size > a->rounding * a->volts ? size : size / a->rounding;
 }
+
+/* ---- response_scales.c ---- */
+
+/* The largest of all, by which rounding that is carried from one law to others is measured. */
+void response_find_largest(struct dalcs_response_audit *a, const struct dalcs_response_values *is);
+
+/* The same of small signals around an orbit, so far. */
+void response_find_small(struct dalcs_response_audit *a, const struct dalcs_response_values *is);
+
+/* ---- response.c ---- */
+
+/* A law was asked. */
+void response_found(struct dalcs_response_audit *a, enum dalcs_response_law law, int index,
+                    double defect, double allowed);
 
 /* ---- response_lines.c ---- */
 

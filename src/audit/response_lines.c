@@ -44,10 +44,11 @@ static void find_lines(struct dalcs_response_audit *a, const struct dalcs_respon
     const struct dalcs_circuit *c = a->circuit;
     const struct dalcs_device *d = &c->device[device];
     struct response_lines *l = &a->lines[device];
+    l->n = 0;
     const double a0 = creal(at->v[d->node[0]]), b0 = creal(at->v[d->node[1]]);
     const double own[2] = {a0 - b0, creal(at->i[device])};
-    const struct doubt doubt = {dalcs_answer_rounded * a->volts,
-                                dalcs_answer_rounded * fmax(a->amperes, at->size[device])};
+    const struct doubt doubt = {a->rounding * a->volts,
+                                a->rounding * fmax(a->amperes, at->size[device])};
     if (at->size[device] < 0.0) {
         return;
     }

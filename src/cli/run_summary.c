@@ -71,7 +71,8 @@ void dalcs_run_tell(const struct dalcs_run *run, const struct dalcs_arguments *a
     }
     dalcs_summary_write_run(out, report);
     dalcs_envelope_lines_write(out, report);
-    dalcs_steady_lines_write(out, report);
+    const struct dalcs_plot *orbits = run->outputs.measure[DALCS_PERIODIC].plot;
+    dalcs_steady_lines_write(out, report, orbits != NULL && orbits->n_steps > 1);
     dalcs_bode_lines_write(out, report);
     if (status != DALCS_OK && !dalcs_run_is_whole(report, status)) {
         tell_stop(run, status);

@@ -79,11 +79,12 @@ static void write_multipliers(FILE *out, const struct dalcs_report *report) {
     fputs(report->steady.exact ? "\n" : " (nearly: the mode is not known all the time)\n", out);
 }
 
-void dalcs_steady_lines_write(FILE *out, const struct dalcs_report *report) {
+void dalcs_steady_lines_write(FILE *out, const struct dalcs_report *report, bool is_last_step) {
     if (!report->steady.present) {
         return;
     }
     write_counts(out, report);
-    fprintf(out, "  verdict   %s\n", report->steady.verdict);
+    fprintf(out, "  verdict   %s%s\n", is_last_step ? "of the last step: " : "",
+            report->steady.verdict);
     write_multipliers(out, report);
 }

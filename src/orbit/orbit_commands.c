@@ -70,3 +70,53 @@ void dalcs_orbit_find_commands(struct dalcs_orbit_part *p, struct dalcs_orbit_sp
         }
     }
 }
+
+/* ---- Where the period ends ----------------------------------------------------------------------- */
+
+/* A command of t = 0 that comes along a ramp is one of t = T, of which the run has seen the other side. */
+static bool find_last_commands(struct dalcs_orbit_part *p, struct dalcs_orbit_span *last) {
+    const struct dalcs_commands *c = &p->rates.part->commands;
+    bool any = false;
+    for (int k = 0; k < c->n; k++) {
+        const int pair = c->command[k].pair;
+        if (dalcs_mode_has(p->span[0].mode, pair) != dalcs_mode_has(last->mode, pair)) {
+            dalcs_orbit_take_command(p, last, pair, last->to, &any);
+        }
+    }
+    return any;
+}
+
+/* A diode at its corner where the last segment ends, over the largest that this guard has in it. */
+static bool is_at_corner(const struct dalcs_radau_part *part, int row) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    double largest = 0.0;
+    double weight[DALCS_MAX_NODES];
+    dalcs_collocation_weights(part->stages.method, part->segment.end, weight);
+    for (int node = 0; node < l->n_nodes; node++) {
+        largest = fmax(largest, fabs(part->segment.out[node * l->stride + row]));
+    }
+    return fabs(dalcs_orbit_weigh(l, weight, part->segment.out, row)) <= dalcs_alike * largest;
+}
+
+/* A diode that a sine from 0 on turns over is at its corner at t = 0. The run begins behind that, and ends before it. */
+static void find_last_diode(const struct dalcs_orbit_part *p, struct dalcs_orbit_span *last) {
+    const struct dalcs_radau_part *part = p->rates.part;
+    const struct dalcs_system *s = part->component->system;
+    for (int k = 0; k < s->n_pairs && last->row < 0 && !part->segment.by_euler; k++) {
+        const int row = dalcs_orbit_guard_row(part, k);
+        if (s->pair[k].kind == DALCS_PAIR_DIODE &&
+            dalcs_mode_has(p->span[0].mode, k) != dalcs_mode_has(last->mode, k) &&
+            is_at_corner(part, row)) {
+            last->rate = dalcs_orbit_guard_rate(part, row);
+            last->row = last->rate < 0.0 ? row : -1;
+        }
+    }
+}
+
+bool dalcs_orbit_find_last(struct dalcs_orbit_part *p) {
+    struct dalcs_orbit_span *last = &p->span[p->n - 1];
+    if (!find_last_commands(p, last)) {
+        find_last_diode(p, last);
+    }
+    return last->row >= 0 || last->moved[0] != 0.0 || last->moved[1] != 0.0;
+}

@@ -10,4 +10,7 @@ void dalcs_orbit_take_command(struct dalcs_orbit_part *p, struct dalcs_orbit_spa
 /* Those that are due where the segment ends. */
 void dalcs_orbit_find_commands(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span);
 
+/* Where the period ends, of what begins with it: is there an event that small signals move? The last span has it then. */
+bool dalcs_orbit_find_last(struct dalcs_orbit_part *p);
+
 #endif

@@ -191,6 +191,9 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     }
     dalcs_recurrence_complete(&log->radau->part[present->index]);
     enum dalcs_status status = take_segment(p);
+    if (status == DALCS_OK && log->is_recorded) {
+        status = dalcs_orbit_record_take(&p->record, present, &log->arena);
+    }
     log->status = status < DALCS_OK ? status : log->status;
 }
 
@@ -230,20 +233,6 @@ struct dalcs_observer dalcs_orbit_log_observer(struct dalcs_orbit_log *log) {
 
 /* ---- The end ------------------------------------------------------------------------------------- */
 
-/* A command of t = 0 that comes along a ramp is one of t = T, of which the run has seen the other side. */
-static enum dalcs_status find_last_commands(struct dalcs_orbit_part *p) {
-    const struct dalcs_commands *c = &p->rates.part->commands;
-    struct dalcs_orbit_span *last = &p->span[p->n - 1];
-    bool any = false;
-    for (int k = 0; k < c->n; k++) {
-        int pair = c->command[k].pair;
-        if (dalcs_mode_has(p->span[0].mode, pair) != dalcs_mode_has(last->mode, pair)) {
-            dalcs_orbit_take_command(p, last, pair, last->to, &any);
-        }
-    }
-    return last->moved[0] != 0.0 || last->moved[1] != 0.0 ? meet_end(p, last) : DALCS_OK;
-}
-
 static enum dalcs_status close_part(struct dalcs_orbit_part *p, double T) {
     const struct dalcs_radau_part *part = p->rates.part;
     if (p->n == 0) { /* nothing steps, nothing changes sides */
@@ -259,7 +248,7 @@ static enum dalcs_status close_part(struct dalcs_orbit_part *p, double T) {
         DALCS_TRY(dalcs_orbit_gates_close(p->log->gates));
     }
     if (!p->pending) {
-        DALCS_TRY(find_last_commands(p));
+        DALCS_TRY(dalcs_orbit_find_last(p) ? meet_end(p, &p->span[p->n - 1]) : DALCS_OK);
     }
     if (p->pending) {
         pass_end(p, p->f, p->y);
@@ -339,6 +328,7 @@ void dalcs_orbit_log_finish(struct dalcs_orbit_log *log) {
     for (int k = 0; log->part != NULL && k < log->n_parts; k++) {
         free(log->part[k].span);
         dalcs_orbit_rest_finish(&log->part[k]);
+        dalcs_orbit_record_finish(&log->part[k].record);
     }
     if (log->gates != NULL) {
         dalcs_logic_watch_finish(&log->gates->watch);

@@ -8,6 +8,7 @@
 #define DALCS_ORBIT_LOG_H
 
 #include "orbit_gates.h"
+#include "orbit_record.h"
 
 #include <complex.h>
 
@@ -79,6 +80,8 @@ struct dalcs_orbit_part {
         bool has_crossed;             /* any, at the end of the last segment */
     } near;
 
+    struct dalcs_orbit_record record; /* for the audit; empty if none is asked for */
+
     bool jumped;         /* behind the last one, in jump_mode */
     uint64_t *jump_mode; /* [n_words] */
     double *f, *y;       /* [n_x], [n_columns] where the period begins; y NULL: nothing was told */
@@ -90,6 +93,7 @@ struct dalcs_orbit_log {
     enum dalcs_status status; /* of what could not be told while the run went on */
     bool
         is_exact; /* no step of implicit Euler, no event that only touches, no two commands that move apart */
+    bool is_recorded; /* segments are kept */
     int n_parts;
     struct dalcs_orbit_part *part; /* [n_parts] */
 

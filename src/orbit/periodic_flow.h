@@ -63,6 +63,7 @@ struct dalcs_periodic_flow_asked {
     const double complex *source;           /* [n_inputs] of the small signals */
     bool is_still;                          /* they are not those of the log: no command moves */
     const bool *is_read;                    /* [n_columns] what of the circuit is asked for */
+    bool keeps_all;                         /* and of maps all of it, for the audit */
     double fastest;                         /* rad/s, of them */
     double period;                          /* s */
     enum dalcs_status (*go_on)(void *user); /* asked for each span of a mode; else its status */
@@ -93,6 +94,7 @@ struct dalcs_periodic_flow {
 
     struct {                 /* rows of answers, states first */
         int n, *row, *place; /* [n]; where a row is, or -1 */
+        int n_asked;         /* those behind are for the audit alone */
     } kept;
 
     struct {

@@ -52,6 +52,10 @@ enum dalcs_status dalcs_periodic_flow_rows(struct dalcs_periodic_flow *flow) {
             take_row(flow, c);
         }
     }
+    flow->kept.n_asked = flow->kept.n;
+    for (int c = 0; c < dalcs_system_n_columns(flow->system) && flow->asked.keeps_all; c++) {
+        take_row(flow, c);
+    }
     return DALCS_OK;
 }
 

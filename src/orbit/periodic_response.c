@@ -21,13 +21,19 @@ static void find_driven(const struct dalcs_periodic_response *r, struct dalcs_fl
     const size_t size = dalcs_periodic_flow_size(flow);
     double complex coefficient[DALCS_MOST_DRIVES];
     dalcs_periodic_flow_drive(flow, w * map->h, coefficient);
-    for (size_t i = 0; i < size; i++) {
-        map->driven[i] = 0.0;
+    const size_t n = (size_t)flow->kept.n;
+    const size_t n_asked = (size_t)(r->listener.passed != NULL ? flow->kept.n : flow->kept.n_asked);
+    for (size_t first = 0; first < size; first += n) {
+        for (size_t i = first; i < first + n_asked; i++) {
+            map->driven[i] = 0.0;
+        }
     }
     for (int k = 0; k < flow->drive.n_turns * flow->stages.layout.n_nodes; k++) {
         const double *drive = map->drive + (size_t)k * size;
-        for (size_t i = 0; i < size; i++) {
-            map->driven[i] += coefficient[k] * drive[i];
+        for (size_t first = 0; first < size; first += n) {
+            for (size_t i = first; i < first + n_asked; i++) {
+                map->driven[i] += coefficient[k] * drive[i];
+            }
         }
     }
 }
@@ -199,6 +205,10 @@ static void go_through(struct dalcs_periodic_response *r, double w, double other
         }
         const struct dalcs_orbit_span *end = piece->end;
         dt = end != NULL ? find_dt(r, piece, phase, w) : 0.0;
+        if (means && r->listener.passed != NULL) {
+            const struct dalcs_piece_passed passed = {piece, r->now, phase, dt};
+            r->listener.passed(r->listener.user, &passed);
+        }
         if (p == flow->pieces.n - 1 && r->gates.log != NULL) {
             end_gates(r, w);
         }

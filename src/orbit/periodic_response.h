@@ -10,8 +10,23 @@
 
 #include "periodic_gates.h"
 
+/* A piece as a response goes through it. */
+struct dalcs_piece_passed {
+    const struct dalcs_flow_piece *piece;
+    const double complex
+        *start; /* [flow->n_columns] the states that it begins with, and outputs of gates */
+    double complex phase; /* of sources, where it begins */
+    double complex late;  /* s, by which the event at its end is */
+};
+
 struct dalcs_periodic_response {
     struct dalcs_periodic_flow *flow;
+
+    struct { /* is told each piece of the next frequency; passed: NULL, none */
+        void *user;
+        void (*passed)(void *user, const struct dalcs_piece_passed *passed);
+    } listener;
+
     int n_read, *read;                 /* [n_read] columns that are asked for */
     double complex *y;                 /* [n_columns] those of the last frequency */
     int n_all;                         /* states, and the numbers of gates */

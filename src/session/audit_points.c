@@ -219,6 +219,7 @@ void dalcs_audit_add_points(struct dalcs_run *r) {
         report->audit.where = points->where;
         report->audit.time = 0.0;
     }
+    r->points = (struct dalcs_audited_points){0};
 }
 
 /* The worst law over its scale, and how many positions there were. */

@@ -25,7 +25,7 @@ enum dalcs_status dalcs_audit_point(struct dalcs_run *r,
 enum dalcs_status dalcs_audit_add_frequency(struct dalcs_run *r, double defect, const char *what,
                                             double frequency) DALCS_MUST_CHECK;
 
-/* What was found of them, beside what the report has of a waveform. */
+/* What was found of them since this was called last goes into the report, beside what that has of a waveform. */
 void dalcs_audit_add_points(struct dalcs_run *r);
 
 #endif

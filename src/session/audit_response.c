@@ -11,8 +11,8 @@
 #include <math.h>
 
 /* Of so many frequencies one is looked at by default, and the first and the last: a look takes about a fifth of what a
- * frequency takes to solve. */
-enum { FREQUENCIES_APART = 16 };
+ * frequency takes to solve; around an orbit, where events and pieces of a period are looked at, four times as much as one. */
+enum { FREQUENCIES_APART = 16, AROUND_ORBITS_APART = 64 };
 
 /* ---- Columns to voltages and currents ------------------------------------------------------------ */
 
@@ -35,7 +35,7 @@ static void read_current(struct dalcs_audit_response *a, int device) {
     a->values.size[device] = r->start[device + 1] > r->start[device] ? size : -1.0;
 }
 
-static void read_values(struct dalcs_audit_response *a) {
+void dalcs_audit_response_read(struct dalcs_audit_response *a) {
     const struct dalcs_readout *r = a->readout;
     for (int n = 0; n < r->n_nodes; n++) {
         const bool is_column = a->node_system[n] >= 0 && r->node_column[n] >= 0;
@@ -113,6 +113,17 @@ static enum dalcs_status audit_point(struct dalcs_run *r, struct dalcs_solved_po
     return status;
 }
 
+enum dalcs_status dalcs_audit_response_rows(struct dalcs_audit_response *a, struct dalcs_run *r,
+                                            const struct dalcs_euler *euler,
+                                            struct dalcs_response_columns *of, int n) {
+    *a =
+        (struct dalcs_audit_response){.run = r, .of = of, .n = n, .readout = r->s->network.readout};
+    a->laws.tolerance = r->tolerance;
+    DALCS_TRY(make_room(a));
+    find_systems(a, euler);
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_audit_response_start(struct dalcs_audit_response *a, struct dalcs_run *r,
                                              const struct dalcs_solved_point *point,
                                              struct dalcs_response_columns *of, int n) {
@@ -134,7 +145,7 @@ enum dalcs_status dalcs_audit_response_start(struct dalcs_audit_response *a, str
         at[k].part[0] = point->euler->component[k].y;
     }
     a->of = at;
-    read_values(a);
+    dalcs_audit_response_read(a);
     complete_point(a);
     a->of = of;
     const struct dalcs_response_devices devices = {a->is_there, a->is_restless};
@@ -150,11 +161,12 @@ void dalcs_audit_response_finish(struct dalcs_audit_response *a) {
 /* ---- One frequency ------------------------------------------------------------------------------- */
 
 /* The first and the last, and others that are drawn. */
-static bool is_looked_at(struct dalcs_audit_response *a, int k) {
+bool dalcs_audit_response_draws(struct dalcs_audit_response *a, int k) {
     const bool is_next = k == a->next;
     if (is_next) {
         const double chance = dalcs_congruential_chance(&a->seed);
-        a->next = k + 1 + (int)(chance * (2 * FREQUENCIES_APART - 1));
+        const int apart = a->laws.circuit != NULL ? FREQUENCIES_APART : AROUND_ORBITS_APART;
+        a->next = k + 1 + (int)(chance * (2 * apart - 1));
     }
     return is_next || k + 1 == a->n || a->run->options->audit == DALCS_AUDIT_FULL;
 }
@@ -187,9 +199,9 @@ static bool is_row_right(const struct dalcs_audit_response *a, const double *row
     return true;
 }
 
-static enum dalcs_status refute(struct dalcs_audit_response *a, double frequency, const char *what,
-                                double off, const char *unit) {
-    dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, &a->run->s->circuit.analyses.ac.where,
+enum dalcs_status dalcs_audit_response_refute(struct dalcs_run *r, double frequency,
+                                              const char *what, double off, const char *unit) {
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.analyses.ac.where,
                    "please report this netlist",
                    "the response at %.9g Hz seems wrong: the audit finds %s off by %.3g %s",
                    frequency, what != NULL ? what : "a law", off, unit);
@@ -198,36 +210,57 @@ static enum dalcs_status refute(struct dalcs_audit_response *a, double frequency
 
 /* Is a defect of a device one of its voltage or its current? */
 static const char *unit_of(const struct dalcs_circuit *c, const struct dalcs_response_finding *f) {
-    const enum dalcs_device_kind kind = f->is_node ? DALCS_ISOURCE : c->device[f->index].kind;
-    return kind == DALCS_ISOURCE || kind == DALCS_VCCS || kind == DALCS_CCCS ||
-                   kind == DALCS_CAPACITOR
-               ? "A"
-               : "V";
+    const struct dalcs_device *d = f->law != DALCS_RESPONSE_NODE ? &c->device[f->index] : NULL;
+    bool is_current = d == NULL;
+    if (f->law == DALCS_RESPONSE_BRANCH) {
+        is_current = d->kind == DALCS_ISOURCE || d->kind == DALCS_VCCS || d->kind == DALCS_CCCS ||
+                     d->kind == DALCS_CAPACITOR;
+    } else if (f->law == DALCS_RESPONSE_STATE) {
+        is_current = d->kind == DALCS_INDUCTOR;
+    } else if (f->law == DALCS_RESPONSE_TIME) {
+        return "of what it follows";
+    }
+    return is_current ? "A" : "V";
+}
+
+enum dalcs_status dalcs_audit_response_tell(struct dalcs_run *r, struct dalcs_response_audit *laws,
+                                            double frequency) {
+    static const char *const before[] = {"", "KCL at ", "", "the time of an event of "};
+    static const char *const behind[] = {"", "", " across an event", ""};
+    const struct dalcs_circuit *c = &r->s->circuit;
+    const struct dalcs_response_finding *f = &laws->worst;
+    const double defect = f->defect > 0.0 ? laws->tolerance * f->defect / f->allowed : 0.0;
+    const char *where = f->defect == 0.0                ? ""
+                        : f->law == DALCS_RESPONSE_NODE ? c->node_name[f->index]
+                                                        : c->device[f->index].name;
+    const char *what =
+        dalcs_arena_printf(&laws->arena, "%s%s%s", before[f->law], where, behind[f->law]);
+    DALCS_TRY(dalcs_audit_add_frequency(r, defect, what, frequency));
+    return f->defect > f->allowed
+               ? dalcs_audit_response_refute(r, frequency, what, f->defect, unit_of(c, f))
+               : DALCS_OK;
+}
+
+enum dalcs_status dalcs_audit_response_row(struct dalcs_audit_response *a, double frequency,
+                                           const double *row) {
+    int wrong;
+    double off;
+    if (is_row_right(a, row, &wrong, &off)) {
+        return DALCS_OK;
+    }
+    const enum dalcs_signal_kind kind = a->run->s->circuit.results.signal[wrong].kind;
+    return dalcs_audit_response_refute(a->run, frequency, a->run->signals.name[wrong], off,
+                                       kind == DALCS_SIGNAL_CURRENT ? "A" : "V");
 }
 
 enum dalcs_status dalcs_audit_response_look(struct dalcs_audit_response *a, int k, double frequency,
                                             const double *row) {
-    if (a->readout == NULL || !is_looked_at(a, k)) {
+    if (a->readout == NULL || !dalcs_audit_response_draws(a, k)) {
         return DALCS_OK;
     }
-    const struct dalcs_circuit *c = &a->run->s->circuit;
-    int wrong;
-    double off;
-    read_values(a);
+    dalcs_audit_response_read(a);
     a->laws.worst = (struct dalcs_response_finding){0};
     dalcs_response_audit_look(&a->laws, dalcs_two_pi * frequency, &a->values);
-    const struct dalcs_response_finding *f = &a->laws.worst;
-    const double defect = f->defect > 0.0 ? a->laws.tolerance * f->defect / f->allowed : 0.0;
-    const char *where = f->defect == 0.0 ? ""
-                        : f->is_node     ? c->node_name[f->index]
-                                         : c->device[f->index].name;
-    const char *what = dalcs_arena_printf(&a->arena, "%s%s", f->is_node ? "KCL at " : "", where);
-    DALCS_TRY(dalcs_audit_add_frequency(a->run, defect, what, frequency));
-    if (f->defect > f->allowed) {
-        return refute(a, frequency, what, f->defect, unit_of(c, f));
-    }
-    return is_row_right(a, row, &wrong, &off)
-               ? DALCS_OK
-               : refute(a, frequency, a->run->signals.name[wrong], off,
-                        c->results.signal[wrong].kind == DALCS_SIGNAL_CURRENT ? "A" : "V");
+    DALCS_TRY(dalcs_audit_response_tell(a->run, &a->laws, frequency));
+    return dalcs_audit_response_row(a, frequency, row);
 }

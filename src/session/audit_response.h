@@ -38,6 +38,33 @@ enum dalcs_status dalcs_audit_response_start(struct dalcs_audit_response *a, str
 enum dalcs_status dalcs_audit_response_look(struct dalcs_audit_response *a, int k, double frequency,
                                             const double *row) DALCS_MUST_CHECK;
 
+/* ---- Around an orbit (audit_periodic.h) ---------------------------------------------------------- */
+
+/* For what is written alone. */
+enum dalcs_status dalcs_audit_response_rows(struct dalcs_audit_response *a, struct dalcs_run *r,
+                                            const struct dalcs_euler *euler,
+                                            struct dalcs_response_columns *of,
+                                            int n) DALCS_MUST_CHECK;
+
+/* Is the k-th frequency looked at? */
+bool dalcs_audit_response_draws(struct dalcs_audit_response *a, int k);
+
+/* a->values, from the answers. */
+void dalcs_audit_response_read(struct dalcs_audit_response *a);
+
+/* What has been found goes into the report, and the worst ends the run if it is too much. */
+enum dalcs_status dalcs_audit_response_tell(struct dalcs_run *r, struct dalcs_response_audit *laws,
+                                            double frequency) DALCS_MUST_CHECK;
+
+/* An error, and DALCS_REFUTED. */
+enum dalcs_status dalcs_audit_response_refute(struct dalcs_run *r, double frequency,
+                                              const char *what, double off,
+                                              const char *unit) DALCS_MUST_CHECK;
+
+/* Is what is written what a->values has? */
+enum dalcs_status dalcs_audit_response_row(struct dalcs_audit_response *a, double frequency,
+                                           const double *row) DALCS_MUST_CHECK;
+
 void dalcs_audit_response_finish(struct dalcs_audit_response *a);
 
 #endif

@@ -30,6 +30,16 @@ static enum dalcs_status refuse_frequency(const struct dalcs_periodic_ac *a, dou
     return DALCS_SINGULAR;
 }
 
+/* Once more, as the audit sees it: what is written is what was found unseen. */
+static enum dalcs_status audit_part(struct dalcs_periodic_ac *a, struct dalcs_periodic_ac_part *p,
+                                    double frequency) {
+    const double w = dalcs_two_pi * frequency;
+    dalcs_audit_periodic_begin(&a->audit, (int)(p - a->part), &p->response, w, a->sideband);
+    p->response.last_look++; /* diodes that rest are looked for at as many frequencies */
+    DALCS_TRY(dalcs_periodic_response_at(&p->response, w, a->sideband));
+    return dalcs_audit_periodic_end(&a->audit, &p->response, frequency);
+}
+
 static enum dalcs_status solve_part(struct dalcs_periodic_ac *a, struct dalcs_periodic_ac_part *p,
                                     double frequency) {
     if (p->rests) {
@@ -46,7 +56,7 @@ static enum dalcs_status solve_part(struct dalcs_periodic_ac *a, struct dalcs_pe
         p->y[0][column] = creal(p->response.y[column]);
         p->y[1][column] = cimag(p->response.y[column]);
     }
-    return DALCS_OK;
+    return a->is_audited && p != &a->by_current ? audit_part(a, p, frequency) : DALCS_OK;
 }
 
 static enum dalcs_status solve(struct dalcs_periodic_ac *a, double frequency) {
@@ -63,10 +73,12 @@ static enum dalcs_status gain_at(void *user, double frequency, double complex *g
     return DALCS_OK;
 }
 
-static enum dalcs_status put_row(struct dalcs_periodic_ac *a, double frequency) {
+static enum dalcs_status put_row(struct dalcs_periodic_ac *a, int k) {
+    const double frequency = dalcs_sweep_value(a->sweep, k);
     struct dalcs_run *r = a->run;
     const struct dalcs_network *network = &r->s->network;
     const size_t n_shown = (size_t)r->s->circuit.results.n_shown;
+    a->is_audited = dalcs_audit_periodic_asks(&a->audit, k);
     DALCS_TRY(solve(a, frequency));
     for (int i = 0; i < network->n_outputs; i++) {
         const struct dalcs_output *out = &network->output[i];
@@ -74,6 +86,8 @@ static enum dalcs_status put_row(struct dalcs_periodic_ac *a, double frequency) 
             a->row[2 * i + which] = probe(a, &out->plus, which) - probe(a, &out->minus, which);
         }
     }
+    DALCS_TRY(a->is_audited ? dalcs_audit_periodic_row(&a->audit, frequency, a->row) : DALCS_OK);
+    a->is_audited = false;
     dalcs_measures_complex_row(&a->measures, frequency, a->row);
     memcpy(a->shown, a->row, 2 * n_shown * sizeof *a->shown);
     if (a->loop.device >= 0) {
@@ -125,7 +139,7 @@ static enum dalcs_status walk(struct dalcs_periodic_ac *a) {
                                         dalcs_sweep_value(f, f->n - 1)));
     a->margins = (struct dalcs_margins){.user = a, .at = gain_at};
     for (int k = 0; k < f->n; k++) {
-        DALCS_TRY(put_row(a, dalcs_sweep_value(f, k)));
+        DALCS_TRY(put_row(a, k));
         DALCS_TRY(dalcs_run_progress(r, k + 1, f->n));
     }
     dalcs_periodic_ac_tell(a);
@@ -209,6 +223,7 @@ static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, struct dalcs_pe
     const struct dalcs_periodic_flow_asked asked = {.source = p->source,
                                                     .is_still = of >= 0 && of != a->loop.device,
                                                     .is_read = is_read,
+                                                    .keeps_all = a->log.is_recorded,
                                                     .fastest = fastest,
                                                     .period = a->st->period,
                                                     .go_on = go_on,
@@ -236,6 +251,23 @@ static enum dalcs_status setup(struct dalcs_periodic_ac *a) {
     }
     return a->loop.is_loaded ? part_setup(a, &a->by_current, a->loop.system, a->loop.probe, fastest)
                              : DALCS_OK;
+}
+
+static enum dalcs_status start_audit(struct dalcs_periodic_ac *a, double tolerance) {
+    a->answer = dalcs_arena_alloc(&a->arena, (size_t)a->n_parts + 1, sizeof *a->answer);
+    if (a->answer == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < a->n_parts; k++) {
+        a->answer[k] = (struct dalcs_response_columns){{a->part[k].y[0], a->part[k].y[1]}};
+    }
+    const struct dalcs_audit_periodic_asked asked = {.run = a->run,
+                                                     .euler = &a->euler,
+                                                     .log = &a->log,
+                                                     .orbit_tolerance = tolerance,
+                                                     .of = a->answer,
+                                                     .n = a->sweep->n};
+    return dalcs_audit_periodic_start(&a->audit, &asked);
 }
 
 static void report(struct dalcs_periodic_ac *a) {
@@ -278,6 +310,7 @@ static enum dalcs_status look_around(struct dalcs_periodic_ac *a, bool *is_off) 
     DALCS_TRY(dalcs_radau_setup(&a->radau, &a->euler, &options, &r->osnsp));
     const struct dalcs_orbit_sources sources = {a, source_of};
     DALCS_TRY(dalcs_orbit_log_setup(&a->log, &a->radau, &sources));
+    a->log.is_recorded = dalcs_audit_periodic_is_asked(r);
     DALCS_TRY(dalcs_explain_failure(r, &a->euler,
                                     dalcs_steady_log(a->st, &a->euler, &a->radau, &a->log)));
     *is_off = r->tolerance > options.tolerance && !dalcs_steady_returns(a->st);
@@ -286,6 +319,7 @@ static enum dalcs_status look_around(struct dalcs_periodic_ac *a, bool *is_off) 
     }
     DALCS_TRY(dalcs_steady_find_defect(a->st));
     DALCS_TRY(setup(a));
+    DALCS_TRY(start_audit(a, options.tolerance));
     report(a);
     return walk(a);
 }
@@ -306,6 +340,7 @@ static enum dalcs_status walk_around(struct dalcs_steady *st, bool *is_off) {
     }
     part_finish(&a.by_current);
     dalcs_margins_finish(&a.margins);
+    dalcs_audit_periodic_finish(&a.audit);
     dalcs_measures_finish(&a.measures);
     dalcs_orbit_log_finish(&a.log);
     dalcs_radau_finish(&a.radau);

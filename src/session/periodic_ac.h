@@ -2,6 +2,7 @@
 #ifndef DALCS_PERIODIC_AC_H
 #define DALCS_PERIODIC_AC_H
 
+#include "audit_periodic.h"
 #include "measures.h"
 #include "periodic_margins.h"
 #include "periodic_response.h"
@@ -30,6 +31,9 @@ struct dalcs_periodic_ac {
     } loop;
 
     struct dalcs_margins margins;
+    struct dalcs_audit_periodic audit;
+    struct dalcs_response_columns *answer; /* [n_parts] of parts, for the audit */
+    bool is_audited;                       /* the present frequency */
     struct dalcs_euler euler;
     struct dalcs_radau radau;
     struct dalcs_orbit_log log;

@@ -212,9 +212,7 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
         status =
             atomic_load(&session->is_cancelled) ? DALCS_E_CANCELLED : run_analysis(&r, analysis[k]);
     }
-    if (session->results.report.audit.mode == NULL) {
-        dalcs_audit_add_points(&r);
-    }
+    dalcs_audit_add_points(&r);
     dalcs_steady_forget(&r);
     dalcs_names_finish(&r.interrupting);
     dalcs_undetermined_finish(&r.nonunique.undetermined);

@@ -137,10 +137,17 @@ enum dalcs_status dalcs_steady_pass_watched(struct dalcs_steady *st, double dura
                                             struct dalcs_steady_watch *watch, bool *recurs,
                                             int *from, int *to) DALCS_MUST_CHECK;
 
-/* st->residual of that. */
+/* Runs one period from st->at and logs it. */
+enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *e,
+                                   struct dalcs_radau *radau,
+                                   struct dalcs_orbit_log *log) DALCS_MUST_CHECK;
+
+/* ---- steady_point.c ---------------------------------------------------------------------------- */
+
+/* st->pass.residual, of the last pass. */
 void dalcs_steady_find_residual(struct dalcs_steady *st);
 
-/* Goes on from there. */
+/* Goes on from where the last pass has arrived. */
 void dalcs_steady_take(struct dalcs_steady *st);
 
 /* The start of a run at such a point; gates decide then. */
@@ -148,15 +155,22 @@ enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, stru
                                      struct dalcs_radau *radau,
                                      struct dalcs_logic_run *logic) DALCS_MUST_CHECK;
 
-/* Runs one period from st->at and logs it. */
-enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *e,
-                                   struct dalcs_radau *radau,
-                                   struct dalcs_orbit_log *log) DALCS_MUST_CHECK;
-
 /* Where the components are that have been evaluated at t, and what gates remember. */
 enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
                                     const struct dalcs_logic_run *logic, double t,
                                     struct dalcs_orbit_point *point) DALCS_MUST_CHECK;
+
+/* That of gates alone. */
+enum dalcs_status dalcs_steady_read_gates(const struct dalcs_logic_run *logic, double t,
+                                          struct dalcs_orbit_point *point) DALCS_MUST_CHECK;
+
+/* ---- steady_derivative.c ----------------------------------------------------------------------- */
+
+/* st->pass.signature, ...phase, and ...M with what belongs to it. */
+struct dalcs_variation;
+void dalcs_steady_read_signature(struct dalcs_steady *st, const struct dalcs_variation *variation);
+void dalcs_steady_read_phase(struct dalcs_steady *st, const struct dalcs_variation *variation);
+void dalcs_steady_read_M(struct dalcs_steady *st, const struct dalcs_variation *variation);
 
 /* ---- steady_crowd.c ---------------------------------------------------------------------------- */
 

@@ -16,63 +16,6 @@
  * of its unit is rounding of theirs. */
 static const double least_scale = 1e-5;
 
-enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, struct dalcs_euler *e,
-                                     struct dalcs_radau *radau, struct dalcs_logic_run *logic) {
-    const struct dalcs_steady_layout *l = point->layout;
-    struct dalcs_arena arena = {0};
-    double **initial = dalcs_arena_alloc(&arena, (size_t)e->n_components, sizeof(*initial));
-    if (initial == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    double *x = point->x;
-    const bool *closed = point->closed;
-    for (int k = 0; k < e->n_components; k++) {
-        struct dalcs_component *c = &e->component[k];
-        initial[k] = x;
-        x += c->system->n_x;
-        for (int i = 0; i < c->switches.n; i++) {
-            dalcs_osnsp_command(&c->osnsp, c->switches.pair[i], closed[c->switches.pair[i]]);
-        }
-        closed += c->system->n_pairs;
-    }
-    enum dalcs_status status = DALCS_OK;
-    if (logic->circuit != NULL) {
-        status = dalcs_logic_memory_restore(&l->memory, logic, point->x + l->n_states,
-                                            point->closed + l->n_switches);
-    }
-    if (status == DALCS_OK) {
-        dalcs_radau_start(radau, initial);
-    }
-    dalcs_arena_finish(&arena);
-    return status;
-}
-
-static enum dalcs_status read_gates(const struct dalcs_logic_run *logic, double t,
-                                    struct dalcs_orbit_point *point) {
-    const struct dalcs_steady_layout *l = point->layout;
-    return logic->circuit == NULL
-               ? DALCS_OK
-               : dalcs_logic_memory_save(&l->memory, logic, t, point->x + l->n_states,
-                                         point->closed + l->n_switches);
-}
-
-enum dalcs_status dalcs_steady_read(const struct dalcs_euler *e,
-                                    const struct dalcs_logic_run *logic, double t,
-                                    struct dalcs_orbit_point *point) {
-    double *x = point->x;
-    bool *closed = point->closed;
-    for (int k = 0; k < e->n_components; k++) {
-        const struct dalcs_component *c = &e->component[k];
-        memcpy(x, c->y, (size_t)c->system->n_x * sizeof(double));
-        for (int i = 0; i < c->switches.n; i++) {
-            closed[c->switches.pair[i]] = dalcs_osnsp_is_on(&c->osnsp, c->switches.pair[i]);
-        }
-        x += c->system->n_x;
-        closed += c->system->n_pairs;
-    }
-    return read_gates(logic, t, point);
-}
-
 /* The state of a pass. */
 struct pass {
     struct dalcs_run *run;
@@ -184,53 +127,7 @@ static enum dalcs_status read_point(struct dalcs_steady *st, const struct pass *
         }
     }
     scale_numbers(st, radau, largest[0]);
-    return read_gates(&pass->logic, radau->options.stop, &st->then);
-}
-
-static void read_signature(struct dalcs_steady *st, const struct dalcs_variation *variation) {
-    st->pass.signature = 0;
-    for (int k = 0; k < variation->n_parts; k++) {
-        st->pass.signature = st->pass.signature * 31 + variation->part[k].signature;
-    }
-}
-
-/* Of the part whose first event comes first. */
-static void read_phase(struct dalcs_steady *st, const struct dalcs_variation *variation) {
-    const struct dalcs_variation_part *first = NULL;
-    int index = 0;
-    memset(st->pass.phase, 0, (size_t)st->layout.n_x * sizeof(double));
-    for (int k = 0; k < variation->n_parts; k++) {
-        const struct dalcs_variation_part *v = &variation->part[k];
-        if (v->n_x > 0 && isfinite(v->moved) && (first == NULL || v->moved < first->moved)) {
-            first = v;
-            index = k;
-        }
-    }
-    if (first != NULL) {
-        memcpy(st->pass.phase + st->layout.first[index], first->moves,
-               (size_t)first->n_columns * sizeof(double));
-    }
-}
-
-static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variation) {
-    st->pass.is_exact = true;
-    for (int k = 0; k < variation->n_parts; k++) {
-        const struct dalcs_variation_part *v = &variation->part[k];
-        const size_t n_x = (size_t)v->n_x;
-        const size_t n_rows = (size_t)(st->layout.first[k + 1] - st->layout.first[k]);
-        double *M = st->pass.M + st->layout.first_of_M[k];
-        double *first = st->pass.first + st->layout.first[k];
-        double *last = st->pass.last + st->layout.first[k];
-        for (int c = 0; c < v->n_columns; c++) {
-            memcpy(M + (size_t)c * n_rows, v->v + (size_t)c * n_x, n_x * sizeof(double));
-        }
-        memcpy(first, v->first, n_x * sizeof(double));
-        memcpy(last, v->last, n_x * sizeof(double));
-        if (variation->gates != NULL) {
-            dalcs_gate_variation_put(variation->gates, M, first, last);
-        }
-        st->pass.is_exact = st->pass.is_exact && v->is_exact;
-    }
+    return dalcs_steady_read_gates(&pass->logic, radau->options.stop, &st->then);
 }
 
 /* All periods once the run has started. */
@@ -277,12 +174,12 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,
         status = read_point(st, p);
     }
     if (status == DALCS_OK && (with_M || with_modes)) {
-        read_signature(st, &variation);
+        dalcs_steady_read_signature(st, &variation);
         status = variation.status;
     }
     if (status == DALCS_OK && with_M) {
-        read_M(st, &variation);
-        read_phase(st, &variation);
+        dalcs_steady_read_M(st, &variation);
+        dalcs_steady_read_phase(st, &variation);
     }
     p->euler->listener.observer = NULL;
     p->logic.observer = NULL;
@@ -355,15 +252,6 @@ enum dalcs_status dalcs_steady_pass_watched(struct dalcs_steady *st, double dura
     return status;
 }
 
-void dalcs_steady_find_residual(struct dalcs_steady *st) {
-    st->pass.residual = 0.0;
-    for (int x = 0; x < st->layout.n_x; x++) {
-        double off = fabs(st->then.x[x] - st->at.x[x]);
-        st->pass.residual =
-            off > 0.0 ? fmax(st->pass.residual, off / st->scale[x]) : st->pass.residual;
-    }
-}
-
 enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
                                     enum dalcs_steady_asked asked) {
     struct dalcs_run *r = st->run;
@@ -410,11 +298,4 @@ enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *
     status = status == DALCS_OK ? run_logged(st, &p, log) : status;
     pass_finish(&p);
     return status;
-}
-
-void dalcs_steady_take(struct dalcs_steady *st) {
-    struct dalcs_orbit_point point = st->at;
-    st->at = st->then;
-    st->then = point;
-    st->has_point = true;
 }

@@ -29,7 +29,7 @@ MUTATIONS = {
                             "    v->pending = false;\n"),
     "events move states the other way": ("orbit/variation.c", "v->guard[k] *= -1.0 / rate;",
                                          "v->guard[k] *= 1.0 / rate;"),
-    "the derivative is too large by 1 %": ("session/steady_pass.c", "    st->pass.is_exact = true;\n",
+    "the derivative is too large by 1 %": ("session/steady_derivative.c", "    st->pass.is_exact = true;\n",
                                            "    st->pass.is_exact = true;\n    double wrong = 1.01;\n"
                                            "    for (int k = 0; k < variation->n_parts; k++) {\n"
                                            "        int n = variation->part[k].n_x;\n"
