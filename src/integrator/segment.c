@@ -17,6 +17,7 @@
 #include "present.h"
 #include "projection.h"
 #include "recurrence.h"
+#include "restart.h"
 #include "slide.h"
 #include "sliding.h"
 #include "smooth_step.h"
@@ -209,8 +210,10 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
         search->rested = search->restarts + 1;
         return DALCS_OK;
     }
-    /* A guard is below 0 from the start on and does not come back, as an error of the state would. */
+    /* A guard is below 0 from the start on and does not come back, as an error of the state would. Micro-steps that go beyond
+     * the next event would not tell. */
     if (part->guards.fresh && search->restarts == 0 &&
+        4.0 * dalcs_radau_micro_length(r, part, 0) < next * part->segment.h &&
         dalcs_guards_stay_negative(part, next, q->unit)) {
         return search->guessed ? dalcs_search_refuse(part, search)
                                : dalcs_search_ask(r, part, search, true);
