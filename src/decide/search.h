@@ -92,8 +92,8 @@ enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_p
                                      struct dalcs_search *search, double next,
                                      const struct dalcs_step_quality *quality) DALCS_MUST_CHECK;
 
-/* Do states end elsewhere in a step in which tied diodes share a current than before they did? All answers have the same
- * states (Heemels, Schumacher and Weiland 1999), so this is none. */
+/* Do states end elsewhere in a step in which tied diodes share a current than before they did? All answers of a
+ * monotone circuit have the same states (Heemels, Schumacher and Weiland 1999), so this is none. */
 bool dalcs_search_moves_states(const struct dalcs_radau_part *part,
                                const struct dalcs_search *search, const double *unit);
 

@@ -290,11 +290,13 @@ static const double *end_of_step(const struct dalcs_radau_part *part) {
 
 bool dalcs_search_moves_states(const struct dalcs_radau_part *part,
                                const struct dalcs_search *search, const double *unit) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const bool shares = search->opened && search->ties == DALCS_TIES_SHARED;
     const double *end = end_of_step(part);
     bool moves = false;
-    for (int x = 0; x < part->component->system->n_x && search->opened && !moves; x++) {
+    for (int x = 0; x < p->system->n_x && shares && dalcs_osnsp_is_monotone(p) && !moves; x++) {
         const double most = part->inner_tolerance * dalcs_step_scale(part, x, unit);
-        moves = search->ties == DALCS_TIES_SHARED && !(fabs(end[x] - part->work.y2[x]) <= most);
+        moves = !(fabs(end[x] - part->work.y2[x]) <= most);
     }
     return moves;
 }
