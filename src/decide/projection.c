@@ -5,6 +5,7 @@
 #include "magnitudes.h"
 #include "micro_steps.h"
 #include "present.h"
+#include "rounding.h"
 #include "step_error.h"
 #include "step_length.h"
 
@@ -123,13 +124,23 @@ static enum dalcs_status try_projection(struct dalcs_radau_part *part, double li
     return status < DALCS_OK ? status : DALCS_OK;
 }
 
-/* Do states that move begin elsewhere in the last step than in one before it, farther than the step goes? work.y1: where they began
- * there. */
+/* How far that may be off: it is a sum. */
+static double rounding_of_beginning(const struct dalcs_radau_part *part, int x) {
+    const struct dalcs_collocation *m = part->stages.method;
+    double sizes = 0.0;
+    for (int i = 1; i <= m->n_stages; i++) {
+        sizes += fabs(m->back[i - 1] * part->segment.out[i * part->stages.layout.stride + x]);
+    }
+    return dalcs_sum_rounded * sizes;
+}
+
+/* Do states that move begin elsewhere in the last step than in one before it, farther than the step goes and beyond rounding?
+ * work.y1: where they began there. */
 static bool begins_elsewhere(const struct dalcs_radau_part *part) {
     bool differs = false;
     for (int x = 0; x < part->component->system->n_x && !differs; x++) {
-        double beginning = beginning_of(part, x);
-        differs = fabs(beginning - part->work.y1[x]) > dalcs_beyond * part->work.y2[x];
+        double least = dalcs_beyond * part->work.y2[x] + rounding_of_beginning(part, x);
+        differs = fabs(beginning_of(part, x) - part->work.y1[x]) > least;
     }
     return differs;
 }
@@ -153,8 +164,8 @@ static enum dalcs_status look_shorter(struct dalcs_radau *r, struct dalcs_radau_
     while (differs && note_beginnings(part)) {
         const double h = part->segment.h;
         bool means_something = false;
-        part->segment.h = ldexp(h, -DALCS_FAR_SHORTER);
-        if (part->segment.h >= dalcs_length_shortest(r)) {
+        part->segment.h = fmax(ldexp(h, -DALCS_FAR_SHORTER), dalcs_length_shortest(r));
+        if (part->segment.h < h) {
             DALCS_TRY(try_projection(part, limit, &means_something));
         }
         differs = means_something && begins_elsewhere(part);

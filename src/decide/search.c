@@ -94,6 +94,11 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
         part->length.fell_back = fmin(ldexp(h, 5 * k), most);
         status = dalcs_radau_euler_step(r, part, part->length.fell_back);
     }
+    /* An ordinary step that is no longer than that would not end these: rounding over so short a length may be all that is wrong. */
+    while (fixed == 0.0 &&
+           dalcs_radau_ladder(part, part->length.level) <= 4.0 * part->length.fell_back) {
+        part->length.level--;
+    }
     return status;
 }
 

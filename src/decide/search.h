@@ -39,8 +39,14 @@ struct dalcs_search {
     bool closer;  /* micro-steps have looked for a mode that lasts for a small part of the step */
     int flips_closer;
     int rested; /* answers, and one, after which comparisons at equality were put on the side that is written for it */
-    bool untied; /* tied diodes have been looked at */
-    bool opened; /* and are on their other sides now, to try */
+
+    enum dalcs_ties {
+        DALCS_TIES_STAND,  /* nobody has looked at tied diodes */
+        DALCS_TIES_TURNED, /* those have changed sides whose values tell where they go */
+        DALCS_TIES_SHARED  /* all have been closed, for there may be many answers */
+    } ties;
+
+    bool opened; /* they are on their other sides now, to try */
     bool projected;
     enum dalcs_settling settling;
     bool states_free; /* in the mode of the last step, which has nothing to project on */
@@ -85,6 +91,11 @@ enum dalcs_status dalcs_search_refine(struct dalcs_radau *r, struct dalcs_radau_
 enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      struct dalcs_search *search, double next,
                                      const struct dalcs_step_quality *quality) DALCS_MUST_CHECK;
+
+/* Do states end elsewhere in a step in which tied diodes share a current than before they did? All answers of a
+ * monotone circuit have the same states (Heemels, Schumacher and Weiland 1999), so this is none. */
+bool dalcs_search_moves_states(const struct dalcs_radau_part *part,
+                               const struct dalcs_search *search, const double *unit);
 
 /* A tied diode that was opened to try, or closed, cannot. */
 enum dalcs_status dalcs_search_tie_again(struct dalcs_radau_part *part,

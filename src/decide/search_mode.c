@@ -6,6 +6,7 @@
 #include "guard_values.h"
 #include "guards.h"
 #include "restart.h"
+#include "step_error.h"
 #include "step_length.h"
 #include "tied.h"
 #include "transition.h"
@@ -283,15 +284,38 @@ static enum dalcs_status ask_of_tied(struct dalcs_radau *r, struct dalcs_radau_p
     return dalcs_search_go_on_from_answer(r, part, search, is_off);
 }
 
+static const double *end_of_step(const struct dalcs_radau_part *part) {
+    return part->segment.out + part->stages.method->s * part->stages.layout.stride;
+}
+
+bool dalcs_search_moves_states(const struct dalcs_radau_part *part,
+                               const struct dalcs_search *search, const double *unit) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const bool shares = search->opened && search->ties == DALCS_TIES_SHARED;
+    const double *end = end_of_step(part);
+    bool moves = false;
+    for (int x = 0; x < p->system->n_x && shares && dalcs_osnsp_is_monotone(p) && !moves; x++) {
+        const double most = part->inner_tolerance * dalcs_step_scale(part, x, unit);
+        moves = !(fabs(end[x] - part->work.y2[x]) <= most);
+    }
+    return moves;
+}
+
 enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      struct dalcs_search *search, double next,
                                      const struct dalcs_step_quality *quality) {
     double micro = dalcs_radau_micro_length(r, part, search->restarts);
-    if (search->restarts < TIED_RESTARTS && 4.0 * micro < next * part->segment.h) {
+    if (search->ties == DALCS_TIES_STAND && search->restarts < TIED_RESTARTS &&
+        4.0 * micro < next * part->segment.h) {
         return ask_of_tied(r, part, search, quality->unit);
     }
-    search->untied = true;
     keep_mode(part);
-    search->opened = dalcs_tied_turn(part, quality->unit);
+    const size_t n_x = (size_t)part->component->system->n_x;
+    search->opened = search->ties == DALCS_TIES_STAND && dalcs_tied_turn(part, quality->unit);
+    search->ties = search->opened ? DALCS_TIES_TURNED : DALCS_TIES_SHARED;
+    if (!search->opened) {
+        memcpy(part->work.y2, end_of_step(part), n_x * sizeof(double));
+        search->opened = dalcs_tied_share(part, quality->unit);
+    }
     return DALCS_OK;
 }

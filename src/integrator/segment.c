@@ -17,6 +17,7 @@
 #include "present.h"
 #include "projection.h"
 #include "recurrence.h"
+#include "restart.h"
 #include "slide.h"
 #include "sliding.h"
 #include "smooth_step.h"
@@ -195,6 +196,9 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     if (at_once && part->guards.fresh) {
         return dalcs_search_change_mode(r, part, search, q->unit, &trial->done);
     }
+    if (dalcs_search_moves_states(part, search, q->unit)) {
+        return dalcs_search_tie_again(part, search);
+    }
     /* Of the tied pairs that are closed to try, some have no current. */
     if (search->opened && dalcs_tied_open_idle(part, part->work.mode_tied, next, q->unit)) {
         return dalcs_search_go_on_trying(part, search);
@@ -206,14 +210,16 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
         search->rested = search->restarts + 1;
         return DALCS_OK;
     }
-    /* A guard is below 0 from the start on and does not come back, as an error of the state would. */
+    /* A guard is below 0 from the start on and does not come back, as an error of the state would. Micro-steps that go beyond
+     * the next event would not tell. */
     if (part->guards.fresh && search->restarts == 0 &&
+        4.0 * dalcs_radau_micro_length(r, part, 0) < next * part->segment.h &&
         dalcs_guards_stay_negative(part, next, q->unit)) {
         return search->guessed ? dalcs_search_refuse(part, search)
                                : dalcs_search_ask(r, part, search, true);
     }
     /* Diodes have neither current nor voltage, and nobody has looked yet on which side they are. */
-    if (part->guards.fresh && !search->guessed && !search->untied &&
+    if (part->guards.fresh && !search->guessed && search->ties != DALCS_TIES_SHARED &&
         dalcs_tied_stay(part, dalcs_stage_n_clashes(part->segment.entry) == 0, q->unit)) {
         return dalcs_search_untie(r, part, search, next, q);
     }
@@ -265,8 +271,8 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         judge_what_is_left(r, part, search, &trial);
     }
     if (trial.holds) {
-        part->segment.open =
-            part->guards.fresh && (search->untied || dalcs_stage_n_clashes(trial.entry) > 0);
+        part->segment.open = part->guards.fresh && (search->ties != DALCS_TIES_STAND ||
+                                                    dalcs_stage_n_clashes(trial.entry) > 0);
         DALCS_TRY(check_poles(r, part, trial.next));
         DALCS_TRY(dalcs_trial_accept(r, part, search, &trial));
         trial.done = true;

@@ -114,19 +114,6 @@ static bool is_above(const struct dalcs_radau_part *part, int pair, double end,
            dalcs_tied_nothing(part, pair, unit);
 }
 
-/* The tied diodes that are open close, all of them: where there are many answers they may have a part of a current. */
-static bool close_tied(struct dalcs_radau_part *part, const double *unit) {
-    struct dalcs_osnsp *p = &part->component->osnsp;
-    bool found = false;
-    for (int d = 0; d < p->system->n_pairs; d++) {
-        if (!dalcs_osnsp_is_on(p, d) && dalcs_tied_is(part, d, unit)) {
-            dalcs_osnsp_command(p, d, true);
-            found = true;
-        }
-    }
-    return found;
-}
-
 bool dalcs_tied_open_idle(struct dalcs_radau_part *part, const uint64_t *before, double end,
                           const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
@@ -154,6 +141,18 @@ bool dalcs_tied_turn(struct dalcs_radau_part *part, const double *unit) {
             found = true;
         }
     }
+    return found;
+}
+
+bool dalcs_tied_share(struct dalcs_radau_part *part, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
     bool may_share = p->system->n_pairs <= DALCS_MANY_PAIRS && !dalcs_osnsp_is_unique(p);
-    return found || (may_share && close_tied(part, unit));
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs && may_share; d++) {
+        if (!dalcs_osnsp_is_on(p, d) && dalcs_tied_is(part, d, unit)) {
+            dalcs_osnsp_command(p, d, true);
+            found = true;
+        }
+    }
+    return found;
 }

@@ -26,8 +26,11 @@ bool dalcs_tied_leaves(const struct dalcs_radau_part *part, int pair, double sig
 bool dalcs_tied_is(const struct dalcs_radau_part *part, int pair, const double *unit);
 
 /* Opens the closed diodes among them but those in which a current begins, and closes the open ones whose voltage
- * begins to rise. Where there are none, and many answers, closes all that are open. False: nothing changes. */
+ * begins to rise. False: there are none. */
 bool dalcs_tied_turn(struct dalcs_radau_part *part, const double *unit);
+
+/* Closes all open ones where there may be many answers: they may have a part of a current. False: there are none. */
+bool dalcs_tied_share(struct dalcs_radau_part *part, const double *unit);
 
 /* Opens those that are closed now and were not `before`, and have no current halfway to `end`, in steps, nor begin to.
  * False: there is none. */

@@ -160,6 +160,31 @@ Vg g 0 PULSE(0 1 0 27n 27n 5.4u 10.8u)
 .tran 0.4u 20u uic
 """
 
+# A current that a leak of Roff takes to V1 / Roff within L / Roff, from a half to twice the shortest step: no jump.
+LEAK = """* a switch that leaks opens
+V1 in 0 10
+S1 in p g 0 sw
+Vg g 0 PULSE(0 1 0 1n 1n 2.5u 10u)
+.model sw sw(roff={ohms} vt=0.5)
+L1 p 0 {henries}
+.tran 0.1u 300u
+"""
+
+# The same of what a thyristor holds: 0.1 A, which end at 9.99 ms.
+LATCH = """* a thyristor that leaks
+V1 a 0 SIN(0 325 50)
+D1 a w di
+Vs w v 0
+S1 v b l 0 sw
+L1 b c {henries}
+R1 c 0 10
+Bl l 0 V=v(g)+u(i(Vs)-0.1)
+Rl l 0 1k
+Vg g 0 PULSE(0 1 4m 2u 2u 2m 20m)
+.model sw sw(ron=1m roff={ohms} vt=0.5)
+.model di d(ron=1m roff=10meg)
+.tran 0.2m 80m uic
+"""
 
 # What a source of time is, then what a formula says of it.
 FORMULAS = [
@@ -311,10 +336,22 @@ class Jumps:
             self.check.check(abs(current[k] - current[k - 1]) <= 1e-8 * size,
                              f"ls: {current[k - 1]} A, then {current[k]} A at {times[k]} s")
 
+    def leak(self):
+        for netlist, ohms, henries, seen, wanted in (
+                (LEAK, "1e11", "1u", 5e-6, 1e-10), (LEAK, "1e12", "30u", 5e-6, 1e-11), (LEAK, "1e14", "1m", 5e-6, 1e-13),
+                (LATCH, "1e9", "1u", 15e-3, -325e-9), (LATCH, "1e10", "30u", 15e-3, -325e-10),
+                (LATCH, "1e12", "1m", 15e-3, -325e-12)):
+            result = self.run(netlist.format(ohms=ohms, henries=henries))
+            if self.method != "euler" and result.status == 0:
+                self.check.check(result.report["jumps"] == [], f"{ohms}: {result.report['jumps']}")
+                found = result.at("i(l1)", seen)
+                self.check.close(found, wanted, 0.02 * abs(wanted), f"the leak of {ohms}, {henries}")
+
     def all(self):
         for case in (self.source, self.interruption, self.no_jump, self.beside, self.many,
                      self.doubler, self.derivative, self.impact, self.edge, self.open,
-                     self.behind_transformer, self.beside_large, self.formulas):
+                     self.behind_transformer, self.beside_large, self.leak,
+                     self.formulas):
             case()
         return self.check.finish()
 

@@ -8,6 +8,7 @@ Each case lists every signal of the report's nonunique: (lower, upper, because);
 
 import math
 import pathlib
+import random
 import re
 import sys
 
@@ -444,6 +445,27 @@ def compare_functions(checker, program):
         checker.check(done.status in (0, 4) and "v(q)" in done.stderr and "solutions of a circuit" in done.stderr, f"{card}: {done.stderr}")
 
 
+def compare_shares(checker, program):
+    """What the last stage of a full-wave multiplier gives its load goes by two equal ways of two diodes, one half by each, in any
+    order of the elements, and no mode in which they share moves a state elsewhere."""
+    for n, seed, load in ((4, 0, "1meg"), (4, 1, "1meg"), (4, 2, "1meg"), (5, 0, "1meg"), (5, 3, "1meg"), (6, 0, "1meg"), (6, 9, "20k")):
+        cards = ["v1 a 0 sin(0 100 10k)", "v2 b 0 sin(0 -100 10k)", f"rl s{n} 0 {load}", "v0 s0 0 0"]
+        for k in range(n):
+            below = [f"{node}{k - 1}" if k > 0 else node for node in "ab"]
+            cards += [f"d{k}a s{k} a{k} DI", f"d{k}b s{k} b{k} DI", f"d{k}c a{k} s{k + 1} DI", f"d{k}d b{k} s{k + 1} DI",
+                      f"ca{k} {below[0]} a{k} 10n", f"cb{k} {below[1]} b{k} 10n", f"cs{k} s{k} s{k + 1} 10n"]
+        random.Random(seed).shuffle(cards)
+        what = f"a multiplier of {n} stages, order {seed}"
+        done = run(program, "\n".join([what, *cards, ".tran 2u 45u uic", MODELS]), method=None, options=["--tol", "1e-8"])
+        if checker.check(done.status == 0, f"{what}: {done.stderr}"):
+            checker.check(done.report["work"]["euler_steps"] == 0, f"{what}: steps of implicit Euler")
+            current = [done.at(f"i(d{n - 1}{branch})", 40e-6) for branch in "abcd"]
+            half = sum(current) / 4
+            checker.check(half > 1e-6, f"{what}: {current}")
+            for value in current:
+                checker.close(value, half, 1e-9 * half, f"{what}: a share of {current}")
+
+
 def main():
     program, glpk = sys.argv[1:]
     checker = Checker("cases")
@@ -461,6 +483,7 @@ def main():
     compare_many(checker, program)
     compare_functions(checker, program)
     compare_knees(checker, program)
+    compare_shares(checker, program)
     return checker.finish()
 
 
