@@ -1,148 +1,22 @@
-/* steady_report.c - multipliers of an orbit, what they say, and what is told when there is none. */
+/* steady_report.c - what the multipliers of an orbit say, and what is told when there is none. */
 #include "steady.h"
 
 #include "quantity.h"
 
-#include <complex.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A multiplier is 1 within what rounding and the tolerance make of it. */
-static const double near_one = 1e-9;
-
 /* The size of a pair is, within what a hundred steps of a period make of an oscillation that the orbit does not have: the
  * steps are as long as the orbit allows, each to the 1e-9 that small circuits are held to. */
 static const double near_circle = 1e-7;
-
-/* Smaller than this beside 1 is none: nothing of it is left after one period. */
-static const double vanishes = 1e-12;
-
-/* "q(a1)": of the memory of gates. */
-static const char *name_of_number(struct dalcs_steady *st, int number) {
-    static const char *const what[] = {
-        [DALCS_NUMBER_PIN] = "q", [DALCS_NUMBER_TAKEN] = "sample", [DALCS_NUMBER_PULSE] = "pulse"};
-    int gate;
-    const enum dalcs_logic_number kind = dalcs_logic_number_kind(&st->layout.memory, number, &gate);
-    return kind == DALCS_NUMBER_DUE
-               ? "an edge on its way"
-               : dalcs_arena_printf(&st->run->s->arena, "%s(%s)", what[kind],
-                                    st->run->s->circuit.control.gate[gate].name);
-}
-
-const char *dalcs_steady_name(struct dalcs_steady *st, int state) {
-    const struct dalcs_network *n = &st->run->s->network;
-    int k = 0;
-    if (state >= st->layout.n_states) {
-        return name_of_number(st, state - st->layout.n_states);
-    }
-    while (state >= st->layout.first[k + 1]) {
-        k++;
-    }
-    const struct dalcs_system *s = &n->system[k];
-    const int x = state - st->layout.first[k];
-    for (int i = 0; i < n->n_states; i++) { /* a capacitor or coil, whose state it is */
-        const struct dalcs_probe *p = &n->state[i].probe;
-        if (p->system == k && p->n_terms == 1 && p->n_inputs == 0 && p->term[0].index == x) {
-            return dalcs_arena_printf(&st->run->s->arena, "%s(%s)",
-                                      n->state[i].is_current ? "i" : "v", n->state[i].element);
-        }
-    }
-    return s->column[x].element;
-}
-
-/* ---- Multipliers --------------------------------------------------------------------------------- */
-
-static int compare_size(const void *one, const void *other) {
-    const struct dalcs_floquet *a = one;
-    const struct dalcs_floquet *b = other;
-    double difference = hypot(b->re, b->im) - hypot(a->re, a->im);
-    if (fabs(difference) <= near_one) { /* conjugates stay together */
-        difference = b->im - a->im;
-    }
-    return difference > 0.0 ? 1 : difference < 0.0 ? -1 : 0;
-}
-
-/* The state that has most of an eigenvector, by its energy. */
-static int largest_entry(const struct dalcs_steady *st, int first, int n, const double *re,
-                         const double *im) {
-    int largest = 0;
-    double most = -1.0;
-    for (int x = 0; x < n; x++) {
-        double size = hypot(re[x], im != NULL ? im[x] : 0.0) /
-                      (st->scale[first + x] > 0.0 ? st->scale[first + x] : 1.0);
-        largest = size > most ? x : largest;
-        most = fmax(most, size);
-    }
-    return first + largest;
-}
-
-static enum dalcs_status multipliers_of(struct dalcs_steady *st, int system,
-                                        struct dalcs_floquet *multiplier, size_t *n_all,
-                                        struct dalcs_arena *arena) {
-    const int first = st->layout.first[system];
-    const int n = st->layout.first[system + 1] - first;
-    const size_t square = (size_t)n * (size_t)n;
-    double *A = dalcs_arena_alloc(arena, square, sizeof(double));
-    double *vector = dalcs_arena_alloc(arena, square, sizeof(double));
-    double *value = dalcs_arena_alloc(arena, 2 * (size_t)n, sizeof(double));
-    if (A == NULL || vector == NULL || value == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    memcpy(A, st->pass.M + st->layout.first_of_M[system], square * sizeof(double));
-    if (n == 0) {
-        return DALCS_OK;
-    }
-    const int failed =
-        LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A, n, value, value + n, NULL, 1, vector, n);
-    if (failed != 0) {
-        return failed == LAPACK_WORK_MEMORY_ERROR ? DALCS_E_NOMEM : DALCS_NOT_CONVERGED;
-    }
-    for (int k = 0; k < n; k++) {
-        const double *v = vector + (size_t)k * (size_t)n;
-        const double im = value[n + k];
-        int state = im == 0.0  ? largest_entry(st, first, n, v, NULL)
-                    : im > 0.0 ? largest_entry(st, first, n, v, v + n)
-                               : largest_entry(st, first, n, v - n, v);
-        multiplier[(*n_all)++] =
-            (struct dalcs_floquet){.re = value[k], .im = im, .state = dalcs_steady_name(st, state)};
-    }
-    return DALCS_OK;
-}
-
-/* What is left out: factors of states whose value is lost within a period. */
-static size_t count_lasting(const struct dalcs_floquet *m, size_t n) {
-    size_t lasting = 0;
-    while (lasting < n && hypot(m[lasting].re, m[lasting].im) > vanishes) {
-        lasting++;
-    }
-    return lasting;
-}
-
-/* The multiplier 1 of an oscillation's flow says nothing of stability: the nearest one is taken out. */
-static double take_out_flow(struct dalcs_floquet *m, size_t *n) {
-    size_t flow = 0;
-    for (size_t k = 1; k < *n; k++) {
-        if (hypot(m[k].re - 1.0, m[k].im) < hypot(m[flow].re - 1.0, m[flow].im)) {
-            flow = k;
-        }
-    }
-    if (*n == 0) {
-        return 0.0;
-    }
-    const double is = m[flow].re;
-    memmove(m + flow, m + flow + 1, (*n - flow - 1) * sizeof(*m));
-    --*n;
-    return is;
-}
 
 /* ---- Verdict ------------------------------------------------------------------------------------- */
 
 /* By how much the largest lies outside the unit circle; within what is not known, 0. */
 static double outside(const struct dalcs_floquet *m, size_t n) {
     const double by = n > 0 ? hypot(m[0].re, m[0].im) - 1.0 : -1.0;
-    return fabs(by) > (n > 0 && m[0].im != 0.0 ? near_circle : near_one) ? by : 0.0;
+    return fabs(by) > (n > 0 && m[0].im != 0.0 ? near_circle : dalcs_steady_near_one) ? by : 0.0;
 }
 
 bool dalcs_steady_is_unstable(const struct dalcs_report *report) {
@@ -193,9 +67,9 @@ static const char *conserved_text(struct dalcs_steady *st, const struct dalcs_st
     const char *text = "";
     for (int x = 0; x < n && text != NULL; x++) {
         double part = c->weight[x] / largest;
-        if (fabs(part) > near_one) {
+        if (fabs(part) > dalcs_steady_near_one) {
             char factor[32] = "";
-            if (fabs(fabs(part) - 1.0) > near_one) {
+            if (fabs(fabs(part) - 1.0) > dalcs_steady_near_one) {
                 snprintf(factor, sizeof factor, "%.6g ", fabs(part));
             }
             const char *sign = part < 0.0 ? " - " : " + ";
@@ -245,47 +119,17 @@ enum dalcs_status dalcs_steady_report_signals(struct dalcs_steady *st) {
     return DALCS_OK;
 }
 
-/* All of them, the largest first; the session's. */
-static enum dalcs_status find_multipliers(struct dalcs_steady *st, struct dalcs_floquet **found,
-                                          size_t *n) {
-    struct dalcs_arena work = {0};
-    struct dalcs_floquet *m =
-        dalcs_arena_alloc(&st->run->s->arena, (size_t)st->layout.n_x + 1, sizeof(*m));
-    enum dalcs_status status = m != NULL ? DALCS_OK : DALCS_E_NOMEM;
-    *n = 0;
-    for (int k = 0; k < st->layout.n_systems && status == DALCS_OK; k++) {
-        status = multipliers_of(st, k, m, n, &work);
-    }
-    dalcs_arena_finish(&work);
-    DALCS_TRY(status);
-    qsort(m, *n, sizeof(*m), compare_size);
-    *found = m;
-    return DALCS_OK;
-}
-
-double dalcs_steady_largest_multiplier(struct dalcs_steady *st) {
-    struct dalcs_floquet *m;
-    size_t n;
-    if (find_multipliers(st, &m, &n) != DALCS_OK) {
-        return 0.0;
-    }
-    if (st->own.is_free) {
-        (void)take_out_flow(m, &n);
-    }
-    return n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
-}
-
 enum dalcs_status dalcs_steady_report_double(struct dalcs_steady *st, double one) {
     struct dalcs_report *report = &st->run->s->results.report;
     struct dalcs_arena *arena = &st->run->s->arena;
     struct dalcs_floquet *m;
     size_t n;
     char text[DALCS_QUANTITY_SIZE];
-    DALCS_TRY(find_multipliers(st, &m, &n));
+    DALCS_TRY(dalcs_steady_find_multipliers(st, &m, &n));
     if (st->own.is_free) {
-        (void)take_out_flow(m, &n);
+        (void)dalcs_steady_take_out_flow(m, &n);
     }
-    n = count_lasting(m, n);
+    n = dalcs_steady_count_lasting(m, n);
     const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
     report->steady.doubled.period = st->period;
     report->steady.doubled.stable = outside(m, n) < 0.0;
@@ -355,12 +199,12 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
     struct dalcs_floquet *m;
     size_t n;
-    DALCS_TRY(find_multipliers(st, &m, &n));
+    DALCS_TRY(dalcs_steady_find_multipliers(st, &m, &n));
     if (st->own.is_free) {
         s->results.report.steady.self_oscillating = true;
-        s->results.report.steady.flow = take_out_flow(m, &n);
+        s->results.report.steady.flow = dalcs_steady_take_out_flow(m, &n);
     }
-    n = count_lasting(m, n);
+    n = dalcs_steady_count_lasting(m, n);
     s->results.report.steady.present = true;
     s->results.report.steady.period = st->period;
     s->results.report.steady.newton = st->n.newton;
