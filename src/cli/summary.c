@@ -136,7 +136,8 @@ static void write_audit(FILE *out, const struct dalcs_report *report) {
     if (report->audit.worst > 0.0) {
         fprintf(out, " of %s", report->audit.where);
     }
-    if (report->audit.worst > 0.0 && report->audit.time > 0.0) { /* points and frequencies have none */
+    if (report->audit.worst > 0.0 &&
+        report->audit.time > 0.0) { /* points and frequencies have none */
         fprintf(out, " at %s", dalcs_quantity_write(text, report->audit.time, "s", DIGITS));
     }
     const bool is_wrong = report->audit.worst > report->audit.allowed;
