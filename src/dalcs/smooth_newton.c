@@ -116,21 +116,30 @@ static double over(double off, double size) {
     return off == 0.0 ? 0.0 : isfinite(size) ? off / size : INFINITY;
 }
 
-/* What argument j may be off by makes so much of the function; and of its line, which is no steeper than ten times the
- * function there: a value on a steeper one is none of the function's. */
+double dalcs_smooth_newton_terms(const struct dalcs_smooth_newton *newton, int q, int j) {
+    const int n_smooth = newton->system->n_smooth;
+    const double *slope = newton->slope + (size_t)(2 * q + j) * (size_t)newton->n;
+    double most = 0.0;
+    for (int p = 0; p < newton->n; p++) {
+        const double alike = p % n_smooth == q % n_smooth ? newton->terms[p][j] : 0.0;
+        most = dalcs_larger(most, dalcs_larger(alike, fabs(slope[p] * newton->phi[p])));
+    }
+    return most;
+}
+
+/* What argument j may be off by makes so much of the function, and of its line, which no root has from where it is steep. */
 static double excused_by(const struct dalcs_smooth_newton *newton, int q, int j, double slope,
                          double tolerance) {
     const struct dalcs_smooth_input *of = input_of(newton, q);
     const double *x = newton->x[q];
-    const double off = dalcs_answer_rounded * newton->terms[q][j];
+    const double off = dalcs_answer_rounded * dalcs_smooth_newton_terms(newton, q, j);
     const double line = fabs(dalcs_smooth_line(of, j));
     double differs = slope * off;
-    if (!(differs <= tolerance * fabs(dalcs_smooth_value(of->kind, x)))) {
-        differs = dalcs_smaller(differs, dalcs_smooth_variation(of->kind, x, j, off));
+    if (!(differs < tolerance * fabs(dalcs_smooth_value(of->kind, x)))) {
+        differs = dalcs_smooth_variation(of->kind, x, j, off);
     }
     differs = fabs(dalcs_smooth_share(newton->share, differs));
-    return differs + dalcs_smaller(line * off, dalcs_beyond * differs) +
-           dalcs_answer_rounded * line * fabs(x[j]);
+    return differs + line * off + dalcs_answer_rounded * line * fabs(x[j]);
 }
 
 bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double tolerance,
@@ -197,7 +206,8 @@ static bool is_finite(struct dalcs_smooth_newton *newton, bool *has_slopes) {
             a[j] = dalcs_smooth_tangent_point(of->kind, newton->tangent[q][j], newton->x[q][j]);
         }
         dalcs_smooth_gradient(of->kind, a, gradient);
-        const bool has = isfinite(gradient[0]) && (of->column[1] < 0 || isfinite(gradient[1]));
+        const bool has = (isfinite(gradient[0]) || dalcs_smooth_root_exponent(of) > 0.0) &&
+                         (of->column[1] < 0 || isfinite(gradient[1]));
         is = isfinite(dalcs_smooth_value(of->kind, a)) && !isnan(gradient[0]) &&
              (of->column[1] < 0 || !isnan(gradient[1]));
         *has_slopes = *has_slopes && has;
@@ -257,6 +267,8 @@ static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
         a[j] = dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
         newton->limits = newton->limits || a[j] != newton->x[q][j];
     }
+    a[0] = dalcs_smooth_root_point(of, newton->share, a[0], newton->phi[q],
+                                   newton->slope[(size_t)(2 * q) * (size_t)newton->n + (size_t)q]);
     dalcs_smooth_gradient_of_rest(of, newton->share, a, gradient);
     newton->step[q] = dalcs_smooth_rest_of_share(of, newton->share, a) - newton->phi[q];
     for (int j = 0; j < of->n; j++) {

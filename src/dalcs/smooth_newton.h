@@ -76,6 +76,10 @@ double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x);
 /* What rounding of its arguments makes of it. */
 double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x);
 
+/* What argument j of value q is made of: the numbers of a step are solved for together, and each is known to the rounding
+ * of the largest, and of what the given values make of it. */
+double dalcs_smooth_newton_terms(const struct dalcs_smooth_newton *newton, int q, int j);
+
 /* The arguments x[n_smooth][2] in columns y[n_columns]. */
 void dalcs_smooth_arguments(const struct dalcs_system *system, const double *y, double (*x)[2]);
 

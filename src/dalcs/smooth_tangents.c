@@ -47,8 +47,9 @@ static void find_lines(const struct dalcs_smooth_input *of, const double *gradie
 
 /* Those at x, as far as they are finite and not 0, else the present ones. Returns by how much the steepest is steeper; of
  * a product also by how much it is flatter: i R, of a resistance that falls, is next to the line of the R before a small
- * difference of large numbers. A diode that blocks is flat as well, but there nothing else is as small. A root of what is
- * rounding beside `volt`, the largest V, is one of 0. */
+ * difference of large numbers. A diode that blocks is flat as well, but there nothing else is as small. A root's is no steeper
+ * than at 1: near 0 its tangent is steep for no longer than it is near. One of what is rounding beside `volt`, the largest
+ * V, is one of 0. */
 static double find_tangent(const struct dalcs_smooth_input *of, const double *x, double volt,
                            double *line) {
     double gradient[2];
@@ -57,6 +58,8 @@ static double find_tangent(const struct dalcs_smooth_input *of, const double *x,
     if (!isinf(gradient[0]) || fabs(x[0]) > dalcs_rounded * volt) {
         dalcs_smooth_gradient(of->kind, x, gradient);
     }
+    const double exponent = dalcs_smooth_root_exponent(of);
+    gradient[0] = exponent > 0.0 ? fmin(gradient[0], exponent) : gradient[0];
     find_lines(of, gradient, line);
     for (int j = 0; j < 2; j++) {
         const double present = dalcs_smooth_line(of, j);

@@ -22,6 +22,14 @@ double dalcs_smooth_rest_of_share(const struct dalcs_smooth_input *of, double sh
 void dalcs_smooth_gradient_of_rest(const struct dalcs_smooth_input *of, double share,
                                    const double *x, double *gradient);
 
+/* The exponent of a root with the sign of its argument, or 0: it is another function. */
+double dalcs_smooth_root_exponent(const struct dalcs_smooth_input *of);
+
+/* Where such a root of which a share counts meets the line that its argument x and its value g x + phi move along as phi
+ * changes, x by `slope` times that; x itself where there is no such place, or another function. */
+double dalcs_smooth_root_point(const struct dalcs_smooth_input *of, double share, double x,
+                               double phi, double slope);
+
 /* Does it have a value at x? */
 void dalcs_smooth_take_rest(const struct dalcs_smooth_input *of, const double *x, double *phi);
 

@@ -1,4 +1,5 @@
-/* signed_powers.c - powers with the sign of what they are of: sgn(x)*sqrt(abs(x)) is pwrs(x, 0.5).
+/* signed_powers.c - powers with the sign of what they are of: sgn(x)*sqrt(abs(x)) is pwrs(x, 0.5), and x*sqrt(abs(x))
+ * is pwrs(x, 1.5).
  *
  * Flow through an orifice, drag and the square law of a fan are written with the sign, or with a choice of its sides,
  * x > 0 ? sqrt(x) : -sqrt(-x). As written the steps of a sign multiply what is steep at 0; the power itself has one slope
@@ -58,9 +59,10 @@ static bool take_factors(struct dalcs_rewriting *r, const struct dalcs_formula *
 }
 
 static bool take_factor(struct dalcs_rewriting *r, const struct dalcs_formula *f, struct term *t) {
-    const bool is_power =
-        (dalcs_formula_is_operation(f, DALCS_POWER) || dalcs_formula_is_call(f, "pow")) &&
-        f->argument[1]->kind == DALCS_FORMULA_NUMBER;
+    const bool is_magnitude = dalcs_formula_is_call(f, "pwr");
+    const bool is_power = (is_magnitude || dalcs_formula_is_operation(f, DALCS_POWER) ||
+                           dalcs_formula_is_call(f, "pow")) &&
+                          f->argument[1]->kind == DALCS_FORMULA_NUMBER;
     if (f->kind == DALCS_FORMULA_NUMBER) {
         t->factor *= f->number;
         return true;
@@ -77,7 +79,9 @@ static bool take_factor(struct dalcs_rewriting *r, const struct dalcs_formula *f
         return take_power(f->argument[0], 0.5, t);
     }
     if (is_power) {
-        return take_power(f->argument[0], f->argument[1]->number, t);
+        const bool is = take_power(f->argument[0], f->argument[1]->number, t);
+        t->side = is_magnitude ? 0 : t->side;
+        return is;
     }
     if (dalcs_formula_is_call(f, "abs") && t->size == NULL) {
         return take_power(f, 1.0, t);
@@ -90,6 +94,17 @@ static struct term read_term(struct dalcs_rewriting *r, const struct dalcs_formu
     struct term t = {.factor = 1.0};
     t.is_one = take_factors(r, f, &t) && t.size != NULL;
     return t;
+}
+
+/* Without its sign x is |x|: x * |x|^p is a power of 1 + p. x * |x| stays, for its pieces are smooth. */
+static void take_sign(struct term *t) {
+    const bool is_factor = t->is_one && t->sign == NULL && t->exponent != 1.0 && t->rest != NULL &&
+                           dalcs_formula_is_same(t->rest, t->size);
+    if (is_factor) {
+        t->sign = t->rest;
+        t->rest = NULL;
+        t->exponent += 1.0;
+    }
 }
 
 /* factor * rest * pwrs(size, exponent) */
@@ -109,7 +124,8 @@ static const struct dalcs_formula *write(struct dalcs_rewriting *r, const struct
 
 static const struct dalcs_formula *change_product(struct dalcs_rewriting *r,
                                                   const struct dalcs_formula *f) {
-    const struct term t = read_term(r, f);
+    struct term t = read_term(r, f);
+    take_sign(&t);
     const bool is_signed =
         t.is_one && t.sign != NULL && t.side == 0 && dalcs_formula_is_same(t.sign, t.size);
     return is_signed ? write(r, f, &t) : f;

@@ -12,7 +12,7 @@ import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker  # noqa: E402
+from dalcs_program import Checker, run  # noqa: E402
 from logic import run_cards, runs  # noqa: E402
 
 
@@ -110,15 +110,16 @@ def averaged(checker, program):
 
 
 SIGNED = ("sgn(v(a))*{k}*abs(v(a))**{p}", "{k}*sgn(2*v(a))*pow(abs(v(a)),{p})", "if(v(a)>0,{k}*pow(v(a),{p}),-{k}*pow(-v(a),{p}))",
-          "v(a)<0 ? -{k}*(-v(a))**{p} : {k}*v(a)**{p}", "{k}*pwrs(v(a),{p})", "0 <= v(a) ? {k}*abs(v(a))**{p} : -({k}*abs(v(a))**{p})")
+          "v(a)<0 ? -{k}*(-v(a))**{p} : {k}*v(a)**{p}", "{k}*pwrs(v(a),{p})", "0 <= v(a) ? {k}*abs(v(a))**{p} : -({k}*abs(v(a))**{p})", "pwr({k}**(1/{p})*v(a),{p})*sgn(v(a))")
 ROOTS = ("{k}*sgn(v(a))*sqrt(abs(v(a)))", "-sgn(-v(a))*sqrt({k}*{k}*abs(v(a)))", "if(v(a)>=0,{k}*sqrt(v(a)),-{k}*sqrt(-v(a)))")
+ABOVE = ("v(a)*{k}*sqrt(abs(v(a)))", "-{k}*abs(-v(a))**0.5*v(a)*(-1)")
 
 
 def signed_powers(checker, program):
     """Roots and powers with the sign of what they are of, as flow through an orifice is written: behind a resistance, and
     from a current."""
     for volts, k, ohms, power in ((10, 0.05, 10, 0.5), (1e3, 2e-3, 470, 0.5), (5, 0.3, 1, 1.5), (0.1, 4, 0.02, 0.7)):
-        for form in SIGNED + (ROOTS if power == 0.5 else ()):
+        for form in SIGNED + (ROOTS if power == 0.5 else ABOVE if power == 1.5 else ()):
             law = form.format(k=k, p=power)
             done = run_cards(program, law, [f"v1 in 0 sin(0 {volts} 50)", f"r1 in a {ohms}", f"b1 a 0 i={law}", f"i2 0 b sin(0 {volts / ohms!r} 50)",
                                             f"b2 b 0 i={law.replace('v(a)', 'v(b)')}", ".tran 0.37m 19m"])
@@ -126,6 +127,48 @@ def signed_powers(checker, program):
                 for v, out, b in zip(*(done.column(n) for n in ("v(in)", "v(a)", "v(b)"))):
                     checker.close(out + ohms * k * math.copysign(abs(out) ** power, out), v, 1e-8 * volts, f"{law} at {v} V")
                     checker.close(ohms * k * math.copysign(abs(b) ** power, b), v, 1e-8 * volts, f"{law} of a current, at {v} V")
+
+
+def odd(x, power):
+    return math.copysign(abs(x) ** power, x)
+
+
+def through_zero(checker, program):
+    """Roots whose argument passes 0, where they are steep without bound: of a voltage, of their own current, in series, and
+    beside a smooth function; in volts and amperes from 1e-6 to 1e4. What is read has to make the currents agree."""
+    for volts, ohms, power in ((1, 10, 0.3), (5, 1e3, 0.5), (1e4, 0.1, 0.2), (1e-6, 1e5, 0.7), (20, 3, 1 / 3)):
+        k = 0.3 * volts / ohms / volts ** power  # of 1 A in proportion
+        of_amps = 0.2 * volts / (volts / ohms) ** power
+        root = "cbrt({x})" if power == 1 / 3 else f"pwrs({{x}},{power})"
+        cases = (
+            ("of a voltage", [f"b1 a 0 i={k!r}*{root.format(x='v(a)')}"], lambda v, a, b: (v - a) / ohms - k * odd(a, power)),
+            ("of its current", [f"b1 a 0 v={of_amps!r}*{root.format(x='i(b1)')}"], lambda v, a, b: (a - of_amps * odd((v - a) / ohms, power)) / ohms),
+            ("in series", [f"b1 a b i={k!r}*{root.format(x='v(a,b)')}", f"b2 b 0 i={k!r}*pwrs(v(b),0.4)"],
+             lambda v, a, b: max(abs((v - a) / ohms - k * odd(a - b, power)), abs((v - a) / ohms - k * odd(b, 0.4)))),
+            ("beside a smooth one", [f"b1 a 0 i={k!r}*{root.format(x='v(a)')} + {k!r}*tanh(v(a)/{volts})"],
+             lambda v, a, b: (v - a) / ohms - k * odd(a, power) - k * math.tanh(a / volts)))
+        for name, cards, off in cases:
+            name = f"{name}, of {volts} V to the {power}"
+            netlist = "\n".join([name, f"v1 in 0 sin(0 {volts} 50)", f"r1 in a {ohms}", *cards, ".tran 0.37m 39m", ".end", ""])
+            done = run(program, netlist, method=None, tolerance=1e-10, report=False)
+            if runs(checker, done, name):
+                b_of = done.column("v(b)" if name.startswith("in series") else "v(a)")
+                for t, v, a, b in zip(done.time, done.column("v(in)"), done.column("v(a)"), b_of):
+                    checker.close(off(v, a, b), 0, 1e-7 * volts / ohms, f"{name}, at {t} s")
+
+
+def coming_to_rest(checker, program):
+    """x' = -k x^p is at rest after a finite time, and stays there: y = x^(1 - p) falls as a straight line."""
+    for start, k, store, power in ((4, 0.5, 1e-3, 0.5), (1e3, 0.02, 1e-6, 0.3), (1e-3, 1, 0.1, 0.8), (-12, 3, 2e-5, 1 / 3)):
+        rest = abs(start) ** (1 - power) * store / (k * (1 - power))
+        for name, cards, column in (("of a capacitor", [f"c1 a 0 {store} ic={start}", f"b1 a 0 i={k}*pwrs(v(a),{power!r})"], "v(a)"),
+                                    ("of a coil", [f"l1 a 0 {store} ic={start}", f"b1 0 a v={k}*pwrs(i(l1),{power!r})"], "i(l1)")):
+            name = f"rest {name} from {start}, power {power}"
+            done = run_cards(program, name, [*cards, f".tran {rest / 37!r} {1.5 * rest!r} uic"])
+            if runs(checker, done, name):
+                for t, x in zip(done.time, done.column(column)):
+                    left = max(1 - t / rest, 0) ** (1 / (1 - power))
+                    checker.close(x, start * left, 1e-5 * abs(start), f"{name}, at {t} s")
 
 
 def growing(checker, program):
@@ -152,7 +195,7 @@ def still_wrong(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("guarded")
-    for part in (functions, loads, roots, averaged, signed_powers, growing, still_wrong):
+    for part in (functions, loads, roots, averaged, signed_powers, through_zero, coming_to_rest, growing, still_wrong):
         part(checker, program)
     return checker.finish()
 
