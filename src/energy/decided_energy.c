@@ -202,6 +202,9 @@ enum dalcs_status dalcs_energy_enter_decided(struct dalcs_energy *energy,
     if (part->n_terms == part->n_stepped) {
         return DALCS_OK;
     }
+    if (s->n_smooth > 0 && s->n_x == 0 && s->n_pairs == 0) {
+        return dalcs_energy_enter_bent(energy, part, c, stop);
+    }
     struct waves w = {.n = c->varying.n + 1};
     size_t n = (size_t)w.n;
     w.stimulus = dalcs_alloc(n, sizeof(const struct dalcs_stimulus *));

@@ -1,4 +1,4 @@
-/* energy_entries.h - what is entered in the ledger of energies. Private to energy.c, energy_segment.c, decided_energy.c. */
+/* energy_entries.h - what is entered in the ledger of energies. Private to this folder. */
 #ifndef DALCS_ENERGY_ENTRIES_H
 #define DALCS_ENERGY_ENTRIES_H
 
@@ -28,6 +28,11 @@ enum dalcs_status dalcs_energy_enter_decided(struct dalcs_energy *energy,
                                              struct dalcs_component *c,
                                              const struct dalcs_bystanders *b,
                                              double stop) DALCS_MUST_CHECK;
+
+/* The same of a part of smooth functions, which has neither states nor pairs. */
+enum dalcs_status dalcs_energy_enter_bent(struct dalcs_energy *energy,
+                                          const struct dalcs_energy_part *part,
+                                          struct dalcs_component *c, double stop) DALCS_MUST_CHECK;
 
 /* Sets every call of the observer but `user`. */
 void dalcs_energy_observe(struct dalcs_observer *observer);

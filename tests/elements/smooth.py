@@ -228,6 +228,19 @@ def check_polynomials(checker, program, method):
                           f"{letter}, {n} controls, {coefficients} at {t:g}")
 
 
+def check_energy(checker, program, method):
+    """Of a part without states: i + i^3 = sin + sin^3, a root of a line, a product of two currents."""
+    joule = 0.5 * 0.04
+    cube = ["v1 m 0 sin(0 1.75 50)", "v2 in m sin(0 -0.25 150)", "r1 in a 1", "b1 a 0 v=i(b1)**3"]
+    root = ["v1 in 0 pwl(0 0 40m 2)", "b1 in a v=v(in)-sqrt(v(in))", "r1 a 0 1"]
+    gated = ["v1 in 0 pulse(0 1 5m 0 0 10m 20m)", "r1 in a 1", "b1 a 0 v=i(b1)*i(b1)"]
+    share = (math.sqrt(5) - 1) / 2
+    for name, lines, wanted in (("a cube", cube, joule), ("a root", root, 0.04), ("a square", gated, share ** 2 * 0.02)):
+        done = run(program, f"energy of {name}\n" + "\n".join(lines) + "\n.tran 1m 40m\n", method=method)
+        if checker.check(done.status == 0, f"energy of {name}: {done.stderr}"):
+            checker.close(done.report["energy"]["resistors"], wanted, 1e-9 * wanted, f"energy of {name}")
+
+
 def check_refusals(checker, program, method):
     cases = {
         "sqrt(": ("v1 a 0 -1\nb1 x 0 v=sqrt(v(a))\nrx x 0 1\n.op", 1),
@@ -311,7 +324,8 @@ def main():
     checker = Checker("smooth")
     for name, scale in some_of([(name, scale) for name in list(EQUATIONS)[::step] for scale in SCALES]):
         check_equation(checker, program, method, name, scale)
-    for check in kinds_of((check_functions, check_loops, check_many, check_switched, check_polynomials, check_powers, check_refusals)):
+    for check in kinds_of((check_functions, check_loops, check_many, check_switched, check_polynomials, check_powers, check_energy,
+                           check_refusals)):
         check(checker, program, method)
     check_places(checker, program)
     return checker.finish()
