@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char ERROR_LABEL[] = "error: ";
+
 enum { EXCERPT_BEFORE = 60, EXCERPT_AFTER = 90, LINE_MAX_SHOWN = 160, NAME_MAX_SHOWN = 60 };
 
 /* A growing string; after a failed allocation `failed` is set and appending does nothing. */
@@ -273,10 +275,43 @@ void dalcs_diag_forget(struct dalcs_diag *diag, const struct dalcs_diag_mark *ma
     diag->n_other = mark->n_other;
 }
 
+/* The text of an error as a warning that ends with what follows from it. */
+static void soften(struct dalcs_diag *diag, struct dalcs_diagnostic *item,
+                   const char *consequence) {
+    struct text text = {0};
+    size_t length;
+    const char *sentence = dalcs_diag_sentence(item->text, &length);
+    const size_t place = (size_t)(sentence - item->text) - strlen(ERROR_LABEL);
+    append(&text, item->text, place);
+    append_format(&text, "warning: %.*s: %s%s", (int)length, sentence, consequence,
+                  sentence + length);
+    if (text.failed) {
+        free(text.data);
+        diag->out_of_memory = true;
+        return;
+    }
+    free(item->text);
+    item->text = text.data;
+}
+
+size_t dalcs_diag_soften(struct dalcs_diag *diag, const struct dalcs_diag_mark *mark,
+                         const char *consequence) {
+    const size_t n = diag->n_errors - mark->n_errors;
+    for (size_t k = mark->n; k < diag->n; k++) {
+        struct dalcs_diagnostic *item = &diag->item[k];
+        if (item->severity == DALCS_ERROR && strstr(item->text, ERROR_LABEL) != NULL) {
+            soften(diag, item, consequence);
+            item->severity = DALCS_WARNING;
+        }
+    }
+    diag->n_errors = mark->n_errors;
+    diag->n_other += n;
+    return n;
+}
+
 const char *dalcs_diag_sentence(const char *text, size_t *length) {
-    static const char label[] = "error: ";
-    const char *at = strstr(text, label);
-    const char *sentence = at != NULL ? at + sizeof label - 1 : text;
+    const char *at = strstr(text, ERROR_LABEL);
+    const char *sentence = at != NULL ? at + strlen(ERROR_LABEL) : text;
     *length = strcspn(sentence, "\n");
     return sentence;
 }

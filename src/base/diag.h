@@ -84,6 +84,10 @@ struct dalcs_diag_mark dalcs_diag_mark(const struct dalcs_diag *diag);
 /* As if those behind the mark had not been. */
 void dalcs_diag_forget(struct dalcs_diag *diag, const struct dalcs_diag_mark *mark);
 
+/* Makes warnings of the errors behind the mark: "warning: no node 'c': CONSEQUENCE". Their number. */
+size_t dalcs_diag_soften(struct dalcs_diag *diag, const struct dalcs_diag_mark *mark,
+                         const char *consequence);
+
 /* What a message says, without its place, its level and what stands below; of any other text its first line. */
 const char *dalcs_diag_sentence(const char *text, size_t *length);
 

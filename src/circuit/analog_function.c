@@ -8,6 +8,7 @@
 #include "logic_parts.h"
 #include "model_cards.h"
 #include "oscillator.h"
+#include "output_resistance.h"
 #include "reader.h"
 
 #include <math.h>
@@ -125,6 +126,7 @@ static void put_product(struct dalcs_block_card *c, const int *node, const char 
     if (out != NULL) {
         out->node[2] = product;
         out->value = 1;
+        dalcs_output_add(c->builder, c->card->token, out);
     }
 }
 
@@ -134,7 +136,8 @@ static void put_output(struct dalcs_oscillator *o, const int *node, const char *
     o->what = what;
     o->phase = pin == PIN_QUADRATURE ? 0.25 : 0;
     o->out = (struct dalcs_block_end){.node = node[pin], .reference = node[PIN_COMMON]};
-    if (node[1] != node[PIN_COMMON]) {
+    o->may_resist = node[1] == node[PIN_COMMON];
+    if (!o->may_resist) {
         const int carrier = dalcs_builder_inner_node(o->card.builder, "carrier", o->place);
         o->what = "carrier";
         o->out = (struct dalcs_block_end){.node = carrier};

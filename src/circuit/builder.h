@@ -111,6 +111,7 @@ struct dalcs_builder_logic {
     bool *read_by_gates;            /* [n_nodes_of_gates] nodes whose bit another gate reads */
     size_t n_nodes_of_gates;
     const struct dalcs_logic_card *gate_card; /* the last of all, each points to the one before */
+    const struct dalcs_output *output;        /* of LTspice's A devices without Rout=, likewise */
 };
 
 /* The first card of each analysis, NULL before; initial conditions. */

@@ -15,6 +15,7 @@
 #include "history.h"
 #include "later.h"
 #include "model_cards.h"
+#include "output_resistance.h"
 #include "result_cards.h"
 #include "slips.h"
 #include "storage.h"
@@ -175,6 +176,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_slip_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(dalcs_card_table_read(builder, class_of));
+    dalcs_output_resolve(builder);
     builder->circuit->control.is_whole = is_whole(builder);
     dalcs_passive_add_default_rser(builder);
     dalcs_storage_resolve(builder);

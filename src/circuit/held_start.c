@@ -3,8 +3,9 @@
  * SPICE holds an initial voltage behind a conductance while it seeks the operating point (1e10 S in ngspice), so a source
  * between the same nodes wins. Here both would be equations, and contradict each other: what sources hold is left out,
  * and where they give another value that is said. With uic it is the voltage of capacitors, as in SPICE. Nodes that
- * sources join are a tree, with a voltage of each against its root (Tarjan 1975, union by offsets). What gates and
- * formulas put out is not known before the start: such a source stays in contradiction, as an error. */
+ * sources join are a tree, with a voltage of each against its root (Tarjan 1975, union by offsets). What
+ * formulas put out is not known before the start: such a source stays in contradiction, as an error. A gate of LTspice
+ * has a resistance there (output_resistance.c), and .ic wins, as in LTspice. */
 
 #include "analysis_cards.h"
 #include "rounding.h"

@@ -175,6 +175,7 @@ static void take_impedance(struct dalcs_logic_card *of, const struct dalcs_param
     const double ohms = p[ROUT].value > 0 || !has_capacitance ? p[ROUT].value : 1;
     of->ohms[0] = p[RLOW].place != NULL ? p[RLOW].value : ohms;
     of->ohms[1] = p[RHIGH].place != NULL ? p[RHIGH].value : ohms;
+    of->may_resist = !(of->ohms[0] > 0) && !(of->ohms[1] > 0) && p[ROUT].place == NULL;
     of->farad = p[TAU].value > 0 ? p[TAU].value / ohms : p[COUT].value;
 }
 

@@ -1,6 +1,7 @@
 /* logic_parts.c - what becomes of a gate's outputs: sources, impedances, and what else follows them. */
 #include "logic_parts.h"
 #include "model_cards.h"
+#include "output_resistance.h"
 
 #include <math.h>
 #include <string.h>
@@ -99,6 +100,9 @@ static bool add_impedance(struct dalcs_builder *builder, const struct dalcs_logi
                           const char *what, struct dalcs_device *source, double first) {
     const int pin[2] = {source->node[0], source->node[1]};
     if (!(of->ohms[0] > 0) && !(of->ohms[1] > 0)) {
+        if (of->may_resist) {
+            dalcs_output_add(builder, of->name, source);
+        }
         return true;
     }
     struct dalcs_device *r =

@@ -18,6 +18,7 @@ struct dalcs_logic_card {
 
     int node[2], common; /* of q and its complement, -1: not wired */
     double ohms[2];      /* in series with an output that is low, high */
+    bool may_resist;     /* one of LTspice, whose card has no resistance */
     double farad;        /* behind those, to the common node */
     double on, off;      /* V: where an input rises and falls */
 

@@ -254,37 +254,58 @@ static bool is_of_other_analysis(const struct dalcs_card *card) {
     return is;
 }
 
+/* The card, whose name is first; false: it has none, or its analysis is not run. */
+static bool read_card(struct dalcs_measure_reading *r) {
+    struct dalcs_builder *builder = r->builder;
+    struct dalcs_measure_card *measure = r->measure;
+    const struct dalcs_diag_mark mark = dalcs_diag_mark(builder->diag);
+    const bool failed = builder->failed;
+    const bool had_errors = builder->deck->has_errors;
+    const struct dalcs_token *name;
+    measure->analysis = read_analysis(r);
+    r->rules.variable = measure->analysis == DALCS_MEASURED_AC ? "frequency" : "time";
+    r->rules.results = &builder->results.measure_names;
+    bool is_read = dalcs_reader_name(&r->reader, "a name", &name);
+    if (is_read) {
+        measure->where = dalcs_builder_keep_location(builder, name);
+        measure->name = dalcs_arena_copy(&builder->circuit->arena, name->text, strlen(name->text));
+        if (!dalcs_builder_note_memory(builder, measure->name != NULL)) {
+            return false;
+        }
+        is_read = read_measurement(r);
+    }
+    if (builder->deck->has_errors != had_errors) { /* of a .func */
+        return false;
+    }
+    builder->failed = failed;
+    if (measure->name != NULL && !is_run(builder, measure->analysis)) {
+        dalcs_diag_forget(builder->diag, &mark);
+        dalcs_builder_note(builder, r->card->token, NULL,
+                           "there is no such analysis: this measurement is left out");
+        return false;
+    }
+    measure->is_late = is_read && measure->kind != DALCS_MEASURE_PARAM && needs_results(measure);
+    if (!is_read) {
+        dalcs_measure_give_up(r, &mark);
+    }
+    return measure->name != NULL;
+}
+
 void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    struct dalcs_measure_reading r = {
-        .builder = builder, .card = card, .reader = dalcs_reader_start(builder, card, USAGE)};
+    struct dalcs_measure_card measure = {
+        .from = -INFINITY,
+        .to = INFINITY,
+        .instant = {{.count = 1, .delay = -INFINITY}, {.count = 1, .delay = -INFINITY}}};
+    struct dalcs_measure_reading r = {.builder = builder,
+                                      .card = card,
+                                      .reader = dalcs_reader_start(builder, card, USAGE),
+                                      .measure = &measure};
     if (is_of_other_analysis(card)) {
         dalcs_builder_note(builder, &card->token[1], NULL,
                            "dalcs has no such analysis: this measurement is left out");
         return;
     }
-    const enum dalcs_measured_analysis analysis = read_analysis(&r);
-    const struct dalcs_token *name;
-    if (!dalcs_reader_name(&r.reader, "a name", &name)) {
-        return;
-    }
-    struct dalcs_measure_card measure = {
-        .name = dalcs_arena_copy(&builder->circuit->arena, name->text, strlen(name->text)),
-        .analysis = analysis,
-        .from = -INFINITY,
-        .to = INFINITY,
-        .instant = {{.count = 1, .delay = -INFINITY}, {.count = 1, .delay = -INFINITY}},
-        .where = dalcs_builder_keep_location(builder, name)};
-    r.measure = &measure;
-    r.rules.variable = analysis == DALCS_MEASURED_AC ? "frequency" : "time";
-    r.rules.results = &builder->results.measure_names;
-    if (measure.name == NULL || !read_measurement(&r)) {
-        builder->out_of_memory = builder->out_of_memory || measure.name == NULL;
-        return;
-    }
-    measure.is_late = measure.kind != DALCS_MEASURE_PARAM && needs_results(&measure);
-    if (!is_run(builder, analysis)) {
-        dalcs_builder_note(builder, card->token, NULL,
-                           "there is no such analysis: this measurement is left out");
+    if (!read_card(&r)) {
         return;
     }
     /* Of two with one name both are printed, and the second counts for those after it, as in ngspice. */

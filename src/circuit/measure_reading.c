@@ -234,3 +234,38 @@ bool dalcs_measure_read_instant(struct dalcs_measure_reading *r,
     }
     return dalcs_measure_read_condition(r, instant);
 }
+
+/* The first error behind the mark, for the report; of one that was told of another card its kind. */
+static const char *mistake_of(struct dalcs_builder *builder, const struct dalcs_diag_mark *mark) {
+    const struct dalcs_diag *diag = builder->diag;
+    size_t k = mark->n;
+    while (k < diag->n && diag->item[k].severity != DALCS_ERROR) {
+        k++;
+    }
+    size_t length;
+    const char *sentence = dalcs_diag_sentence(
+        k < diag->n ? diag->item[k].text : "its card has a mistake that is told elsewhere",
+        &length);
+    const char *copy = dalcs_arena_copy(&builder->circuit->arena, sentence, length);
+    dalcs_builder_note_memory(builder, copy != NULL);
+    return copy;
+}
+
+void dalcs_measure_give_up(struct dalcs_measure_reading *r, const struct dalcs_diag_mark *mark) {
+    struct dalcs_builder *builder = r->builder;
+    struct dalcs_measure_card *measure = r->measure;
+    const char *name = measure->name;
+    const char *mistake = mistake_of(builder, mark);
+    const char *consequence = name != NULL
+                                  ? dalcs_builder_hint(builder, "the measurement '%s' fails", name)
+                                  : "this measurement is left out";
+    if (mistake != NULL && consequence != NULL &&
+        dalcs_diag_soften(builder->diag, mark, consequence) == 0) {
+        dalcs_builder_warn(builder, r->card->token, NULL, "%s: %s", mistake, consequence);
+    }
+    *measure = (struct dalcs_measure_card){.name = name,
+                                           .analysis = measure->analysis,
+                                           .kind = DALCS_MEASURE_PARAM,
+                                           .mistake = mistake,
+                                           .where = measure->where};
+}

@@ -40,4 +40,8 @@ bool dalcs_measure_read_condition(struct dalcs_measure_reading *r,
 bool dalcs_measure_read_instant(struct dalcs_measure_reading *r,
                                 struct dalcs_measure_instant *instant);
 
+/* A card with a mistake costs its own result alone, as in LTspice and ngspice: the errors behind the mark become
+ * warnings, and the measurement is reported as one that failed. */
+void dalcs_measure_give_up(struct dalcs_measure_reading *r, const struct dalcs_diag_mark *mark);
+
 #endif

@@ -54,7 +54,8 @@ struct dalcs_measure_card {
     double from, to; /* infinite: from the first to the last point */
     struct dalcs_signal_formula from_formula, to_formula; /* n > 0: from earlier measurements */
     struct dalcs_measure_instant instant[2];
-    bool is_late; /* it needs the results of earlier ones, and so comes after the run */
+    const char *mistake; /* in the card, which was told: the measurement fails; else NULL */
+    bool is_late;        /* it needs the results of earlier ones, and so comes after the run */
     struct dalcs_location where;
 };
 

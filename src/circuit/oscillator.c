@@ -6,6 +6,8 @@
  * its direction, a sine of the phase is the cosine of half a turn times that number, which is smooth where it turns.
  * Until t = 0 a switch holds it at its first phase: the operating point, and small signals around it, see no oscillation. */
 #include "oscillator.h"
+
+#include "output_resistance.h"
 #include "pi.h"
 
 #include "element_cards.h"
@@ -87,6 +89,12 @@ static void set_pulse(const struct dalcs_oscillator *o, double hertz, struct dal
     }
 }
 
+static void add_output(const struct dalcs_oscillator *o, const struct dalcs_device *source) {
+    if (o->may_resist) {
+        dalcs_output_add(o->card.builder, o->place, source);
+    }
+}
+
 static bool add_source(const struct dalcs_oscillator *o, double hertz) {
     const struct dalcs_block_card *c = &o->card;
     const struct dalcs_block_end *out = &o->out;
@@ -115,6 +123,7 @@ static bool add_source(const struct dalcs_oscillator *o, double hertz) {
     struct dalcs_device *v = dalcs_block_add(c, DALCS_VSOURCE, o->what, out->node, out->reference);
     if (v != NULL) {
         dalcs_block_add_stimulus(c, v, &s);
+        add_output(o, v);
     }
     return v != NULL;
 }
@@ -223,6 +232,7 @@ static void put_line(const struct dalcs_oscillator *o, double offset, double gai
     if (e != NULL && lift >= 0) {
         e->node[2] = by;
         e->value = gain;
+        add_output(o, e);
         if (offset != 0) {
             (void)dalcs_block_add_constant(&o->card, DALCS_VSOURCE, "lift",
                                            (int[]){lift, out->reference}, offset);

@@ -18,6 +18,7 @@ struct dalcs_oscillator {
     const struct dalcs_token *place; /* of messages */
     struct dalcs_block_end control, out;
     enum dalcs_oscillator_shape shape;
+    bool may_resist; /* LTspice's */
     double low, high;
     double duty;                   /* of the period: that a triangle rises, that a square is high */
     double phase;                  /* of the period, at the start */

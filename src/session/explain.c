@@ -120,6 +120,25 @@ static enum dalcs_status find_certainty(struct dalcs_component *c, bool is_from,
     return DALCS_OK;
 }
 
+/* What to change: of a held voltage, of a loop with a diode, which often is the wrong way round; NULL: nothing more than
+ * the sentence says. */
+static const char *advice_for(const struct dalcs_refusal *x) {
+    const struct dalcs_circuit *c = x->circuit;
+    bool has_initial = false;
+    bool has_diode = false;
+    for (size_t k = 0; k < x->n_elements; k++) {
+        has_initial = has_initial || dalcs_is_initial(x->element[k]);
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        has_diode = has_diode || (x->is_named[i] && c->device[i].letter == 'd');
+    }
+    return has_initial ? dalcs_leave_initial
+           : has_diode && x->kind == DALCS_WITNESS_LOOP
+               ? "swap the nodes of a diode that should block here; to limit the current put a "
+                 "resistance into the loop, an R or Ron= of a diode's model"
+               : NULL;
+}
+
 static void report_infeasible(struct dalcs_session *s, const struct dalcs_refusal *x) {
     static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
                                        [DALCS_WITNESS_CUTSET] = "cutset",
@@ -165,14 +184,12 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
     list_values(&x, c);
     dalcs_refusal_explain(&x);
     const struct dalcs_location *where = NULL;
-    bool has_initial = false;
-    for (size_t k = 0; k < x.n_elements; k++) {
-        where = where == NULL ? dalcs_place_of(&s->circuit, x.element[k]) : where;
-        has_initial = has_initial || dalcs_is_initial(x.element[k]);
+    for (size_t k = 0; k < x.n_elements && where == NULL; k++) {
+        where = dalcs_place_of(&s->circuit, x.element[k]);
     }
-    if (has_initial) {
-        hint = hint == NULL ? dalcs_leave_initial
-                            : dalcs_arena_printf(&s->arena, "%s; %s", dalcs_leave_initial, hint);
+    const char *advice = advice_for(&x);
+    if (advice != NULL) {
+        hint = hint == NULL ? advice : dalcs_arena_printf(&s->arena, "%s; %s", advice, hint);
     }
     if (hint != NULL && dalcs_refusal_is_of_start(&x)) {
         hint = dalcs_arena_printf(

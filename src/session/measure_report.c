@@ -264,6 +264,8 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
             fail(&result, "the run did not come to its end");
         } else if (source != NULL) {
             fail(&result, "it needs '%s', which could not be measured", source->name);
+        } else if (card->mistake != NULL) {
+            fail(&result, "%s", card->mistake);
         } else if (card->is_late && !dalcs_measuring_late(m, k, r->measures.result)) {
             fail(&result, "a time that earlier measurements give has no value");
         } else {
@@ -275,7 +277,7 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
         }
         r->measures.result[k] = measurement->found ? measurement->value : (double)NAN;
         r->s->results.report.n_measurements++;
-        if (!measurement->found && status == DALCS_OK) {
+        if (!measurement->found && status == DALCS_OK && card->mistake == NULL) {
             dalcs_diag_add(&r->s->diag, DALCS_WARNING, &card->where, NULL, "%s: %s", card->name,
                            measurement->failure);
         }

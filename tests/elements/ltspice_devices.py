@@ -267,10 +267,57 @@ def refused(checker, program):
     checker.check(done.status == 0, f"in a subcircuit: {done.stderr}")
 
 
+def held_outputs(checker, program):
+    """An output that something without a resistance holds has LTspice's 1 ohm; others are ideal."""
+    for high, low in ((1, 0), (5, -5), (400, 1e-3), (1e-3, 0)):
+        gate = f"Vhigh={high} Vlow={low} Ref=0.5"
+        on = "v1 a 0 1"
+        # Cards, a signal and its value: outputs on one node, against a source, through an ideal diode, in a ring through com.
+        cases = (
+            ([on, f"a1 a 0 0 0 0 0 b 0 BUF {gate}", f"a2 a 0 0 0 0 b 0 0 BUF {gate}"], "v(b)", 0.5 * (high + low)),
+            ([on, *(f"a{k} a 0 0 0 0 0 b 0 BUF {gate}" for k in range(4)), f"a4 a 0 0 0 0 b 0 0 INV {gate}"], "v(b)",
+             (4 * high + low) / 5),
+            ([on, f"a1 a 0 0 0 0 0 b 0 BUF {gate}", f"v2 b 0 {3 * high}"], "i(v2)", -2 * high),
+            ([on, f"a1 a 0 0 0 0 b c 0 BUF {gate}", f"v2 c 0 {3 * high}", "r1 b 0 1k"], "v(b)", low),
+            ([on, f"a1 a 0 0 0 0 0 b 0 BUF {gate}", "d1 b c dd", f"v2 c 0 {0.25 * high}"], "i(d1)", 0.75 * high),
+            ([on, f"a1 a c c c c c b c BUF {gate}", f"e1 b 0 a 0 {2 * high}", "v2 c 0 0"], "i(v2)", high),
+            ([on, f"a1 a 0 k 0 0 0 b 0 SAMPLEHOLD IC={high}", "v3 k 0 0", f"v2 b 0 {-high}"], "i(v2)", 2 * high))
+        for cards, name, wanted in cases:
+            cards = [*cards, ".model dd D(Ron=0)", ".tran 1u 1m", f".save {name}"]
+            done = run_cards(program, "held outputs", cards)
+            if runs(checker, done, f"{cards}"):
+                for value in done.column(name):
+                    checker.close(value, wanted, 1e-9 * abs(high), f"{cards}: {name}")
+            ideal = [c + " Rout=0" if c[0] == "a" else c for c in cards]
+            done = run_cards(program, "held ideal outputs", ideal)
+            checker.check(done.status != 0, f"{ideal}: an ideal output that is held: {done.status}")
+        for control, top in ((0, high), (0.5, 0.5)):  # the cosine on a source, alone and of an amplitude, and the sine as it is
+            cards = ["v1 a 0 1", f"v3 m 0 {control}", f"a1 a {'m' if control else 0} 0 0 0 b c 0 MODULATE mark=2k space=0 Vhigh={high} Vlow={-high}",
+                     f"v2 b 0 {high}", ".tran 20u 1m", ".save i(v2) v(c)"]
+            done = run_cards(program, "a held modulator", cards)
+            if runs(checker, done, "a held modulator"):
+                for t, i, v in zip(done.time, done.column("i(v2)"), done.column("v(c)")):
+                    checker.close(i, top * math.cos(4e3 * math.pi * t) - high, 1e-7 * max(top, high), f"{control}: its cosine at {t}")
+                    checker.close(v, top * math.sin(4e3 * math.pi * t), 1e-7 * max(top, high), f"{control}: its sine at {t}")
+        # .ic holds an output until the run begins.
+        r, c, first = 99.0, 1e-6, low - 0.25 * (high - low)
+        cards = [on, f"a1 a 0 0 0 0 0 b 0 BUF {gate}", f"r1 b c {r}", f"c1 c 0 {c}", f".ic v(b)={first!r}", ".tran 10u 400u", ".save v(c)"]
+        done = run_cards(program, "held by .ic", cards)
+        if runs(checker, done, "held by .ic"):
+            for t, v in zip(done.time, done.column("v(c)")):
+                checker.close(v, high + (first - high) * math.exp(-t / ((r + 1) * c)), 1e-8 * high, f".ic: {t}")
+        # Nothing holds these: beside a resistor, a capacitor behind one, a current, and an input.
+        cards = [on, f"a1 a 0 0 0 0 x b 0 BUF {gate}", "r1 b 0 1", "a2 b 0 0 0 0 0 c 0 BUF", "i1 c 0 1m", "r2 x y 1", "c1 y 0 1u",
+                 ".tran 1u 1m", ".save v(b)"]
+        done = run_cards(program, "free outputs", cards)
+        if runs(checker, done, "free outputs"):
+            checker.check(set(done.column("v(b)")) == {float(high)}, f"free: {set(done.column('v(b)'))}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("ltspice_devices")
-    for part in (outputs, varistors, modulators, quadratures, many, transconductors, limited_samples, parameters, without_signs, refused):
+    for part in (outputs, varistors, modulators, quadratures, many, transconductors, limited_samples, parameters, without_signs, held_outputs, refused):
         part(checker, program)
     return checker.finish()
 

@@ -641,11 +641,52 @@ def thresholds(program, checker):
         r.close(f"least{k}", round(0.3 * x, 5), scale=1.0)
 
 
+def mistakes(program, checker):
+    """A card with a mistake costs its own result alone, and what needs it; all others are what they are without it."""
+    wrong = {
+        "node": ("avg v(q)", "no element is connected to a node 'q'"),
+        "element": ("max i(r9)", "there is no element 'r9'"),
+        "kind": ("averge v(a)", "'averge' cannot be measured"),
+        "word": ("avg v(a) form=1m", "did not expect 'form' in the expression"),
+        "ahead": ("param='later*2'", "there is no parameter and no earlier measurement 'later'"),
+        "window": ("avg v(a) from=2m to=1m", "FROM=0.002 does not come before TO=0.001"),
+        "place": ("find v(a)", "WHEN or AT= is missing"),
+        "target": ("trig v(a)=0 rise=1", "TARG is missing"),
+    }
+    good = (".meas {0} mean avg v(a)\n", ".meas {0} later max v(a)\n", ".meas {0} twice param='2*later'\n")
+    parts = ("mistakes\nV1 a 0 SIN(1 3 1k)\nR1 a 0 1k\n", "mistakes\nV1 a 0 SIN(1 3 1k)\nR1 a b 1\nL1 b 0 1m ic=0\nR2 b 0 7\n")
+    for analysis, cards, circuit in (("tran", ".tran 1u 4m\n", parts[0]), ("tran", ".tran 1u 4m\n", parts[1]),
+                                     ("pss", ".pss 1k\n", parts[1])):
+        lines = [f".meas {analysis} {name} {what}\n" for name, (what, _) in wrong.items()]
+        text = circuit + cards + "".join(lines) + "".join(g.format(analysis) for g in good)
+        text += f".meas {analysis} needs param='node+mean'\n.end\n"
+        r = Results(program, checker, text)
+        for name, value in (("mean", 1), ("later", 4), ("twice", 8)):
+            r.close(name, value, tolerance=1e-9)
+        failures = {name: why for name, (_, why) in wrong.items()}
+        for name, why in {**failures, "needs": "it needs 'node', which could not be measured"}.items():
+            entry = r.of.get(name, {})
+            checker.check(entry.get("value", 0) is None and entry.get("failure", "").startswith(why), f"{name}: {entry}")
+        for name, why in failures.items():
+            checker.check(re.search(rf"warning: {re.escape(why)}.*: the measurement '{name}' fails\n\.meas", r.run.stderr)
+                          and "error" not in r.run.stderr,
+                          f"no warning of {name}: {r.run.stderr}")
+        with tempfile.TemporaryDirectory() as folder:
+            netlist = pathlib.Path(folder) / "mistakes.cir"
+            netlist.write_text(text, encoding="utf-8")
+            done = subprocess.run([program, "run", netlist, "-o", netlist.with_suffix(".csv")], capture_output=True, text=True,
+                                  check=False)
+        checker.check(re.findall(r"(?m)^(\w+) +=  failed$", done.stdout) == [*wrong, "needs"], f"shown: {done.stdout}")
+    done = dalcs_program.run(program, parts[0] + ".tran 1u 4m\n.func f(x) {(x}\n.meas tran bad avg f(v(a))\n.end\n")
+    checker.check(done.status == 3 and "error: this parenthesis is never closed" in done.stderr,
+                  f"a mistake in .func: {done.status} {done.stderr}")
+
+
 def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
     for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels,
-                 one_point, powers, windows, degrees, rounding, thresholds):
+                 one_point, powers, windows, degrees, rounding, thresholds, mistakes):
         test(program, checker)
     return checker.finish()
 
