@@ -2,6 +2,9 @@
  * one-step problem there, and the integral is found by Gauss's rule of seven points on halves of halves. */
 #include "energy_entries.h"
 
+#include "magnitudes.h"
+#include "rounding.h"
+
 #include <math.h>
 
 /* Of what flows in an interval, and how often one is halved: at a point where a root begins halves go on. */
@@ -76,7 +79,7 @@ static enum dalcs_status apply_rule(const struct quadrature *q, double from, dou
     return DALCS_OK;
 }
 
-/* Do two halves tell as much as the whole? */
+/* Do two halves tell as much as the whole, to what answers are known to? */
 static bool agree(const struct joules *whole, const struct joules *a, const struct joules *b) {
     double most = 0.0;
     double off = 0.0;
@@ -84,7 +87,7 @@ static bool agree(const struct joules *whole, const struct joules *a, const stru
         most = fmax(most, fabs(a->of[k]) + fabs(b->of[k]));
         off = fmax(off, fabs(a->of[k] + b->of[k] - whole->of[k]));
     }
-    return off <= accuracy * most;
+    return off <= dalcs_beyond * dalcs_answer_rounded * most;
 }
 
 static enum dalcs_status halve(const struct quadrature *q, double from, double to, int left,
