@@ -7,9 +7,7 @@
 
 #include <math.h>
 
-/* Of what flows in an interval, and how often one is halved: at a point where a root begins halves go on. */
-static const double accuracy = 1e-11;
-
+/* At a point where a root begins halves go on. */
 enum { MOST_HALVINGS = 24 };
 
 /* Gauss and Legendre: abscissas of [-1, 1] and weights (Abramowitz and Stegun 1964, table 25.4). */
@@ -26,6 +24,7 @@ static const double WEIGHT[POINTS] = {0.129484966168869693271, 0.279705391489276
 struct quadrature {
     const struct dalcs_energy_part *part;
     struct dalcs_component *c;
+    double most; /* J: what flows between two edges */
 };
 
 struct joules {
@@ -79,15 +78,23 @@ static enum dalcs_status apply_rule(const struct quadrature *q, double from, dou
     return DALCS_OK;
 }
 
-/* Do two halves tell as much as the whole, to what answers are known to? */
-static bool agree(const struct joules *whole, const struct joules *a, const struct joules *b) {
+static double largest_of(const struct joules *sum) {
     double most = 0.0;
-    double off = 0.0;
     for (int k = 0; k < DALCS_N_POWER_ACCOUNTS; k++) {
-        most = fmax(most, fabs(a->of[k]) + fabs(b->of[k]));
-        off = fmax(off, fabs(a->of[k] + b->of[k] - whole->of[k]));
+        most = fmax(most, fabs(sum->of[k]));
     }
-    return off <= dalcs_beyond * dalcs_answer_rounded * most;
+    return most;
+}
+
+/* Do two halves tell as much as the whole, to what answers are known to? */
+static bool agree(const struct quadrature *q, const struct joules *whole, const struct joules *a,
+                  const struct joules *b) {
+    struct joules off;
+    for (int k = 0; k < DALCS_N_POWER_ACCOUNTS; k++) {
+        off.of[k] = a->of[k] + b->of[k] - whole->of[k];
+    }
+    const double most = fmax(q->most, largest_of(whole));
+    return largest_of(&off) <= dalcs_beyond * dalcs_answer_rounded * most;
 }
 
 static enum dalcs_status halve(const struct quadrature *q, double from, double to, int left,
@@ -96,7 +103,7 @@ static enum dalcs_status halve(const struct quadrature *q, double from, double t
     struct joules half[2];
     DALCS_TRY(apply_rule(q, from, middle, &half[0]));
     DALCS_TRY(apply_rule(q, middle, to, &half[1]));
-    if (left > 0 && !agree(whole, &half[0], &half[1])) {
+    if (left > 0 && !agree(q, whole, &half[0], &half[1])) {
         DALCS_TRY(halve(q, from, middle, left - 1, &half[0], energy));
         return halve(q, middle, to, left - 1, &half[1], energy);
     }
@@ -109,7 +116,7 @@ static enum dalcs_status halve(const struct quadrature *q, double from, double t
 enum dalcs_status dalcs_energy_enter_bent(struct dalcs_energy *energy,
                                           const struct dalcs_energy_part *part,
                                           struct dalcs_component *c, double stop) {
-    const struct quadrature q = {.part = part, .c = c};
+    struct quadrature q = {.part = part, .c = c};
     struct joules whole;
     for (double from = 0.0; from < stop;) {
         double to = stop;
@@ -118,6 +125,7 @@ enum dalcs_status dalcs_energy_enter_bent(struct dalcs_energy *energy,
             to = fmin(to, dalcs_stimulus_next_edge(&c->circuit->stimulus[stimulus], from));
         }
         DALCS_TRY(apply_rule(&q, from, to, &whole));
+        q.most = largest_of(&whole);
         DALCS_TRY(halve(&q, from, to, MOST_HALVINGS, &whole, energy));
         from = to;
     }
