@@ -153,16 +153,18 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
         double f = dalcs_smooth_share(newton->share, dalcs_smooth_value(of->kind, newton->x[q]));
         dalcs_smooth_finite_gradient(of, newton->x[q], gradient);
         double least = tolerance * fabs(f);
-        double most = least;
         for (int j = 0; j < of->n; j++) {
-            bool is_read = of->column[j] >= 0;
             double slope = fabs(dalcs_smooth_share(newton->share, gradient[j])) +
                            fabs(dalcs_smooth_line(of, j));
-            least += is_read ? dalcs_rounded * slope * fabs(newton->x[q][j]) : 0.0;
-            most += is_read ? excused_by(newton, q, j, fabs(gradient[j]), tolerance) : 0.0;
+            least += of->column[j] >= 0 ? dalcs_rounded * slope * fabs(newton->x[q][j]) : 0.0;
         }
         double off =
             fabs(dalcs_smooth_rest_of_share(of, newton->share, newton->x[q]) - newton->phi[q]);
+        double most = least;
+        for (int j = 0; j < of->n && !(off <= least); j++) {
+            most +=
+                of->column[j] >= 0 ? excused_by(newton, q, j, fabs(gradient[j]), tolerance) : 0.0;
+        }
         double ratio = over(off, most);
         newton->worst = ratio > worst ? q % newton->system->n_smooth : newton->worst;
         worst = ratio <= worst ? worst : ratio; /* NAN stays */

@@ -6,6 +6,7 @@
 #include "present.h"
 #include "rounding.h"
 #include "smooth_poles.h"
+#include "smooth_tangents.h"
 
 #include <math.h>
 
@@ -118,12 +119,14 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
     *changes = false;
     for (int k = 0; k < s->n_smooth; k++) {
         const struct dalcs_smooth_input *of = &s->smooth[k];
+        const bool is_root = dalcs_smooth_root_exponent(of) > 0.0;
         double x[2] = {of->number[0], of->number[1]};
         double phi = 0.0;
         double terms = 0.0;
         for (int node = 0; node <= m->s; node++) {
             const int q = node * s->n_smooth + k;
-            terms = dalcs_larger(terms, dalcs_smooth_newton_terms(n, q, 0));
+            terms =
+                dalcs_larger(terms, is_root ? dalcs_smooth_newton_terms(n, q, 0) : n->terms[q][0]);
             for (int j = 0; j < of->n; j++) {
                 x[j] += of->column[j] >= 0 ? m->worst.value[node] * n->x[q][j] : 0.0;
             }
@@ -134,8 +137,11 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
         }
         x[0] = dalcs_smooth_held(of->kind, x, dalcs_alike * terms);
         const double off = dalcs_smooth_rest(of, x) - phi;
-        const double by_terms = dalcs_smooth_variation(of->kind, x, 0, dalcs_rounded * terms);
-        const double rest = fabs(off) - dalcs_larger(dalcs_smooth_rounding(of, x), by_terms);
+        double rest = fabs(off) - dalcs_smooth_rounding(of, x);
+        if (is_root && rest > 0.0) {
+            const double by_terms = dalcs_smooth_variation(of->kind, x, 0, dalcs_rounded * terms);
+            rest = dalcs_smaller(rest, fabs(off) - by_terms);
+        }
         const double missed = isfinite(off) ? copysign(dalcs_larger(rest, 0.0), off) : off;
         double *known = value_at(part, k, m->s + 1);
         is_finite = is_finite && isfinite(missed);
