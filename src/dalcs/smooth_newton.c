@@ -142,37 +142,53 @@ static double excused_by(const struct dalcs_smooth_newton *newton, int q, int j,
     return differs + line * off + dalcs_answer_rounded * line * fabs(x[j]);
 }
 
+/* By how much a value is not the function's, and what the tolerance and its own terms allow. */
+static double off_of(const struct dalcs_smooth_newton *newton, int q, double tolerance,
+                     double *least) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const double *x = newton->x[q];
+    double gradient[2];
+    dalcs_smooth_finite_gradient(of, x, gradient);
+    *least = tolerance * fabs(dalcs_smooth_share(newton->share, dalcs_smooth_value(of->kind, x)));
+    for (int j = 0; j < of->n; j++) {
+        const double slope =
+            fabs(dalcs_smooth_share(newton->share, gradient[j])) + fabs(dalcs_smooth_line(of, j));
+        *least += of->column[j] >= 0 ? dalcs_rounded * slope * fabs(x[j]) : 0.0;
+    }
+    return fabs(dalcs_smooth_rest_of_share(of, newton->share, x) - newton->phi[q]);
+}
+
+/* Of a value that another step would not bring nearer. */
+static bool is_excused(const struct dalcs_smooth_newton *newton, int q, double tolerance) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    double gradient[2];
+    double most;
+    const double off = off_of(newton, q, tolerance, &most);
+    dalcs_smooth_finite_gradient(of, newton->x[q], gradient);
+    for (int j = 0; j < of->n && !(off <= most); j++) {
+        most += of->column[j] >= 0 ? excused_by(newton, q, j, fabs(gradient[j]), tolerance) : 0.0;
+    }
+    return over(off, most) <= 1.0;
+}
+
 bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double tolerance,
                                 bool *is_done) {
-    double worst = 0.0;
     newton->defect_before = newton->defect;
     newton->defect = 0.0;
     for (int q = 0; q < newton->n; q++) {
-        const struct dalcs_smooth_input *of = input_of(newton, q);
-        double gradient[2];
-        double f = dalcs_smooth_share(newton->share, dalcs_smooth_value(of->kind, newton->x[q]));
-        dalcs_smooth_finite_gradient(of, newton->x[q], gradient);
-        double least = tolerance * fabs(f);
-        for (int j = 0; j < of->n; j++) {
-            double slope = fabs(dalcs_smooth_share(newton->share, gradient[j])) +
-                           fabs(dalcs_smooth_line(of, j));
-            least += of->column[j] >= 0 ? dalcs_rounded * slope * fabs(newton->x[q][j]) : 0.0;
-        }
-        double off =
-            fabs(dalcs_smooth_rest_of_share(of, newton->share, newton->x[q]) - newton->phi[q]);
-        double most = least;
-        for (int j = 0; j < of->n && !(off <= least); j++) {
-            most +=
-                of->column[j] >= 0 ? excused_by(newton, q, j, fabs(gradient[j]), tolerance) : 0.0;
-        }
-        double ratio = over(off, most);
-        newton->worst = ratio > worst ? q % newton->system->n_smooth : newton->worst;
-        worst = ratio <= worst ? worst : ratio; /* NAN stays */
-        double defect = over(off, least);
-        newton->defect = defect <= newton->defect ? newton->defect : defect;
+        double least;
+        const double off = off_of(newton, q, tolerance, &least);
+        const double defect = over(off, least);
+        newton->worst = defect > newton->defect ? q % newton->system->n_smooth : newton->worst;
+        newton->defect = defect <= newton->defect ? newton->defect : defect; /* NAN stays */
     }
     *is_done = newton->defect <= 1.0 || !(newton->defect < 0.5 * newton->defect_before);
-    return worst <= 1.0 && !newton->limits;
+    bool agrees = *is_done && !newton->limits;
+    for (int q = 0; q < newton->n && agrees && !(newton->defect <= 1.0); q++) {
+        agrees = is_excused(newton, q, tolerance);
+        newton->worst = agrees ? newton->worst : q % newton->system->n_smooth;
+    }
+    return agrees;
 }
 
 double dalcs_smooth_newton_excused(const struct dalcs_smooth_newton *newton, int q) {
