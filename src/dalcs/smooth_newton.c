@@ -100,16 +100,21 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
     }
 }
 
-double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x) {
+static double rounding_of_share(const struct dalcs_smooth_input *of, double share,
+                                const double *x) {
     double gradient[2];
     double rounding = 0.0;
     dalcs_smooth_finite_gradient(of, x, gradient);
     for (int j = 0; j < of->n; j++) {
-        const bool is_read = of->column[j] >= 0;
-        const double slope = fabs(gradient[j]) + fabs(dalcs_smooth_line(of, j));
-        rounding += is_read ? dalcs_rounded * slope * fabs(x[j]) : 0.0;
+        const double slope =
+            fabs(dalcs_smooth_share(share, gradient[j])) + fabs(dalcs_smooth_line(of, j));
+        rounding += of->column[j] >= 0 ? dalcs_rounded * slope * fabs(x[j]) : 0.0;
     }
     return rounding;
+}
+
+double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x) {
+    return rounding_of_share(of, 1.0, x);
 }
 
 static double over(double off, double size) {
@@ -147,14 +152,8 @@ static double off_of(const struct dalcs_smooth_newton *newton, int q, double tol
                      double *least) {
     const struct dalcs_smooth_input *of = input_of(newton, q);
     const double *x = newton->x[q];
-    double gradient[2];
-    dalcs_smooth_finite_gradient(of, x, gradient);
-    *least = tolerance * fabs(dalcs_smooth_share(newton->share, dalcs_smooth_value(of->kind, x)));
-    for (int j = 0; j < of->n; j++) {
-        const double slope =
-            fabs(dalcs_smooth_share(newton->share, gradient[j])) + fabs(dalcs_smooth_line(of, j));
-        *least += of->column[j] >= 0 ? dalcs_rounded * slope * fabs(x[j]) : 0.0;
-    }
+    *least = tolerance * fabs(dalcs_smooth_share(newton->share, dalcs_smooth_value(of->kind, x))) +
+             rounding_of_share(of, newton->share, x);
     return fabs(dalcs_smooth_rest_of_share(of, newton->share, x) - newton->phi[q]);
 }
 

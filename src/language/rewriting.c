@@ -106,15 +106,24 @@ struct dalcs_formula *dalcs_rewriting_number(struct dalcs_rewriting *r,
     return number;
 }
 
-struct dalcs_formula *dalcs_rewriting_call(struct dalcs_rewriting *r, const struct dalcs_formula *f,
-                                           const char *function, const struct dalcs_formula *a,
-                                           const struct dalcs_formula *b) {
-    struct dalcs_formula *call =
+static struct dalcs_formula *of_two(struct dalcs_rewriting *r, const struct dalcs_formula *f,
+                                    enum dalcs_formula_kind kind, const struct dalcs_formula *a,
+                                    const struct dalcs_formula *b) {
+    struct dalcs_formula *made =
         a != NULL && b != NULL
             ? dalcs_rewriting_like(r, f, 2, (const struct dalcs_formula *[]){a, b})
             : NULL;
+    if (made != NULL) {
+        made->kind = kind;
+    }
+    return made;
+}
+
+struct dalcs_formula *dalcs_rewriting_call(struct dalcs_rewriting *r, const struct dalcs_formula *f,
+                                           const char *function, const struct dalcs_formula *a,
+                                           const struct dalcs_formula *b) {
+    struct dalcs_formula *call = of_two(r, f, DALCS_FORMULA_CALL, a, b);
     if (call != NULL) {
-        call->kind = DALCS_FORMULA_CALL;
         call->function = function;
     }
     return call;
@@ -124,12 +133,8 @@ struct dalcs_formula *dalcs_rewriting_product(struct dalcs_rewriting *r,
                                               const struct dalcs_formula *f,
                                               const struct dalcs_formula *a,
                                               const struct dalcs_formula *b) {
-    struct dalcs_formula *product =
-        a != NULL && b != NULL
-            ? dalcs_rewriting_like(r, f, 2, (const struct dalcs_formula *[]){a, b})
-            : NULL;
+    struct dalcs_formula *product = of_two(r, f, DALCS_FORMULA_OPERATION, a, b);
     if (product != NULL) {
-        product->kind = DALCS_FORMULA_OPERATION;
         product->code = DALCS_MULTIPLY;
     }
     return product;
