@@ -29,16 +29,14 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
     newton->slope = dalcs_arena_alloc(arena, 2 * n * n, sizeof(double));
     newton->matrix = dalcs_arena_alloc(arena, n * n, sizeof(double));
     newton->step = dalcs_arena_alloc(arena, n, sizeof(double));
+    newton->correction = dalcs_arena_alloc(arena, n, sizeof(double));
     newton->pivot = dalcs_arena_alloc(arena, n, sizeof(int));
     bool complete = newton->phi != NULL && newton->before != NULL && newton->x != NULL &&
                     newton->terms != NULL && newton->tangent != NULL && newton->other != NULL &&
                     newton->slope != NULL && newton->matrix != NULL && newton->step != NULL &&
-                    newton->pivot != NULL;
-    return complete ? DALCS_OK : DALCS_E_NOMEM;
-}
-
-static const struct dalcs_smooth_input *input_of(const struct dalcs_smooth_newton *newton, int q) {
-    return &newton->system->smooth[q % newton->system->n_smooth];
+                    newton->correction != NULL && newton->pivot != NULL;
+    DALCS_TRY(complete ? DALCS_OK : DALCS_E_NOMEM);
+    return dalcs_smooth_inner_setup(&newton->inner, system, (int)n, arena);
 }
 
 void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double (*x)[2]) {
@@ -48,56 +46,12 @@ void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double 
     }
     newton->volt = 0.0;
     newton->halved = newton->n_steps = 0;
-    newton->limits = newton->at_pole = false;
+    newton->limits = newton->at_pole = newton->is_damped = false;
     newton->defect = INFINITY;
 }
 
-void dalcs_smooth_arguments(const struct dalcs_system *system, const double *y, double (*x)[2]) {
-    for (int k = 0; k < system->n_smooth; k++) {
-        const struct dalcs_smooth_input *of = &system->smooth[k];
-        for (int j = 0; j < 2; j++) {
-            x[k][j] = j < of->n && of->column[j] >= 0 ? y[of->column[j]] : of->number[j];
-        }
-    }
-}
-
-static double largest_voltage(const struct dalcs_system *s, const double *y) {
-    double volt = 0.0;
-    for (int c = 0; c < dalcs_system_n_equations(s); c++) {
-        bool counts = !s->column_is_current[c] && !s->is_part[c];
-        volt = counts ? dalcs_larger(volt, fabs(y[c])) : volt;
-    }
-    return volt;
-}
-
-static double largest_term(const struct dalcs_system *s, int row, const double *y) {
-    double most = 0.0;
-    for (int k = s->A.p[row]; k < s->A.p[row + 1]; k++) {
-        most = dalcs_larger(most, fabs(s->A.x[k] * y[s->A.j[k]]));
-    }
-    return most;
-}
-
-void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, const double *y) {
-    const struct dalcs_system *s = newton->system;
-    const int first = point * s->n_smooth;
-    const double volt = largest_voltage(s, y);
-    newton->volt = dalcs_larger(newton->volt, volt);
-    dalcs_smooth_arguments(s, y, newton->x + first);
-    for (int k = 0; k < s->n_smooth; k++) {
-        const struct dalcs_smooth_input *of = &s->smooth[k];
-        for (int j = 0; j < of->n; j++) {
-            const bool is_part = of->column[j] >= 0 && s->is_part[of->column[j]];
-            newton->terms[first + k][j] = of->column[j] < 0    ? 0.0
-                                          : of->row_of[j] >= 0 ? largest_term(s, of->row_of[j], y)
-                                          : is_part            ? fabs(newton->x[first + k][j])
-                                                               : volt;
-        }
-        /* What a kink leaves of 0 has no terms but itself: it is known to the rounding of the voltages. */
-        const double off =
-            dalcs_larger(dalcs_alike * newton->terms[first + k][0], dalcs_rounded * newton->volt);
-        newton->x[first + k][0] = dalcs_smooth_held(of->kind, newton->x[first + k], off);
-    }
+void dalcs_smooth_newton_forget(struct dalcs_smooth_newton *newton) {
+    memset(newton->slope, 0, 2 * (size_t)newton->n * (size_t)newton->n * sizeof(double));
 }
 
 static double rounding_of_share(const struct dalcs_smooth_input *of, double share,
@@ -135,7 +89,7 @@ double dalcs_smooth_newton_terms(const struct dalcs_smooth_newton *newton, int q
 /* What argument j may be off by makes so much of the function, and of its line, which no root has from where it is steep. */
 static double excused_by(const struct dalcs_smooth_newton *newton, int q, int j, double slope,
                          double tolerance) {
-    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
     const double *x = newton->x[q];
     const double off = dalcs_answer_rounded * dalcs_smooth_newton_terms(newton, q, j);
     const double line = fabs(dalcs_smooth_line(of, j));
@@ -150,7 +104,7 @@ static double excused_by(const struct dalcs_smooth_newton *newton, int q, int j,
 /* By how much a value is not the function's, and what the tolerance and its own terms allow. */
 static double off_of(const struct dalcs_smooth_newton *newton, int q, double tolerance,
                      double *least) {
-    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
     const double *x = newton->x[q];
     *least = tolerance * fabs(dalcs_smooth_share(newton->share, dalcs_smooth_value(of->kind, x))) +
              rounding_of_share(of, newton->share, x);
@@ -159,7 +113,7 @@ static double off_of(const struct dalcs_smooth_newton *newton, int q, double tol
 
 /* Of a value that another step would not bring nearer. */
 static bool is_excused(const struct dalcs_smooth_newton *newton, int q, double tolerance) {
-    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
     double gradient[2];
     double most;
     const double off = off_of(newton, q, tolerance, &most);
@@ -191,7 +145,7 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
 }
 
 double dalcs_smooth_newton_excused(const struct dalcs_smooth_newton *newton, int q) {
-    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
     double gradient[2];
     double by_line = 0.0;
     double by_tangent = fabs(dalcs_smooth_value(of->kind, newton->x[q]));
@@ -206,7 +160,7 @@ double dalcs_smooth_newton_excused(const struct dalcs_smooth_newton *newton, int
 }
 
 double dalcs_smooth_newton_tried(const struct dalcs_smooth_newton *newton, int q) {
-    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
     return newton->phi[q] + dalcs_smooth_line(of, 0) * newton->x[q][0] +
            dalcs_smooth_line(of, 1) * newton->x[q][1];
 }
@@ -216,7 +170,7 @@ static bool is_finite(struct dalcs_smooth_newton *newton, bool *has_slopes) {
     bool is = true;
     *has_slopes = true;
     for (int q = 0; q < newton->n && is; q++) {
-        const struct dalcs_smooth_input *of = input_of(newton, q);
+        const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
         double a[2];
         double gradient[2];
         for (int j = 0; j < 2; j++) {
@@ -233,6 +187,13 @@ static bool is_finite(struct dalcs_smooth_newton *newton, bool *has_slopes) {
     return is;
 }
 
+static void halve(struct dalcs_smooth_newton *newton) {
+    newton->halved++;
+    for (int q = 0; q < newton->n; q++) {
+        newton->phi[q] = 0.5 * (newton->phi[q] + newton->before[q]);
+    }
+}
+
 bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats) {
     bool has_slopes;
     const bool is = is_finite(newton, &has_slopes) || newton->share == 0.0;
@@ -240,17 +201,44 @@ bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *rep
     const bool is_first = newton->n_steps == 0;
     *repeats = !(is && has_slopes) &&
                newton->halved < (is_first ? newton->system->n_smooth : MOST_HALVINGS);
-    if (*repeats) {
-        newton->halved++;
-        for (int q = 0; q < newton->n; q++) {
-            if (is_first) {
-                dalcs_smooth_take_rest(input_of(newton, q), newton->x[q], &newton->phi[q]);
-            } else {
-                newton->phi[q] = 0.5 * (newton->phi[q] + newton->before[q]);
-            }
-        }
+    if (*repeats && !is_first) {
+        halve(newton);
+    }
+    newton->halved += *repeats && is_first ? 1 : 0;
+    for (int q = 0; q < newton->n && *repeats && is_first; q++) {
+        dalcs_smooth_take_rest(dalcs_smooth_newton_input(newton, q), newton->x[q], &newton->phi[q]);
     }
     return is || *repeats;
+}
+
+/* Values against their own sizes: what the last factors make of what is left is to be less than the step was (the natural
+ * monotonicity test; P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 3.3). It has no units. */
+bool dalcs_smooth_newton_overshoots(struct dalcs_smooth_newton *newton, double tolerance) {
+    if (!newton->is_damped || newton->n_steps == 0 || newton->halved >= MOST_HALVINGS) {
+        return false;
+    }
+    for (int q = 0; q < newton->n; q++) {
+        newton->correction[q] = dalcs_smooth_rest_of_share(dalcs_smooth_newton_input(newton, q),
+                                                           newton->share, newton->x[q]) -
+                                newton->inner.next[q];
+    }
+    (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->matrix, newton->n,
+                         newton->pivot, newton->correction, newton->n);
+    double left = 0.0;
+    double taken = 0.0;
+    for (int q = 0; q < newton->n; q++) {
+        const double size =
+            is_excused(newton, q, tolerance)
+                ? INFINITY
+                : fabs(newton->before[q]) + fabs(newton->phi[q]) + fabs(newton->step[q]);
+        left = size > 0.0 ? dalcs_larger(left, fabs(newton->correction[q]) / size) : left;
+        taken = size > 0.0 ? dalcs_larger(taken, fabs(newton->step[q]) / size) : taken;
+    }
+    const bool overshoots = left > taken && taken > dalcs_small;
+    if (overshoots) {
+        halve(newton);
+    }
+    return overshoots;
 }
 
 void dalcs_smooth_newton_blame_pole(struct dalcs_smooth_newton *newton, int worst,
@@ -262,7 +250,7 @@ void dalcs_smooth_newton_blame_pole(struct dalcs_smooth_newton *newton, int wors
 
 /* Row q of 1 - f'(a) S. */
 static void put_row(struct dalcs_smooth_newton *newton, int q, const double *gradient) {
-    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
     const int n = newton->n;
     double *row = newton->matrix + (size_t)q * (size_t)n;
     memset(row, 0, (size_t)n * sizeof(*row));
@@ -277,11 +265,12 @@ static void put_row(struct dalcs_smooth_newton *newton, int q, const double *gra
 
 /* A row of a step, and what stands on its right. */
 static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
-    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
     double *a = newton->tangent[q];
     double gradient[2];
     for (int j = 0; j < 2; j++) {
-        a[j] = dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
+        a[j] = newton->is_damped ? newton->x[q][j]
+                                 : dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
         newton->limits = newton->limits || a[j] != newton->x[q][j];
     }
     a[0] = dalcs_smooth_root_point(of, newton->share, a[0], newton->phi[q],
@@ -304,6 +293,7 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
     newton->limits = false;
     newton->halved = 0;
     newton->n_steps++;
+    memcpy(newton->phi, newton->inner.next, (size_t)newton->n * sizeof(double));
     for (int q = 0; q < newton->n; q++) {
         put_tangent(newton, q);
     }
@@ -321,7 +311,8 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
 bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton) {
     for (int q = 0; q < newton->n; q++) {
         double gradient[2];
-        dalcs_smooth_gradient_of_rest(input_of(newton, q), newton->share, newton->x[q], gradient);
+        dalcs_smooth_gradient_of_rest(dalcs_smooth_newton_input(newton, q), newton->share,
+                                      newton->x[q], gradient);
         put_row(newton, q, gradient);
     }
     return factor(newton);
@@ -330,9 +321,10 @@ bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton) {
 void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const double (*dx)[2],
                               double *change) {
     for (int q = 0; q < newton->n; q++) {
-        const struct dalcs_smooth_input *of = input_of(newton, q);
+        const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
         double gradient[2];
-        dalcs_smooth_gradient_of_rest(input_of(newton, q), newton->share, newton->x[q], gradient);
+        dalcs_smooth_gradient_of_rest(dalcs_smooth_newton_input(newton, q), newton->share,
+                                      newton->x[q], gradient);
         change[q] = 0.0;
         for (int j = 0; j < of->n; j++) {
             change[q] += of->column[j] >= 0 ? gradient[j] * dx[q][j] : 0.0;

@@ -10,6 +10,7 @@
 #ifndef DALCS_SMOOTH_NEWTON_H
 #define DALCS_SMOOTH_NEWTON_H
 
+#include "smooth_inner.h"
 #include "system.h"
 
 struct dalcs_smooth_newton {
@@ -28,8 +29,10 @@ struct dalcs_smooth_newton {
     double *slope;        /* [n][2][n] S */
     double *matrix;       /* [n][n] work */
     double *step;         /* [n] work */
+    double *correction;   /* [n] work */
     int *pivot;           /* [n] work */
     bool limits;          /* a tangent is elsewhere than its argument */
+    bool is_damped;       /* tangents are at arguments, and steps that lead away are halved */
     int n_steps;          /* since the beginning */
     int halved;           /* times that the last step was halved, or the beginning was moved */
     bool
@@ -38,7 +41,14 @@ struct dalcs_smooth_newton {
     int worst;     /* of the system's smooth inputs, the one that agrees least */
     double defect; /* of the last check: over the terms of each function alone, in the tolerance */
     double defect_before; /* of the one before */
+    struct dalcs_smooth_inner inner;
 };
+
+/* The source of value q. */
+static inline const struct dalcs_smooth_input *
+dalcs_smooth_newton_input(const struct dalcs_smooth_newton *newton, int q) {
+    return &newton->system->smooth[q % newton->system->n_smooth];
+}
 
 enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
                                             const struct dalcs_system *system, int n_points,
@@ -46,6 +56,9 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
 
 /* Tangents start anew, at these arguments x[n_smooth][2] at all points. */
 void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double (*x)[2]);
+
+/* Lines were changed: what phi does to the arguments is not known any more, and excuses none of them. */
+void dalcs_smooth_newton_forget(struct dalcs_smooth_newton *newton);
 
 /* Lines g that are those of the tangents at x[n_smooth][2], as far as these are finite, where one differs from the present
  * one by a factor beyond ten, or rounding of the present one hides a function that is something beside scale[2], the largest
@@ -67,7 +80,7 @@ void dalcs_smooth_scale_tangents(const struct dalcs_system *system, double facto
 /* None: the equations are as they are written. */
 void dalcs_smooth_drop_tangents(const struct dalcs_system *system);
 
-/* Arguments at a point from its columns y[n_columns]. */
+/* Arguments at a point from its columns y[n_columns], as they are with functions that only functions read at their values. */
 void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, const double *y);
 
 /* f - g x of one source. */
@@ -97,6 +110,10 @@ double dalcs_smooth_newton_tried(const struct dalcs_smooth_newton *newton, int q
  * functions that have a value are given it, until those that read them have one: false where that was done too often.
  * *repeats: it was; the arguments are to be read again. */
 bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats);
+
+/* Has the last step led away, where steps are damped? It is halved then, and the arguments are to be read again. What
+ * rounding excuses of a value, beside `tolerance`, says nothing of that. */
+bool dalcs_smooth_newton_overshoots(struct dalcs_smooth_newton *newton, double tolerance);
 
 /* No value of source `worst` agrees, for it has none at these arguments. */
 void dalcs_smooth_newton_blame_pole(struct dalcs_smooth_newton *newton, int worst, const double *x);

@@ -49,7 +49,7 @@ static void find_lines(const struct dalcs_smooth_input *of, const double *gradie
  * a product also by how much it is flatter: i R, of a resistance that falls, is next to the line of the R before a small
  * difference of large numbers. A diode that blocks is flat as well, but there nothing else is as small. A root's is no steeper
  * than at 1: near 0 its tangent is steep for no longer than it is near. One of what is rounding beside `volt`, the largest
- * V, is one of 0. */
+ * V, is one of 0; a product has no line of what is. */
 static double find_tangent(const struct dalcs_smooth_input *of, const double *x, double volt,
                            double *line) {
     double gradient[2];
@@ -63,8 +63,11 @@ static double find_tangent(const struct dalcs_smooth_input *of, const double *x,
     find_lines(of, gradient, line);
     for (int j = 0; j < 2; j++) {
         const double present = dalcs_smooth_line(of, j);
-        const bool is_one = of->entry[j] != NULL && isfinite(line[j]) && line[j] != 0.0;
-        const bool counts_flatter = is_one && of->kind == DALCS_SMOOTH_PRODUCT;
+        const bool is_product = of->kind == DALCS_SMOOTH_PRODUCT;
+        const bool is_rounding = is_product && fabs(line[j]) <= dalcs_rounded * volt;
+        const bool is_one =
+            of->entry[j] != NULL && isfinite(line[j]) && line[j] != 0.0 && !is_rounding;
+        const bool counts_flatter = is_one && is_product;
         steeper = is_one ? fmax(steeper, fabs(line[j] / present)) : steeper;
         steeper = counts_flatter ? fmax(steeper, fabs(present / line[j])) : steeper;
         line[j] = is_one ? line[j] : present;

@@ -147,6 +147,7 @@ struct dalcs_osnsp_smooth {
     int n_tangents;                     /* times that their lines in the equations were changed */
     long may_enumerate; /* up to which counters.enumerated may grow in this problem */
     long answered_at;   /* counters.enumerated behind the last problem that had an answer */
+    double largest[2];  /* V, A: of all answers so far, but of parts of formulas */
     double *reached;    /* [n_smooth] values that agreed last on the way to an operating point */
     double (*reached_x)[2]; /* [n_smooth] ... and arguments */
 };

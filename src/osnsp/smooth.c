@@ -59,12 +59,12 @@ void dalcs_osnsp_smooth_finish(const struct dalcs_osnsp *p) {
 static void forget(struct dalcs_osnsp *p) {
     dalcs_modes_finish(p);
     dalcs_in_order_finish(p);
+    dalcs_smooth_newton_forget(p->smooth.newton);
     p->smooth.n_tangents++;
 }
 
-/* V, A: the largest of an answer, but of parts of formulas. */
-static void find_largest(const struct dalcs_system *s, const double *y, double *largest) {
-    largest[0] = largest[1] = 0.0;
+/* V, A: raised to the largest of an answer, but of parts of formulas. */
+static void raise_largest(const struct dalcs_system *s, const double *y, double *largest) {
     for (int c = 0; c < dalcs_system_n_columns(s); c++) {
         double *of = &largest[s->column_is_current[c]];
         *of = s->is_part[c] ? *of : fmax(*of, fabs(y[c]));
@@ -74,10 +74,12 @@ static void find_largest(const struct dalcs_system *s, const double *y, double *
 bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, const double *y) {
     double largest[2] = {INFINITY, INFINITY};
     if (y != NULL) {
-        find_largest(p->system, y, largest);
+        largest[0] = largest[1] = 0.0;
+        raise_largest(p->system, y, largest);
     }
     struct dalcs_smooth_newton *n = p->smooth.newton;
-    if (!dalcs_smooth_retangent(p->system, n->x, n->volt, largest, n->phi)) {
+    const double volt = fmax(n->volt, p->smooth.largest[0]);
+    if (!dalcs_smooth_retangent(p->system, n->x, volt, largest, n->phi)) {
         return false;
     }
     forget(p);
@@ -92,14 +94,15 @@ static void put_sources(const struct dalcs_osnsp *p, double *u) {
 }
 
 /* What a change of each source does to the arguments in the present mode: a difference, exact as all is affine there. */
-static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, double *y) {
+static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, const double *y) {
     const struct dalcs_system *s = p->system;
+    double *other = p->smooth.other;
     struct dalcs_smooth_newton *n = p->smooth.newton;
     for (int k = 0; k < s->n_smooth; k++) {
         const double change = 1.0 + fabs(n->phi[k]);
         bool clash;
         u[s->n_x + s->smooth[k].input] += change;
-        const enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, &clash);
+        const enum dalcs_status status = dalcs_osnsp_try_mode(p, u, other, &clash);
         const bool is_known =
             status == DALCS_OK; /* else as if it changed nothing: a step of less use */
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
@@ -107,7 +110,7 @@ static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, double *y)
             for (int j = 0; j < 2; j++) {
                 const int column = j < s->smooth[q].n ? s->smooth[q].column[j] : -1;
                 n->slope[(2 * q + j) * n->n + k] =
-                    column >= 0 && is_known ? (y[column] - n->x[q][j]) / change : 0.0;
+                    column >= 0 && is_known ? (other[column] - y[column]) / change : 0.0;
             }
         }
         u[s->n_x + s->smooth[k].input] = n->phi[k];
@@ -115,14 +118,14 @@ static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, double *y)
     return DALCS_OK;
 }
 
-/* Is the answer y the same to what can be seen, where source k is off by so much? */
+/* Is the answer y the same to what can be seen, where source k is off by so much? A circuit at rest is measured by what it
+ * was before: of 0 everything would be seen. */
 static enum dalcs_status find_shift(struct dalcs_osnsp *p, int k, double off, const double *y,
                                     bool *is_seen) {
     const struct dalcs_system *s = p->system;
-    double largest[2];
+    const double *largest = p->smooth.largest;
     bool clash;
     double *u = p->smooth.given;
-    find_largest(s, y, largest);
     put_sources(p, u);
     u[s->n_x + s->smooth[k].input] += off;
     const enum dalcs_status status = dalcs_osnsp_try_mode(p, u, p->smooth.other, &clash);
@@ -210,8 +213,13 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
             return DALCS_OK;
         }
         is_last = agrees && is_done;
-        bool stalls = step > 0 && is_done && !is_last && !n->limits; /* the digits do not suffice */
+        bool stalls = step > 0 && is_done && !is_last && !n->limits;
+        n->is_damped = n->is_damped || stalls || step >= MOST_STEPS_NEAR;
+        if (!is_last && dalcs_smooth_newton_overshoots(n, p->options.certificate_tolerance)) {
+            continue;
+        }
         if (stalls && n->share == 1.0 && dalcs_osnsp_retangent(p, y)) {
+            n->is_damped = false; /* the digits did not suffice */
             continue;
         }
         DALCS_TRY(find_slope(p, p->smooth.given, y));
@@ -280,6 +288,9 @@ static enum dalcs_status solve_by_newton(struct dalcs_osnsp *p, double sigma, co
     /* beside a line that is far steeper what is rounding would be any answer */
     for (int k = 0; status == DALCS_OK && dalcs_osnsp_retangent(p, y); k++) {
         status = k < MOST_STEEPER ? iterate(p, sigma, y, solve, MOST_STEPS) : DALCS_NOT_CONVERGED;
+    }
+    if (status == DALCS_OK) {
+        raise_largest(s, y, p->smooth.largest);
     }
     return status == DALCS_OK && p->smooth.n_tangents > 0 ? certify(p, y) : status;
 }

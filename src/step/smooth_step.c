@@ -210,6 +210,7 @@ static void take_tangents(struct dalcs_radau_part *part) {
         p->n_tangents = part->component->osnsp.smooth.n_tangents;
         dalcs_stages_forget(&part->stages);
         part->segment.entry = NULL;
+        dalcs_smooth_newton_forget(&p->newton);
         p->slope_h = 0.0;
     }
 }

@@ -148,6 +148,9 @@ bool dalcs_smooth_euler_meets_pole(const struct dalcs_radau_part *part) {
 
 void dalcs_smooth_euler_note(const struct dalcs_radau_part *part) {
     const struct dalcs_smooth_newton *now = part->component->osnsp.smooth.newton;
+    double *largest = part->component->osnsp.smooth.largest;
+    largest[0] = dalcs_larger(largest[0], part->scales.unit[0]);
+    largest[1] = dalcs_larger(largest[1], part->scales.unit[1]);
     raise_most(part->smooth, (const double(*)[2])now->x);
     memcpy(part->smooth->last, now->x, (size_t)now->n * sizeof(*now->x));
 }
