@@ -175,6 +175,19 @@ static void limit_modes(struct dalcs_osnsp *p) {
     p->asks.most_enumerated = !has_tried ? 0 : left > 0 ? left : 1;
 }
 
+/* Is what was tried to be tried again before the next step? The last one led away, and was halved; or it did not, and there are
+ * lines with which the digits suffice. */
+static bool tries_again(struct dalcs_osnsp *p, const double *y, int step, bool stalls) {
+    struct dalcs_smooth_newton *n = p->smooth.newton;
+    n->is_damped = n->is_damped || stalls || step >= MOST_STEPS_NEAR;
+    if (dalcs_smooth_newton_overshoots(n, p->options.certificate_tolerance)) {
+        return true;
+    }
+    const bool has_lines = stalls && n->share == 1.0 && dalcs_osnsp_retangent(p, y);
+    n->is_damped = n->is_damped && !has_lines;
+    return has_lines;
+}
+
 /* From the present values and lines. */
 static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y, given_solve *solve,
                                  int most_steps) {
@@ -213,13 +226,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
             return DALCS_OK;
         }
         is_last = agrees && is_done;
-        bool stalls = step > 0 && is_done && !is_last && !n->limits;
-        n->is_damped = n->is_damped || stalls || step >= MOST_STEPS_NEAR;
-        if (!is_last && dalcs_smooth_newton_overshoots(n, p->options.certificate_tolerance)) {
-            continue;
-        }
-        if (stalls && n->share == 1.0 && dalcs_osnsp_retangent(p, y)) {
-            n->is_damped = false; /* the digits did not suffice */
+        if (!is_last && tries_again(p, y, step, step > 0 && is_done && !n->limits)) {
             continue;
         }
         DALCS_TRY(find_slope(p, p->smooth.given, y));
