@@ -96,6 +96,22 @@ def six_pulse(v, f, alpha, r):
     return cards, "v(p,n)", 3 * math.sqrt(3) * v / math.pi * math.cos(math.radians(alpha))
 
 
+def twelve_pulse(v, f, alpha, r):
+    """In series, on a star and a delta of ideal transformers: where a phase is at its zero, what the delta's voltages add up to
+    is rounding of the two others."""
+    cards = [f"v{k} {n} 0 sin(0 {v} {f} 0 0 {-120 * k})" for k, n in enumerate("abc")]
+    for k, (n, next_one) in enumerate(zip("abc", "bca")):
+        cards += [f"l{k} {n} 0 {v / f!r}", f"ly{k} y{n} 0 {v / f!r}",
+                  f"ld{k} d{n} d{next_one} {3 * v / f!r}", f"k{k} l{k} ly{k} ld{k} 1"]
+    for s, (high, low, shift) in {"y": ("p", "m", 0), "d": ("m", "n", 30)}.items():
+        cards += [gate(f"g{s}{k}", (30 + shift + alpha + 120 * k) % 360, 90, f) for k in range(3)]
+        cards += [gate(f"h{s}{k}", (210 + shift + alpha + 120 * k) % 360, 90, f) for k in range(3)]
+        cards += [f"a{s}{k} {s}{n} {high} g{s}{k} 0 th" for k, n in enumerate("abc")]
+        cards += [f"a{s}{k + 3} {low} {s}{n} h{s}{k} 0 th" for k, n in enumerate("abc")]
+    cards += [f"l9 p o {20 * r / (2 * math.pi * f)!r} ic=0", f"r1 o n {r}", "r9 n 0 1meg"]
+    return cards, "v(p,n)", 6 * math.sqrt(3) * v / math.pi * math.cos(math.radians(alpha))
+
+
 # converter, volts, hertz, degrees, ohms, periods until the coil has its current
 CONVERTERS = (
     (half_wave, 325, 50, 60, 10, 2), (half_wave, 0.5, 1e6, 100, 1e3, 2), (half_wave, 2e4, 0.01, 30, 0.5, 2),
@@ -105,6 +121,7 @@ CONVERTERS = (
     (triac_inductive, 325, 50, 100, 10, 3), (triac_inductive, 24, 400, 120, 1, 3),
     (bridge, 325, 50, 40, 10, 40), (half_controlled, 325, 50, 75, 8, 2),
     (three_pulse, 100, 50, 20, 5, 40), (six_pulse, 325, 50, 30, 10, 40), (six_pulse, 5e3, 16.7, 55, 2, 40),
+    (twelve_pulse, 326.6, 50, 30, 10, 5), (twelve_pulse, 10, 400, 60, 1, 5),
 )
 MODELS = ".model th thyristor(Vgt=0.5{more})\n.model tr triac(Vgt=0.5{more})"
 
