@@ -35,11 +35,12 @@ static void note_terminal(void *to, const struct dalcs_affine_term *term) {
 
 /* Does the device tie the voltages of its two terminals, in some mode or at some step? Current
  * sources do not: an island that hangs on them alone floats. One whose formula reads the voltage it
- * feeds is a resistance. */
+ * feeds is a resistance, and the first winding of a transformer is what its other windings are tied to. */
 static bool conducts(const struct dalcs_circuit *c, const struct dalcs_device *d) {
     struct self_reading r = {.circuit = c, .device = d};
     dalcs_behaviour_visit(d->behaviour, note_terminal, &r);
-    return (d->kind != DALCS_ISOURCE && d->kind != DALCS_CCCS && d->kind != DALCS_VCCS) || r.found;
+    return (d->kind != DALCS_ISOURCE && d->kind != DALCS_CCCS && d->kind != DALCS_VCCS) ||
+           d->is_transformer || r.found;
 }
 
 static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c,

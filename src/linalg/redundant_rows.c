@@ -4,88 +4,94 @@
 #include <math.h>
 #include <string.h>
 
-/* Weights of rows, times what the row's terms add up to. */
-struct dependencies {
-    int n, n_rows;
-    double *weight; /* [n][n_rows] */
-    double *size;   /* [n_rows] */
-};
+enum dalcs_status dalcs_dependencies_setup(struct dalcs_dependencies *d, struct dalcs_arena *arena,
+                                           int n, int n_rows) {
+    *d = (struct dalcs_dependencies){.n = n, .n_rows = n_rows};
+    d->weight = dalcs_arena_alloc(arena, (size_t)n * (size_t)n_rows, sizeof(double));
+    d->scaled = dalcs_arena_alloc(arena, (size_t)n * (size_t)n_rows, sizeof(double));
+    d->size = dalcs_arena_alloc(arena, (size_t)n_rows, sizeof(double));
+    d->chosen = dalcs_arena_alloc(arena, (size_t)n, sizeof(int));
+    bool complete = d->weight != NULL && d->scaled != NULL && d->size != NULL && d->chosen != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
 
-static double *weights_of(const struct dependencies *d, int k) {
-    return d->weight + (size_t)k * (size_t)d->n_rows;
+/* Weights of rows, times what the row's terms add up to. */
+static double *scaled_of(const struct dalcs_dependencies *d, int k) {
+    return d->scaled + (size_t)k * (size_t)d->n_rows;
 }
 
 /* The largest weight from dependency `first` on, which is brought there; returns its row. */
-static int bring_largest(const struct dependencies *d, int first) {
+static int bring_largest(const struct dalcs_dependencies *d, int first) {
     int row = 0;
     int largest = first;
     for (int k = first; k < d->n; k++) {
         for (int r = 0; r < d->n_rows; r++) {
-            if (fabs(weights_of(d, k)[r]) > fabs(weights_of(d, largest)[row])) {
+            if (fabs(scaled_of(d, k)[r]) > fabs(scaled_of(d, largest)[row])) {
                 largest = k;
                 row = r;
             }
         }
     }
     for (int r = 0; r < d->n_rows; r++) {
-        const double swap = weights_of(d, first)[r];
-        weights_of(d, first)[r] = weights_of(d, largest)[r];
-        weights_of(d, largest)[r] = swap;
+        const double swap = scaled_of(d, first)[r];
+        scaled_of(d, first)[r] = scaled_of(d, largest)[r];
+        scaled_of(d, largest)[r] = swap;
     }
     return row;
 }
 
 /* False: one is of rows alone that may not be left out. */
-static bool choose(const struct dependencies *d, int *redundant) {
+static bool choose(const struct dalcs_dependencies *d) {
     for (int k = 0; k < d->n; k++) {
         const int row = bring_largest(d, k);
-        const double *by = weights_of(d, k);
+        const double *by = scaled_of(d, k);
         if (!(fabs(by[row]) > 0.0)) {
             return false;
         }
-        redundant[k] = row;
+        d->chosen[k] = row;
         for (int other = k + 1; other < d->n; other++) {
-            double *of = weights_of(d, other);
-            const double factor = of[redundant[k]] / by[redundant[k]];
+            double *of = scaled_of(d, other);
+            const double factor = of[row] / by[row];
             for (int r = 0; r < d->n_rows; r++) {
                 of[r] -= factor * by[r];
             }
-            of[redundant[k]] = 0.0;
+            of[row] = 0.0;
         }
     }
     return true;
 }
 
-static enum dalcs_status find(struct dalcs_null_space *space, const struct dalcs_null_space *rows,
-                              const struct dalcs_triplets *t, const double *size,
-                              int n_candidates) {
-    const size_t n_rows = (size_t)space->n_rows;
-    struct dependencies d = {.n = rows->n_free, .n_rows = space->n_rows};
-    d.weight = dalcs_arena_alloc(&space->arena, (size_t)d.n * n_rows, sizeof(double));
-    d.size = dalcs_arena_alloc(&space->arena, n_rows, sizeof(double));
-    int *chosen = dalcs_arena_alloc(&space->arena, (size_t)d.n, sizeof(int));
-    if (d.weight == NULL || d.size == NULL || chosen == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    for (size_t k = 0; k < t->n; k++) {
-        d.size[t->entry[k].row] += fabs(t->entry[k].value) * size[t->entry[k].column];
-    }
-    for (int k = 0; k < d.n; k++) {
-        dalcs_null_space_vector(rows, k, weights_of(&d, k));
-        for (size_t r = 0; r < n_rows; r++) {
-            const double own = d.size[r] > 0.0 ? d.size[r] : 1.0; /* an empty row depends alone */
-            weights_of(&d, k)[r] *= r < (size_t)n_candidates ? own : 0.0;
+bool dalcs_dependencies_choose(const struct dalcs_dependencies *d, int n_candidates) {
+    for (int k = 0; k < d->n; k++) {
+        const double *weight = d->weight + (size_t)k * (size_t)d->n_rows;
+        double *scaled = scaled_of(d, k);
+        for (int r = 0; r < d->n_rows; r++) {
+            scaled[r] = r < n_candidates ? weight[r] * d->size[r] : 0.0;
         }
     }
-    if (choose(&d, chosen)) {
-        memcpy(space->redundant, chosen, (size_t)d.n * sizeof(int));
+    return choose(d);
+}
+
+static void find(struct dalcs_null_space *space, struct dalcs_null_space *rows,
+                 const struct dalcs_triplets *t, const double *size, int n_candidates,
+                 struct dalcs_dependencies *d) {
+    for (size_t k = 0; k < t->n; k++) {
+        d->size[t->entry[k].row] += fabs(t->entry[k].value) * size[t->entry[k].column];
     }
-    return DALCS_OK;
+    for (int r = 0; r < d->n_rows; r++) {
+        d->size[r] = d->size[r] > 0.0 ? d->size[r] : 1.0; /* an empty row depends alone */
+    }
+    for (int k = 0; k < d->n; k++) {
+        dalcs_null_space_vector(rows, k, d->weight + (size_t)k * (size_t)d->n_rows);
+    }
+    if (dalcs_dependencies_choose(d, n_candidates)) {
+        memcpy(space->redundant, d->chosen, (size_t)d->n * sizeof(int));
+    }
 }
 
 enum dalcs_status dalcs_redundant_rows_choose(struct dalcs_null_space *space,
                                               const struct dalcs_triplets *t, const double *size,
-                                              int n_candidates) {
+                                              int n_candidates, struct dalcs_dependencies *d) {
     struct dalcs_triplets transposed = {0};
     struct dalcs_null_space rows;
     enum dalcs_status status = DALCS_OK;
@@ -98,7 +104,7 @@ enum dalcs_status dalcs_redundant_rows_choose(struct dalcs_null_space *space,
     }
     if (status == DALCS_OK) {
         if (rows.n_free == space->n_redundant) {
-            status = find(space, &rows, t, size, n_candidates);
+            find(space, &rows, t, size, n_candidates, d);
         }
         dalcs_null_space_finish(&rows);
     }

@@ -196,5 +196,6 @@ double dalcs_formula_scale(const struct dalcs_radau_part *part, int pair, double
     const bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair);
     const double own = is_on ? scale_of_output(part, pair, 0) : scale_of_argument(part, pair, 0);
     const double known = noise_of(part, pair, is_on, unit) / part->inner_tolerance;
-    return dalcs_smaller(scale, dalcs_larger(own, known));
+    const double most = dalcs_guard_nothing_flows(part, unit) ? dalcs_larger(scale, known) : scale;
+    return dalcs_smaller(most, dalcs_larger(own, known));
 }

@@ -19,7 +19,8 @@ enum dalcs_status dalcs_formula_scale_setup(struct dalcs_radau_part *part) DALCS
 
 /* V or A. A kink whose argument is off by so much puts that into what the formula gives: so it is held to the scale of that, which
  * may be 1 V beside a kick of 1e10 V, but not closer than its argument is known. scale: of its unit, which is the answer where no
- * place tells. */
+ * place tells, and the most otherwise. Where no current flows that of currents is next to nothing, and rounding of hundreds of
+ * volts is more. */
 double dalcs_formula_scale(const struct dalcs_radau_part *part, int pair, double scale,
                            const double *unit);
 

@@ -32,8 +32,8 @@ static double rounding_by_map(const struct dalcs_radau_part *part, int place, do
 double dalcs_guard_rounding_across(const struct dalcs_radau_part *part, int pair,
                                    const double *unit) {
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair);
-    bool nothing_flows = unit[1] <= part->scales.cross[1] * unit[0];
-    double leak = is_on && nothing_flows ? part->scales.leak * unit[0] : 0.0;
+    double leak =
+        is_on && dalcs_guard_nothing_flows(part, unit) ? part->scales.leak * unit[0] : 0.0;
     return dalcs_larger(dalcs_step_crossed(part, is_on ? 1 : 0, unit), leak);
 }
 

@@ -72,6 +72,13 @@ static inline bool dalcs_guard_may_read_rates(const struct dalcs_radau_part *par
     return part->laws.reads_rates && dalcs_guard_has_map(part);
 }
 
+/* Has no current flowed that is more than what the conductances make of the voltages next to nothing? The unit's scale of
+ * currents says nothing then. */
+static inline bool dalcs_guard_nothing_flows(const struct dalcs_radau_part *part,
+                                             const double *unit) {
+    return unit[1] <= part->scales.cross[1] * unit[0];
+}
+
 /* What rounding makes of a pair that is 0 where its whole unit is, in V or A. Where nothing flows in an island that
  * floats, the sum of two conductances, rounded, less each of them is a leak to ground of the last digit. */
 double dalcs_guard_rounding_across(const struct dalcs_radau_part *part, int pair,

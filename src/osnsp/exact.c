@@ -8,10 +8,20 @@
 /* Changes of the mode that are of all pairs with a wrong sign at once, before they are of one. */
 enum { ROUNDS_AT_ONCE = 10 };
 
-void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole, const double *u,
-                          double *y, bool *sources_clash) {
+enum dalcs_status dalcs_exact_evaluate(struct dalcs_osnsp *p, struct dalcs_whole *whole,
+                                       const double *u, double *y, bool *sources_clash) {
     dalcs_whole_solve(whole, u, NULL, y);
     dalcs_certificate_evaluate_either(p, u, y, sources_clash);
+    if (p->signs.n_violating > 0 || dalcs_certificate_holds(p, *sources_clash)) {
+        return DALCS_OK;
+    }
+    bool changed;
+    DALCS_TRY(dalcs_whole_leave_largest(whole, u, y, &changed));
+    if (changed) {
+        dalcs_whole_solve(whole, u, NULL, y);
+        dalcs_certificate_evaluate_either(p, u, y, sources_clash);
+    }
+    return DALCS_OK;
 }
 
 /* The factors of p->mode with its choices; a singular mode keeps them, for its next problem. */
@@ -41,15 +51,15 @@ static enum dalcs_status try_whole(struct dalcs_osnsp *p, struct dalcs_mode_entr
     if (whole == NULL) {
         DALCS_TRY(factor_whole(p, entry, &whole));
     }
-    dalcs_exact_evaluate(p, whole, u, y, sources_clash);
+    enum dalcs_status status = dalcs_exact_evaluate(p, whole, u, y, sources_clash);
     p->least_norm = whole->n_choices > 0;
     if (entry->singular) {
-        entry->answers = dalcs_certificate_holds(p, *sources_clash);
+        entry->answers = status == DALCS_OK && dalcs_certificate_holds(p, *sources_clash);
     } else {
         dalcs_whole_finish(whole);
         free(whole);
     }
-    return DALCS_OK;
+    return status;
 }
 
 enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, double *y,

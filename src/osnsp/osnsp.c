@@ -92,8 +92,7 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
         if (!e->answers) {
             return DALCS_SINGULAR;
         }
-        dalcs_exact_evaluate(p, e->whole, u, y, sources_clash);
-        return DALCS_OK;
+        return dalcs_exact_evaluate(p, e->whole, u, y, sources_clash);
     }
     solve_to_answer(p, e, u, y);
     dalcs_certificate_evaluate(p, u, y, sources_clash);

@@ -184,8 +184,9 @@ enum dalcs_status dalcs_open_mode_solve(struct dalcs_osnsp *p, const double *u,
 /* ---- exact.c ------------------------------------------------------------------------------- */
 
 /* Solves and evaluates in the mode of `whole`. */
-void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole, const double *u,
-                          double *y, bool *sources_clash);
+enum dalcs_status dalcs_exact_evaluate(struct dalcs_osnsp *p, struct dalcs_whole *whole,
+                                       const double *u, double *y,
+                                       bool *sources_clash) DALCS_MUST_CHECK;
 
 /* In p->mode, singular or not, evaluated. DALCS_SINGULAR: it leaves too much open. */
 enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, double *y,

@@ -143,7 +143,7 @@ double dalcs_scales_pair_terms(const struct dalcs_osnsp *p, const double *u, con
     return size;
 }
 
-static double terms_of(const struct dalcs_system *s, const double *u, const double *y, int r) {
+double dalcs_scales_terms(const struct dalcs_system *s, const double *u, const double *y, int r) {
     double size = 0.0;
     for (int i = s->A.p[r]; i < s->A.p[r + 1]; i++) {
         size += fabs(s->A.x[i] * y[s->A.j[i]]);
@@ -159,7 +159,7 @@ double dalcs_scales_current_terms(const struct dalcs_osnsp *p, const double *u, 
     const int *first = rows_of(p, d);
     double largest = 0.0;
     for (int k = first[0]; k < first[1]; k++) {
-        largest = fmax(largest, terms_of(p->system, u, y, p->lists.column_rows[k]));
+        largest = fmax(largest, dalcs_scales_terms(p->system, u, y, p->lists.column_rows[k]));
     }
     return largest;
 }
@@ -194,7 +194,7 @@ double dalcs_scales_series_terms(struct dalcs_osnsp *p, const double *u, const d
     double largest = 0.0;
     for (int k = 0; k < n; k++) {
         const int r = p->work.row[k];
-        largest = fmax(largest, terms_of(s, u, y, r));
+        largest = fmax(largest, dalcs_scales_terms(s, u, y, r));
         for (int i = s->A.p[r]; i < s->A.p[r + 1]; i++) {
             n = leads_on(p, s->A.j[i]) ? add_rows(p, s->A.j[i], n) : n;
         }

@@ -31,6 +31,9 @@ static inline double dalcs_scales_norm(const struct dalcs_step_form *f, struct d
 /* What the terms of row i of `check` add up to; y is the answer. */
 double dalcs_scales_row_terms(const struct dalcs_osnsp *p, const double *u, const double *y, int i);
 
+/* The same of row r of the system, without what is stored. */
+double dalcs_scales_terms(const struct dalcs_system *s, const double *u, const double *y, int r);
+
 /* Of the equations that hold the current of a pair; of its voltage. */
 double dalcs_scales_current_terms(const struct dalcs_osnsp *p, const double *u, const double *y,
                                   int pair);

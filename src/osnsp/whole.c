@@ -1,17 +1,15 @@
-/* whole.c - the matrix of a mode with the states kept, its factors and its refinement. */
+/* whole.c - the matrix of a mode with the states kept, its factors, and the rows that are left out. */
 #include "whole.h"
 
 #include "magnitudes.h"
 #include "null_space.h"
 #include "osnsp_internal.h"
-#include "redundant_rows.h"
+#include "scales.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Each gains the digits that the factors have; two more than a condition of 1e12 asks for. */
-enum { REFINEMENTS = 4 };
 
 /* Places of the columns among the unknowns: x, z, then lambda of the pairs that may have current. */
 static int place_columns(struct dalcs_whole *whole) {
@@ -159,8 +157,11 @@ static enum dalcs_status choose_redundant(struct dalcs_whole *whole, struct dalc
                 s->column_is_current[c] ? whole->p->cache.form[0]->least_conductance : 1.0;
         }
     }
+    DALCS_TRY(dalcs_dependencies_setup(&whole->dependencies, &whole->arena, space->n_redundant,
+                                       whole->n));
     return dalcs_redundant_rows_choose(
-        space, t, size, whole->resistance != NULL ? dalcs_system_n_equations(s) : whole->n);
+        space, t, size, whole->resistance != NULL ? dalcs_system_n_equations(s) : whole->n,
+        &whole->dependencies);
 }
 
 enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dalcs_osnsp *p,
@@ -211,105 +212,65 @@ enum dalcs_status dalcs_whole_null_space(const struct dalcs_osnsp *p, int *place
     return status;
 }
 
-static long double row_times(const struct dalcs_csr *a, int row, const double *v) {
-    long double sum = 0.0L;
-    for (int k = a->p[row]; k < a->p[row + 1]; k++) {
-        sum += (long double)a->x[k] * v[a->j[k]];
-    }
-    return sum;
-}
-
-/* What is missing at y: sigma P (x_k - x) + A y + E s, and t - (C y + F s) - R lambda of the pairs. */
-static void find_residual(const struct dalcs_whole *whole, const double *u, const double *line,
-                          const double *y) {
-    const struct dalcs_system *s = whole->p->system;
-    int n_equations = dalcs_system_n_equations(s);
+/* What the terms of each row add up to at y; of rows without terms what rounding of the whole may leave there. */
+static void find_sizes(const struct dalcs_whole *whole, const double *u, const double *y) {
+    const struct dalcs_osnsp *p = whole->p;
+    const struct dalcs_system *s = p->system;
+    const struct dalcs_scales scale = {p->certificate.volt, p->certificate.ampere};
+    const int n_equations = dalcs_system_n_equations(s);
+    double *size = whole->dependencies.size;
     for (int r = 0; r < n_equations; r++) {
-        long double sum = row_times(&s->A, r, y) + row_times(&s->E, r, u + s->n_x);
-        sum += s->A_rest.p != NULL ? row_times(&s->A_rest, r, y) : 0.0L;
+        size[r] = dalcs_scales_terms(s, u, y, r) +
+                  DBL_EPSILON * dalcs_scales_norm(p->cache.form[0], scale, r);
         for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
-            int x = s->P.j[k];
-            sum += whole->sigma * (long double)s->P.x[k] * ((long double)u[x] - y[x]);
+            const int x = s->P.j[k];
+            size[r] += whole->sigma * fabs(s->P.x[k]) * (fabs(u[x]) + fabs(y[x]));
         }
-        whole->residual[r] = (double)sum;
     }
     for (int d = 0; d < s->n_pairs; d++) {
-        int row = whole->place[n_equations + d];
+        const int row = whole->place[n_equations + d];
         if (row >= 0) {
-            long double sum = row_times(&s->C, d, y) + row_times(&s->F, d, u + s->n_x);
-            if (whole->resistance != NULL) {
-                sum += (long double)whole->resistance[d] * y[n_equations + d] - line[d];
-            }
-            whole->residual[row] = (double)-sum;
+            size[row] = dalcs_scales_pair_terms(p, u, y, d) + DBL_EPSILON * scale.volt;
         }
     }
 }
 
-/* The same of the choices, in the rows that they stand in for. */
-static void find_residual_of_choices(const struct dalcs_whole *whole, const double *u,
-                                     const double *y) {
-    const struct dalcs_system *s = whole->p->system;
-    int n_columns = dalcs_system_n_columns(s);
-    for (int k = 0; k < whole->n_choices; k++) {
-        const double *choice = whole->choice + (size_t)k * (size_t)n_columns;
-        const double *of_w = whole->choice_w + (size_t)k * (size_t)s->n_pairs;
-        long double sum = 0.0L;
-        for (int c = 0; c < n_columns; c++) {
-            sum += (long double)choice[c] * y[c];
-        }
-        for (int d = 0; d < s->n_pairs; d++) {
-            if (of_w[d] != 0.0) {
-                long double knee = (long double)dalcs_system_knee(s, d) * u[s->n_x];
-                sum += of_w[d] * (row_times(&s->F, d, u + s->n_x) - knee);
-            }
-        }
-        whole->residual[whole->redundant[k]] = (double)-sum;
+enum dalcs_status dalcs_whole_leave_largest(struct dalcs_whole *whole, const double *u,
+                                            const double *y, bool *changed) {
+    struct dalcs_triplets t = {0};
+    struct dalcs_lu lu = whole->lu;
+    *changed = false;
+    if (whole->n_choices == 0) {
+        return DALCS_OK;
     }
-}
-
-static void add_correction(const struct dalcs_whole *whole, double *y) {
-    for (int c = 0; c < dalcs_system_n_columns(whole->p->system); c++) {
-        y[c] += whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
+    find_sizes(whole, u, y);
+    if (!dalcs_dependencies_choose(&whole->dependencies, whole->n)) {
+        return DALCS_OK;
     }
-}
-
-void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const double *line,
-                       double *y) {
-    int n_columns = dalcs_system_n_columns(whole->p->system);
-    memset(y, 0, (size_t)n_columns * sizeof(*y));
-    for (int round = 0; round <= REFINEMENTS; round++) {
-        find_residual(whole, u, line, y);
-        find_residual_of_choices(whole, u, y);
-        dalcs_lu_solve(&whole->lu, whole->residual);
-        add_correction(whole, y);
+    int *other = whole->dependencies.chosen;
+    whole->dependencies.chosen = whole->redundant;
+    whole->redundant = other;
+    whole->lu = (struct dalcs_lu){0};
+    enum dalcs_status status = fill(whole, &t);
+    status = status == DALCS_OK ? factor(whole, &t) : status;
+    dalcs_triplets_finish(&t);
+    *changed = status == DALCS_OK;
+    if (*changed) {
+        dalcs_lu_finish(&lu);
+        return DALCS_OK;
     }
-}
-
-void dalcs_whole_refine(const struct dalcs_whole *whole, const double *u, double *y) {
-    for (int round = 0; round < REFINEMENTS; round++) {
-        find_residual(whole, u, NULL, y);
-        for (int k = 0; k < whole->n_choices; k++) {
-            whole->residual[whole->redundant[k]] = 0.0;
-        }
-        dalcs_lu_solve(&whole->lu, whole->residual);
-        add_correction(whole, y);
-    }
-}
-
-void dalcs_whole_direction(const struct dalcs_whole *whole, int k, double *y) {
-    memset(whole->residual, 0, (size_t)whole->n * sizeof(double));
-    whole->residual[whole->redundant[k]] = 1.0;
-    dalcs_lu_solve(&whole->lu, whole->residual);
-    for (int c = 0; c < dalcs_system_n_columns(whole->p->system); c++) {
-        y[c] = whole->moves[c] ? whole->residual[whole->place[c]] : 0.0;
-    }
+    other = whole->dependencies.chosen;
+    whole->dependencies.chosen = whole->redundant;
+    whole->redundant = other;
+    whole->lu = lu;
+    return status < DALCS_OK ? status : DALCS_OK;
 }
 
 size_t dalcs_whole_bytes(const struct dalcs_whole *whole) {
     size_t n_columns = (size_t)dalcs_system_n_columns(whole->p->system);
     size_t n_choices = (size_t)whole->n_choices;
     return sizeof(*whole) + dalcs_lu_bytes(&whole->lu) +
-           n_columns * (sizeof(int) + sizeof(bool) + (2 + 2 * n_choices) * sizeof(double));
+           n_columns * (sizeof(int) + sizeof(bool) + (3 + 4 * n_choices) * sizeof(double));
 }
 
 void dalcs_whole_finish(struct dalcs_whole *whole) {

@@ -11,6 +11,7 @@
 
 #include "null_space.h"
 #include "osnsp.h"
+#include "redundant_rows.h"
 
 struct dalcs_whole {
     const struct dalcs_osnsp *p;
@@ -25,6 +26,7 @@ struct dalcs_whole {
     double *choice_w; /* [n_choices][n_pairs] of w - knee, which are in `choice` as well */
     bool *moves;      /* [n_columns] is it other than 0 in something that is open? */
     double *residual; /* [n] work */
+    struct dalcs_dependencies dependencies; /* of the rows */
     struct dalcs_arena arena;
 };
 
@@ -45,6 +47,13 @@ void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const d
 
 /* The same from y on, which keeps what it has chosen: that of a mode where directions below were added to its answer. */
 void dalcs_whole_refine(const struct dalcs_whole *whole, const double *u, double *y);
+
+/* Where right-hand sides are rounded, equations that follow from each other contradict each other by that, and the one that is
+ * left out misses it. Of two large voltages that cancel it is much of a third that is small: of three phases, one at its zero.
+ * Those whose terms are the largest at y, an answer that was evaluated last, are left out from now on. *changed: there is
+ * another answer to ask for. */
+enum dalcs_status dalcs_whole_leave_largest(struct dalcs_whole *whole, const double *u,
+                                            const double *y, bool *changed) DALCS_MUST_CHECK;
 
 /* What choice k leaves open: the answers of the mode that differ from one in this choice alone, into y[n_columns]. */
 void dalcs_whole_direction(const struct dalcs_whole *whole, int k, double *y);

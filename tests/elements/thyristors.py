@@ -96,6 +96,28 @@ def six_pulse(v, f, alpha, r):
     return cards, "v(p,n)", 3 * math.sqrt(3) * v / math.pi * math.cos(math.radians(alpha))
 
 
+def bridges(shift, alpha, f, width):
+    """Two bridges in series, of nodes ya ... and da ..., the second one behind by `shift` degrees."""
+    cards = []
+    for s, (high, low, behind) in {"y": ("p", "m", 0), "d": ("m", "n", shift)}.items():
+        cards += [gate(f"g{s}{k}", (30 + behind + alpha + 120 * k) % 360, width, f) for k in range(3)]
+        cards += [gate(f"h{s}{k}", (210 + behind + alpha + 120 * k) % 360, width, f) for k in range(3)]
+        cards += [f"a{s}{k} {s}{n} {high} g{s}{k} 0 th" for k, n in enumerate("abc")]
+        cards += [f"a{s}{k + 3} {low} {s}{n} h{s}{k} 0 th" for k, n in enumerate("abc")]
+    return cards
+
+
+def twelve_pulse(v, f, alpha, r):
+    """In series, on a star and a delta of ideal transformers: where a phase is at its zero, what the delta's voltages add up to
+    is rounding of the two others."""
+    cards = [f"v{k} {n} 0 sin(0 {v} {f} 0 0 {-120 * k})" for k, n in enumerate("abc")]
+    for k, (n, next_one) in enumerate(zip("abc", "bca")):
+        cards += [f"l{k} {n} 0 {v / f!r}", f"ly{k} y{n} 0 {v / f!r}", f"ld{k} d{n} d{next_one} {3 * v / f!r}",
+                  f"k{k} l{k} ly{k} ld{k} 1"]
+    cards += [*bridges(30, alpha, f, 90), f"l9 p o {20 * r / (2 * math.pi * f)!r} ic=0", f"r1 o n {r}", "r9 n 0 1meg"]
+    return cards, "v(p,n)", 6 * math.sqrt(3) * v / math.pi * math.cos(math.radians(alpha))
+
+
 # converter, volts, hertz, degrees, ohms, periods until the coil has its current
 CONVERTERS = (
     (half_wave, 325, 50, 60, 10, 2), (half_wave, 0.5, 1e6, 100, 1e3, 2), (half_wave, 2e4, 0.01, 30, 0.5, 2),
@@ -105,6 +127,7 @@ CONVERTERS = (
     (triac_inductive, 325, 50, 100, 10, 3), (triac_inductive, 24, 400, 120, 1, 3),
     (bridge, 325, 50, 40, 10, 40), (half_controlled, 325, 50, 75, 8, 2),
     (three_pulse, 100, 50, 20, 5, 40), (six_pulse, 325, 50, 30, 10, 40), (six_pulse, 5e3, 16.7, 55, 2, 40),
+    (twelve_pulse, 326.6, 50, 30, 10, 5), (twelve_pulse, 10, 400, 60, 1, 5),
 )
 MODELS = ".model th thyristor(Vgt=0.5{more})\n.model tr triac(Vgt=0.5{more})"
 
@@ -238,6 +261,21 @@ def shorts(checker, program):
                 checker.close(got["m"], wanted, 1e-6 * wanted, f"{card} {formula}")
 
 
+def at_rest(checker, program):
+    """Bridges that wait for both to be fired, in front of a battery: no current, and controls of 1 V beside hundreds."""
+    for v, f, alpha, volts in ((326.6, 50, 50, 100), (5e3, 60, 50, 400), (30, 400, 40, 3)):
+        cards = [f"v{k} {n} 0 sin(0 {v} {f} 0 0 {-120 * k})" for k, n in enumerate("abc")]
+        cards += [f"ax{k} {n} 0 y{n} ny d{n} d{next_one} tr" for k, (n, next_one) in enumerate(zip("abc", "bca"))]
+        cards += [*bridges(30, alpha, f, 119), "r1 p q 10", "l1 q w 20m", f"vb w n {volts}", "r9 n 0 1meg"]
+        done = run(program, "\n".join(["bridges that wait", ".model tr transformer(turns=[1 1 1.73205080757])",
+                                       ".model th thyristor(Vfwd=1)", *cards, f".tran {0.0025 / f!r} {0.25 / f!r} uic",
+                                       ".meas tran m max abs(i(r1))", ".end", ""]), method=None)
+        what = f"bridges at rest, {v} V"
+        if checker.check(done.status == 0, f"{what}: {done.stderr}"):
+            checker.close(done.report["measurements"][0]["value"], 0.0, 1e-9 * v, f"{what}: no current")
+            checker.check("wrong sign" not in done.stderr, f"{what}: {done.stderr}")
+
+
 def names(checker, program):
     """One element in results and events; in subcircuits; with a line of its own; wrong cards."""
     cards = "{0}\nv1 a 0 SIN(0 10 50)\nvg g 0 PULSE(0 1 5m 0 0 1m 20m)\n{1}\nr1 o 0 10\n.tran 0.1m 20m\n.end\n"
@@ -269,7 +307,7 @@ def names(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("thyristors")
-    for part in (converters, limits, latching, terminals, shorts, names):
+    for part in (converters, limits, latching, terminals, shorts, at_rest, names):
         part(checker, program)
     return checker.finish()
 

@@ -166,7 +166,9 @@ START_TEST(test_largest_are_left_out) {
     struct dalcs_null_space s;
     ck_assert_int_eq(dalcs_null_space_find(&s, N, N, &t), DALCS_OK);
     ck_assert_int_eq(s.n_redundant, 3);
-    ck_assert_int_eq(dalcs_redundant_rows_choose(&s, &t, size, s.n_rows), DALCS_OK);
+    struct dalcs_dependencies d;
+    ck_assert_int_eq(dalcs_dependencies_setup(&d, &s.arena, s.n_redundant, N), DALCS_OK);
+    ck_assert_int_eq(dalcs_redundant_rows_choose(&s, &t, size, s.n_rows, &d), DALCS_OK);
     bool is_left_out[N] = {false};
     for (int k = 0; k < s.n_redundant; k++) {
         is_left_out[s.redundant[k]] = true;
@@ -174,6 +176,39 @@ START_TEST(test_largest_are_left_out) {
     ck_assert(is_left_out[2] || is_left_out[7]);
     ck_assert(is_left_out[4]);
     ck_assert(is_left_out[5]); /* 1/2 + 1/0.5 S */
+    dalcs_null_space_finish(&s);
+    dalcs_triplets_finish(&t);
+}
+
+END_TEST
+
+/* Of the nodes of a ring, and of two that a resistor ties, those are left out whose terms are the largest; where nothing is known
+ * of them, none. */
+START_TEST(test_largest_terms_are_left_out) {
+    enum { N = 5 };
+
+    struct dalcs_triplets t = {0};
+    add_resistor(&t, 0, 1, 1.0);
+    add_resistor(&t, 1, 2, 2.0);
+    add_resistor(&t, 2, 0, 3.0);
+    add_resistor(&t, 3, 4, 4.0);
+    const double size[N] = {1.0, 1.0, 1.0, 1.0, 1.0};
+    struct dalcs_null_space s;
+    struct dalcs_dependencies d;
+    ck_assert_int_eq(dalcs_null_space_find(&s, N, N, &t), DALCS_OK);
+    ck_assert_int_eq(s.n_redundant, 2);
+    ck_assert_int_eq(dalcs_dependencies_setup(&d, &s.arena, s.n_redundant, N), DALCS_OK);
+    ck_assert(!dalcs_dependencies_choose(&d, N));
+    ck_assert_int_eq(dalcs_redundant_rows_choose(&s, &t, size, N, &d), DALCS_OK);
+    for (int largest = 0; largest < 3; largest++) {
+        for (int r = 0; r < N; r++) {
+            d.size[r] = r == largest ? 300.0 : r == 4 ? 2.0 : 1e-3;
+        }
+        ck_assert(dalcs_dependencies_choose(&d, N));
+        ck_assert_int_eq(d.chosen[0], largest);
+        ck_assert_int_eq(d.chosen[1], 4);
+    }
+    ck_assert(!dalcs_dependencies_choose(&d, 3));
     dalcs_null_space_finish(&s);
     dalcs_triplets_finish(&t);
 }
@@ -198,4 +233,4 @@ START_TEST(test_empty) {
 END_TEST
 
 RUN_TESTS("null space", test_loops, test_resistors, test_product, test_largest_are_left_out,
-          test_empty)
+          test_largest_terms_are_left_out, test_empty)
