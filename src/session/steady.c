@@ -113,7 +113,7 @@ static enum dalcs_status go_on(struct dalcs_steady *st, struct burst *b) {
     return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
 }
 
-/* One step, or a part of it, and plain periods where neither did help. */
+/* One step, or half of it, and plain periods where neither did help. */
 static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     const double before = st->pass.residual;
     bool helped = true;

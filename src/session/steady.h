@@ -250,8 +250,8 @@ enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st,
 /* Has a whole step of this burst ended in the piece of the map in which the last pass began? From now on one has. */
 bool dalcs_steady_cycles(struct dalcs_steady *st);
 
-/* Tries parts of the step that the last pass began behind and that has not halved the residual `before` it. Where one of
- * them has *helped, the last pass began behind that part; else all is as it was. */
+/* Tries half of the step that the last pass began behind and that has not halved the residual `before` it. Where that has
+ * *helped, the last pass began behind it; else all is as it was. */
 enum dalcs_status dalcs_steady_damp(struct dalcs_steady *st, double before,
                                     bool *helped) DALCS_MUST_CHECK;
 

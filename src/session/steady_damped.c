@@ -1,17 +1,12 @@
-/* steady_damped.c - a part of a step of Newton's method, where whole ones go in a circle.
+/* steady_damped.c - half a step of Newton's method, where whole ones go in a circle.
  *
  * As events come and go with the states, pieces of the map follow each other, and a whole step may lead from each of two
  * pieces into the other one, for ever. So it is in a bridge whose switches have diodes in parallel: a current has half the
  * resistance in one direction, and what that resistance alone wears down, such as the current of a large coil, is sent
- * to and fro. It shows where a step ends in a piece where one has ended before. A half of such a step, or a quarter,
- * ends where the next one leads on. On a straight piece a part f takes f of the residual away; it helps if it takes f/2,
- * as a whole step does that halves it. */
+ * to and fro. It shows where a step ends in a piece where one has ended before. A half of such a step
+ * ends where the next one leads on. On a straight piece it takes half of the residual away; it helps if it takes a
+ * quarter, as a whole step does that takes half. */
 #include "steady.h"
-
-#include <math.h>
-#include <string.h>
-
-enum { MOST_HALVINGS = 3 };
 
 bool dalcs_steady_cycles(struct dalcs_steady *st) {
     struct dalcs_steady_damped *d = &st->damped;
@@ -25,10 +20,10 @@ bool dalcs_steady_cycles(struct dalcs_steady *st) {
     return does;
 }
 
-/* From the end of a whole step back to this part of it. */
-static void go_back(struct dalcs_steady *st, const struct dalcs_orbit_point *whole, double part) {
+/* From the end of a whole step back to its middle. */
+static void go_back(struct dalcs_steady *st, const struct dalcs_orbit_point *whole) {
     for (int x = 0; x < st->layout.n_x; x++) {
-        st->at.x[x] = whole->x[x] - (1 - part) * st->step[x];
+        st->at.x[x] = whole->x[x] - 0.5 * st->step[x];
     }
 }
 
@@ -37,15 +32,11 @@ enum dalcs_status dalcs_steady_damp(struct dalcs_steady *st, double before, bool
     const double period = st->period;
     dalcs_steady_copy_point(st, whole, &st->at);
     dalcs_steady_copy_point(st, &st->damped.arrived, &st->then);
-    *helped = false;
-    for (int k = 1; k <= MOST_HALVINGS && !*helped; k++) {
-        const double part = ldexp(1, -k);
-        go_back(st, whole, part);
-        st->period = period - (1 - part) * st->own.longer;
-        const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
-        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        *helped = status == DALCS_OK && st->pass.residual <= (1 - 0.5 * part) * before;
-    }
+    go_back(st, whole);
+    st->period = period - 0.5 * st->own.longer;
+    const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+    DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+    *helped = status == DALCS_OK && st->pass.residual <= 0.75 * before;
     if (!*helped) {
         st->period = period;
         dalcs_steady_copy_point(st, &st->at, whole);
