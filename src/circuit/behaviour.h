@@ -17,6 +17,10 @@ const struct dalcs_gate *dalcs_gate_find(struct dalcs_compiler *c,
                                          const struct dalcs_device *device,
                                          const struct dalcs_form *form);
 
+/* Between which values v(node, reference) is, if the gate is between these nodes; false: it is not. */
+bool dalcs_gate_bounds(const struct dalcs_gate *gate, int node, int reference, double *low,
+                       double *high);
+
 /* What each node controls, once all devices are there. Heap; zero-initialise. */
 struct dalcs_gate_readers {
     int *

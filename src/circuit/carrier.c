@@ -78,12 +78,23 @@ static const struct dalcs_form *arc_of(struct dalcs_compiler *c, const struct da
     static const char *const arcs[] = {"asin", "arcsin", "acos", "arccos", "atan", "arctan", NULL};
     static const char *const waves[] = {"sin", "cos", "tan", NULL};
     struct line x;
-    if (!is_call(f, arcs) || f->n != 1 || !is_call(f->argument[0], waves) ||
-        !find_line(c, f->argument[0]->argument[0], &x)) {
+    if (!is_call(f, arcs) || f->n != 1) {
+        return NULL;
+    }
+    const struct dalcs_formula *of = f->argument[0];
+    const bool is_negative = of->kind == DALCS_FORMULA_OPERATION && of->code == DALCS_NEGATE;
+    of = is_negative ? of->argument[0] : of;
+    if (!is_call(of, waves) || !find_line(c, of->argument[0], &x)) {
         return NULL;
     }
     const char *arc = f->function + (strncmp(f->function, "arc", 3) == 0 ? 3 : 1);
-    const char wave = f->argument[0]->function[0];
+    const char wave = of->function[0];
+    if (is_negative &&
+        wave == 't') { /* -tan(x) = tan(-x), -sin(x) and -cos(x) are half a turn later */
+        x = (struct line){-x.rate, -x.offset};
+    } else if (is_negative) {
+        x.offset += dalcs_pi;
+    }
     if (*arc == 't' || wave == 't') {
         if (*arc != 't' || wave != 't') {
             return NULL;

@@ -208,6 +208,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     if (!builder->failed && !has_errors(builder)) {
         dalcs_source_check(builder);
         dalcs_topology_check(builder);
+        dalcs_threshold_check(builder);
         dalcs_initial_check(builder);
         dalcs_sweep_check(builder);
         dalcs_sensitivity_check(builder);

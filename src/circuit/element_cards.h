@@ -160,5 +160,7 @@ void dalcs_logic_resolve(struct dalcs_builder *builder);
 
 /* Warnings about the whole network. */
 void dalcs_topology_check(struct dalcs_builder *builder);
+/* Warnings about controls that move and never switch anything. */
+void dalcs_threshold_check(struct dalcs_builder *builder);
 
 #endif

@@ -59,6 +59,18 @@ static double sign_of(const struct dalcs_gate *gate, const int *node) {
     return is_same ? 1 : is_turned ? -1 : 0;
 }
 
+bool dalcs_gate_bounds(const struct dalcs_gate *gate, int node, int reference, double *low,
+                       double *high) {
+    const double sign = sign_of(gate, (const int[]){node, reference});
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (int k = 0; k < gate->n && sign != 0; k++) {
+        *low = fmin(*low, sign * gate->value[k]);
+        *high = fmax(*high, sign * gate->value[k]);
+    }
+    return sign != 0;
+}
+
 static bool list_readers(struct dalcs_builder *builder, struct dalcs_gate_readers *r) {
     const struct dalcs_circuit *circuit = builder->circuit;
     r->first = dalcs_alloc((size_t)circuit->n_nodes, sizeof *r->first);

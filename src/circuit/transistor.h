@@ -61,6 +61,11 @@ struct dalcs_gate_drive {
 /* Sets out_of_memory and returns false where there is none. */
 bool dalcs_gate_list_links(struct dalcs_builder *builder, struct dalcs_gate_links *links);
 
+/* v(node) against `reference` where one V source joins them. */
+struct dalcs_gate_range dalcs_gate_voltage(const struct dalcs_circuit *c,
+                                           const struct dalcs_gate_links *links, int node,
+                                           int reference);
+
 struct dalcs_gate_drive dalcs_gate_drive_of(const struct dalcs_circuit *c,
                                             const struct dalcs_gate_links *links,
                                             const struct dalcs_transistor_use *use);

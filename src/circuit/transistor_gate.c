@@ -93,6 +93,12 @@ static struct dalcs_gate_range voltage(const struct dalcs_circuit *c,
     return (struct dalcs_gate_range){0};
 }
 
+struct dalcs_gate_range dalcs_gate_voltage(const struct dalcs_circuit *c,
+                                           const struct dalcs_gate_links *links, int node,
+                                           int reference) {
+    return voltage(c, links, node, reference, false);
+}
+
 /* Do resistors alone lead to ground? */
 static bool is_grounded(const struct dalcs_circuit *c, const struct dalcs_gate_links *links,
                         int node) {

@@ -4,6 +4,7 @@
  * so that long chains of parameters need no recursion. A result that is not finite is an error at the
  * place of the operation that made it. */
 #include "evaluation.h"
+#include "foreign.h"
 
 #include <math.h>
 #include <string.h>
@@ -92,7 +93,9 @@ static enum dalcs_outcome push_name(const struct dalcs_evaluation *r,
     if (dalcs_language_hides_names(language)) {
         return DALCS_OUTCOME_WRONG;
     }
-    dalcs_evaluation_report(r, o, suggest_name(language, r->scope, o->u.name),
+    const struct dalcs_expression_text *text = &r->expression->text;
+    const char *sign = dalcs_foreign_sign(text->text, (size_t)text->length);
+    dalcs_evaluation_report(r, o, sign != NULL ? sign : suggest_name(language, r->scope, o->u.name),
                             "there is no parameter '%s'", o->u.name);
     return DALCS_OUTCOME_WRONG;
 }

@@ -33,6 +33,27 @@ static bool is_nonnegative(const struct dalcs_formula *f) {
     return is;
 }
 
+/* Is its magnitude at most 1, whatever the signals are? Products of such parts stay so with rounding, sums may not.
+ * asin(sin(x)) must stay as it is written: a bound in between would hide the triangle that it is. */
+static bool is_within_1(const struct dalcs_formula *f) {
+    static const char *const names[] = {"sin", "cos", "tanh", "sgn", "u", "u2", "buf", "inv"};
+    const struct dalcs_formula_line line = dalcs_formula_read_line(f);
+    bool is = false;
+    if (f->kind == DALCS_FORMULA_NUMBER) {
+        return fabs(f->number) <= 1;
+    }
+    for (size_t k = 0; k < sizeof names / sizeof names[0] && !is; k++) {
+        is = dalcs_formula_is_call(line.of, names[k]);
+    }
+    if (dalcs_formula_is_operation(line.of, DALCS_MULTIPLY)) {
+        is = is_within_1(line.of->argument[0]) && is_within_1(line.of->argument[1]);
+    } else if (dalcs_formula_is_call(line.of, "limit")) {
+        is = line.of->n == 3 && is_within_1(line.of->argument[1]) &&
+             is_within_1(line.of->argument[2]);
+    }
+    return is && line.constant == 0 && fabs(line.slope) <= 1;
+}
+
 /* The domain of the first argument of a part; false: all numbers, or others than this file holds. */
 static bool find_domain(const struct dalcs_formula *f, double *low, double *high) {
     const bool is_power =
@@ -45,8 +66,8 @@ static bool find_domain(const struct dalcs_formula *f, double *low, double *high
                         dalcs_formula_is_call(f, "acos") || dalcs_formula_is_call(f, "arccos");
     *low = is_arc ? -1 : is_root ? 0 : 1;
     *high = is_arc ? 1 : INFINITY;
-    return is_arc || (is_root && !is_nonnegative(f->argument[0])) ||
-           dalcs_formula_is_call(f, "acosh");
+    return (is_arc && !is_within_1(f->argument[0])) ||
+           (is_root && !is_nonnegative(f->argument[0])) || dalcs_formula_is_call(f, "acosh");
 }
 
 /* max(x, bound) or min(x, bound); x itself where the bound is not finite. */

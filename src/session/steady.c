@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_STEPS = 10, MOST_WITHOUT_HALVING = 4, MOST_UNHELPFUL = 6, MOST_LEAPS = 24 };
+enum { MOST_WITHOUT_HALVING = 4, MOST_UNHELPFUL = 6, MOST_LEAPS = 24 };
 
 /* Periods of runs between bursts, in all. */
 static const long most_periods = 4096;
@@ -113,13 +113,19 @@ static enum dalcs_status go_on(struct dalcs_steady *st, struct burst *b) {
     return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
 }
 
-/* One step, and plain periods where it did not help. */
+/* One step, or half of it, and plain periods where neither did help. */
 static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     const double before = st->pass.residual;
+    bool helped = true;
     take_step(st);
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
     b->done = is_done(st, before);
+    const bool cycles = dalcs_steady_cycles(st);
     if (!b->done && !(st->pass.residual <= 0.5 * before)) {
+        helped = false;
+        DALCS_TRY(cycles ? dalcs_steady_damp(st, before, &helped) : DALCS_OK);
+    }
+    if (!helped) {
         b->unhelpful++;
         DALCS_TRY(go_on(st, b));
         b->done = is_done(st, INFINITY);
@@ -136,8 +142,9 @@ static enum dalcs_status burst_on(struct dalcs_steady *st, bool *done) {
         .first = st->pass.residual, .best = st->pass.residual, .done = is_done(st, 0.0)};
     bool is_stuck = false; /* where the run has come to: steps may lead to where no run does */
     st->n.bursts++;
-    for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING &&
-                    b.unhelpful < MOST_UNHELPFUL;
+    st->damped.n = 0;
+    for (int k = 0; k < DALCS_STEADY_STEPS && !b.done && b.far < 2 &&
+                    b.waited < MOST_WITHOUT_HALVING && b.unhelpful < MOST_UNHELPFUL;
          k++) {
         enum dalcs_status status = dalcs_steady_next_step(st);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
@@ -211,7 +218,7 @@ static enum dalcs_status drifts(struct dalcs_steady *st, const struct dalcs_orbi
     uint64_t signature = 0;
     *does = false;
     dalcs_steady_copy_point(st, &st->at, point);
-    for (int k = 0; k < MOST_STEPS && !*does; k++) {
+    for (int k = 0; k < DALCS_STEADY_STEPS && !*does; k++) {
         enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         const bool same = k == 0 || st->pass.signature == signature;
         signature = st->pass.signature;
@@ -229,7 +236,7 @@ static enum dalcs_status drifts(struct dalcs_steady *st, const struct dalcs_orbi
 }
 
 enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st, struct dalcs_orbit_point *best) {
-    for (int k = 0; k < MOST_STEPS; k++) {
+    for (int k = 0; k < DALCS_STEADY_STEPS; k++) {
         const double before = st->pass.residual;
         const double period = st->period;
         enum dalcs_status status = dalcs_steady_next_step(st);
@@ -247,13 +254,6 @@ enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st, struct dalcs_orbi
         }
     }
     return DALCS_OK;
-}
-
-bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point) {
-    point->layout = &st->layout;
-    point->x = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_x + 1, sizeof(double));
-    point->closed = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1, sizeof(bool));
-    return point->x != NULL && point->closed != NULL;
 }
 
 /* Where a leap leads no run need go. So growth without end, or no steady state, behind one counts for nothing: the search

@@ -34,6 +34,8 @@ struct dalcs_orbit_point {
     const struct dalcs_steady_layout *layout;
 };
 
+enum { DALCS_STEADY_STEPS = 10 }; /* of a burst */
+
 struct dalcs_steady {
     struct dalcs_run *run;
     struct dalcs_steady_layout layout;
@@ -71,6 +73,13 @@ struct dalcs_steady {
         int newton, bursts, leaps;
         long periods;
     } n;
+
+    struct dalcs_steady_damped {                 /* steady_damped.c */
+        struct dalcs_orbit_point whole, arrived; /* the end of a whole step, and a period later */
+        uint64_t
+            piece[DALCS_STEADY_STEPS]; /* of the map, where the whole steps of a burst have ended */
+        int n;
+    } damped;
 
     struct dalcs_steady_crowd { /* steady_crowd.c */
         bool is_limited;        /* while a search goes on */
@@ -237,6 +246,14 @@ enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) DALCS_
  * as they help. `best` is work. */
 enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st,
                                       struct dalcs_orbit_point *best) DALCS_MUST_CHECK;
+
+/* Has a whole step of this burst ended in the piece of the map in which the last pass began? From now on one has. */
+bool dalcs_steady_cycles(struct dalcs_steady *st);
+
+/* Tries half of the step that the last pass began behind and that has not halved the residual `before` it. Where that has
+ * *helped, the last pass began behind it; else all is as it was. */
+enum dalcs_status dalcs_steady_damp(struct dalcs_steady *st, double before,
+                                    bool *helped) DALCS_MUST_CHECK;
 
 /* Room for one, as long as st lives; false: there is none. */
 bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point);

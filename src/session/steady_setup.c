@@ -1,11 +1,10 @@
 /* steady_setup.c - the order of states, switches and the memory of gates in one vector, and memory for the search. */
 #include "steady.h"
 
-static bool make_point(struct dalcs_arena *arena, const struct dalcs_steady_layout *l,
-                       struct dalcs_orbit_point *point) {
-    point->layout = l;
-    point->x = dalcs_arena_alloc(arena, (size_t)l->n_x + 1, sizeof(double));
-    point->closed = dalcs_arena_alloc(arena, (size_t)l->n_pairs + 1, sizeof(bool));
+bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point) {
+    point->layout = &st->layout;
+    point->x = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_x + 1, sizeof(double));
+    point->closed = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1, sizeof(bool));
     return point->x != NULL && point->closed != NULL;
 }
 
@@ -50,11 +49,13 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
         st->found.rms =
             dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
         st->kept.of = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->kept.of));
-        complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
-                   st->pass.M != NULL && st->pass.phase != NULL && st->pass.first != NULL &&
-                   st->pass.last != NULL && st->scale != NULL && st->step != NULL &&
-                   st->kept.drift != NULL && st->found.state != NULL && st->found.average != NULL &&
-                   st->found.rms != NULL && st->kept.of != NULL;
+        complete = dalcs_steady_make_point(st, &st->at) && dalcs_steady_make_point(st, &st->then) &&
+                   dalcs_steady_make_point(st, &st->damped.whole) &&
+                   dalcs_steady_make_point(st, &st->damped.arrived) && st->pass.M != NULL &&
+                   st->pass.phase != NULL && st->pass.first != NULL && st->pass.last != NULL &&
+                   st->scale != NULL && st->step != NULL && st->kept.drift != NULL &&
+                   st->found.state != NULL && st->found.average != NULL && st->found.rms != NULL &&
+                   st->kept.of != NULL;
     }
     if (!complete) {
         dalcs_steady_finish(st);

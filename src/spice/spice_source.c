@@ -38,7 +38,7 @@ static void widen_edges(struct pulse *p, double edge) {
     edge = fmin(edge, 0.1 * fmin(p->width, rest > 0.0 ? rest : p->width));
     double rise = p->rise > 0.0 ? 0.0 : edge;
     double fall = p->fall > 0.0 ? 0.0 : edge;
-    double early = fmin(0.5 * rise, p->delay);
+    double early = p->delay < 0.0 ? 0.5 * rise : fmin(0.5 * rise, p->delay); /* begun before 0 */
     p->delay -= early;
     p->width -= (rise - early) + 0.5 * fall;
     p->rise += rise;

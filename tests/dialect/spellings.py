@@ -848,6 +848,16 @@ FORMULAS += [
     ]),
 ]
 
+# In LTspice asin(x) is that of x held in -1 ... 1. What a sine gives is there anyway, and must stay a triangle.
+EMF = """
+.options dialect=ltspice
+.param f=100
+B1 a n V=@
+R1 n 0 1
+L1 a b 10u Rser=0
+R2 b 0 1
+.tran 10u 52.5m
+"""
 CARRIERS = [
     Kind("a sawtooth", OVER_TIME, "f*time", "v(a)", 0.73, [
         "time*f-floor(time*f)",
@@ -859,6 +869,7 @@ CARRIERS = [
         "1 - (-f*time - floor(-f*time))",
         "f*(time+2m) - floor(f*(time+2m))",
         "atan(tan(pi*f*time - pi/2))/pi + 0.5",
+        "0.5 - atan(-tan(pi*f*time - pi/2))/pi",
         "f*time + 1 - ceil(f*time)",
         "f*time - round(f*time) + 1",
     ], [("v(a) - floor(v(a)) + 1", "steps without end")]),
@@ -884,7 +895,16 @@ CARRIERS = [
         "1 - 2/pi*arccos(cos(pi/2 - 2*pi*f*time)) - 0.08",
         "1 - 4*abs(f*time - 0.25 - floor(f*time + 0.25)) - 0.08",
         "-2/pi*asin(sin(-2*pi*f*time))*1 - 0.08",
+        "-2/pi*asin(-sin(2*pi*f*time)) - 0.08",
+        "2/pi*acos(-cos(2*pi*f*time - pi/2)) - 1.08",
         "4*abs(f*time + 0.25 - round(f*time + 0.25)) - 1.08",
+    ]),
+    Kind("the back EMF of a motor's phase behind its coil", EMF, "20", "v(b)", 10.0, [
+        "20*limit(3/pi*asin(sin(2*pi*f*time)),-1,1)",
+        "limit(60/pi*arcsin(sin(2*pi*f*(time-10m))),-20,20)",
+        "20*limit(3/pi*asin(cos(2*pi*f*time - pi/2)),-1,1)",
+        "20*limit(-3/pi*asin(-sin(2*pi*f*time)),-1,1)",
+        "20*limit(1.5 - 3/pi*acos(cos(2*pi*f*time - pi/2)),-1,1) + 0",
     ]),
     Kind("a comparator with a carrier", FOUR, "1", "v(a)", 1.0, [
         "0.5 > 2/pi*asin(sin(2*pi*f*time)) ? 1 : 0",
