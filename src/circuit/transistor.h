@@ -38,6 +38,7 @@ struct dalcs_transistor_use {
     double width, length, parallel; /* m, m; so many of them */
     int diode, diode_device;        /* its model among the circuit's and the diode; -1: none */
     struct dalcs_transistor_use *before;
+    bool is_turned; /* drain and source are exchanged against the card */
 };
 
 /* V between two nodes. */
