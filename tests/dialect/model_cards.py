@@ -97,6 +97,29 @@ def ignored(checker):
         ends(checker, words, done, {"v(q)": 2e-3}, 1e-6)
 
 
+def sources(checker):
+    """Rpar and Cpar before I=, brackets around all of .ic, and pins that no wire reaches."""
+    for words, value in (("Rpar=3 I=v(a)", 6), ("rpar=1 I=( v(a)>1 ) tripdv=1 tripdt=1", 1), ("Cpar=1u Rpar=3 I=v(a)*2", 12),
+                         ("cpar=1n I=v(a)**2 rpar=2", 8), ("RPAR={1+1} I={v(a)}", 4), ("Rpar=1k I=2m", 2), ("Rpar=2 I=3", 6),
+                         ("Rpar=1 I=if(v(a)>1, 5, 6)", 5), ("Rpar=1meg I=time*0+1u", 1), ("Rpar=0.5 I=v(a) m=2", 1)):
+        ends(checker, words, run(f"V1 a 0 2\nB1 0 out {words}\n.op"), {"v(out)": value}, 1e-7)
+    checker.check(run("V1 a 0 2\nB1 0 out Rpar=1 V=v(a)\n.op").status == 3, "Rpar of a voltage")
+    circuit = "C1 a 0 1u\nR1 a 0 1k\nC2 b 0 1u\nL1 b c 1m\nR2 c 0 1k\n.tran 1u 2u"
+    for card, volts in ((".ic(V(a)=12)", 12), (".ic (v(a)=3)", 3), (".ic(V(a)=5 v(b)=1)", 5), (".IC(v(a)={2*2} i(L1)=0)", 4),
+                        (".ic v(a)=7", 7), (".ic( v(a) = 2 )", 2)):
+        done = run(f"{circuit}\n{card}")
+        checker.check(done.status == 0, f"{card}: {done.stderr}")
+        if done.status == 0:
+            checker.close(done.column("v(a)")[0], volts, 1e-9, card)
+    for pin in ("nc_01", "NC_12", "nc_123", "unconnected-(U1-Pad3)"):
+        part = ".subckt choice x y z q\nB1 q 0 V=if(v(x)>0.5, v(y), v(z))\n.ends\n"
+        done = run(f"V1 x 0 1\nV2 y 0 3\nX1 x y {pin} q choice\nX2 {pin} y x r choice\nR1 q 0 1\nR2 r 0 1\n{part}.op")
+        ends(checker, f"a pin {pin}", done, {"v(q)": 3, "v(r)": 1})
+        checker.check("without a wire" in done.stderr, done.stderr)
+    for pin in ("nc_1x", "nc_", "mid"):
+        checker.check(run(f"V1 x 0 1\nB1 q 0 V=v({pin})\nR1 q 0 1\n.op").status == 3, f"v({pin})")
+
+
 def transistors(checker):
     """IS=0: no body diode. The bulk at the drain: the other end is the drain."""
     for kind, sign in (("VDMOS(", 1), ("NMOS(", 1), ("PMOS(", -1), ("VDMOS(pchan ", -1)):
@@ -124,7 +147,7 @@ def transistors(checker):
 
 def main():
     checker = Checker("model cards")
-    for kind in (libraries, symbols, ignored, transistors):
+    for kind in (libraries, symbols, ignored, sources, transistors):
         kind(checker)
     return checker.finish()
 
