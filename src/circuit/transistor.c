@@ -284,7 +284,7 @@ static bool expand(struct dalcs_builder *builder, struct dalcs_transistor_use *u
     return device->model >= 0 && (t->kind != DALCS_IGBT || add_knee(builder, use));
 }
 
-/* Of a model that is not there nothing is known. */
+/* Of a model that is not there nothing is known, nor of a VDMOS with a bulk on the drain. */
 static bool is_bulk_right(struct dalcs_builder *builder, const struct dalcs_card *card,
                           const struct dalcs_transistor_use *use) {
     static const char hint[] = "connect it to the source: that is where a power MOSFET has it";
@@ -292,7 +292,7 @@ static bool is_bulk_right(struct dalcs_builder *builder, const struct dalcs_card
     if (use->bulk == use->source) {
         return true;
     }
-    if (use->of->typical != NULL) {
+    if (use->of->typical != NULL || use->bulk == use->drain) {
         dalcs_builder_error(
             builder, &card->token[4], hint,
             "the bulk of '%s' is not on its source: its body diodes would be others", name);
@@ -337,7 +337,7 @@ void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_ca
         return;
     }
     const bool has_bulk = n_nodes == 4 && card->letter == 'm';
-    const bool is_turned = has_bulk && node[3] == node[0] && t->typical == NULL;
+    const bool is_turned = has_bulk && node[3] == node[0] && t->is_lateral;
     if (is_turned) { /* both ends are alike: the one with the bulk is the source */
         node[0] = node[2];
         node[2] = node[3];

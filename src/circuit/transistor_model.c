@@ -218,6 +218,7 @@ struct dalcs_transistor *dalcs_transistor_parse_model(struct dalcs_reader *reade
                                                               : DALCS_MOSFET,
                                    .name = name->text,
                                    .is_p = is_p,
+                                   .is_lateral = !vdmos && !igbt && !is_bipolar(type),
                                    .threshold = p[VTO].value,
                                    .gain = gain_of(p, type),
                                    .saturating = saturating_of(p, type),
