@@ -90,13 +90,13 @@ void dalcs_audit_off(struct dalcs_audit *audit, const struct dalcs_audit_number 
 }
 
 void dalcs_audit_claim_integral(struct dalcs_audit *audit, const struct dalcs_audit_number *number,
-                                int power, double length, double claimed, double t,
+                                const struct dalcs_audit_claim *claim,
                                 const struct dalcs_audit_sum *own) {
-    const double off = (fabs(claimed - own->value) - own->doubt) / length;
+    const double off = (fabs(claim->value - own->value) - own->doubt) / (claim->to - claim->from);
+    /* a mean square is off by twice what a value of its largest is */
+    const double unit = claim->power == 1 ? 1.0 : 2.0 * fmax(number->scale, 0x1p-511);
     if (isfinite(own->doubt)) {
-        /* a mean square is off by twice what a value of its largest is */
-        dalcs_audit_off(audit, number,
-                        power == 1 ? off : off / (2.0 * fmax(number->scale, 0x1p-511)), t);
+        dalcs_audit_off(audit, number, off / unit, claim->to);
     }
 }
 
@@ -106,13 +106,14 @@ void dalcs_audit_add_to(struct dalcs_audit *audit, enum dalcs_audit_law law, int
     dalcs_audit_off(audit, &number, defect, t);
 }
 
-void dalcs_audit_claim_part(struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
-                            int power, double scale, double length, double claimed, double t,
+void dalcs_audit_claim_part(struct dalcs_audit *audit, const struct dalcs_audit_number *number,
+                            const struct dalcs_audit_claim *claim,
                             const struct dalcs_audit_sum *own) {
-    const double unit = power == 1 ? scale : 2.0 * scale * scale;
-    const double off = (fabs(claimed - own->value) - own->doubt) / length;
+    const double scale = number->scale;
+    const double unit = claim->power == 1 ? scale : 2.0 * scale * scale;
+    const double off = (fabs(claim->value - own->value) - own->doubt) / (claim->to - claim->from);
     if (isfinite(own->doubt) && off > 0.0) {
-        dalcs_audit_add_to(audit, law, index, audit_ratio(off, unit), t);
+        dalcs_audit_add_to(audit, number->law, number->index, audit_ratio(off, unit), claim->to);
     }
 }
 

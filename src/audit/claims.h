@@ -48,14 +48,20 @@ struct dalcs_audit_sum dalcs_audit_integral(const struct dalcs_audit *audit,
                                             const struct dalcs_audit_function *f, int power,
                                             double from, double to);
 
-/* Claimed: such an integral, over so long a time up to t. */
+/* What such an integral is claimed to be. */
+struct dalcs_audit_claim {
+    int power;
+    double from, to;
+    double value;
+};
+
 void dalcs_audit_claim_integral(struct dalcs_audit *audit, const struct dalcs_audit_number *number,
-                                int power, double length, double claimed, double t,
+                                const struct dalcs_audit_claim *claim,
                                 const struct dalcs_audit_sum *own);
 
 /* The same of what has several functions: off over the scale of each. */
-void dalcs_audit_claim_part(struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
-                            int power, double scale, double length, double claimed, double t,
+void dalcs_audit_claim_part(struct dalcs_audit *audit, const struct dalcs_audit_number *number,
+                            const struct dalcs_audit_claim *claim,
                             const struct dalcs_audit_sum *own);
 
 /* A finding over its scale. */

@@ -135,8 +135,10 @@ void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_los
         struct dalcs_audit_sum own =
             dalcs_audit_integral(a->run->audit, &f, claim[k].power, from, to);
         own.doubt += 4.0 * DBL_EPSILON * (fabs(claim[k].now) + fabs(claim[k].then));
-        dalcs_audit_claim_part(a->run->audit, DALCS_AUDIT_LOSSES, a->device, claim[k].power,
-                               claim[k].scale, to - from, claim[k].now - claim[k].then, to, &own);
+        const struct dalcs_audit_number number = {DALCS_AUDIT_LOSSES, a->device, claim[k].scale};
+        const struct dalcs_audit_claim told = {claim[k].power, from, to,
+                                               claim[k].now - claim[k].then};
+        dalcs_audit_claim_part(a->run->audit, &number, &told, &own);
     }
 }
 

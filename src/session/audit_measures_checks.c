@@ -29,22 +29,23 @@ static bool add_span(void *user, const struct dalcs_span *span) {
     return isfinite(part.doubt);
 }
 
+/* rounding: what it makes of the claim. */
 static void check_integral(const struct audit_asked *q, const struct dalcs_audit_function *f,
-                           const struct dalcs_audit_number *number, int power, double from,
-                           double to, double claimed, double rounding) {
-    const struct dalcs_audit *audit = q->a->run->audit;
-    const double length = to - from;
-    const double allowed = dalcs_audit_most_allowed(q->a->run) * number->scale *
-                           (power == 1 ? 1.0 : number->scale) * length;
-    struct dalcs_audit_sum own = dalcs_audit_integral(audit, f, power, from, to);
-    if (!q->formula->is_affine && fabs(claimed - own.value) > 1e-3 * allowed) {
-        struct by_spans b = {audit, f, power, {0.0, 0.0}};
+                           const struct dalcs_audit_number *number,
+                           const struct dalcs_audit_claim *claim, double rounding) {
+    struct dalcs_audit *audit = q->a->run->audit;
+    const double from = claim->from, to = claim->to;
+    const double unit = number->scale * (claim->power == 1 ? 1.0 : number->scale);
+    const double allowed = dalcs_audit_most_allowed(q->a->run) * unit * (to - from);
+    struct dalcs_audit_sum own = dalcs_audit_integral(audit, f, claim->power, from, to);
+    if (!q->formula->is_affine && fabs(claim->value - own.value) > 1e-3 * allowed) {
+        struct by_spans b = {audit, f, claim->power, {0.0, 0.0}};
         double scale = q->scale;
         dalcs_stretch_visit(&q->m->stretch, q->formula, from, to, &scale, &b, add_span);
         own = b.sum;
     }
     own.doubt += rounding;
-    dalcs_audit_claim_integral(q->a->run->audit, number, power, length, claimed, to, &own);
+    dalcs_audit_claim_integral(audit, number, claim, &own);
 }
 
 static void check_sum(struct dalcs_audit_measures *a, const struct dalcs_measuring *m, int k,
@@ -57,8 +58,8 @@ static void check_sum(struct dalcs_audit_measures *a, const struct dalcs_measuri
         audit_measures_ask(a, m, &item->card->formula, a->item[k].reads, item->scale);
     const struct dalcs_audit_function f = {&q, audit_asked_value};
     const struct dalcs_audit_number number = audit_measures_number(k, item->scale);
-    check_integral(&q, &f, &number, is_square ? 2 : 1, from, to, now - then,
-                   4.0 * DBL_EPSILON * (fabs(now) + fabs(then)));
+    const struct dalcs_audit_claim claim = {is_square ? 2 : 1, from, to, now - then};
+    check_integral(&q, &f, &number, &claim, 4.0 * DBL_EPSILON * (fabs(now) + fabs(then)));
 }
 
 /* The largest of sign times the function between two times, and where: the best of some, closed in on. */
@@ -261,8 +262,8 @@ void audit_measures_check_line(struct dalcs_audit_measures *a, const struct dalc
         /* an angle is known to a rounding of its turns */
         const double turns =
             DBL_EPSILON * dalcs_two_pi * h->frequency * own->line * h->to * h->scale;
-        check_integral(&q, &f, &number, 1, from, to, (now - then) * period,
-                       4.0 * DBL_EPSILON * (fabs(now) + fabs(then)) * period +
-                           8.0 * turns * (to - from));
+        const struct dalcs_audit_claim claim = {1, from, to, (now - then) * period};
+        const double rounding = 4.0 * DBL_EPSILON * (fabs(now) + fabs(then)) * period;
+        check_integral(&q, &f, &number, &claim, rounding + 8.0 * turns * (to - from));
     }
 }

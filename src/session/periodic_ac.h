@@ -48,6 +48,11 @@ struct dalcs_periodic_ac {
     struct dalcs_arena arena;
 };
 
+/* ---- periodic_ac_setup.c ----------------------------------------------------------------------- */
+
+/* The parts and the row. DALCS_NOT_CONVERGED, with a message: small signals are not accurate enough over a period. */
+enum dalcs_status dalcs_periodic_ac_setup(struct dalcs_periodic_ac *ac) DALCS_MUST_CHECK;
+
 /* ---- periodic_frequencies.c -------------------------------------------------------------------- */
 
 /* The sweep, with a message where what is asked for is none. */

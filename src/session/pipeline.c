@@ -7,6 +7,7 @@
 #include "computed.h"
 #include "cosimulation.h"
 #include "delayed.h"
+#include "orbit_analyses.h"
 
 #include "stroboscope.h"
 

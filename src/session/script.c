@@ -1,7 +1,7 @@
 /* script.c - what a .control block needs of a session: its lines, runs with cards of its own, other
  * values. The language of the block is not known here. */
 #include "expand.h"
-#include "session_internal.h"
+#include "orbit_analyses.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* session.c - the life of a session: made, fed a netlist, asked for messages and the report. */
-#include "session_internal.h"
+#include "orbit_analyses.h"
 
 #include "description.h"
 #include "netlist.h"

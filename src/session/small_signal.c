@@ -7,6 +7,7 @@
 #include "audit_response.h"
 #include "gates.h"
 #include "measures.h"
+#include "orbit_analyses.h"
 #include "small_signal_part.h"
 
 #include <math.h>

@@ -7,7 +7,7 @@
 #define DALCS_STEADY_H
 
 #include "logic_memory.h"
-#include "session_internal.h"
+#include "orbit_analyses.h"
 #include "stage_store.h"
 
 struct dalcs_logic_run;

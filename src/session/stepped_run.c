@@ -1,5 +1,6 @@
 /* stepped_run.c - .step: the analyses with each value, and what was measured in all of them. */
 #include "failed_steps.h"
+#include "orbit_analyses.h"
 
 #include <stdlib.h>
 #include <string.h>
