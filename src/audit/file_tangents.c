@@ -83,7 +83,7 @@ enum dalcs_status file_take_tangents(struct file_audit *a) {
     for (int d = 0; d < a->circuit->n_devices; d++) {
         n += exponential_of(a->circuit, d) != NULL && a->columns.current[d] >= 0 ? 1 : 0;
     }
-    if (n == 0 || a->circuit->options.has_diode_current) {
+    if (n == 0 || a->promise.has_own_lines || a->circuit->options.has_diode_current) {
         return DALCS_OK;
     }
     DALCS_TRY(part_models(a, a->circuit->n_devices));

@@ -208,20 +208,39 @@ static bool read_across(struct dalcs_reader *reader, struct dalcs_parasitics *ac
     return true;
 }
 
+/* V=, I=, R= or P=: its letter, 0 after an error. What lies across a source of a current may stand before it, as LTspice
+ * has it. */
+static char take_quantity(struct dalcs_reader *reader, struct dalcs_parasitics *across) {
+    const struct dalcs_token *first = dalcs_reader_peek(reader, 0);
+    const int before = reader->at;
+    if (!read_across(reader, across)) {
+        return 0;
+    }
+    const bool has_across = reader->at > before;
+    const struct dalcs_token *what = dalcs_reader_take_parameter(reader);
+    if (what == NULL) {
+        dalcs_reader_missing(reader, "V= or I=");
+        return 0;
+    }
+    const bool is_known = what->text[1] == '\0' && strchr("virp", what->text[0]) != NULL;
+    if (!is_known || (what->text[0] != 'i' && has_across)) {
+        const struct dalcs_token *wrong = is_known ? first : what;
+        dalcs_builder_error(reader->builder, wrong, USAGE, "a behavioural source has no '%s='",
+                            wrong->text);
+        return 0;
+    }
+    return what->text[0];
+}
+
 void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     int node[2];
     if (!dalcs_reader_nodes(&reader, 2, node)) {
         return;
     }
-    const struct dalcs_token *what = dalcs_reader_take_parameter(&reader);
-    if (what == NULL) {
-        dalcs_reader_missing(&reader, "V= or I=");
-        return;
-    }
-    const char quantity = what->text[1] == '\0' ? what->text[0] : '?';
-    if (strchr("virp", quantity) == NULL) {
-        dalcs_builder_error(builder, what, USAGE, "a behavioural source has no '%s='", what->text);
+    struct dalcs_parasitics across = {0};
+    const char quantity = take_quantity(&reader, &across);
+    if (quantity == 0) {
         return;
     }
     const bool makes_voltage = quantity == 'v' || quantity == 'r';
@@ -234,7 +253,6 @@ void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_c
     }
     device->node[0] = node[0];
     device->node[1] = node[1];
-    struct dalcs_parasitics across = {0};
     if (!dalcs_behavioural_read_formula(&reader, &token) ||
         !dalcs_behavioural_skip_temperature(&reader) ||
         (quantity != 'v' && !dalcs_behavioural_read_parallel(&reader, &m)) ||

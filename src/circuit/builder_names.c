@@ -83,8 +83,24 @@ int dalcs_builder_look_up_node(struct dalcs_builder *builder, const char *name) 
     return node < 0 ? find_alias(builder, name) : node;
 }
 
+/* How LTspice and KiCad call the node of a pin that no wire reaches: nc_01, unconnected-(u1-pad3). Nobody writes it, so
+ * it is no slip where nothing else is connected to it. */
+static bool is_open_pin(const char *name) {
+    const char *dot = strrchr(name, '.');
+    const char *own = dot != NULL ? dot + 1 : name;
+    const size_t n_digits = strncmp(own, "nc_", 3) == 0 ? strspn(own + 3, "0123456789") : 0;
+    return (n_digits > 0 && own[3 + n_digits] == '\0') || strncmp(own, "unconnected-(", 13) == 0;
+}
+
 int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
-    const int node = dalcs_builder_look_up_node(builder, token->text);
+    int node = dalcs_builder_look_up_node(builder, token->text);
+    if (node < 0 && is_open_pin(token->text)) {
+        dalcs_builder_warn(builder, token, "connect it",
+                           "'%s' is a pin without a wire: it is read as 0 V here, as SPICE's gmin "
+                           "would make it",
+                           token->text);
+        node = 0;
+    }
     if (node < 0) {
         builder->failed = true;
         if ((builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {

@@ -175,6 +175,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     }
     dalcs_slip_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
+    DALCS_TRY(dalcs_model_leave_unnamed(builder, class_of));
     DALCS_TRY(dalcs_card_table_read(builder, class_of));
     dalcs_output_resolve(builder);
     builder->circuit->control.is_whole = is_whole(builder);

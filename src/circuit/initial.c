@@ -125,7 +125,12 @@ static bool read_current(struct dalcs_reader *reader, const struct dalcs_token *
 
 void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
+    const bool is_in_brackets = dalcs_reader_take(&reader, DALCS_TOKEN_OPEN); /* .ic(v(a)=1) */
     while (!dalcs_reader_at_end(&reader)) {
+        const struct dalcs_token *next = dalcs_reader_peek(&reader, 1);
+        if (is_in_brackets && next == NULL && dalcs_reader_take(&reader, DALCS_TOKEN_CLOSE)) {
+            return;
+        }
         const struct dalcs_token *place = dalcs_reader_peek(&reader, 0);
         const bool is_voltage = dalcs_reader_take_word(&reader, "v");
         if (!is_voltage && !dalcs_reader_take_word(&reader, "i")) {

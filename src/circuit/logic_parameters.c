@@ -60,6 +60,24 @@ static bool take_flag(struct dalcs_reader *reader, const struct dalcs_logic_para
     return true;
 }
 
+/* A value that may be a formula without braces, as `en=.85n+freq/(8k*freq)`: up to the next blank outside of brackets. */
+static bool skip_formula(struct dalcs_reader *reader) {
+    const struct dalcs_token *before;
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
+    int depth = 0;
+    if (next == NULL || next->kind == DALCS_TOKEN_EQUAL || next->kind == DALCS_TOKEN_CLOSE) {
+        return dalcs_reader_skip_value(reader); /* which says what is missing */
+    }
+    do {
+        depth += next->kind == DALCS_TOKEN_OPEN ? 1 : next->kind == DALCS_TOKEN_CLOSE ? -1 : 0;
+        reader->at++;
+        before = next;
+        next = dalcs_reader_peek(reader, 0);
+    } while (next != NULL && (depth > 0 || (next->line == before->line &&
+                                            next->offset == before->offset + (int)before->length)));
+    return true;
+}
+
 static bool take_other(struct dalcs_reader *reader, const struct dalcs_logic_parameters *of,
                        const struct dalcs_token *name) {
     if (of->has_noise && is_noise(name)) {
@@ -67,7 +85,9 @@ static bool take_other(struct dalcs_reader *reader, const struct dalcs_logic_par
                            "'%s' has no meaning here and is ignored: noise and the powering up "
                            "of an OTA are not simulated",
                            name->text);
-    } else if (!is_without_effect(name)) {
+        return skip_formula(reader);
+    }
+    if (!is_without_effect(name)) {
         dalcs_builder_error(reader->builder, name, reader->usage, "%s has no parameter '%s' here",
                             of->what, name->text);
         return false;

@@ -255,18 +255,33 @@ static bool is_same_card(const struct dalcs_card *a, const struct dalcs_card *b)
     return same;
 }
 
-/* A model of the same name: one that says the same, as where two parts bring their models along, does no harm. */
-static void report_second(struct dalcs_builder *builder, const struct dalcs_model *first,
-                          const struct dalcs_card *card) {
+/* `.model D D`, which LTspice writes for each kind of part that its symbols name without a model of their own. */
+static bool is_of_symbols(const struct dalcs_card *card) {
+    return card->n == 3 && strcmp(card->token[1].text, card->token[2].text) == 0;
+}
+
+/* A model of the same name: one that says the same, as where two parts bring their models along, does no harm, and what
+ * the author writes comes before what LTspice adds. True: the second counts. */
+static bool judge_second(struct dalcs_builder *builder, const struct dalcs_model *first,
+                         const struct dalcs_card *card) {
     const struct dalcs_token *name = &card->token[1];
+    const char *place = dalcs_builder_place(builder, first->name);
+    const bool is_replaced = is_of_symbols(first->card);
     if (is_same_card(first->card, card)) {
         dalcs_builder_note(builder, name, NULL, "this model '%s' is the one at %s once more",
-                           name->text, dalcs_builder_place(builder, first->name));
-    } else {
-        dalcs_builder_error(builder, name, "give it another name",
-                            "there are two models '%s', the first at %s", name->text,
-                            dalcs_builder_place(builder, first->name));
+                           name->text, place);
+        return false;
     }
+    if (is_replaced || is_of_symbols(card)) {
+        dalcs_builder_warn(builder, name, "give it another name",
+                           "there are two models '%s', the other at %s: the one with parameters "
+                           "counts",
+                           name->text, place);
+        return is_replaced;
+    }
+    dalcs_builder_error(builder, name, "give it another name",
+                        "there are two models '%s', the first at %s", name->text, place);
+    return false;
 }
 
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -277,19 +292,17 @@ void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *c
         return;
     }
     const int first = dalcs_names_find(&builder->models.names, name->text);
-    if (first >= 0) {
-        report_second(builder, &builder->models.model[first], card);
+    if (first >= 0 && !judge_second(builder, &builder->models.model[first], card)) {
         return;
     }
-    struct dalcs_model *model = &builder->models.model[builder->models.n];
-    model->kind = DALCS_MODEL_WRONG;
-    model->name = name;
-    model->card = card;
-    if (dalcs_names_add(&builder->models.names, name->text, builder->models.n) != DALCS_OK) {
+    const int place = first >= 0 ? first : builder->models.n;
+    struct dalcs_model *model = &builder->models.model[place];
+    *model = (struct dalcs_model){.kind = DALCS_MODEL_WRONG, .name = name, .card = card};
+    if (first < 0 && dalcs_names_add(&builder->models.names, name->text, place) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
-    builder->models.n++;
+    builder->models.n += first < 0 ? 1 : 0;
     if (!dalcs_reader_name(&reader, "the type of the model", &type)) {
         return;
     }

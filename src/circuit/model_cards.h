@@ -34,6 +34,9 @@ int dalcs_switch_add_model(struct dalcs_builder *builder, const struct dalcs_swi
 /* type: sw, csw, vswitch or iswitch */
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
                               struct dalcs_switch_model *model);
+/* Takes the models of included files that no other card names out of what is read. */
+enum dalcs_status dalcs_model_leave_unnamed(struct dalcs_builder *builder,
+                                            unsigned char *class_of) DALCS_MUST_CHECK;
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* Warnings about models that nothing here can use, when all elements are known. */
 void dalcs_model_check(struct dalcs_builder *builder);

@@ -5,6 +5,7 @@
  * silently ignoring those has cost people days. */
 
 #include "analysis_cards.h"
+#include "lower_case.h"
 #include "reader.h"
 
 #include <math.h>
@@ -168,20 +169,25 @@ static bool read_either(struct dalcs_reader *reader, const char *option, const c
 static bool read_method(struct dalcs_reader *reader) {
     static const char *const theirs[] = {"trap", "trapezoidal", "gear", "bdf"};
     struct dalcs_builder *builder = reader->builder;
-    const struct dalcs_token *method;
-    if (!dalcs_reader_name(reader, "the name of a method", &method)) {
+    const struct dalcs_token *method = dalcs_reader_peek(reader, 0);
+    if (method != NULL && method->kind == DALCS_TOKEN_STRING) { /* LTspice: method="gear" */
+        reader->at++;
+    } else if (!dalcs_reader_name(reader, "the name of a method", &method)) {
         return false;
     }
-    if (dalcs_builder_is_one_of(method->text, theirs, sizeof theirs / sizeof theirs[0])) {
+    char *name = dalcs_arena_copy(&builder->circuit->arena, method->text, strlen(method->text));
+    if (name == NULL) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    if (dalcs_builder_is_one_of(dalcs_lower_text(name), theirs, sizeof theirs / sizeof theirs[0])) {
         dalcs_builder_note(builder, method, NULL, "method '%s' of other simulators is ignored",
                            method->text);
         return true;
     }
     struct dalcs_circuit_options *options = &builder->circuit->options;
-    options->method =
-        dalcs_arena_copy(&builder->circuit->arena, method->text, strlen(method->text));
+    options->method = name;
     options->method_where = dalcs_builder_keep_location(builder, method);
-    builder->out_of_memory = builder->out_of_memory || options->method == NULL;
     return true;
 }
 

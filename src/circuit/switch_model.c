@@ -85,8 +85,13 @@ static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_tok
     static const char *const ours[] = {"ron",  "roff",  "vt",  "vh",   "it",   "ih",
                                        "von",  "voff",  "ion", "ioff", "vhon", "vhoff",
                                        "ihon", "ihoff", "on",  "off",  "onh",  "offh"};
-    static const char *const later[] = {"vton", "vtoff", "td", "oneway", "epsilon"};
+    static const char *const later[] = {"vton", "vtoff", "td", "oneway"};
     struct dalcs_builder *builder = reader->builder;
+    if (strcmp(name->text, "epsilon") == 0) { /* of LTspice's level 2, beside Ilimit */
+        dalcs_builder_note(builder, name, NULL,
+                           "the corner that epsilon rounds where Ilimit begins is sharp here");
+        return false;
+    }
     if (dalcs_builder_is_one_of(name->text, later, sizeof later / sizeof later[0])) {
         dalcs_builder_error(builder, name, reader->usage, "'%s' of a switch is not supported yet",
                             name->text);

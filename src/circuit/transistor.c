@@ -250,6 +250,13 @@ static bool add_bulk(struct dalcs_builder *builder, struct dalcs_transistor_use 
     return true;
 }
 
+/* What enters the drain of the card leaves at the end that is the drain here. */
+static void turn(struct dalcs_device *terminal) {
+    const int outside = terminal->node[0];
+    terminal->node[0] = terminal->node[1];
+    terminal->node[1] = outside;
+}
+
 static bool expand(struct dalcs_builder *builder, struct dalcs_transistor_use *use) {
     struct dalcs_device *device = &builder->circuit->device[use->device];
     const struct dalcs_transistor *t = use->of;
@@ -258,6 +265,9 @@ static bool expand(struct dalcs_builder *builder, struct dalcs_transistor_use *u
     device->node[2] = use->gate;
     if (!dalcs_builder_add_terminal(builder, use->name, device)) {
         return false;
+    }
+    if (use->is_turned) {
+        turn(&builder->circuit->device[builder->elements.current_of[use->device]]);
     }
     /* the body diode leads from source to drain, that of a base to the emitter; of a p channel and PNP the other way */
     const bool is_bipolar = t->kind == DALCS_BIPOLAR;
@@ -274,7 +284,7 @@ static bool expand(struct dalcs_builder *builder, struct dalcs_transistor_use *u
     return device->model >= 0 && (t->kind != DALCS_IGBT || add_knee(builder, use));
 }
 
-/* Of a model that is not there nothing is known, nor of a bulk on the drain. */
+/* Of a model that is not there nothing is known, nor of a VDMOS with a bulk on the drain. */
 static bool is_bulk_right(struct dalcs_builder *builder, const struct dalcs_card *card,
                           const struct dalcs_transistor_use *use) {
     static const char hint[] = "connect it to the source: that is where a power MOSFET has it";
@@ -327,6 +337,11 @@ void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_ca
         return;
     }
     const bool has_bulk = n_nodes == 4 && card->letter == 'm';
+    const bool is_turned = has_bulk && node[3] == node[0] && t->is_lateral;
+    if (is_turned) { /* both ends are alike: the one with the bulk is the source */
+        node[0] = node[2];
+        node[2] = node[3];
+    }
     *use = (struct dalcs_transistor_use){.device = (int)(device - builder->circuit->device),
                                          .name = card->token,
                                          .of = t,
@@ -337,6 +352,7 @@ void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_ca
                                          .width = t->width,
                                          .length = t->length,
                                          .parallel = 1,
+                                         .is_turned = is_turned,
                                          .diode = -1,
                                          .before = builder->models.last_transistor};
     if (read_rest(&reader, use) && is_bulk_right(builder, card, use) && expand(builder, use)) {

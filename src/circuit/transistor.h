@@ -27,6 +27,7 @@ struct dalcs_transistor {
     double noted_ohms;
     const struct dalcs_token *typical; /* where it is named, if no card and no table has it; NULL */
     struct dalcs_diode_card diode; /* its body diode or, of a bipolar one, from base to emitter */
+    bool is_lateral;               /* an NMOS or PMOS: both ends of its channel are alike */
 };
 
 /* An element: what depends on the rest of the circuit waits for it. */
@@ -38,6 +39,7 @@ struct dalcs_transistor_use {
     double width, length, parallel; /* m, m; so many of them */
     int diode, diode_device;        /* its model among the circuit's and the diode; -1: none */
     struct dalcs_transistor_use *before;
+    bool is_turned; /* drain and source are exchanged against the card */
 };
 
 /* V between two nodes. */

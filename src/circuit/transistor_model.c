@@ -95,9 +95,12 @@ static bool read_all(struct dalcs_reader *reader, struct dalcs_parameter *p, boo
 
 static bool check(struct dalcs_builder *builder, const struct dalcs_parameter *p,
                   const char *usage) {
-    static const int positive[] = {KP, W, L, RDS, IS, N, BV, MTRIODE, TOX, UO};
-    static const int other[] = {RD, RS, RON, RB, VCE0, VDIODE, RDIODE};
-    for (size_t k = 0; k < sizeof positive / sizeof positive[0]; k++) {
+    static const int positive[] = {KP, W, L, RDS, N, BV, MTRIODE, TOX, UO, IS};
+    static const int other[] = {RD, RS, RON, RB, VCE0, VDIODE, RDIODE, IS};
+    /* IS=0: no body diode; the breakdown is one of that diode, and a base is one */
+    const bool may_lack_diode = usage != BIPOLAR_USAGE && isinf(p[BV].value);
+    const size_t n_positive = sizeof positive / sizeof positive[0] - (may_lack_diode ? 1 : 0);
+    for (size_t k = 0; k < n_positive; k++) {
         if (!(p[positive[k]].value > 0)) {
             dalcs_builder_error(builder, p[positive[k]].place, usage, "'%s' must be positive",
                                 p[positive[k]].name);
@@ -143,7 +146,8 @@ static double saturating_of(const struct dalcs_parameter *p, const struct dalcs_
 static void set_diode(struct dalcs_transistor *t, const struct dalcs_parameter *p) {
     const bool is_of_igbt = t->kind == DALCS_IGBT;
     t->drop = p[VDIODE].value;
-    t->has_diode = !is_of_igbt || p[VDIODE].place != NULL || p[RDIODE].place != NULL;
+    t->has_diode =
+        is_of_igbt ? p[VDIODE].place != NULL || p[RDIODE].place != NULL : p[IS].value > 0;
     t->diode = (struct dalcs_diode_card){.ilimit = (double)INFINITY,
                                          .revilimit = (double)INFINITY,
                                          .saturation = p[IS].value,
@@ -214,6 +218,7 @@ struct dalcs_transistor *dalcs_transistor_parse_model(struct dalcs_reader *reade
                                                               : DALCS_MOSFET,
                                    .name = name->text,
                                    .is_p = is_p,
+                                   .is_lateral = !vdmos && !igbt && !is_bipolar(type),
                                    .threshold = p[VTO].value,
                                    .gain = gain_of(p, type),
                                    .saturating = saturating_of(p, type),

@@ -264,7 +264,8 @@ static enum dalcs_status judge(struct dalcs_run *r, struct point *p,
                                                .abstol = r->radau.abstol,
                                                .are_gates_restless =
                                                    !dalcs_logic_run_is_at_rest(point->logic),
-                                               .remembers = point->remembers};
+                                               .remembers = point->remembers,
+                                               .has_own_lines = true};
     struct dalcs_table_audit found;
     DALCS_TRY(dalcs_file_audit(p->circuit, &p->table, &promise, &p->arena, &r->s->diag, &found));
     const struct dalcs_table_law *law = worst_of(p, &found);

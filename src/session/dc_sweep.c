@@ -268,7 +268,8 @@ static enum dalcs_status run_point(struct sweep *s) {
         blame_point(s);
         status = DALCS_E_NETLIST;
     } else {
-        status = solve_network(s, &circuit, &network);
+        status = dalcs_operating_currents_keep(&circuit, &network, &r->s->circuit, &r->s->diag);
+        status = status == DALCS_OK ? solve_network(s, &circuit, &network) : status;
     }
     dalcs_network_finish(&network);
     dalcs_circuit_finish(&circuit);

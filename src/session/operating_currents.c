@@ -45,13 +45,14 @@ static enum dalcs_status part_models(struct dalcs_circuit *c, int n) {
 }
 
 enum dalcs_status dalcs_operating_currents_keep(struct dalcs_circuit *to,
-                                                const struct dalcs_circuit *from, bool *any) {
+                                                struct dalcs_network *network,
+                                                const struct dalcs_circuit *from,
+                                                struct dalcs_diag *diag) {
     int n = 0;
     for (int k = 0; k < to->n_devices; k++) {
         n += dalcs_exponential_of(to, k) != NULL ? 1 : 0;
     }
-    *any = n > 0 && from->n_devices == to->n_devices;
-    if (!*any) {
+    if (n == 0 || from->n_devices != to->n_devices) {
         return DALCS_OK;
     }
     DALCS_TRY(part_models(to, n));
@@ -63,7 +64,9 @@ enum dalcs_status dalcs_operating_currents_keep(struct dalcs_circuit *to,
                                    was->back_at);
         }
     }
-    return DALCS_OK;
+    const struct dalcs_network_options again = {.silent = true, .with_readout = true};
+    dalcs_network_finish(network);
+    return dalcs_network_build(network, to, &again, diag);
 }
 
 /* Without a forward voltage, and with the breakdown that the card says. */

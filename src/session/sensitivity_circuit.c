@@ -29,23 +29,16 @@ enum dalcs_status dalcs_sensitivity_build(struct dalcs_sensitivities *s,
                                           const struct dalcs_override *override, size_t n,
                                           struct dalcs_session *other) {
     struct dalcs_session *of = s->run->s;
-    bool any;
     other->name = of->name;
     other->asks.steady = of->asks.steady;
     DALCS_TRY(dalcs_session_build(of, override, n, &other->circuit, &other->network));
     other->has_circuit = other->has_network = true;
     other->circuit.analyses.sensitivity.present = false;
     other->circuit.analyses.periodic.present = true;
-    DALCS_TRY(dalcs_operating_currents_keep(&other->circuit, &of->circuit, &any));
-    if (any) {
-        const struct dalcs_network_options again = {.silent = true, .with_readout = true};
-        dalcs_network_finish(&other->network);
-        const enum dalcs_status status =
-            dalcs_network_build(&other->network, &other->circuit, &again, &other->diag);
-        other->has_network = status == DALCS_OK;
-        return status;
-    }
-    return DALCS_OK;
+    const enum dalcs_status status = dalcs_operating_currents_keep(
+        &other->circuit, &other->network, &of->circuit, &other->diag);
+    other->has_network = status == DALCS_OK;
+    return status;
 }
 
 enum dalcs_status dalcs_sensitivity_run(struct dalcs_sensitivities *s, struct dalcs_session *other,

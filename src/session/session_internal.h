@@ -225,10 +225,12 @@ enum dalcs_status dalcs_operating_currents(struct dalcs_session *session,
                                            const struct dalcs_run_options *options,
                                            const struct dalcs_sink *sink) DALCS_MUST_CHECK;
 
-/* The same circuit with another value has its tangents at the same currents. *any: its network is to be built again. */
+/* The same circuit with another value has its tangents at the same currents; its network is built again where it has
+ * exponential diodes. After an error there is none. */
 enum dalcs_status dalcs_operating_currents_keep(struct dalcs_circuit *to,
+                                                struct dalcs_network *network,
                                                 const struct dalcs_circuit *from,
-                                                bool *any) DALCS_MUST_CHECK;
+                                                struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 /* Runs one analysis of the session's circuit. */
 enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,

@@ -209,10 +209,50 @@ def steps(checker, program):
             checker.close(found, wanted, 1e-9, "a step")
 
 
+def lines_of(stderr):
+    """Vfwd and Ron of each diode, from the note that names them."""
+    return {name: (float(volts), float(ohms)) for name, volts, ohms in
+            re.findall(r"'(\w+)' at [-+.e\d]+ A \(Vfwd = ([-+.e\d]+) V, Ron = ([-+.e\d]+) ohm\)", stderr)}
+
+
+# what is swept, over what, the rest of the circuit; the current of d1 at x, from its line and from those of all
+CURVES = (
+    ("v1", "-1 1 10m", "v1 a 0 0\nd1 a 0 d", lambda x, v, r, _: max(0, (x - v) / r)),
+    ("v1", "0 0.9 50m", "v1 a 0 0\nd1 a 0 d\n.options reltol=1e-9", lambda x, v, r, _: max(0, (x - v) / r)),
+    ("v1", "0 40 0.5", "v1 in 0 0\nr1 in a 100\nd1 a 0 d", lambda x, v, r, _: max(0, (x - v) / (r + 100))),
+    ("v1", "-5 5 0.25", "v1 in 0 0\nr1 in a 1meg\nd1 a 0 d", lambda x, v, r, _: max(0, (x - v) / (r + 1e6))),
+    ("v1", "5 -5 -0.25", "v1 in 0 0\nr1 in a 1k\nd1 0 b d\nv2 b a 0", lambda x, v, r, _: max(0, (-x - v) / (r + 1e3))),
+    ("i1", "0 1m 50u", "i1 0 a 0\nd1 a 0 d", lambda x, v, r, _: x),
+    ("i1", "0 20 1", "i1 0 a 0\nd1 a b d\nr1 b 0 10m\nr2 a 0 1k",
+     lambda x, v, r, _: max(0, (1e3 * x - v) / (1e3 + r + 10e-3))),
+    ("r1", "100 1k 100", "v1 in 0 5\nr1 in a 1k\nd1 a 0 d", lambda x, v, r, _: (5 - v) / (r + x)),
+    ("r1", "1meg 10meg 1meg", "v1 in 0 5\nr1 in a 1meg\nd1 a 0 d", lambda x, v, r, _: (5 - v) / (r + x)),
+    ("v1", "0 3 0.1", "v1 in 0 0\nr1 in a 50\nd1 a b d\nd2 b 0 d",
+     lambda x, v, r, all_: max(0, (x - v - all_["d2"][0]) / (r + all_["d2"][1] + 50))),
+    ("v1", "0 0.9 20m", "v1 a 0 0\nd1 a 0 d\nd2 a 0 e\n.model e d(is=1n rs=1)", lambda x, v, r, _: max(0, (x - v) / r)),
+)
+
+
+def curves(checker, program):
+    """A .dc is on one line at all of its points, that of the currents which it carries as a whole, and its audit is on it too."""
+    for what, points, cards, wanted in CURVES:
+        for model in ("d(is=2.52n rs=0.568 n=1.752)", "d(is=1e-12 rs=50m)", "d(is=1u rs=1 n=1.1)"):
+            name = f"a curve over {what}, {cards}, {model}"
+            done = run(program, f"curve\n{cards}\n.model d {model}\n.dc {what} {points}\n.save i(d1)\n.end\n", method=None,
+                       options=("--audit", "full"), report=False, quiet=False)
+            checker.check(done.status == 0, f"{name}: {done.stderr}")
+            lines = lines_of(done.stderr)
+            if done.status != 0 or "d1" not in lines:
+                continue
+            found = done.column("i(d1)")
+            for x, i in zip(done.column(done.names[0]), found):
+                checker.close(i, wanted(x, *lines["d1"], lines), 1e-3 * max(map(abs, found)), f"{name} at {x}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("diodes")
-    for part in (table, places, closed_form, steps, currents):
+    for part in (table, places, closed_form, steps, curves, currents):
         part(checker, program)
     return checker.finish()
 
