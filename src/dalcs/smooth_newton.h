@@ -60,10 +60,16 @@ void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double 
 /* Lines were changed: what phi does to the arguments is not known any more, and excuses none of them. */
 void dalcs_smooth_newton_forget(struct dalcs_smooth_newton *newton);
 
-/* Lines g that are those of the tangents at x[n_smooth][2], as far as these are finite, where one differs from the present
+/* Arguments, what parts of formulas among them are made of (NULL: nobody knows), and the largest V and A so far. */
+struct dalcs_smooth_seen {
+    const double (*x)[2], (*terms)[2]; /* [n_smooth] */
+    double largest[2];
+};
+
+/* Lines g that are those of the tangents at what was seen, as far as these are finite, where one differs from the present
  * one by a factor beyond ten, or rounding of the present one hides a function that is something beside scale[2], the largest
  * V and A: what was solved with the others is to be forgotten, phi[n_smooth] is those that go with x. */
-bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double volt,
+bool dalcs_smooth_retangent(const struct dalcs_system *system, const struct dalcs_smooth_seen *seen,
                             const double *scale, double *phi);
 
 /* Lines as good as any before anything is known: of all functions, or of those that start on one, which say what flux

@@ -45,17 +45,29 @@ static void find_lines(const struct dalcs_smooth_input *of, const double *gradie
     line[1] = is_one ? 0.0 : gradient[1];
 }
 
+/* What argument j is made of: a part of a formula of its own terms, a signal of the circuit of the largest of its unit. */
+static double made_of(const struct dalcs_system *s, const struct dalcs_smooth_seen *seen, int k,
+                      int j) {
+    const int column = s->smooth[k].column[j];
+    const bool has_terms = column >= 0 && s->is_part[column] && seen->terms != NULL;
+    return column < 0  ? 0.0
+           : has_terms ? seen->terms[k][j]
+                       : seen->largest[s->column_is_current[column]];
+}
+
 /* Those at x, as far as they are finite and not 0, else the present ones. Returns by how much the steepest is steeper; of
  * a product also by how much it is flatter: i R, of a resistance that falls, is next to the line of the R before a small
  * difference of large numbers. A diode that blocks is flat as well, but there nothing else is as small. A root's is no steeper
- * than at 1: near 0 its tangent is steep for no longer than it is near. One of what is rounding beside `volt`, the largest
- * V, is one of 0; a product has no line of what is. */
-static double find_tangent(const struct dalcs_smooth_input *of, const double *x, double volt,
-                           double *line) {
+ * than at 1: near 0 its tangent is steep for no longer than it is near. One of what is rounding beside the largest
+ * V is one of 0. A product has its other factor for a line, but none that is rounding beside what that is made of. */
+static double find_tangent(const struct dalcs_system *s, const struct dalcs_smooth_seen *seen,
+                           int k, double *line) {
+    const struct dalcs_smooth_input *of = &s->smooth[k];
+    const double *x = seen->x[k];
     double gradient[2];
     double steeper = 0.0;
     dalcs_smooth_gradient(of->kind, (const double[]){0.0, x[1]}, gradient);
-    if (!isinf(gradient[0]) || fabs(x[0]) > dalcs_rounded * volt) {
+    if (!isinf(gradient[0]) || fabs(x[0]) > dalcs_rounded * seen->largest[0]) {
         dalcs_smooth_gradient(of->kind, x, gradient);
     }
     const double exponent = dalcs_smooth_root_exponent(of);
@@ -64,7 +76,8 @@ static double find_tangent(const struct dalcs_smooth_input *of, const double *x,
     for (int j = 0; j < 2; j++) {
         const double present = dalcs_smooth_line(of, j);
         const bool is_product = of->kind == DALCS_SMOOTH_PRODUCT;
-        const bool is_rounding = is_product && fabs(line[j]) <= dalcs_rounded * volt;
+        const bool is_rounding =
+            is_product && fabs(line[j]) <= dalcs_rounded * made_of(s, seen, k, 1 - j);
         const bool is_one =
             of->entry[j] != NULL && isfinite(line[j]) && line[j] != 0.0 && !is_rounding;
         const bool counts_flatter = is_one && is_product;
@@ -101,20 +114,20 @@ static bool is_hidden(const struct dalcs_smooth_input *of, const double *x, cons
     return f > dalcs_nothing * scale && dalcs_answer_rounded * steeper > dalcs_nothing * f;
 }
 
-bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double volt,
+bool dalcs_smooth_retangent(const struct dalcs_system *system, const struct dalcs_smooth_seen *seen,
                             const double *scale, double *phi) {
     double line[2];
     bool is_due = false;
     for (int k = 0; k < system->n_smooth && !is_due; k++) {
         const struct dalcs_smooth_input *of = &system->smooth[k];
-        is_due = find_tangent(of, x[k], volt, line) > dalcs_beyond ||
-                 is_hidden(of, x[k], line, scale[system->row_is_current[of->row]]);
+        is_due = find_tangent(system, seen, k, line) > dalcs_beyond ||
+                 is_hidden(of, seen->x[k], line, scale[system->row_is_current[of->row]]);
     }
     for (int k = 0; k < system->n_smooth && is_due; k++) {
         const struct dalcs_smooth_input *of = &system->smooth[k];
-        (void)find_tangent(of, x[k], volt, line);
+        (void)find_tangent(system, seen, k, line);
         put_lines(of, line);
-        dalcs_smooth_take_rest(of, x[k], &phi[k]);
+        dalcs_smooth_take_rest(of, seen->x[k], &phi[k]);
     }
     return is_due;
 }
@@ -144,14 +157,15 @@ bool dalcs_smooth_starts_on_lines(const struct dalcs_system *system) {
 
 void dalcs_smooth_starting_tangents(const struct dalcs_system *system, double (*x)[2],
                                     double *phi) {
+    const struct dalcs_smooth_seen seen = {.x = (const double(*)[2])x};
     double line[2];
     for (int k = 0; k < system->n_smooth; k++) {
         const struct dalcs_smooth_input *of = &system->smooth[k];
         if (of->starts_on_line) {
             put_nominal_line(of);
-            (void)find_tangent(of, of->start, 0.0, line);
-            put_lines(of, line);
             memcpy(x[k], of->start, sizeof(of->start));
+            (void)find_tangent(system, &seen, k, line);
+            put_lines(of, line);
             dalcs_smooth_take_rest(of, x[k], &phi[k]);
         }
     }

@@ -78,8 +78,11 @@ bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, const double *y) {
         raise_largest(p->system, y, largest);
     }
     struct dalcs_smooth_newton *n = p->smooth.newton;
-    const double volt = fmax(n->volt, p->smooth.largest[0]);
-    if (!dalcs_smooth_retangent(p->system, n->x, volt, largest, n->phi)) {
+    const struct dalcs_smooth_seen seen = {
+        (const double(*)[2])n->x,
+        (const double(*)[2])n->terms,
+        {fmax(n->volt, p->smooth.largest[0]), p->smooth.largest[1]}};
+    if (!dalcs_smooth_retangent(p->system, &seen, largest, n->phi)) {
         return false;
     }
     forget(p);
