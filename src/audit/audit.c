@@ -217,10 +217,10 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
         audit_check_crossing(audit, part, &audit->state.before, &audit->state.now);
         audit->budget.credit -= part->cost;
     }
-    part->at.lateness = 0.0;
     if (!part->has_entered && stretch->from == 0.0) {
         audit_check_start(audit, part, &audit->state.now, stretch->stored);
     }
+    part->at.lateness = 0.0;
     part->watch->saw_beginning = true;
     part->has_entered = true;
     part->is_open = false;

@@ -51,6 +51,14 @@ void audit_check_directions(struct dalcs_audit *audit, const struct audit_part *
                             const struct dalcs_audit_state *before,
                             const struct dalcs_audit_state *after);
 
+/* corners.c: from here on, until audit->crossing.corners.later is NULL, corners are as wide as they are known. */
+void audit_widen_corners(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *after);
+double audit_volts_off_corner(const struct dalcs_audit *audit,
+                              const struct dalcs_audit_state *after, int device);
+double audit_amperes_off_corner(const struct dalcs_audit *audit,
+                                const struct dalcs_audit_state *after, int device);
+
 /* impulses.c: nodes whose potential may be an impulse, as what reads a current that is one makes it. */
 void audit_find_impulses(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *before,

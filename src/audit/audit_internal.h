@@ -130,8 +130,14 @@ struct dalcs_audit {
         double *offset; /* [n_nodes] likewise */
         double *stored; /* [n_devices] V, A: of capacitors and coils, before */
         int *tie; /* [n_nodes] impulses.c: whose impulse of voltage it has; 0: ground's, none */
-        bool *has_impulse; /* [n_nodes] likewise */
-        bool coils_jump;   /* and E, G or a formula may read the voltage across one */
+        bool *has_impulse;        /* [n_nodes] likewise */
+        bool coils_jump;          /* and E, G or a formula may read the voltage across one */
+        bool is_first_try, holds; /* what does not hold is found at the second */
+
+        struct audit_corners {
+            const struct dalcs_audit_state *later; /* NULL: corners are read as they are */
+            double volts, amperes; /* what rounding makes of what amplifiers put out */
+        } corners;
     } crossing;
 
     struct audit_worst {
@@ -264,6 +270,10 @@ double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *p
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time);
 
+/* findings.c: what a node gained; put off where the jump is asked again. */
+void audit_find_charge(struct dalcs_audit *audit, const struct audit_part *part, int node,
+                       double defect, double scale, double time);
+
 /* The same of the flux of a coil across an instant. It has a scale of its own: what fluxes over an interval are held to
  * grows with that, and with the largest voltage that has ever been: beside a spike of 1e10 V any jump would be nothing. */
 void audit_find_flux(struct dalcs_audit *audit, const struct audit_part *part, int device,
@@ -285,6 +295,10 @@ extern const double audit_gauss_node[AUDIT_GAUSS], audit_gauss_weight[AUDIT_GAUS
 /* How far the argument of a jump of a formula is from its knot, over its scale: of the nearest. INFINITY: it has none. */
 double audit_jump_beside(const struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *s, int device);
+
+/* formulas.c: of the sums that a formula without smooth functions is made of, the terms of the largest one, added up. */
+double audit_formula_terms(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *s, int device);
 
 /* formulas.c, laws.c */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,

@@ -72,7 +72,8 @@ int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_par
     case DALCS_DIODE: {
         const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
         const double v = audit_voltage(after, d);
-        const double allowed = part->tolerance * audit_volts(audit, part, d->node[0], d->node[1]);
+        const double allowed = part->tolerance * audit_volts(audit, part, d->node[0], d->node[1]) +
+                               audit_volts_off_corner(audit, after, device);
         return (m->ron == 0.0 && v >= m->vfwd - allowed ? AUDIT_FORWARD : 0) |
                (m->rrev == 0.0 && v <= -m->vrev + allowed ? AUDIT_BACKWARD : 0);
     }
@@ -108,7 +109,8 @@ static bool bounds_voltage(const struct dalcs_audit *audit, const struct audit_p
         const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
         return !audit_has_impulse(audit, d) &&
                (isfinite(m->roff) || isfinite(m->vrev) ||
-                after->i[device] > part->tolerance * audit_amperes(audit, part, device));
+                after->i[device] > part->tolerance * audit_amperes(audit, part, device) +
+                                       audit_amperes_off_corner(audit, after, device));
     }
     default: /* I, E, F, G, H, formulas: whatever their controls have */
         return false;
@@ -218,7 +220,7 @@ static void check_charge(struct dalcs_audit *audit, const struct audit_part *par
             off -= off > part->tolerance * scale
                        ? audit_charge_unresolved(audit, part, after, audit_is_in_cluster, node)
                        : 0.0;
-            audit_find(audit, part, DALCS_AUDIT_KCL, node, off, scale, after->t);
+            audit_find_charge(audit, part, node, off, scale, after->t);
         }
     }
 }
@@ -291,9 +293,9 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
 
 /* ---- Both --------------------------------------------------------------------------------------- */
 
-void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
-                      const struct dalcs_audit_state *before,
-                      const struct dalcs_audit_state *after) {
+static void check_both(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *before,
+                       const struct dalcs_audit_state *after) {
     audit_find_impulses(audit, part, before, after);
     check_charge(audit, part, before, after);
     if (before != after) {
@@ -301,6 +303,21 @@ void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
     }
     check_flux(audit, part, before, after);
     audit_forget_impulses(audit, part);
+}
+
+/* Where corners are read as they are, most jumps hold. What does not is asked again, with what corners may be off by. */
+void audit_check_jump(struct dalcs_audit *audit, const struct audit_part *part,
+                      const struct dalcs_audit_state *before,
+                      const struct dalcs_audit_state *after) {
+    audit->crossing.is_first_try = true;
+    audit->crossing.holds = true;
+    check_both(audit, part, before, after);
+    audit->crossing.is_first_try = false;
+    if (!audit->crossing.holds) {
+        audit_widen_corners(audit, part, after);
+        check_both(audit, part, before, after);
+        audit->crossing.corners.later = NULL;
+    }
 }
 
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,

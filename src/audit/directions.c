@@ -82,7 +82,7 @@ static void check_set(struct dalcs_audit *audit, const struct audit_part *part,
     double off = charge - AUDIT_ROUNDING * scale;
     off -= off > part->tolerance * scale ? audit_charge_unresolved(audit, part, after, is_in_set, 1)
                                          : 0.0;
-    audit_find(audit, part, DALCS_AUDIT_KCL, node, off, scale, after->t);
+    audit_find_charge(audit, part, node, off, scale, after->t);
 }
 
 /* Of each node: the charge that it gained, in crossing.offset, and what that is held to, in sums.scale. */

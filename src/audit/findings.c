@@ -49,8 +49,27 @@ void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum d
     note(&audit->worst_of[law][index], defect, scale, time);
 }
 
+/* Is it found without what corners may be off by? Then it is asked again. */
+static bool waits(struct dalcs_audit *audit, const struct audit_part *part, double defect,
+                  double scale) {
+    const bool does =
+        audit->crossing.is_first_try && !(audit_ratio(defect, scale) <= part->tolerance);
+    audit->crossing.holds = audit->crossing.holds && !does;
+    return does;
+}
+
+void audit_find_charge(struct dalcs_audit *audit, const struct audit_part *part, int node,
+                       double defect, double scale, double time) {
+    if (!waits(audit, part, defect, scale)) {
+        audit_find(audit, part, DALCS_AUDIT_KCL, node, defect, scale, time);
+    }
+}
+
 void audit_find_flux(struct dalcs_audit *audit, const struct audit_part *part, int device,
                      double defect, double scale, double time) {
+    if (waits(audit, part, defect, scale)) {
+        return;
+    }
     if (part->at.is_coarse) {
         find_coarse(audit, DALCS_AUDIT_BRANCH, device, audit_ratio(defect, scale), time);
         return;

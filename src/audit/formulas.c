@@ -196,6 +196,20 @@ double audit_jump_beside(const struct dalcs_audit *audit, const struct audit_par
     return least;
 }
 
+double audit_formula_terms(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
+    double most = 0.0;
+    for (int k = -1; k < b->n_pairs; k++) {
+        double size;
+        double terms;
+        (void)affine_value(audit, part, s, device, false, k < 0 ? &b->output : &b->w[k], &size,
+                           &terms);
+        most = fmax(most, size);
+    }
+    return most;
+}
+
 /* Signs and complementarity. In a part of a formula they are those of what the run has there: how near that is to what
  * the formula says is in the value of the whole. */
 static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,

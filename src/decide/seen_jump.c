@@ -14,9 +14,12 @@
 #include <string.h>
 
 /* part->work.after becomes the limit of what micro-steps of length h and h/2 see, `whole` of the former. Returns what may be
- * left of it, over what is allowed: it is of second order, the square of what they differ by over the jump, and 1 is the
- * tolerance of its scale. A small change that is no jump differs by half of itself. */
+ * left of it, over what is allowed, where 1 is the tolerance of its scale. It is of second order, the square of what they
+ * differ by over the jump; a small change that is no jump differs by half of itself. Behind pairs that end in two modes
+ * there is no order: behind a gain rounding may hold a diode at its knee for the shorter ones. */
 static double extrapolate_lengths(const struct dalcs_radau_part *part, const double *whole) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const bool is_smooth = dalcs_mode_is(p->mode, part->work.mode_longer, p->n_words);
     double *after = part->work.after;
     double left = 0.0;
     for (int x = 0; x < part->component->system->n_x; x++) {
@@ -24,8 +27,8 @@ static double extrapolate_lengths(const struct dalcs_radau_part *part, const dou
                                                    fmax(fabs(part->x[x]), fabs(after[x])));
         double differ = after[x] - whole[x];
         after[x] += differ;
-        double allowed = most * fmax(fabs(after[x] - part->x[x]), most);
-        left = differ != 0.0 ? fmax(left, differ * differ / allowed) : left;
+        double order = fabs(differ) / fmax(fabs(after[x] - part->x[x]), most);
+        left = differ != 0.0 ? fmax(left, fabs(differ) / most * (is_smooth ? order : 1.0)) : left;
     }
     return left;
 }
@@ -40,6 +43,8 @@ static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part
     double closer;
     DALCS_TRY(dalcs_micro_pair(r, part, h, goes_on * h));
     (void)dalcs_micro_extrapolate(part, whole, &noticeable, &closer);
+    memcpy(part->work.mode_longer, part->component->osnsp.mode,
+           (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
     h *= 0.5;
     DALCS_TRY(dalcs_micro_pair(r, part, h, goes_on * h));
     *is_seen = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);

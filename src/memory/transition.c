@@ -45,12 +45,13 @@ enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
     part->memory.modes_before = dalcs_arena_alloc(&part->arena, 2 * words, sizeof(uint64_t));
     part->work.mode_tied = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
     part->work.mode_turned = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
+    part->work.mode_longer = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
     part->work.mode_before = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
     part->work.mode_first = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
     part->memory.beginning[0] = part->memory.beginning[1] = (struct dalcs_beginning){INT_MIN, 0, 1};
     bool complete = part->memory.modes_before != NULL && part->work.mode_tied != NULL &&
-                    part->work.mode_turned != NULL && part->work.mode_first != NULL &&
-                    part->work.mode_before != NULL;
+                    part->work.mode_turned != NULL && part->work.mode_longer != NULL &&
+                    part->work.mode_first != NULL && part->work.mode_before != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 

@@ -144,6 +144,7 @@ struct dalcs_part_work {
     double *before; /* [n_x] the state before a jump, while the one behind is looked for */
     uint64_t *mode_tied, *mode_turned;
     uint64_t *mode_first;  /* of the first of two micro-steps */
+    uint64_t *mode_longer; /* behind two micro-steps of twice the length */
     uint64_t *mode_before; /* of a jump of sources */
 };
 

@@ -130,6 +130,26 @@ rq q out 1k
 .tran 5m 20m uic
 """
 
+CLAMP = """a clamp with a gain of 1e3
+v1 in 0 SIN(0 5 1k)
+r1 in x 1k
+e1 o 0 value={limit(1e3*(2-v(x)),-12,12)}
+d1 x o di
+c1 x 0 10n ic=3
+.model di D()
+.tran 1u 4m uic
+"""
+
+LIMIT = """a limit of a coil's current with a gain of 1e3
+l1 a m 10m ic=3
+r1 m s 100
+vs s 0 0
+b1 0 a I=limit(1e3*(2-i(vs)),-12,12)
+d1 a 0 di
+.model di D()
+.tran 1u 4m uic
+"""
+
 SHORT = BUCK.replace(".tran 5m 5m uic", ".tran 10u 100u uic")
 
 APART = """a buck beside a part of its own: no periods are leapt over
@@ -360,6 +380,10 @@ MUTATIONS = {
                         "{ part->segment.out[k] *= 1.00001; }"), SATURABLE),
     "a coil jumps beside a kick of 1e10 V": (
         "decide/seen_jump.c", "r->base->jump.is_first || !is_near;", "r->base->jump.is_first;", KICK),
+    "a capacitor jumps 1e-4 beyond a clamp with a gain": (
+        "decide/seen_jump.c", "after[x] += differ;", "after[x] = (after[x] + differ) * (1.0 - 1e-4);", CLAMP),
+    "a coil jumps 1e-4 beyond a limit with a gain": (
+        "decide/seen_jump.c", "after[x] += differ;", "after[x] = (after[x] + differ) * (1.0 - 1e-4);", LIMIT),
     "one leap of many is nudged by 1e-6": (
         "memory/cycle_leap.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",
         "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n"

@@ -71,6 +71,24 @@ CIRCUITS = {
     "initial voltages that cannot be": (
         "v1 a 0 5\nc1 a b 1u ic=1\nc2 b 0 2u ic=1\nc3 c 0 1u ic=9\nd1 c b\nl1 d 0 1m ic=1\nl2 d e 2m ic=0\nr1 e 0 1k\n"
         ".tran 20u 3m uic\n", [], {}),
+    "a clamp with a gain of 1e3 that a capacitor jumps to": (
+        "v1 in 0 SIN(0 5 1k)\nr1 in x 1k\ne1 o 0 value={limit(1e3*(2-v(x)),-12,12)}\nd1 x o d\nc1 x 0 10n ic=3\n"
+        ".tran 1u 4m uic\n", [], {("v(x)", 0.0): 2000.0 / 1001.0}),
+    "a clamp with a gain of 1e5 that it leaves at once": (
+        "v1 in 0 SIN(0 5 1k)\nr1 in x 1k\ne1 o 0 value={1e5*(2-v(x))}\nd1 x o d\nc1 x 0 10n ic=3\n.tran 10u 20m uic\n",
+        [], {("v(x)", 0.0): 2e5 / 100001.0}),
+    "a window of two clamps": (
+        "v1 in 0 5\nr1 in x 10k\ne1 o 0 value={limit(1e5*(2-v(x)),-12,12)}\ne2 p 0 value={limit(1e5*(1-v(x)),-12,12)}\n"
+        "d1 x o d\nd2 p x d\nc1 x 0 1n ic=-7\n.tran 10u 20m uic\n", [], {("v(x)", 0.0): 1e5 / 100001.0}),
+    "a clamp between two capacitors": (
+        "c1 x 0 10n ic=3\nc2 x y 10n ic=-1\ne1 o 0 value={1e5*(1-v(y))}\nd1 y o d\nr2 x 0 2k\nr3 y 0 1k\n"
+        ".tran 10u 20m uic\n", [], {("v(y)", 0.0): 1e5 / 100001.0}),
+    "a clamp with a gain of 1e7 and nothing that moves": (
+        "vr r 0 2.658704\ne1 o 0 r x 1e7\nd1 x o d\nc1 x 0 44.9n ic=5.411737\n.tran 10u 20m uic\n", [],
+        {("v(x)", 0.0): 2.658704e7 / 10000001.0}),
+    "a coil that jumps to a limit of current with a gain of 1e6": (
+        "l1 a m 3.984322u ic=5.769\nr1 m s 1392.454695\nvs s 0 1.261885\nb1 0 a I=limit(1e6*(1.9-i(vs)),-20,20)\n"
+        "d1 a 0 d\n.tran 10u 20m uic\n", [], {}),
     "perfectly coupled coils with initial currents": (
         "l1 a 0 1m ic=1\nl2 b 0 4m ic=0.5\nk1 l1 l2 1\nr1 a 0 10\nr2 b 0 10\n.tran 20u 3m uic\n", [], {}),
     "capacitors that a gate through E and B joins": (
