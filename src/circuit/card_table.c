@@ -72,6 +72,11 @@ static const struct dot_card DOT_CARDS[] = {
      "write agauss, aunif, ... in expressions, and .mc with the number of runs", NOTHING, NULL},
     {".embeddedsampling", DALCS_CARD_NONE, "Xyce's samplings",
      "write agauss, aunif, ... in expressions, and .mc with the number of runs", NOTHING, NULL},
+    {".tf", DALCS_CARD_NONE, "transfer functions of an operating point",
+     "the gain is v(out) of .ac list 1u with AC 1 on that source, the input resistance -1/i(v1), "
+     "and "
+     "the output resistance v(out) of a source I1 0 out AC 1 instead",
+     ANALYSES, NULL},
     {".machine", DALCS_CARD_NONE, "state machines",
      "A elements with SRFLOP, DFLOP or COUNTER are flip-flops and counters", ELEMENTS,
      ".endmachine"},
@@ -97,8 +102,7 @@ static const char *const BIAS[] = {".savebias", ".loadbias"};
 static const char RESULT[] = ".result";
 
 /* Analyses that this simulator will not have. */
-static const char *const NEVER[] = {".noise", ".pz", ".disto", ".tf",
-                                    ".sp",    ".hb", ".stab",  ".ferret"};
+static const char *const NEVER[] = {".noise", ".pz", ".disto", ".sp", ".hb", ".stab", ".ferret"};
 
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {

@@ -36,6 +36,19 @@ static bool is_refused(struct dalcs_reader *reader) {
     return true;
 }
 
+/* LTspice's G devices that conduct one way, above a threshold; how they begin to is not documented. */
+static bool is_one_sided(struct dalcs_reader *reader) {
+    const struct dalcs_token *name = dalcs_reader_peek(reader, 0);
+    if (name == NULL || (strcmp(name->text, "vto") != 0 && strcmp(name->text, "dir") != 0)) {
+        return false;
+    }
+    dalcs_builder_error(reader->builder, name,
+                        "of straight lines: Bname node node "
+                        "I=siemens*max(0, v(control,control)-vto)",
+                        "a source that conducts one way (%s) is not supported", name->text);
+    return true;
+}
+
 static bool is_transfer(const struct dalcs_reader *reader) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     return token != NULL && token->kind == DALCS_TOKEN_WORD && strcmp(token->text, "laplace") == 0;
@@ -80,6 +93,9 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
         builder->elements.control_token[device - builder->circuit->device] = source;
     }
     if (dalcs_reader_number(&reader, DALCS_PLAIN, "a gain", &device->value)) {
+        if (is_one_sided(&reader)) {
+            return;
+        }
         device->value *= kind == DALCS_VCCS ? dalcs_parallel_of(card) : 1;
         dalcs_reader_end(&reader);
     }

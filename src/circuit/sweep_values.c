@@ -43,11 +43,12 @@ bool dalcs_sweep_count_values(struct dalcs_builder *builder, const struct dalcs_
         }
     }
     sweep->n = dalcs_sweep_count(sweep->spacing, sweep->start, sweep->stop, sweep->step);
-    if (sweep->n == 0) {
-        dalcs_builder_error(
-            builder, place[2], dalcs_builder_hint(builder, "write %g", -sweep->step),
-            "a step of %g leads away from %g to %g", sweep->step, sweep->start, sweep->stop);
-        return false;
+    if (sweep->n == 0) { /* PSpice goes either way by a step above 0 */
+        sweep->step = -sweep->step;
+        dalcs_builder_warn(builder, place[2], dalcs_builder_hint(builder, "write %g", sweep->step),
+                           "a step of %g leads away from %g to %g: %g is taken", -sweep->step,
+                           sweep->start, sweep->stop, sweep->step);
+        sweep->n = dalcs_sweep_count(sweep->spacing, sweep->start, sweep->stop, sweep->step);
     }
     if (sweep->n < 0) {
         dalcs_builder_error(builder, place[2], NULL, "these are more than %d values",

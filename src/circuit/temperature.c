@@ -87,6 +87,7 @@ double dalcs_coefficients_factor(const struct dalcs_builder *builder,
 void dalcs_temperature_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, ".temp degrees");
     double value;
+    (void)dalcs_reader_take(&reader, DALCS_TOKEN_EQUAL);
     if (!dalcs_reader_list_number(&reader, DALCS_PLAIN, "a temperature", &value)) {
         return;
     }

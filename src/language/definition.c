@@ -259,7 +259,8 @@ enum dalcs_status dalcs_definition_collect(struct dalcs_language *language) {
     }
     while (status == DALCS_OK && c.definition->enclosing != NULL) {
         dalcs_collector_close_conditions(&c);
-        dalcs_collector_error(&c, c.definition->card, "add a line: .ends",
+        dalcs_collector_error(&c, c.definition->card,
+                              "add a line: .ends; .end without an s ends the whole file",
                               "this subcircuit is never closed");
         c.definition = c.definition->enclosing;
         c.depth--;

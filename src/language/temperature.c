@@ -10,10 +10,16 @@ static bool is_word(const struct dalcs_token *token, const char *word) {
     return token->kind == DALCS_TOKEN_WORD && strcmp(token->text, word) == 0;
 }
 
+/* The k-th token, or the one behind it where it is an equal sign; NULL: there is none. */
+static const struct dalcs_token *value_at(const struct dalcs_card *card, int k) {
+    k += k < card->n && card->token[k].kind == DALCS_TOKEN_EQUAL ? 1 : 0;
+    return k < card->n ? &card->token[k] : NULL;
+}
+
 /* The value that a card sets, or NULL. */
 static const struct dalcs_token *set_by(const struct dalcs_card *card) {
     if (is_word(card->token, ".temp")) {
-        return card->n > 1 ? &card->token[1] : NULL;
+        return value_at(card, 1);
     }
     if (!is_word(card->token, ".options") && !is_word(card->token, ".option") &&
         !is_word(card->token, ".opt")) {
@@ -21,8 +27,7 @@ static const struct dalcs_token *set_by(const struct dalcs_card *card) {
     }
     for (int k = 1; k + 1 < card->n; k++) {
         if (is_word(&card->token[k], "temp")) {
-            const int at = card->token[k + 1].kind == DALCS_TOKEN_EQUAL ? k + 2 : k + 1;
-            return at < card->n ? &card->token[at] : NULL;
+            return value_at(card, k + 1);
         }
     }
     return NULL;

@@ -1,9 +1,11 @@
 /* logic_network.c - what gates, flip-flops and samples decide.
  *
- * In a round each one decides from what all showed before it, as in the delta cycles of hardware languages: flip-flops
- * of one clock take what stood before the edge. What a round makes is a function of the state alone, so that a network
- * that does not settle comes back to a state, and one that comes back does not settle: Brent's way finds that without a
- * bound to choose. */
+ * What comes from outside at one instant passes what has no memory first, then latches: a set and a reset may come through
+ * different numbers of gates, and a latch must not keep what one of them was before the other one has come. Then, in a
+ * round, each gate decides from what all showed before it, as in the delta cycles of hardware languages: a reset that
+ * its own output takes away clears all that it reaches. What a clock takes is what stood before the instant. What a round
+ * makes is a function of the state alone, so that a network that does not settle comes back to a state, and one that
+ * comes back does not settle: Brent's way finds that without a bound to choose. */
 #include "logic_network.h"
 
 #include <string.h>
@@ -28,17 +30,25 @@ static void ask_readers(struct dalcs_logic_network *l, int source) {
     }
 }
 
+/* A bit that others read is another one now. */
+static void note_change(struct dalcs_logic_network *l, int source, bool before) {
+    if (l->was[source].instant != l->instant) {
+        l->was[source] = (struct dalcs_logic_was){l->instant, before};
+    }
+    ask_readers(l, source);
+}
+
 void dalcs_logic_touch(struct dalcs_logic_network *l, int gate, bool seen) {
     dalcs_logic_set_add(&l->asked, gate);
     dalcs_logic_set_add(&l->marked, gate);
     dalcs_logic_set_add(&l->moved, gate);
     if (seen) {
-        ask_readers(l, gate);
+        note_change(l, gate, !l->state[gate].seen);
     }
 }
 
 void dalcs_logic_touch_bit(struct dalcs_logic_network *l, int comparator) {
-    ask_readers(l, l->n + comparator);
+    note_change(l, l->n + comparator, !l->bit[comparator]);
 }
 
 void dalcs_logic_touch_all(struct dalcs_logic_network *l) {
@@ -52,6 +62,17 @@ static bool read(const struct dalcs_logic_network *l, const struct dalcs_logic_i
                : input->from == DALCS_GATE_GATE     ? l->state[input->index].seen
                                                     : false;
     return bit != input->is_inverted;
+}
+
+/* As it stood before this instant. */
+static bool read_before(const struct dalcs_logic_network *l,
+                        const struct dalcs_logic_input *input) {
+    if (input->from == DALCS_GATE_OPEN) {
+        return input->is_inverted;
+    }
+    const struct dalcs_logic_was *was =
+        &l->was[input->from == DALCS_GATE_GATE ? input->index : l->n + input->index];
+    return was->instant == l->instant ? was->bit != input->is_inverted : read(l, input);
 }
 
 static bool of_inputs(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g) {
@@ -81,10 +102,12 @@ static bool rises(const struct dalcs_logic_network *l, bool clock,
     return clock && !before->clock && !l->rests;
 }
 
-/* What q becomes where the clock rises. */
+/* What q becomes where the clock rises, or while it is high. */
 static bool next(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g, bool q) {
-    const bool data = read(l, &g->input[DALCS_GATE_DATA]);
-    const bool reset = read(l, &g->input[DALCS_GATE_RESET]);
+    bool (*of)(const struct dalcs_logic_network *, const struct dalcs_logic_input *) =
+        dalcs_gate_is_transparent(g) ? read : read_before;
+    const bool data = of(l, &g->input[DALCS_GATE_DATA]);
+    const bool reset = of(l, &g->input[DALCS_GATE_RESET]);
     return g->kind == DALCS_GATE_TOGGLE                                 ? q != data
            : g->kind == DALCS_GATE_JK                                   ? (q ? !reset : data)
            : g->kind == DALCS_GATE_SR || g->kind == DALCS_GATE_SR_LATCH ? !reset && (data || q)
@@ -166,13 +189,49 @@ static bool is_same(const struct dalcs_logic_state *a, const struct dalcs_logic_
            a->takes == b->takes;
 }
 
+/* Which decide first. A delay ends what others read of a gate at this instant, so that it waits for the last ones. */
+enum rank { WITHOUT_MEMORY, LATCHES, ALL };
+
+static enum rank rank_of(const struct dalcs_logic_gate *g) {
+    if (dalcs_gate_has_delay(g)) {
+        return ALL;
+    }
+    if (g->kind == DALCS_GATE_LATCH || dalcs_gate_is_transparent(g)) {
+        return LATCHES;
+    }
+    return dalcs_gate_has_clock(g) ? ALL : WITHOUT_MEMORY;
+}
+
+static enum rank lowest_asked(const struct dalcs_logic_network *l) {
+    enum rank lowest = ALL;
+    for (int i = 0; i < l->asked.n && lowest > WITHOUT_MEMORY; i++) {
+        const enum rank rank = rank_of(&l->gate[l->asked.gate[i]]);
+        lowest = rank < lowest ? rank : lowest;
+    }
+    return lowest;
+}
+
+/* Those asked up to a rank are those of the next round; the others stay asked. */
+static void take_asked(struct dalcs_logic_network *l, enum rank rank) {
+    int n = 0;
+    for (int i = 0; i < l->asked.n; i++) {
+        const int k = l->asked.gate[i];
+        if (rank_of(&l->gate[k]) <= rank) {
+            l->asked.has[k] = false;
+            dalcs_logic_set_add(&l->round, k);
+        } else {
+            l->asked.gate[n++] = k;
+        }
+    }
+    l->asked.n = n;
+}
+
 /* One round; does anything change? */
-static bool change(struct dalcs_logic_network *l, void *user,
+static bool change(struct dalcs_logic_network *l, enum rank rank, void *user,
                    void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
-    const struct dalcs_logic_set asked = l->asked;
     bool any = false;
-    l->asked = l->round;
-    l->round = asked;
+    take_asked(l, rank);
+    const struct dalcs_logic_set asked = l->round;
     for (int i = 0; i < asked.n; i++) {
         l->next[asked.gate[i]] = decide(l, asked.gate[i]);
     }
@@ -190,6 +249,17 @@ static bool change(struct dalcs_logic_network *l, void *user,
     }
     dalcs_logic_set_clear(&l->round);
     return any;
+}
+
+/* What comes from outside passes those of low rank, without the others. Without a loop each gate is asked no more often than
+ * there are gates before it; a loop may need what waits to break it, in the rounds that follow. */
+static void pass_low(struct dalcs_logic_network *l, void *user,
+                     void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
+    enum rank rank = lowest_asked(l);
+    for (int k = 0; k <= 2 * l->n && rank < ALL; k++) {
+        (void)change(l, rank, user, on_q);
+        rank = lowest_asked(l);
+    }
 }
 
 void dalcs_logic_rest(struct dalcs_logic_network *l) {
@@ -237,27 +307,25 @@ static void set_mark(struct dalcs_logic_network *l) {
     dalcs_logic_set_clear(&l->marked);
 }
 
-static void ignore(void *user, int gate, const struct dalcs_logic_state *next) {
-    (void)user;
-    (void)gate;
+static void note_moves(void *user, int gate, const struct dalcs_logic_state *next) {
+    struct dalcs_logic_network *l = user;
     (void)next;
+    l->moves[gate] = true;
 }
 
 /* Once round. */
 static void find_loop(struct dalcs_logic_network *l) {
     memset(l->moves, 0, (size_t)l->n * sizeof(bool));
     do {
-        (void)change(l, NULL, ignore);
-        for (int k = 0; k < l->n; k++) {
-            l->moves[k] = l->moves[k] || !is_same(&l->state[k], &l->mark[k]);
-        }
+        (void)change(l, ALL, l, note_moves);
     } while (!is_at_mark(l));
 }
 
 bool dalcs_logic_settle(struct dalcs_logic_network *l, void *user,
                         void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
+    pass_low(l, user, on_q);
     set_mark(l);
-    for (long round = 1; change(l, user, on_q); round++) {
+    for (long round = 1; change(l, ALL, user, on_q); round++) {
         if (is_at_mark(l)) {
             find_loop(l);
             return false;

@@ -19,6 +19,12 @@ struct dalcs_logic_set {
     bool *has;    /* [n gates] */
 };
 
+/* What others read of a gate or a comparator, before the instant in which it last changed. */
+struct dalcs_logic_was {
+    long instant;
+    bool bit;
+};
+
 /* What has not changed, and reads nothing that has, decides as before: no round asks it. An instant costs what acts in it,
  * however many gates there are. */
 struct dalcs_logic_network {
@@ -32,6 +38,8 @@ struct dalcs_logic_network {
     struct dalcs_logic_set asked, round; /* to decide in the next round, and in this one */
     struct dalcs_logic_set marked;       /* whose state may differ from its mark */
     struct dalcs_logic_set moved; /* whose state has changed since what it shows was looked at */
+    long instant;                 /* the number of this one, from 1 on */
+    struct dalcs_logic_was *was;  /* [n gates, then comparators] */
     bool rests;                   /* a clock that stands high has not risen */
     bool *moves; /* [n] after a failure: in the loop that does not settle, or not at rest */
 };

@@ -64,7 +64,9 @@ enum dalcs_status dalcs_logic_network_setup(struct dalcs_logic_network *l, int n
     l->next = dalcs_alloc(n, sizeof(*l->next));
     l->mark = dalcs_alloc(n, sizeof(*l->mark));
     l->moves = dalcs_alloc(n, sizeof(*l->moves));
-    if (l->state == NULL || l->next == NULL || l->mark == NULL || l->moves == NULL) {
+    l->was = dalcs_alloc(n + (size_t)n_comparators, sizeof(*l->was));
+    if (l->was == NULL || l->state == NULL || l->next == NULL || l->mark == NULL ||
+        l->moves == NULL) {
         return DALCS_E_NOMEM;
     }
     DALCS_TRY(list_readers(l, n_comparators));
@@ -81,6 +83,7 @@ void dalcs_logic_network_finish(struct dalcs_logic_network *l) {
     free(l->next);
     free(l->mark);
     free(l->moves);
+    free(l->was);
     free(l->first_reader);
     free(l->reader);
     dalcs_logic_set_finish(&l->asked);

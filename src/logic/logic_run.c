@@ -235,7 +235,7 @@ static enum dalcs_status decide(struct dalcs_logic_run *l, double t) {
     if (!l->is_open || l->now != t) {
         l->is_open = true;
         l->now = t;
-        l->instant = ++l->number;
+        l->instant = l->network.instant = ++l->number;
     }
     for (long round = 0; acts; round++) {
         read_bits(l);

@@ -72,6 +72,11 @@ R1 a b 1
 """
 
 ELEMENTS = [
+    Kind("which way a .dc goes", "V1 a 0 1\nI1 0 c 1\nR2 c 0 1\nR1 a b 1k\nR3 b 0 1k\n@\n", ".dc V1 20 -20 -0.2", "v(b)", -10.0, [
+        ".dc V1 20 -20 0.2", ".dc V1 -40 -20 -2", ".dc V1 LIN 20 -20 0.2", ".dc V1 0 -20 5", ".dc V1 -19 -20 1",
+        ".dc V1 20 -20 0.2 I1 0 1 -0.5", ".dc V1 20 -20 40", ".dc LIN V1 20 -20 10", ".dc V1 0.02k -2e1 200m",
+        ".param w=20\n.dc V1 {w} {-w} {w/100}",
+    ], [(".dc V1 20 -20 0", "a step of 0 never reaches")]),
     Kind("attributes of R", DIVIDER, "R1 a b 1k", "v(b)", 5.0, [
         "R1 a b 1k tol=1 pwr=0.1",
         "R1 a b 1k pwr=0.1",
@@ -601,6 +606,7 @@ MODELS += [
         "R1 a b 1070.938 tc1=1m tc2=2u",
         ".param temp=90\nR1 a b 1070.938 tc1=1m",
         ".temp 90\nR1 a b 1070.938",
+        "R1 a b 1k tc=1m,2u\n.temp = 90", ".temp={45*2}\nR1 a b 1k tc=1m,2u", ".TEMP =90\nR1 a b 1k tc=1m,2u",
     ], [("R1 a b 1k tc=1m,2m,3m", "did not expect"), (".temp\nR1 a b 1k", "a temperature is missing")]),
     Kind("a capacitance at a temperature", RISING, "C1 b 0 1m", "v(b)", 1 - math.exp(-1), [
         "C1 b 0 0.8m tc1=0.01 temp=52",
