@@ -149,9 +149,10 @@ static enum dalcs_status finish(struct dalcs_radau *r, struct dalcs_radau_part *
     return DALCS_OK;
 }
 
-/* Shorter and shorter ones. Where a diode turns, a state is off by no more than the step. */
+/* Shorter and shorter ones. Where a diode turns, a state is off by no more than the step. One that starts and is found at no
+ * length has no end to finish, and says nothing of how long the next one is. */
 static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                     struct dalcs_slide_try *of, bool *slides) {
+                                     struct dalcs_slide_try *of, bool starts, bool *slides) {
     const double shortest = dalcs_length_shortest(r);
     const double before = part->length.slide > 0.0 ? part->length.slide : of->h;
     const double least = fmax(shortest, part->inner_tolerance * before);
@@ -177,7 +178,8 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
         }
         take_back(r);
         if (is_last) {
-            return finish(r, part, of, slides);
+            part->length.slide = before;
+            return starts ? DALCS_OK : finish(r, part, of, slides);
         }
         pairs_before = of->slides ? of->pairs : INFINITY;
         of->h *= 0.5;
@@ -195,5 +197,5 @@ enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_par
     if (starts) {
         DALCS_TRY(put_on_threshold(r, part, of.h, slides));
     }
-    return *slides ? find_length(r, part, &of, slides) : DALCS_OK;
+    return *slides ? find_length(r, part, &of, starts, slides) : DALCS_OK;
 }

@@ -255,12 +255,50 @@ def ripple(c):
             c.check(abs(got[f"v{k}"] - volts) <= 2e-8, f"{name}: v(out) at {at} is {got[f'v{k}']}, not {volts}")
 
 
+FLYBACK = """a flyback converter whose rectifier closes by its own voltage, and rings with its leakage
+V1 in 0 48
+Lp in d {{50u*z*w}}
+Ls 0 s {{2u*z*w}}
+K1 Lp Ls 0.99
+Coss d 0 {{200p/z*w}}
+S1 d 0 g 0 sm
+Vg g 0 PULSE(0 5 0 {{10n*w}} {{10n*w}} {{3u*w}} {{10u*w}})
+S2 s o s o srm
+D2 s o dm
+C1 o 0 {{100u/z*w}}
+R1 o 0 {{0.5*z}}
+.model sm SW(Ron={{50m*z}} Roff={{1Meg*z}} Vt=2.5)
+.model srm SW(Ron={{5m*z}} Roff={{1Meg*z}} Vt=0.02)
+.model dm D(Ron={{5m*z}} Vfwd=0.5)
+.param w={w} z={z}
+.tran {{50n*w}} {{4.5u*w}} uic
+.meas tran v FIND v(o) AT={{4.5u*w}}
+.meas tran i FIND i(Ls) AT={{4.5u*w}}
+.end
+"""
+
+
+def false_starts(c, w, z):
+    """Micro-steps slide and no longer step does: it goes on by a step of implicit Euler, not by the shortest there is."""
+    got = []
+    for options in ((), ("--method", "lobatto", "--tol", "1e-8")):
+        outcome = run(sys.argv[1], FLYBACK.format(w=w, z=z), method=None, options=options)
+        if not c.check(outcome.status == 0, f"a flyback, {w}, {z}, {options}: {outcome.stderr}"):
+            return
+        problems = outcome.report["work"]["osnsp"]
+        c.check(problems < 1e6, f"a flyback, {w}, {z}, {options}: {problems} one-step problems")
+        got.append({m["name"]: m["value"] for m in outcome.report["measurements"]})
+    for name, scale in (("v", 1.0), ("i", z)):
+        a, b = (of[name] * scale for of in got)
+        c.check(abs(a - b) <= 1e-3 * abs(b), f"a flyback, {w}, {z}: {name} is {a} and {b}")
+
+
 def main():
     c = Sliding("sliding_switches")
     units = (("volts", 5.0, 1e-3), ("kilovolts", 5e3, 1e3), ("microvolts", 5e-6, 1e-9))
     looks = [(look, size) for size in some_of(SIZES) for look in (current_limit, complementary, moving_threshold)]
     looks += [(look, unit) for unit in some_of(units) for look in (thermostat, inverter, leaves)]
-    for look, of in kinds_of([*looks, (ripple, ())]):
+    for look, of in kinds_of([*looks, (ripple, ()), (false_starts, (1, 1))]):
         look(c, *of)
     return c.finish()
 
