@@ -107,6 +107,9 @@ static const struct dalcs_formula *rewrite(struct dalcs_formula_work *w,
     const bool takes_real_part = dialect == DALCS_DIALECT_LTSPICE || dialect == DALCS_DIALECT_XYCE;
     const struct dalcs_formula *made =
         is_transfer ? formula : dalcs_formula_signed_powers(arena, formula);
+    if (made != NULL && w->variable == NULL) {
+        made = dalcs_formula_pieces(arena, made, dialect);
+    }
     if (made != NULL && w->has_choices && w->variable == NULL) {
         made = dalcs_formula_guard(arena, made);
     }

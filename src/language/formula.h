@@ -46,11 +46,15 @@ bool dalcs_formula_reads_value(const char *text);
 int dalcs_formula_find_control(const struct dalcs_card *card);
 
 /* Formulas written differently, in the arena; NULL: out of memory. The first has pwrs(x, y) where it is sgn(x)*abs(x)^y. The
- * second has values where parts are not chosen, too. The third has functions held in their domains, as in LTspice and Xyce,
+ * second is a sum of smooth functions where it has steps and smooth sides that meet. The third has values where parts are not chosen,
+ * too. The fourth has functions held in their domains, as in LTspice and Xyce,
  * which take the real part beyond. */
 struct dalcs_arena;
 const struct dalcs_formula *dalcs_formula_signed_powers(struct dalcs_arena *arena,
                                                         const struct dalcs_formula *formula);
+const struct dalcs_formula *dalcs_formula_pieces(struct dalcs_arena *arena,
+                                                 const struct dalcs_formula *formula,
+                                                 enum dalcs_dialect_name dialect);
 const struct dalcs_formula *dalcs_formula_guard(struct dalcs_arena *arena,
                                                 const struct dalcs_formula *formula);
 const struct dalcs_formula *dalcs_formula_real_part(struct dalcs_arena *arena,

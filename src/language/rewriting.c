@@ -140,6 +140,37 @@ struct dalcs_formula *dalcs_rewriting_product(struct dalcs_rewriting *r,
     return product;
 }
 
+static bool is_number_of(const struct dalcs_formula *f, double number) {
+    return f != NULL && f->kind == DALCS_FORMULA_NUMBER && f->number == number;
+}
+
+const struct dalcs_formula *dalcs_rewriting_combine(struct dalcs_rewriting *r,
+                                                    const struct dalcs_formula *at,
+                                                    enum dalcs_operation_code code,
+                                                    const struct dalcs_formula *a,
+                                                    const struct dalcs_formula *b) {
+    const double none = code == DALCS_ADD ? 0 : 1;
+    if (a == NULL || b == NULL || is_number_of(a, none) || is_number_of(b, none)) {
+        return a == NULL || b == NULL ? NULL : is_number_of(a, none) ? b : a;
+    }
+    if (code == DALCS_MULTIPLY && (is_number_of(a, 0) || is_number_of(b, 0))) {
+        return is_number_of(a, 0) ? a : b;
+    }
+    struct dalcs_formula *made = dalcs_rewriting_product(r, at, a, b);
+    if (made != NULL) {
+        made->code = code;
+    }
+    return made;
+}
+
+const struct dalcs_formula *dalcs_rewriting_times(struct dalcs_rewriting *r,
+                                                  const struct dalcs_formula *f, double factor) {
+    return f == NULL || factor == 1
+               ? f
+               : dalcs_rewriting_combine(r, f, DALCS_MULTIPLY, dalcs_rewriting_number(r, f, factor),
+                                         f);
+}
+
 static const struct dalcs_formula *rebuild(struct dalcs_rewriting *r, const struct dalcs_formula *f,
                                            const struct dalcs_formula **memo,
                                            dalcs_rewriting_change *change) {

@@ -38,6 +38,16 @@ struct dalcs_formula *dalcs_rewriting_product(struct dalcs_rewriting *r,
                                               const struct dalcs_formula *a,
                                               const struct dalcs_formula *b);
 
+/* a + b or a * b without what adds 0 or multiplies by 0 or 1, and a part times a number; NULL: out of memory, also where an
+ * argument is. */
+const struct dalcs_formula *dalcs_rewriting_combine(struct dalcs_rewriting *r,
+                                                    const struct dalcs_formula *at,
+                                                    enum dalcs_operation_code code,
+                                                    const struct dalcs_formula *a,
+                                                    const struct dalcs_formula *b);
+const struct dalcs_formula *dalcs_rewriting_times(struct dalcs_rewriting *r,
+                                                  const struct dalcs_formula *f, double factor);
+
 /* The formula with each part, from the innermost on, as `change` makes it: f itself, or another one. NULL: out of memory. */
 typedef const struct dalcs_formula *dalcs_rewriting_change(struct dalcs_rewriting *r,
                                                            const struct dalcs_formula *f);

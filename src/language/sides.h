@@ -1,0 +1,24 @@
+/* sides.h - sums of parts of one quantity, side by side. Private to this folder. */
+#ifndef DALCS_SIDES_H
+#define DALCS_SIDES_H
+
+#include "kinks.h"
+
+enum { DALCS_SIDES_MOST_TERMS = 64 };
+
+/* A sum of parts, each with a factor: those that have kinks of the quantity, and others. */
+struct dalcs_sides_terms {
+    int n;
+    const struct dalcs_formula *part[DALCS_SIDES_MOST_TERMS];
+    double factor[DALCS_SIDES_MOST_TERMS];
+    bool has_kink[DALCS_SIDES_MOST_TERMS];
+};
+
+/* The terms with kinks as a sum of smooth functions, which each read the quantity on one side; `where` itself: they have
+ * no steps, their sides are lines, or do not meet; NULL: out of memory. */
+const struct dalcs_formula *dalcs_sides_write(const struct dalcs_kinks *kinks,
+                                              struct dalcs_rewriting *r,
+                                              const struct dalcs_sides_terms *t,
+                                              const struct dalcs_formula *where);
+
+#endif
