@@ -20,7 +20,7 @@ static void extrapolate(const struct dalcs_periodic_flow *flow, const struct dal
     const size_t size = dalcs_periodic_flow_size(flow);
     for (int x = 0; x < flow->n_x; x++) {
         start->by_source[x] = 0.0;
-        for (int i = 0; i < c->s; i++) {
+        for (int i = 0; i < c->n_stages; i++) {
             for (int q = 0; q < flow->drive.n_turns; q++) {
                 const double *drive = map->drive + (size_t)(q * (c->s + 1)) * size;
                 start->by_source[x] += flow->drive.turn[q] * c->back[i] *
@@ -29,7 +29,7 @@ static void extrapolate(const struct dalcs_periodic_flow *flow, const struct dal
         }
         for (int k = 0; k < flow->n_columns; k++) {
             double sum = 0.0;
-            for (int i = 0; i < c->s; i++) {
+            for (int i = 0; i < c->n_stages; i++) {
                 sum += c->back[i] *
                        map->state[(size_t)k * size + dalcs_periodic_flow_at(flow, i + 1, x)];
             }
@@ -57,7 +57,7 @@ static double noise_of(const struct dalcs_periodic_flow *flow, const struct dalc
     const struct dalcs_collocation *c = flow->stages.method;
     double sum = 0.0;
     double most = 0.0;
-    for (int i = 0; i < c->s; i++) {
+    for (int i = 0; i < c->n_stages; i++) {
         sum += fabs(c->back[i]);
     }
     for (int k = 0; k < flow->n_columns; k++) {

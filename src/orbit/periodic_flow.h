@@ -127,9 +127,9 @@ void dalcs_periodic_flow_finish(struct dalcs_periodic_flow *flow);
 /* Which rows of answers are kept. */
 enum dalcs_status dalcs_periodic_flow_rows(struct dalcs_periodic_flow *flow) DALCS_MUST_CHECK;
 
-/* Elements of an answer that are kept. */
+/* Elements of an answer that are kept: rows at the start, and at each stage, which with LOBATTO_IIIC are one more than nodes. */
 static inline size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow) {
-    return (size_t)flow->stages.layout.n_nodes * (size_t)flow->kept.n;
+    return (size_t)(flow->stages.method->n_stages + 1) * (size_t)flow->kept.n;
 }
 
 /* Where among them a row at a node is. */

@@ -61,7 +61,7 @@ enum dalcs_status dalcs_periodic_flow_rows(struct dalcs_periodic_flow *flow) {
 
 /* Those of an answer. */
 static void put_rows(const struct dalcs_periodic_flow *flow, const double *out, double *to) {
-    for (int node = 0; node < flow->stages.layout.n_nodes; node++) {
+    for (int node = 0; node <= flow->stages.method->n_stages; node++) {
         const double *from = out + node * flow->stages.layout.stride;
         for (int k = 0; k < flow->kept.n; k++) {
             *to++ = from[flow->kept.row[k]];

@@ -65,17 +65,24 @@ static double size_of(const struct dalcs_variation_part *v, const double *x, con
     return sqrt(size);
 }
 
+/* Where the polynomial through the stages of v->out starts. */
+static void find_start(const struct dalcs_variation_part *v, double *start) {
+    const struct dalcs_collocation *c = v->part->stages.method;
+    const int stride = v->part->stages.layout.stride;
+    for (int x = 0; x < v->n_x; x++) {
+        start[x] = 0.0;
+        for (int i = 0; i < c->n_stages; i++) {
+            start[x] += c->back[i] * v->out[(i + 1) * stride + x];
+        }
+    }
+}
+
 /* What a new mode does not allow the column to be is taken out of it: where the polynomial through the stages starts,
  * which do not see that part. Of an allowed one it differs by the step's error, which leaves the column as it is. */
 static bool project(struct dalcs_variation_part *v, double *column) {
     const struct dalcs_collocation *c = v->part->stages.method;
     const int stride = v->part->stages.layout.stride;
-    for (int x = 0; x < v->n_x; x++) {
-        v->in[x] = 0.0;
-        for (int i = 0; i < c->s; i++) {
-            v->in[x] += c->back[i] * v->out[(i + 1) * stride + x];
-        }
-    }
+    find_start(v, v->in);
     double size = size_of(v, column, NULL);
     if (v->gates != NULL) { /* an output that is off may drive it from 0 */
         size = fmax(size, size_of(v, v->out + c->s * stride, NULL));
@@ -106,19 +113,16 @@ static enum dalcs_status apply(struct dalcs_variation_part *v, struct dalcs_stag
  * before it, and takes f+ dt away behind it. */
 static enum dalcs_status pass_jump(const struct dalcs_radau *radau,
                                    struct dalcs_variation_part *v) {
-    const struct dalcs_collocation *c = v->part->stages.method;
     struct dalcs_stage_entry *entry;
-    double weight[DALCS_MAX_NODES] = {0.0};
     v->jumped = false;
     DALCS_TRY(dalcs_stages_get(&v->part->stages, v->jump_mode,
                                dalcs_radau_micro_length(radau, v->part, 0), &entry));
-    memcpy(weight + 1, c->back, (size_t)c->s * sizeof(double));
     if (v->pending) {
         shift(v, v->before);
         memset(v->before, 0, (size_t)v->n_x * sizeof(double));
     }
     if (dalcs_variation_shares(v, entry)) {
-        dalcs_variation_project_columns(v, entry, weight);
+        dalcs_variation_project_columns(v, entry);
         return DALCS_OK;
     }
     for (int k = 0; k < v->n_columns; k++) {
@@ -126,9 +130,7 @@ static enum dalcs_status pass_jump(const struct dalcs_radau *radau,
         memset(v->in, 0, (size_t)v->part->stages.n_in * sizeof(double));
         memcpy(v->in, column, (size_t)v->n_x * sizeof(double));
         DALCS_TRY(dalcs_stages_apply(&v->part->stages, entry, v->in, v->out));
-        for (int x = 0; x < v->n_x; x++) {
-            column[x] = dalcs_orbit_weigh(&v->part->stages.layout, weight, v->out, x);
-        }
+        find_start(v, column);
     }
     return DALCS_OK;
 }

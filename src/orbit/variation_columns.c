@@ -96,12 +96,14 @@ void dalcs_variation_pass_columns(struct dalcs_variation_part *v,
 }
 
 void dalcs_variation_project_columns(struct dalcs_variation_part *v,
-                                     const struct dalcs_stage_entry *entry, const double *weight) {
+                                     const struct dalcs_stage_entry *entry) {
+    const double weight[DALCS_MAX_NODES] = {0.0};
     v->four.weight = weight;
     v->four.row = -1;
     for (int k = 0; k < v->n_columns; k += DALCS_COLUMNS) {
         load(v, k);
         dalcs_stage_columns_apply(&v->part->stages, entry, &v->four);
+        memcpy(v->four.end, v->four.begin, (size_t)v->n_x * sizeof *v->four.end);
         unload(v, k);
     }
 }

@@ -16,8 +16,8 @@ void dalcs_variation_pass_columns(struct dalcs_variation_part *v,
                                   const struct dalcs_stage_entry *entry, const double *weight,
                                   int row, bool is_new);
 
-/* V where the polynomial of a step in the entry's mode begins, weights of nodes being those of there. */
+/* V where the polynomial through the stages of a step in the entry's mode begins. */
 void dalcs_variation_project_columns(struct dalcs_variation_part *v,
-                                     const struct dalcs_stage_entry *entry, const double *weight);
+                                     const struct dalcs_stage_entry *entry);
 
 #endif

@@ -117,13 +117,14 @@ static enum dalcs_status go_on(struct dalcs_steady *st, struct burst *b) {
 static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     const double before = st->pass.residual;
     bool helped = true;
+    dalcs_steady_note_defect(st);
     take_step(st);
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
     b->done = is_done(st, before);
     const bool cycles = dalcs_steady_cycles(st);
-    if (!b->done && !(st->pass.residual <= 0.5 * before)) {
+    if (!b->done && !(cycles ? dalcs_steady_lessens(st, 0.5) : st->pass.residual <= 0.5 * before)) {
         helped = false;
-        DALCS_TRY(cycles ? dalcs_steady_damp(st, before, &helped) : DALCS_OK);
+        DALCS_TRY(cycles ? dalcs_steady_damp(st, &helped) : DALCS_OK);
     }
     if (!helped) {
         b->unhelpful++;

@@ -78,6 +78,9 @@ struct dalcs_steady {
         struct dalcs_orbit_point whole, arrived; /* the end of a whole step, and a period later */
         uint64_t
             piece[DALCS_STEADY_STEPS]; /* of the map, where the whole steps of a burst have ended */
+        /* [n_x] |Phi(x) - x|, and scales, of the pass behind which the step begins */
+        double *defect, *scale;
+        double residual;
         int n;
     } damped;
 
@@ -250,10 +253,16 @@ enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st,
 /* Has a whole step of this burst ended in the piece of the map in which the last pass began? From now on one has. */
 bool dalcs_steady_cycles(struct dalcs_steady *st);
 
-/* Tries half of the step that the last pass began behind and that has not halved the residual `before` it. Where that has
+/* Of the last pass, behind which a step begins. */
+void dalcs_steady_note_defect(struct dalcs_steady *st);
+
+/* Is |Phi(x) - x| of the last pass at most this part of the noted one, each over the scales of its own pass, or both over the
+ * larger ones of the two? Over its own scales, a small defect of a period of small currents looks large. */
+bool dalcs_steady_lessens(const struct dalcs_steady *st, double part);
+
+/* Tries half of the step that the last pass began behind and that has not halved the defect before it. Where that has
  * *helped, the last pass began behind it; else all is as it was. */
-enum dalcs_status dalcs_steady_damp(struct dalcs_steady *st, double before,
-                                    bool *helped) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_steady_damp(struct dalcs_steady *st, bool *helped) DALCS_MUST_CHECK;
 
 /* Room for one, as long as st lives; false: there is none. */
 bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point);

@@ -8,6 +8,28 @@
  * quarter, as a whole step does that takes half. */
 #include "steady.h"
 
+#include <math.h>
+
+void dalcs_steady_note_defect(struct dalcs_steady *st) {
+    st->damped.residual = st->pass.residual;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        st->damped.defect[x] = fabs(st->then.x[x] - st->at.x[x]);
+        st->damped.scale[x] = st->scale[x];
+    }
+}
+
+bool dalcs_steady_lessens(const struct dalcs_steady *st, double part) {
+    double before = 0.0;
+    double now = 0.0;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        const double scale = fmax(st->damped.scale[x], st->scale[x]);
+        const double off = fabs(st->then.x[x] - st->at.x[x]);
+        before = scale > 0.0 ? fmax(before, st->damped.defect[x] / scale) : before;
+        now = scale > 0.0 ? fmax(now, off / scale) : now;
+    }
+    return now <= part * before || st->pass.residual <= part * st->damped.residual;
+}
+
 bool dalcs_steady_cycles(struct dalcs_steady *st) {
     struct dalcs_steady_damped *d = &st->damped;
     bool does = false;
@@ -27,7 +49,7 @@ static void go_back(struct dalcs_steady *st, const struct dalcs_orbit_point *who
     }
 }
 
-enum dalcs_status dalcs_steady_damp(struct dalcs_steady *st, double before, bool *helped) {
+enum dalcs_status dalcs_steady_damp(struct dalcs_steady *st, bool *helped) {
     struct dalcs_orbit_point *whole = &st->damped.whole;
     const double period = st->period;
     dalcs_steady_copy_point(st, whole, &st->at);
@@ -36,7 +58,7 @@ enum dalcs_status dalcs_steady_damp(struct dalcs_steady *st, double before, bool
     st->period = period - 0.5 * st->own.longer;
     const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-    *helped = status == DALCS_OK && st->pass.residual <= 0.75 * before;
+    *helped = status == DALCS_OK && dalcs_steady_lessens(st, 0.75);
     if (!*helped) {
         st->period = period;
         dalcs_steady_copy_point(st, &st->at, whole);

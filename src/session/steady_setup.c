@@ -38,6 +38,8 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
         st->pass.M = dalcs_arena_alloc(&st->arena, l->first_of_M[l->n_systems] + 1, sizeof(double));
         st->scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->step = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->damped.defect = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->damped.scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->kept.drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->pass.first = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->pass.last = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
@@ -53,9 +55,9 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
                    dalcs_steady_make_point(st, &st->damped.whole) &&
                    dalcs_steady_make_point(st, &st->damped.arrived) && st->pass.M != NULL &&
                    st->pass.phase != NULL && st->pass.first != NULL && st->pass.last != NULL &&
-                   st->scale != NULL && st->step != NULL && st->kept.drift != NULL &&
-                   st->found.state != NULL && st->found.average != NULL && st->found.rms != NULL &&
-                   st->kept.of != NULL;
+                   st->scale != NULL && st->damped.defect != NULL && st->damped.scale != NULL &&
+                   st->step != NULL && st->kept.drift != NULL && st->found.state != NULL &&
+                   st->found.average != NULL && st->found.rms != NULL && st->kept.of != NULL;
     }
     if (!complete) {
         dalcs_steady_finish(st);

@@ -94,10 +94,10 @@ static void set_weights(struct walk *w) {
     const struct dalcs_stage_plan *plan = w->stages->plan;
     const struct dalcs_collocation *m = w->stages->method;
     for (int q = 0; q < plan->n_parts; q++) {
-        w->end[q] = w->begin[q] = 0.0;
+        w->end[q] = 0.0;
+        w->begin[q] = plan->to[0][q];
         for (int i = 0; i < m->s; i++) {
             w->end[q] += w->c->weight[i + 1] * plan->to[i + 1][q];
-            w->begin[q] += m->back[i] * plan->to[i + 1][q];
         }
     }
 }
