@@ -3,8 +3,8 @@
  * What comes from outside at one instant passes what has no memory first, then latches: a set and a reset may come through
  * different numbers of gates, and a latch must not keep what one of them was before the other one has come. Then, in a
  * round, each gate decides from what all showed before it, as in the delta cycles of hardware languages: a reset that
- * its own output takes away clears all that it reaches. What a clock takes is what stood before the instant. What a round
- * makes is a function of the state alone, so that a network that does not settle comes back to a state, and one that
+ * its own output takes away clears all that it reaches. A clock takes what has come from outside, but of what such rounds
+ * have changed it takes what stood before them: all flip-flops of one instant act at once. What a round makes is a function of the state alone, so that a network that does not settle comes back to a state, and one that
  * comes back does not settle: Brent's way finds that without a bound to choose. */
 #include "logic_network.h"
 
@@ -30,12 +30,11 @@ static void ask_readers(struct dalcs_logic_network *l, int source) {
     }
 }
 
-/* A bit that others read is another one now. */
-static void note_change(struct dalcs_logic_network *l, int source, bool before) {
-    if (l->was[source].instant != l->instant) {
-        l->was[source] = (struct dalcs_logic_was){l->instant, before};
+/* What others read of a gate is another bit now. */
+static void note_change(struct dalcs_logic_network *l, int gate, bool before) {
+    if (l->was[gate].instant != l->instant) {
+        l->was[gate] = (struct dalcs_logic_was){l->instant, before};
     }
-    ask_readers(l, source);
 }
 
 void dalcs_logic_touch(struct dalcs_logic_network *l, int gate, bool seen) {
@@ -43,12 +42,12 @@ void dalcs_logic_touch(struct dalcs_logic_network *l, int gate, bool seen) {
     dalcs_logic_set_add(&l->marked, gate);
     dalcs_logic_set_add(&l->moved, gate);
     if (seen) {
-        note_change(l, gate, !l->state[gate].seen);
+        ask_readers(l, gate);
     }
 }
 
 void dalcs_logic_touch_bit(struct dalcs_logic_network *l, int comparator) {
-    note_change(l, l->n + comparator, !l->bit[comparator]);
+    ask_readers(l, l->n + comparator);
 }
 
 void dalcs_logic_touch_all(struct dalcs_logic_network *l) {
@@ -64,15 +63,13 @@ static bool read(const struct dalcs_logic_network *l, const struct dalcs_logic_i
     return bit != input->is_inverted;
 }
 
-/* As it stood before this instant. */
+/* As it stood before flip-flops changed it in this instant. */
 static bool read_before(const struct dalcs_logic_network *l,
                         const struct dalcs_logic_input *input) {
-    if (input->from == DALCS_GATE_OPEN) {
-        return input->is_inverted;
+    if (input->from != DALCS_GATE_GATE || l->was[input->index].instant != l->instant) {
+        return read(l, input);
     }
-    const struct dalcs_logic_was *was =
-        &l->was[input->from == DALCS_GATE_GATE ? input->index : l->n + input->index];
-    return was->instant == l->instant ? was->bit != input->is_inverted : read(l, input);
+    return l->was[input->index].bit != input->is_inverted;
 }
 
 static bool of_inputs(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g) {
@@ -243,7 +240,11 @@ static bool change(struct dalcs_logic_network *l, enum rank rank, void *user,
         }
         l->state[k] = l->next[k];
         if (!is_same(&l->state[k], &before)) {
-            dalcs_logic_touch(l, k, l->state[k].seen != before.seen);
+            const bool is_seen = l->state[k].seen != before.seen;
+            if (is_seen && rank == ALL) {
+                note_change(l, k, before.seen);
+            }
+            dalcs_logic_touch(l, k, is_seen);
             any = true;
         }
     }

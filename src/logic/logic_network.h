@@ -19,7 +19,7 @@ struct dalcs_logic_set {
     bool *has;    /* [n gates] */
 };
 
-/* What others read of a gate or a comparator, before the instant in which it last changed. */
+/* What others read of a gate, before flip-flops last changed it, and in which instant. */
 struct dalcs_logic_was {
     long instant;
     bool bit;
@@ -39,7 +39,7 @@ struct dalcs_logic_network {
     struct dalcs_logic_set marked;       /* whose state may differ from its mark */
     struct dalcs_logic_set moved; /* whose state has changed since what it shows was looked at */
     long instant;                 /* the number of this one, from 1 on */
-    struct dalcs_logic_was *was;  /* [n gates, then comparators] */
+    struct dalcs_logic_was *was;  /* [n gates] */
     bool rests;                   /* a clock that stands high has not risen */
     bool *moves; /* [n] after a failure: in the loop that does not settle, or not at rest */
 };

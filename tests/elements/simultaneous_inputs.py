@@ -93,7 +93,7 @@ def modulator(checker, program):
 
 
 def flip_flops(checker, program):
-    never = {"rises": 0, 1.5: 0, 9.5: 0, 35.5: 0}
+    never, taken = {"rises": 0, 1.5: 0, 9.5: 0, 35.5: 0}, {"rises": 1, 0.5: 0, 1.5: 1, 9.5: 1, 35.5: 1}
     for n, m in ((0, 0), (0, 2), (2, 0), (1, 3)):
         clocked, clock = chain("s", n, "x")
         other, node = chain("o", m, "y")
@@ -101,17 +101,16 @@ def flip_flops(checker, program):
         check(checker, program, f"clear and clock together, {what}",
               [pulse("s", 1, 1), pulse("o", 1, 2), "Vd d 0 1", *clocked, *other, f"A1 d 0 {clock} 0 {node} 0 q 0 DFLOP"], never)
         check(checker, program, f"data that rise with the clock, {what}",
-              [pulse("s", 1, 1), pulse("o", 1, 3), *clocked, *other, f"A1 {node} 0 {clock} 0 0 0 q 0 DFLOP"], never)
+              [pulse("s", 1, 1), pulse("o", 1, 3), *clocked, *other, f"A1 {node} 0 {clock} 0 0 0 q 0 DFLOP"], taken)
         check(checker, program, f"data that fall with the clock, {what}",
-              [pulse("s", 3, 1), pulse("o", 1, 2), *clocked, *other, f"A1 {node} 0 {clock} 0 0 0 q 0 DFLOP"],
-              {"rises": 1, 2.5: 0, 3.5: 1, 35.5: 1})
+              [pulse("s", 3, 1), pulse("o", 1, 2), *clocked, *other, f"A1 {node} 0 {clock} 0 0 0 q 0 DFLOP"], never)
         others, second = chain("s", m, "y")
         check(checker, program, f"two stages of a shift register, {what}",
               [pulse("s", 1, 1), pulse("d", 5, 100, 200), *clocked, *others, f"A1 d 0 {clock} 0 0 0 h 0 DFLOP",
                f"A2 h 0 {second} 0 0 0 q 0 DFLOP"], {"rises": 1, 10.9: 0, 11.1: 0, 20.9: 0, 21.1: 1})
     jk = [pulse("s", 1, 1), pulse("j", 1, 3), "Ax [s j] [sd jd] adc", "Ay jd kd inv", "Az jd kd sd null null qd null jk",
           "Aw [qd] [q] dac", *BRIDGES, f".model jk d_jkff({NO_DELAY})", ".model dac dac_bridge(out_low=0 out_high=1)"]
-    check(checker, program, "J and K that change places with the clock", jk, never)
+    check(checker, program, "J and K that change places with the clock", jk, taken)
 
 
 def loops(checker, program):
