@@ -17,7 +17,8 @@ struct dalcs_file_promise {
     bool are_gates_restless;  /* they do not settle, as a warning has said */
     bool
         remembers; /* rows before the first one have left switches with hysteresis where they are */
-    bool has_own_lines; /* of exponential diodes: those of the circuit, not of the table's currents */
+    bool
+        has_own_lines; /* of exponential diodes: those of the circuit, not of the table's currents */
 };
 
 /* The answer's texts are in `arena`. DALCS_E_OPTION comes with a message. */

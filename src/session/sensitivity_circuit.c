@@ -35,8 +35,8 @@ enum dalcs_status dalcs_sensitivity_build(struct dalcs_sensitivities *s,
     other->has_circuit = other->has_network = true;
     other->circuit.analyses.sensitivity.present = false;
     other->circuit.analyses.periodic.present = true;
-    const enum dalcs_status status = dalcs_operating_currents_keep(
-        &other->circuit, &other->network, &of->circuit, &other->diag);
+    const enum dalcs_status status =
+        dalcs_operating_currents_keep(&other->circuit, &other->network, &of->circuit, &other->diag);
     other->has_network = status == DALCS_OK;
     return status;
 }
