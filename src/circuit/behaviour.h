@@ -17,6 +17,9 @@ const struct dalcs_gate *dalcs_gate_find(struct dalcs_compiler *c,
                                          const struct dalcs_device *device,
                                          const struct dalcs_form *form);
 
+/* The first of its two nodes. */
+int dalcs_gate_node(const struct dalcs_gate *gate);
+
 /* Between which values v(node, reference) is, if the gate is between these nodes; false: it is not. */
 bool dalcs_gate_bounds(const struct dalcs_gate *gate, int node, int reference, double *low,
                        double *high);

@@ -59,6 +59,10 @@ static double sign_of(const struct dalcs_gate *gate, const int *node) {
     return is_same ? 1 : is_turned ? -1 : 0;
 }
 
+int dalcs_gate_node(const struct dalcs_gate *gate) {
+    return gate->node[0];
+}
+
 bool dalcs_gate_bounds(const struct dalcs_gate *gate, int node, int reference, double *low,
                        double *high) {
     const double sign = sign_of(gate, (const int[]){node, reference});

@@ -13,14 +13,45 @@
 struct check {
     struct dalcs_builder *builder;
     struct dalcs_gate_links links;
+    size_t *first;  /* [n_nodes] a formula of few values that begins there, + 1; 0: there is none */
+    size_t *next;   /* [formulas.n] the one behind it, likewise */
+    bool *is_input; /* [n_devices] the comparator of a gate's input */
 };
 
-/* Of the values of a formula between these nodes. */
+static bool set_up(struct check *c) {
+    struct dalcs_builder *builder = c->builder;
+    const struct dalcs_circuit *circuit = builder->circuit;
+    const size_t n = builder->formulas.n;
+    c->first = dalcs_arena_alloc(&builder->scratch, (size_t)circuit->n_nodes, sizeof *c->first);
+    c->next = dalcs_arena_alloc(&builder->scratch, n + 1, sizeof *c->next);
+    c->is_input = dalcs_arena_alloc(&builder->scratch, (size_t)circuit->n_devices, sizeof(bool));
+    if (c->first == NULL || c->next == NULL || c->is_input == NULL) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    for (size_t k = n; k-- > 0;) {
+        const struct dalcs_gate *gate = builder->formulas.source[k].gate;
+        if (gate != NULL) {
+            size_t *first = &c->first[dalcs_gate_node(gate)];
+            c->next[k] = *first;
+            *first = k + 1;
+        }
+    }
+    for (int k = 0; k < circuit->control.n_comparators; k++) {
+        c->is_input[circuit->control.comparator[k]] = true;
+    }
+    return dalcs_gate_list_links(builder, &c->links);
+}
+
+/* Of the values of a formula between these nodes, either way round. */
 static struct dalcs_gate_range of_formula(const struct check *c, int node, int reference) {
     struct dalcs_gate_range r = {0};
-    for (size_t k = 0; k < c->builder->formulas.n && !r.is_known; k++) {
-        const struct dalcs_gate *gate = c->builder->formulas.source[k].gate;
-        r.is_known = gate != NULL && dalcs_gate_bounds(gate, node, reference, &r.low, &r.high);
+    for (int turn = 0; turn < 2; turn++) {
+        size_t k = c->first[turn == 0 ? node : reference];
+        for (; k > 0 && !r.is_known; k = c->next[k - 1]) {
+            r.is_known = dalcs_gate_bounds(c->builder->formulas.source[k - 1].gate, node, reference,
+                                           &r.low, &r.high);
+        }
     }
     return r;
 }
@@ -43,20 +74,11 @@ static struct dalcs_gate_range control_range(const struct check *c, const int *n
                                      plus.high - minus.low};
 }
 
-/* Is it the comparator of a gate's input? */
-static bool is_input(const struct dalcs_circuit *c, int device) {
-    bool is = false;
-    for (int k = 0; k < c->control.n_comparators && !is; k++) {
-        is = c->control.comparator[k] == device;
-    }
-    return is;
-}
-
 static void check_switch(const struct check *c, int k) {
     struct dalcs_builder *builder = c->builder;
     const struct dalcs_device *device = &builder->circuit->device[k];
     const struct dalcs_switch_model *m = &builder->circuit->models.of_switch[device->model];
-    const bool is_gate = is_input(builder->circuit, k);
+    const bool is_gate = c->is_input[k];
     const struct dalcs_gate_range r = control_range(c, device->node + 2);
     if (!r.is_known || !(r.low < r.high) || m->vh < 0) {
         return;
@@ -85,13 +107,13 @@ static void check_switch(const struct check *c, int k) {
 void dalcs_threshold_check(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
     struct check check = {.builder = builder};
-    if (circuit->models.n_switches == 0 || !dalcs_gate_list_links(builder, &check.links)) {
+    if (circuit->models.n_switches == 0 || !set_up(&check)) {
         return;
     }
     for (int k = 0; k < circuit->n_devices; k++) {
         const struct dalcs_device *device = &circuit->device[k];
         if (device->kind == DALCS_SWITCH && device->model >= 0 && device->behaviour == NULL &&
-            (device->letter == 's' || is_input(circuit, k))) {
+            (device->letter == 's' || check.is_input[k])) {
             check_switch(&check, k);
         }
     }
