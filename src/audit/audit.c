@@ -297,9 +297,6 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     end->t = stretch->to;
     end->side = DALCS_LEFT;
     look(audit, stretch->part, end);
-    if (part->at.is_coarse && part->at.past_coarse && part->at.past > 0.0) {
-        audit_check_obeyed(audit, part, end);
-    }
     leave_behind(part);
     part->is_open = true;
     if (is_inside) {

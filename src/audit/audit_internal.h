@@ -356,11 +356,6 @@ static inline bool audit_is_commanded(const struct dalcs_audit *audit, int switc
  * a hysteresis. key: of its polynomials, the same only in the same mode; 0: there are none. */
 bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint64_t key);
 
-/* changes.c: at the end of a step of implicit Euler behind another one. Where no position agrees with its control a switch
- * may be late by a step: it follows at the end of the next one. One that stays against it over a whole step is wrong. */
-void audit_check_obeyed(struct dalcs_audit *audit, struct audit_part *part,
-                        const struct dalcs_audit_state *end);
-
 /* changes.c: those of them that have turned, where the stretch begins. */
 void audit_check_turns(struct dalcs_audit *audit, const struct audit_part *part, double t);
 

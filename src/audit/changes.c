@@ -128,36 +128,6 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
     }
 }
 
-/* Beyond the threshold on whose other side the switch stands. */
-static double contradicts(struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *s, int device) {
-    double half_width;
-    const double control = audit_control(audit, s, device, &half_width);
-    const double wrong = s->is_closed[device] ? -half_width - control : control - half_width;
-    return wrong > 0.0 ? wrong - audit_control_slack(audit, part, s, device) : wrong;
-}
-
-void audit_check_obeyed(struct dalcs_audit *audit, struct audit_part *part,
-                        const struct dalcs_audit_state *end) {
-    const struct dalcs_audit_state *begin = &audit->state.shifted;
-    audit->reader.read_before(audit->reader.user, (int)(part - audit->part), 0.0,
-                              &audit->state.shifted);
-    part->at.is_coarse = false;
-    for (int k = 0; k < part->n_devices; k++) {
-        const int device = part->device[k];
-        const bool stays = audit->circuit->device[device].kind == DALCS_SWITCH &&
-                           !begin->is_mean[device] && !end->is_mean[device] &&
-                           begin->is_closed[device] == end->is_closed[device];
-        if (stays) {
-            const double off = fmin(contradicts(audit, part, begin, device),
-                                    contradicts(audit, part, end, device));
-            audit_find(audit, part, DALCS_AUDIT_POSITION, device, off,
-                       audit_control_scale(audit, part, device), end->t);
-        }
-    }
-    part->at.is_coarse = true;
-}
-
 /* Most have reached their thresholds before: then nothing else is read. */
 void audit_check_turns(struct dalcs_audit *audit, const struct audit_part *part, double t) {
     const int index = (int)(part - audit->part);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Formulas with smooth sides that meet, written with a sign, a step or a magnitude: a current that rises with its
 voltage, or a voltage with its current, beside one resistor and a source that passes 0 both ways. The answer is where a line
-meets the function, found here by bisection. Sides that do not meet jump at 0: such a run is right, or ends with status 1.
+meets the function, found here by bisection.
 
 usage: smooth_sides.py PROGRAM
 """
@@ -33,12 +33,6 @@ LAWS = {
     "X+u(X-0.3)*(exp(X-0.3)-1)": lambda x: x + math.expm1(max(x - 0.3, 0)),
     "X+u(X)*X**3": lambda x: x + max(x, 0) ** 3,
 }
-JUMPS = {
-    "2*sgn(X)-sgn(X)*exp(-abs(X))": odd(lambda x: 2 - math.exp(-x)),
-    "sgn(X)*(2-exp(-abs(X)))": odd(lambda x: 2 - math.exp(-x)),
-    "(2*u(X)-1)*(0.5+abs(X)**3)": odd(lambda x: 0.5 + x**3),
-    "sgn(X)*sqrt(0.01+X**2)": odd(lambda x: math.hypot(0.1, x)),
-}
 CASES = [1e-6, 1e-3, 1.0, 1e4]  # of the argument
 
 
@@ -52,15 +46,14 @@ def meet(f, right, slope):
 
 
 def check(checker, program, text, scale, is_current):
-    f = LAWS.get(text) or JUMPS[text]
+    f = LAWS[text]
     at = [k / 16 for k in range(17)]
     law = text.replace("X", f"({'v(1)' if is_current else 'i(b1)'}/{scale!r})")
     lines = (["I1 0 1 SIN(0.1 1 1)", f"B1 1 0 I={law}", f"R1 1 0 {10 * scale!r}"] if is_current else
              ["V1 2 0 SIN(0.1 1 1)", f"B1 1 0 V={law}", f"R1 2 1 {0.1 / scale!r}"])
     title = f"{text} as a {'current' if is_current else 'voltage'}, {scale:g}"
     result = run(program, "\n".join([title, *lines, ".tran 0.05 1", ""]), method=None, at=at, options=["--audit", "full"])
-    may_end = text in JUMPS and result.status == 1 and "b1" in result.stderr
-    if not checker.check(result.status == 0 or may_end, f"{title}: exit {result.status}: {result.stderr}") or may_end:
+    if not checker.check(result.status == 0, f"{title}: exit {result.status}: {result.stderr}"):
         return
     found = result.column("v(1)" if is_current else "i(b1)")
     for t, value in zip(at, found):
@@ -71,7 +64,7 @@ def check(checker, program, text, scale, is_current):
 def main():
     program = sys.argv[1]
     checker = Checker("smooth_sides")
-    for text in kinds_of(LAWS | JUMPS):
+    for text in kinds_of(LAWS):
         for scale in some_of(CASES, 2):
             for is_current in (True, False):
                 check(checker, program, text, scale, is_current)
