@@ -656,7 +656,7 @@ def mistakes(program, checker):
     good = (".meas {0} mean avg v(a)\n", ".meas {0} later max v(a)\n", ".meas {0} twice param='2*later'\n")
     parts = ("mistakes\nV1 a 0 SIN(1 3 1k)\nR1 a 0 1k\n", "mistakes\nV1 a 0 SIN(1 3 1k)\nR1 a b 1\nL1 b 0 1m ic=0\nR2 b 0 7\n")
     for analysis, cards, circuit in (("tran", ".tran 1u 4m\n", parts[0]), ("tran", ".tran 1u 4m\n", parts[1]),
-                                     ("pss", ".pss 1k\n", parts[1])):
+                                     ("pss", ".pss 1m\n", parts[1])):
         lines = [f".meas {analysis} {name} {what}\n" for name, (what, _) in wrong.items()]
         text = circuit + cards + "".join(lines) + "".join(g.format(analysis) for g in good)
         text += f".meas {analysis} needs param='node+mean'\n.end\n"
