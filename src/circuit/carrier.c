@@ -66,25 +66,17 @@ static const struct dalcs_form *triangle(struct dalcs_compiler *c, struct line x
     return dalcs_form_scale(c, dalcs_pi, dalcs_wave_value(c, &wave));
 }
 
-static bool is_call(const struct dalcs_formula *f, const char *const *names) {
-    bool is = false;
-    for (int k = 0; names[k] != NULL && f->kind == DALCS_FORMULA_CALL; k++) {
-        is = is || strcmp(f->function, names[k]) == 0;
-    }
-    return is;
-}
-
 static const struct dalcs_form *arc_of(struct dalcs_compiler *c, const struct dalcs_formula *f) {
     static const char *const arcs[] = {"asin", "arcsin", "acos", "arccos", "atan", "arctan", NULL};
     static const char *const waves[] = {"sin", "cos", "tan", NULL};
     struct line x;
-    if (!is_call(f, arcs) || f->n != 1) {
+    if (!dalcs_formula_is_call_of(f, arcs) || f->n != 1) {
         return NULL;
     }
     const struct dalcs_formula *of = f->argument[0];
     const bool is_negative = of->kind == DALCS_FORMULA_OPERATION && of->code == DALCS_NEGATE;
     of = is_negative ? of->argument[0] : of;
-    if (!is_call(of, waves) || !find_line(c, of->argument[0], &x)) {
+    if (!dalcs_formula_is_call_of(of, waves) || !find_line(c, of->argument[0], &x)) {
         return NULL;
     }
     const char *arc = f->function + (strncmp(f->function, "arc", 3) == 0 ? 3 : 1);
@@ -148,9 +140,9 @@ static const struct dalcs_form *steps_of(struct dalcs_compiler *c, const struct 
 const struct dalcs_form *dalcs_carrier(struct dalcs_compiler *c, const struct dalcs_formula *f) {
     static const char *const steps[] = {"int", "floor", "ceil", "nint", "round", NULL};
     static const char *const remainder[] = {"fmod", "mod", NULL};
-    const bool is_remainder =
-        (f->kind == DALCS_FORMULA_OPERATION && f->code == DALCS_REMAINDER) || is_call(f, remainder);
-    return is_remainder && f->n == 2 ? remainder_of(c, f)
-           : is_call(f, steps)       ? steps_of(c, f)
-                                     : arc_of(c, f);
+    const bool is_remainder = (f->kind == DALCS_FORMULA_OPERATION && f->code == DALCS_REMAINDER) ||
+                              dalcs_formula_is_call_of(f, remainder);
+    return is_remainder && f->n == 2            ? remainder_of(c, f)
+           : dalcs_formula_is_call_of(f, steps) ? steps_of(c, f)
+                                                : arc_of(c, f);
 }

@@ -158,3 +158,11 @@ const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
                                                const struct dalcs_token *token, int n) {
     return dalcs_formula_make_of(language, scope, token, n, NULL);
 }
+
+bool dalcs_formula_is_call_of(const struct dalcs_formula *f, const char *const *names) {
+    bool is = false;
+    for (int k = 0; names[k] != NULL && f->kind == DALCS_FORMULA_CALL; k++) {
+        is = is || strcmp(f->function, names[k]) == 0;
+    }
+    return is;
+}

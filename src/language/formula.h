@@ -60,4 +60,7 @@ const struct dalcs_formula *dalcs_formula_guard(struct dalcs_arena *arena,
 const struct dalcs_formula *dalcs_formula_real_part(struct dalcs_arena *arena,
                                                     const struct dalcs_formula *formula);
 
+/* Is it a call of one of these functions? names: up to a NULL. */
+bool dalcs_formula_is_call_of(const struct dalcs_formula *f, const char *const *names);
+
 #endif

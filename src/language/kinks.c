@@ -4,30 +4,22 @@
 /* Written out, with shared parts as often as they are read: no person wrote a longer formula of one quantity. */
 enum { MOST_PARTS = 1000 };
 
-static bool is_one_of(const struct dalcs_formula *f, const char *const *names, size_t n) {
-    bool is = false;
-    for (size_t k = 0; k < n && !is; k++) {
-        is = dalcs_formula_is_call(f, names[k]);
-    }
-    return is;
-}
-
 bool dalcs_kinks_is_step_call(const struct dalcs_formula *f) {
-    static const char *const names[] = {"sgn", "u", "stp", "gt0", "lt0", "ge0", "le0"};
-    return is_one_of(f, names, sizeof names / sizeof names[0]);
+    static const char *const names[] = {"sgn", "u", "stp", "gt0", "lt0", "ge0", "le0", NULL};
+    return dalcs_formula_is_call_of(f, names);
 }
 
 bool dalcs_kinks_is_call(const struct dalcs_formula *f) {
-    static const char *const names[] = {"abs", "uramp", "max", "min", "limit"};
-    return is_one_of(f, names, sizeof names / sizeof names[0]) || dalcs_kinks_is_step_call(f);
+    static const char *const names[] = {"abs", "uramp", "max", "min", "limit", NULL};
+    return dalcs_formula_is_call_of(f, names) || dalcs_kinks_is_step_call(f);
 }
 
 static bool is_smooth_call(const struct dalcs_formula *f) {
     static const char *const names[] = {
         "sin",  "cos",  "tan",  "asin",  "acos",  "atan",  "arcsin", "arccos", "arctan", "atan2",
         "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "sqrt",   "sqr",    "square", "cbrt",
-        "exp",  "ln",   "log",  "log10", "hypot", "pow",   "pwr",    "pwrs"};
-    return is_one_of(f, names, sizeof names / sizeof names[0]);
+        "exp",  "ln",   "log",  "log10", "hypot", "pow",   "pwr",    "pwrs",   NULL};
+    return dalcs_formula_is_call_of(f, names);
 }
 
 static bool is_between(enum dalcs_operation_code code, enum dalcs_operation_code first,

@@ -11,7 +11,9 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from dalcs_program import Checker, kinds_of, run, some_of  # noqa: E402
+import rising_element  # noqa: E402
+from dalcs_program import Checker, kinds_of, some_of  # noqa: E402
+from rising_element import cards, meet  # noqa: E402
 
 
 def odd(f):
@@ -36,29 +38,15 @@ LAWS = {
 CASES = [1e-6, 1e-3, 1.0, 1e4]  # of the argument
 
 
-def meet(f, right, slope):
-    """x with f(x) + slope x = right, f rising."""
-    low, high = -(abs(right) + 10) / slope, (abs(right) + 10) / slope
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if f(middle) + slope * middle < right else (low, middle)
-    return 0.5 * (low + high)
-
-
 def check(checker, program, text, scale, is_current):
-    f = LAWS[text]
-    at = [k / 16 for k in range(17)]
-    law = text.replace("X", f"({'v(1)' if is_current else 'i(b1)'}/{scale!r})")
-    lines = (["I1 0 1 SIN(0.1 1 1)", f"B1 1 0 I={law}", f"R1 1 0 {10 * scale!r}"] if is_current else
-             ["V1 2 0 SIN(0.1 1 1)", f"B1 1 0 V={law}", f"R1 2 1 {0.1 / scale!r}"])
     title = f"{text} as a {'current' if is_current else 'voltage'}, {scale:g}"
-    result = run(program, "\n".join([title, *lines, ".tran 0.05 1", ""]), method=None, at=at, options=["--audit", "full"])
-    if not checker.check(result.status == 0, f"{title}: exit {result.status}: {result.stderr}"):
-        return
-    found = result.column("v(1)" if is_current else "i(b1)")
-    for t, value in zip(at, found):
-        wanted = scale * meet(f, 0.1 + math.sin(2 * math.pi * t), 0.1)
-        checker.close(value, wanted, 2e-5 * scale, f"{title} at {t:g} s")
+    law = text.replace("X", f"(X/{scale!r})")
+    lines = [title, *cards(law, is_current, "SIN(0.1 1 1)", 10 * scale if is_current else 0.1 / scale)]
+
+    def wanted(t):
+        return scale * meet(LAWS[text], 0.1 + math.sin(2 * math.pi * t), 0.1)
+
+    rising_element.check(checker, program, lines, wanted, 2e-5 * scale)
 
 
 def main():
