@@ -16,6 +16,8 @@ from dalcs_program import Checker  # noqa: E402
 EDGE = "V1 a 0 PULSE(0 1 1m 0 0 2m 10m)\n"
 DRIVEN = EDGE + "E1 u 0 a 0 1\nC1 u 0 1m\n"
 READ = "R1 d 0 1k\nR3 d f 1k\nC3 f 0 1u\n.tran 0.1m 5m\n"
+CUT = ("vin in 0 12\nvg g 0 PULSE(0 12 0 10n 10n {{{period}/2}} {period})\ns1 in sw g 0 sa\ns2 0 sw sw 0 sb\nl1 sw out {henry}\n"
+       "c1 out 0 100u\nr1 out 0 1\n.model sa SW(ron=1m roff={roff} vt=0.5)\n.model sb SW(ron=1m roff={roff} vt=0)\n")
 TRIAC = "V1 a 0 SIN(0 325 50)\nR1 a c 10\nL1 c b 10m\nA1 b 0 g t1\nVg g 0 PULSE(0 2 4m 0 0 0.5m 10m)\n"
 
 # name: (netlist, options, {(signal, time): value})
@@ -101,6 +103,12 @@ CIRCUITS = {
     "a coil that a resistance leaves less time than a run resolves": (
         "v1 v1 0 SIN(0 1 1k)\nb1 int 0 V=(u(v(v1)*8-1)+u(v(v1)*8-2))/8\nc1 c 0 10p\nr1 n c 100g\nl1 int n .01u\n"
         ".tran .25m\n", [], {}),
+    "a coil that is cut off in 1e-14 s, again and again": (
+        CUT.format(henry="1u", roff="100meg", period="10u") + ".tran 1m\n", [], {}),
+    "a coil that is cut off in 1e-12 s, to 1e-8": (
+        CUT.format(henry="1u", roff="1meg", period="10u") + ".tran 1m\n", ["--tol", "1e-8"], {}),
+    "a coil that is cut off in 1e-13 s after milliseconds": (
+        CUT.format(henry="10u", roff="100meg", period="1m") + ".tran 20m\n", ["--tol", "1e-10"], {}),
     "an ohm before a teraohm, with voltages that pass through 0": (
         "r1 o x 1k\nc1 x 0 2m ic=0\nr2 x 0 1k\nv1 p 0 PULSE(-1m 0.7m 0 8 6 0 18)\nv2 q 0 SFFM(0 1m 0.85 2 0.155)\n"
         "e1 s w p 0 1\ne2 w 0 q 0 -1\nr8 s u 1\nr9 u 0 1e12\nb1 o 0 V=limit(v(u),-0.3m,0.5m)\n.tran 0.5 20 uic\n",
