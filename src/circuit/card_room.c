@@ -118,9 +118,9 @@ void dalcs_card_table_count(struct dalcs_card_table *table, const struct dalcs_c
     table->n_inner += letter == 's' && dalcs_formula_find_control(card) < card->n;
     table->n_switches += letter == 's' || letter == 'w';
     table->n_diodes += letter == 'd' || letter == 'a';
-    /* terminal, diode, knee or two diodes more of a bulk and a threshold; two have lines of their own */
+    /* terminal, diode, knee or two diodes more of a bulk; two have lines of their own */
     if (strchr("mzq", letter) != NULL) {
-        table->n_inner += 5;
+        table->n_inner += 4;
         table->n_scaled += 2;
         table->n_diodes++;
     }

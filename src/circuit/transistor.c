@@ -1,7 +1,7 @@
 /* transistor.c - M, Z and Q elements: MOSFETs, IGBTs and bipolar transistors as switches.
  *
  *     MOSFET    a switch between drain and source that v(gate, source) commands, and a body diode across it; where
- *               the bulk is elsewhere a diode from there to each, and the channel backwards as v(gate, drain) commands
+ *               the bulk is elsewhere a channel of two ends that are alike (channel.c), and a diode from there to each
  *     IGBT      a diode with the knee Vce0 in series with a switch, and a diode across both where the card has one
  *     bipolar   a switch between collector and emitter, and a diode from base to emitter: only with .options bjt=switch
  *
@@ -9,7 +9,6 @@
  * gate's drive: transistor_drive.c, when all elements are known. */
 #include "transistor.h"
 
-#include "behavioural.h"
 #include "element_cards.h"
 #include "language.h"
 #include "model_cards.h"
@@ -223,58 +222,20 @@ static struct dalcs_device *add_other(struct dalcs_builder *builder,
     return diode;
 }
 
-/* What a channel that is off takes backwards before it conducts, in series with its diode: abs(Vto - v(gate, source)).
- * So it conducts while v(gate, drain) would be above Vto. Where the switch is closed, v(gate, source) is above Vto, and
- * the diode has a voltage against it. */
-static bool add_threshold(struct dalcs_builder *builder, const struct dalcs_transistor_use *use,
-                          struct dalcs_device *channel) {
-    const struct dalcs_transistor *t = use->of;
-    const int inside = dalcs_builder_inner_node(builder, "threshold", use->name);
-    struct dalcs_device *e =
-        dalcs_builder_add_inner_device(builder, DALCS_VCVS, "threshold", use->name);
-    struct dalcs_piecewise table = {.n = 1, .before = -1, .after = 1};
-    table.knot = dalcs_arena_alloc(&builder->scratch, 1, sizeof *table.knot);
-    if (inside < 0 || e == NULL || table.knot == NULL) {
-        builder->out_of_memory = builder->out_of_memory || table.knot == NULL;
-        return false;
-    }
-    table.knot[0] = (struct dalcs_knot){.at = t->is_p ? -t->threshold : t->threshold};
-    e->node[0] = inside;
-    e->node[1] = channel->node[1];
-    e->node[2] = t->is_p ? use->source : use->gate;
-    e->node[3] = t->is_p ? use->gate : use->source;
-    e->value = 1;
-    e->is_limit = true;
-    channel->node[1] = inside;
-    dalcs_behavioural_add_table(builder, e, &table);
-    return true;
-}
-
-/* The bulk is not on the source: then the channel has two ends that are alike. The switch is closed where the gate is
- * above the source by Vto; above the drain by Vto, the channel conducts backwards. */
+/* The bulk is not on the source. The switch becomes a channel when its resistance is known. */
 static bool add_bulk(struct dalcs_builder *builder, struct dalcs_transistor_use *use) {
-    struct dalcs_circuit *circuit = builder->circuit;
     const struct dalcs_transistor *t = use->of;
-    const int drain = circuit->device[use->device].node[0];
+    const int drain = builder->circuit->device[use->device].node[0];
     const int ends[2] = {t->is_p ? drain : use->bulk, t->is_p ? use->bulk : drain};
-    if (use->bulk != use->drain && t->has_diode) {
-        struct dalcs_device *to_source = add_other(builder, use, "bulk", use->bulk, use->source);
-        if (to_source == NULL || !add_diode(builder, use, "body", ends)) {
-            return false;
-        }
-        to_source->model = use->diode;
+    if (use->bulk == use->drain || !t->has_diode) {
+        return true;
     }
-    struct dalcs_device *channel = add_other(builder, use, "channel", use->source, drain);
-    if (channel == NULL) {
+    struct dalcs_device *to_source = add_other(builder, use, "bulk", use->bulk, use->source);
+    if (to_source == NULL || !add_diode(builder, use, "body", ends)) {
         return false;
     }
-    circuit->models.of_diode[circuit->models.n_diodes] =
-        (struct dalcs_diode_model){.name = circuit->device[use->device].name,
-                                   .ron = t->series / use->parallel,
-                                   .roff = INFINITY,
-                                   .vrev = INFINITY};
-    channel->model = circuit->models.n_diodes++;
-    return add_threshold(builder, use, channel);
+    to_source->model = use->diode;
+    return true;
 }
 
 /* What enters the drain of the card leaves at the end that is the drain here. */

@@ -51,19 +51,14 @@ static void put_pair(struct terms *t, const struct dalcs_system *s, int pair,
     square->pair = pair;
 }
 
-static enum dalcs_power_account account_of(const struct dalcs_device *source) {
-    return source->is_limit ? DALCS_POWER_DIODES : DALCS_POWER_SOURCES;
-}
-
 /* What V delivers: the current flows through it from plus to minus. */
 static void put_voltage_source(const struct dalcs_layout *l, struct terms *t, int device) {
     const struct dalcs_device *d = &l->circuit->device[device];
     const struct dalcs_stimulus *stimulus = &l->circuit->stimulus[d->stimulus];
     bool is_dc = stimulus->kind == DALCS_STIMULUS_DC;
-    const double sign = d->is_limit ? 1.0 : -1.0; /* taken, or given */
     struct dalcs_power_term *term =
-        put(t, account_of(d), is_dc ? DALCS_POWER_CONSTANT : DALCS_POWER_PRODUCT,
-            sign * (is_dc ? stimulus->dc : 1.0));
+        put(t, DALCS_POWER_SOURCES, is_dc ? DALCS_POWER_CONSTANT : DALCS_POWER_PRODUCT,
+            is_dc ? -stimulus->dc : -1.0);
     term->first[0] = l->current_column[device];
     if (!is_dc) {
         set_voltage(l, term->second, d->node[0], d->node[1]);
@@ -75,13 +70,14 @@ static void put_current_source(const struct dalcs_layout *l, struct terms *t, in
     const struct dalcs_device *d = &l->circuit->device[device];
     const struct dalcs_stimulus *stimulus = &l->circuit->stimulus[d->stimulus];
     bool is_dc = stimulus->kind == DALCS_STIMULUS_DC;
+    enum dalcs_power_account account = d->is_limit ? DALCS_POWER_DIODES : DALCS_POWER_SOURCES;
     for (int end = 0; end < 2; end++) {
         double sign = end == 0 ? -1.0 : 1.0;
         double side = d->is_limit ? -sign : sign; /* taken, or given */
         int column = dalcs_stamp_node_column(l, d->node[end]);
         if (column >= 0) {
             struct dalcs_power_term *term =
-                put(t, account_of(d), is_dc ? DALCS_POWER_CONSTANT : DALCS_POWER_INPUT,
+                put(t, account, is_dc ? DALCS_POWER_CONSTANT : DALCS_POWER_INPUT,
                     is_dc ? side * stimulus->dc : side);
             term->first[0] = column;
             term->input = l->input[device];
@@ -93,9 +89,8 @@ static void put_current_source(const struct dalcs_layout *l, struct terms *t, in
 static void put_controlled_source(const struct dalcs_layout *l, struct terms *t, int device) {
     const struct dalcs_device *d = &l->circuit->device[device];
     const bool is_voltage = d->kind == DALCS_VCVS || d->kind == DALCS_CCVS;
-    const double sign = d->is_limit ? 1.0 : -1.0; /* taken, or given */
     struct dalcs_power_term *term =
-        put(t, account_of(d), DALCS_POWER_PRODUCT, sign * (is_voltage ? 1.0 : d->value));
+        put(t, DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT, is_voltage ? -1.0 : -d->value);
     set_voltage(l, term->first, d->node[0], d->node[1]);
     if (is_voltage) {
         term->second[0] = l->current_column[device];
@@ -130,9 +125,12 @@ static void put_device(const struct dalcs_layout *l, const struct dalcs_system *
                        struct terms *t) {
     const struct dalcs_device *d = &l->circuit->device[device];
     if (d->behaviour != NULL) {
-        struct dalcs_power_term *term =
-            put(t, d->is_storage ? DALCS_POWER_STORED : DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT,
-                d->is_storage ? 1.0 : -1.0);
+        const bool is_taken = d->is_storage || d->is_limit;
+        struct dalcs_power_term *term = put(t,
+                                            d->is_storage ? DALCS_POWER_STORED
+                                            : d->is_limit ? DALCS_POWER_RESISTORS
+                                                          : DALCS_POWER_SOURCES,
+                                            DALCS_POWER_PRODUCT, is_taken ? 1.0 : -1.0);
         set_voltage(l, term->first, d->node[0], d->node[1]);
         term->second[0] = l->current_column[device];
         return;

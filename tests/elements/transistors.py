@@ -247,13 +247,13 @@ def bulks(checker, program):
             what = f"{kind} at {volts} V"
             if checker.check(done.status == 0 and "a diode from there to drain and source each" in done.stderr,
                              f"{what}: {done.status} {done.stderr}"):
-                for t, current in ((5e-6, on), (15e-6, below), (25e-6, -volts / ohms)):
+                for t, current in ((5e-6, on), (15e-6, below), (25e-6, -volts / (ohms + 1 / (gain * (10 * vto - vto))))):
                     checker.close(done.at("i(r1)", t), sign * current, 1e-4 * abs(current), f"{what} at {t}")
 
 
 def alike_ends(checker, program):
     """With a bulk on ground the end of the card's source may be the one at the supply. Then the channel is off while the gate is
-    within Vto of the other end, which follows the gate where it is higher, up to the supply. A coil keeps its current through the
+    within Vto of the other end, which follows the gate where it is higher, up to the supply, behind the channel's resistance. A coil keeps its current through the
     diode of the bulk, and a capacitor keeps its charge behind a gate that is off."""
     vfwd, ron = 0.0258649 * math.log1p(1e14) - 0.0258649, 0.0258649
     for ohms, volts, vto, gain in ((1, 12, 2, 10), (50, 400, 4, 0.5), (0.2, 3.3, 1.5, 100), (1e4, 5, 1.2, 1e-2), (30, 48, 3, 1)):
@@ -266,8 +266,8 @@ def alike_ends(checker, program):
             done = run_at(program, text)
             what = f"{kind} at {volts} V"
             if checker.check(done.status == 0, f"{what}: {done.status} {done.stderr}"):
-                closed = volts / (1 + 1 / (gain * 2 * vto) / ohms)
-                for t, level in ((5e-6, 0), (15e-6, 0.4 * volts), (25e-6, closed)):
+                share = 1 / (1 + 1 / (gain * 2 * vto) / ohms)
+                for t, level in ((5e-6, 0), (15e-6, 0.4 * volts * share), (25e-6, volts * share)):
                     checker.close(done.at("v(d)", t), sign * level, 1e-9 * volts, f"{what} at {t}")
             text = (f"a sampled voltage\nv1 s 0 pwl(0 {sign * volts!r} 20u {sign * volts!r} 20u {sign * 2 * volts!r})\n"
                     f"vg g 0 pwl(0 {sign * (2 * volts + vto)!r} 10u {sign * (2 * volts + vto)!r} 10u 0)\nm1 d g s 0 mx\n"
