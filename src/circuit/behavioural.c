@@ -15,8 +15,12 @@ struct dalcs_formula_source *dalcs_behavioural_add_source(struct dalcs_builder *
         builder->out_of_memory = true;
         return NULL;
     }
+    const int index = (int)(device - builder->circuit->device);
     struct dalcs_formula_source *source = &builder->formulas.source[builder->formulas.n++];
-    *source = (struct dalcs_formula_source){.device = (int)(device - builder->circuit->device)};
+    for (; source > builder->formulas.source && source[-1].device > index; source--) {
+        *source = source[-1]; /* one of a card that was read before */
+    }
+    *source = (struct dalcs_formula_source){.device = index};
     return source;
 }
 

@@ -77,7 +77,7 @@ struct dalcs_device {
     double initial;   /* IC=: V for C, A for L; of a balance in storage.c, its x */
     bool has_initial;
     int before_series; /* C: the first node of its card, where that is not node[0]; else 0 */
-    bool is_limit;     /* I: limits a current, and what it takes is lost as in a diode */
+    bool is_limit;     /* I: limits a current, G: a channel; what it takes is lost as in a diode */
     bool is_storage;   /* E, G: with its core, a capacitor or a coil that is no straight line */
     bool
         is_delay; /* E: gain 0, and 1 at rest, where what a delayed source puts out is what it reads */

@@ -45,13 +45,15 @@ static bool check_ideal(struct dalcs_builder *builder, const struct dalcs_parame
                             "leave Roff out for a diode without leakage", "Roff must be positive");
         return false;
     }
-    if (p[DALCS_DIODE_VREV].value <= 0 && !is_resistor(p)) {
+    const double forward = p[DALCS_DIODE_VFWD].value;
+    const double back = p[DALCS_DIODE_VREV].value;
+    if ((back == 0 || (back < 0 && forward <= -back)) && !is_resistor(p)) {
         dalcs_builder_error(builder, p[DALCS_DIODE_VREV].place,
                             "Vrev is the magnitude of the breakdown voltage; leave it out for none",
                             "Vrev must be positive");
         return false;
     }
-    if (p[DALCS_DIODE_VFWD].value <= -p[DALCS_DIODE_VREV].value && !is_resistor(p)) {
+    if (forward <= -back && !is_resistor(p)) {
         dalcs_builder_error(builder, p[DALCS_DIODE_VFWD].place, NULL,
                             "Vfwd is not above the breakdown at -Vrev");
         return false;
@@ -137,6 +139,13 @@ static bool set_ideal(struct dalcs_builder *builder, struct dalcs_parameter *p,
     card->ilimit = p[DALCS_DIODE_ILIMIT].value;
     card->revilimit = p[DALCS_DIODE_REVILIMIT].value;
     sharpen(builder, &p[DALCS_DIODE_EPSILON], "Vfwd", model->ron, &model->vfwd);
+    if (model->vrev < 0) {
+        dalcs_builder_warn(builder, p[DALCS_DIODE_VREV].place,
+                           "Vrev is the magnitude of the breakdown voltage",
+                           "a diode that breaks down at %g V conducts backwards below that, and "
+                           "delivers power from 0 V on",
+                           -model->vrev);
+    }
     if (isfinite(model->vrev)) {
         sharpen(builder, &p[DALCS_DIODE_REVEPSILON], "Vrev", model->rrev, &model->vrev);
     }

@@ -1,7 +1,7 @@
 /* transistor.c - M, Z and Q elements: MOSFETs, IGBTs and bipolar transistors as switches.
  *
  *     MOSFET    a switch between drain and source that v(gate, source) commands, and a body diode across it; where
- *               the bulk is elsewhere a diode from there to each, and the channel backwards from its threshold on
+ *               the bulk is elsewhere a channel of two ends that are alike (channel.c), and a diode from there to each
  *     IGBT      a diode with the knee Vce0 in series with a switch, and a diode across both where the card has one
  *     bipolar   a switch between collector and emitter, and a diode from base to emitter: only with .options bjt=switch
  *
@@ -222,31 +222,19 @@ static struct dalcs_device *add_other(struct dalcs_builder *builder,
     return diode;
 }
 
-/* The bulk is not on the source: then the channel has two ends that are alike. While the gate is at the source it conducts
- * backwards from v(source, drain) = Vto on, as one whose gate is at its drain. */
+/* The bulk is not on the source. The switch becomes a channel when its resistance is known. */
 static bool add_bulk(struct dalcs_builder *builder, struct dalcs_transistor_use *use) {
-    struct dalcs_circuit *circuit = builder->circuit;
     const struct dalcs_transistor *t = use->of;
-    const int drain = circuit->device[use->device].node[0];
+    const int drain = builder->circuit->device[use->device].node[0];
     const int ends[2] = {t->is_p ? drain : use->bulk, t->is_p ? use->bulk : drain};
-    if (use->bulk != use->drain && t->has_diode) {
-        struct dalcs_device *to_source = add_other(builder, use, "bulk", use->bulk, use->source);
-        if (to_source == NULL || !add_diode(builder, use, "body", ends)) {
-            return false;
-        }
-        to_source->model = use->diode;
+    if (use->bulk == use->drain || !t->has_diode) {
+        return true;
     }
-    struct dalcs_device *channel = add_other(builder, use, "channel", use->source, drain);
-    if (channel == NULL) {
+    struct dalcs_device *to_source = add_other(builder, use, "bulk", use->bulk, use->source);
+    if (to_source == NULL || !add_diode(builder, use, "body", ends)) {
         return false;
     }
-    circuit->models.of_diode[circuit->models.n_diodes] =
-        (struct dalcs_diode_model){.name = circuit->device[use->device].name,
-                                   .ron = t->series / use->parallel,
-                                   .roff = INFINITY,
-                                   .vfwd = fabs(t->threshold),
-                                   .vrev = INFINITY};
-    channel->model = circuit->models.n_diodes++;
+    to_source->model = use->diode;
     return true;
 }
 

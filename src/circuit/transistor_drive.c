@@ -170,6 +170,9 @@ static void settle(struct dalcs_builder *builder, const struct dalcs_gate_links 
     model->ron = (channel + t->series) / use->parallel;
     model->roff = t->leakage / use->parallel;
     note(builder, use, model->ron, at != NULL ? at : "");
+    if (use->bulk != use->source && model->ron > 0) {
+        dalcs_transistor_make_channel(builder, use, model->ron, model->roff);
+    }
 }
 
 /* From the last one to the first. */

@@ -125,9 +125,12 @@ static void put_device(const struct dalcs_layout *l, const struct dalcs_system *
                        struct terms *t) {
     const struct dalcs_device *d = &l->circuit->device[device];
     if (d->behaviour != NULL) {
-        struct dalcs_power_term *term =
-            put(t, d->is_storage ? DALCS_POWER_STORED : DALCS_POWER_SOURCES, DALCS_POWER_PRODUCT,
-                d->is_storage ? 1.0 : -1.0);
+        const bool is_taken = d->is_storage || d->is_limit;
+        struct dalcs_power_term *term = put(t,
+                                            d->is_storage ? DALCS_POWER_STORED
+                                            : d->is_limit ? DALCS_POWER_RESISTORS
+                                                          : DALCS_POWER_SOURCES,
+                                            DALCS_POWER_PRODUCT, is_taken ? 1.0 : -1.0);
         set_voltage(l, term->first, d->node[0], d->node[1]);
         term->second[0] = l->current_column[device];
         return;

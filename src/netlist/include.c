@@ -201,7 +201,7 @@ enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer, const struct dal
     }
     const char *library = dalcs_library_with_blanks(lexer, card);
     if (library != NULL) {
-        return include(lexer, &token[1], library, NULL, true);
+        return include(lexer, &token[1], library, NULL, dalcs_library_is_name(library));
     }
     if (card->n > (is_lib ? 3 : 2)) {
         dalcs_lexer_report(lexer, &token[is_lib ? 3 : 2], "put quotes around a name with blanks",

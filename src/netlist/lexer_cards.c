@@ -77,6 +77,31 @@ static enum dalcs_status close_model(struct dalcs_lexer *lexer) {
     return DALCS_OK;
 }
 
+/* PARAMS:name=value without a blank, as PSpice takes it, is two words. */
+static enum dalcs_status split_params(struct dalcs_lexer *lexer) {
+    static const char word[] = "params:";
+    const size_t n = sizeof word - 1;
+    const bool may = lexer->token[0].text[0] == 'x' || strcmp(lexer->token[0].text, ".subckt") == 0;
+    for (size_t k = 2; may && k < lexer->n_tokens; k++) {
+        const struct dalcs_token whole = lexer->token[k];
+        if (whole.kind != DALCS_TOKEN_WORD || strncmp(whole.text, word, n) != 0 ||
+            whole.text[n] == '\0') {
+            continue;
+        }
+        DALCS_TRY(
+            dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
+        struct dalcs_token *token = &lexer->token[k];
+        memmove(token + 1, token, (lexer->n_tokens - k) * sizeof *token);
+        lexer->n_tokens++;
+        token[0].text = word;
+        token[0].length = (int)n;
+        token[1].text += n;
+        token[1].offset += (int)n;
+        token[1].length -= (int)n;
+    }
+    return DALCS_OK;
+}
+
 bool dalcs_card_is_derived_model(const struct dalcs_card *card) {
     return card->n > 2 && strcmp(card->token->text, ".model") == 0 &&
            card->token[2].kind == DALCS_TOKEN_WORD && strncmp(card->token[2].text, "ako:", 4) == 0;
@@ -97,6 +122,7 @@ enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
         return DALCS_OK;
     }
     DALCS_TRY(close_model(lexer));
+    DALCS_TRY(split_params(lexer));
     if (lexer->n_tokens > INT_MAX / 2) {
         return DALCS_E_LIMIT;
     }

@@ -24,6 +24,7 @@ bool dalcs_library_is_name(const char *path) {
 const char *dalcs_library_with_blanks(struct dalcs_lexer *lexer, const struct dalcs_card *card) {
     const struct dalcs_token *first = &card->token[1];
     const struct dalcs_token *last = &card->token[card->n - 1];
+    const bool is_lib = strcmp(card->token->text, ".lib") == 0;
     if (card->n < 3 || first->kind != DALCS_TOKEN_WORD || last->line != first->line ||
         dalcs_library_is_name(first->text)) {
         return NULL;
@@ -31,7 +32,7 @@ const char *dalcs_library_with_blanks(struct dalcs_lexer *lexer, const struct da
     const size_t end = (size_t)last->offset + last->length;
     const char *path = dalcs_arena_copy(&lexer->netlist->arena, first->line->text + first->offset,
                                         end - (size_t)first->offset);
-    return path != NULL && dalcs_library_is_name(path) ? path : NULL;
+    return path != NULL && is_lib && !dalcs_library_is_name(path) ? NULL : path;
 }
 
 /* `name` in the folder of the file that includes it. */

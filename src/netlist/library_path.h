@@ -7,8 +7,8 @@
 /* Is it called as files of models and subcircuits are? */
 bool dalcs_library_is_name(const char *path);
 
-/* All behind the name of the card, where it is the path of a library with blanks or brackets that no quotes hold;
- * NULL: it is something else. */
+/* All behind the name of the card, where it is a path with blanks or brackets that no quotes hold: behind .include any, for
+ * nothing follows a path there, behind .lib that of a library. NULL: it is something else. */
 const char *dalcs_library_with_blanks(struct dalcs_lexer *lexer, const struct dalcs_card *card);
 
 /* The file: as written, with the slashes of this system, of its name beside the netlist, or of its name among the

@@ -28,7 +28,8 @@ static const char *kind_of(const struct dalcs_device *d) {
     case DALCS_SWITCH:
         return "switch";
     default:
-        return d->is_limit         ? "diode"
+        return d->letter == 'm'    ? "switch"
+               : d->is_limit       ? "diode"
                : d->is_transformer ? "transformer"
                : !d->is_storage    ? "source"
                : d->letter == 'l'  ? "coil"

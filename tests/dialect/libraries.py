@@ -30,6 +30,8 @@ FOUND = [
     (".lib /home/someone/spice/parts.mod", "sub/parts.mod"),
     (".lib \"D:\\parts\\parts.lib\"", "sub/parts.lib"),
     (".inc my parts.lib", "sub/my parts.lib"),
+    (".inc my parts.txt", "sub/my parts.txt"),
+    (".include C:\\Users\\me\\Octavo semestre\\parts.txt", "sub/parts.txt"),
     (".lib lib/parts.lib", "sub/lib/parts.lib"),
 ]
 

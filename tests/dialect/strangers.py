@@ -119,6 +119,10 @@ def parameters(checker):
     for card in ("V1 a 0 AC(2 90)", "V1 a 0 AC( 2, 90 )", "V1 a 0 DC 1 AC(2 90)", "V1 a 0 AC(2 90) SIN(0 1 1k)", "V1 a 0 1 AC=(2 90)",
                  "I1 0 a AC(2m 90)"):
         checker.measures(f"{card}\nR1 a 0 1k\n.ac lin 2 1k 2k\n.meas ac m max mag(v(a))", {"m": 2})
+    pot = "V1 a 0 10\nX1 a b 0 pot {call}\n.subckt pot p q r {port}\nR1 p q {{rt*k}}\nR2 q r {{rt*(1-k)}}\n.ends\n.op"
+    for port, call in (("PARAMS:rt=2k k=0.25", ""), ("params: rt=2k k=0.5", "PARAMS:k=0.25"), ("Params:rt=1k PARAMS:k=1", "PARAMS:k=0.25 rt=3k"),
+                       ("rt=2k k=0.5", "PARAMS:rt=4k PARAMS:k=0.25")):
+        checker.ends(pot.format(port=port, call=call), {"v(b)": 7.5})
     initial = ".param vout=3\nR1 a 0 1k\nC1 a 0 1u\n.tran 10u 1m uic\n"
     for card in (".ic v(a)=vout", ".ic v(a) = vout", ".ic v(a)={vout}", ".ic V(A)=Vout"):
         checker.ends(initial + card, {"v(a)": 3 / math.e})

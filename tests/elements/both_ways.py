@@ -26,6 +26,33 @@ CASES = (
 )
 
 
+# ohms; V forwards and backwards, ohms of both branches, volts of the source
+LIMITERS = ((1e3, 1.2, -0.3, 10, 20, 3), (50, 0.85, -0.3, 1, 1, 10), (1e5, 12, -5, 1e3, 0, 40), (2, 400, -300, 0.1, 0.2, 1e3),
+            (10, 3e-3, -1e-3, 1, 2, 0.1))
+
+
+def limiters(checker, program):
+    """Vrev below 0: in LTspice's macromodels a diode holds a voltage between -Vrev and Vfwd, both above 0. Rows of a ramp against
+    the closed form, and every one against the diode turned around, whose knees are the other way."""
+    for load, forward, back, ron, rrev, volts in LIMITERS:
+        parameters = f"Ron={ron} Vfwd={forward} Vrev={back} Rrev={rrev}"
+        turned = f"Ron={rrev} Vfwd={back} Vrev={forward} Rrev={ron}"
+        result = run(program, f"{parameters}\nv1 in 0 pwl(0 {-volts} 1m {volts})\nr1 in a {load}\nd1 a 0 lim\nr2 in b {load}\nd2 0 b mil\n"
+                     f".model lim D({parameters})\n.model mil D({turned})\n.tran 7u 1m\n.end\n", method=None)
+        if not checker.check(result.status == 0 and "conducts backwards below that" in result.stderr,
+                             f"{parameters}: {result.status}\n{result.stderr}"):
+            continue
+        worst = 0.0
+        for v, a, b in zip(result.column("v(in)"), result.column("v(a)"), result.column("v(b)")):
+            held = v
+            if v > forward:
+                held = forward + (v - forward) * ron / (ron + load)
+            elif v < -back:
+                held = -back + (v + back) * rrev / (rrev + load)
+            worst = max(worst, abs(a - held), abs(b - held))
+        checker.check(worst < 1e-9 * volts, f"{parameters}: off by {worst} V")
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("both ways")
@@ -44,6 +71,7 @@ def main():
     for wrong in ("Ron=10 Vrev=0 Vfwd=0.6", "Ron=10 Rrev=20 Vrev=0", "Ron=1 Vrev=0 Epsilon=0.1", "Ron=1 Vrev=-1"):
         result = run(program, f"wrong\nv1 a 0 1\nd1 a 0 lim\n.model lim D({wrong})\n.op\n.end\n", method=None)
         checker.check(result.status == 3 and "Vrev must be positive" in result.stderr, f"{wrong}: {result.stderr}")
+    limiters(checker, program)
     return checker.finish()
 
 

@@ -231,8 +231,8 @@ def bipolars(checker, program):
 
 
 def bulks(checker, program):
-    """A bulk on another node than the source: the channel when it is on, backwards from Vto on when it is off, and a diode from
-    the bulk to each end; a p channel is the same with all signs changed."""
+    """A bulk on another node than the source: the channel when it is on, backwards from Vto on when the gate is at the source,
+    and a diode from the bulk to each end; a p channel is the same with all signs changed."""
     vfwd, ron = 0.0258649 * math.log1p(1e14) - 0.0258649, 0.0258649  # the tangent of Is = 1e-14 at 1 A
     for ohms, volts, vto, gain in ((1, 12, 2, 10), (50, 400, 4, 0.5), (0.2, 3.3, 1, 100)):
         for sign, kind in ((1, "NMOS"), (-1, "PMOS")):
@@ -247,8 +247,45 @@ def bulks(checker, program):
             what = f"{kind} at {volts} V"
             if checker.check(done.status == 0 and "a diode from there to drain and source each" in done.stderr,
                              f"{what}: {done.status} {done.stderr}"):
-                for t, current in ((5e-6, on), (15e-6, below), (25e-6, -volts / ohms)):
+                for t, current in ((5e-6, on), (15e-6, below), (25e-6, -volts / (ohms + 1 / (gain * (10 * vto - vto))))):
                     checker.close(done.at("i(r1)", t), sign * current, 1e-4 * abs(current), f"{what} at {t}")
+
+
+def alike_ends(checker, program):
+    """With a bulk on ground the end of the card's source may be the one at the supply. Then the channel is off while the gate is
+    within Vto of the other end, which follows the gate where it is higher, up to the supply, behind the channel's resistance. A coil keeps its current through the
+    diode of the bulk, and a capacitor keeps its charge behind a gate that is off."""
+    vfwd, ron = 0.0258649 * math.log1p(1e14) - 0.0258649, 0.0258649
+    for ohms, volts, vto, gain in ((1, 12, 2, 10), (50, 400, 4, 0.5), (0.2, 3.3, 1.5, 100), (1e4, 5, 1.2, 1e-2), (30, 48, 3, 1)):
+        for sign, kind in ((1, "NMOS"), (-1, "PMOS")):
+            high = volts + 3 * vto
+            gate = f"0 0 10u 0 10u {sign * (0.4 * volts + vto)!r} 20u {sign * (0.4 * volts + vto)!r} 20u {sign * high!r}"
+            model = f".model mx {kind}(Vto={sign * vto!r} Kp={gain!r} W=1 L=1 Rd=0)\n"
+            text = (f"the source at the supply\nv1 s 0 {sign * volts!r}\nvg g 0 pwl({gate})\nm1 d g s 0 mx\n"
+                    f"r1 d 0 {ohms!r}\n{model}.save v(d)\n.tran 1u 30u\n.end\n")
+            done = run_at(program, text)
+            what = f"{kind} at {volts} V"
+            if checker.check(done.status == 0, f"{what}: {done.status} {done.stderr}"):
+                share = 1 / (1 + 1 / (gain * 2 * vto) / ohms)
+                for t, level in ((5e-6, 0), (15e-6, 0.4 * volts * share), (25e-6, volts * share)):
+                    checker.close(done.at("v(d)", t), sign * level, 1e-9 * volts, f"{what} at {t}")
+            text = (f"a sampled voltage\nv1 s 0 pwl(0 {sign * volts!r} 20u {sign * volts!r} 20u {sign * 2 * volts!r})\n"
+                    f"vg g 0 pwl(0 {sign * (2 * volts + vto)!r} 10u {sign * (2 * volts + vto)!r} 10u 0)\nm1 d g s 0 mx\n"
+                    f"c1 d 0 1p\n{model}.save v(d)\n.tran 1u 40u uic\n.end\n")
+            done = run_at(program, text)
+            if checker.check(done.status == 0, f"{what}, sampled: {done.status} {done.stderr}"):
+                checker.close(done.at("v(d)", 15e-6), sign * volts, 1e-8 * volts, f"{what}: the sample")
+                checker.close(done.at("v(d)", 35e-6), sign * volts, 1e-8 * volts, f"{what}: the sample, held")
+            tau = 10e-6
+            text = (f"a coil\nv1 s 0 {sign * volts!r}\nvg g 0 pwl(0 {sign * high!r} 10u {sign * high!r} 10u 0)\nm1 d g s 0 mx\n"
+                    f"l1 d x {tau * ohms!r} ic=0\nr1 x 0 {ohms!r}\n{model}.save i(l1)\n.tran 1u 15u uic\n.end\n")
+            done = run_at(program, text)
+            if checker.check(done.status == 0, f"{what}, a coil: {done.status} {done.stderr}"):
+                total = ohms + 1 / (gain * 2 * vto)
+                peak = volts / total * (1 - math.exp(-10e-6 * total / (tau * ohms)))
+                rest = vfwd / (ohms + ron)
+                left = (peak + rest) * math.exp(-4e-6 * (ohms + ron) / (tau * ohms)) - rest
+                checker.close(done.at("i(l1)", 14e-6), sign * max(left, 0), 1e-4 * volts / ohms, f"{what}: the coil")
 
 
 REFUSED = (
@@ -362,7 +399,7 @@ def logic_drives(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("transistors")
-    for part in (cards, circuits, saturations, bulks, igbts, bipolars, refusals, typical, logic_drives):
+    for part in (cards, circuits, saturations, bulks, alike_ends, igbts, bipolars, refusals, typical, logic_drives):
         part(checker, program)
     return checker.finish()
 
