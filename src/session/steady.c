@@ -109,15 +109,16 @@ static enum dalcs_status go_on(struct dalcs_steady *st, struct burst *b) {
     return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
 }
 
-/* Has the step helped behind which the last pass began? Else a shorter one is tried. `before`: the residual before it. A period
- * that is looked for, too, is a part of the step that no leap has. */
-static enum dalcs_status look_behind(struct dalcs_steady *st, double before, struct burst *b,
-                                     bool *helped) {
+/* Has the step helped behind which the last pass began, if that came to its end? Else a shorter one is tried. `before`: the
+ * residual before it. A period that is looked for, too, is a part of the step that no leap has. */
+static enum dalcs_status look_behind(struct dalcs_steady *st, double before, bool has_ended,
+                                     struct burst *b, bool *helped) {
+    *helped = false;
     if (st->own.is_free) {
-        *helped = st->pass.residual <= 0.5 * before;
-        return DALCS_OK;
+        *helped = has_ended && st->pass.residual <= 0.5 * before;
+        return has_ended ? DALCS_OK : DALCS_NOT_CONVERGED;
     }
-    DALCS_TRY(dalcs_steady_find_helped(st, helped));
+    DALCS_TRY(has_ended ? dalcs_steady_find_helped(st, helped) : DALCS_OK);
     if (!*helped) {
         b->whole = 0;
         b->shorter++;
@@ -134,11 +135,11 @@ static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     dalcs_steady_note_base(st);
     take_step(st);
     const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
-    DALCS_TRY(status);
-    b->done = is_done(st, before);
+    DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+    b->done = status == DALCS_OK && is_done(st, before);
     if (!b->done) {
         b->whole++;
-        DALCS_TRY(look_behind(st, before, b, &helped));
+        DALCS_TRY(look_behind(st, before, status == DALCS_OK, b, &helped));
     }
     if (!b->done && !helped) {
         b->unhelpful++;

@@ -34,7 +34,7 @@ struct dalcs_orbit_point {
     const struct dalcs_steady_layout *layout;
 };
 
-enum { DALCS_STEADY_STEPS = 10 }; /* of a burst */
+enum { DALCS_STEADY_STEPS = 10 }; /* of Newton's method in a row */
 
 struct dalcs_steady {
     struct dalcs_run *run;
