@@ -20,8 +20,8 @@
 #include <string.h>
 
 /* k is a power of 2, up to one that is as good as a step of Newton's method and keeps what is conserved
- * (steady_continuation.c). Six halvings leave a factor of 2^(20/64) = 1.24. They take as many periods as a run that gets as far
- * as a leap of 2^3. */
+ * (steady_continuation.c). Six halvings leave a factor of 2^(20/64) = 1.24. Four of them tell that a leap of 2^2 periods is too
+ * long: a run gets as far in as many periods. */
 enum { LONGEST = 20, SHORTEST = 2, HALVINGS = 6 };
 
 void dalcs_steady_note_base(struct dalcs_steady *st) {
