@@ -35,13 +35,15 @@ enum dalcs_status dalcs_response_audit_start(struct dalcs_response_audit *a,
         most = b != NULL && (size_t)b->n_pairs > most ? (size_t)b->n_pairs : most;
     }
     a->node_of = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *a->node_of);
+    a->cluster = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *a->cluster);
+    a->gain = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->gain);
     a->node = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *a->node);
     a->lines = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->lines);
     a->lambda = dalcs_arena_alloc(&a->arena, most, sizeof *a->lambda);
     a->lambda_size = dalcs_arena_alloc(&a->arena, most, sizeof *a->lambda_size);
     enum dalcs_status status = DALCS_E_NOMEM;
-    if (a->node_of != NULL && a->node != NULL && a->lines != NULL && a->lambda != NULL &&
-        a->lambda_size != NULL) {
+    if (a->node_of != NULL && a->cluster != NULL && a->gain != NULL && a->node != NULL &&
+        a->lines != NULL && a->lambda != NULL && a->lambda_size != NULL) {
         merge_shorts(a);
         response_find_largest(a, at);
         status = response_find_lines(a, at);

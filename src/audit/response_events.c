@@ -64,8 +64,8 @@ static bool orbit_jumps(const struct dalcs_response_audit *a,
     return does;
 }
 
-static void check_state(struct dalcs_response_audit *a, const struct dalcs_response_event *e,
-                        int device) {
+static struct response_gain gain_of(const struct dalcs_response_audit *a,
+                                    const struct dalcs_response_event *e, int device) {
     const struct state before = state_of(a, e->is[0], device);
     const struct state behind = state_of(a, e->is[1], device);
     const struct dalcs_device *d = &a->circuit->device[device];
@@ -80,8 +80,8 @@ static void check_state(struct dalcs_response_audit *a, const struct dalcs_respo
         allowed += late * (a->tolerance * response_magnitude(s.rate) +
                            a->orbit.tolerance * e->at[side]->steepness * s.orbit);
     }
-    response_found(a, DALCS_RESPONSE_STATE, device, response_magnitude(off),
-                   allowed + a->rounding * (before.size + behind.size + largest));
+    return (struct response_gain){off,
+                                  allowed + a->rounding * (before.size + behind.size + largest)};
 }
 
 static void check_states(struct dalcs_response_audit *a, const struct dalcs_response_event *e) {
@@ -90,10 +90,19 @@ static void check_states(struct dalcs_response_audit *a, const struct dalcs_resp
         return;
     }
     response_find_small(a, e->is[0]);
+    const bool joins = e->at[0] != NULL && response_may_join(a, e);
     for (int d = 0; d < a->circuit->n_devices; d++) {
-        if (is_storage(a, d)) {
-            check_state(a, e, d);
+        if (!is_storage(a, d)) {
+            continue;
         }
+        a->gain[d] = gain_of(a, e, d);
+        if (!joins || a->circuit->device[d].kind == DALCS_INDUCTOR) {
+            response_found(a, DALCS_RESPONSE_STATE, d, response_magnitude(a->gain[d].off),
+                           a->gain[d].allowed);
+        }
+    }
+    if (joins) {
+        response_check_charges(a, e, a->gain);
     }
 }
 

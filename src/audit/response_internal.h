@@ -31,6 +31,12 @@ struct response_node {
     bool is_open; /* a current is not known, or a device is not there */
 };
 
+/* What a state gains across an event beside what the lateness makes of it. */
+struct response_gain {
+    double complex off;
+    double allowed;
+};
+
 /* A sum, the sizes of its terms, and what these are sums of, which rounding goes by. */
 struct response_sum {
     double complex value;
@@ -61,6 +67,15 @@ void response_find_small(struct dalcs_response_audit *a, const struct dalcs_resp
 /* A law was asked. */
 void response_found(struct dalcs_response_audit *a, enum dalcs_response_law law, int index,
                     double defect, double allowed);
+
+/* ---- response_charges.c ---- */
+
+/* Does something without resistance close at the event? */
+bool response_may_join(const struct dalcs_response_audit *a, const struct dalcs_response_event *e);
+
+/* Of capacitors: the charge of nodes that hang together stays what it is. gain: [n_devices]. */
+void response_check_charges(struct dalcs_response_audit *a, const struct dalcs_response_event *e,
+                            const struct response_gain *gain);
 
 /* ---- response_lines.c ---- */
 

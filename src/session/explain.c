@@ -193,8 +193,8 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
     }
     if (hint != NULL && dalcs_refusal_is_of_start(&x)) {
         hint = dalcs_arena_printf(
-            &s->arena, "'uic' on .tran starts from initial values, without an operating point; %s",
-            hint);
+            &s->arena, "'uic' on %s starts from initial values, without an operating point; %s",
+            s->circuit.analyses.periodic.present ? ".pss" : ".tran", hint);
     }
     dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s %s: %s", when,
                    x.is_certain ? "no solution exists" : "a solution may exist, but none was found",

@@ -259,6 +259,17 @@ void dalcs_refusal_explain(struct dalcs_refusal *r) {
     r->because = r->because == NULL ? "" : r->because;
 }
 
+/* Does the loop have a coil, in which a current takes its time to grow, and a switch, which may open it before long? */
+static bool is_loop_for_a_while(const struct dalcs_refusal *r) {
+    bool has_coil = false;
+    bool has_switch = false;
+    for (int i = 0; i < r->circuit->n_devices; i++) {
+        has_coil = has_coil || (r->is_named[i] && r->circuit->device[i].kind == DALCS_INDUCTOR);
+        has_switch = has_switch || (r->is_named[i] && r->circuit->device[i].kind == DALCS_SWITCH);
+    }
+    return has_coil && has_switch;
+}
+
 bool dalcs_refusal_is_of_start(const struct dalcs_refusal *r) {
     const struct dalcs_transient *t = &r->circuit->analyses.transient;
     struct dalcs_fed_part part = {0};
@@ -271,5 +282,6 @@ bool dalcs_refusal_is_of_start(const struct dalcs_refusal *r) {
         has_capacitor |=
             r->circuit->device[i].kind == DALCS_CAPACITOR && (!part.found || part.blocks[i]);
     }
-    return !r->is_certain || (has_capacitor && r->kind != DALCS_WITNESS_LOOP);
+    return !r->is_certain ||
+           (r->kind == DALCS_WITNESS_LOOP ? is_loop_for_a_while(r) : has_capacitor);
 }

@@ -53,8 +53,8 @@ enum dalcs_status dalcs_fed_part_find(const struct dalcs_refusal *refusal,
 /* Sets refusal->because and puts the elements in order. Without memory the sentence is shorter. */
 void dalcs_refusal_explain(struct dalcs_refusal *refusal);
 
-/* May a run have a solution that begins without an operating point? Not where a loop of sources or a part without a
- * capacitor has none. */
+/* May a run have a solution that begins without an operating point? Not where a loop of sources, or of coils that no
+ * switch opens, or a part without a capacitor has none. */
 bool dalcs_refusal_is_of_start(const struct dalcs_refusal *refusal);
 
 #endif

@@ -11,16 +11,14 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_WITHOUT_HALVING = 4, MOST_UNHELPFUL = 6, MOST_LEAPS = 24 };
+/* MOST_SHORTER: steps of a burst that are shorter than Newton's method has them. */
+enum { MOST_SHORTER = 10, MOST_UNHELPFUL = 4, MOST_LEAPS = 24 };
 
 /* Periods of runs between bursts, in all. */
 static const long most_periods = 4096;
 
 /* Residuals: with the first it is done; the second is good enough where a further step makes it no smaller. */
 static const double converged = 1e-11, good = 1e-10;
-
-/* Farther away than at first by this factor, twice, and a burst is over. */
-static const double far = 10.0;
 
 /* Is every switch with hysteresis, and every gate, in its old state again? */
 static bool switches_return(const struct dalcs_steady *st) {
@@ -87,11 +85,9 @@ static bool is_done(const struct dalcs_steady *st, double before) {
 }
 
 struct burst {
-    double first, best; /* residuals */
-    long plain;         /* periods that are run besides where the next step does not help */
-    int waited;         /* steps since `best` has halved */
-    int unhelpful;      /* steps */
-    int far;
+    long plain;             /* periods that are run besides where the next step does not help */
+    int whole;              /* steps of Newton's method in a row */
+    int shorter, unhelpful; /* steps */
     bool done;
 };
 
@@ -113,39 +109,53 @@ static enum dalcs_status go_on(struct dalcs_steady *st, struct burst *b) {
     return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
 }
 
-/* One step, or half of it, and plain periods where neither did help. */
+/* Has the step helped behind which the last pass began, if that came to its end? Else a shorter one is tried. `before`: the
+ * residual before it. A period that is looked for, too, is a part of the step that no leap has. */
+static enum dalcs_status look_behind(struct dalcs_steady *st, double before, bool has_ended,
+                                     struct burst *b, bool *helped) {
+    *helped = false;
+    if (st->own.is_free) {
+        *helped = has_ended && st->pass.residual <= 0.5 * before;
+        return has_ended ? DALCS_OK : DALCS_NOT_CONVERGED;
+    }
+    DALCS_TRY(has_ended ? dalcs_steady_find_helped(st, helped) : DALCS_OK);
+    if (!*helped) {
+        b->whole = 0;
+        b->shorter++;
+        DALCS_TRY(dalcs_steady_shorten(st, helped));
+        b->done = *helped && is_done(st, before);
+    }
+    return DALCS_OK;
+}
+
+/* One step, or a shorter one, and plain periods where neither did help. */
 static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     const double before = st->pass.residual;
-    bool helped = true;
-    dalcs_steady_note_defect(st);
+    bool helped = false;
+    dalcs_steady_note_base(st);
     take_step(st);
-    DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
-    b->done = is_done(st, before);
-    const bool cycles = dalcs_steady_cycles(st);
-    if (!b->done && !(cycles ? dalcs_steady_lessens(st, 0.5) : st->pass.residual <= 0.5 * before)) {
-        helped = false;
-        DALCS_TRY(cycles ? dalcs_steady_damp(st, &helped) : DALCS_OK);
+    const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+    DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+    b->done = status == DALCS_OK && is_done(st, before);
+    if (!b->done) {
+        b->whole++;
+        DALCS_TRY(look_behind(st, before, status == DALCS_OK, b, &helped));
     }
-    if (!helped) {
+    if (!b->done && !helped) {
         b->unhelpful++;
         DALCS_TRY(go_on(st, b));
         b->done = is_done(st, INFINITY);
     }
-    b->far += st->pass.residual > far * b->first ? 1 : 0;
-    b->waited = st->pass.residual <= 0.5 * b->best ? 0 : b->waited + 1;
-    b->best = fmin(b->best, st->pass.residual);
     return DALCS_OK;
 }
 
 /* The last pass is the first one of it. */
 static enum dalcs_status burst_on(struct dalcs_steady *st, bool *done) {
-    struct burst b = {
-        .first = st->pass.residual, .best = st->pass.residual, .done = is_done(st, 0.0)};
+    struct burst b = {.done = is_done(st, 0.0)};
     bool is_stuck = false; /* where the run has come to: steps may lead to where no run does */
     st->n.bursts++;
-    st->damped.n = 0;
-    for (int k = 0; k < DALCS_STEADY_STEPS && !b.done && b.far < 2 &&
-                    b.waited < MOST_WITHOUT_HALVING && b.unhelpful < MOST_UNHELPFUL;
+    for (int k = 0; !b.done && b.whole < DALCS_STEADY_STEPS && b.shorter < MOST_SHORTER &&
+                    b.unhelpful < MOST_UNHELPFUL;
          k++) {
         enum dalcs_status status = dalcs_steady_next_step(st);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);

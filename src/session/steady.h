@@ -34,7 +34,7 @@ struct dalcs_orbit_point {
     const struct dalcs_steady_layout *layout;
 };
 
-enum { DALCS_STEADY_STEPS = 10 }; /* of a burst */
+enum { DALCS_STEADY_STEPS = 10 }; /* of Newton's method in a row */
 
 struct dalcs_steady {
     struct dalcs_run *run;
@@ -74,15 +74,11 @@ struct dalcs_steady {
         long periods;
     } n;
 
-    struct dalcs_steady_damped {                 /* steady_damped.c */
-        struct dalcs_orbit_point whole, arrived; /* the end of a whole step, and a period later */
-        uint64_t
-            piece[DALCS_STEADY_STEPS]; /* of the map, where the whole steps of a burst have ended */
-        /* [n_x] |Phi(x) - x|, and scales, of the pass behind which the step begins */
-        double *defect, *scale;
-        double residual;
-        int n;
-    } damped;
+    struct dalcs_steady_base {             /* where a step begins (steady_shorter.c) */
+        struct dalcs_orbit_point at, then; /* and a period later */
+        double *M, *scale;
+        double *work, *change; /* [n_x] */
+    } base;
 
     struct dalcs_steady_crowd { /* steady_crowd.c */
         bool is_limited;        /* while a search goes on */
@@ -250,20 +246,6 @@ enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) DALCS_
 enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st,
                                       struct dalcs_orbit_point *best) DALCS_MUST_CHECK;
 
-/* Has a whole step of this burst ended in the piece of the map in which the last pass began? From now on one has. */
-bool dalcs_steady_cycles(struct dalcs_steady *st);
-
-/* Of the last pass, behind which a step begins. */
-void dalcs_steady_note_defect(struct dalcs_steady *st);
-
-/* Is |Phi(x) - x| of the last pass at most this part of the noted one, each over the scales of its own pass, or both over the
- * larger ones of the two? Over its own scales, a small defect of a period of small currents looks large. */
-bool dalcs_steady_lessens(const struct dalcs_steady *st, double part);
-
-/* Tries half of the step that the last pass began behind and that has not halved the defect before it. Where that has
- * *helped, the last pass began behind it; else all is as it was. */
-enum dalcs_status dalcs_steady_damp(struct dalcs_steady *st, bool *helped) DALCS_MUST_CHECK;
-
 /* Room for one, as long as st lives; false: there is none. */
 bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point);
 void dalcs_steady_copy_point(const struct dalcs_steady *st, struct dalcs_orbit_point *to,
@@ -280,6 +262,24 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
  * behind so many of them the circuit may be farther from periodic than before; then they end. */
 enum dalcs_status dalcs_steady_continue(struct dalcs_steady *st, long most_failed,
                                         bool *is_near) DALCS_MUST_CHECK;
+
+/* F, Phi(x) - x, becomes a leap of k periods: (1 + 1/k - M) d = F. */
+enum dalcs_status dalcs_steady_find_leap(const struct dalcs_steady *st, const double *M, double k,
+                                         double *F) DALCS_MUST_CHECK;
+
+/* Of [n_x], in units in which energies are alike. */
+double dalcs_steady_size(const struct dalcs_steady *st, const double *x);
+
+/* ---- steady_shorter.c -------------------------------------------------------------------------- */
+
+/* The last pass, with M, is where a step begins. */
+void dalcs_steady_note_base(struct dalcs_steady *st);
+
+/* The last pass began behind st->step of Newton's method from there. *helped: M has held on the way. */
+enum dalcs_status dalcs_steady_find_helped(struct dalcs_steady *st, bool *helped) DALCS_MUST_CHECK;
+
+/* A shorter step from the base, and a pass with M behind it. If none is found, not *helped, st is at the base again. */
+enum dalcs_status dalcs_steady_shorten(struct dalcs_steady *st, bool *helped) DALCS_MUST_CHECK;
 
 /* ---- steady_anchor.c --------------------------------------------------------------------------- */
 

@@ -41,36 +41,39 @@ enum { COLUMNS_OF_A_PERIOD = 4 };
  * 11, 24 for 21, 24 for 41. */
 enum { MOST_PLAIN = 21 };
 
-/* Of Phi(x) - x of the last pass, in units in which energies are alike. */
-static double size_of_change(const struct dalcs_steady *st) {
+double dalcs_steady_size(const struct dalcs_steady *st, const double *x) {
     double size = 0.0;
     for (int k = 0; k < st->layout.n_systems; k++) {
         const int first = st->layout.first[k];
-        for (int x = first; x < st->layout.first[k + 1]; x++) {
-            const double unit = dalcs_steady_unit(st, k, x - first);
-            size = hypot(size, unit * (st->then.x[x] - st->at.x[x]));
+        for (int i = first; i < st->layout.first[k + 1]; i++) {
+            size = hypot(size, dalcs_steady_unit(st, k, i - first) * x[i]);
         }
     }
     return size;
 }
 
-/* The leap of a system, into st->step. */
-static enum dalcs_status leap_of(struct dalcs_steady *st, int system, double k,
-                                 struct dalcs_arena *arena) {
-    const int first = st->layout.first[system];
-    const int n = st->layout.first[system + 1] - first;
-    const double *M = st->pass.M + st->layout.first_of_M[system];
+/* st->step = Phi(x) - x of the last pass. Returns its size. */
+static double find_change(struct dalcs_steady *st) {
+    for (int x = 0; x < st->layout.n_x; x++) {
+        st->step[x] = st->then.x[x] - st->at.x[x];
+    }
+    return dalcs_steady_size(st, st->step);
+}
+
+/* A system's part of d: F, and then the leap. */
+static enum dalcs_status leap_of(const struct dalcs_steady *st, int system, const double *M,
+                                 double k, double *d, struct dalcs_arena *arena) {
+    const int n = st->layout.first[system + 1] - st->layout.first[system];
     const size_t size = (size_t)n;
     double *A = dalcs_arena_alloc(arena, size * size + 1, sizeof(double));
     double *unit = dalcs_arena_alloc(arena, size + 1, sizeof(double));
     int *pivot = dalcs_arena_alloc(arena, size + 1, sizeof(int));
-    double *d = st->step + first;
     if (A == NULL || unit == NULL || pivot == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int x = 0; x < n; x++) {
         unit[x] = dalcs_steady_unit(st, system, x);
-        d[x] = unit[x] * (st->then.x[first + x] - st->at.x[first + x]);
+        d[x] *= unit[x];
     }
     for (int i = 0; i < n; i++) {
         for (int x = 0; x < n; x++) {
@@ -86,11 +89,13 @@ static enum dalcs_status leap_of(struct dalcs_steady *st, int system, double k,
     return DALCS_OK;
 }
 
-static enum dalcs_status find_leap(struct dalcs_steady *st, double k) {
+enum dalcs_status dalcs_steady_find_leap(const struct dalcs_steady *st, const double *M, double k,
+                                         double *F) {
+    const struct dalcs_steady_layout *l = &st->layout;
     struct dalcs_arena arena = {0};
     enum dalcs_status status = DALCS_OK;
-    for (int system = 0; system < st->layout.n_systems && status == DALCS_OK; system++) {
-        status = leap_of(st, system, k, &arena);
+    for (int s = 0; s < l->n_systems && status == DALCS_OK; s++) {
+        status = leap_of(st, s, M + l->first_of_M[s], k, F + l->first[s], &arena);
     }
     dalcs_arena_finish(&arena);
     return status;
@@ -98,7 +103,8 @@ static enum dalcs_status find_leap(struct dalcs_steady *st, double k) {
 
 /* Of k periods from the last pass on, with plain ones behind it; the last pass is then with M. */
 static enum dalcs_status leap(struct dalcs_steady *st, double k) {
-    DALCS_TRY(find_leap(st, k));
+    (void)find_change(st);
+    DALCS_TRY(dalcs_steady_find_leap(st, st->pass.M, k, st->step));
     for (int x = 0; x < st->layout.n_x; x++) {
         st->then.x[x] = st->at.x[x] + st->step[x];
     }
@@ -121,11 +127,11 @@ static enum dalcs_status go(struct dalcs_steady *st, long most_failed,
     double k = first_leap;
     long n_failed = 0;
     for (int n = 0; n < MOST_LEAPS && !*is_near && k > 1.0 && n_failed <= most_failed; n++) {
-        const double size = size_of_change(st);
+        const double size = find_change(st);
         dalcs_steady_copy_point(st, before, &st->then);
         const enum dalcs_status status = leap(st, k);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        const double left = status == DALCS_OK ? size_of_change(st) / size : INFINITY;
+        const double left = status == DALCS_OK ? find_change(st) / size : INFINITY;
         if (left <= 1.0) {
             *is_near = k >= longest && left <= near;
             k = next_length(k, left);

@@ -38,8 +38,10 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
         st->pass.M = dalcs_arena_alloc(&st->arena, l->first_of_M[l->n_systems] + 1, sizeof(double));
         st->scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->step = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->damped.defect = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->damped.scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->base.M = dalcs_arena_alloc(&st->arena, l->first_of_M[l->n_systems] + 1, sizeof(double));
+        st->base.scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->base.work = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->base.change = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->kept.drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->pass.first = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->pass.last = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
@@ -52,12 +54,13 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
             dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
         st->kept.of = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->kept.of));
         complete = dalcs_steady_make_point(st, &st->at) && dalcs_steady_make_point(st, &st->then) &&
-                   dalcs_steady_make_point(st, &st->damped.whole) &&
-                   dalcs_steady_make_point(st, &st->damped.arrived) && st->pass.M != NULL &&
+                   dalcs_steady_make_point(st, &st->base.at) &&
+                   dalcs_steady_make_point(st, &st->base.then) && st->pass.M != NULL &&
+                   st->base.M != NULL && st->base.work != NULL && st->base.change != NULL &&
                    st->pass.phase != NULL && st->pass.first != NULL && st->pass.last != NULL &&
-                   st->scale != NULL && st->damped.defect != NULL && st->damped.scale != NULL &&
-                   st->step != NULL && st->kept.drift != NULL && st->found.state != NULL &&
-                   st->found.average != NULL && st->found.rms != NULL && st->kept.of != NULL;
+                   st->scale != NULL && st->base.scale != NULL && st->step != NULL &&
+                   st->kept.drift != NULL && st->found.state != NULL && st->found.average != NULL &&
+                   st->found.rms != NULL && st->kept.of != NULL;
     }
     if (!complete) {
         dalcs_steady_finish(st);

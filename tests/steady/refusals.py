@@ -99,6 +99,26 @@ def refused(case):
                  "Rb b 0 1k\n.pss uic\n", 1, "v(c1) rises by 10 mV")
 
 
+def across_a_coil(case):
+    """Switches that put a source across a coil leave no operating point: a current takes its time to grow. A message says how
+    to begin without one, and not where no switch is in the loop."""
+    clock = "Vg g 0 PULSE(1 0 2u 0 0 5u 10u)\nVone one 0 1\nEn n 0 one g 1\n.model sm SW(Ron=0 Vt=0.5)\n"
+    for name, body, begins in (
+            ("a winding", "V1 p 0 100\nS1 p a g 0 sm\nL1 a b 1m\nS2 b 0 g 0 sm\nD1 0 a\nD2 b p\n", True),
+            ("a bridge", "V1 p 0 400\nS1 p a g 0 sm\nS2 a 0 n 0 sm\nS3 p b n 0 sm\nS4 b 0 g 0 sm\nL1 a b 2m\nL2 c d 8m\n"
+             "K1 L1 L2 0.99\nR1 c d 50\nR2 c 0 1k\n", True),
+            ("a boost converter", "V1 p 0 5\nL1 p a 10u\nS1 a 0 g 0 sm\nD1 a out\nC1 out 0 10u\nR1 out 0 20\n", True),
+            ("no switch", "V1 p 0 5\nL1 p 0 10u\nS1 p a g 0 sm\nR1 a 0 1\n", False)):
+        word = "'uic' on .pss starts from initial values"
+        case.refuses(f"* {name}\n{body}{clock}.pss\n", 1, "at the operating point no solution exists: v1", *([word] if begins else []))
+        if begins:
+            done, _ = case.run(f"* {name}\n{body}{clock}.pss uic\n")
+            case.checker.check(done.returncode == 0, f"{name}: {done.stderr}")
+        else:
+            done, _ = case.run(f"* {name}\n{body}{clock}.pss\n")
+            case.checker.check(word not in done.stderr, f"{name}: {done.stderr}")
+
+
 def integral(of, to, store="1n"):
     return f"G{to} 0 {to} {of} 0 1u\nC{to} {to} 0 {store}\n"
 
@@ -255,6 +275,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         case = Case(pathlib.Path(sys.argv[1]).resolve(), folder)
         refused(case)
+        across_a_coil(case)
         integrals(case)
         of_time(case)
         periods(case)
