@@ -1,6 +1,8 @@
 /* smooth.c - values and derivatives of smooth functions of one and two arguments. */
 #include "smooth.h"
 
+#include "exponentials.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -41,6 +43,9 @@ static const struct {
     {"asinh", 1, DALCS_SMOOTH_ASINH},
     {"acosh", 1, DALCS_SMOOTH_ACOSH},
     {"atanh", 1, DALCS_SMOOTH_ATANH},
+    {"logistic", 1, DALCS_SMOOTH_LOGISTIC},
+    {"softplus", 1, DALCS_SMOOTH_SOFTPLUS},
+    {"bernoulli", 1, DALCS_SMOOTH_BERNOULLI},
 };
 
 enum { N_NAMES = sizeof NAMES / sizeof NAMES[0] };
@@ -86,6 +91,18 @@ static double of_two(enum dalcs_smooth_kind kind, double x, double y) {
     }
 }
 
+static double of_exponentials(enum dalcs_smooth_kind kind, double x) {
+    return kind == DALCS_SMOOTH_LOGISTIC   ? dalcs_logistic(x)
+           : kind == DALCS_SMOOTH_SOFTPLUS ? dalcs_softplus(x)
+                                           : dalcs_bernoulli(x);
+}
+
+static double slope_of_exponentials(enum dalcs_smooth_kind kind, double x) {
+    return kind == DALCS_SMOOTH_LOGISTIC   ? dalcs_logistic(x) * dalcs_logistic(-x)
+           : kind == DALCS_SMOOTH_SOFTPLUS ? dalcs_logistic(x)
+                                           : dalcs_bernoulli_slope(x);
+}
+
 double dalcs_smooth_value(enum dalcs_smooth_kind kind, const double *x) {
     switch (kind) {
     case DALCS_SMOOTH_EXP:
@@ -125,7 +142,8 @@ double dalcs_smooth_value(enum dalcs_smooth_kind kind, const double *x) {
     case DALCS_SMOOTH_ATANH:
         return atanh(x[0]);
     default:
-        return of_two(kind, x[0], x[1]);
+        return kind >= DALCS_SMOOTH_LOGISTIC ? of_exponentials(kind, x[0])
+                                             : of_two(kind, x[0], x[1]);
     }
 }
 
@@ -252,7 +270,8 @@ static double derivative(enum dalcs_smooth_kind kind, double x) {
     case DALCS_SMOOTH_ACOSH:
         return 1.0 / sqrt((x - 1.0) * (x + 1.0));
     default:
-        return 1.0 / ((1.0 - x) * (1.0 + x));
+        return kind == DALCS_SMOOTH_ATANH ? 1.0 / ((1.0 - x) * (1.0 + x))
+                                          : slope_of_exponentials(kind, x);
     }
 }
 

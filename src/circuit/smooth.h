@@ -34,7 +34,10 @@ enum dalcs_smooth_kind {
     DALCS_SMOOTH_TANH,
     DALCS_SMOOTH_ASINH,
     DALCS_SMOOTH_ACOSH,
-    DALCS_SMOOTH_ATANH
+    DALCS_SMOOTH_ATANH,
+    DALCS_SMOOTH_LOGISTIC,  /* 1/(1 + exp(-x)) */
+    DALCS_SMOOTH_SOFTPLUS,  /* ln(1 + exp(x)) */
+    DALCS_SMOOTH_BERNOULLI, /* x/(exp(x) - 1) */
 };
 
 struct dalcs_smooth {

@@ -116,6 +116,9 @@ static const struct dalcs_formula *rewrite(struct dalcs_formula_work *w,
     if (made != NULL && w->variable == NULL && takes_real_part) {
         made = dalcs_formula_real_part(arena, made);
     }
+    if (made != NULL && w->variable == NULL) {
+        made = dalcs_formula_exponentials(arena, made, dialect);
+    }
     w->language->out_of_memory = w->language->out_of_memory || made == NULL;
     return made;
 }

@@ -48,7 +48,7 @@ int dalcs_formula_find_control(const struct dalcs_card *card);
 /* Formulas written differently, in the arena; NULL: out of memory. The first has pwrs(x, y) where it is sgn(x)*abs(x)^y. The
  * second is a sum of smooth functions where it has steps and smooth sides that meet. The third has values where parts are not chosen,
  * too. The fourth has functions held in their domains, as in LTspice and Xyce,
- * which take the real part beyond. */
+ * which take the real part beyond. The fifth has functions that are bounded for quotients and logarithms of exponentials. */
 struct dalcs_arena;
 const struct dalcs_formula *dalcs_formula_signed_powers(struct dalcs_arena *arena,
                                                         const struct dalcs_formula *formula);
@@ -59,6 +59,9 @@ const struct dalcs_formula *dalcs_formula_guard(struct dalcs_arena *arena,
                                                 const struct dalcs_formula *formula);
 const struct dalcs_formula *dalcs_formula_real_part(struct dalcs_arena *arena,
                                                     const struct dalcs_formula *formula);
+const struct dalcs_formula *dalcs_formula_exponentials(struct dalcs_arena *arena,
+                                                       const struct dalcs_formula *formula,
+                                                       enum dalcs_dialect_name dialect);
 
 /* Is it a call of one of these functions? names: up to a NULL. */
 bool dalcs_formula_is_call_of(const struct dalcs_formula *f, const char *const *names);

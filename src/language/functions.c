@@ -2,6 +2,7 @@
  *
  * Where dialects differ, what they agree on is taken and the rest is left out; doc/netlist.md lists
  * the differences. A result that is not finite is reported by the caller. */
+#include "exponentials.h"
 #include "expression.h"
 
 #include <math.h>
@@ -160,6 +161,9 @@ CALL(floor)
 CALL(ceil)
 CALL(rint)
 CALL(round)
+CALL(dalcs_logistic)
+CALL(dalcs_softplus)
+CALL(dalcs_bernoulli)
 CALL_OF_TWO(atan2)
 CALL_OF_TWO(hypot)
 CALL_OF_TWO(fmod)
@@ -182,6 +186,9 @@ static const struct dalcs_function FUNCTIONS[] = {
     {"asinh", 1, 1, call_asinh, NULL, NULL},
     {"acosh", 1, 1, call_acosh, NULL, NULL},
     {"atanh", 1, 1, call_atanh, NULL, NULL},
+    {"logistic", 1, 1, call_dalcs_logistic, NULL, NULL},
+    {"softplus", 1, 1, call_dalcs_softplus, NULL, NULL},
+    {"bernoulli", 1, 1, call_dalcs_bernoulli, NULL, NULL},
     {"sqrt", 1, 1, call_sqrt, NULL, NULL},
     {"sqr", 1, 1, square, NULL, NULL},
     {"square", 1, 1, square, NULL, NULL},

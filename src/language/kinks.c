@@ -16,9 +16,10 @@ bool dalcs_kinks_is_call(const struct dalcs_formula *f) {
 
 static bool is_smooth_call(const struct dalcs_formula *f) {
     static const char *const names[] = {
-        "sin",  "cos",  "tan",  "asin",  "acos",  "atan",  "arcsin", "arccos", "arctan", "atan2",
-        "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "sqrt",   "sqr",    "square", "cbrt",
-        "exp",  "ln",   "log",  "log10", "hypot", "pow",   "pwr",    "pwrs",   NULL};
+        "sin",    "cos",   "tan",    "asin",  "acos",     "atan",     "arcsin",    "arccos",
+        "arctan", "atan2", "sinh",   "cosh",  "tanh",     "asinh",    "acosh",     "atanh",
+        "sqrt",   "sqr",   "square", "cbrt",  "logistic", "softplus", "bernoulli", "exp",
+        "ln",     "log",   "log10",  "hypot", "pow",      "pwr",      "pwrs",      NULL};
     return dalcs_formula_is_call_of(f, names);
 }
 

@@ -145,8 +145,37 @@ static void write_argument(const struct formula *f, const struct dalcs_smooth *s
     }
 }
 
+/* Functions that ngspice has no name for: text around the argument. */
+struct of_exponentials {
+    enum dalcs_smooth_kind kind;
+    int n_arguments;
+    const char *text[3];
+};
+
+static const struct of_exponentials *find_written(enum dalcs_smooth_kind kind) {
+    static const struct of_exponentials written[] = {
+        {DALCS_SMOOTH_LOGISTIC, 1, {"(0.5+0.5*tanh(0.5*", "))", NULL}},
+        {DALCS_SMOOTH_SOFTPLUS, 2, {"(max(", ",0)+ln(1+exp(-abs(", "))))"}},
+        {DALCS_SMOOTH_BERNOULLI, 2, {"(", "/(exp(", ")-1))"}},
+    };
+    const struct of_exponentials *found = NULL;
+    for (size_t k = 0; k < sizeof written / sizeof *written; k++) {
+        found = written[k].kind == kind ? &written[k] : found;
+    }
+    return found;
+}
+
 /* (a)*(b), pwr(a,b), exp(a). In ngspice pow takes the magnitude of its base, and pwr gives it the base's sign again. */
 static void write_smooth(const struct formula *f, const struct dalcs_smooth *smooth) {
+    const struct of_exponentials *written = find_written(smooth->kind);
+    if (written != NULL) {
+        for (int k = 0; k < written->n_arguments; k++) {
+            fputs(written->text[k], f->stream);
+            write_argument(f, smooth, 0);
+        }
+        fputs(written->text[written->n_arguments], f->stream);
+        return;
+    }
     const bool is_odd = smooth->kind == DALCS_SMOOTH_POWER && smooth->node[1] < 0 &&
                         fabs(fmod(smooth->number[1], 2.0)) == 1.0;
     const bool has_sign = is_odd || smooth->kind == DALCS_SMOOTH_SIGNED_POWER;

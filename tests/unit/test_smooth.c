@@ -5,9 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const ONE[] = {"exp",  "ln",   "log10", "sqrt",  "cbrt",  "sqr",
-                                  "sin",  "cos",  "tan",   "asin",  "acos",  "atan",
-                                  "sinh", "cosh", "tanh",  "asinh", "acosh", "atanh"};
+static const char *const ONE[] = {"exp",      "ln",       "log10",    "sqrt",  "cbrt",  "sqr",
+                                  "sin",      "cos",      "tan",      "asin",  "acos",  "atan",
+                                  "sinh",     "cosh",     "tanh",     "asinh", "acosh", "atanh",
+                                  "logistic", "softplus", "bernoulli"};
 static const char *const TWO[] = {"*", "/", "pow", "pwr", "pwrs", "hypot", "atan2"};
 
 static double difference(enum dalcs_smooth_kind kind, const double *x, int k) {
