@@ -36,9 +36,9 @@ void dalcs_search_start_over(struct dalcs_radau_part *part, struct dalcs_search 
     if (!search->fixed) {
         part->length.level = level;
     }
-    search->stuck = 0;
-    search->spared = false;
-    search->ratio_before = INFINITY;
+    search->errors.stuck = 0;
+    search->errors.spared = false;
+    search->errors.before = INFINITY;
 }
 
 enum dalcs_status dalcs_search_go_on_from_answer(struct dalcs_radau *r,
@@ -116,7 +116,7 @@ static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
         return false;
     }
     search->settling = DALCS_SETTLED;
-    dalcs_search_start_over(part, search, search->level_before_stuck);
+    dalcs_search_start_over(part, search, search->errors.level);
     return true;
 }
 
@@ -130,7 +130,7 @@ static bool is_worth_asking(const struct dalcs_radau_part *part, const struct da
         part->segment.rounding == 1.0 && search->states_free && part->component->system->n_x > 0;
     bool stays = has_free_states || (part->guards.bends && search->flips == 0);
     bool may_jump = stays ? isinf(ratio) : !may_be_left(ratio);
-    return search->fixed || search->stuck > 0 || may_jump;
+    return search->fixed || search->errors.stuck > 0 || may_jump;
 }
 
 /* So short that a shorter one is not tried, unless that has just held. */
@@ -158,11 +158,11 @@ static bool is_levered(const struct dalcs_radau_part *part,
  * once: errors of a method go with a higher power of the step. A smaller one would not mend it. */
 static void count_stuck(const struct dalcs_radau_part *part, struct dalcs_search *search,
                         const struct dalcs_step_quality *quality) {
-    bool is_stuck = dalcs_power_of_step(search->ratio_before, quality->ratio) <= 1.0;
-    search->stuck = is_stuck ? search->stuck + 1 : 0;
-    search->ratio_before = quality->ratio;
-    if (search->stuck == 0) {
-        search->level_before_stuck = part->length.level;
+    bool is_stuck = dalcs_power_of_step(search->errors.before, quality->ratio) <= 1.0;
+    search->errors.stuck = is_stuck ? search->errors.stuck + 1 : 0;
+    search->errors.before = quality->ratio;
+    if (search->errors.stuck == 0) {
+        search->errors.level = part->length.level;
     }
 }
 
@@ -199,8 +199,8 @@ static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_pa
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_search_project(r, part, search, answered));
-    if (*answered && search->stuck > 0) { /* steps are short for what the state was off by */
-        dalcs_search_start_over(part, search, search->level_before_stuck);
+    if (*answered && search->errors.stuck > 0) { /* steps are short for what the state was off by */
+        dalcs_search_start_over(part, search, search->errors.level);
     }
     return DALCS_OK;
 }
@@ -208,12 +208,12 @@ static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_pa
 /* Do shorter steps see the same in voltages that states are levered up to? Then errors of states alone count from now on. */
 static bool spares_levered(const struct dalcs_radau_part *part, struct dalcs_search *search,
                            const struct dalcs_step_quality *quality) {
-    if (search->stuck < LEVERED_STUCK || !is_levered(part, quality)) {
+    if (search->errors.stuck < LEVERED_STUCK || !is_levered(part, quality)) {
         return false;
     }
-    search->spared = true; /* shorter steps see it as well */
-    search->stuck = 0;     /* another error is compared from now on */
-    search->ratio_before = INFINITY;
+    search->errors.spared = true; /* shorter steps see it as well */
+    search->errors.stuck = 0;     /* another error is compared from now on */
+    search->errors.before = INFINITY;
     return true;
 }
 
@@ -232,7 +232,7 @@ static enum dalcs_status give_up(struct dalcs_radau *r, struct dalcs_radau_part 
                                  struct dalcs_search *search, bool *done) {
     if (search->settling == DALCS_SETTLES_LATER && !search->fixed) {
         search->settling = DALCS_SETTLES_WITHIN_UNIT;
-        dalcs_search_start_over(part, search, search->level_before_stuck);
+        dalcs_search_start_over(part, search, search->errors.level);
         return DALCS_OK;
     }
     *done = true;
@@ -256,10 +256,10 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
     r->rejected++;
     count_stuck(part, search, quality);
     if (spares_levered(part, search, quality)) {
-        part->length.level = search->level_before_stuck;
+        part->length.level = search->errors.level;
         return DALCS_OK;
     }
-    bool may_be_off = search->stuck >= STUCK && search->settling != DALCS_SETTLES_LATER &&
+    bool may_be_off = search->errors.stuck >= STUCK && search->settling != DALCS_SETTLES_LATER &&
                       search->settling != DALCS_SETTLED && !search->states_free && !search->fixed;
     if (may_be_off && settle(r, part, search, quality->unit)) {
         return DALCS_OK;
@@ -267,7 +267,7 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
     if (is_hopeless(r, part, search, quality)) {
         return give_up(r, part, search, done);
     }
-    dalcs_length_shorten(part, quality->ratio, search->stuck);
+    dalcs_length_shorten(part, quality->ratio, search->errors.stuck);
     return shows_nothing(r, part, search) ? give_up(r, part, search, done) : DALCS_OK;
 }
 

@@ -23,16 +23,19 @@ struct dalcs_search {
     int asked_level; /* where a search begins anew after the circuit was asked: there, or `closer` */
     bool fixed;      /* the step is given: no error control */
     int restarts, flips;
-    int turns; /* of switches with hysteresis since the state has jumped, by what turns did */
-    int jumps; /* by such turns */
 
-    enum dalcs_turning {
-        DALCS_TURN_ALONE,
-        DALCS_TURN_TOGETHER, /* more than one have, at once */
-        DALCS_TURN_ONE_BY_ONE
-    } turning;
+    struct dalcs_search_turns { /* of switches with hysteresis */
+        int n;                  /* since the state has jumped, by what turns did */
+        int jumps;              /* by such turns */
+        bool any;
 
-    bool turned;
+        enum dalcs_turning {
+            DALCS_TURN_ALONE,
+            DALCS_TURN_TOGETHER, /* more than one have, at once */
+            DALCS_TURN_ONE_BY_ONE
+        } how;
+    } turns;
+
     bool guessed; /* the mode is one remembered from the last time, or that of a front */
     bool front;   /* the latter */
     int refined;  /* times that a step was shortened for the signs at its start */
@@ -50,10 +53,13 @@ struct dalcs_search {
     bool projected;
     enum dalcs_settling settling;
     bool states_free; /* in the mode of the last step, which has nothing to project on */
-    int stuck;
-    double ratio_before;
-    int level_before_stuck;
-    bool spared; /* errors of states alone count */
+
+    struct dalcs_search_errors { /* of steps in a row */
+        int stuck;               /* so many are no better for being shorter */
+        double before;           /* of the last one, over what is allowed */
+        int level;               /* where the first of them stood */
+        bool spared;             /* those of states alone count */
+    } errors;
 };
 
 /* The error is too large for this step. */

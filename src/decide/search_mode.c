@@ -116,10 +116,10 @@ static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_pa
  * compared with one of them, which is a later one each time that their number has doubled. */
 static bool comes_round(const struct dalcs_radau_part *part, struct dalcs_search *search) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    if (search->turns > 0 && dalcs_mode_is(p->mode, part->work.mode_turned, p->n_words)) {
+    if (search->turns.n > 0 && dalcs_mode_is(p->mode, part->work.mode_turned, p->n_words)) {
         return true;
     }
-    if ((search->turns & (search->turns - 1)) == 0) {
+    if ((search->turns.n & (search->turns.n - 1)) == 0) {
         memcpy(part->work.mode_turned, p->mode, (size_t)p->n_words * sizeof(uint64_t));
     }
     return false;
@@ -168,30 +168,31 @@ static void keep_first(struct dalcs_radau_part *part) {
 static enum dalcs_status turn_switches(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        struct dalcs_search *search) {
     const bool is_round = comes_round(part, search);
-    if (search->jumps > MOST_JUMPS || (is_round && search->turning != DALCS_TURN_TOGETHER)) {
+    if (search->turns.jumps > MOST_JUMPS ||
+        (is_round && search->turns.how != DALCS_TURN_TOGETHER)) {
         part->guards.slides = true;
         part->component->commands.n_delayed++;
         return DALCS_OK;
     }
     if (is_round) {
-        search->turning = DALCS_TURN_ONE_BY_ONE;
-        search->turns = 0;
+        search->turns.how = DALCS_TURN_ONE_BY_ONE;
+        search->turns.n = 0;
     }
-    if (search->turning == DALCS_TURN_ONE_BY_ONE) {
+    if (search->turns.how == DALCS_TURN_ONE_BY_ONE) {
         keep_first(part);
     } else if (part->guards.n_crossed > 1) {
-        search->turning = DALCS_TURN_TOGETHER;
+        search->turns.how = DALCS_TURN_TOGETHER;
     }
     bool has_jumped = part->segment.jumped;
-    search->turns++;
-    search->turned = true;
+    search->turns.n++;
+    search->turns.any = true;
     dalcs_guards_flip(part);
     search->restarts = search->flips = 0;
     part->segment.jumped = false;
     DALCS_TRY(dalcs_search_ask(r, part, search, false));
     if (part->segment.jumped) {
-        search->turns = 0;
-        search->jumps++;
+        search->turns.n = 0;
+        search->turns.jumps++;
     }
     part->segment.jumped = part->segment.jumped || has_jumped;
     return DALCS_OK;

@@ -67,7 +67,7 @@ enum dalcs_status dalcs_trial_accept(struct dalcs_radau *r, struct dalcs_radau_p
         r->wrong_sign = wrong_sign;
         r->wrong_time = part->segment.t;
     }
-    if (part->guards.fresh && part->guards.flipped && !search->turned) {
+    if (part->guards.fresh && part->guards.flipped && !search->turns.any) {
         DALCS_TRY(learn(part, search, theta, quality->ratio));
     }
     dalcs_segment_accept(r, part, theta, dalcs_stage_residual(trial->entry));

@@ -98,7 +98,7 @@ static void judge(struct dalcs_radau *r, struct dalcs_radau_part *part,
             q->ratio = q->own = INFINITY;
         }
     }
-    q->ratio = search->spared ? q->own : q->ratio;
+    q->ratio = search->errors.spared ? q->own : q->ratio;
     if (q->ratio != q->ratio || dalcs_step_clashes(part, trial->entry, end, q->unit)) {
         q->ratio = q->own = INFINITY;
     }
@@ -320,7 +320,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
                                   .asked_level = part->length.level,
                                   .fixed = r->options.fixed_step > 0.0,
                                   .guessed = guessed,
-                                  .ratio_before = INFINITY};
+                                  .errors.before = INFINITY};
     bool asks = is_commutation(part) && !guessed && !search.fixed;
     if (part->guards.fresh && part->guards.flipped && !guessed && !asks &&
         part->memory.fronts_refused < MOST_FRONTS_REFUSED) {
