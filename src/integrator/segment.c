@@ -72,19 +72,6 @@ static double end_of(const struct dalcs_radau_part *part, const struct dalcs_sea
     return dalcs_smaller(1.0, (search->limit - part->segment.t) / part->segment.h);
 }
 
-/* A residual that no length mends. */
-static enum dalcs_status recover_residual(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                          struct dalcs_search *search, bool is_first, bool *done) {
-    if (is_first) {
-        return dalcs_search_ask(r, part, search, false);
-    }
-    if (search->opened) {
-        return dalcs_search_tie_again(part, search);
-    }
-    *done = true;
-    return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
-}
-
 /* The errors of the step from its start to `end`, in steps; INFINITY where it means nothing. trial->holds: they are no more
  * than allowed. */
 static void judge(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -120,10 +107,7 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
     struct dalcs_stage_entry *entry = trial->entry;
     search->states_free = status == DALCS_OK && dalcs_stage_frees_states(entry);
     bool is_first = part->guards.fresh && search->restarts == 0;
-    if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= dalcs_nothing)) {
-        return recover_residual(r, part, search, is_first, &trial->done);
-    }
-    if (status == DALCS_OK) {
+    if (status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_nothing) {
         judge(r, part, search, end_of(part, search), trial);
         if (is_first && !search->fixed && !part->guards.bends && is_outsized(part, q)) {
             q->ratio = q->own = INFINITY;
