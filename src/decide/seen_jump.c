@@ -16,27 +16,35 @@
 /* part->work.after becomes the limit of what micro-steps of length h and h/2 see, `whole` of the former. Returns what may be
  * left of it, over what is allowed, where 1 is the tolerance of its scale. It is of second order, the square of what they
  * differ by over the jump; a small change that is no jump differs by half of itself. Behind pairs that end in two modes
- * there is no order: behind a gain rounding may hold a diode at its knee for the shorter ones. */
-static double extrapolate_lengths(const struct dalcs_radau_part *part, const double *whole) {
+ * there is no order: behind a gain rounding may hold a diode at its knee for the shorter ones. Nor is there where they differ
+ * by more than *apart, what longer ones did, over what is allowed: that is rounding. */
+static double extrapolate_lengths(const struct dalcs_radau_part *part, const double *whole,
+                                  double *apart) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     const bool is_smooth = dalcs_mode_is(p->mode, part->work.mode_longer, p->n_words);
     double *after = part->work.after;
-    double left = 0.0;
+    double first_order = 0.0;
+    double second_order = 0.0;
     for (int x = 0; x < part->component->system->n_x; x++) {
         double most = part->inner_tolerance * fmax(dalcs_step_scale(part, x, part->scales.unit),
                                                    fmax(fabs(part->x[x]), fabs(after[x])));
         double differ = after[x] - whole[x];
         after[x] += differ;
         double order = fabs(differ) / fmax(fabs(after[x] - part->x[x]), most);
-        left = differ != 0.0 ? fmax(left, fabs(differ) / most * (is_smooth ? order : 1.0)) : left;
+        if (differ != 0.0) {
+            first_order = fmax(first_order, fabs(differ) / most);
+            second_order = fmax(second_order, fabs(differ) / most * order);
+        }
     }
-    return left;
+    const bool has_order = is_smooth && first_order <= *apart;
+    *apart = first_order;
+    return has_order ? second_order : first_order;
 }
 
 /* Of micro-steps of length h and h/2, with the sources as they are just behind the instant; where what acts has jumped
  * before, with sources that go on: what reads may read the current that they move through a capacitor. */
 static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                                  bool *is_seen, double *left) {
+                                  bool *is_seen, double *apart, double *left) {
     double *whole = r->base->after;
     double goes_on = r->base->jump.is_first ? 1.0 : 0.0;
     bool noticeable;
@@ -48,7 +56,7 @@ static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part
     h *= 0.5;
     DALCS_TRY(dalcs_micro_pair(r, part, h, goes_on * h));
     *is_seen = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
-    *left = extrapolate_lengths(part, whole);
+    *left = extrapolate_lengths(part, whole, apart);
     return DALCS_OK;
 }
 
@@ -59,19 +67,21 @@ static enum dalcs_status find_limit(struct dalcs_radau *r, struct dalcs_radau_pa
     double left = INFINITY;
     double least = INFINITY;
     double length = *h;
-    enum dalcs_status status = see_jump(r, part, length, is_seen, &left);
+    double apart = INFINITY;
+    enum dalcs_status status = see_jump(r, part, length, is_seen, &apart, &left);
     const enum dalcs_status first = status;
     while (status == DALCS_OK && left > 1.0 &&
            ldexp(length, -DALCS_FAR_SHORTER) >= dalcs_length_shortest(r)) {
         *h = left < least ? length : *h;
         least = fmin(left, least);
         length = ldexp(length, -DALCS_FAR_SHORTER);
-        status = see_jump(r, part, length, is_seen, &left);
+        status = see_jump(r, part, length, is_seen, &apart, &left);
     }
     if (status == DALCS_OK && left < least) {
         *h = length;
     } else if (status >= DALCS_OK && first == DALCS_OK && *h != length) {
-        status = see_jump(r, part, *h, is_seen, &left);
+        status = see_jump(r, part, *h, is_seen, &apart, &left);
+        left = least;
     }
     *is_near = status == DALCS_OK && left <= 1.0;
     return status;
