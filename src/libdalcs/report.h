@@ -59,6 +59,7 @@ struct dalcs_report {
         long audited;     /* of them, those that were looked into */
         long screened;    /* those of which all linear laws were checked at once */
         long positions;   /* of switches, compared with their controls */
+        long unjudged;    /* the same where the waveform is coarse: they may be late by a step */
         double worst, allowed; /* the worst defect over its scale, and what it was held to */
         double time;           /* s, of that */
         const char *where;     /* "d1", "i(d1)", "KCL at out", "position of s1", "Tellegen" */
