@@ -59,7 +59,6 @@ struct dalcs_report {
         long audited;     /* of them, those that were looked into */
         long screened;    /* those of which all linear laws were checked at once */
         long positions;   /* of switches, compared with their controls */
-        long unjudged;    /* the same where the waveform is coarse: they may be late by a step */
         double worst, allowed; /* the worst defect over its scale, and what it was held to */
         double time;           /* s, of that */
         const char *where;     /* "d1", "i(d1)", "KCL at out", "position of s1", "Tellegen" */
@@ -251,6 +250,8 @@ struct dalcs_report {
     const struct dalcs_failed_step *failed_step; /* each once; all other steps were run */
 
     long frequencies; /* of .ac, at which laws were checked: beside the instants of `audit` */
+    long
+        unjudged; /* positions of switches where the waveform is coarse: beside the positions of `audit` */
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

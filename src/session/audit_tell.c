@@ -165,7 +165,7 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
     s->results.report.audit.audited = found.audited;
     s->results.report.audit.screened = found.screened;
     s->results.report.audit.positions = found.positions;
-    s->results.report.audit.unjudged = found.unjudged;
+    s->results.report.unjudged = found.unjudged;
     s->results.report.audit.worst = found.defect;
     s->results.report.audit.allowed = found.allowed;
     s->results.report.audit.time = found.time;
