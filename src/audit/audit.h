@@ -276,6 +276,8 @@ struct dalcs_audit_summary {
     long audited;
     long screened;  /* all laws of which were asked at once, at one instant */
     long positions; /* of switches that were compared with their controls */
+    long unjudged;  /* the same where the waveform is coarse: they may be late by a step */
+    int against;    /* a switch that stood against its control over steps, from 1 on; 0: none */
     double defect;  /* over the scale, of the law that is worst against what is allowed */
     double allowed; /* what it was held to */
     double time;    /* s */

@@ -55,6 +55,7 @@ struct audit_part {
             past_coarse;  /* the stretch that was complete last, and the one before that */
         bool from_coarse; /* the one before the event that is looked at */
         bool is_drawn;    /* for a closer look */
+        int against; /* a switch that stood against its control over the step before, from 1 on; 0: none */
     } at;
 
     double asked_at; /* s, of what audit->state.asked has of it; < 0: nothing */
@@ -355,6 +356,17 @@ static inline bool audit_is_commanded(const struct dalcs_audit *audit, int switc
 /* changes.c: does a switch with hysteresis stand on another side than in the stretch before? Screens tell no change within
  * a hysteresis. key: of its polynomials, the same only in the same mode; 0: there are none. */
 bool audit_latches_turn(struct dalcs_audit *audit, struct audit_part *part, uint64_t key);
+
+/* One position of a switch has been compared with its control. */
+static inline void audit_count_position(struct dalcs_audit *audit, const struct audit_part *part) {
+    audit->count.positions += part->at.is_coarse ? 0 : 1;
+    audit->count.unjudged += part->at.is_coarse ? 1 : 0;
+}
+
+/* changes.c: at the end of a step of implicit Euler behind another one. Where no position agrees with its control a switch
+ * may be late by a step: it goes to and fro. One that stays against it over two whole steps is wrong. */
+void audit_check_obeyed(struct dalcs_audit *audit, struct audit_part *part,
+                        const struct dalcs_audit_state *end);
 
 /* changes.c: those of them that have turned, where the stretch begins. */
 void audit_check_turns(struct dalcs_audit *audit, const struct audit_part *part, double t);

@@ -128,6 +128,60 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
     }
 }
 
+/* Beyond the threshold on whose other side the switch stands. */
+static double contradicts(struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *s, int device) {
+    double half_width;
+    const double control = audit_control(audit, s, device, &half_width);
+    const double wrong = s->is_closed[device] ? -half_width - control : control - half_width;
+    return wrong > 0.0 ? wrong - audit_control_slack(audit, part, s, device) : wrong;
+}
+
+/* How far a switch stood against its control over the whole step, but for what the control moved in it: so much may a step
+ * of implicit Euler be off. */
+static double stays_against(struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_audit_state *begin,
+                            const struct dalcs_audit_state *end, int device) {
+    const bool stays = audit->circuit->device[device].kind == DALCS_SWITCH &&
+                       !begin->is_mean[device] && !end->is_mean[device] &&
+                       begin->is_closed[device] == end->is_closed[device];
+    if (!stays) {
+        return 0.0;
+    }
+    double half_width;
+    const double moved = fabs(audit_control(audit, end, device, &half_width) -
+                              audit_control(audit, begin, device, &half_width));
+    return fmin(contradicts(audit, part, begin, device), contradicts(audit, part, end, device)) -
+           moved;
+}
+
+void audit_check_obeyed(struct dalcs_audit *audit, struct audit_part *part,
+                        const struct dalcs_audit_state *end) {
+    const struct dalcs_audit_state *begin = &audit->state.shifted;
+    const int before = part->at.against - 1;
+    double most = part->tolerance;
+    audit->reader.read_before(audit->reader.user, (int)(part - audit->part), 0.0,
+                              &audit->state.shifted);
+    part->at.is_coarse = false;
+    part->at.against = 0;
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        const double off = stays_against(audit, part, begin, end, device);
+        const double scale = audit_control_scale(audit, part, device);
+        if (device == before) {
+            audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, scale, end->t);
+            audit->count.against = audit_ratio(off, scale) > audit->options.failure
+                                       ? device + 1
+                                       : audit->count.against;
+        }
+        if (audit_ratio(off, scale) > most) {
+            most = audit_ratio(off, scale);
+            part->at.against = device + 1;
+        }
+    }
+    part->at.is_coarse = true;
+}
+
 /* Most have reached their thresholds before: then nothing else is read. */
 void audit_check_turns(struct dalcs_audit *audit, const struct audit_part *part, double t) {
     const int index = (int)(part - audit->part);

@@ -138,7 +138,7 @@ static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
             off = fmin(off, beside * scale);
         }
         audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, scale, s->t);
-        audit->count.positions++;
+        audit_count_position(audit, part);
     } else if (d->kind == DALCS_DIODE && d->behaviour == NULL) {
         const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
         const double v = audit_voltage(s, d);
@@ -182,7 +182,7 @@ static void check_switch(struct dalcs_audit *audit, const struct audit_part *par
         const double off = is_closed != d->initially_on ? half_width : 0.0;
         audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, half_width, s->t);
     }
-    audit->count.positions++;
+    audit_count_position(audit, part);
 }
 
 double audit_current(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,

@@ -145,6 +145,9 @@ static void write_audit(FILE *out, const struct dalcs_report *report) {
         fprintf(out, "; %ld switch position%s right", report->audit.positions,
                 plural(report->audit.positions));
     }
+    if (report->unjudged > 0 && !is_wrong) {
+        fprintf(out, "; %ld where it is coarse not judged", report->unjudged);
+    }
     if (is_wrong) {
         fprintf(out, ", more than %.2g", report->audit.allowed);
     }

@@ -17,6 +17,9 @@
 /* The first segment of a run that slides is so many powers of 2 shorter than the longest. */
 enum { FIRST = 12 };
 
+/* No slide has so many segments: patience need not grow beyond. */
+enum { MOST_KEPT = 1 << 20 };
+
 /* At a threshold that a switch slides along the state is as exact as digits are. */
 static void prepare_positions(struct dalcs_radau_part *part) {
     struct dalcs_positions *p = &part->component->positions;
@@ -98,8 +101,23 @@ static void find_rounding(struct dalcs_radau_part *part, const struct dalcs_slid
     }
 }
 
-/* What is known of lengths behind a try. The estimate is of the order of what is extrapolated less one, over a segment; what
- * rounding makes is less in a longer one. */
+/* Is a segment twice as long worth a try? The estimate is of the order of what is extrapolated less one, over a segment. Where
+ * it is rounding it says nothing of longer ones, so that these are tried all the same: each refusal doubles how many segments
+ * are kept before the next try, so that tries cost no more than the segments themselves. */
+static bool is_longer_worth_trying(struct dalcs_part_length *l, double error) {
+    const bool is = ldexp(error, DALCS_SLIDE_ORDER) < 1.0 || l->slides_kept >= l->slides_patient;
+    l->slides_kept = is ? 0 : l->slides_kept + 1;
+    return is;
+}
+
+/* Behind a refusal the next shorter ones are of the same try. */
+static void note_refusal(struct dalcs_part_length *l) {
+    const bool was_longer = l->slides_kept == 0;
+    l->slides_patient *= was_longer && l->slides_patient < MOST_KEPT ? 2 : 1;
+    l->slides_kept = 1;
+}
+
+/* What is known of lengths behind a try. What rounding makes is less in a longer one. */
 static void note(struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
     struct dalcs_part_length *l = &part->length;
     const double error = are_rounding(part, of) ? of->states : fmax(of->states, of->pairs);
@@ -108,9 +126,9 @@ static void note(struct dalcs_radau_part *part, const struct dalcs_slide_try *of
         l->slide_until = part->segment.t + of->h;
     } else if (error > 1.0) {
         l->slide = 0.5 * of->h;
+        note_refusal(l);
     } else if (of->h >= l->slide) {
-        const double longer = ldexp(of_length, DALCS_SLIDE_ORDER);
-        l->slide = longer < 1.0 ? 2.0 * of->h : of->h;
+        l->slide = is_longer_worth_trying(l, of_length) ? 2.0 * of->h : of->h;
     }
 }
 
@@ -186,10 +204,24 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
     }
 }
 
+/* Nothing is known of a slide that starts but how long the segments of the last one were. At its end they may have been shorter
+ * than the micro-steps that find this one. */
+static void begin(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    struct dalcs_part_length *l = &part->length;
+    if (l->slide > 0.0) {
+        l->slide = fmax(l->slide, dalcs_radau_micro_length(r, part, 0));
+    }
+    l->slide_until = INFINITY;
+    l->slide_rounding = 0.0;
+    l->slides_kept = 0;
+    l->slides_patient = 1;
+}
+
 enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    double limit, bool starts, bool *slides) {
-    part->length.slide_until = starts ? INFINITY : part->length.slide_until;
-    part->length.slide_rounding = starts ? 0.0 : part->length.slide_rounding;
+    if (starts) {
+        begin(r, part);
+    }
     prepare_positions(part);
     struct dalcs_slide_try of =
         dalcs_slide_try_of(part->stages.method, length_to_try(r, part, limit));

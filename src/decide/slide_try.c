@@ -5,6 +5,7 @@
  * cancel is the polynomial's value there. */
 #include "slide_try.h"
 
+#include "micro_steps.h"
 #include "restart.h"
 #include "rounding.h"
 #include "sliding.h"
@@ -84,6 +85,9 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
         return DALCS_OK;
     }
     of->noise = fmax(of->noise, noise);
+    for (int k = 0; k < sides.n && c->system->n_x == 0; k++) {
+        dalcs_micro_raise(c->system, sides.y[k], dalcs_system_n_equations(c->system), of->largest);
+    }
     for (int k = 0; k < c->osnsp.n_words; k++) {
         part->work.mode_first[k] |= c->positions.sides.conducted[k];
     }
@@ -144,11 +148,27 @@ static enum dalcs_status run_sequence(struct dalcs_radau *r, struct dalcs_radau_
     return DALCS_OK;
 }
 
+/* Without states: the answer where the segment begins. Where that is an end of what slides, there may be no mean. */
+static enum dalcs_status find_start_of_sources(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                               struct dalcs_slide_try *of) {
+    const struct dalcs_system *s = part->component->system;
+    const struct counted_step at_start = {
+        .h = of->h, .tau = 0.0, .times = 0.0, .state = part->x, .y = part->work.y1};
+    DALCS_TRY(mean_step(r, part, &at_start, of));
+    of->knows_start = of->slides || part->component->positions.settled;
+    if (of->knows_start) {
+        const size_t bytes = (size_t)dalcs_system_n_columns(s) * sizeof(double);
+        memcpy(part->segment.out, part->work.y1, bytes);
+        memcpy(part->work.node_w, part->component->osnsp.w, (size_t)s->n_pairs * sizeof(double));
+    }
+    return DALCS_OK;
+}
+
 /* In place of the current of a pair that is open all the time stands its voltage. */
-static void put_voltages(struct dalcs_radau_part *part) {
+static void put_voltages(struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    for (int node = 1; node < l->n_nodes; node++) {
+    for (int node = of->knows_start ? 0 : 1; node < l->n_nodes; node++) {
         const int first = node * l->stride + dalcs_system_n_equations(s);
         for (int d = 0; d < s->n_pairs; d++) {
             bool is_on = dalcs_mode_has(part->work.mode_first, d);
@@ -157,43 +177,52 @@ static void put_voltages(struct dalcs_radau_part *part) {
     }
 }
 
-/* At the start all but the states are where the polynomial through the other nodes begins. */
+/* At the start what is not known is where the polynomial through the other nodes begins. */
 static void begin_columns(struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
     const struct dalcs_collocation *method = part->stages.method;
     const int stride = part->stages.layout.stride;
     const int n_x = part->component->system->n_x;
     double *out = part->segment.out;
-    for (int node = 1; node <= method->s; node++) {
-        for (int k = 0; k < stride; k++) {
+    for (int node = 1; node <= method->s && !of->knows_start; node++) {
+        for (int k = n_x; k < stride; k++) {
             out[k] += of->start[node] * out[node * stride + k];
         }
     }
-    memcpy(part->work.after, out, (size_t)n_x * sizeof(double));
     memcpy(out, part->x, (size_t)n_x * sizeof(double));
 }
 
-/* How far a state's polynomial through the nodes misses the start, as of any other step (step_error.c), but for what
- * rounding at the nodes makes of that. */
-static double miss_at_start(const struct dalcs_radau_part *part, int x, double rounding,
+/* How far the polynomial of a column through the nodes misses what is known at the start, as of any other step
+ * (step_error.c), but for what rounding at the nodes makes of that. */
+static double miss_at_start(const struct dalcs_radau_part *part, int column, double rounding,
                             const struct dalcs_slide_try *of) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
     double amplified = 0.0;
-    for (int node = 1; node < part->stages.layout.n_nodes; node++) {
+    double start = 0.0;
+    for (int node = 1; node < l->n_nodes; node++) {
         amplified += fabs(of->start[node]) * rounding;
+        start += of->start[node] * part->segment.out[node * l->stride + column];
     }
-    return part->stages.layout.n_nodes > 2
-               ? fmax(0.0, fabs(part->work.after[x] - part->x[x]) - amplified)
-               : 0.0;
+    return l->n_nodes > 2 ? fmax(0.0, fabs(start - part->segment.out[column]) - amplified) : 0.0;
 }
 
-/* How far a column is off, over what is allowed: what the last order changes, and of a state how far it misses the start. A
- * state beside larger ones, as a leak of a coil at rest beside one that conducts, has rounding of theirs. */
+/* Of a column at a node. A pair stands between both units. */
+static double rounding_of(const struct dalcs_radau_part *part, int column, bool is_current,
+                          const struct dalcs_slide_try *of) {
+    const double *unit = part->scales.unit;
+    const double own = fmax(unit[is_current], of->largest[is_current]);
+    const double other = fmax(unit[!is_current], of->largest[!is_current]);
+    const bool is_pair = column >= dalcs_system_n_equations(part->component->system);
+    return of->rounding * (is_pair ? fmax(own, other) : own);
+}
+
+/* How far a column is off, over what is allowed: what the last order changes, and how far it misses the start. A state beside larger ones, as a leak of a coil at rest beside one that conducts, has rounding of theirs. */
 static double error_of_column(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                               int column, bool is_current, const struct dalcs_slide_try *of) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const bool is_state = column < part->component->system->n_x;
-    const double rounding = is_state ? of->rounding * part->scales.unit[is_current] : 0.0;
-    double error = is_state ? miss_at_start(part, column, rounding, of) : 0.0;
-    double size = is_state ? fabs(part->x[column]) : 0.0;
+    const bool is_known = column < part->component->system->n_x || of->knows_start;
+    const double rounding = is_known ? rounding_of(part, column, is_current, of) : 0.0;
+    double error = is_known ? miss_at_start(part, column, rounding, of) : 0.0;
+    double size = is_known ? fabs(part->segment.out[column]) : 0.0;
     for (int node = 1; node < l->n_nodes; node++) {
         const double value = part->segment.out[node * l->stride + column];
         const double other = part->work.out_tried[node * l->stride + column];
@@ -204,12 +233,13 @@ static double error_of_column(const struct dalcs_radau *r, const struct dalcs_ra
     return error > 0.0 ? error / (part->inner_tolerance * size + r->besides[is_current]) : 0.0;
 }
 
-/* The largest of states. */
+/* The largest of states; without states of all but the currents of pairs. */
 static double error_of_states(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                               const struct dalcs_slide_try *of) {
     const struct dalcs_system *s = part->component->system;
     double worst = 0.0;
-    for (int x = 0; x < s->n_x; x++) {
+    const int n = s->n_x > 0 ? s->n_x : dalcs_system_n_equations(s);
+    for (int x = 0; x < n; x++) {
         worst = fmax(worst, error_of_column(r, part, x, s->column_is_current[x], of));
     }
     return worst;
@@ -247,7 +277,12 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
     if (observer != NULL) {
         observer->hold(observer->user);
     }
-    of->taken = of->noise = 0.0;
+    of->taken = of->noise = of->largest[0] = of->largest[1] = 0.0;
+    of->begins = true;
+    of->knows_start = false;
+    if (part->component->system->n_x == 0) {
+        DALCS_TRY(find_start_of_sources(r, part, of));
+    }
     of->slides = of->begins = true;
     for (int j = ORDER; j > 0 && of->slides; j--) {
         DALCS_TRY(run_sequence(r, part, j, of));
@@ -255,7 +290,7 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
     part->guards.slides = false;
     of->states = of->pairs = INFINITY;
     if (of->slides) {
-        put_voltages(part);
+        put_voltages(part, of);
         begin_columns(part, of);
         of->states = error_of_states(r, part, of);
         of->pairs = error_of_pairs(r, part, of);

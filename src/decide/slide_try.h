@@ -14,11 +14,13 @@ struct dalcs_slide_try {
         estimate[DALCS_SLIDE_ORDER]; /* and in those of an order less, without the first of them */
     double start[DALCS_MAX_NODES];   /* of the nodes behind the start, in the value at the start */
     double rounding;                 /* of a state at a node, over its unit's largest */
+    double largest[2];               /* V, A: without states, of all sides */
     double taken;                    /* J */
     bool may_change;                 /* what slides along its threshold within the segment */
     bool begins;                     /* nothing has slid so far */
     bool slides;
-    double noise; /* what rounding may make of the mean of both sides, over it */
+    bool knows_start; /* without states: all columns there, and voltages of pairs */
+    double noise;     /* what rounding may make of the mean of both sides, over it */
     /* Errors over what is allowed; of pairs without noise. */
     double states, pairs;
     bool is_coarse; /* noise may hide an error of pairs */

@@ -185,7 +185,8 @@ enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma,
                                         double *y) {
     c->commands.moved = false;
     obey_sources(c, u + c->system->n_x);
-    DALCS_TRY(dalcs_positions_solve(&c->positions, sigma, u, y));
+    DALCS_TRY(sigma > 0.0 ? dalcs_positions_solve(&c->positions, sigma, u, y)
+                          : dalcs_positions_solve_at_rest(&c->positions, u, y));
     c->commands.moved = c->commands.moved || c->positions.moved;
     if (!c->positions.settled && c->commands.n_delayed++ == 0) {
         c->commands.restless = dalcs_positions_restless(&c->positions, y);

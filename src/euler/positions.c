@@ -268,17 +268,17 @@ static enum dalcs_status search(struct dalcs_positions *p, bool first_fails, boo
     return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
 }
 
-static enum dalcs_status look_for(struct dalcs_positions *p, double sigma, const double *u,
-                                  double *y, bool *has_first) {
+enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
+                                        double *y) {
     p->moved = p->alternates = false;
     p->settled = true;
-    *has_first = false;
+    p->has_first = false;
     if (p->n == 0) {
         return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
     }
     keep(p, p->first);
     enum dalcs_status first = dalcs_osnsp_solve(p->osnsp, sigma, u, y);
-    *has_first = first == DALCS_OK;
+    p->has_first = first == DALCS_OK;
     enum dalcs_status status = first == DALCS_OK ? move_all(p, sigma, u, y) : first;
     bool has_all = p->alternates &&
                    (differ_in_one(p, p->osnsp->mode, p->other) || dalcs_sliding_follows_one(p));
@@ -288,15 +288,14 @@ static enum dalcs_status look_for(struct dalcs_positions *p, double sigma, const
     return search(p, first != DALCS_OK, status != DALCS_OK, sigma, u, y);
 }
 
-enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
-                                        double *y) {
-    bool has_first;
-    enum dalcs_status status = look_for(p, sigma, u, y, &has_first);
-    if (status != DALCS_OK || p->settled || sigma > 0.0 || !has_first) {
+enum dalcs_status dalcs_positions_solve_at_rest(struct dalcs_positions *p, const double *u,
+                                                double *y) {
+    enum dalcs_status status = dalcs_positions_solve(p, 0.0, u, y);
+    if (status != DALCS_OK || p->settled || !p->has_first) {
         return status;
     }
     go_back(p, p->first); /* no operating point: what oscillates begins where it stood */
-    return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
+    return dalcs_osnsp_solve(p->osnsp, 0.0, u, y);
 }
 
 const char *dalcs_positions_restless(const struct dalcs_positions *p, const double *y) {

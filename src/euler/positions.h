@@ -17,9 +17,10 @@ struct dalcs_positions {
     int *jump; /* [n_jumps] first pairs of jumps of formulas, where there are such switches */
     double *
         slack; /* [n + n_jumps] V or A: a control that is no farther beyond its threshold moves nothing */
-    bool keeps;   /* switches with hysteresis stand as they are */
-    bool moved;   /* the last call has moved one, if only for a while */
-    bool settled; /* and all agree with the answer */
+    bool keeps;     /* switches with hysteresis stand as they are */
+    bool moved;     /* the last call has moved one, if only for a while */
+    bool settled;   /* and all agree with the answer */
+    bool has_first; /* the positions that it began from had an answer */
     bool
         alternates; /* if not: all that want to move go to and fro between two positions, each with an answer */
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
@@ -52,10 +53,14 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
 void dalcs_positions_finish(struct dalcs_positions *p);
 
 /* As dalcs_osnsp_solve(), with positions in p->osnsp->mode that agree with the answer, from those that are there. Where
- * none that were tried do (!p->settled) it is the answer in some of them, at an operating point where they stood. Not DALCS_OK: all that want to move come to
+ * none that were tried do (!p->settled) it is the answer in some of them. Not DALCS_OK: all that want to move come to
  * positions without an answer; p->osnsp->mode and its witness are such ones. */
 enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
                                         double *y) DALCS_MUST_CHECK;
+
+/* The same at an instant, without a step. Where none agree it is the answer in the positions that were there, if it has one. */
+enum dalcs_status dalcs_positions_solve_at_rest(struct dalcs_positions *p, const double *u,
+                                                double *y) DALCS_MUST_CHECK;
 
 /* Does the answer y move the i-th switch? */
 bool dalcs_positions_moves(const struct dalcs_positions *p, int i, const double *y);

@@ -110,15 +110,17 @@ static value of_side(const struct dalcs_kinks *kinks, const struct dalcs_formula
     const struct dalcs_formula *a = f->argument[0];
     const double sign = dalcs_kinks_evaluate(kinks, a, side, side).value;
     const bool is_below = dalcs_formula_is_call(f, "lt0") || dalcs_formula_is_call(f, "le0");
-    value made = {sign > 0 ? 1 : 0, 0};
+    const bool holds_at =
+        sign == 0 && (dalcs_formula_is_call(f, "ge0") || dalcs_formula_is_call(f, "le0"));
+    value made = {sign > 0 || holds_at ? 1 : 0, 0};
     if (dalcs_formula_is_call(f, "abs") || dalcs_formula_is_call(f, "uramp")) {
         const double below = dalcs_formula_is_call(f, "abs") ? -1 : 0;
         const value of = dalcs_kinks_evaluate(kinks, a, side, x);
         made = (value){(sign > 0 ? 1 : below) * of.value, of.rounding};
     } else if (dalcs_formula_is_call(f, "sgn")) {
-        made.value = sign > 0 ? 1 : -1;
+        made.value = sign > 0 ? 1 : sign < 0 ? -1 : 0;
     } else if (is_below) {
-        made.value = sign < 0 ? 1 : 0;
+        made.value = sign < 0 || holds_at ? 1 : 0;
     } else if (!dalcs_kinks_is_step_call(f)) {
         made =
             dalcs_kinks_evaluate(kinks, f->argument[dalcs_kinks_chosen(kinks, f, side)], side, x);

@@ -1,13 +1,15 @@
-/* pieces.c - a sign or a step in a formula of one quantity that has smooth sides: where these meet, the formula is their
- * sum. sgn(x) * ln(1 + abs(x)) is ln(1 + max(x, 0)) - ln(1 - min(x, 0)).
+/* pieces.c - a sign or a step in a formula of one quantity that has smooth sides: the formula is the sum of its sides and of
+ * its jumps. sgn(x) * ln(1 + abs(x)) is ln(1 + max(x, 0)) - ln(1 - min(x, 0)).
  *
  * As written what jumps multiplies what is smooth. Each step is any value between its sides where the quantity is at the
  * kink, and a product of one with a smooth function has then a value that the formula has nowhere. A sum of smooth functions
- * of max and min has one value at each place. With kinks c1 < c2 < ... and sides F0, F1, ... that meet there it is
+ * of max and min has one value at each place. With kinks c1 < c2 < ... and sides F0, F1, ... it is
  *
- *     F(x) = F0(min(x, c1)) + F1(max(min(x, c2), c1)) - F1(c1) + ...
+ *     F(x) = F0(min(x, c1)) + F1(max(min(x, c2), c1)) - F1(c1) + (F1(c1) - F0(c1)) u(x - c1) + ...
  *
- * Where two sides do not meet the formula jumps, and stays as it is. So does what has choices alone: a choice is one switch. */
+ * The height of each jump is a number, so that it is a jump of pairs: at the kink the circuit chooses any value between both
+ * sides. As a product it would be a switch, which has no position there. What has choices alone, and sides that meet, stays
+ * as it is: a choice is one switch. */
 #include "sides.h"
 
 #include <math.h>

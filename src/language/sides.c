@@ -72,7 +72,11 @@ static const struct dalcs_formula *write_side(const struct side *side,
 
 struct sides {
     int n_kinks;
-    double kink[MOST_KINKS + 2]; /* from -infinity to infinity */
+    double kink[MOST_KINKS + 2];     /* from -infinity to infinity */
+    double jump[MOST_KINKS + 2];     /* there, from the side below to the side above */
+    bool is_above[MOST_KINKS + 2];   /* the value at the kink itself is that of the side above */
+    bool is_between[MOST_KINKS + 2]; /* it is neither that nor that of the side below */
+    bool has_jump;
 };
 
 static bool find_kink(const struct dalcs_kinks *kinks, const struct dalcs_sides_terms *t,
@@ -122,17 +126,23 @@ static struct dalcs_kinks_value evaluate(const struct dalcs_kinks *kinks,
     return sum;
 }
 
-/* Do all sides meet where they end, but for rounding? */
-static bool is_continuous(const struct dalcs_kinks *kinks, const struct dalcs_sides_terms *t,
-                          const struct sides *sides) {
-    bool is = sides->n_kinks > 0;
-    for (int k = 1; k <= sides->n_kinks && is; k++) {
+/* How far each side begins above the end of the one before it: 0 where that is rounding. false: a side has no value there. */
+static bool find_jumps(const struct dalcs_kinks *kinks, const struct dalcs_sides_terms *t,
+                       struct sides *sides) {
+    bool are_finite = sides->n_kinks > 0;
+    for (int k = 1; k <= sides->n_kinks && are_finite; k++) {
         const double at = sides->kink[k];
         const struct dalcs_kinks_value a = evaluate(kinks, t, side_of(sides, k - 1), at);
         const struct dalcs_kinks_value b = evaluate(kinks, t, side_of(sides, k), at);
-        is = fabs(a.value - b.value) <= a.rounding + b.rounding;
+        const double here = evaluate(kinks, t, at, at).value;
+        const double jump = b.value - a.value;
+        sides->jump[k] = fabs(jump) <= a.rounding + b.rounding ? 0 : jump;
+        sides->is_above[k] = fabs(here - b.value) <= b.rounding;
+        sides->is_between[k] = !sides->is_above[k] && !(fabs(here - a.value) <= a.rounding);
+        sides->has_jump = sides->has_jump || sides->jump[k] != 0;
+        are_finite = isfinite(jump);
     }
-    return is;
+    return are_finite;
 }
 
 /* max(min(x, high), low), without what is not finite. */
@@ -163,6 +173,36 @@ static const struct dalcs_formula *write_terms(const struct side *side,
     return sum;
 }
 
+static const struct dalcs_formula *write_step(struct dalcs_rewriting *r, const char *function,
+                                              const struct dalcs_formula *beyond) {
+    struct dalcs_formula *step =
+        beyond != NULL ? dalcs_rewriting_like(r, beyond, 1, &beyond) : NULL;
+    if (step != NULL) {
+        step->kind = DALCS_FORMULA_CALL;
+        step->function = function;
+    }
+    return step;
+}
+
+/* The jump at a kink, on its lower side before, on its upper side behind; at the kink where the formula says. */
+static const struct dalcs_formula *write_jump(const struct dalcs_kinks *kinks,
+                                              struct dalcs_rewriting *r, const struct sides *sides,
+                                              int k, const struct dalcs_formula *where) {
+    const double jump = sides->jump[k];
+    if (jump == 0) {
+        return dalcs_rewriting_number(r, where, 0);
+    }
+    const struct dalcs_formula *beyond = dalcs_rewriting_combine(
+        r, where, DALCS_ADD, kinks->quantity, dalcs_rewriting_number(r, where, -sides->kink[k]));
+    if (sides->is_between[k]) {
+        return dalcs_rewriting_combine(
+            r, where, DALCS_ADD, dalcs_rewriting_number(r, where, 0.5 * jump),
+            dalcs_rewriting_times(r, write_step(r, "sgn", beyond), 0.5 * jump));
+    }
+    const char *step = sides->is_above[k] ? "ge0" : "u";
+    return dalcs_rewriting_times(r, write_step(r, step, beyond), jump);
+}
+
 static const struct dalcs_formula *write_sides(const struct dalcs_kinks *kinks,
                                                struct dalcs_rewriting *r,
                                                const struct dalcs_sides_terms *t,
@@ -185,6 +225,8 @@ static const struct dalcs_formula *write_sides(const struct dalcs_kinks *kinks,
         sum = k > 0 && !has_begun && made != NULL
                   ? sum
                   : dalcs_rewriting_combine(r, where, DALCS_ADD, sum, made);
+        sum = dalcs_rewriting_combine(r, where, DALCS_ADD, sum,
+                                      write_jump(kinks, r, sides, k, where));
     }
     const bool is_rounding = fabs(constant.value) <= constant.rounding;
     return is_rounding ? sum
@@ -204,7 +246,8 @@ const struct dalcs_formula *dalcs_sides_write(const struct dalcs_kinks *kinks,
         is_curved = is_curved || (t->has_kink[k] && part->is_curved);
         has_step = has_step || (t->has_kink[k] && part->has_step);
     }
-    return is_curved && has_step && find_kinks(kinks, t, &sides) && is_continuous(kinks, t, &sides)
+    return is_curved && find_kinks(kinks, t, &sides) && find_jumps(kinks, t, &sides) &&
+                   (has_step || sides.has_jump)
                ? write_sides(kinks, r, t, &sides, where)
                : where;
 }

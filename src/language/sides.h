@@ -14,8 +14,8 @@ struct dalcs_sides_terms {
     bool has_kink[DALCS_SIDES_MOST_TERMS];
 };
 
-/* The terms with kinks as a sum of smooth functions, which each read the quantity on one side; `where` itself: they have
- * no steps, their sides are lines, or do not meet; NULL: out of memory. */
+/* The terms with kinks as a sum of smooth functions, which each read the quantity on one side, and of steps where two sides do
+ * not meet; `where` itself: their sides are lines, or meet without steps, or have no value at a kink; NULL: out of memory. */
 const struct dalcs_formula *dalcs_sides_write(const struct dalcs_kinks *kinks,
                                               struct dalcs_rewriting *r,
                                               const struct dalcs_sides_terms *t,

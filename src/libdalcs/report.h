@@ -250,6 +250,8 @@ struct dalcs_report {
     const struct dalcs_failed_step *failed_step; /* each once; all other steps were run */
 
     long frequencies; /* of .ac, at which laws were checked: beside the instants of `audit` */
+    long
+        unjudged; /* positions of switches where the waveform is coarse: beside the positions of `audit` */
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

@@ -78,6 +78,7 @@ static void write_audit(struct dalcs_json *json, const struct dalcs_report *repo
     dalcs_json_integer(json, "audited", report->audit.audited);
     dalcs_json_integer(json, "screened", report->audit.screened);
     dalcs_json_integer(json, "positions", report->audit.positions);
+    dalcs_json_integer(json, "unjudged", report->unjudged);
     dalcs_json_number(json, "worst", report->audit.worst);
     dalcs_json_number(json, "allowed", report->audit.allowed);
     dalcs_json_number(json, "time", report->audit.time);

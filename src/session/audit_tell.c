@@ -117,6 +117,13 @@ static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
                        "and the part around it to ground, and what sources drive into it does not "
                        "come out",
                        time, node);
+    } else if (found->law == DALCS_AUDIT_POSITION && found->against == found->index + 1) {
+        dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, NULL,
+                       "what it does acts on its control at once: a capacitor, a coil or a delay "
+                       "between them decides, and without a hysteresis it may slide",
+                       "'%s' stands against its control at t = %s, by %.2g of the scale of that, "
+                       "over whole steps: no position was found that agrees with it",
+                       a->run->s->circuit.device[found->index].name, time, found->defect);
     } else {
         dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, NULL,
                        "the report lists the laws that are broken; please report this netlist",
@@ -158,6 +165,7 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
     s->results.report.audit.audited = found.audited;
     s->results.report.audit.screened = found.screened;
     s->results.report.audit.positions = found.positions;
+    s->results.report.unjudged = found.unjudged;
     s->results.report.audit.worst = found.defect;
     s->results.report.audit.allowed = found.allowed;
     s->results.report.audit.time = found.time;

@@ -65,6 +65,8 @@ struct dalcs_part_length {
     double
         slide_rounding; /* of currents of pairs in it, over what is allowed: shorter ones have as much */
     double slide_until; /* s, a time that the present slide does not reach */
+    int slides_kept;    /* segments of it since their length last changed */
+    int slides_patient; /* so many are kept before a longer one is tried, whatever their error */
     long held_back;     /* steps that would have been longer, had the longest one been */
 };
 

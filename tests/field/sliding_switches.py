@@ -293,11 +293,39 @@ def false_starts(c, w, z):
         c.check(abs(a - b) <= 1e-3 * abs(b), f"a flyback, {w}, {z}: {name} is {a} and {b}")
 
 
+SUPPLIES = """two supplies, each behind a switch that closes by its own voltage
+V1 a 0 SIN(12 1 {{1k/w}})
+V2 b 0 SIN(12 1 {{1k/w}} 0 0 90)
+R1 a x {{10m*z}}
+R2 b y {{10m*z}}
+S1 x o x o srm
+S2 y o y o srm
+D1 x o dm
+D2 y o dm
+C1 o 0 {{100u*w/z}}
+R3 o 0 {{10*z}}
+.model srm SW(Ron={{5m*z}} Roff={{1Meg*z}} Vt=0.02)
+.model dm D(Ron={{5m*z}} Vfwd=0.5)
+.param w={w} z={z}
+.tran {{10u*w}} {{1.2m*w}}
+.end
+"""
+
+
+def rounded_errors(c, w, z):
+    """The estimate of a segment's error is rounding, which says nothing of longer ones: they are tried all the same."""
+    outcome = run(sys.argv[1], SUPPLIES.format(w=w, z=z), method=None, options=[])
+    if c.check(outcome.status == 0, f"two supplies, {w}, {z}: {outcome.stderr}"):
+        steps = outcome.report["work"]["steps"]
+        c.check(steps < 3700, f"two supplies, {w}, {z}: {steps} steps")
+
+
 def main():
     c = Sliding("sliding_switches")
     units = (("volts", 5.0, 1e-3), ("kilovolts", 5e3, 1e3), ("microvolts", 5e-6, 1e-9))
     looks = [(look, size) for size in some_of(SIZES) for look in (current_limit, complementary, moving_threshold)]
     looks += [(look, unit) for unit in some_of(units) for look in (thermostat, inverter, leaves)]
+    looks += [(rounded_errors, of) for of in some_of([(1, 1), (1e-3, 1e3), (1e3, 1e-2)])]
     for look, of in kinds_of([*looks, (ripple, ()), (false_starts, (1, 1))]):
         look(c, *of)
     return c.finish()
