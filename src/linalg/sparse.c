@@ -97,7 +97,7 @@ static bool is_rounding(double *x, int n, double sum) {
 }
 
 /* p[r] is the end of row r: walk forward, merge duplicates, drop what cancelled. */
-static void merge_duplicates(struct dalcs_csr *a) {
+static void merge_duplicates(struct dalcs_csr *a, bool drops_rounding) {
     int out = 0;
     int begin = 0;
     for (int r = 0; r < a->n_rows; r++) {
@@ -110,7 +110,8 @@ static void merge_duplicates(struct dalcs_csr *a) {
                 k++;
             }
             double sum = sum_of(a->x + first, k - first);
-            if (sum != 0.0 && (k - first == 1 || !is_rounding(a->x + first, k - first, sum))) {
+            const bool may_be_rounding = drops_rounding && k - first > 1;
+            if (sum != 0.0 && !(may_be_rounding && is_rounding(a->x + first, k - first, sum))) {
                 a->j[out] = column;
                 a->x[out++] = sum;
             }
@@ -120,8 +121,8 @@ static void merge_duplicates(struct dalcs_csr *a) {
     a->p[a->n_rows] = out;
 }
 
-enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
-                                     const struct dalcs_triplets *t) {
+static enum dalcs_status compress(struct dalcs_csr *a, int n_rows, int n_columns,
+                                  const struct dalcs_triplets *t, bool drops_rounding) {
     *a = (struct dalcs_csr){.n_rows = n_rows, .n_columns = n_columns};
     if (t->n > INT_MAX / 2) {
         return DALCS_E_LIMIT;
@@ -145,12 +146,22 @@ enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_colu
             a->j[slot] = e->column;
             a->x[slot] = e->value;
         }
-        merge_duplicates(a);
+        merge_duplicates(a, drops_rounding);
     }
     if (work != few) {
         free(work);
     }
     return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
+                                     const struct dalcs_triplets *t) {
+    return compress(a, n_rows, n_columns, t, false);
+}
+
+enum dalcs_status dalcs_csr_compress_rounded(struct dalcs_csr *a, int n_rows, int n_columns,
+                                             const struct dalcs_triplets *t) {
+    return compress(a, n_rows, n_columns, t, true);
 }
 
 void dalcs_csr_finish(struct dalcs_csr *a) {

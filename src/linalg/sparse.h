@@ -30,9 +30,13 @@ struct dalcs_csr {
     double *x; /* [p[n_rows]] */
 };
 
-/* Sums duplicates, rounded once; what cancels is dropped, also but for the rounding of what is summed. On failure *a is zeroed. */
+/* Sums duplicates, rounded once; what cancels is dropped. On failure *a is zeroed. */
 enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
                                      const struct dalcs_triplets *t) DALCS_MUST_CHECK;
+
+/* The same of numbers that are rounded: what cancels but for that is dropped, too. */
+enum dalcs_status dalcs_csr_compress_rounded(struct dalcs_csr *a, int n_rows, int n_columns,
+                                             const struct dalcs_triplets *t) DALCS_MUST_CHECK;
 
 void dalcs_csr_finish(struct dalcs_csr *a);
 
