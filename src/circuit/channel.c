@@ -1,4 +1,4 @@
-/* channel.c - the channel of a MOSFET whose bulk is not on its source: both of its ends are alike.
+/* channel.c - the channel of a MOSFET whose bulk is not on its source, or that is a follower: both of its ends are alike.
  *
  * An end lets through what is below the gate by Vto, so the other one follows the gate:
  *     Ron i = min(v(drain), v(gate) - Vto) - min(v(source), v(gate) - Vto)

@@ -72,7 +72,8 @@ struct dalcs_gate_drive dalcs_gate_drive_of(const struct dalcs_circuit *c,
                                             const struct dalcs_gate_links *links,
                                             const struct dalcs_transistor_use *use);
 
-/* channel.c: in place of the switch of a MOSFET whose bulk is not on its source, when its resistance is known. */
+/* channel.c: in place of the switch of a MOSFET whose bulk is not on its source or whose source follows its gate, when its
+ * resistance is known. */
 void dalcs_transistor_make_channel(struct dalcs_builder *builder,
                                    const struct dalcs_transistor_use *use, double ron, double roff);
 

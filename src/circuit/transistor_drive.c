@@ -7,8 +7,8 @@
  *     the largest value of a V source between gate and source, or to ground where V sources or nothing but resistors
  *     hold the source, gate resistors passed over;
  *     10 V, or 5 V above the threshold where that is more.
- * An amplifier is refused where sources alone show that the gate moves without turning it off, that the closed switch
- * would open itself (a follower), or that gate and drain are one node. */
+ * An amplifier is refused where sources alone show that the gate moves without turning it off, or that gate and drain are
+ * one node. Where they show that the closed switch would open itself, the channel is the one of channel.c: a follower. */
 #include "element_cards.h"
 #include "transistor.h"
 
@@ -39,14 +39,6 @@ static bool is_switch(struct dalcs_builder *builder, const struct dalcs_transist
                             "the gate of '%s' moves from %g to %g V and never turns it off, below "
                             "%g V: it is an amplifier, not a switch",
                             name, gate->low, gate->high, threshold);
-        return false;
-    }
-    if (drive->is_follower && gate->high <= threshold) {
-        dalcs_builder_error(
-            builder, use->name, "drive the gate against the source, or higher than the supply",
-            "'%s' is a follower, not a switch: if it were on, its gate would be at %g V "
-            "at most against its source, and it is off below %g V",
-            name, gate->high, threshold);
         return false;
     }
     return true;
@@ -131,6 +123,48 @@ static void note_saturation(struct dalcs_builder *builder, const struct dalcs_tr
                                   .where = c->device[use->device].where};
 }
 
+static const char follower_hint[] = "drive the gate against the source, or higher than the supply";
+
+/* A switch that would open itself; the source of a MOSFET with a resistance follows its gate. False when an error was
+ * reported. */
+static bool may_follow(struct dalcs_builder *builder, const struct dalcs_transistor_use *use,
+                       const struct dalcs_switch_model *model, double high) {
+    const char *name = use->name->text;
+    if (use->of->kind != DALCS_MOSFET || !(model->ron > 0)) {
+        dalcs_builder_error(builder, use->name, follower_hint,
+                            "'%s' is a follower, not a switch: if it were on, its gate would be at "
+                            "%g V at most against its source, and it is off below %g V",
+                            name, high, model->vt);
+        return false;
+    }
+    const double sign = use->of->is_p ? -1 : 1;
+    dalcs_builder_warn(
+        builder, use->name, follower_hint,
+        "'%s' is a follower, not a switch: its gate is at %g V %s against its drain, "
+        "so its source stays %g V %s its gate, besides its resistance",
+        name, sign * high, use->of->is_p ? "at least" : "at most", model->vt,
+        use->of->is_p ? "above" : "below");
+    return true;
+}
+
+/* Where both ends of a MOSFET count, a switch that v(gate, source) commands would be wrong. */
+static void settle_channel(struct dalcs_builder *builder, const struct dalcs_transistor_use *use,
+                           const struct dalcs_switch_model *model,
+                           const struct dalcs_gate_drive *drive) {
+    const bool follows = drive->is_follower && drive->gate.is_known &&
+                         drive->gate.high <= model->vt && use->of->kind != DALCS_BIPOLAR;
+    const bool has_bulk = use->bulk != use->source;
+    if (has_bulk && !(model->ron > 0)) {
+        dalcs_builder_error(builder, use->name, "Ron= of the model is above 0",
+                            "the bulk of '%s' is not on its source: its channel needs a resistance",
+                            use->name->text);
+        return;
+    }
+    if (has_bulk || (follows && may_follow(builder, use, model, drive->gate.high))) {
+        dalcs_transistor_make_channel(builder, use, model->ron, model->roff);
+    }
+}
+
 static void settle(struct dalcs_builder *builder, const struct dalcs_gate_links *links,
                    const struct dalcs_transistor_use *use) {
     struct dalcs_circuit *c = builder->circuit;
@@ -170,9 +204,7 @@ static void settle(struct dalcs_builder *builder, const struct dalcs_gate_links 
     model->ron = (channel + t->series) / use->parallel;
     model->roff = t->leakage / use->parallel;
     note(builder, use, model->ron, at != NULL ? at : "");
-    if (use->bulk != use->source && model->ron > 0) {
-        dalcs_transistor_make_channel(builder, use, model->ron, model->roff);
-    }
+    settle_channel(builder, use, model, &drive);
 }
 
 /* From the last one to the first. */

@@ -169,6 +169,24 @@ static enum dalcs_status name_readers(struct stamps *b) {
     return DALCS_OK;
 }
 
+/* Leaves the entries of a that b has, too. */
+static void keep_entries_of(struct dalcs_csr *a, const struct dalcs_csr *b) {
+    int out = 0;
+    for (int r = 0, k = 0; r < a->n_rows; r++) {
+        int at = b->p[r];
+        for (; k < a->p[r + 1]; k++) {
+            while (at < b->p[r + 1] && b->j[at] < a->j[k]) {
+                at++;
+            }
+            if (at < b->p[r + 1] && b->j[at] == a->j[k]) {
+                a->j[out] = a->j[k];
+                a->x[out++] = a->x[k];
+            }
+        }
+        a->p[r + 1] = out;
+    }
+}
+
 /* Sums less what they were rounded to. `sums` grows by the latter. */
 static enum dalcs_status find_rest(struct dalcs_csr *rest, const struct dalcs_csr *rounded,
                                    struct dalcs_triplets *sums) {
@@ -177,7 +195,9 @@ static enum dalcs_status find_rest(struct dalcs_csr *rest, const struct dalcs_cs
             DALCS_TRY(dalcs_triplets_add(sums, r, rounded->j[k], -rounded->x[k]));
         }
     }
-    return dalcs_csr_compress(rest, rounded->n_rows, rounded->n_columns, sums);
+    DALCS_TRY(dalcs_csr_compress(rest, rounded->n_rows, rounded->n_columns, sums));
+    keep_entries_of(rest, rounded); /* what is nothing but rounding has no rest */
+    return DALCS_OK;
 }
 
 /* Everything that the devices say. */
@@ -219,8 +239,8 @@ static enum dalcs_status compress(struct stamps *b) {
     };
 
     for (size_t k = 0; k < sizeof(part) / sizeof(part[0]); k++) {
-        DALCS_TRY(
-            dalcs_csr_compress(part[k].matrix, part[k].n_rows, part[k].n_columns, part[k].entries));
+        DALCS_TRY(dalcs_csr_compress_rounded(part[k].matrix, part[k].n_rows, part[k].n_columns,
+                                             part[k].entries));
     }
     DALCS_TRY(find_rest(&system->A_rest, &system->A, &b->A));
     find_tangents(system);

@@ -2,6 +2,7 @@
  * one by row: linear in the entries and the same order on every machine. */
 #include "sparse.h"
 
+#include <float.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -62,8 +63,41 @@ static double sum_of(const double *x, int n) {
     return isfinite(lost) ? sum + lost : sum;
 }
 
+static int by_size(const void *a, const void *b) {
+    const double x = fabs(*(const double *)a), y = fabs(*(const double *)b);
+    return (x > y) - (x < y);
+}
+
+static double size_of(const double *x, int n) {
+    double size = 0.0;
+    for (int k = 0; k < n; k++) {
+        size += fabs(x[k]);
+    }
+    return size;
+}
+
+/* Is this sum what rounding left where the terms cancel? Each of them is a rounded number, as 1/3 S of 3 ohm is, and off by half
+ * a unit in its last place. Two that are opposites came from one element and leave nothing. x[] is sorted. */
+static bool is_rounding(double *x, int n, double sum) {
+    const double rounding = 0.5 * DBL_EPSILON;
+    if (!(fabs(sum) <= rounding * size_of(x, n))) {
+        return false;
+    }
+    qsort(x, (size_t)n, sizeof *x, by_size);
+    double size = 0.0;
+    for (int k = 0; k < n;) {
+        const double of_one = fabs(x[k]);
+        double together = 0.0;
+        for (; k < n && fabs(x[k]) == of_one; k++) {
+            together += x[k] < 0.0 ? -1.0 : 1.0;
+        }
+        size += fabs(together) * of_one;
+    }
+    return fabs(sum) <= rounding * size;
+}
+
 /* p[r] is the end of row r: walk forward, merge duplicates, drop what cancelled. */
-static void merge_duplicates(struct dalcs_csr *a) {
+static void merge_duplicates(struct dalcs_csr *a, bool drops_rounding) {
     int out = 0;
     int begin = 0;
     for (int r = 0; r < a->n_rows; r++) {
@@ -76,7 +110,8 @@ static void merge_duplicates(struct dalcs_csr *a) {
                 k++;
             }
             double sum = sum_of(a->x + first, k - first);
-            if (sum != 0.0) {
+            const bool may_be_rounding = drops_rounding && k - first > 1;
+            if (sum != 0.0 && !(may_be_rounding && is_rounding(a->x + first, k - first, sum))) {
                 a->j[out] = column;
                 a->x[out++] = sum;
             }
@@ -86,8 +121,8 @@ static void merge_duplicates(struct dalcs_csr *a) {
     a->p[a->n_rows] = out;
 }
 
-enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
-                                     const struct dalcs_triplets *t) {
+static enum dalcs_status compress(struct dalcs_csr *a, int n_rows, int n_columns,
+                                  const struct dalcs_triplets *t, bool drops_rounding) {
     *a = (struct dalcs_csr){.n_rows = n_rows, .n_columns = n_columns};
     if (t->n > INT_MAX / 2) {
         return DALCS_E_LIMIT;
@@ -111,12 +146,22 @@ enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_colu
             a->j[slot] = e->column;
             a->x[slot] = e->value;
         }
-        merge_duplicates(a);
+        merge_duplicates(a, drops_rounding);
     }
     if (work != few) {
         free(work);
     }
     return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
+                                     const struct dalcs_triplets *t) {
+    return compress(a, n_rows, n_columns, t, false);
+}
+
+enum dalcs_status dalcs_csr_compress_rounded(struct dalcs_csr *a, int n_rows, int n_columns,
+                                             const struct dalcs_triplets *t) {
+    return compress(a, n_rows, n_columns, t, true);
 }
 
 void dalcs_csr_finish(struct dalcs_csr *a) {

@@ -34,6 +34,10 @@ struct dalcs_csr {
 enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
                                      const struct dalcs_triplets *t) DALCS_MUST_CHECK;
 
+/* The same of numbers that are rounded: what cancels but for that is dropped, too. */
+enum dalcs_status dalcs_csr_compress_rounded(struct dalcs_csr *a, int n_rows, int n_columns,
+                                             const struct dalcs_triplets *t) DALCS_MUST_CHECK;
+
 void dalcs_csr_finish(struct dalcs_csr *a);
 
 /* Row i of a, times v[n_columns]. */

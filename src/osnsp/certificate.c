@@ -154,15 +154,10 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
  * is the sum of the island's KCL, known as well as the largest of them. */
 static void check_references(struct dalcs_osnsp *p, const double *y, struct dalcs_scales scale,
                              struct dalcs_scales drive, bool *sources_clash) {
-    const struct dalcs_system *s = p->system;
     if (p->lists.n_references == 0) {
         return;
     }
-    double size = scale.ampere;
-    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
-        size =
-            s->row_is_current[r] ? fmax(size, dalcs_scales_norm(p->cache.form[0], scale, r)) : size;
-    }
+    const double size = dalcs_scales_of_rows(p, scale, true);
     /* a current that is something beside what drives the circuit, and beyond rounding, is none that is balanced */
     double limit = fmin(p->options.certificate_tolerance * size,
                         fmax(dalcs_nothing * drive.ampere, dalcs_sum_rounded * size));

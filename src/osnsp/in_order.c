@@ -2,7 +2,10 @@
 #include "in_order.h"
 
 #include "block.h"
+#include "rounding.h"
+#include "scales.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -94,6 +97,25 @@ static void go_in(const struct dalcs_osnsp *p, struct dalcs_block *b, const doub
     b->osnsp.asks.most_enumerated = p->asks.most_enumerated;
 }
 
+/* What a block reads is known to the rounding of the answer that it is from. What should be 0 there is not, and nothing may be there
+ * to balance it. Is there such a value? It is 0 now; the whole is certified in the end. */
+static bool drop_rounding(const struct dalcs_osnsp *p, struct dalcs_block *b) {
+    bool has_dropped = false;
+    for (int k = 0; k < b->n_read; k++) {
+        const int c = b->read[k];
+        const struct dalcs_osnsp *from = &p->blocks->block[p->partition.block_of[c]].osnsp;
+        const double scale = dalcs_scales_of_rows(
+            from, (struct dalcs_scales){from->certificate.volt, from->certificate.ampere},
+            p->system->column_is_current[c]);
+        double *value = &b->u[b->system.n_x + p->system->n_inputs + k];
+        if (*value != 0.0 && fabs(*value) <= dalcs_answer_rounded * scale) {
+            *value = 0.0;
+            has_dropped = true;
+        }
+    }
+    return has_dropped;
+}
+
 static void come_back(struct dalcs_osnsp *p, const struct dalcs_block *b, double *y) {
     for (int c = 0; c < dalcs_system_n_columns(&b->system); c++) {
         y[b->column[c]] = b->y[c];
@@ -136,6 +158,9 @@ static enum dalcs_status solve_all(struct dalcs_osnsp *p, double sigma, const do
         struct dalcs_osnsp_counters before = b->osnsp.counters;
         go_in(p, b, u, y);
         enum dalcs_status status = dalcs_osnsp_solve(&b->osnsp, sigma, b->u, b->y);
+        if (status > DALCS_OK && drop_rounding(p, b)) {
+            status = dalcs_osnsp_solve(&b->osnsp, sigma, b->u, b->y);
+        }
         add_counters(p, &before, &b->osnsp.counters);
         if (status == DALCS_INFEASIBLE) {
             take_witness(p, b);

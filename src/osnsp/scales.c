@@ -120,6 +120,17 @@ static const int *rows_of(const struct dalcs_osnsp *p, int pair) {
     return p->lists.column_rows_p + dalcs_system_n_equations(p->system) + pair;
 }
 
+double dalcs_scales_of_rows(const struct dalcs_osnsp *p, struct dalcs_scales scale,
+                            bool is_current) {
+    double size = is_current ? scale.ampere : scale.volt;
+    for (int r = 0; r < dalcs_system_n_equations(p->system); r++) {
+        size = p->system->row_is_current[r] == is_current
+                   ? fmax(size, dalcs_scales_norm(p->cache.form[0], scale, r))
+                   : size;
+    }
+    return size;
+}
+
 double dalcs_scales_current_norm(const struct dalcs_osnsp *p, int pair, struct dalcs_scales scale) {
     const int *first = rows_of(p, pair);
     double size = scale.ampere;

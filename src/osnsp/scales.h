@@ -44,6 +44,10 @@ double dalcs_scales_pair_terms(const struct dalcs_osnsp *p, const double *u, con
  * are known no better than the KCL where they end. An ammeter beside a diode changes nothing. */
 double dalcs_scales_series_terms(struct dalcs_osnsp *p, const double *u, const double *y, int pair);
 
+/* The largest norm of the rows in A, or V: what they give is known no better where it should be 0. */
+double dalcs_scales_of_rows(const struct dalcs_osnsp *p, struct dalcs_scales scale,
+                            bool is_current);
+
 /* The norm of a pair's current: it is known no better than the KCL that it enters. */
 double dalcs_scales_current_norm(const struct dalcs_osnsp *p, int pair, struct dalcs_scales scale);
 

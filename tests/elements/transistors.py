@@ -288,6 +288,32 @@ def alike_ends(checker, program):
                 checker.close(done.at("i(l1)", 14e-6), sign * max(left, 0), 1e-4 * volts / ohms, f"{what}: the coil")
 
 
+def followers(checker, program):
+    """A gate that is driven against ground, not above the supply: the source follows it by Vto, behind the channel's resistance, with a
+    warning; a capacitor across the load keeps what it has while the gate is lower. A pull-up and a second transistor drive a third
+    whose bulk is elsewhere, whichever end is at the supply."""
+    for ohms, volts, vto, ron in ((10, 24, 3, 0.05), (1e4, 3.3, 0.7, 200), (0.3, 600, 4, 1e-3), (47, 1, 0.2, 5)):
+        for sign, kind in ((1, "NMOS"), (-1, "PMOS")):
+            gate = sign * (0.5 * volts + vto)
+            text = (f"a follower\nv1 in 0 {sign * volts!r}\nvg g 0 pulse(0 {gate!r} 10u 0 0 20u 100u)\nm1 in g s s mx\nr1 s 0 {ohms!r}\n"
+                    f"c1 s 0 {40e-6 / ohms!r} ic=0\n.model mx {kind}(Vto={sign * vto!r} Ron={ron!r})\n.save v(s)\n.tran 1u 40u uic\n.end\n")
+            done = run_at(program, text, quiet=False)
+            what = f"{kind} at {volts} V"
+            if checker.check(done.status == 0 and "'m1' is a follower, not a switch" in done.stderr, f"{what}: {done.stderr}"):
+                level = sign * 0.5 * volts / (1 + ron / ohms)
+                tau = 40e-6 / ohms / (1 / ohms + 1 / ron)
+                peak = level * (1 - math.exp(-20e-6 / tau))
+                checker.close(done.at("v(s)", 30e-6), peak, 1e-8 * volts, f"{what}: the load")
+                checker.close(done.at("v(s)", 40e-6), peak * math.exp(-0.25), 1e-8 * volts, f"{what}: the load, left alone")
+    for m2 in ("m2 x g in w px", "m2 in g x w px"):
+        text = f"a driven p channel\nv1 in 0 12\nv2 w 0 14\nva a 0 pulse(0 5 10u 0 0 20u 100u)\nr1 in g 100\nm1 g a 0 nx\n{m2}\n" \
+               "r2 x 0 5\n.model nx NMOS(Vto=2 Ron=1)\n.model px PMOS(Vto=-3 Ron=0.1)\n.save v(x)\n.tran 1u 40u\n.end\n"
+        done = run_at(program, text)
+        if checker.check(done.status == 0, f"{m2}: {done.status} {done.stderr}"):
+            checker.close(done.at("v(x)", 5e-6), 0, 1e-9, f"{m2}, off")
+            checker.close(done.at("v(x)", 20e-6), 12 * 5 / 5.1, 1e-8, f"{m2}, on")
+
+
 REFUSED = (
     ("m1 d g 0 0 nothing", "there is no model 'nothing'"),
     ("m1 d g nx", "has 3 or 4 nodes"),
@@ -297,7 +323,9 @@ REFUSED = (
     ("m1 d d 0 0 nx", "gate of 'm1' is connected to its drain"),
     ("m1 d g 0 0 nx\nvs g 0 sin(5 0.1 1k)", "it is an amplifier, not a switch"),
     ("m1 d g 0 0 nx\nvs g 0 pulse(5 8 0 1u 1u 5u 10u)", "it is an amplifier, not a switch"),
-    ("m1 in g d nx\nvs g 0 pulse(0 10 0 0 0 5u 10u)", "is a follower, not a switch"),
+    ("m1 in g d zx\nvs g 0 pulse(0 10 0 0 0 5u 10u)\n.model zx NMOS(Vto=2 Ron=0)", "is a follower, not a switch"),
+    ("z1 in g d ix\nvs g 0 pulse(0 10 0 0 0 5u 10u)\n.model ix NIGBT(Vt=5 Ron=1m)", "is a follower, not a switch"),
+    ("m1 in g d 0 zx\nvs g 0 pulse(0 30 0 0 0 5u 10u)\n.model zx NMOS(Vto=2 Ron=0)", "its channel needs a resistance"),
     ("m1 d g 0 0 px\nvs g 0 sin(-5 0.1 1k)", "it is an amplifier, not a switch"),
     ("m1 d g 0 0 nx foo=1\nvs g 0 1", "has no parameter 'foo'"),
     ("m1 d g 0 0 nx m=0\nvs g 0 1", "must be positive"),
@@ -399,7 +427,7 @@ def logic_drives(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("transistors")
-    for part in (cards, circuits, saturations, bulks, alike_ends, igbts, bipolars, refusals, typical, logic_drives):
+    for part in (cards, circuits, saturations, bulks, alike_ends, followers, igbts, bipolars, refusals, typical, logic_drives):
         part(checker, program)
     return checker.finish()
 

@@ -54,6 +54,35 @@ START_TEST(test_compress) {
 
 END_TEST
 
+/* Numbers that are rounded cancel but for that; what came twice with both signs leaves nothing, and does not hide the rest. */
+START_TEST(test_cancelled) {
+    const double scale[] = {1e-12, 1.0, 3e7};
+    for (int k = 0; k < 3; k++) {
+        struct dalcs_triplets t = {0};
+        struct dalcs_csr a;
+        for (int i = 0; i < 3; i++) {
+            add(&t, 0, 0, scale[k] / 3.0);
+            add(&t, 1, 0, scale[k] / 3.0);
+        }
+        add(&t, 0, 0, 0.5 * scale[k]);
+        add(&t, 0, 0, -1.5 * scale[k]);
+        add(&t, 1, 0, -scale[k] * (1.0 - 1e-12)); /* beyond rounding */
+        for (int i = 0; i < 3; i++) {
+            add(&t, 2, 0, 1e20 * scale[k] / (3.0 + i));
+            add(&t, 2, 0, -1e20 * scale[k] / (3.0 + i));
+        }
+        add(&t, 2, 0, scale[k]);
+        ck_assert_int_eq(dalcs_csr_compress_rounded(&a, 3, 1, &t), DALCS_OK);
+        ck_assert_int_eq(a.p[1], 0);
+        ck_assert_double_eq_tol(entry_of(&a, 1, 0), 1e-12 * scale[k], 1e-15 * scale[k]);
+        ck_assert_double_eq(entry_of(&a, 2, 0), scale[k]);
+        dalcs_csr_finish(&a);
+        dalcs_triplets_finish(&t);
+    }
+}
+
+END_TEST
+
 START_TEST(test_empty) {
     struct dalcs_triplets t = {0};
     struct dalcs_csr a;
@@ -102,4 +131,4 @@ START_TEST(test_difference) {
 
 END_TEST
 
-RUN_TESTS("sparse", test_compress, test_empty, test_difference)
+RUN_TESTS("sparse", test_compress, test_cancelled, test_empty, test_difference)
