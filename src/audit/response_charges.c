@@ -12,15 +12,12 @@ static double ron_of(const struct dalcs_circuit *c, const struct dalcs_device *d
                                   : c->models.of_switch[d->model].ron;
 }
 
-static bool is_two_sided(const struct dalcs_device *d) {
-    return d->behaviour == NULL && (d->kind == DALCS_DIODE || d->kind == DALCS_SWITCH);
-}
-
 bool response_may_join(const struct dalcs_response_audit *a, const struct dalcs_response_event *e) {
     bool may = false;
     for (int d = 0; d < a->circuit->n_devices && !may; d++) {
         const struct dalcs_device *device = &a->circuit->device[d];
-        may = e->changes[d] > 0 && is_two_sided(device) && ron_of(a->circuit, device) == 0.0;
+        may =
+            e->changes[d] > 0 && response_is_two_sided(device) && ron_of(a->circuit, device) == 0.0;
     }
     return may;
 }
@@ -39,14 +36,12 @@ static bool is_capacitor(const struct dalcs_response_audit *a, int device) {
     return a->of.are_there[device] && d->kind == DALCS_CAPACITOR && !d->is_storage;
 }
 
-/* May an impulse pass behind the event? If the orbit has a voltage across a diode or a switch there, that is open. */
+/* May an impulse of current be in the device? */
 static bool may_pass(const struct dalcs_response_audit *a, const struct dalcs_response_event *e,
                      int device) {
     const struct dalcs_device *d = &a->circuit->device[device];
-    const double complex *v = e->at[1]->v;
-    if (is_two_sided(d)) {
-        const double across = response_magnitude(v[d->node[0]] - v[d->node[1]]);
-        return ron_of(a->circuit, d) == 0.0 && !(across > a->tolerance * a->orbit.volts);
+    if (response_is_two_sided(d)) {
+        return response_may_be_free(a, e, device, RESPONSE_WIRE);
     }
     switch (d->kind) {
     case DALCS_CAPACITOR:

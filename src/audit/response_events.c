@@ -91,18 +91,24 @@ static void check_states(struct dalcs_response_audit *a, const struct dalcs_resp
     }
     response_find_small(a, e->is[0]);
     const bool joins = e->at[0] != NULL && response_may_join(a, e);
+    const bool parts = e->at[0] != NULL && response_may_part(a, e);
     for (int d = 0; d < a->circuit->n_devices; d++) {
         if (!is_storage(a, d)) {
             continue;
         }
         a->gain[d] = gain_of(a, e, d);
-        if (!joins || a->circuit->device[d].kind == DALCS_INDUCTOR) {
-            response_found(a, DALCS_RESPONSE_STATE, d, response_magnitude(a->gain[d].off),
-                           a->gain[d].allowed);
+        const bool is_coil = response_is_coil(a, d);
+        if (is_coil ? !parts : !joins) {
+            const double per = is_coil ? a->circuit->device[d].value : 1.0;
+            response_found(a, DALCS_RESPONSE_STATE, d, response_magnitude(a->gain[d].off) / per,
+                           a->gain[d].allowed / per);
         }
     }
     if (joins) {
         response_check_charges(a, e, a->gain);
+    }
+    if (parts) {
+        response_check_fluxes(a, e, a->gain);
     }
 }
 

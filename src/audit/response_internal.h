@@ -48,6 +48,12 @@ static inline double response_magnitude(double complex x) {
     return fabs(creal(x)) + fabs(cimag(x));
 }
 
+/* A straight one. */
+static inline bool response_is_coil(const struct dalcs_response_audit *a, int device) {
+    const struct dalcs_device *d = &a->circuit->device[device];
+    return a->of.are_there[device] && d->kind == DALCS_INDUCTOR && !d->is_storage;
+}
+
 /* What a voltage is known by: one within the rounding of the largest is not known at all. */
 static inline double response_size(const struct dalcs_response_audit *a, double complex v) {
     const double size = response_magnitude(v);
@@ -77,11 +83,31 @@ bool response_may_join(const struct dalcs_response_audit *a, const struct dalcs_
 void response_check_charges(struct dalcs_response_audit *a, const struct dalcs_response_event *e,
                             const struct response_gain *gain);
 
+/* ---- response_fluxes.c ---- */
+
+/* Does something open at the event that is a cut then? */
+bool response_may_part(const struct dalcs_response_audit *a, const struct dalcs_response_event *e);
+
+/* Of coils: the flux of loops without an impulse of voltage stays what it is. gain: [n_devices]. */
+void response_check_fluxes(struct dalcs_response_audit *a, const struct dalcs_response_event *e,
+                           const struct response_gain *gain);
+
 /* ---- response_lines.c ---- */
 
 /* Of all devices at the operating point. */
 enum dalcs_status response_find_lines(struct dalcs_response_audit *a,
                                       const struct dalcs_response_values *at) DALCS_MUST_CHECK;
+
+/* A diode or a switch. */
+bool response_is_two_sided(const struct dalcs_device *d);
+
+/* What a line leaves free: any current, without a voltage, or any voltage, without a current. */
+enum response_freedom { RESPONSE_WIRE, RESPONSE_CUT };
+
+/* May a diode or a switch be on such a line behind the event, by its voltage, its current and its control in the orbit? */
+bool response_may_be_free(const struct dalcs_response_audit *a,
+                          const struct dalcs_response_event *e, int device,
+                          enum response_freedom freedom);
 
 /* ---- response_formula.c ---- */
 

@@ -39,16 +39,13 @@ static void find_switch(struct response_lines *l, const struct dalcs_switch_mode
     add_line(l, is_open && c <= half_width + margin, g, 1.0);
 }
 
-static void find_lines(struct dalcs_response_audit *a, const struct dalcs_response_values *at,
-                       int device) {
+static void find_lines(const struct dalcs_response_audit *a, const struct dalcs_response_values *at,
+                       int device, struct doubt doubt, struct response_lines *l) {
     const struct dalcs_circuit *c = a->circuit;
     const struct dalcs_device *d = &c->device[device];
-    struct response_lines *l = &a->lines[device];
     l->n = 0;
     const double a0 = creal(at->v[d->node[0]]), b0 = creal(at->v[d->node[1]]);
     const double own[2] = {a0 - b0, creal(at->i[device])};
-    const struct doubt doubt = {a->rounding * a->volts,
-                                a->rounding * fmax(a->amperes, at->size[device])};
     if (at->size[device] < 0.0) {
         return;
     }
@@ -64,13 +61,32 @@ static void find_lines(struct dalcs_response_audit *a, const struct dalcs_respon
     }
 }
 
+bool response_is_two_sided(const struct dalcs_device *d) {
+    return d->behaviour == NULL && (d->kind == DALCS_DIODE || d->kind == DALCS_SWITCH);
+}
+
+bool response_may_be_free(const struct dalcs_response_audit *a,
+                          const struct dalcs_response_event *e, int device,
+                          enum response_freedom freedom) {
+    const struct doubt doubt = {a->tolerance * a->orbit.volts, a->tolerance * a->orbit.amperes};
+    struct response_lines l;
+    find_lines(a, e->at[1], device, doubt, &l);
+    bool may = l.n == 0; /* nothing is known */
+    for (int k = 0; k < l.n; k++) {
+        may = may || (freedom == RESPONSE_WIRE ? l.line[k].q : l.line[k].p) == 0.0;
+    }
+    return may;
+}
+
 enum dalcs_status response_find_lines(struct dalcs_response_audit *a,
                                       const struct dalcs_response_values *at) {
     for (int d = 0; d < a->circuit->n_devices; d++) {
         if (!a->of.are_there[d]) {
             continue;
         }
-        find_lines(a, at, d);
+        const struct doubt doubt = {a->rounding * a->volts,
+                                    a->rounding * fmax(a->amperes, at->size[d])};
+        find_lines(a, at, d, doubt, &a->lines[d]);
         DALCS_TRY(response_find_slopes(a, at, d));
     }
     return DALCS_OK;

@@ -145,7 +145,8 @@ static bool is_worth_projecting(struct dalcs_radau_part *part, const struct dalc
            dalcs_projection_sees(part, search->fixed);
 }
 
-/* On factors the second time where what has no memory agrees with the states: what conducts next does so from these. */
+/* On factors the second time where what has no memory agrees with the states: what conducts next does so from these, and
+ * what is clear of 0 is so by these. */
 static double find_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                               double end, const struct dalcs_trial *trial, bool *at_once) {
     const double *unit = trial->quality.unit;
@@ -154,6 +155,9 @@ static double find_first_fall(const struct dalcs_radau *r, struct dalcs_radau_pa
         return theta;
     }
     dalcs_stages_settle(&part->stages, trial->entry, part->segment.out);
+    if (part->guards.fresh) {
+        dalcs_guards_arm(part, false, unit);
+    }
     return dalcs_guards_first_fall(r, part, end, unit, at_once);
 }
 

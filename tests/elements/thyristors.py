@@ -248,6 +248,36 @@ def terminals(checker, program):
                 checker.close(got["m"], mean, 3e-6 * peak, f"{what}: the mean")
 
 
+# volts, hertz, ohms of the load, reactance of each line and ohms of the resistor over those, degrees
+OVERLAPS = ((261, 50, 20, 0.067, 1e3, 64), (261, 50, 20, 0.067, 1e3, 65), (325, 60, 5, 0.02, 3e3, 66), (40, 400, 2, 0.1, 500, 65),
+            (3000, 16.7, 50, 0.05, 1e3, 70))
+
+
+def overlapping(checker, program):
+    """Coils in the lines: behind each gate the output goes to another voltage, within microseconds as a resistor leads on what the
+    coils carry. Where that passes 0, three blocked thyristors do so at once but for the drops of those that conduct."""
+    for v, f, r, reactance, leak, alpha in OVERLAPS:
+        w = 2 * math.pi * f
+        cards = [f"v{k} n{k} 0 sin(0 {v} {f} 0 0 {-120 * k})\nl{k} n{k} x{k} {reactance * r / w!r}" for k in range(3)]
+        for k in range(3):
+            for name, a, b, behind in (("g", f"x{k}", "p", 30), ("h", "n", f"x{k}", 210)):
+                angle = (behind + alpha + 120 * k) % 360
+                late = angle + 90 > 360
+                first = angle - 270 if late else angle
+                cards += [f"v{name}{k} {name}{k} 0 pulse({5 if late else 0} {0 if late else 5} {first / 360 / f!r} 0 0 "
+                          f"{(270 if late else 90) / 360 / f!r} {1 / f!r})", f"a{name}{k} {a} {b} {name}{k} 0 th"]
+        cards += [f"ld p o {20 * r / w!r}", f"r1 o n {r}", f"r9 n 0 {leak * r!r}", ".model th thyristor(Ron=1m)", ".save i(ld)", ".pss uic"]
+        what = f"a bridge of {v} V at {f} Hz and {alpha} degrees"
+        done = run(program, "\n".join([what, *cards, ".end", ""]), method=None)
+        if checker.check(done.status == 0, f"{what}: {done.stderr}"):
+            mean = 3 * math.sqrt(3) * v / math.pi * math.cos(math.radians(alpha)) / (1 + 3 * reactance / math.pi) / r
+            i = done.column("i(ld)")
+            got = math.fsum(0.5 * (a + b) * (t1 - t0) for a, b, t0, t1 in zip(i, i[1:], done.time, done.time[1:])) * f
+            checker.close(got, mean, 0.01 * mean, f"{what}: the mean current")
+            checker.check("wrong sign" not in done.stderr, f"{what}: {done.stderr}")
+            checker.check(done.report["work"]["restarts"] < 1000, f"{what}: {done.report['work']['restarts']} restarts a period")
+
+
 def shorts(checker, program):
     """The current of a short that a formula reads: of one that measures, of a terminal."""
     for card, read in (("r0 a b 0", "i(r0)"), ("c0 a b 1u rpar=1k ic=0", "i(c0)"), ("r0 b a 0", "-i(r0)")):
@@ -307,7 +337,7 @@ def names(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("thyristors")
-    for part in (converters, limits, latching, terminals, shorts, at_rest, names):
+    for part in (converters, limits, latching, terminals, overlapping, shorts, at_rest, names):
         part(checker, program)
     return checker.finish()
 
