@@ -36,19 +36,14 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
         return DALCS_E_NOMEM;
     }
     p->may_have_poles = dalcs_smooth_may_have_poles(s);
+    DALCS_TRY(dalcs_smooth_missed_setup(part));
     return dalcs_smooth_newton_setup(&p->newton, s, stages->method->s + 1, &part->arena);
 }
 
-/* The place of a value at a node in excitation.smooth. */
-static double *value_at(const struct dalcs_radau_part *part, int source, int node) {
-    return part->excitation.smooth + source * (part->stages.method->s + 2) + node;
-}
-
-/* The place of a value in what goes into a step. */
+/* The place of value q in what goes into a step. */
 static int place_of(const struct dalcs_radau_part *part, int q) {
-    const struct dalcs_system *s = part->component->system;
-    const double *value = value_at(part, q % s->n_smooth, q / s->n_smooth);
-    return s->n_x + 1 + part->excitation.first_smooth + (int)(value - part->excitation.smooth);
+    const int n_smooth = part->component->system->n_smooth;
+    return dalcs_smooth_step_place(part, q % n_smooth, q / n_smooth);
 }
 
 /* What goes into the step, from the present values. */
@@ -56,7 +51,7 @@ static void put_values(struct dalcs_radau_part *part) {
     const struct dalcs_smooth_newton *n = &part->smooth->newton;
     const int n_smooth = n->system->n_smooth;
     for (int q = 0; q < n->n; q++) {
-        *value_at(part, q % n_smooth, q / n_smooth) = n->phi[q];
+        *dalcs_smooth_step_value(part, q % n_smooth, q / n_smooth) = n->phi[q];
     }
     dalcs_segment_inputs(part);
 }
@@ -108,69 +103,6 @@ static enum dalcs_status apply(struct dalcs_radau_part *part, struct dalcs_stage
                              part->segment.in, part->segment.out, entry);
 }
 
-/* What the polynomials of the sources miss between the nodes. What they read has ripples, too, from others. *changes:
- * by more than rounding makes of them since the last time. */
-static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
-    const struct dalcs_smooth_newton *n = &part->smooth->newton;
-    const struct dalcs_collocation *m = part->stages.method;
-    const struct dalcs_system *s = n->system;
-    const double *ripple = part->segment.out + part->stages.layout.ripple;
-    bool is_finite = true;
-    *changes = false;
-    for (int k = 0; k < s->n_smooth; k++) {
-        const struct dalcs_smooth_input *of = &s->smooth[k];
-        const bool is_root = dalcs_smooth_root_exponent(of) > 0.0;
-        double x[2] = {of->number[0], of->number[1]};
-        double phi = 0.0;
-        double terms = 0.0;
-        for (int node = 0; node <= m->s; node++) {
-            const int q = node * s->n_smooth + k;
-            terms =
-                dalcs_larger(terms, is_root ? dalcs_smooth_newton_terms(n, q, 0) : n->terms[q][0]);
-            for (int j = 0; j < of->n; j++) {
-                x[j] += of->column[j] >= 0 ? m->worst.value[node] * n->x[q][j] : 0.0;
-            }
-            phi += m->worst.value[node] * n->phi[q];
-        }
-        for (int j = 0; j < of->n; j++) {
-            x[j] += of->column[j] >= 0 ? ripple[of->column[j]] : 0.0;
-        }
-        x[0] = dalcs_smooth_held(of->kind, x, dalcs_alike * terms);
-        const double off = dalcs_smooth_rest(of, x) - phi;
-        double rest = fabs(off) - dalcs_smooth_rounding(of, x);
-        if (is_root && rest > 0.0) {
-            const double by_terms = dalcs_smooth_variation(of->kind, x, 0, dalcs_rounded * terms);
-            rest = dalcs_smaller(rest, fabs(off) - by_terms);
-        }
-        const double missed = isfinite(off) ? copysign(dalcs_larger(rest, 0.0), off) : off;
-        double *known = value_at(part, k, m->s + 1);
-        is_finite = is_finite && isfinite(missed);
-        *changes = *changes || fabs(missed - *known) > dalcs_rounded * fabs(phi);
-        *known = missed;
-    }
-    return is_finite;
-}
-
-/* Sources that read sources: once for each that may stand between the first and the last. */
-static enum dalcs_status add_missed(struct dalcs_radau_part *part,
-                                    struct dalcs_stage_entry **entry) {
-    const struct dalcs_system *s = part->component->system;
-    bool changes = true;
-    for (int round = 0; round < s->n_smooth && changes; round++) {
-        if (!find_missed(part, &changes)) {
-            return DALCS_NOT_CONVERGED;
-        }
-        if (changes) {
-            dalcs_segment_inputs(part);
-            enum dalcs_status status = apply(part, entry);
-            if (status != DALCS_OK) {
-                return status;
-            }
-        }
-    }
-    return DALCS_OK;
-}
-
 /* Until the values are the functions to so much of themselves, or to rounding. */
 static enum dalcs_status iterate(struct dalcs_radau_part *part, double tolerance,
                                  struct dalcs_stage_entry **entry) {
@@ -211,13 +143,7 @@ static void take_tangents(struct dalcs_radau_part *part) {
         dalcs_stages_forget(&part->stages);
         part->segment.entry = NULL;
         dalcs_smooth_newton_forget(&p->newton);
-        p->slope_h = 0.0;
-    }
-}
-
-static void forget_missed(struct dalcs_radau_part *part) {
-    for (int k = 0; k < part->smooth->newton.system->n_smooth; k++) {
-        *value_at(part, k, part->stages.method->s + 1) = 0.0;
+        p->slope_h = p->missed.h = 0.0;
     }
 }
 
@@ -231,11 +157,11 @@ static enum dalcs_status solve(struct dalcs_radau_part *part, struct dalcs_stage
         n->phi[q] = now->phi[q % n_smooth];
     }
     dalcs_smooth_newton_begin(n, now->x);
-    forget_missed(part);
+    dalcs_smooth_missed_forget(part);
     const double tolerance = dalcs_larger(part->component->osnsp.options.certificate_tolerance,
                                           dalcs_slight * part->inner_tolerance);
     enum dalcs_status status = iterate(part, tolerance, entry);
-    return status == DALCS_OK ? add_missed(part, entry) : status;
+    return status == DALCS_OK ? dalcs_smooth_missed_add(part, entry) : status;
 }
 
 enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
@@ -254,9 +180,9 @@ enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
 enum dalcs_status dalcs_smooth_step_refine(struct dalcs_radau_part *part,
                                            struct dalcs_stage_entry **entry) {
     part->smooth->newton.defect = INFINITY;
-    forget_missed(part);
+    dalcs_smooth_missed_forget(part);
     const enum dalcs_status status = iterate(part, 0.0, entry);
-    return status == DALCS_OK ? add_missed(part, entry) : status;
+    return status == DALCS_OK ? dalcs_smooth_missed_add(part, entry) : status;
 }
 
 void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta) {
