@@ -108,6 +108,17 @@ static void list_values(struct dalcs_refusal *x, const struct dalcs_component *c
 /* Micro-steps this many times shorter must have no answer either. */
 static const double shorter = 1024.0;
 
+/* Is a jump of a formula in it, which circuit/commutate.c makes a switch of? What contradicts itself is one of its sides, and
+ * the answer may be between them. */
+static bool has_jump(const struct dalcs_witness *w) {
+    static const char commutator[] = "commutator(";
+    bool has = false;
+    for (int k = 0; k < w->n_elements && !has; k++) {
+        has = strncmp(w->element[k], commutator, sizeof(commutator) - 1) == 0;
+    }
+    return has;
+}
+
 /* Has the problem no answer for certain? What a step sees of a circuit that is not passive is no more than that where
  * shorter ones see something else. */
 static enum dalcs_status find_certainty(struct dalcs_component *c, bool is_from, bool *is_certain) {
@@ -117,6 +128,7 @@ static enum dalcs_status find_certainty(struct dalcs_component *c, bool is_from,
         DALCS_TRY(
             dalcs_osnsp_refute(&c->osnsp, shorter * c->failure.sigma, c->failure.u, is_certain));
     }
+    *is_certain = *is_certain && !has_jump(&c->osnsp.witness);
     return DALCS_OK;
 }
 

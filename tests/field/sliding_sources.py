@@ -53,9 +53,17 @@ def check(checker, program, text, scale, is_current):
     checker.check(steps < 100, f"{title}: {steps} steps of implicit Euler")
 
 
+def check_words(checker, program):
+    """Where no side has an answer, one may lie between them: that there is none is not shown."""
+    result = run(program, "no side\nV1 3 0 0.1\nB1 1 0 V=sgn(i(b1))*(v(2)+0.2*abs(i(b1)))\nR1 3 1 0.1\nV2 2 0 1\nR2 2 0 1\n.op\n",
+                 method=None)
+    checker.check(result.status == 0 or "no solution exists" not in result.stderr, f"words: {result.stderr}")
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("sliding_sources")
+    check_words(checker, program)
     for text in kinds_of(LAWS):
         for scale in some_of(CASES):
             for is_current in (True, False):
