@@ -1,5 +1,6 @@
 /* audit.c - what is looked at, and when. */
 #include "audit_crossing.h"
+#include "audit_positions.h"
 
 #include "screen.h"
 

@@ -7,6 +7,7 @@
  * between such sets the fluxes that changed add up to 0. No state can jump but by such charges and fluxes,
  * and one that does not jump is where it was. */
 #include "audit_crossing.h"
+#include "audit_positions.h"
 
 #include "union_find.h"
 

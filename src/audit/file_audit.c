@@ -1,6 +1,6 @@
 /* file_audit.c - the passes over the rows of a table, and the worst that was found. */
+#include "audit_internal.h"
 #include "file_internal.h"
-
 #include "union_find.h"
 
 #include <stdlib.h>
@@ -165,6 +165,17 @@ static void note_scales(struct file_audit *a, const struct file_row *row) {
     }
 }
 
+/* Each unit vouches a millionth for the other through the conductances, as in a run (kirchhoff.c): a voltage of 0 is what
+ * rounding of currents makes of it. */
+static void vouch(struct file_audit *a) {
+    struct audit_floor floor = {0};
+    for (int d = 0; d < a->circuit->n_devices; d++) {
+        audit_see_conductances(&floor, a->circuit, &a->circuit->device[d]);
+    }
+    a->scale.vouched[0] = floor.most > 0.0 ? 1e-6 / floor.most * a->scale.amperes : 0.0;
+    a->scale.vouched[1] = 1e-6 * floor.least * a->scale.volts;
+}
+
 static void check_row(struct file_audit *a, size_t k) {
     const size_t n = a->table->n_rows;
     struct file_row *now = &a->row[k % 4];
@@ -243,6 +254,7 @@ static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
     a->is_at_rest = a->table->n_rows == 1 && a->table->value[0] == 0.0;
     a->ramp = ramp_of(a);
     pass(a, false);
+    vouch(a);
     pass(a, true);
     return DALCS_OK;
 }

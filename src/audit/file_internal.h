@@ -109,6 +109,7 @@ struct file_audit {
         double *u, *i;         /* [n_devices] largest values */
         double *v;             /* [n_nodes] */
         double volts, amperes; /* the largest of all */
+        double vouched[2];     /* V, A: what the other unit vouches for */
     } scale;
 
     struct file_coverage {

@@ -80,16 +80,16 @@ struct file_number file_stimulus(const struct file_audit *a, const struct file_r
 static const double least_signal = 1e-5, least_of_pair = 1e-2;
 
 double file_volts(const struct file_audit *a, int device) {
-    return a->promise.tolerance * fmax(a->scale.u[device], least_signal * a->scale.volts) +
-           a->promise.vntol;
+    const double least = fmax(least_signal * a->scale.volts, a->scale.vouched[0]);
+    return a->promise.tolerance * fmax(a->scale.u[device], least) + a->promise.vntol;
 }
 
 double file_amperes(const struct file_audit *a, int device) {
     const enum dalcs_device_kind kind = a->circuit->device[device].kind;
     const bool is_pair = kind == DALCS_DIODE || kind == DALCS_SWITCH;
-    const double least = is_pair ? least_of_pair : least_signal;
-    return a->promise.tolerance * fmax(a->scale.i[device], least * a->scale.amperes) +
-           a->promise.abstol;
+    const double part = is_pair ? least_of_pair : least_signal;
+    const double least = fmax(part * a->scale.amperes, a->scale.vouched[1]);
+    return a->promise.tolerance * fmax(a->scale.i[device], least) + a->promise.abstol;
 }
 
 /* ---- Columns ------------------------------------------------------------------------------------ */

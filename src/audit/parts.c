@@ -1,4 +1,5 @@
 /* parts.c - who belongs to a part. */
+#include "audit_positions.h"
 #include "watch.h"
 
 #include "union_find.h"
@@ -37,10 +38,10 @@ static void count_members(struct dalcs_audit *audit, int *owner) {
     }
 }
 
-static void see_conductance(struct audit_part *part, double g) {
+static void see_conductance(struct audit_floor *floor, double g) {
     if (g > 0.0 && isfinite(g)) {
-        part->floor.most = fmax(part->floor.most, g);
-        part->floor.least = part->floor.least > 0.0 ? fmin(part->floor.least, g) : g;
+        floor->most = fmax(floor->most, g);
+        floor->least = floor->least > 0.0 ? fmin(floor->least, g) : g;
     }
 }
 
@@ -67,18 +68,18 @@ static bool jumps(const struct dalcs_behaviour *b) {
 }
 
 /* The conductances that a device may have. */
-static void see_conductances(struct audit_part *part, const struct dalcs_circuit *c,
-                             const struct dalcs_device *d) {
+void audit_see_conductances(struct audit_floor *floor, const struct dalcs_circuit *c,
+                            const struct dalcs_device *d) {
     if (d->kind == DALCS_RESISTOR) {
-        see_conductance(part, fabs(1.0 / d->value));
+        see_conductance(floor, fabs(1.0 / d->value));
     } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
-        see_conductance(part, fabs(d->value));
+        see_conductance(floor, fabs(d->value));
     } else if (d->kind == DALCS_SWITCH) {
-        see_conductance(part, 1.0 / c->models.of_switch[d->model].ron);
-        see_conductance(part, 1.0 / c->models.of_switch[d->model].roff);
+        see_conductance(floor, 1.0 / c->models.of_switch[d->model].ron);
+        see_conductance(floor, 1.0 / c->models.of_switch[d->model].roff);
     } else if (d->kind == DALCS_DIODE) {
-        see_conductance(part, 1.0 / c->models.of_diode[d->model].ron);
-        see_conductance(part, 1.0 / c->models.of_diode[d->model].roff);
+        see_conductance(floor, 1.0 / c->models.of_diode[d->model].ron);
+        see_conductance(floor, 1.0 / c->models.of_diode[d->model].roff);
     }
 }
 
@@ -108,7 +109,7 @@ static void list_members(struct dalcs_audit *audit) {
         part->has.voltage_reader |= d->kind == DALCS_VCVS || d->kind == DALCS_VCCS;
         part->has.smooth |= d->behaviour != NULL && d->behaviour->smooth != NULL;
         part->has.formula |= jumps(d->behaviour);
-        see_conductances(part, c, d);
+        audit_see_conductances(&part->floor, c, d);
     }
     for (int node = 1; node < c->n_nodes; node++) {
         if (owner[node] >= 0) {

@@ -1,4 +1,5 @@
 /* screen_branches.c - the laws and signs of branches as linear functions, on the side that a state is on. */
+#include "audit_positions.h"
 #include "screen_rows.h"
 
 static struct dalcs_audit_row *sign(const struct audit_filling *f) {

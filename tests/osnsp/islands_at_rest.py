@@ -98,7 +98,8 @@ def main():
     first = int(sys.argv[3]) if len(sys.argv) > 3 else 1
     failures = 0
     with tempfile.TemporaryDirectory() as folder:
-        for seed in some_of(range(first, first + count)):
+        left_1e_43_volts = 5  # where 0 is the answer, beside 438 A
+        for seed in sorted({left_1e_43_volts, *some_of(range(first, first + count))}):
             what = wrong(dalcs, seed, pathlib.Path(folder))
             if what:
                 failures += 1
