@@ -7,17 +7,12 @@
 
 #include "union_find.h"
 
-static double ron_of(const struct dalcs_circuit *c, const struct dalcs_device *d) {
-    return d->kind == DALCS_DIODE ? c->models.of_diode[d->model].ron
-                                  : c->models.of_switch[d->model].ron;
-}
-
 bool response_may_join(const struct dalcs_response_audit *a, const struct dalcs_response_event *e) {
     bool may = false;
     for (int d = 0; d < a->circuit->n_devices && !may; d++) {
         const struct dalcs_device *device = &a->circuit->device[d];
-        may =
-            e->changes[d] > 0 && response_is_two_sided(device) && ron_of(a->circuit, device) == 0.0;
+        may = e->changes[d] > 0 && response_is_two_sided(device) &&
+              dalcs_device_ron(a->circuit, device) == 0.0;
     }
     return may;
 }
@@ -76,13 +71,17 @@ static void gather(struct dalcs_response_audit *a, int device, const struct resp
     }
 }
 
+void response_part_nodes(struct dalcs_response_audit *a) {
+    dalcs_union_reset(a->cluster, a->circuit->n_nodes);
+    for (int n = 0; n < a->circuit->n_nodes; n++) {
+        a->node[n] = (struct response_node){0};
+    }
+}
+
 void response_check_charges(struct dalcs_response_audit *a, const struct dalcs_response_event *e,
                             const struct response_gain *gain) {
     const struct dalcs_circuit *c = a->circuit;
-    dalcs_union_reset(a->cluster, c->n_nodes);
-    for (int n = 0; n < c->n_nodes; n++) {
-        a->node[n] = (struct response_node){0};
-    }
+    response_part_nodes(a);
     for (int d = 0; d < c->n_devices; d++) {
         if (!a->of.are_there[d] || may_pass(a, e, d)) {
             dalcs_union_join(a->cluster, c->device[d].node[0], c->device[d].node[1]);

@@ -9,17 +9,12 @@
 
 #include "union_find.h"
 
-static double roff_of(const struct dalcs_circuit *c, const struct dalcs_device *d) {
-    return d->kind == DALCS_DIODE ? c->models.of_diode[d->model].roff
-                                  : c->models.of_switch[d->model].roff;
-}
-
 bool response_may_part(const struct dalcs_response_audit *a, const struct dalcs_response_event *e) {
     bool may = false;
     for (int d = 0; d < a->circuit->n_devices && !may; d++) {
         const struct dalcs_device *device = &a->circuit->device[d];
         may = e->changes[d] < 0 && response_is_two_sided(device) &&
-              isinf(roff_of(a->circuit, device));
+              isinf(dalcs_device_roff(a->circuit, device));
     }
     return may;
 }
@@ -86,10 +81,7 @@ static void add_coil(struct dalcs_response_audit *a, int device, const struct re
 void response_check_fluxes(struct dalcs_response_audit *a, const struct dalcs_response_event *e,
                            const struct response_gain *gain) {
     const struct dalcs_circuit *c = a->circuit;
-    dalcs_union_reset(a->cluster, c->n_nodes);
-    for (int n = 0; n < c->n_nodes; n++) {
-        a->node[n] = (struct response_node){0};
-    }
+    response_part_nodes(a);
     for (int d = 0; d < c->n_devices; d++) {
         if (a->of.are_there[d] && !response_is_coil(a, d) && !may_stand(a, e, d)) {
             dalcs_union_join(a->cluster, c->device[d].node[0], c->device[d].node[1]);

@@ -76,6 +76,9 @@ void response_found(struct dalcs_response_audit *a, enum dalcs_response_law law,
 
 /* ---- response_charges.c ---- */
 
+/* Each node is a set of its own, and nothing is summed. */
+void response_part_nodes(struct dalcs_response_audit *a);
+
 /* Does something without resistance close at the event? */
 bool response_may_join(const struct dalcs_response_audit *a, const struct dalcs_response_event *e);
 

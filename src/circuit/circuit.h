@@ -255,6 +255,20 @@ static inline bool dalcs_device_is_short(const struct dalcs_device *device) {
     return device->kind == DALCS_RESISTOR && device->value == 0.0;
 }
 
+/* Ohms of a diode or a switch that blocks; INFINITY: it is a cut. */
+static inline double dalcs_device_roff(const struct dalcs_circuit *c,
+                                       const struct dalcs_device *device) {
+    return device->kind == DALCS_DIODE ? c->models.of_diode[device->model].roff
+                                       : c->models.of_switch[device->model].roff;
+}
+
+/* Ohms of one that conducts; 0: it is a wire. */
+static inline double dalcs_device_ron(const struct dalcs_circuit *c,
+                                      const struct dalcs_device *device) {
+    return device->kind == DALCS_DIODE ? c->models.of_diode[device->model].ron
+                                       : c->models.of_switch[device->model].ron;
+}
+
 /* A voltage that is one stimulus. */
 static inline bool dalcs_device_is_decided(const struct dalcs_device *device) {
     const struct dalcs_behaviour *b = device->behaviour;

@@ -43,8 +43,7 @@ static void pair_current(const struct dalcs_layout *l, const struct dalcs_system
     const struct dalcs_device *d = &c->device[device];
     const bool is_diode = d->kind == DALCS_DIODE;
     const int first_pair = s->n_x + s->n_z + l->pair[device];
-    const double roff =
-        is_diode ? c->models.of_diode[d->model].roff : c->models.of_switch[d->model].roff;
+    const double roff = dalcs_device_roff(c, d);
     put(i, first_pair, 1.0);
     if (is_diode && isfinite(c->models.of_diode[d->model].vrev)) {
         put(i, first_pair + 1, -1.0);

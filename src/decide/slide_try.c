@@ -215,7 +215,8 @@ static double rounding_of(const struct dalcs_radau_part *part, int column, bool 
     return of->rounding * (is_pair ? fmax(own, other) : own);
 }
 
-/* How far a column is off, over what is allowed: what the last order changes, and how far it misses the start. A state beside larger ones, as a leak of a coil at rest beside one that conducts, has rounding of theirs. */
+/* How far a column is off, over what is allowed: what the last order changes, and how far it misses the start. A state
+ * beside larger ones, as a leak of a coil at rest beside one that conducts, has rounding of theirs. */
 static double error_of_column(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                               int column, bool is_current, const struct dalcs_slide_try *of) {
     const struct dalcs_stage_layout *l = &part->stages.layout;

@@ -68,8 +68,7 @@ static bool is_open(const struct dalcs_system *s, const uint64_t *mode, int pair
 }
 
 static bool leaks(const struct dalcs_circuit *c, const struct dalcs_device *d) {
-    return isfinite(d->kind == DALCS_DIODE ? c->models.of_diode[d->model].roff
-                                           : c->models.of_switch[d->model].roff);
+    return isfinite(dalcs_device_roff(c, d));
 }
 
 static void add(struct cut *cut, const struct dalcs_device *d, struct member member) {

@@ -16,6 +16,7 @@ import sys
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from dalcs_program import Checker, run  # noqa: E402
+from tian import solve  # noqa: E402
 
 NEAR = 1e-9
 FRACTIONS = (1e-3, 0.03, 0.2, 0.41, 0.77, 1.6)  # of the frequency of the clock
@@ -53,23 +54,6 @@ def netlist(chain):
     return text + f".model sm SW(Ron=0 Vt=0.5)\n.save v({nodes[-1]})\n.pss uic\n.ac list {asked}\n.end\n"
 
 
-def times(a, b):
-    return [[sum(x * y for x, y in zip(row, column)) for column in zip(*b)] for row in a]
-
-
-def solve(a, b):
-    rows = [list(row) + [right] for row, right in zip(a, b)]
-    n = len(rows)
-    for k in range(n):
-        pivot = max(range(k, n), key=lambda i, k=k: abs(rows[i][k]))
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        for i in range(n):
-            if i != k:
-                factor = rows[i][k] / rows[k][k]
-                rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k])]
-    return [rows[k][n] / rows[k][k] for k in range(n)]
-
-
 def expected(chain, w):
     """Voltages are rows over those at t = 0 and, last, what the source adds."""
     n, period = len(chain.store), chain.period
@@ -88,10 +72,10 @@ def expected(chain, w):
     return held * cmath.exp(-1j * w * chain.begin[n - 1] * period) * (1 - 1 / turn) / (1j * w * period)
 
 
-def main():
-    checker = Checker("shared_charge")
-    for chain in CHAINS:
-        done = run(sys.argv[1], netlist(chain), method=None)
+def check_chains(name, chains, netlist_of):
+    checker = Checker(name)
+    for chain in chains:
+        done = run(sys.argv[1], netlist_of(chain), method=None)
         if not checker.check(done.status == 0, f"{chain.name}: status {done.status}\n{done.stderr}"):
             continue
         for row, part in zip(done.rows, FRACTIONS):
@@ -102,4 +86,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(check_chains("shared_charge", CHAINS, netlist))

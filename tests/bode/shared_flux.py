@@ -8,10 +8,9 @@ switch is open; the last one holds what it has until its own switch opens again.
 usage: shared_flux.py PROGRAM
 """
 
-import math
 import sys
 
-from shared_charge import FRACTIONS, NEAR, Chain, Checker, expected, run
+from shared_charge import FRACTIONS, Chain, check_chains
 
 # store: H, of each coil; begin: parts of the period at which the switches open; wide: how long they stay open
 CHAINS = [
@@ -57,18 +56,5 @@ def netlist(chain):
     return text + f".model sm SW(Ron=0 Vt=0.5)\n.save i(L{n - 1})\n.pss uic\n.ac list {asked}\n.end\n"
 
 
-def main():
-    checker = Checker("shared_flux")
-    for chain in CHAINS:
-        done = run(sys.argv[1], netlist(chain), method=None)
-        if not checker.check(done.status == 0, f"{chain.name}: status {done.status}\n{done.stderr}"):
-            continue
-        for row, part in zip(done.rows, FRACTIONS):
-            value = complex(row[1], row[2])
-            right = expected(chain, 2 * math.pi * part / chain.period)
-            checker.check(abs(value - right) <= NEAR, f"{chain.name} at {part}: {value}, not {right}")
-    return checker.finish()
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(check_chains("shared_flux", CHAINS, netlist))

@@ -12,8 +12,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import rising_element  # noqa: E402
-from dalcs_program import Checker, kinds_of, run, some_of  # noqa: E402
-from rising_element import cards, meet  # noqa: E402
+from dalcs_program import Checker, run  # noqa: E402
 
 
 def logistic(x):
@@ -45,17 +44,6 @@ LAWS = {
 SCALES = [1e-5, 1.0, 1e4]  # of the argument
 
 
-def check(checker, program, text, scale, is_current):
-    title = f"{text} as a {'current' if is_current else 'voltage'}, {scale:g}"
-    law = text.replace("X", f"(X/{scale!r})")
-    lines = [title, *cards(law, is_current, "SIN(3 30 1)", 10 * scale if is_current else 0.1 / scale)]
-
-    def wanted(t):
-        return scale * meet(LAWS[text], 3 + 30 * math.sin(2 * math.pi * t), 0.1)
-
-    rising_element.check(checker, program, lines, wanted, 1e-4 * scale)
-
-
 def check_at_a_pole(checker, program):
     """A line over what is 0 with it has a value there."""
     netlist = "pole\nV1 1 0 1\nB1 2 0 V=(v(1)-1)/(exp((v(1)-1)/2)-1)\nR1 2 0 1\n.op\n"
@@ -67,10 +55,7 @@ def check_at_a_pole(checker, program):
 def main():
     program = sys.argv[1]
     checker = Checker("smooth_exponentials")
-    for text in kinds_of(LAWS):
-        for scale in some_of(SCALES, 2):
-            for is_current in (True, False):
-                check(checker, program, text, scale, is_current)
+    rising_element.check_scales(checker, program, LAWS, SCALES, (3, 30), 1e-4)
     check_at_a_pole(checker, program)
     return checker.finish()
 

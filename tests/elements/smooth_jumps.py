@@ -12,8 +12,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import rising_element  # noqa: E402
-from dalcs_program import Checker, kinds_of, run, some_of  # noqa: E402
-from rising_element import cards, meet  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 
 def odd(f):
@@ -42,17 +41,6 @@ LAWS = {
         lambda x: above(x, 0.5, 1 + math.sqrt(max(x, 0))) + above(x, -0.7, 0.3 + 0.1 * math.exp(x)),
 }
 CASES = [1e-6, 1e-3, 1.0, 1e4]  # of the argument
-
-
-def check(checker, program, text, scale, is_current):
-    title = f"{text} as a {'current' if is_current else 'voltage'}, {scale:g}"
-    law = text.replace("X", f"(X/{scale!r})")
-    lines = [title, *cards(law, is_current, "SIN(0.1 2 1)", 10 * scale if is_current else 0.1 / scale)]
-
-    def wanted(t):
-        return scale * meet(LAWS[text], 0.1 + 2 * math.sin(2 * math.pi * t), 0.1)
-
-    rising_element.check(checker, program, lines, wanted, 2e-5 * scale)
 
 
 def stick_and_slip(at, belt, step=1e-3):
@@ -115,10 +103,7 @@ B1 w 0 I=sgn({slip})*(1+0.5*exp(-abs({slip})/0.1))/{ohms!r}
 def main():
     program = sys.argv[1]
     checker = Checker("smooth_jumps")
-    for text in kinds_of(LAWS):
-        for scale in some_of(CASES, 2):
-            for is_current in (True, False):
-                check(checker, program, text, scale, is_current)
+    rising_element.check_scales(checker, program, LAWS, CASES, (0.1, 2), 2e-5)
     for ohms in some_of([1.0, 1e-3, 1e5]):
         check_friction(checker, program, 0.2, ohms)
     check_friction(checker, program, 0.05, 1.0)

@@ -12,8 +12,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import rising_element  # noqa: E402
-from dalcs_program import Checker, kinds_of, some_of  # noqa: E402
-from rising_element import cards, meet  # noqa: E402
+from dalcs_program import Checker  # noqa: E402
 
 
 def odd(f):
@@ -38,24 +37,10 @@ LAWS = {
 CASES = [1e-6, 1e-3, 1.0, 1e4]  # of the argument
 
 
-def check(checker, program, text, scale, is_current):
-    title = f"{text} as a {'current' if is_current else 'voltage'}, {scale:g}"
-    law = text.replace("X", f"(X/{scale!r})")
-    lines = [title, *cards(law, is_current, "SIN(0.1 1 1)", 10 * scale if is_current else 0.1 / scale)]
-
-    def wanted(t):
-        return scale * meet(LAWS[text], 0.1 + math.sin(2 * math.pi * t), 0.1)
-
-    rising_element.check(checker, program, lines, wanted, 2e-5 * scale)
-
-
 def main():
     program = sys.argv[1]
     checker = Checker("smooth_sides")
-    for text in kinds_of(LAWS):
-        for scale in some_of(CASES, 2):
-            for is_current in (True, False):
-                check(checker, program, text, scale, is_current)
+    rising_element.check_scales(checker, program, LAWS, CASES, (0.1, 1), 2e-5)
     return checker.finish()
 
 

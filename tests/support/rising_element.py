@@ -1,6 +1,8 @@
 """An element beside one resistor and a source: a current that rises with its voltage, or a voltage with its current."""
 
-from dalcs_program import run
+import math
+
+from dalcs_program import kinds_of, run, some_of
 
 AT = [k / 16 for k in range(17)]  # s
 
@@ -30,3 +32,25 @@ def check(checker, program, lines, wanted, allowed):
         return
     for t, value in zip(AT, result.column("v(1)" if is_current else "i(b1)")):
         checker.close(value, wanted(t), allowed, f"{title} at {t:g} s")
+
+
+def check_at_scale(checker, program, text, law, scale, is_current, source, allowed):
+    """text: of X, `law`, whose argument is X over scale. source: offset and amplitude of a sine of 1 Hz, beside a slope of
+    0.1. allowed: over scale."""
+    offset, amplitude = source
+    title = f"{text} as a {'current' if is_current else 'voltage'}, {scale:g}"
+    lines = [title, *cards(text.replace("X", f"(X/{scale!r})"), is_current, f"SIN({offset} {amplitude} 1)",
+                           10 * scale if is_current else 0.1 / scale)]
+
+    def wanted(t):
+        return scale * meet(law, offset + amplitude * math.sin(2 * math.pi * t), 0.1)
+
+    check(checker, program, lines, wanted, allowed * scale)
+
+
+def check_scales(checker, program, laws, scales, source, allowed):
+    """All of `laws`, by their texts, at some of the scales, as currents and as voltages."""
+    for text in kinds_of(laws):
+        for scale in some_of(scales, 2):
+            for is_current in (True, False):
+                check_at_scale(checker, program, text, laws[text], scale, is_current, source, allowed)
