@@ -2,6 +2,7 @@
 
 import array
 import dataclasses
+import re
 import shutil
 import subprocess
 import sys
@@ -81,6 +82,34 @@ def reason_in(log):
                                         "no convergence", "aborted")):
             return line.strip()
     return "no reason given"
+
+
+def version():
+    """39 for ngspice-39, 0 when it does not say."""
+    if not shutil.which(NGSPICE):
+        raise NoNgspice
+    said = subprocess.run([NGSPICE, "--version"], stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True, timeout=60, check=False).stdout
+    found = re.search(r"ngspice-(\d+)", said)
+    return int(found[1]) if found else 0
+
+
+def in_its_order(netlist_text):
+    """Version 44 reads AM(a b c f g delay) and SFFM(a b g index f delay phases) where dalcs and version 39 read
+    a source of a and AM(c b/c f g delay), and SFFM(a b f index g phases)."""
+    if version() < 44:
+        return netlist_text
+
+    def am(found):
+        amplitude, offset, *rest = found[1].split()
+        return f"AM(0 {float(amplitude) * float(offset)!r} {amplitude} {' '.join(rest)})"
+
+    def sffm(found):
+        offset, amplitude, carrier, index, signal, *phases = found[1].split()
+        phases = ["0", *(phases + ["0"])[1::-1]] if phases else []
+        return f"SFFM({' '.join([offset, amplitude, signal, index, carrier, *phases])})"
+
+    return re.sub(r"\bSFFM\(([^)]*)\)", sffm, re.sub(r"\bAM\(([^)]*)\)", am, netlist_text))
 
 
 def run(netlist_text, folder, stop, timeout):

@@ -176,6 +176,27 @@ static void warn_of_no_width(struct dalcs_builder *builder, const struct dalcs_t
                        here, there);
 }
 
+/* ngspice 44 has given both another order; SPICE3, ngspice 39, LTspice and Xyce have this one. */
+static void note_other_order(struct dalcs_builder *builder, const struct dalcs_token *place,
+                             const struct form *form, const double *value) {
+    if (builder->netlist->dialect.name > DALCS_DIALECT_NGSPICE) {
+        return;
+    }
+    if (strcmp(form->name, "am") == 0) {
+        dalcs_builder_note(builder, place,
+                           "its AM(a b c f g) is here AM(c b/c f g) with a source of a in series",
+                           "AM is read as in ngspice 39: amplitude, offset, modulating and carrier "
+                           "frequency; ngspice 44 takes a value that is added for the first");
+    } else if (strcmp(form->name, "sffm") == 0) {
+        dalcs_builder_note(builder, place,
+                           "a netlist for ngspice 44 has the two exchanged, and an index of at "
+                           "most carrier / signal",
+                           "the carrier of this SFFM has %g Hz and its signal %g Hz, as in ngspice "
+                           "39 and LTspice; ngspice 44 takes the third value for the signal",
+                           value[2], value[4]);
+    }
+}
+
 /* ---- All forms ----------------------------------------------------------------------------- */
 
 static bool set_stimulus(struct dalcs_reader *reader, const struct form *form, const double *value,
@@ -251,6 +272,7 @@ bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity 
         }
         return false;
     }
+    note_other_order(reader->builder, name, form, value);
     reader->usage = usage;
     return true;
 }

@@ -17,9 +17,9 @@ DALCS_INLINE void combine_quads(bool fused, int n_quads, size_t room, int n,
     }
     for (int k = 0; k < n; k++) {
         const double *row = high + 2 * room * (size_t)(of != NULL ? of[k] : k);
-        const double h = factor[k].high;
-        const double l = factor[k].low;
-        const struct dalcs_extended_quad times = {{h, h, h, h}, {l, l, l, l}};
+        struct dalcs_extended_quad times;
+        dalcs_quad_fill(&times.high, factor[k].high);
+        dalcs_quad_fill(&times.low, factor[k].low);
 #pragma GCC unroll 3
         for (int q = 0; q < n_quads; q++) {
             struct dalcs_extended_quad element;

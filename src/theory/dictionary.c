@@ -180,8 +180,8 @@ static bool differentiate(struct dalcs_dictionary *d, int r) {
 
 /* A row of states and inputs alone. */
 static bool use_constraint(struct dalcs_dictionary *d, int *steps, const char **obstacle) {
-    int r;
-    int c;
+    int r = 0;
+    int c = 0;
     for (int i = 0; i < d->n_rows; i++) {
         bool has_pair = false;
         for (int j = 0; d->row[i].kind == DALCS_VARIABLE_ZERO && j < d->n_columns; j++) {
@@ -213,8 +213,8 @@ static bool use_constraint(struct dalcs_dictionary *d, int *steps, const char **
 const char *dalcs_dictionary_reduce(struct dalcs_dictionary *d, int *steps) {
     const char *obstacle = NULL;
     for (;;) {
-        int r;
-        int c;
+        int r = 0;
+        int c = 0;
         bool is_left = false;
         while (find_pivot(d, DALCS_VARIABLE_ZERO, DALCS_VARIABLE_ALGEBRAIC, &r, &c)) {
             exchange(d, r, c);

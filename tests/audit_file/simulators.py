@@ -11,6 +11,9 @@ import tempfile
 
 from audit_program import audit, dalcs_program
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+import ngspice_batch  # noqa: E402
+
 RIGHT = {
     "a filter": """filter
 V1 in 0 SIN(3 5 1k)
@@ -136,7 +139,7 @@ R1 p 0 1k
 
 def simulate(ngspice, folder, netlist, ascii_values=False):
     folder = pathlib.Path(folder)
-    text = netlist.rstrip("\n") + ("\n.options filetype=ascii" if ascii_values else "") + "\n.end\n"
+    text = ngspice_batch.in_its_order(netlist).rstrip("\n") + ("\n.options filetype=ascii" if ascii_values else "") + "\n.end\n"
     (folder / "ngspice.cir").write_text(text)
     done = subprocess.run([ngspice, "-b", "-r", "out.raw", "ngspice.cir"], cwd=folder, stdin=subprocess.DEVNULL,
                           capture_output=True, text=True, check=False, timeout=60)

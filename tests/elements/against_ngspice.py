@@ -26,8 +26,8 @@ R1 a x 1k
 R2 b x 1k
 R3 c x 1k
 R4 d x 1k
-C1 x 0 0.5u
-.tran 2u 5m 0 2u
+C1 x 0 0.5u IC=0
+.tran 2u 5m 0 2u uic
 .end
 """
 
@@ -331,7 +331,7 @@ def compare(checker, program, netlist, signals, stop, tolerance):
     if not checker.check(ours.status == 0, f"{title}: {ours.stderr}"):
         return
     with tempfile.TemporaryDirectory() as folder:
-        theirs = ngspice_batch.run(netlist, pathlib.Path(folder), stop, 120)
+        theirs = ngspice_batch.run(ngspice_batch.in_its_order(netlist), pathlib.Path(folder), stop, 120)
     if not checker.check(theirs.table is not None, f"{title}: ngspice: {theirs.reason}"):
         return
     times = theirs.table.column("time")
@@ -361,7 +361,9 @@ def main():
         compare(checker, program, BULK, ["v(out)", "i(l1)"], 1e-3, 0.03)
         compare(checker, program, HALF_BRIDGE, ["v(x)", "i(l1)"], 100e-6, 0.03)
         compare(checker, program, DIGITAL, [f"v(a{x})" for x in ("q", "nq", "j", "t", "g", "x")], 800e-9, 2e-2)
-        compare(checker, program, GATES, [f"v({x}{k})" for x, n in (("a", 9), ("b", 5)) for k in range(1, n + 1)] + ["v(u)", "v(d0)"],
+        # An oscillator of version 44 has its edges 1 ns before its delay has passed.
+        oscillators = 5 if ngspice_batch.version() < 44 else 4
+        compare(checker, program, GATES, [f"v({x}{k})" for x, n in (("a", 9), ("b", oscillators)) for k in range(1, n + 1)] + ["v(u)", "v(d0)"],
                 800e-9, 2e-3)
         compare(checker, program, PRODUCTS, [f"v({x})" for x in "mqsdf"], 4e-3, 2e-3)
         compare(checker, program, BLOCKS, ["v(g1)", "v(s1)", "v(l1)", "v(i1)", "v(w1)", "v(p1)", "v(g2)"], 4e-3, 4e-3)
