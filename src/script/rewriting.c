@@ -64,7 +64,7 @@ bool dalcs_rewriting_is_signal(const char *word) {
          k++) {
         is = is || strcmp(word + 1, suffix[k]) == 0;
     }
-    return is;
+    return is && strcmp(word, "im") != 0; /* the imaginary part */
 }
 
 /* A function of vectors as measurements have it; `argument` follows, with its parentheses. */

@@ -1,7 +1,9 @@
-/* set_command.c - variables and what is said: set, unset, strcmp, echo. */
+/* set_command.c - variables and what is said: set, unset, strcmp, echo; the seed of random values. */
+#include "congruential.h"
 #include "lower_case.h"
 #include "script_internal.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +14,42 @@ static void list_variables(const struct dalcs_script *script) {
         fprintf(script->host->out, "%s\t%s\n", all->variable[k].name, all->variable[k].value);
     }
 }
+
+/* ---- The seed of random values ------------------------------------------------------------------- */
+
+/* Two steps of the generator, for seeds side by side. */
+void dalcs_script_seed(struct dalcs_script *script, double seed) {
+    script->random = (uint64_t)seed;
+    (void)dalcs_congruential_next(&script->random);
+    (void)dalcs_congruential_next(&script->random);
+    script->is_seeded = true;
+}
+
+static enum dalcs_status seed_by(struct dalcs_script *script, const struct dalcs_statement *s,
+                                 const char *text) {
+    double seed;
+    DALCS_TRY(dalcs_script_number(script, s, text, &seed));
+    if (!(seed >= 0.0 && seed <= 0x1p53) || seed != floor(seed)) {
+        return dalcs_script_refuse(script, s, "setseed 7",
+                                   "a seed is a whole number from 0 to 2^53");
+    }
+    dalcs_script_seed(script, seed);
+    return DALCS_OK;
+}
+
+/* setseed n; alone it begins the row anew. */
+enum dalcs_status dalcs_script_setseed(struct dalcs_script *script,
+                                       const struct dalcs_statement *s) {
+    const char *text;
+    DALCS_TRY(dalcs_script_expand_low(script, s, &text));
+    if (text[strspn(text, " \t")] != '\0') {
+        return seed_by(script, s, text);
+    }
+    dalcs_script_seed(script, dalcs_session_seed(script->host->session));
+    return DALCS_OK;
+}
+
+/* ---- Variables ------------------------------------------------------------------------------------ */
 
 /* "name", "name = value", "name = ( a b c )". */
 enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dalcs_statement *s) {
@@ -39,6 +77,9 @@ enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dal
         return status;
     }
     const struct dalcs_script_host *host = script->host;
+    if (strcmp(name, "rndseed") == 0) {
+        return seed_by(script, s, given.value);
+    }
     if (strcmp(name, "curplot") != 0) {
         return dalcs_variables_set(&script->variables, name, given.value);
     }

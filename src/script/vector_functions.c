@@ -218,6 +218,9 @@ struct dalcs_vector *dalcs_vector_call(struct dalcs_vector_formula *f, const cha
     if (along != NULL) {
         return along(f, x);
     }
+    if (n == 1 && dalcs_vector_is_random(name)) {
+        return dalcs_vector_random(f, name, x);
+    }
     return dalcs_vector_fail(
         f, n == 1 ? "there is no function '%s'" : "there is no function '%s' of so many arguments",
         name);

@@ -138,11 +138,12 @@ static struct dalcs_vector *read_signal(struct dalcs_vector_formula *f,
                : dalcs_vector_call(f, suffix, (const struct dalcs_vector *const[]){v}, 1);
 }
 
+/* im() is the imaginary part, as in ngspice. */
 static const char *suffix_function(const char *word) {
     static const char *const pair[][2] = {{"", ""},    {"m", "mag"}, {"p", "ph"},
                                           {"r", "re"}, {"i", "im"},  {"db", "db"}};
     for (size_t k = 0; k < sizeof pair / sizeof pair[0]; k++) {
-        if (strcmp(word + 1, pair[k][0]) == 0) {
+        if (strcmp(word + 1, pair[k][0]) == 0 && strcmp(word, "im") != 0) {
             return pair[k][1];
         }
     }
