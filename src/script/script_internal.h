@@ -138,6 +138,9 @@ DALCS_SCRIPT_FUNCTION(dalcs_script_strcmp);
 DALCS_SCRIPT_FUNCTION(dalcs_script_echo);
 DALCS_SCRIPT_FUNCTION(dalcs_script_setseed);
 
+/* Are angles in degrees behind a set or unset? */
+bool dalcs_script_has_degrees(const struct dalcs_statement *statement, bool had);
+
 /* The row of random values of a seed. */
 void dalcs_script_seed(struct dalcs_script *script, double seed);
 

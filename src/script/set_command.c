@@ -49,6 +49,22 @@ enum dalcs_status dalcs_script_setseed(struct dalcs_script *script,
     return DALCS_OK;
 }
 
+/* ---- The unit of angles -------------------------------------------------------------------------- */
+
+bool dalcs_script_has_degrees(const struct dalcs_statement *s, bool had) {
+    const char *rest = s->rest + strspn(s->rest, " \t");
+    const size_t n = strcspn(rest, " \t=");
+    char word[8] = "";
+    if (n != strlen("units") || strncmp(rest, "units", n) != 0) {
+        return had;
+    }
+    rest += n + strspn(rest + n, " \t=\"'");
+    for (size_t k = 0; k + 1 < sizeof word && rest[k] != '\0'; k++) {
+        word[k] = dalcs_lower(rest[k]);
+    }
+    return s->kind == DALCS_STATEMENT_SET && strcmp(word, "degrees") == 0;
+}
+
 /* ---- Variables ------------------------------------------------------------------------------------ */
 
 /* "name", "name = value", "name = ( a b c )". */
@@ -58,6 +74,7 @@ enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dal
     if (status != DALCS_OK) {
         return status;
     }
+    script->vectors.in_degrees = dalcs_script_has_degrees(s, script->vectors.in_degrees);
     char *own = dalcs_arena_copy(&script->arena, text, strlen(text));
     if (own == NULL) {
         return DALCS_E_NOMEM;
@@ -90,6 +107,7 @@ enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dal
 enum dalcs_status dalcs_script_unset(struct dalcs_script *script, const struct dalcs_statement *s) {
     const char *text;
     enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
+    script->vectors.in_degrees = dalcs_script_has_degrees(s, script->vectors.in_degrees);
     for (const char *name;
          status == DALCS_OK && (name = dalcs_script_word(script, &text)) != NULL;) {
         dalcs_variables_unset(&script->variables, name);

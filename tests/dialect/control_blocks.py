@@ -37,6 +37,30 @@ let z = 2 + j(3)
 print im(z) imag(z)
 print im(v(in)/i(v1))
 """,
+    "phases in radians and in degrees": """
+ac dec 1 100 10k
+let phase = 180/pi*vp(out)
+let angle = ph(v(out))
+meas ac p1 find vp(out) at=1k
+meas ac p2 find phase at=1k
+meas ac p3 find angle at=1k
+print p1
+print p2
+print p3
+print ph(v(out)) vp(out)
+set units = degrees
+print ph(v(out)) cph(v(out))
+print group_delay(v(out))
+print sin(30) cos(60) tan(45) atan(1) sin(pi/2)
+meas ac q1 find vp(out) at=1k
+print q1
+set units = radians
+print vp(out)
+set units=Degrees
+unset units
+meas ac q2 find vp(out) at=1k
+print q2 sin(1)
+""",
     "AC values of sources, which change one by one": """
 ac lin 1 1k 1k
 print v(out)
