@@ -61,6 +61,21 @@ unset units
 meas ac q2 find vp(out) at=1k
 print q2 sin(1)
 """,
+    "values of elements, which alter reads": """
+print @r1[resistance] @c1[capacitance] @v1[acmag] @v1[dc]
+alter r1 = @r1[resistance]*3
+print @r1[resistance]
+op
+print v(out)
+alter @v1[acmag] = 3
+alter v1 = 7
+alter @r2[resistance] = @r1[resistance]/2
+print @v1[acmag] @v1[dc] @r2[resistance]
+op
+print v(out) @r1[resistance]
+reset
+print @r1[resistance]
+""",
     "AC values of sources, which change one by one": """
 ac lin 1 1k 1k
 print v(out)
