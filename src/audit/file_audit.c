@@ -30,6 +30,9 @@ static bool make_for_nodes(struct file_audit *a) {
            make(a, &a->first_branch, n + 1, sizeof *a->first_branch) &&
            make(a, &a->columns.potential, n, sizeof *a->columns.potential) &&
            make(a, &a->columns.potential_of, n, sizeof *a->columns.potential_of) &&
+           make(a, &a->columns.given_by, n, sizeof *a->columns.given_by) &&
+           make(a, &a->columns.given, n, sizeof *a->columns.given) &&
+           make(a, &a->coverage.ever_given, n, sizeof *a->coverage.ever_given) &&
            make(a, &a->scale.v, n, sizeof *a->scale.v) &&
            make(a, &a->coverage.is_covered, n, sizeof *a->coverage.is_covered) &&
            make(a, &a->coverage.is_checked, n, sizeof *a->coverage.is_checked) &&
@@ -241,12 +244,13 @@ static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
     DALCS_TRY(make_room(a));
     merge_shorts(a, true);
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->columns.potential_of[n] = -1;
+        a->columns.potential_of[n] = a->columns.given_by[n] = -1;
     }
     for (int d = 0; d < a->circuit->n_devices; d++) {
         a->columns.current[d] = -1;
     }
     DALCS_TRY(file_find_columns(a, diag));
+    file_find_given(a);
     merge_shorts(a, !a->promise.are_shorts_measured);
     list_branches(a);
     DALCS_TRY(file_take_tangents(a));

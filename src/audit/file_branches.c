@@ -98,7 +98,9 @@ static void check_branch(struct file_audit *a, const struct file_row *row, int d
         check_resistor(a, row, device);
         break;
     case DALCS_VCVS:
-        check_voltage(a, row, device, output_of(a, row, device));
+        if (!file_is_given(a, device)) {
+            check_voltage(a, row, device, output_of(a, row, device));
+        }
         break;
     case DALCS_VCCS:
         check_current(a, row, device, output_of(a, row, device));

@@ -45,7 +45,10 @@ static double tolerance_of(const struct file_audit *a, const struct file_row *ro
     double sum = 0.0;
     for (int k = 0; k < f->n; k++) {
         const struct dalcs_affine_term *term = &f->term[k];
-        const double scale = term->kind == DALCS_QUANTITY_VOLTAGE   ? a->scale.v[term->index]
+        const bool is_given = term->kind == DALCS_QUANTITY_VOLTAGE &&
+                              a->columns.given_by[term->index] >= 0; /* in its error */
+        const double scale = is_given                               ? 0.0
+                             : term->kind == DALCS_QUANTITY_VOLTAGE ? a->scale.v[term->index]
                              : term->kind == DALCS_QUANTITY_CURRENT ? a->scale.i[term->index]
                              : term->kind == DALCS_QUANTITY_PAIR
                                  ? 0.0 /* in its error */
@@ -88,9 +91,16 @@ static int solve_cell(struct file_audit *a, const struct file_row *row,
     return is_cell ? 2 : 1;
 }
 
+/* What v(node) may be off by; a voltage that a formula gives has the tolerance in its error. */
+static double error_at(const struct file_audit *a, const struct file_row *row, int node,
+                       bool with_tolerance) {
+    const bool is_column = with_tolerance && a->columns.given_by[node] < 0;
+    return row->v[node].error + (is_column ? a->promise.tolerance * a->scale.v[node] : 0.0);
+}
+
 /* What an argument may be off by makes of the value: at most what the larger slope at both ends of it does. */
-static struct file_number smooth_value(const struct file_row *row,
-                                       const struct dalcs_smooth *smooth) {
+static struct file_number smooth_value(const struct file_audit *a, const struct file_row *row,
+                                       const struct dalcs_smooth *smooth, bool with_tolerance) {
     double x[2];
     double gradient[2];
     struct file_number f = {.known = true};
@@ -104,13 +114,13 @@ static struct file_number smooth_value(const struct file_row *row,
         if (smooth->node[k] < 0) {
             continue;
         }
-        const double error = row->v[smooth->node[k]].error;
+        const double error = error_at(a, row, smooth->node[k], with_tolerance);
         double steepest = 0.0;
         for (int side = -1; side <= 1; side++) {
             double at[2] = {x[0], x[1]};
             at[k] += side * error;
             dalcs_smooth_gradient(smooth->kind, at, gradient);
-            steepest = fmax(steepest, fabs(gradient[k]));
+            steepest = isnan(gradient[k]) ? INFINITY : fmax(steepest, fabs(gradient[k]));
         }
         f.error += error > 0.0 ? steepest * error : 0.0;
     }
@@ -121,7 +131,7 @@ static struct file_number smooth_value(const struct file_row *row,
 struct file_number file_formula(struct file_audit *a, const struct file_row *row, int device) {
     const struct dalcs_behaviour *b = a->circuit->device[device].behaviour;
     if (b->smooth != NULL) {
-        return smooth_value(row, b->smooth);
+        return smooth_value(a, row, b->smooth, false);
     }
     bool is_known = true;
     for (int k = 0; k < b->n_pairs;) {
@@ -130,4 +140,64 @@ struct file_number file_formula(struct file_audit *a, const struct file_row *row
     struct file_number output = evaluate(a, row, &b->output, b->n_pairs);
     output.known = output.known && is_known && isfinite(output.error);
     return output;
+}
+
+/* ---- Voltages that no column has ---------------------------------------------------------------- */
+
+/* Products and functions, what they are of, and the sums of POLY are nodes of the program's own (circuit/smooth_parts.c,
+ * poly.c). */
+void file_find_given(struct file_audit *a) {
+    for (int d = 0; d < a->circuit->n_devices; d++) {
+        const struct dalcs_device *device = &a->circuit->device[d];
+        const int node = device->node[0];
+        const bool is_output = device->kind == DALCS_VCVS && !device->is_delay;
+        if (is_output && node > 0 && a->columns.potential_of[node] < 0 &&
+            a->columns.given_by[node] < 0) {
+            a->columns.given_by[node] = d;
+            a->columns.given[a->columns.n_given++] = d;
+        }
+    }
+}
+
+static struct file_number output_of(struct file_audit *a, const struct file_row *row, int device) {
+    const struct dalcs_device *d = &a->circuit->device[device];
+    if (d->behaviour == NULL) {
+        const int *node = d->node;
+        struct file_number read = file_add(row->v[node[2]], -1.0, row->v[node[3]]);
+        read.error = error_at(a, row, node[2], true) + error_at(a, row, node[3], true);
+        return file_add(file_exactly(0.0), d->value, read);
+    }
+    if (d->behaviour->smooth != NULL) {
+        return smooth_value(a, row, d->behaviour->smooth, true);
+    }
+    struct file_number output = file_formula(a, row, device);
+    output.error += tolerance_of(a, row, &d->behaviour->output);
+    return output;
+}
+
+struct file_number file_formula_given(struct file_audit *a, const struct file_row *row,
+                                      int device) {
+    return file_add(output_of(a, row, device), 1.0, row->v[a->circuit->device[device].node[1]]);
+}
+
+/* One may read another one that comes later. */
+void file_take_given(struct file_audit *a, struct file_row *row) {
+    bool is_new = a->columns.n_given > 0;
+    bool has_any = false;
+    while (is_new) {
+        is_new = false;
+        for (int k = 0; k < a->columns.n_given; k++) {
+            const int node = a->circuit->device[a->columns.given[k]].node[0];
+            if (!row->v[node].known) {
+                row->v[node] = file_formula_given(a, row, a->columns.given[k]);
+                is_new = is_new || row->v[node].known;
+                a->coverage.ever_given[node] = a->coverage.ever_given[node] || row->v[node].known;
+            }
+        }
+        has_any = has_any || is_new;
+    }
+    for (int d = 0; d < a->circuit->n_devices && has_any; d++) {
+        const int *node = a->circuit->device[d].node;
+        row->u[d] = file_add(row->v[node[0]], -1.0, row->v[node[1]]);
+    }
 }

@@ -102,7 +102,10 @@ struct file_audit {
         struct file_potential *potential; /* in an order in which each base comes before */
         int *potential_of;                /* [n_nodes] or -1 */
         long *current;                    /* [n_devices] or -1 */
-        bool *is_used;                    /* [n_columns] */
+        int *
+            given_by; /* [n_nodes] an E or formula that puts its voltage out where no column has it, or -1 */
+        int n_given, *given; /* these */
+        bool *is_used;       /* [n_columns] */
     } columns;
 
     struct file_scales {
@@ -114,6 +117,7 @@ struct file_audit {
 
     struct file_coverage {
         bool *ever_known, *ever_seen; /* [n_devices] its current, at some row; and not by its law */
+        bool *ever_given;             /* [n_nodes] its voltage, by a formula */
         bool *is_covered;             /* [n_nodes] its KCL was asked, or gave a current */
         bool *is_checked;             /* [n_nodes] of sets, now */
     } coverage;
@@ -196,6 +200,20 @@ double file_amperes(const struct file_audit *a, int device);
 
 /* The output of a device with a behaviour. */
 struct file_number file_formula(struct file_audit *a, const struct file_row *row, int device);
+
+/* The same for a node that no column has: what the tolerance makes of it is in its error. */
+struct file_number file_formula_given(struct file_audit *a, const struct file_row *row, int device);
+
+/* Is the voltage of its first node this device's own output? */
+static inline bool file_is_given(const struct file_audit *a, int device) {
+    return a->columns.given_by[a->circuit->device[device].node[0]] == device;
+}
+
+/* Finds them, when the columns are known. */
+void file_find_given(struct file_audit *a);
+
+/* The voltages that they give at a row, as far as what they read is known. */
+void file_take_given(struct file_audit *a, struct file_row *row);
 
 /* ---- file_kirchhoff.c ---- */
 

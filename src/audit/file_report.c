@@ -100,7 +100,7 @@ static void miss(struct missing *m, char kind, const char *name) {
 }
 
 static void miss_potential(const struct file_audit *a, struct missing *m, int node) {
-    if (node > 0 && a->columns.potential_of[node] < 0) {
+    if (node > 0 && a->columns.potential_of[node] < 0 && !a->coverage.ever_given[node]) {
         miss(m, 'v', a->circuit->node_name[node]);
     }
 }
@@ -113,6 +113,18 @@ static void miss_current(const struct file_audit *a, struct missing *m, int devi
 
 static bool is_asked(const struct file_audit *a, enum dalcs_audit_law law, int index) {
     return a->worst[law][index].n_checked > 0;
+}
+
+/* An output that the file lacks, and that its own law gave to others: it is missing all the same, unless the program made the
+ * node, which has the element's name. */
+static void miss_output(const struct file_audit *a, struct missing *m, int device) {
+    const int node = a->circuit->device[device].node[0];
+    const char *name = a->circuit->node_name[node];
+    const bool is_own =
+        strchr(name, '(') != NULL && strcmp(name, a->circuit->device[device].name) == 0;
+    if (a->coverage.ever_given[node] && !is_own) {
+        miss(m, 'v', name);
+    }
 }
 
 /* The law of an element that nothing was asked of. */
@@ -128,6 +140,9 @@ static const char *gap_of_device(const struct file_audit *a, int d, struct missi
     }
     miss_potential(a, m, device->node[0]);
     miss_potential(a, m, device->node[1]);
+    if (file_is_given(a, d)) {
+        miss_output(a, m, d);
+    }
     if (device->kind == DALCS_CAPACITOR) {
         return m->n > 0 ? "BRANCH" : NULL; /* else its charge is in Kirchhoff's law */
     }

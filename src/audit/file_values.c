@@ -203,6 +203,7 @@ void file_evaluate(struct file_audit *a, size_t k, struct file_row *row,
         row->is_spent[n] = false;
     }
     for (int round = 0; round < MOST_ROUNDS; round++) {
+        file_take_given(a, row);
         take_laws(a, row, false);
         file_peel(a, row);
         if (round == 0) {
@@ -210,4 +211,5 @@ void file_evaluate(struct file_audit *a, size_t k, struct file_row *row,
             file_peel(a, row);
         }
     }
+    file_take_given(a, row);
 }

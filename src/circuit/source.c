@@ -9,10 +9,27 @@
 static const char USAGE[] =
     "a source is: Vname node node [DC value] [SIN, PULSE, PWL, EXP, AM or SFFM(...)]";
 
+/* What a card says besides its nodes. */
+struct source {
+    enum dalcs_quantity quantity;
+    struct dalcs_stimulus *stimulus;
+    struct dalcs_parasitics parasitics;
+    struct dalcs_current_limits limits;
+    bool has_function, has_ac;
+    double ac[2]; /* magnitude, V or A, and phase, degrees */
+    bool is_load; /* an I that never delivers (LTspice) */
+    int n_open;   /* brackets around a function, as ngspice has them: (PULSE 0 1) (AC 1) (5) */
+};
+
+static void set_ac(struct source *source) {
+    const double angle = source->ac[1] * (dalcs_pi / 180.0);
+    source->has_ac = true;
+    source->stimulus->ac_real = source->ac[0] * cos(angle);
+    source->stimulus->ac_imaginary = source->ac[0] * sin(angle);
+}
+
 /* AC [magnitude [phase in degrees]]; 1 and 0 when left out. False when an error was reported. */
-static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
-                    struct dalcs_stimulus *stimulus) {
-    const double degree = dalcs_pi / 180.0;
+static bool read_ac(struct dalcs_reader *reader, struct source *source) {
     double value[2] = {1.0, 0.0};
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
     const bool is_open = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
@@ -21,7 +38,7 @@ static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
         if (next == NULL || !dalcs_reader_is_number(next)) {
             break;
         }
-        if (!dalcs_reader_list_number(reader, k == 0 ? quantity : DALCS_PLAIN, "a number",
+        if (!dalcs_reader_list_number(reader, k == 0 ? source->quantity : DALCS_PLAIN, "a number",
                                       &value[k])) {
             return false;
         }
@@ -30,28 +47,32 @@ static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
         dalcs_reader_missing(reader, "')'");
         return false;
     }
-    stimulus->ac_real = value[0] * cos(value[1] * degree);
-    stimulus->ac_imaginary = value[0] * sin(value[1] * degree);
+    memcpy(source->ac, value, sizeof value);
+    set_ac(source);
     return true;
 }
 
-/* ACPHASE degrees behind AC magnitude, as Qucs-S writes it. */
-static bool read_ac_phase(struct dalcs_reader *reader, const struct dalcs_token *word, bool has_ac,
-                          struct dalcs_stimulus *stimulus) {
-    const double degree = dalcs_pi / 180.0;
-    double phase;
+/* ACMAG magnitude, as ngspice writes it, or ACPHASE degrees behind it or AC, as Qucs-S does: the other of the two stays. */
+static bool read_ac_part(struct dalcs_reader *reader, const struct dalcs_token *word,
+                         struct source *source) {
+    const bool is_phase = strcmp(word->text, "acphase") == 0;
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
-    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a phase in degrees", &phase)) {
+    const bool is_open = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
+    if (!dalcs_reader_number(reader, is_phase ? DALCS_PLAIN : source->quantity,
+                             is_phase ? "a phase in degrees" : "a magnitude",
+                             &source->ac[is_phase])) {
         return false;
     }
-    if (!has_ac) {
+    if (is_open && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(reader, "')'");
+        return false;
+    }
+    if (is_phase && !source->has_ac) {
         dalcs_builder_error(reader->builder, word, "AC 1 ACPHASE 90, or AC 1 90",
                             "ACPHASE stands behind AC and its magnitude");
         return false;
     }
-    const double magnitude = hypot(stimulus->ac_real, stimulus->ac_imaginary);
-    stimulus->ac_real = magnitude * cos(phase * degree);
-    stimulus->ac_imaginary = magnitude * sin(phase * degree);
+    set_ac(source);
     return true;
 }
 
@@ -140,17 +161,6 @@ static bool is_function(const struct dalcs_token *token) {
            dalcs_waveform_card_is_name(token->text);
 }
 
-/* What a card says besides its nodes. */
-struct source {
-    enum dalcs_quantity quantity;
-    struct dalcs_stimulus *stimulus;
-    struct dalcs_parasitics parasitics;
-    struct dalcs_current_limits limits;
-    bool has_function, has_ac;
-    bool is_load; /* an I that never delivers (LTspice) */
-    int n_open;   /* brackets around a function, as ngspice has them: (PULSE 0 1) (AC 1) (5) */
-};
-
 /* The opening bracket before a function's name, DC, AC or a value alone, or the closing one. */
 static bool takes_bracket(struct dalcs_reader *reader, struct source *source) {
     const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
@@ -198,11 +208,10 @@ static bool read_item(struct dalcs_reader *reader, struct source *source) {
         return dalcs_current_limit_read(reader, token, &source->limits);
     }
     if (dalcs_reader_take_word(reader, "ac")) {
-        source->has_ac = true;
-        return read_ac(reader, quantity, source->stimulus);
+        return read_ac(reader, source);
     }
-    if (dalcs_reader_take_word(reader, "acphase")) {
-        return read_ac_phase(reader, token, source->has_ac, source->stimulus);
+    if (dalcs_reader_take_word(reader, "acmag") || dalcs_reader_take_word(reader, "acphase")) {
+        return read_ac_part(reader, token, source);
     }
     if (!source->has_function && dalcs_reader_take_word(reader, "external")) {
         source->has_function = source->stimulus->is_external = true;

@@ -141,7 +141,7 @@ static enum dalcs_status tell(const struct dalcs_cli *cli, FILE *out, const char
         dalcs_cli_error(cli, "cannot write '%s': %s", path, strerror(error));
         status = DALCS_E_IO;
     }
-    if (left_at) {
+    if (left_at && strcmp(path, "-") != 0) {
         fprintf(cli->err, "dalcs: what was computed is in '%s'", left_at);
         fprintf(cli->err, access(path, F_OK) == 0 ? "; '%s' is of an earlier run\n" : "\n", path);
     } else if (complete && status == DALCS_OK && out) {

@@ -126,18 +126,18 @@ enum dalcs_status dalcs_card_edit_waveform(struct dalcs_language *language, stru
     if (token == NULL) {
         return DALCS_E_NOMEM;
     }
+    struct dalcs_token made = card->token[0];
+    made.after_comma = false;
+    made.kind = DALCS_TOKEN_WORD;
+    made.text = override->field;
     int n = 0;
     for (int k = 0; k < card->n; k++) {
-        if (k > 2 && is_waveform(&card->token[k])) {
+        if (k > 2 && is_waveform(&made) && is_waveform(&card->token[k])) {
             k = end_of_waveform(card, k) - 1;
         } else {
             token[n++] = card->token[k];
         }
     }
-    struct dalcs_token made = card->token[0];
-    made.after_comma = false;
-    made.kind = DALCS_TOKEN_WORD;
-    made.text = override->field;
     token[n++] = made;
     made.kind = DALCS_TOKEN_OPEN;
     made.text = "(";

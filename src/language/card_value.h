@@ -23,7 +23,8 @@ enum dalcs_status dalcs_card_edit(struct dalcs_language *language, struct dalcs_
 enum dalcs_status dalcs_card_set(struct dalcs_language *language, struct dalcs_card *card, int at,
                                  double value) DALCS_MUST_CHECK;
 
-/* A copy of the card with this function behind all the rest, and no other. */
+/* A copy of the card with this function behind all the rest, and no other; or with an AC value there, which counts before
+ * those in front of it. */
 enum dalcs_status dalcs_card_edit_waveform(struct dalcs_language *language, struct dalcs_card *card,
                                            const struct dalcs_override *override);
 

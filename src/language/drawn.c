@@ -26,18 +26,26 @@ static void read_seed(const struct dalcs_card *card, uint64_t *seed) {
     }
 }
 
+double dalcs_deck_seed(const struct dalcs_netlist *netlist) {
+    uint64_t seed = netlist->asks.has_seed ? netlist->asks.seed : USUAL_SEED;
+    for (size_t k = 0; k < netlist->n_cards && !netlist->asks.has_seed; k++) {
+        const struct dalcs_card *card = &netlist->card[k];
+        if (is_word(card, 0, ".mc") || is_word(card, 0, ".options") ||
+            is_word(card, 0, ".option") || is_word(card, 0, ".opt")) {
+            read_seed(card, &seed);
+        }
+    }
+    return (double)seed;
+}
+
 void dalcs_drawn_start(struct dalcs_language *language) {
     const struct dalcs_netlist *netlist = language->netlist;
     const struct dalcs_deck *deck = language->deck;
-    language->drawing.seed = netlist->asks.has_seed ? netlist->asks.seed : USUAL_SEED;
+    language->drawing.seed = (uint64_t)dalcs_deck_seed(netlist);
     language->drawing.run = 1;
     for (size_t k = 0; k < netlist->n_cards; k++) {
         const struct dalcs_card *card = &netlist->card[k];
         const bool is_mc = is_word(card, 0, ".mc");
-        if (!netlist->asks.has_seed && (is_mc || is_word(card, 0, ".options") ||
-                                        is_word(card, 0, ".option") || is_word(card, 0, ".opt"))) {
-            read_seed(card, &language->drawing.seed);
-        }
         const bool is_worst = is_word(card, 0, ".wcase") || is_word(card, 0, ".wc");
         language->drawing.is_worst_case = language->drawing.is_worst_case || is_worst;
         language->drawing.has_runs = language->drawing.has_runs || is_mc || is_worst;

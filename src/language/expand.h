@@ -60,6 +60,9 @@ enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_
 enum dalcs_status dalcs_deck_settle(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
                                     struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
+/* The seed of its random values: what was asked for, else what it says, else 1. */
+double dalcs_deck_seed(const struct dalcs_netlist *netlist);
+
 /* The node outside that x1.a stands for, when a is a port of x1; else NULL. */
 const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name);
 

@@ -21,6 +21,9 @@ const char *dalcs_dialect_name(size_t index);
 enum dalcs_status dalcs_session_set_seed(struct dalcs_session *session,
                                          double seed) DALCS_MUST_CHECK;
 
+/* That of the netlist that was read, or 1. */
+double dalcs_session_seed(const struct dalcs_session *session);
+
 /* Says, before a netlist is read, for which of them it was written; NULL: what the netlist says or shows,
  * else ngspice. What this changes is in doc/netlist.md. DALCS_E_OPTION: there is no such dialect (a message
  * names them), or a netlist was read. */

@@ -61,6 +61,12 @@ enum dalcs_status dalcs_session_alter_waveform(struct dalcs_session *session, co
 enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, const char *name,
                                           double *value) DALCS_MUST_CHECK;
 
+/* A value of an element, as the next run has it: "resistance" or "r" of R, "capacitance" or
+ * "c", "inductance" or "l", "gain" of E, F, G and H, "dc", "acmag" and "acphase" (degrees) of V and I. Lower case.
+ * DALCS_E_OPTION: there is no such element, or it has no such value. Only for a netlist with a script. */
+enum dalcs_status dalcs_session_element_value(struct dalcs_session *session, const char *name,
+                                              const char *field, double *value) DALCS_MUST_CHECK;
+
 /* Gives a value by its name as a person writes it, in any case: a parameter of .param, else an element, or
  * "dmod(vfwd)", a parameter of a model. For a netlist with a script, or that is kept. DALCS_E_OPTION: a
  * message says why. */

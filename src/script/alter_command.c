@@ -16,9 +16,10 @@ static bool is_value_field(const char *field) {
     return false;
 }
 
-/* The function of a V or I. */
+/* The function of a V or I, or what it is in .ac. */
 static bool is_waveform(const char *field) {
-    static const char *const known[] = {"pulse", "sin", "exp", "pwl", "sffm", "am"};
+    static const char *const known[] = {"pulse", "sin", "exp",   "pwl",    "sffm",
+                                        "am",    "ac",  "acmag", "acphase"};
     for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
         if (strcmp(known[k], field) == 0) {
             return true;

@@ -73,6 +73,7 @@ static const struct {
                 {DALCS_STATEMENT_SET, dalcs_script_set},
                 {DALCS_STATEMENT_UNSET, dalcs_script_unset},
                 {DALCS_STATEMENT_STRCMP, dalcs_script_strcmp},
+                {DALCS_STATEMENT_SETSEED, dalcs_script_setseed},
                 {DALCS_STATEMENT_ALTER, dalcs_script_alter},
                 {DALCS_STATEMENT_ALTER_PARAMETER, dalcs_script_alter},
                 {DALCS_STATEMENT_ALTER_MODEL, dalcs_script_alter},

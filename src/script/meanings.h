@@ -19,6 +19,7 @@ struct dalcs_meanings {
     struct dalcs_meaning *meaning; /* heap */
     size_t n, capacity;
     bool is_ac;
+    bool in_degrees; /* phases; the cards always have them so */
     bool out_of_memory;
 };
 
@@ -52,6 +53,9 @@ size_t dalcs_rewriting_parenthesis(const char *text);
 
 /* v(a), vdb(a,b), i(x): the text in the parentheses is no formula. */
 bool dalcs_rewriting_is_signal(const char *word);
+
+/* A phase, vp(a), ip(x), ph(...) or phase(...), is written where the script has radians as if it were. */
+bool dalcs_rewriting_is_turned(const struct dalcs_rewriting *r, const char *word);
 
 /* Reads a formula and writes it with all names replaced. */
 void dalcs_rewriting_formula(struct dalcs_rewriting *r);

@@ -143,6 +143,34 @@ static void put_card_word(struct dalcs_rewriting *r, const char *as_written, siz
     r->expects_vector = takes_vector;
 }
 
+static void rewrite_next(struct dalcs_rewriting *r, bool is_free);
+
+/* A phase in degrees, which the script has in radians: "ph(...)" of n letters becomes "(ph(...)*pi/180)". */
+static bool put_phase(struct dalcs_rewriting *r, size_t n) {
+    char word[8] = "";
+    for (size_t k = 0; k < n && n < sizeof word; k++) {
+        word[k] = dalcs_lower(r->at[k]);
+    }
+    const char *open = r->at + n + strspn(r->at + n, " \t");
+    const size_t m = *open == '(' ? dalcs_rewriting_parenthesis(open) : 0;
+    if (m == 0 || !dalcs_rewriting_is_turned(r, word)) {
+        return false;
+    }
+    dalcs_rewriting_put_text(r, "(");
+    dalcs_rewriting_put(r, r->at, n);
+    r->at = open;
+    if (dalcs_rewriting_is_signal(word)) { /* the names in it are none of the script's */
+        dalcs_rewriting_put(r, open, m);
+        r->at += m;
+    }
+    while (r->at < open + m && r->cause == NULL && !r->all->out_of_memory) {
+        rewrite_next(r, false);
+    }
+    dalcs_rewriting_put_text(r, "*pi/180)");
+    r->expects_vector = false;
+    return true;
+}
+
 /* The next word of a card, or what stands between two. is_free: it is none of the script's names. */
 static void rewrite_next(struct dalcs_rewriting *r, bool is_free) {
     const char *p = r->at;
@@ -153,6 +181,9 @@ static void rewrite_next(struct dalcs_rewriting *r, bool is_free) {
             n++;
         }
         const size_t n_blanks = strspn(p + n, " \t");
+        if (!is_free && put_phase(r, n)) {
+            return;
+        }
         if (is_free) {
             dalcs_rewriting_put(r, p, n);
         } else {
@@ -273,14 +304,18 @@ static bool measures_ac(const struct dalcs_statements *all, size_t first) {
 
 enum dalcs_status dalcs_script_add_measurements(struct dalcs_script *script, size_t first) {
     const struct dalcs_statements *statements = &script->statements;
-    struct dalcs_meanings all = {.script = script, .is_ac = measures_ac(statements, first)};
+    struct dalcs_meanings all = {.script = script,
+                                 .is_ac = measures_ac(statements, first),
+                                 .in_degrees = script->vectors.in_degrees};
     enum dalcs_status status = DALCS_OK;
     for (size_t k = first; k < statements->n && status == DALCS_OK; k++) {
         const struct dalcs_statement *s = &statements->statement[k];
         if (ends_run(s)) {
             break;
         }
-        if (s->kind == DALCS_STATEMENT_LET) {
+        if (s->kind == DALCS_STATEMENT_SET || s->kind == DALCS_STATEMENT_UNSET) {
+            all.in_degrees = dalcs_script_has_degrees(s, all.in_degrees);
+        } else if (s->kind == DALCS_STATEMENT_LET) {
             status = take_let(&all, s);
         } else if (s->kind == DALCS_STATEMENT_MEASURE) {
             status = take_measurement(&all, s);

@@ -64,7 +64,12 @@ bool dalcs_rewriting_is_signal(const char *word) {
          k++) {
         is = is || strcmp(word + 1, suffix[k]) == 0;
     }
-    return is;
+    return is && strcmp(word, "im") != 0; /* the imaginary part */
+}
+
+bool dalcs_rewriting_is_turned(const struct dalcs_rewriting *r, const char *word) {
+    return !r->all->in_degrees && (strcmp(word, "vp") == 0 || strcmp(word, "ip") == 0 ||
+                                   strcmp(word, "ph") == 0 || strcmp(word, "phase") == 0);
 }
 
 /* A function of vectors as measurements have it; `argument` follows, with its parentheses. */
@@ -73,8 +78,9 @@ static void put_function(struct dalcs_rewriting *r, const char *word, const char
                                        "cos",  "tan",  "atan", "sinh", "cosh", "tanh",  "floor",
                                        "ceil", "mag",  "db",   "re",   "real", "im",    "imag"};
     /* of a complex voltage alone, by the letters behind v */
-    static const char *const part[][2] = {{"mag", "vm"},  {"db", "vdb"}, {"re", "vr"},
-                                          {"real", "vr"}, {"im", "vi"},  {"imag", "vi"}};
+    static const char *const part[][2] = {{"mag", "vm"},  {"db", "vdb"},  {"re", "vr"},
+                                          {"real", "vr"}, {"im", "vi"},   {"imag", "vi"},
+                                          {"ph", "vp"},   {"phase", "vp"}};
     bool is_known = false;
     const char *letters = NULL;
     for (size_t k = 0; k < sizeof same / sizeof same[0]; k++) {
@@ -95,10 +101,13 @@ static void put_function(struct dalcs_rewriting *r, const char *word, const char
     const bool is_one = n > (is_voltage ? 1U : 0U) && *behind == ')' &&
                         (is_voltage || dalcs_meanings_find(r->all, word_inside) == NULL);
     if (letters != NULL && r->all->is_ac && is_one) {
+        const bool is_turned = dalcs_rewriting_is_turned(r, word);
+        dalcs_rewriting_put_text(r, is_turned ? "(" : "");
         dalcs_rewriting_put_text(r, letters);
         dalcs_rewriting_put_text(r, is_voltage ? "" : "(");
         dalcs_rewriting_put(r, inner + is_voltage, n - is_voltage);
         dalcs_rewriting_put_text(r, is_voltage ? "" : ")");
+        dalcs_rewriting_put_text(r, is_turned ? "*pi/180)" : "");
         r->at = behind + 1;
     } else if (letters == NULL && is_known) {
         dalcs_rewriting_put_text(r, word);
@@ -161,8 +170,11 @@ static void put_word(struct dalcs_rewriting *r, const char *word) {
     if (n == 0) {
         r->cause = "a parenthesis of it is never closed";
     } else if (dalcs_rewriting_is_signal(word)) {
+        const bool is_turned = dalcs_rewriting_is_turned(r, word);
+        dalcs_rewriting_put_text(r, is_turned ? "(" : "");
         dalcs_rewriting_put_text(r, word);
         dalcs_rewriting_put(r, r->at + n_blanks, n);
+        dalcs_rewriting_put_text(r, is_turned ? "*pi/180)" : "");
         r->at += n_blanks + n;
     } else if (!put_operator(r, word)) {
         put_function(r, word, r->at + n_blanks);

@@ -198,6 +198,10 @@ enum dalcs_status dalcs_script_read(struct dalcs_script *script, size_t first, s
     script->has_run = script->quits = script->breaks = script->continues = false;
     script->has_cards = has_analysis(host->session);
     script->vectors.session = host->session;
+    script->vectors.random = &script->random;
+    if (!script->is_seeded) {
+        dalcs_script_seed(script, dalcs_session_seed(host->session));
+    }
     DALCS_TRY(dalcs_statements_read(&script->statements, host->session, first, end));
     script->vectors.text = script->statements.text;
     script->vectors.keeps_all = dalcs_script_keeps_all(&script->statements);

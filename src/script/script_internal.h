@@ -28,6 +28,8 @@ struct dalcs_script {
     size_t n_cards, card_capacity;
     struct dalcs_arena arena; /* of the statement being executed */
     struct dalcs_arena kept;  /* texts of cards */
+    uint64_t random;          /* where the row of random values is */
+    bool is_seeded;           /* by setseed, or the netlist */
     bool has_cards;           /* analyses of the netlist, for run */
     size_t n_signals;         /* in a row of the run at hand */
     bool has_run;             /* an analysis, since the lines were read */
@@ -134,6 +136,13 @@ DALCS_SCRIPT_FUNCTION(dalcs_script_set);
 DALCS_SCRIPT_FUNCTION(dalcs_script_unset);
 DALCS_SCRIPT_FUNCTION(dalcs_script_strcmp);
 DALCS_SCRIPT_FUNCTION(dalcs_script_echo);
+DALCS_SCRIPT_FUNCTION(dalcs_script_setseed);
+
+/* Are angles in degrees behind a set or unset? */
+bool dalcs_script_has_degrees(const struct dalcs_statement *statement, bool had);
+
+/* The row of random values of a seed. */
+void dalcs_script_seed(struct dalcs_script *script, double seed);
 
 /* show_command.c */
 DALCS_SCRIPT_FUNCTION(dalcs_script_print);

@@ -1,7 +1,9 @@
-/* set_command.c - variables and what is said: set, unset, strcmp, echo. */
+/* set_command.c - variables and what is said: set, unset, strcmp, echo; the seed of random values. */
+#include "congruential.h"
 #include "lower_case.h"
 #include "script_internal.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +15,58 @@ static void list_variables(const struct dalcs_script *script) {
     }
 }
 
+/* ---- The seed of random values ------------------------------------------------------------------- */
+
+/* Two steps of the generator, for seeds side by side. */
+void dalcs_script_seed(struct dalcs_script *script, double seed) {
+    script->random = (uint64_t)seed;
+    (void)dalcs_congruential_next(&script->random);
+    (void)dalcs_congruential_next(&script->random);
+    script->is_seeded = true;
+}
+
+static enum dalcs_status seed_by(struct dalcs_script *script, const struct dalcs_statement *s,
+                                 const char *text) {
+    double seed;
+    DALCS_TRY(dalcs_script_number(script, s, text, &seed));
+    if (!(seed >= 0.0 && seed <= 0x1p53) || seed != floor(seed)) {
+        return dalcs_script_refuse(script, s, "setseed 7",
+                                   "a seed is a whole number from 0 to 2^53");
+    }
+    dalcs_script_seed(script, seed);
+    return DALCS_OK;
+}
+
+/* setseed n; alone it begins the row anew. */
+enum dalcs_status dalcs_script_setseed(struct dalcs_script *script,
+                                       const struct dalcs_statement *s) {
+    const char *text;
+    DALCS_TRY(dalcs_script_expand_low(script, s, &text));
+    if (text[strspn(text, " \t")] != '\0') {
+        return seed_by(script, s, text);
+    }
+    dalcs_script_seed(script, dalcs_session_seed(script->host->session));
+    return DALCS_OK;
+}
+
+/* ---- The unit of angles -------------------------------------------------------------------------- */
+
+bool dalcs_script_has_degrees(const struct dalcs_statement *s, bool had) {
+    const char *rest = s->rest + strspn(s->rest, " \t");
+    const size_t n = strcspn(rest, " \t=");
+    char word[8] = "";
+    if (n != strlen("units") || strncmp(rest, "units", n) != 0) {
+        return had;
+    }
+    rest += n + strspn(rest + n, " \t=\"'");
+    for (size_t k = 0; k + 1 < sizeof word && rest[k] != '\0'; k++) {
+        word[k] = dalcs_lower(rest[k]);
+    }
+    return s->kind == DALCS_STATEMENT_SET && strcmp(word, "degrees") == 0;
+}
+
+/* ---- Variables ------------------------------------------------------------------------------------ */
+
 /* "name", "name = value", "name = ( a b c )". */
 enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dalcs_statement *s) {
     const char *text;
@@ -20,6 +74,7 @@ enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dal
     if (status != DALCS_OK) {
         return status;
     }
+    script->vectors.in_degrees = dalcs_script_has_degrees(s, script->vectors.in_degrees);
     char *own = dalcs_arena_copy(&script->arena, text, strlen(text));
     if (own == NULL) {
         return DALCS_E_NOMEM;
@@ -39,6 +94,9 @@ enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dal
         return status;
     }
     const struct dalcs_script_host *host = script->host;
+    if (strcmp(name, "rndseed") == 0) {
+        return seed_by(script, s, given.value);
+    }
     if (strcmp(name, "curplot") != 0) {
         return dalcs_variables_set(&script->variables, name, given.value);
     }
@@ -49,6 +107,7 @@ enum dalcs_status dalcs_script_set(struct dalcs_script *script, const struct dal
 enum dalcs_status dalcs_script_unset(struct dalcs_script *script, const struct dalcs_statement *s) {
     const char *text;
     enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
+    script->vectors.in_degrees = dalcs_script_has_degrees(s, script->vectors.in_degrees);
     for (const char *name;
          status == DALCS_OK && (name = dalcs_script_word(script, &text)) != NULL;) {
         dalcs_variables_unset(&script->variables, name);

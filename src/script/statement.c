@@ -34,6 +34,7 @@ static const struct {
     {"define", DALCS_STATEMENT_DEFINE},
     {"undefine", DALCS_STATEMENT_UNDEFINE},
     {"strcmp", DALCS_STATEMENT_STRCMP},
+    {"setseed", DALCS_STATEMENT_SETSEED},
     {"setplot", DALCS_STATEMENT_SETPLOT},
     {"destroy", DALCS_STATEMENT_DESTROY},
     {"display", DALCS_STATEMENT_DISPLAY},
@@ -82,18 +83,18 @@ enum { N_WORDS = sizeof WORDS / sizeof WORDS[0] };
 
 /* Commands of ngspice whose job is done elsewhere in dalcs, or not at all. */
 static const char *const SKIPPED[] = {
-    "gnuplot",    "asciiplot",  "iplot",    "remcirc",   "listing",   "noise",         "pz",
-    "sens",       "tf",         "disto",    "sp",        "pss",       "status",        "show",
-    "showmod",    "version",    "shell",    "history",   "help",      "alias",         "unalias",
-    "load",       "edit",       "trace",    "where",     "delete",    "bug",           "cd",
-    "circbyline", "deftype",    "diff",     "dump",      "eprint",    "eprvcd",        "fopen",
-    "fread",      "fclose",     "getcwd",   "inventory", "jobs",      "mc_source",     "mdump",
-    "mrdump",     "rehash",     "reshape",  "rspice",    "setcirc",   "setseed",       "shift",
-    "snload",     "snsave",     "state",    "strslice",  "strstr",    "sysinfo",       "tutorial",
-    "wrnodev",    "wrs2p",      "xgraph",   "aspice",    "codemodel", "devhelp",       "bltplot",
-    "pause",      "wrspice",    "cutout",   "pre_osdi",  "cdump",     "pre_codemodel", "rempar",
-    "setdcop",    "print_cirs", "use",      "osdi",      "tranop",    "prompt",        "edisplay",
-    "pyplot",     "pre_set",    "sndparam", "sndprint",  "transpose"};
+    "gnuplot",    "asciiplot", "iplot",    "remcirc",   "listing",       "noise",     "pz",
+    "sens",       "tf",        "disto",    "sp",        "pss",           "status",    "show",
+    "showmod",    "version",   "shell",    "history",   "help",          "alias",     "unalias",
+    "load",       "edit",      "trace",    "where",     "delete",        "bug",       "cd",
+    "circbyline", "deftype",   "diff",     "dump",      "eprint",        "eprvcd",    "fopen",
+    "fread",      "fclose",    "getcwd",   "inventory", "jobs",          "mc_source", "mdump",
+    "mrdump",     "rehash",    "reshape",  "rspice",    "setcirc",       "shift",     "snload",
+    "snsave",     "state",     "strslice", "strstr",    "sysinfo",       "tutorial",  "wrnodev",
+    "wrs2p",      "xgraph",    "aspice",   "codemodel", "devhelp",       "bltplot",   "pause",
+    "wrspice",    "cutout",    "pre_osdi", "cdump",     "pre_codemodel", "rempar",    "setdcop",
+    "print_cirs", "use",       "osdi",     "tranop",    "prompt",        "edisplay",  "pyplot",
+    "pre_set",    "sndparam",  "sndprint", "transpose"};
 
 /* Why some of them are not done, where a reader would wonder. */
 static const struct {

@@ -51,12 +51,31 @@ static struct dalcs_vector *continuous_phase(struct dalcs_vector_formula *f,
     return v;
 }
 
+/* Radians of what `set units` says. */
+static double radians(const struct dalcs_vector_formula *f) {
+    return f->vectors->in_degrees ? 3.141592653589793 / 180.0 : 1.0;
+}
+
+static struct dalcs_vector *continuous_angle(struct dalcs_vector_formula *f,
+                                             const struct dalcs_vector *x) {
+    struct dalcs_vector *v = continuous_phase(f, x);
+    for (size_t k = 0; v != NULL && k < v->n; k++) {
+        v->value[k] /= radians(f);
+    }
+    return v;
+}
+
 static struct dalcs_vector *unwrapped(struct dalcs_vector_formula *f,
                                       const struct dalcs_vector *x) {
     struct dalcs_vector *v = dalcs_vector_alike(f, x, false);
     if (v != NULL) {
-        memcpy(v->value, x->value, x->n * sizeof *x->value);
+        for (size_t k = 0; k < v->n; k++) {
+            v->value[k] = radians(f) * x->value[k];
+        }
         dalcs_calculus_unwrap(v->value, v->n);
+        for (size_t k = 0; k < v->n; k++) {
+            v->value[k] /= radians(f);
+        }
     }
     return v;
 }
@@ -148,8 +167,8 @@ static const struct {
     const char *name;
     dalcs_vector_function *of;
 } ALONG[] = {
-    {"avg", running_mean},        {"norm", normalised},         {"cph", continuous_phase},
-    {"cphase", continuous_phase}, {"unwrap", unwrapped},        {"deriv", derivative},
+    {"avg", running_mean},        {"norm", normalised},         {"cph", continuous_angle},
+    {"cphase", continuous_angle}, {"unwrap", unwrapped},        {"deriv", derivative},
     {"integ", integral},          {"group_delay", group_delay}, {"interpolate", interpolated},
     {"vector", vector_of},        {"unitvec", ones_of},
 };

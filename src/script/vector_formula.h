@@ -3,6 +3,7 @@
  *     vector_formula.c    text -> values
  *     vector_values.c     values and operators
  *     vector_functions.c  functions of values
+ *     vector_random.c     those of random values
  *     calculus.c          those that look along the scale */
 #ifndef DALCS_VECTOR_FORMULA_H
 #define DALCS_VECTOR_FORMULA_H
@@ -110,6 +111,12 @@ struct dalcs_vector *dalcs_vector_formula_word(struct dalcs_vector_formula *f);
 /* A vector of the same length and scale; NULL: out of memory. */
 struct dalcs_vector *dalcs_vector_alike(struct dalcs_vector_formula *f,
                                         const struct dalcs_vector *x, bool is_complex);
+
+/* ---- vector_random.c ------------------------------------------------------------------------------ */
+
+bool dalcs_vector_is_random(const char *name);
+struct dalcs_vector *dalcs_vector_random(struct dalcs_vector_formula *f, const char *name,
+                                         const struct dalcs_vector *x);
 
 /* A function that makes a vector of another one. */
 typedef struct dalcs_vector *dalcs_vector_function(struct dalcs_vector_formula *f,

@@ -79,6 +79,18 @@ CALL(ccosh)
 CALL(ctanh)
 CALL(conj)
 
+/* What `set units = degrees` makes of an argument and of a value. */
+static double turned(const struct dalcs_vector_formula *f, const char *name, bool is_value) {
+    static const char *const of_angles[] = {"sin", "cos", "tan"};
+    static const char *const to_angles[] = {"ph", "phase", "atan"};
+    const double degrees = 180.0 / 3.141592653589793;
+    bool is = false;
+    for (size_t k = 0; k < sizeof of_angles / sizeof of_angles[0]; k++) {
+        is = is || strcmp(name, is_value ? to_angles[k] : of_angles[k]) == 0;
+    }
+    return !is || !f->vectors->in_degrees ? 1.0 : is_value ? degrees : 1.0 / degrees;
+}
+
 static const struct {
     const char *name;
     double complex (*of)(double complex x);
@@ -202,8 +214,9 @@ struct dalcs_vector *dalcs_vector_call(struct dalcs_vector_formula *f, const cha
         if (strcmp(EACH[i].name, name) == 0) {
             struct dalcs_vector *v =
                 dalcs_vector_alike(f, x, x->is_complex && !EACH[i].gives_reals);
+            const double in = turned(f, name, false), out = turned(f, name, true);
             for (size_t k = 0; v != NULL && k < x->n; k++) {
-                v->value[k] = EACH[i].of(x->value[k]);
+                v->value[k] = out * EACH[i].of(in * x->value[k]);
                 v->is_complex = v->is_complex || cimag(v->value[k]) != 0.0;
             }
             return v;
@@ -217,6 +230,9 @@ struct dalcs_vector *dalcs_vector_call(struct dalcs_vector_formula *f, const cha
     dalcs_vector_function *along = n == 1 ? dalcs_vector_along(name) : NULL;
     if (along != NULL) {
         return along(f, x);
+    }
+    if (n == 1 && dalcs_vector_is_random(name)) {
+        return dalcs_vector_random(f, name, x);
     }
     return dalcs_vector_fail(
         f, n == 1 ? "there is no function '%s'" : "there is no function '%s' of so many arguments",

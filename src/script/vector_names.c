@@ -60,6 +60,28 @@ static struct dalcs_vector *of_plot(struct dalcs_vector_formula *f,
     return copy;
 }
 
+/* @r1[resistance], @r.x1.r1[resistance] */
+static struct dalcs_vector *element_value(struct dalcs_vector_formula *f, const char *name) {
+    const char *open = name[0] == '@' ? strchr(name, '[') : NULL;
+    char element[DALCS_VECTOR_NAME], field[DALCS_VECTOR_NAME];
+    double value;
+    if (open == NULL) {
+        return NULL;
+    }
+    snprintf(element, sizeof element, "%.*s", (int)(open - name) - 1, name + 1);
+    snprintf(field, sizeof field, "%.*s", (int)strcspn(open + 1, "]"), open + 1);
+    struct dalcs_session *session = f->vectors->session;
+    enum dalcs_status status = dalcs_session_element_value(session, element, field, &value);
+    if (status == DALCS_E_OPTION && element[0] != '\0' && element[1] == '.') {
+        status = dalcs_session_element_value(session, element + 2, field, &value);
+    }
+    if (status == DALCS_E_NOMEM) {
+        f->out_of_memory = true;
+        return dalcs_vector_fail(f, "out of memory");
+    }
+    return status == DALCS_OK ? dalcs_vector_number(f, value) : NULL;
+}
+
 /* A vector of the plot, or else a parameter of the netlist; in braces a parameter comes before the voltage of a
  * node of its name. */
 static struct dalcs_vector *find(struct dalcs_vector_formula *f,
@@ -72,6 +94,7 @@ static struct dalcs_vector *find(struct dalcs_vector_formula *f,
     v = all->prefers_parameters ? dalcs_vectors_find_exactly(all, name)
                                 : dalcs_vectors_find_in(all, plot, name);
     struct dalcs_vector *known = v == NULL ? parameter(f, name) : NULL;
+    known = v == NULL && known == NULL && !f->failed ? element_value(f, name) : known;
     if (known != NULL || f->failed) {
         return known;
     }
@@ -138,11 +161,12 @@ static struct dalcs_vector *read_signal(struct dalcs_vector_formula *f,
                : dalcs_vector_call(f, suffix, (const struct dalcs_vector *const[]){v}, 1);
 }
 
+/* im() is the imaginary part, as in ngspice. */
 static const char *suffix_function(const char *word) {
     static const char *const pair[][2] = {{"", ""},    {"m", "mag"}, {"p", "ph"},
                                           {"r", "re"}, {"i", "im"},  {"db", "db"}};
     for (size_t k = 0; k < sizeof pair / sizeof pair[0]; k++) {
-        if (strcmp(word + 1, pair[k][0]) == 0) {
+        if (strcmp(word + 1, pair[k][0]) == 0 && strcmp(word, "im") != 0) {
             return pair[k][1];
         }
     }

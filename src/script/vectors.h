@@ -10,6 +10,7 @@
 #include "memory.h"
 
 #include <complex.h>
+#include <stdint.h>
 
 enum { DALCS_PLOT_TYPE = 32, DALCS_VECTOR_NAME = 256 };
 
@@ -42,7 +43,9 @@ struct dalcs_plot_vectors {
 /* Zero-initialise. */
 struct dalcs_vectors {
     const char *text; /* of the whole script, lower case without blanks: what it may name */
-    const struct dalcs_session *session; /* whose parameters formulas may name */
+    struct dalcs_session *session; /* whose parameters and elements formulas may name */
+    uint64_t *random;              /* where the row of random values is; the script's */
+    bool in_degrees;               /* angles, as `set units = degrees` has them; else in radians */
     bool keeps_all;
     bool keeps_plots;                   /* the script may look back at older ones */
     bool prefers_parameters;            /* to node voltages: in braces */

@@ -158,6 +158,29 @@ enum dalcs_status dalcs_session_run_second(struct dalcs_session *session, size_t
 
 /* ---- Other values ------------------------------------------------------------------------------ */
 
+static bool is_same(const struct dalcs_override *a, const struct dalcs_override *b) {
+    const bool same_field = (a->field == NULL) == (b->field == NULL) &&
+                            (a->field == NULL || strcmp(a->field, b->field) == 0);
+    return a->kind == b->kind && strcmp(a->name, b->name) == 0 && same_field;
+}
+
+/* Takes it out of the list: names that are there again need no other memory. */
+static struct dalcs_override take_out(struct dalcs_session *s,
+                                      const struct dalcs_override *override) {
+    struct dalcs_override taken = {.name = NULL};
+    size_t n = 0;
+    for (size_t k = 0; k < s->source.n_altered; k++) {
+        if (is_same(&s->source.override[k], override)) {
+            taken = s->source.override[k];
+        } else {
+            s->source.override[n++] = s->source.override[k];
+        }
+    }
+    s->source.n_altered = n;
+    return taken;
+}
+
+/* Behind all others, since of two functions of a source the later one counts. */
 static enum dalcs_status keep_override(struct dalcs_session *s,
                                        const struct dalcs_override *override) {
     double *list = NULL;
@@ -169,29 +192,21 @@ static enum dalcs_status keep_override(struct dalcs_session *s,
         memcpy(list, override->list, override->n_list * sizeof *list);
     }
     s->source.is_altered = true;
-    for (size_t k = 0; k < s->source.n_altered; k++) {
-        struct dalcs_override *known = &s->source.override[k];
-        const bool same_field =
-            (known->field == NULL) == (override->field == NULL) &&
-            (known->field == NULL || strcmp(known->field, override->field) == 0);
-        if (known->kind == override->kind && strcmp(known->name, override->name) == 0 &&
-            same_field) {
-            known->value = override->value;
-            known->list = list;
-            known->n_list = override->n_list;
-            return DALCS_OK;
-        }
-    }
-    DALCS_TRY(dalcs_grow(&s->source.override, &s->source.override_capacity, s->source.n_altered + 1,
-                         sizeof *s->source.override));
+    const struct dalcs_override before = take_out(s, override);
     struct dalcs_override own = *override;
     own.list = list;
-    own.name = dalcs_arena_copy(&s->arena, override->name, strlen(override->name));
-    if (override->field != NULL) {
-        own.field = dalcs_arena_copy(&s->arena, override->field, strlen(override->field));
-    }
-    if (own.name == NULL || (override->field != NULL && own.field == NULL)) {
-        return DALCS_E_NOMEM;
+    own.name = before.name;
+    own.field = before.field;
+    if (before.name == NULL) {
+        DALCS_TRY(dalcs_grow(&s->source.override, &s->source.override_capacity,
+                             s->source.n_altered + 1, sizeof *s->source.override));
+        own.name = dalcs_arena_copy(&s->arena, override->name, strlen(override->name));
+        own.field = override->field == NULL
+                        ? NULL
+                        : dalcs_arena_copy(&s->arena, override->field, strlen(override->field));
+        if (own.name == NULL || (override->field != NULL && own.field == NULL)) {
+            return DALCS_E_NOMEM;
+        }
     }
     s->source.override[s->source.n_altered++] = own;
     return DALCS_OK;

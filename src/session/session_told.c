@@ -2,6 +2,7 @@
 #include "session_internal.h"
 
 #include "draws.h"
+#include "expand.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,6 +33,10 @@ enum dalcs_status dalcs_session_set_seed(struct dalcs_session *session, double s
     session->asks.seed = (uint64_t)seed;
     session->asks.has_seed = true;
     return DALCS_OK;
+}
+
+double dalcs_session_seed(const struct dalcs_session *session) {
+    return session->source.has_netlist ? dalcs_deck_seed(&session->source.netlist) : 1.0;
 }
 
 enum dalcs_status dalcs_session_ask_losses(struct dalcs_session *session, double from, double to) {

@@ -1,5 +1,6 @@
 /* values.c - the names that a netlist gives to values, and other values for them. */
 #include "lower_case.h"
+#include "pi.h"
 #include "session_internal.h"
 
 #include <math.h>
@@ -132,4 +133,57 @@ enum dalcs_status dalcs_session_apply_values(struct dalcs_session *session) {
         DALCS_TRY(dalcs_session_rebuild(session, NULL, 0));
     }
     return session->has_network ? DALCS_OK : DALCS_E_NETLIST;
+}
+
+/* ---- What they are -------------------------------------------------------------------------------- */
+
+/* Is it the name of the value that an element of this kind has? */
+static bool is_its_value(enum dalcs_device_kind kind, const char *field) {
+    static const struct {
+        enum dalcs_device_kind kind;
+        const char *name[2];
+    } known[] = {{DALCS_RESISTOR, {"resistance", "r"}}, {DALCS_CAPACITOR, {"capacitance", "c"}},
+                 {DALCS_INDUCTOR, {"inductance", "l"}}, {DALCS_VCVS, {"gain", "gain"}},
+                 {DALCS_VCCS, {"gain", "gain"}},        {DALCS_CCVS, {"gain", "gain"}},
+                 {DALCS_CCCS, {"gain", "gain"}}};
+
+    bool is = false;
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
+        is = is || (known[k].kind == kind &&
+                    (strcmp(known[k].name[0], field) == 0 || strcmp(known[k].name[1], field) == 0));
+    }
+    return is;
+}
+
+/* Of a V or I. */
+static bool source_value(const struct dalcs_stimulus *s, const char *field, double *value) {
+    const bool is_size = strcmp(field, "acmag") == 0, is_phase = strcmp(field, "acphase") == 0;
+    *value = is_size    ? hypot(s->ac_real, s->ac_imaginary)
+             : is_phase ? atan2(s->ac_imaginary, s->ac_real) * (180.0 / dalcs_pi)
+                        : s->dc;
+    return is_size || is_phase || strcmp(field, "dc") == 0;
+}
+
+enum dalcs_status dalcs_session_element_value(struct dalcs_session *session, const char *name,
+                                              const char *field, double *value) {
+    const enum dalcs_status status =
+        session->source.has_netlist ? dalcs_session_apply_values(session) : DALCS_E_OPTION;
+    if (status != DALCS_OK) {
+        return status == DALCS_E_NOMEM ? status : DALCS_E_OPTION;
+    }
+    const struct dalcs_circuit *c = &session->circuit;
+    for (int d = 0; d < c->n_devices; d++) {
+        const struct dalcs_device *device = &c->device[d];
+        if (strcmp(device->name, name) != 0) {
+            continue;
+        }
+        if (device->kind == DALCS_VSOURCE || device->kind == DALCS_ISOURCE) {
+            return source_value(&c->stimulus[device->stimulus], field, value) ? DALCS_OK
+                                                                              : DALCS_E_OPTION;
+        }
+        *value = device->value;
+        const bool is = device->behaviour == NULL && is_its_value(device->kind, field);
+        return is ? DALCS_OK : DALCS_E_OPTION;
+    }
+    return DALCS_E_OPTION;
 }

@@ -4,6 +4,7 @@
 #include "measuring_extremes.h"
 #include "rounding.h"
 
+#include <complex.h>
 #include <math.h>
 #include <string.h>
 
@@ -226,23 +227,58 @@ void dalcs_measuring_before_start(struct dalcs_measuring *m, const double *value
     }
 }
 
+/* Between two frequencies: a line over the logarithm of the frequency, in decibels and in phase. So each power of the
+ * frequency is exact, where a chord of complex values is too small by far. Through 0, and around it by more than a right
+ * angle, there is no such line: a chord. x: from 0 at a to 1 at b over the frequency; log_x: over its logarithm. */
+static double complex between(double complex a, double complex b, double x, double log_x) {
+    const bool turns = creal(a * conj(b)) <= 0.0;
+    return turns ? a + x * (b - a) : a * cexp(log_x * clog(b / a));
+}
+
+/* The stretch from s->from to s->to between the row before and the one at `at`. */
+static void fill_stretch(struct dalcs_measuring *m, double at, const double *re, const double *im) {
+    struct dalcs_stretch *s = &m->stretch;
+    const double first = (s->from - m->row_at) / (at - m->row_at);
+    const double last = (s->to - m->row_at) / (at - m->row_at);
+    double imaginary[DALCS_STRETCH_NODES];
+    for (int k = 0; k < s->n_signals; k++) {
+        for (int i = 0; i < N; i++) {
+            const double x = first + 0.5 * (1.0 + m->rule.node[i]) * (last - first);
+            s->value[k][i] = m->row[k] + x * (re[k] - m->row[k]);
+            if (s->imaginary != NULL) {
+                const double ratio = m->row_at > 0.0 ? (at - m->row_at) / m->row_at : 0.0;
+                const double log_x = ratio > 0.0 ? log1p(x * ratio) / log1p(ratio) : x;
+                const double complex value =
+                    between(CMPLX(m->row[k], m->row_imaginary[k]), CMPLX(re[k], im[k]), x, log_x);
+                s->value[k][i] = creal(value);
+                imaginary[i] = cimag(value);
+            }
+        }
+        if (s->imaginary != NULL) {
+            dalcs_stretch_expand(&m->rule, imaginary, s->imaginary[k]);
+        }
+    }
+}
+
+/* Of frequencies an octave at a time: over it the polynomial of a power is off by its rounding alone. */
+static void join_rows(struct dalcs_measuring *m, double at, const double *re, const double *im) {
+    double from = m->row_at;
+    while (from < at) {
+        const bool is_long = m->stretch.imaginary != NULL && from > 0.0 && 2.0 * from < at;
+        m->stretch.from = from;
+        m->stretch.to = is_long ? 2.0 * from : at;
+        fill_stretch(m, at, re, im);
+        from = m->stretch.to;
+        dalcs_measuring_stretch(m, m->stretch.from, m->stretch.to);
+    }
+}
+
 void dalcs_measuring_row(struct dalcs_measuring *m, double at, const double *re, const double *im) {
     struct dalcs_stretch *s = &m->stretch;
     if (!m->has_row) {
         measure_point(m, at, re, im);
     } else if (at > m->row_at) {
-        for (int k = 0; k < s->n_signals; k++) {
-            for (int i = 0; i < N; i++) {
-                double theta = 0.5 * (1.0 + m->rule.node[i]);
-                s->value[k][i] = m->row[k] + theta * (re[k] - m->row[k]);
-            }
-            if (s->imaginary != NULL) {
-                memset(s->imaginary[k], 0, sizeof(s->imaginary[k]));
-                s->imaginary[k][0] = 0.5 * (m->row_imaginary[k] + im[k]);
-                s->imaginary[k][1] = 0.5 * (im[k] - m->row_imaginary[k]);
-            }
-        }
-        dalcs_measuring_stretch(m, m->row_at, at);
+        join_rows(m, at, re, im);
     }
     size_t bytes = (size_t)s->n_signals * sizeof(double);
     memcpy(m->row, re, bytes);

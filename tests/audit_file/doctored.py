@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""As a teacher uses it: ten circuits as ngspice solves them raise no alarm, and each with a fault put into its file does;
+"""As a teacher uses it: twelve circuits as ngspice solves them raise no alarm, and each with a fault put into its file does;
 the table names the law, the place and the amount.
 
 usage: doctored.py PROGRAM NGSPICE"""
@@ -81,6 +81,12 @@ CIRCUITS = {
     "a formula with another gain": (
         "v1 a 0 sin(0 3 1k)\nb1 b 0 v=2*v(a)+1\nr1 b c 100\nc1 c 0 1u\nr3 a 0 100\n.tran 5u 5m\n",
         lambda raw: raw.change("v(b)", lambda v: 1.01 * v), [("BRANCH", "b1"), ("KCL", "b")]),
+    "a product whose output is 3 % too large": (
+        "v1 a 0 sin(0 3 1k)\nb1 b 0 v=v(a)*v(a)-v(a)\nr1 b c 100\nc1 c 0 1u\nr3 a 0 100\n.tran 5u 5m\n",
+        lambda raw: raw.change("v(b)", lambda v: 1.03 * v), [("BRANCH", "b1"), ("KCL", "b")]),
+    "a function whose argument hears late": (
+        "v1 a 0 sin(0 1 1k)\nr1 a b 1k\nc1 b 0 100n\nb1 0 d i=1m*tanh(3*v(b))\nr2 d 0 1k\n.tran 5u 5m\n",
+        lambda raw: raw.delay("v(b)", 10), [("KCL", "d"), ("KCL", "a")]),
     "a controlled source that hears late": (
         "v1 a 0 sin(0 1 1k)\nr1 a b 1k\nc1 b 0 100n\ne1 c 0 b 0 10\nr2 c d 100\nl1 d 0 5m\ng1 0 f b 0 2m\nr3 f 0 500\n"
         ".tran 5u 5m\n", lambda raw: raw.delay("v(b)", 3), [("BRANCH", "e1"), ("KCL", "f"), ("KCL", "a")]),

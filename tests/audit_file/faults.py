@@ -84,6 +84,21 @@ R5 h 0 1k
 .save v(a) v(b) v(f) v(g) v(h) i(v1) i(h1) i(r1) i(r2) i(r3) i(f1) i(g1) i(i1)
 .tran 10u 2m
 """
+# no file has the nodes of the products and functions themselves
+FUNCTIONS = """products and functions
+V1 in 0 SIN(0 2 1k)
+B1 x 0 V=v(in)*v(in)+0.5*v(in)
+R1 x y 1k
+C1 y 0 100n
+B2 0 z I=1m*tanh(v(y)+100*i(V1))+1m*abs(v(y))
+R2 z 0 1k
+E1 p 0 VALUE={exp(v(y)/2)*sqrt(abs(v(x))+1)}
+R3 p 0 1k
+G1 0 q VALUE={v(p)/(2+v(x)*v(x))*1m}
+R4 q 0 1k
+R5 in 0 1k
+.tran 2u 3m
+"""
 
 # elements that are several: their own current is that of all of their parts
 TRIAC = """a triac
@@ -136,6 +151,12 @@ NETLIST_FAULTS = [
     ("a gain of F", CURRENTS, ("V1 3", "V1 3.01"), ("CURRENT", "f1")),
     ("a gain of G", CURRENTS, ("0 2m", "0 2.01m"), ("CURRENT", "g1")),
     ("a gain of H", CURRENTS, ("V1 500", "V1 503"), ("BRANCH", "h1")),
+    ("another factor of a product", FUNCTIONS, ("v(in)*v(in)", "v(in)*v(in)*1.02"), ("BRANCH", "b1")),
+    ("another function", FUNCTIONS, ("tanh(", "sin("), ("KCL", "z")),
+    ("another argument", FUNCTIONS, ("100*i(V1)", "110*i(V1)"), ("KCL", "z")),
+    ("another exponent", FUNCTIONS, ("exp(v(y)/2)", "exp(v(y)/1.9)"), ("BRANCH", "e1")),
+    ("another root", FUNCTIONS, ("+1)}", "+1.1)}"), ("BRANCH", "e1")),
+    ("another quotient", FUNCTIONS, ("(2+v(x)", "(2.1+v(x)"), ("KCL", "q")),
     ("a resistor 1 % off", CURRENTS, ("R1 a 0 1k", "R1 a 0 1.01k"), ("CURRENT", "r1")),
 ]
 
@@ -203,6 +224,19 @@ def check_lost_command(checker, program, folder):
     checker.check(law is not None and 100e-6 <= law["since"] <= 100.2e-6, f"a lost command: {law}")
 
 
+def check_missing_output(checker, program, folder):
+    """An output that the file lacks is what its element makes of what the file has: what it feeds is checked."""
+    for output, old, new in (("E1 e 0 a 0 2", "0 a 0 2", "0 a 0 2.1"), ("B1 e 0 V=v(a)*v(a)", "v(a)*v(a)", "v(a)*v(a)*1.1")):
+        netlist = f"a filter behind an output\nV1 a 0 SIN(0 3 1k)\n{output}\nR1 e f 1k\nC1 f 0 100n\n" \
+                  ".save v(a) v(f)\n.tran 2u 3m\n"
+        table = simulate(program, netlist)
+        right = audit(program, folder, netlist, table)
+        missing = ("BRANCH", output[:2].lower())
+        checker.check(right.status == 0 and list(right.not_asked) == [missing], f"{output}: {right.text}")
+        found = audit(program, folder, netlist.replace(old, new), table)
+        checker.check(found.status == 1 and found.broken == [("BRANCH", "c1")], f"{new}: {found.text}")
+
+
 def check_sees(checker, program, folder):
     """What is said to be noticed is: a capacitor or coil that is off by a fifth more is, by half of it is not."""
     for netlist, old, form, element in ((RECTIFIER, "20u\nR", "{:.9g}u\nR", "c1"),
@@ -239,6 +273,7 @@ def main(program):
         check_nudges(checker, program, folder)
         check_signs(checker, program, folder)
         check_lost_command(checker, program, folder)
+        check_missing_output(checker, program, folder)
         check_sees(checker, program, folder)
         check_jumps(checker, program, folder)
     return checker.finish()

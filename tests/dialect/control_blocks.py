@@ -29,6 +29,72 @@ C1 out 0 100n
 
 # What is printed, echoed and written is ngspice's: name: the block.
 AS_NGSPICE = {
+    "imaginary parts, of a voltage, a current and what let made": """
+ac lin 1 1k 1k
+print im(v(out))
+print im(out) im(i(v1))
+let z = 2 + j(3)
+print im(z) imag(z)
+print im(v(in)/i(v1))
+""",
+    "phases in radians and in degrees": """
+ac dec 1 100 10k
+let phase = 180/pi*vp(out)
+let angle = ph(v(out))
+meas ac p1 find vp(out) at=1k
+meas ac p2 find phase at=1k
+meas ac p3 find angle at=1k
+print p1
+print p2
+print p3
+print ph(v(out)) vp(out)
+set units = degrees
+print ph(v(out)) cph(v(out))
+print group_delay(v(out))
+print sin(30) cos(60) tan(45) atan(1) sin(pi/2)
+meas ac q1 find vp(out) at=1k
+print q1
+set units = radians
+print vp(out)
+set units=Degrees
+unset units
+meas ac q2 find vp(out) at=1k
+print q2 sin(1)
+""",
+    "values of elements, which alter reads": """
+print @r1[resistance] @c1[capacitance] @v1[acmag] @v1[dc]
+alter r1 = @r1[resistance]*3
+print @r1[resistance]
+op
+print v(out)
+alter @v1[acmag] = 3
+alter v1 = 7
+alter @r2[resistance] = @r1[resistance]/2
+print @v1[acmag] @v1[dc] @r2[resistance]
+op
+print v(out) @r1[resistance]
+reset
+print @r1[resistance]
+""",
+    "AC values of sources, which change one by one": """
+ac lin 1 1k 1k
+print v(out)
+alter @v1[acmag] = 3
+ac lin 1 1k 1k
+print v(out)
+alter v1 acphase = 90
+ac lin 1 1k 1k
+print v(out)
+alter v1 acmag = 0.5
+ac lin 1 1k 1k
+print v(out)
+alter @v1[ac] = [ 2 -30 ]
+ac lin 1 1k 1k
+print v(out)
+reset
+ac lin 1 1k 1k
+print v(out)
+""",
     "plots by name": """
 op
 ac lin 3 1k 3k
@@ -417,10 +483,37 @@ def waveforms(checker, program):
                                f"meas tran m FIND v(a) AT={1e-3 / 12!r}\nprint m\n.endc\n.end\n")
         checker.check(done.returncode == 0 and "warning" not in done.stderr, f"{line}: {done.stderr}")
         close_all(checker, line, printed(done.stdout), {"m": wanted}, 1e-9)
+    done, _ = run(program, "x\nV1 a 0 1\nR1 a 0 1\n.control\nalter @v1[sin] = [ 1 0 1k ]\n"
+                           "alter @v1[pulse] = [ 2 2 0 0 0 1 2 ]\nalter @v1[sin] = [ 3 0 1k ]\n"
+                           "tran 1m 1m\nprint v(a)[1]\n.endc\n.end\n")
+    close_all(checker, "the last function of three", printed(done.stdout), {"v(a)[1]": 3.0})
     done, _ = run(program, "x\nX1 a s\n.subckt s p\nV1 p 0 1\n.ends\nR1 a 0 1\n.control\n"
                            "alter @x1.v1[pulse] = [ 0 2 0 0 0 1 2 ]\ntran 1m 1m\nprint v(a)[length(time)-1]\n"
                            "reset\nop\nprint v(a)\n.endc\n.end\n")
     close_all(checker, "in a subcircuit", printed(done.stdout), {"v(a)[length(time)-1]": 2.0, "v(a)": 1.0})
+
+
+def random_values(checker, program):
+    """Moments of 40 000 values, each within 6 of its deviations, and what a seed repeats."""
+    n = 40000
+    moments = {"sgauss(vector(n))": (0, 1, math.sqrt(2)), "sunif(vector(n))": (0, 1 / math.sqrt(3), 0.3),
+               "exponential(3*unitvec(n))": (3, 3, 6.0), "rnd(6*unitvec(n))": (2.5, math.sqrt(35 / 12), 1.4)}
+    for text, (mean, deviation, spread) in moments.items():
+        done, _ = run(program, f"x\nV1 a 0 1\nR1 a 0 1\n.control\nset numdgt=14\nlet n = {n}\nlet x = {text}\n"
+                               "print mean(x) stddev(x) vecmin(x) vecmax(x)\nop\n.endc\n.end\n")
+        found = {name: value[0] for name, value in printed(done.stdout).items()}
+        checker.check(abs(found["mean(x)"] - mean) < 6 * deviation / math.sqrt(n), f"{text}: {found}")
+        checker.check(abs(found["stddev(x)"] - deviation) < 6 * spread / math.sqrt(n), f"{text}: {found}")
+        if "rnd" in text:
+            checker.check((found["vecmin(x)"], found["vecmax(x)"]) == (0, 5), f"{text}: {found}")
+    block = ("define agauss(nom, by) (nom + by*sgauss(0))\nsetseed 4\nlet a = agauss(2, 0.1)\nset rndseed = 5\n"
+             "let b = agauss(2, 0.1)\nsetseed 4\nlet c = agauss(2, 0.1)\nlet d = agauss(2, 0.1)\nprint a b c d\nop\n")
+    done, _ = run(program, f"x\nV1 a 0 1\nR1 a 0 1\n.control\n{block}.endc\n.end\n")
+    found = {name: value[0] for name, value in printed(done.stdout).items()}
+    checker.check(found["a"] == found["c"] and len({found["a"], found["b"], found["d"]}) == 3, f"seeds: {found}")
+    first = [run(program, f"x\n.options seed={seed}\nV1 a 0 1\nR1 a 0 1\n.control\nprint sgauss(0)\nop\n.endc\n.end\n"
+                 )[0].stdout.splitlines()[0] for seed in (1, 2, 1)]
+    checker.check(first[0] == first[2] != first[1], f"the netlist's seed: {first}")
 
 
 def messages(checker, program):
@@ -442,7 +535,7 @@ def messages(checker, program):
             ("resume", "a run cannot be stopped and continued here"), ("source other.cir", "a netlist is one file"),
             ("alter @v2[pulse] = [ 0 1 ]\nop", "there is no V or I 'v2'"), ("alter @v1[pulse] = [ ]\nop", "the values of pulse are"),
             ("alter @r1[pulse] = [ 0 1 ]\nop", "there is no V or I 'r1'"),
-            ("op\nshell ls", "starts no other programs"), ("set l = ( a b )\necho $l[3]", "has no word number 3"),
+            ("setseed 1.5\nop", "a whole number from 0 to"), ("op\nshell ls", "starts no other programs"), ("set l = ( a b )\necho $l[3]", "has no word number 3"),
             ("op\nprint max(v(out), 1, 2)", "of so many arguments"), ("settype", "a type and vectors are missing"),
             ("op\nsetscale nothing", "has no vector 'nothing'"), ("strcmp a b", "a name and two texts"),
             ("dc V1 0 1 1\nprint (v(out) > 0) ? 1 : 0", "a vector of length 2"),
@@ -459,6 +552,7 @@ def main():
     spectra(checker, program)
     equal_distances(checker, program)
     waveforms(checker, program)
+    random_values(checker, program)
     messages(checker, program)
     return checker.finish()
 

@@ -462,6 +462,22 @@ def decibels(program, checker):
                   "the largest of vdb")
 
 
+def between_frequencies(program, checker):
+    """Powers of the frequency are exact between two rows, however far apart; a resonance is near its value."""
+    circuit = ("powers\nI1 0 a AC 1\nC1 a 0 {farad!r}\nI2 0 b AC 1\nL1 b 0 {henry!r}\nG1 0 c a 0 1m\nC2 c 0 {farad!r}\n"
+               "{card}\n")
+    for card, at in ((".ac dec 2 1 100k", 777.0), (".ac list 10 1meg", 31.4), (".ac lin 3 1 1001", 600.0), (".ac dec 30 1 10k", 5.0)):
+        farad, henry = 1e-3 / (2 * PI), 1e-3 / (2 * PI)  # 1000/f ohm and f/1000 ohm
+        r = Results(program, checker, circuit.format(farad=farad, henry=henry, card=card) +
+                    f".meas ac fall FIND vm(a) AT={at}\n.meas ac turn FIND vp(a) AT={at}\n.meas ac grow FIND vm(b) AT={at}\n"
+                    f".meas ac twice FIND vdb(c) AT={at}\n.meas ac cross WHEN vdb(a)={-20 * math.log10(at / 1e3)!r}\n.end\n")
+        for name, wanted in (("fall", 1e3 / at), ("turn", -90), ("grow", at / 1e3), ("twice", 20 * math.log10(1e3 / at**2)), ("cross", at)):
+            checker.close(r.of[name]["value"], wanted, 1e-9, f"{card}: {name}")
+    r = Results(program, checker, "resonance\nV1 in 0 AC 1\nL1 in x 1m\nR1 x out 10\nC1 out 0 1u\nR2 out 0 100\n"
+                ".ac dec 20 100 100k\n.meas ac edge WHEN vdb(out)=-3\n.end\n")
+    checker.close(r.of["edge"]["value"], 7402.05, 2.0, "the edge behind a resonance")
+
+
 def one_point(program, checker):
     """Sweeps of one value have what is there."""
     half = 1 / math.hypot(1, 2 * PI * 0.1)
@@ -686,7 +702,7 @@ def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
     for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels,
-                 one_point, powers, windows, degrees, rounding, thresholds, mistakes):
+                 between_frequencies, one_point, powers, windows, degrees, rounding, thresholds, mistakes):
         test(program, checker)
     return checker.finish()
 
