@@ -69,11 +69,8 @@ static enum dalcs_status tie_crossed(struct dalcs_radau_part *part, struct dalcs
 }
 
 enum dalcs_status dalcs_search_refuse(struct dalcs_radau_part *part, struct dalcs_search *search) {
-    bool stands = dalcs_transition_refuse(part);
+    dalcs_transition_refuse(part);
     search->first_level = search->asked_level = part->length.level;
-    if (stands) {
-        return DALCS_OK;
-    }
     search->guessed = false;
     part->memory.fronts_refused += search->front ? 1 : 0;
     search->front = false;

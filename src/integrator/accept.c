@@ -29,11 +29,11 @@ static enum dalcs_status learn(struct dalcs_radau_part *part, const struct dalcs
         int by_analogy = search->first_level - part->length.level_before;
         dalcs_transition_began(part, search->first_level, (int)promised);
         spare = (int)dalcs_larger(spare, dalcs_smaller(promised, by_analogy));
-        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare, by_analogy - spare));
+        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare));
     } else if (!search->front) {
         dalcs_transition_pass(part, spare);
     } else if (spare > 0) {
-        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare, 0));
+        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare));
     }
     if (!search->fixed) {
         dalcs_recurrence_note(part);

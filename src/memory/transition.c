@@ -14,9 +14,6 @@ enum { MODES = 3 };
 /* At first, and places in which an entry may be. */
 enum { SLOTS = 64, NEIGHBOURS = 8 };
 
-/* Transitions that come back so often are worth a try of a longer step. */
-enum { OFTEN = 16 };
-
 /* A length that held is begun with so many times at most before a longer one is tried. */
 enum { MOST_PATIENCE = 64 };
 
@@ -125,7 +122,6 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     part->memory.present_transition = (int)slot;
     const uint64_t *known = modes_in(part, slot);
     part->length.level_before = part->length.level;
-    part->length.tries_longer = false;
     if (!part->memory.transition[slot].is_known ||
         !dalcs_mode_is(known, part->memory.modes_before, 2 * p->n_words)) {
         /* On dense maps a one-step problem costs little, and decides more than a short step. */
@@ -136,9 +132,7 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
         return false;
     }
     copy_mode(p->mode, known + 2 * words, words);
-    const struct dalcs_transition *t = dalcs_transition_known(part);
-    part->length.tries_longer = t->untried > 0 && t->held >= OFTEN;
-    part->length.level = t->level - (part->length.tries_longer ? 1 : 0);
+    part->length.level = dalcs_transition_known(part)->level;
     return true;
 }
 
@@ -156,25 +150,13 @@ int dalcs_transition_longest_level(const struct dalcs_radau_part *part) {
 }
 
 void dalcs_transition_pass(struct dalcs_radau_part *part, int spare) {
-    struct dalcs_transition *known = dalcs_transition_known(part);
-    known->held += known->held < OFTEN ? 1 : 0;
-    known->untried -= part->length.tries_longer ? 1 : 0;
-    known->level = part->length.level - spare;
-    part->length.tries_longer = false;
+    dalcs_transition_known(part)->level = part->length.level - spare;
 }
 
-bool dalcs_transition_refuse(struct dalcs_radau_part *part) {
+void dalcs_transition_refuse(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
-    if (part->length.tries_longer) {
-        struct dalcs_transition *known = dalcs_transition_known(part);
-        part->length.tries_longer = false;
-        part->length.level = known->level;
-        known->untried = 0;
-        return true;
-    }
     copy_mode(p->mode, part->memory.modes_before + p->n_words, (size_t)p->n_words);
     part->length.level = part->length.level_before;
-    return false;
 }
 
 void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promised) {
@@ -215,7 +197,7 @@ static enum dalcs_status grow(struct dalcs_radau_part *part) {
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untried) {
+enum dalcs_status dalcs_transition_learn(struct dalcs_radau_part *part, int level) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
     while (is_taken(part) &&
@@ -228,8 +210,6 @@ enum dalcs_status dalcs_transition_learn(struct dalcs_radau_part *part, int leve
                    dalcs_mode_is(modes, part->memory.modes_before, 2 * p->n_words) &&
                    dalcs_mode_is(modes + 2 * words, p->mode, p->n_words);
     known->level = level;
-    known->untried = untried;
-    known->held = 0;
     if (!is_same) {
         known->is_known = true;
         copy_mode(modes, part->memory.modes_before, 2 * words);

@@ -20,8 +20,6 @@ struct dalcs_recurring {
 struct dalcs_transition {
     bool is_known;
     int level;
-    int untried; /* rungs up to a length that was not tried when this one was found by analogy */
-    int held;    /* times that `level` did */
     struct dalcs_recurring span; /* from it to the next edge */
     struct dalcs_recurring step; /* that was enough up to what came then */
     int step_level;              /* of the ladder, on which `step` was found */
@@ -43,9 +41,8 @@ int dalcs_transition_longest_level(const struct dalcs_radau_part *part);
 /* The guess holds, and its step may be longer the next time by `spare` rungs. */
 void dalcs_transition_pass(struct dalcs_radau_part *part, int spare);
 
-/* The guess did not pass: back to what was before it. true: it was only that a longer step was tried than
- * is known to suit, and the guess stands with that. */
-bool dalcs_transition_refuse(struct dalcs_radau_part *part);
+/* The guess did not pass: back to what was before it. */
+void dalcs_transition_refuse(struct dalcs_radau_part *part);
 
 /* What the latest guess was taken from, or what was learned instead of it. */
 struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *part);
@@ -58,9 +55,7 @@ void dalcs_transition_count(struct dalcs_radau_part *part, struct dalcs_recurrin
  * and the error promises steps longer by so many rungs. */
 void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promised);
 
-/* The present mode is what followed, and `level` the step to begin with. It may be longer by so many
- * `untried` rungs, which is tried if the transition comes back often. */
-enum dalcs_status dalcs_transition_learn(struct dalcs_radau_part *part, int level,
-                                         int untried) DALCS_MUST_CHECK;
+/* The present mode is what followed, and `level` the step to begin with. */
+enum dalcs_status dalcs_transition_learn(struct dalcs_radau_part *part, int level) DALCS_MUST_CHECK;
 
 #endif

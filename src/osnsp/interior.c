@@ -28,7 +28,6 @@ struct of_pairs {
 
 struct interior {
     struct dalcs_osnsp *p;
-    enum dalcs_weights weights;
     int n, n_pairs;
     klu_symbolic *symbolic;
     klu_numeric *kept;
@@ -70,10 +69,9 @@ static void fill_pattern(struct interior *m) {
     }
 }
 
-static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
-                               enum dalcs_weights weights) {
+static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p) {
     const struct dalcs_step_form *f = p->cache.form[0];
-    *m = (struct interior){.p = p, .weights = weights, .n = f->n, .n_pairs = f->n_pairs};
+    *m = (struct interior){.p = p, .n = f->n, .n_pairs = f->n_pairs};
     size_t n_pairs = (size_t)f->n_pairs;
     size_t order = (size_t)(f->n + f->n_pairs);
     size_t capacity = (size_t)f->K.p[order] + order;
@@ -95,7 +93,7 @@ static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
     m->dy = m->y + order;
     m->rest = m->dy + order;
     for (int d = 0; d < f->n_pairs; d++) {
-        dalcs_proximal_weights(p, d, weights, &m->of.on[d], &m->of.off[d]);
+        dalcs_proximal_weights(p, d, &m->of.on[d], &m->of.off[d]);
     }
     fill_pattern(m);
     dalcs_lu_keep_diagonal(&p->cache.klu, true);
@@ -327,9 +325,9 @@ static enum dalcs_status follow_path(struct interior *m) {
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, enum dalcs_weights weights) {
+enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p) {
     struct interior m;
-    DALCS_TRY(setup(&m, p, weights));
+    DALCS_TRY(setup(&m, p));
     enum dalcs_status status = follow_path(&m);
     for (int d = 0; d < m.n_pairs && status == DALCS_OK; d++) {
         if (is_diode(&m, d)) {

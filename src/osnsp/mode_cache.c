@@ -136,7 +136,7 @@ static struct dalcs_mode_entry *entry_alloc(const struct dalcs_osnsp *p) {
     return e;
 }
 
-static enum dalcs_status entry_create(struct dalcs_osnsp *p, int kind,
+static enum dalcs_status entry_create(struct dalcs_osnsp *p, enum dalcs_mode_kind kind,
                                       struct dalcs_mode_entry **entry) {
     struct dalcs_mode_entry *e = entry_alloc(p);
     *entry = NULL;
@@ -144,8 +144,8 @@ static enum dalcs_status entry_create(struct dalcs_osnsp *p, int kind,
         return DALCS_E_NOMEM;
     }
     p->counters.factorizations++;
-    enum dalcs_status status = kind == DALCS_PLAIN ? dalcs_modes_factor_plain(p, e)
-                                                   : dalcs_proximal_factor(p, e, kind - 1);
+    enum dalcs_status status =
+        kind == DALCS_PLAIN ? dalcs_modes_factor_plain(p, e) : dalcs_proximal_factor(p, e);
     if (status == DALCS_SINGULAR) {
         e->singular = true;
         status = DALCS_OK;
@@ -167,7 +167,7 @@ static bool is_key(const uint64_t *key, const uint64_t *mode, size_t words, uint
     return different == 0;
 }
 
-enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
+enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, enum dalcs_mode_kind kind,
                                   struct dalcs_mode_entry **entry) {
     size_t words = (size_t)p->n_words;
     uint64_t last_word =

@@ -138,12 +138,7 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, const double *u, double *y
         bool sources_clash;
         DALCS_TRY(dalcs_osnsp_try_mode(p, u, y, &sources_clash));
         if (p->signs.n_violating == 0) {
-            if (sources_clash) {
-                dalcs_witness_from_clash(p);
-                return DALCS_INFEASIBLE;
-            }
-            return p->certificate.worst <= p->options.certificate_tolerance ? DALCS_OK
-                                                                            : DALCS_NOT_CONVERGED;
+            return dalcs_certificate_holds(p, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
         }
         bool stalls = dalcs_pivoting_stalls(p, &pivoting);
         if (stalls && dalcs_osnsp_goes_round(p, ++pivoting.n_single)) {

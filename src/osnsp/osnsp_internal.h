@@ -10,10 +10,8 @@
 #define HASH_NONFATAL_OOM 1
 #include <uthash.h>
 
-enum { DALCS_PLAIN = 0 }; /* kind of an entry; 1 + weights for the proximal matrices */
-
-/* Of pairs in regularised problems: those of equal diodes, or such as suit what is around each. */
-enum dalcs_weights { DALCS_EQUAL_WEIGHTS, DALCS_BALANCED_WEIGHTS };
+/* Its equations as they stand, or with the weights of the proximal method. */
+enum dalcs_mode_kind { DALCS_PLAIN, DALCS_WEIGHTED };
 
 /* A mode at a step size: its factors, and for a small recurring one the map from u to y. */
 struct dalcs_mode_entry {
@@ -44,7 +42,7 @@ enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) DALCS_MUS
 
 /* The entry of (p->mode, p->cache.form[0], kind), factored now if it is new; entry->singular is no
  * failure. Older entries make room, never this one. */
-enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
+enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, enum dalcs_mode_kind kind,
                                   struct dalcs_mode_entry **entry) DALCS_MUST_CHECK;
 
 /* Counts the bytes of a map that was just added to the entry. */
@@ -124,22 +122,20 @@ enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,
 void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u);
 
 /* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */
-enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                        enum dalcs_weights weights) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p,
+                                        struct dalcs_mode_entry *entry) DALCS_MUST_CHECK;
 
 /* The same from p->mode on by block pivoting over regularised modes. */
 enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u,
-                                       enum dalcs_weights weights,
                                        bool *mode_changed) DALCS_MUST_CHECK;
 
 /* Of these weights: eps/G of a closed pair and eps G of an open one, and of an unknown, in
  * balanced units. */
-void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights,
-                            double *on, double *off);
+void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, double *on, double *off);
 double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p);
 
 /* 1/G of a pair with these weights, ohm: what eps is times of where it is closed. */
-double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights);
+double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair);
 
 /* w of a pair in balanced units, from p->work.scaled and p->work.right. */
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
@@ -151,17 +147,15 @@ double dalcs_proximal_least_push(const struct dalcs_osnsp *p);
 
 /* The same as dalcs_scattering_mode of monotone systems, in sparse factors and for any number of pairs, but near the
  * mode rather than it. DALCS_SINGULAR: a factorisation failed, the mode is as it was. */
-enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p,
-                                      enum dalcs_weights weights) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p) DALCS_MUST_CHECK;
 
 /* ---- scattering.c -------------------------------------------------------------------------- */
 
-/* p->mode becomes that of the regularised problem around (centre, centre_w) with pairs weighted as in `weights` times
- * eps: all diodes are decided at once, from no mode in particular. DALCS_NOT_CONVERGED: one where the search ended;
- * DALCS_SINGULAR: there was none, or there are too many
- * pairs, and the mode is as it was. */
+/* p->mode becomes that of the regularised problem around (centre, centre_w), with eps in the place of the proximal weight:
+ * all diodes are decided at once, from no mode in particular. DALCS_NOT_CONVERGED: one where the search ended;
+ * DALCS_SINGULAR: there was none, or there are too many pairs, and the mode is as it was. */
 enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u,
-                                        enum dalcs_weights weights, double eps) DALCS_MUST_CHECK;
+                                        double eps) DALCS_MUST_CHECK;
 
 /* Any answer, not the one of least norm, where pivoting ends without one: from the mode that Lemke's method finds with
  * weights that are no more than rounding. */

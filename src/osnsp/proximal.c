@@ -20,28 +20,24 @@
 /* Mode changes allowed from a regularised answer to a regular mode's. */
 enum { REGULAR_ATTEMPTS = 8 };
 
-/* Equal diodes where the answer has to be the least-norm one in amperes and volts; with very different conductances
- * around them, weights that suit each one's surroundings solve more. */
-static double ratio_of(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights) {
+/* Of equal diodes, as the answer has to be the least-norm one in amperes and volts. */
+static double ratio_of(const struct dalcs_osnsp *p, int pair) {
     const struct dalcs_step_form *f = p->cache.form[0];
     double g = f->scale[f->n + pair] * f->row_scale[f->n + pair]; /* A over V, balanced */
-    return weights == DALCS_EQUAL_WEIGHTS
-               ? fmin(fmax(g / f->pair_conductance, dalcs_small), 1.0 / dalcs_small)
-               : 1.0;
+    return fmin(fmax(g / f->pair_conductance, dalcs_small), 1.0 / dalcs_small);
 }
 
-static double on_weight(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights) {
-    return p->options.proximal_weight * ratio_of(p, pair, weights);
+static double on_weight(const struct dalcs_osnsp *p, int pair) {
+    return p->options.proximal_weight * ratio_of(p, pair);
 }
 
-static double off_weight(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights) {
-    return p->options.proximal_weight / ratio_of(p, pair, weights);
+static double off_weight(const struct dalcs_osnsp *p, int pair) {
+    return p->options.proximal_weight / ratio_of(p, pair);
 }
 
-void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights,
-                            double *on, double *off) {
-    *on = on_weight(p, pair, weights);
-    *off = off_weight(p, pair, weights);
+void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, double *on, double *off) {
+    *on = on_weight(p, pair);
+    *off = off_weight(p, pair);
 }
 
 /* Unknowns are held far more weakly than pairs, so that diodes decide what is not determined. */
@@ -49,10 +45,9 @@ double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p) {
     return dalcs_small * p->options.proximal_weight;
 }
 
-double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair,
-                                 enum dalcs_weights weights) {
+double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair) {
     const struct dalcs_step_form *f = p->cache.form[0];
-    return ratio_of(p, pair, weights) / (f->scale[f->n + pair] * f->row_scale[f->n + pair]);
+    return ratio_of(p, pair) / (f->scale[f->n + pair] * f->row_scale[f->n + pair]);
 }
 
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
@@ -64,8 +59,7 @@ double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
     return w;
 }
 
-enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                        enum dalcs_weights weights) {
+enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry) {
     const struct dalcs_step_form *f = p->cache.form[0];
     int n = f->n + f->n_pairs;
     struct dalcs_columns a;
@@ -75,14 +69,14 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
         double diagonal = dalcs_proximal_unknown_weight(p);
         if (c >= f->n) {
             int d = c - f->n;
-            diagonal = dalcs_osnsp_is_on(p, d) ? on_weight(p, d, weights) : 1.0;
+            diagonal = dalcs_osnsp_is_on(p, d) ? on_weight(p, d) : 1.0;
         }
         bool seen = false;
         for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
             int r = f->K.j[k];
             double value = f->K.x[k];
             if (r >= f->n && !dalcs_osnsp_is_on(p, r - f->n)) {
-                value *= off_weight(p, r - f->n, weights);
+                value *= off_weight(p, r - f->n);
             }
             seen = seen || r == c;
             a.i[out] = r;
@@ -106,8 +100,7 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
 }
 
 /* Solves one regularised problem around (centre, centre_w) in the mode of entry, into p->work.scaled. */
-static void step_in_mode(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
-                         enum dalcs_weights weights) {
+static void step_in_mode(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry) {
     const struct dalcs_step_form *f = p->cache.form[0];
     for (int i = 0; i < f->n; i++) {
         p->work.scaled[i] = p->work.right[i] + dalcs_proximal_unknown_weight(p) * p->work.centre[i];
@@ -115,8 +108,8 @@ static void step_in_mode(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e
     for (int d = 0; d < f->n_pairs; d++) {
         double right = p->work.right[f->n + d];
         p->work.scaled[f->n + d] = dalcs_osnsp_is_on(p, d)
-                                       ? right + on_weight(p, d, weights) * p->work.centre[f->n + d]
-                                       : off_weight(p, d, weights) * (right + p->work.centre_w[d]);
+                                       ? right + on_weight(p, d) * p->work.centre[f->n + d]
+                                       : off_weight(p, d) * (right + p->work.centre_w[d]);
     }
     dalcs_lu_solve(&entry->lu, p->work.scaled);
 }
@@ -137,7 +130,7 @@ double dalcs_proximal_least_push(const struct dalcs_osnsp *p) {
 
 /* The pairs whose regularised sign is wrong: closed with lambda + eps G (w - w') < 0, open with
  * w + eps/G (lambda - lambda') < 0. */
-static void find_violations(struct dalcs_osnsp *p, enum dalcs_weights weights) {
+static void find_violations(struct dalcs_osnsp *p) {
     const struct dalcs_step_form *f = p->cache.form[0];
     double largest = largest_unknown(p);
     p->signs.n_violating = 0;
@@ -148,8 +141,8 @@ static void find_violations(struct dalcs_osnsp *p, enum dalcs_weights weights) {
         double w = dalcs_proximal_scaled_w(p, d);
         double lambda = p->work.scaled[f->n + d];
         double sign = dalcs_osnsp_is_on(p, d)
-                          ? lambda + off_weight(p, d, weights) * (w - p->work.centre_w[d])
-                          : w + on_weight(p, d, weights) * (lambda - p->work.centre[f->n + d]);
+                          ? lambda + off_weight(p, d) * (w - p->work.centre_w[d])
+                          : w + on_weight(p, d) * (lambda - p->work.centre[f->n + d]);
         if (sign < -dalcs_answer_rounded * largest) {
             p->signs.violating[p->signs.n_violating++] = d;
         }
@@ -158,19 +151,19 @@ static void find_violations(struct dalcs_osnsp *p, enum dalcs_weights weights) {
 
 /* Block pivoting of one regularised problem from p->mode; single pivots where that gets nowhere, if
  * it may. *stalled: it got nowhere, and may not. */
-static enum dalcs_status pivot(struct dalcs_osnsp *p, enum dalcs_weights weights, bool singly,
-                               bool *mode_changed, bool *stalled) {
+static enum dalcs_status pivot(struct dalcs_osnsp *p, bool singly, bool *mode_changed,
+                               bool *stalled) {
     struct dalcs_pivoting pivoting = dalcs_pivoting_begin(p);
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
     *stalled = false;
     for (int round = 0; round <= limit; round++) {
         struct dalcs_mode_entry *e;
-        DALCS_TRY(dalcs_modes_get(p, 1 + weights, &e));
+        DALCS_TRY(dalcs_modes_get(p, DALCS_WEIGHTED, &e));
         if (e->singular) {
             return DALCS_NOT_CONVERGED;
         }
-        step_in_mode(p, e, weights);
-        find_violations(p, weights);
+        step_in_mode(p, e);
+        find_violations(p);
         if (p->signs.n_violating == 0) {
             return DALCS_OK;
         }
@@ -191,19 +184,18 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, enum dalcs_weights weights
 /* One regularised problem around the centre, from p->mode. Its matrix is a P-matrix when the system is
  * monotone: it has one solution, and the least-index fallback ends it. Before that, where block
  * pivoting stalls, Lemke's method finds its mode, of many pairs an interior-point method. */
-enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u,
-                                       enum dalcs_weights weights, bool *mode_changed) {
+enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u, bool *mode_changed) {
     bool stalled;
     *mode_changed = false;
-    DALCS_TRY(pivot(p, weights, !p->system->monotone, mode_changed, &stalled));
+    DALCS_TRY(pivot(p, !p->system->monotone, mode_changed, &stalled));
     if (!stalled) {
         return DALCS_OK;
     }
-    enum dalcs_status status = dalcs_scattering_mode(p, u, weights, p->options.proximal_weight);
+    enum dalcs_status status = dalcs_scattering_mode(p, u, p->options.proximal_weight);
     if (status == DALCS_SINGULAR) {
-        status = dalcs_interior_mode(p, weights);
+        status = dalcs_interior_mode(p);
     }
-    return status < DALCS_OK ? status : pivot(p, weights, true, mode_changed, &stalled);
+    return status < DALCS_OK ? status : pivot(p, true, mode_changed, &stalled);
 }
 
 /* Moves the centre to the answer; returns the size of the displacement, how much it differs from the
@@ -270,12 +262,11 @@ void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u) {
 /* A mode that leaves more open than exact.c chooses among is answered by the iterates, as is one whose digits do not
  * do for a certificate; not by those that are still running. */
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, double *y) {
-    const enum dalcs_weights weights = DALCS_EQUAL_WEIGHTS;
     bool is_open = false;
     dalcs_proximal_begin(p, u);
     for (int outer = 0; outer < p->options.max_outer; outer++) {
         bool mode_changed;
-        DALCS_TRY(dalcs_proximal_pivot(p, u, weights, &mode_changed));
+        DALCS_TRY(dalcs_proximal_pivot(p, u, &mode_changed));
         if (outer == 0 || mode_changed) {
             struct dalcs_mode_entry *plain;
             DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
@@ -287,8 +278,8 @@ enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, d
             is_open = status == DALCS_SINGULAR;
             dalcs_csr_multiply(&p->cache.form[0]->R, u, p->work.right);
             struct dalcs_mode_entry *e;
-            DALCS_TRY(dalcs_modes_get(p, 1 + weights, &e));
-            step_in_mode(p, e, weights);
+            DALCS_TRY(dalcs_modes_get(p, DALCS_WEIGHTED, &e));
+            step_in_mode(p, e);
         }
         bool sources_clash;
         double change;

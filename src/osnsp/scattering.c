@@ -38,8 +38,7 @@ static void finish(struct scattering *s) {
     dalcs_arena_finish(&s->arena);
 }
 
-static enum dalcs_status setup(struct scattering *s, struct dalcs_osnsp *p,
-                               enum dalcs_weights weights) {
+static enum dalcs_status setup(struct scattering *s, struct dalcs_osnsp *p) {
     const struct dalcs_step_form *f = p->cache.form[0];
     *s = (struct scattering){.p = p, .n = f->n_pairs};
     size_t n = (size_t)s->n;
@@ -53,7 +52,7 @@ static enum dalcs_status setup(struct scattering *s, struct dalcs_osnsp *p,
         return DALCS_E_NOMEM;
     }
     for (int d = 0; d < s->n; d++) {
-        s->resistance[d] = dalcs_proximal_resistance(p, d, weights);
+        s->resistance[d] = dalcs_proximal_resistance(p, d);
         s->root[d] = sqrt(s->resistance[d]);
     }
     DALCS_TRY(dalcs_whole_factor(&s->whole, p, s->resistance));
@@ -98,13 +97,12 @@ static void fill(struct scattering *s, const double *u, double eps) {
     }
 }
 
-enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u,
-                                        enum dalcs_weights weights, double eps) {
+enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u, double eps) {
     struct scattering s;
     if (p->system->n_pairs > MOST_PAIRS) {
         return DALCS_SINGULAR;
     }
-    enum dalcs_status status = setup(&s, p, weights);
+    enum dalcs_status status = setup(&s, p);
     if (status == DALCS_OK) {
         fill(&s, u, eps);
         status = dalcs_lemke_solve(&s.lemke, p->options.max_pivots + 2 * s.n);
@@ -119,13 +117,9 @@ enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u,
 }
 
 enum dalcs_status dalcs_scattering_solve(struct dalcs_osnsp *p, const double *u, double *y) {
-    enum dalcs_status status = DALCS_NOT_CONVERGED;
-    for (int k = DALCS_EQUAL_WEIGHTS; k <= DALCS_BALANCED_WEIGHTS && status > DALCS_OK; k++) {
-        dalcs_proximal_begin(p, u);
-        status = dalcs_scattering_mode(p, u, (enum dalcs_weights)k, DBL_EPSILON);
-        if (status == DALCS_OK || status == DALCS_NOT_CONVERGED) {
-            status = dalcs_exact_pivot(p, u, y, MOST_CHANGES);
-        }
-    }
-    return status;
+    dalcs_proximal_begin(p, u);
+    const enum dalcs_status status = dalcs_scattering_mode(p, u, DBL_EPSILON);
+    return status == DALCS_OK || status == DALCS_NOT_CONVERGED
+               ? dalcs_exact_pivot(p, u, y, MOST_CHANGES)
+               : status;
 }

@@ -91,7 +91,7 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
         p->work.centre_w[d] += p->signs.tied[d] ? push_w : 0.0;
     }
     bool mode_changed;
-    enum dalcs_status status = dalcs_proximal_pivot(p, u, DALCS_BALANCED_WEIGHTS, &mode_changed);
+    enum dalcs_status status = dalcs_proximal_pivot(p, u, &mode_changed);
     *has_choice = false;
     for (int d = 0; status == DALCS_OK && d < f->n_pairs && !*has_choice; d++) {
         bool moves = (push > 0.0 && p->work.scaled[f->n + d] > dalcs_slight * push) ||

@@ -50,8 +50,7 @@ struct dalcs_part_length {
     double rung;          /* s, of level 0 */
     int level;            /* h = rung 2^-level */
     int held_level;       /* of the step before; what is refused may be shortened to that */
-    int level_before;     /* a guess of a transition: */
-    bool tries_longer;    /* the guess is a rung above what is known */
+    int level_before;     /* a guess of a transition */
     int waited, patience; /* steps since the length changed; until a longer one is tried anyhow */
     bool grew;            /* the present length is such a try */
     double longest;       /* s, step worth trying */
