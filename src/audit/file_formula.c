@@ -119,7 +119,8 @@ static struct file_number smooth_value(const struct file_row *row,
 }
 
 struct file_number file_formula(struct file_audit *a, const struct file_row *row, int device) {
-    const struct dalcs_behaviour *b = a->circuit->device[device].behaviour;
+    const struct dalcs_behaviour *own = a->circuit->device[device].behaviour;
+    const struct dalcs_behaviour *b = own->is_implicit ? own->written : own;
     if (b->smooth != NULL) {
         return smooth_value(row, b->smooth);
     }

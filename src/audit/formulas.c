@@ -91,10 +91,24 @@ static double smooth_value(const struct dalcs_audit *audit, const struct audit_p
     return value;
 }
 
+/* What is 0 on one side of 0, by what it reads and not by its pair: 0 <= lambda _|_ lambda - a >= 0 is written of it. */
+static double held_value(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device, double *size) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour->written;
+    struct dalcs_affine ahead = b->w[0];
+    double terms;
+    ahead.n--; /* less its lambda, the last term */
+    const double a = -affine_value(audit, part, s, device, false, &ahead, size, &terms);
+    return b->output.term[0].coefficient * fmax(a, 0.0);
+}
+
 static double part_value(const struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *s, int device, double *size) {
     const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
     double terms;
+    if (b->is_implicit) {
+        return held_value(audit, part, s, device, size);
+    }
     return b->smooth != NULL
                ? smooth_value(audit, part, s, b->smooth, size)
                : affine_value(audit, part, s, device, false, &b->output, size, &terms);
@@ -211,13 +225,13 @@ double audit_formula_terms(const struct dalcs_audit *audit, const struct audit_p
 }
 
 /* Signs and complementarity. In a part of a formula they are those of what the run has there: how near that is to what
- * the formula says is in the value of the whole. */
+ * the formula says is in the value of the whole. What that part is by what it reads has no pair of its own to hold. */
 static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,
                         const struct dalcs_audit_state *s, int device, double held) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     const enum dalcs_audit_law law =
         d->kind == DALCS_VCVS ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
-    for (int k = 0; k < d->behaviour->n_pairs; k++) {
+    for (int k = 0; k < d->behaviour->n_pairs && !d->behaviour->is_implicit; k++) {
         double over = pair_defect(audit, part, s, device, k);
         if (over > part->tolerance && part->at.lateness > 0.0) {
             audit->state.shifted.side = s->side;
