@@ -2,7 +2,9 @@
  * pwrs(max(x, b), p), where b has the root c.
  *
  * Such a root rises everywhere. As its argument is held so is its value, and the kink is where x passes b. The root as
- * written goes on beyond the kink, where nobody reads it, and is steep at 0 there. */
+ * written goes on beyond the kink, where nobody reads it, and is steep at 0 there.
+ *
+ * And the roots of both sides of 0, sqrt(max(x, 0)) - sqrt(max(-x, 0)), are one with a sign, which has no kink. */
 #include "rewriting.h"
 
 #include <math.h>
@@ -36,13 +38,49 @@ static const struct dalcs_formula *find_held(const struct dalcs_formula *f, bool
     return f->argument[1 - number];
 }
 
+/* The exponent of a root of max(x, 0) and x, *of; 0: it is none. */
+static double exponent_above(const struct dalcs_formula *f, const struct dalcs_formula **of) {
+    const bool is_power = (dalcs_formula_is_operation(f, DALCS_POWER) ||
+                           dalcs_formula_is_call(f, "pow") || dalcs_formula_is_call(f, "pwr")) &&
+                          f->argument[1]->kind == DALCS_FORMULA_NUMBER &&
+                          f->argument[1]->number > 0 && f->argument[1]->number < 1;
+    const double exponent = is_power                           ? f->argument[1]->number
+                            : dalcs_formula_is_call(f, "sqrt") ? 0.5
+                                                               : exponent_of(f);
+    bool is_max = false;
+    double bound = 0;
+    *of = exponent > 0 ? find_held(f->argument[0], &is_max, &bound) : NULL;
+    return *of != NULL && is_max && bound == 0 ? exponent : 0;
+}
+
+/* The root with a sign that the roots of both sides are; f itself: it is no difference of such. */
+static const struct dalcs_formula *join_sides(struct dalcs_rewriting *r,
+                                              const struct dalcs_formula *f) {
+    const struct dalcs_formula *above;
+    const struct dalcs_formula *below;
+    if (!dalcs_formula_is_operation(f, DALCS_SUBTRACT)) {
+        return f;
+    }
+    const double exponent = exponent_above(f->argument[0], &above);
+    if (exponent == 0 || exponent_above(f->argument[1], &below) != exponent) {
+        return f;
+    }
+    const struct dalcs_formula_line a = dalcs_formula_read_line(above);
+    const struct dalcs_formula_line b = dalcs_formula_read_line(below);
+    const bool are_sides =
+        a.slope == -b.slope && a.constant == -b.constant && dalcs_formula_is_same(a.of, b.of);
+    return are_sides
+               ? dalcs_rewriting_call(r, f, "pwrs", above, dalcs_rewriting_number(r, f, exponent))
+               : f;
+}
+
 static const struct dalcs_formula *change(struct dalcs_rewriting *r,
                                           const struct dalcs_formula *f) {
     bool is_max;
     double bound;
     const struct dalcs_formula *of = find_held(f, &is_max, &bound);
     if (of == NULL) {
-        return f;
+        return join_sides(r, f);
     }
     const struct dalcs_formula_line line = dalcs_formula_read_line(of);
     const double exponent = exponent_of(line.of);

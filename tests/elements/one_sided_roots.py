@@ -26,6 +26,8 @@ LAWS = {
     "sqrt(max(X,0))+0.05*X": lambda x: root(max(x, 0)) + 0.05 * x,
     "max(pwrs(X,0.5),0)+0.1*X": lambda x: root(max(x, 0)) + 0.1 * x,
     "sqrt(max(X,0))-sqrt(max(-X,0))": root,
+    "3*sqrt(max(X,0))-2*sqrt(max(-X,0))": lambda x: 3 * root(x) if x > 0 else 2 * root(x),
+    "cbrt(uramp(X-0.1))-cbrt(uramp(0.1-X))+X": lambda x: root(x - 0.1, 1 / 3) + x,
     "pwr(max(X,0),0.4)": lambda x: max(x, 0) ** 0.4,
     "X>0?sqrt(X):0": lambda x: root(max(x, 0)),
     "min(pwrs(X,0.5),1)+0.1*X": lambda x: min(root(x), 1) + 0.1 * x,
