@@ -115,6 +115,7 @@ struct dalcs_audit {
 
     struct audit_scales {
         double *v, *i, *lambda; /* largest so far */
+        bool is_lasting;        /* without what holds at one instant alone */
     } scale;
 
     struct audit_states {

@@ -129,7 +129,8 @@ static struct file_number smooth_value(const struct file_audit *a, const struct 
 }
 
 struct file_number file_formula(struct file_audit *a, const struct file_row *row, int device) {
-    const struct dalcs_behaviour *b = a->circuit->device[device].behaviour;
+    const struct dalcs_behaviour *own = a->circuit->device[device].behaviour;
+    const struct dalcs_behaviour *b = own->is_implicit ? own->written : own;
     if (b->smooth != NULL) {
         return smooth_value(a, row, b->smooth, false);
     }

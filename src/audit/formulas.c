@@ -51,13 +51,15 @@ static double affine_value(const struct dalcs_audit *audit, const struct audit_p
 }
 
 /* What an argument's scale makes of a smooth function, by its tangent, or by what the function itself changes over the error
- * that fails a run where that is less: a root near 0 is steep, and for no longer than it is near. */
+ * that fails a run where that is less: a root near 0 is steep, and for no longer than it is near. That is no scale of other
+ * instants. */
 static double reach_of(const struct dalcs_audit *audit, const struct dalcs_smooth *smooth,
                        const double *x, int k, double slope, double scale) {
     const double failure = audit->options.failure;
     const double by_slope = slope * scale;
-    if (by_slope <= fabs(dalcs_smooth_value(smooth->kind, x))) {
-        return by_slope;
+    const double value = fabs(dalcs_smooth_value(smooth->kind, x));
+    if (by_slope <= value || audit->scale.is_lasting) {
+        return fmin(by_slope, value);
     }
     return fmin(by_slope, dalcs_smooth_variation(smooth->kind, x, k, failure * scale) / failure);
 }
@@ -91,10 +93,24 @@ static double smooth_value(const struct dalcs_audit *audit, const struct audit_p
     return value;
 }
 
+/* What is 0 on one side of 0, by what it reads and not by its pair: 0 <= lambda _|_ lambda - a >= 0 is written of it. */
+static double held_value(const struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device, double *size) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour->written;
+    struct dalcs_affine ahead = b->w[0];
+    double terms;
+    ahead.n--; /* less its lambda, the last term */
+    const double a = -affine_value(audit, part, s, device, false, &ahead, size, &terms);
+    return b->output.term[0].coefficient * fmax(a, 0.0);
+}
+
 static double part_value(const struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *s, int device, double *size) {
     const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
     double terms;
+    if (b->is_implicit) {
+        return held_value(audit, part, s, device, size);
+    }
     return b->smooth != NULL
                ? smooth_value(audit, part, s, b->smooth, size)
                : affine_value(audit, part, s, device, false, &b->output, size, &terms);
@@ -211,13 +227,13 @@ double audit_formula_terms(const struct dalcs_audit *audit, const struct audit_p
 }
 
 /* Signs and complementarity. In a part of a formula they are those of what the run has there: how near that is to what
- * the formula says is in the value of the whole. */
+ * the formula says is in the value of the whole. What that part is by what it reads has no pair of its own to hold. */
 static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,
                         const struct dalcs_audit_state *s, int device, double held) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     const enum dalcs_audit_law law =
         d->kind == DALCS_VCVS ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
-    for (int k = 0; k < d->behaviour->n_pairs; k++) {
+    for (int k = 0; k < d->behaviour->n_pairs && !d->behaviour->is_implicit; k++) {
         double over = pair_defect(audit, part, s, device, k);
         if (over > part->tolerance && part->at.lateness > 0.0) {
             audit->state.shifted.side = s->side;
@@ -228,6 +244,24 @@ static void check_pairs(struct dalcs_audit *audit, struct audit_part *part,
         }
         audit_find(audit, part, law, device, over * held, held, s->t);
     }
+}
+
+/* What terms are held to at other instants, too. */
+static double lasting_size(struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *s, int device, double size) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
+    double terms;
+    if (!part->has.smooth) {
+        return size;
+    }
+    audit->scale.is_lasting = true;
+    if (b->smooth != NULL) {
+        (void)smooth_value(audit, part, s, b->smooth, &size);
+    } else {
+        (void)affine_value(audit, part, s, device, false, &b->output, &size, &terms);
+    }
+    audit->scale.is_lasting = false;
+    return size;
 }
 
 /* A formula's output, less what the device puts out; each of its pairs. */
@@ -253,7 +287,10 @@ void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
     const double held = size + scale;
     const enum dalcs_audit_law law = is_voltage ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
     const double rounding = AUDIT_ROUNDING * size + rounding_read(audit, &d->behaviour->output);
-    audit_find(audit, part, law, device, fabs(is - f) - rounding, held, s->t);
+    const double lasting = lasting_size(audit, part, s, device, size) + scale;
+    const double share = held > lasting ? lasting / held : 1.0;
+    audit_find(audit, part, law, device, (fabs(is - f) - rounding) * share,
+               held > lasting ? lasting : held, s->t);
     check_pairs(audit, part, s, device, held);
 }
 

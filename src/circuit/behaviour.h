@@ -137,6 +137,27 @@ int dalcs_compiler_node_at(struct dalcs_compiler *c, const char *what,
                            const struct dalcs_formula *f, bool is_part, int *source);
 int dalcs_compiler_new_node(struct dalcs_compiler *c, const char *what);
 
+/* A source from `node` to ground; -1 after an error. */
+int dalcs_compiler_add_source(struct dalcs_compiler *c, const char *what, int node,
+                              const struct dalcs_behaviour *behaviour);
+
+/* ---- root_parts.c ---------------------------------------------------------------------------------- */
+
+struct dalcs_root {
+    int sign; /* of its argument, where that is not 0 */
+    int node
+        [3]; /* of what is held on one side of 0, of the root of that, of what it is on this side */
+};
+
+/* Is it a root of what is 0 on one side? Then what it reads, *smooth, and behind the source of that its last part; false
+ * after an error. */
+bool dalcs_root_is_one_sided(const struct dalcs_compiler *c, enum dalcs_smooth_kind kind,
+                             const struct dalcs_form **argument);
+bool dalcs_root_begin(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                      const struct dalcs_form **argument, struct dalcs_smooth *smooth,
+                      struct dalcs_root *root);
+bool dalcs_root_finish(struct dalcs_compiler *c, struct dalcs_root *root, int node);
+
 /* ---- memory_parts.c -------------------------------------------------------------------------------- */
 
 /* Is a part of a formula a derivative or an integral? Its value, by parts that are added to the circuit as those of

@@ -64,6 +64,8 @@ struct dalcs_behaviour {
     const struct dalcs_smooth *smooth; /* NULL: piecewise linear */
     bool is_part; /* of another formula: its value is no voltage that others are measured by */
 
+    bool is_implicit; /* its pair is that of what reads it: what it puts out is in `written` */
+
     /* With pairs for what sources alone decide, as the formula says; NULL: this one has them. */
     const struct dalcs_behaviour *written;
 };

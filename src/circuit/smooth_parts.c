@@ -12,9 +12,8 @@ int dalcs_compiler_new_node(struct dalcs_compiler *c, const char *what) {
     return node;
 }
 
-/* A source from `node` to ground; -1 after an error. */
-static int add_source(struct dalcs_compiler *c, const char *what, int node,
-                      const struct dalcs_behaviour *behaviour) {
+int dalcs_compiler_add_source(struct dalcs_compiler *c, const char *what, int node,
+                              const struct dalcs_behaviour *behaviour) {
     struct dalcs_builder *builder = c->builder;
     const char *name = dalcs_arena_printf(&builder->scratch, "%s%d", what, c->n_nodes);
     struct dalcs_device *device =
@@ -55,7 +54,7 @@ int dalcs_compiler_node_at(struct dalcs_compiler *c, const char *what,
     }
     behaviour->is_part = is_part;
     *source = c->builder->circuit->n_devices;
-    return add_source(c, what, node, behaviour);
+    return dalcs_compiler_add_source(c, what, node, behaviour);
 }
 
 /* The quantities that the source reads, as for other formulas. */
@@ -105,8 +104,8 @@ static void point_at(const struct dalcs_formula *f, struct dalcs_device *device)
     }
 }
 
-static int add_smooth(struct dalcs_compiler *c, const struct dalcs_formula *f,
-                      struct dalcs_smooth *smooth, const struct dalcs_form **argument) {
+static void find_arguments(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                           struct dalcs_smooth *smooth, const struct dalcs_form **argument) {
     for (int k = 0; k < smooth->n && !c->failed; k++) {
         smooth->start[k] =
             c->is_of_storage ? dalcs_storage_formula_at(c->builder, f->argument[k], c->start) : 0.0;
@@ -122,15 +121,26 @@ static int add_smooth(struct dalcs_compiler *c, const struct dalcs_formula *f,
         }
         c->failed = c->failed || smooth->node[k] < 0;
     }
+}
+
+static int add_smooth(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                      struct dalcs_smooth *smooth, const struct dalcs_form **argument) {
+    struct dalcs_root root;
+    const bool is_one_sided = dalcs_root_is_one_sided(c, smooth->kind, argument);
+    if (is_one_sided) {
+        (void)dalcs_root_begin(c, f, argument, smooth, &root);
+    } else {
+        find_arguments(c, f, smooth, argument);
+    }
     const struct dalcs_behaviour *behaviour = c->failed ? NULL : make(c, smooth);
     const int node = behaviour != NULL ? dalcs_compiler_new_node(c, "function") : -1;
-    if (node < 0 || add_source(c, "function", node, behaviour) < 0) {
+    if (node < 0 || dalcs_compiler_add_source(c, "function", node, behaviour) < 0) {
         return -1;
     }
     struct dalcs_circuit *circuit = c->builder->circuit;
     point_at(f, &circuit->device[circuit->n_devices - 1]);
     circuit->control.n_smooth++;
-    return node;
+    return is_one_sided && !dalcs_root_finish(c, &root, node) ? -1 : node;
 }
 
 const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struct dalcs_formula *f,

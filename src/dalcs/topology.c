@@ -28,7 +28,7 @@ static void note_terminal(void *to, const struct dalcs_affine_term *term) {
          i++) {
         const struct dalcs_device *part = &r->circuit->device[i];
         if (part->behaviour != NULL && part->behaviour->is_part && part->node[0] == term->index) {
-            dalcs_behaviour_visit(part->behaviour, note_terminal, r);
+            dalcs_behaviour_visit(dalcs_device_written(part), note_terminal, r);
         }
     }
 }

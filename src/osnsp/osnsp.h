@@ -150,6 +150,7 @@ struct dalcs_osnsp_smooth {
     double largest[2];  /* V, A: of all answers so far, but of parts of formulas */
     double *reached;    /* [n_smooth] values that agreed last on the way to an operating point */
     double (*reached_x)[2]; /* [n_smooth] ... and arguments */
+    uint64_t *mode;         /* [n_words] in which the slopes are */
 };
 
 /* What has no meaning between two problems. */

@@ -41,8 +41,9 @@ enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
         dalcs_arena_alloc(&p->arena, (size_t)p->system->n_smooth, sizeof(*p->smooth.reached_x));
     p->smooth.other = dalcs_arena_alloc(&p->arena, (size_t)(dalcs_system_n_columns(p->system)),
                                         sizeof(*p->smooth.other));
-    if (p->smooth.newton == NULL || p->smooth.given == NULL || p->smooth.other == NULL ||
-        p->smooth.reached == NULL || p->smooth.reached_x == NULL) {
+    p->smooth.mode = dalcs_arena_alloc(&p->arena, (size_t)p->n_words, sizeof(*p->smooth.mode));
+    if (p->smooth.newton == NULL || p->smooth.mode == NULL || p->smooth.given == NULL ||
+        p->smooth.other == NULL || p->smooth.reached == NULL || p->smooth.reached_x == NULL) {
         return DALCS_E_NOMEM;
     }
     struct dalcs_smooth_newton *n = p->smooth.newton;
@@ -101,6 +102,7 @@ static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, const doub
     const struct dalcs_system *s = p->system;
     double *other = p->smooth.other;
     struct dalcs_smooth_newton *n = p->smooth.newton;
+    memcpy(p->smooth.mode, p->mode, (size_t)p->n_words * sizeof(*p->mode));
     for (int k = 0; k < s->n_smooth; k++) {
         const double change = 1.0 + fabs(n->phi[k]);
         bool clash;
@@ -178,6 +180,12 @@ static void limit_modes(struct dalcs_osnsp *p) {
     p->asks.most_enumerated = !has_tried ? 0 : left > 0 ? left : 1;
 }
 
+/* Is what was tried of the mode that the last step had its slopes from? In another one functions may agree less for a step,
+ * and the next one begins with the slopes there. */
+static bool stays(const struct dalcs_osnsp *p) {
+    return dalcs_mode_is(p->smooth.mode, p->mode, p->n_words);
+}
+
 /* Is what was tried to be tried again before the next step? The last one led away, and was halved; or it did not, and there are
  * lines with which the digits suffice. */
 static bool tries_again(struct dalcs_osnsp *p, const double *y, int step, bool stalls) {
@@ -229,7 +237,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
             return DALCS_OK;
         }
         is_last = agrees && is_done;
-        if (!is_last && tries_again(p, y, step, step > 0 && is_done && !n->limits)) {
+        if (!is_last && tries_again(p, y, step, step > 0 && is_done && stays(p) && !n->limits)) {
             continue;
         }
         DALCS_TRY(find_slope(p, p->smooth.given, y));
