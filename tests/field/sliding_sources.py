@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """A jump times a quantity of its own, in a loop without a state: at the jump neither side of the switch of the product agrees
 with its control, and the product is what holds the control at the jump, between both sides. Beside one resistor and a
-source the answer is where a line meets the graph, found here by bisection; of a capacitor it is 0 while the product can
-carry the current.
+source the answer is where a line meets the graph, found here by bisection, also where the product has smooth functions of
+the other quantity; of a capacitor it is 0 while the product can carry the current.
 
 usage: sliding_sources.py PROGRAM
 """
