@@ -4,6 +4,7 @@
 #include "present.h"
 #include "restart.h"
 #include "slide.h"
+#include "slide_try.h"
 #include "smooth_step.h"
 #include "step_length.h"
 
@@ -118,6 +119,37 @@ static enum dalcs_status solve_on_way(struct dalcs_radau *r, struct dalcs_radau_
     return dalcs_micro_fail(r, part, 1.0 / *h, part->work.u, DALCS_NOT_CONVERGED);
 }
 
+static void put_inputs(struct dalcs_radau_part *part, double h) {
+    const size_t n_x = (size_t)part->component->system->n_x;
+    memcpy(part->work.u, part->x, n_x * sizeof(double));
+    dalcs_excitation_inputs(&part->excitation, part->segment.t, h, part->work.u + n_x);
+}
+
+/* The switches do not agree with part->work.y1, the answer of a step of length h. If they would not in a vanishing one
+ * either, a step in one of their positions is none of the circuit. */
+static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     double h) {
+    struct dalcs_component *c = part->component;
+    const bool has_states = c->system->n_x > 0;
+    const size_t bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
+    const double micro = dalcs_radau_micro_length(r, part, 0);
+    const double sigma = has_states ? 1.0 / micro : 0.0;
+    struct dalcs_restless found;
+    const struct dalcs_restless_step vanishing = {.sigma = sigma, .u = part->work.u};
+    memcpy(part->work.mode_before, c->osnsp.mode, bytes);
+    DALCS_TRY(dalcs_slide_find_leading(r, part, micro));
+    put_inputs(part, micro);
+    DALCS_TRY(dalcs_restless_find(&c->positions, true, &vanishing, part->work.y2, &found));
+    memcpy(c->osnsp.mode, part->work.mode_before, bytes);
+    if (found.pair >= 0) {
+        enum dalcs_status status = dalcs_micro_fail(r, part, sigma, part->work.u, DALCS_INFEASIBLE);
+        c->failure.restless = found;
+        return status;
+    }
+    put_inputs(part, h);
+    return dalcs_osnsp_solve(&c->osnsp, has_states ? 1.0 / h : 0.0, part->work.u, part->work.y1);
+}
+
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) {
     struct dalcs_component *c = part->component;
@@ -139,7 +171,10 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
     if (dalcs_smooth_euler_meets_pole(part)) {
         return dalcs_micro_fail(r, part, 1.0 / h, part->work.u, DALCS_NOT_CONVERGED);
     }
-    c->commands.n_delayed += c->positions.settled ? 0 : 1; /* the present command stands */
+    if (!c->positions.settled) { /* the present command stands */
+        DALCS_TRY(check_limit(r, part, h));
+        c->commands.n_delayed++;
+    }
     dalcs_radau_accept_implicit(r, part, h);
     r->euler_steps++;
     return DALCS_OK;

@@ -19,6 +19,7 @@ enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_par
     struct dalcs_euler *e = r->base;
     part->component->failure.sigma = sigma;
     part->component->failure.u = u;
+    part->component->failure.restless.pair = -1;
     e->failure.system = part->index;
     e->failure.time = part->segment.t;
     e->failure.h = 1.0 / sigma;

@@ -3,6 +3,7 @@
 #include "slide.h"
 
 #include "guard_scale.h"
+#include "power_of_step.h"
 #include "present.h"
 #include "restart.h"
 #include "rounding.h"
@@ -167,6 +168,25 @@ static enum dalcs_status finish(struct dalcs_radau *r, struct dalcs_radau_part *
     return DALCS_OK;
 }
 
+/* Behind a try whose states are off by as much as in one twice as long: are they as far off in a vanishing one? Then they jump
+ * in each step, as where a switch charges a capacitor at once: no mean of such sides is a flow, and nothing slides. Else the
+ * try was too long for what moves. */
+static enum dalcs_status find_jumping(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      const struct dalcs_slide_try *of, bool *jumps) {
+    struct dalcs_slide_try vanishing = *of;
+    vanishing.h = fmin(of->h, dalcs_radau_micro_length(r, part, 0));
+    DALCS_TRY(dalcs_slide_attempt(r, part, &vanishing));
+    take_back(r);
+    *jumps = vanishing.slides && dalcs_power_of_step(of->states, vanishing.states) <= 0.0;
+    return DALCS_OK;
+}
+
+/* Is it worth to ask that of a refused try? A slide that goes on has had states that do not jump. */
+static bool may_jump(const struct dalcs_slide_try *of, bool starts, double states_before) {
+    return starts && of->slides && of->states > 1.0 &&
+           dalcs_power_of_step(states_before, of->states) <= 0.0;
+}
+
 /* Shorter and shorter ones. Where a diode turns, a state is off by no more than the step. One that starts and is found at no
  * length has no end to finish, and says nothing of how long the next one is. */
 static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -177,6 +197,8 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
     const double least_end = fmax(shortest, sqrt(part->inner_tolerance) * before);
     const double left = part->length.slide_until - part->segment.t;
     double pairs_before = INFINITY;
+    double states_before = INFINITY;
+    bool jumps = false;
     if (left < 2.0 * least_end) {
         of->h = left;
         return finish(r, part, of, slides);
@@ -195,10 +217,14 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
             return DALCS_OK;
         }
         take_back(r);
-        if (is_last) {
+        if (!is_last && may_jump(of, starts, states_before)) {
+            DALCS_TRY(find_jumping(r, part, of, &jumps));
+        }
+        if (is_last || jumps) {
             part->length.slide = before;
             return starts ? DALCS_OK : finish(r, part, of, slides);
         }
+        states_before = of->slides ? of->states : INFINITY;
         pairs_before = of->slides ? of->pairs : INFINITY;
         of->h *= 0.5;
     }

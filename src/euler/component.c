@@ -9,7 +9,8 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
                                         const struct dalcs_circuit *circuit,
                                         const struct dalcs_system *system,
                                         const struct dalcs_osnsp_options *options) {
-    *c = (struct dalcs_component){.system = system, .circuit = circuit, .failure.overgrown = -1};
+    *c = (struct dalcs_component){
+        .system = system, .circuit = circuit, .failure.overgrown = -1, .failure.restless.pair = -1};
     DALCS_TRY(dalcs_osnsp_setup(&c->osnsp, system, options));
     size_t n_u = (size_t)(system->n_x + system->n_inputs);
     size_t n_columns = (size_t)dalcs_system_n_columns(system);

@@ -3,7 +3,7 @@
 #define DALCS_COMPONENT_H
 
 #include "network.h"
-#include "positions.h"
+#include "restless.h"
 
 struct dalcs_component {
     const struct dalcs_system *system;
@@ -43,8 +43,9 @@ struct dalcs_component {
 
     struct { /* for messages */
         double sigma;
-        const double *u; /* the problem of the last failed solve, for the dump */
-        int overgrown;   /* the state that has become too large for numbers; -1 */
+        const double *u;                /* the problem of the last failed solve, for the dump */
+        int overgrown;                  /* the state that has become too large for numbers; -1 */
+        struct dalcs_restless restless; /* what no position suits */
     } failure;
 
     bool is_static;           /* nothing depends on time or history */

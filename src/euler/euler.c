@@ -4,6 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+/* A vanishing step over a step: 2^-MICRO. */
+enum { MICRO = 20 };
+
 enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_circuit *circuit,
                                     const struct dalcs_network *network,
                                     const struct dalcs_osnsp_options *options, double h,
@@ -70,6 +73,7 @@ enum dalcs_status dalcs_euler_solve(struct dalcs_euler *e, int k, double sigma, 
     if (status != DALCS_OK) {
         c->failure.sigma = sigma;
         c->failure.u = u;
+        c->failure.restless.pair = -1;
         e->failure.system = k;
         e->failure.time = e->t;
         e->failure.h = sigma > 0.0 ? 1.0 / sigma : e->h;
@@ -182,6 +186,35 @@ static void note_scale(struct dalcs_component *c) {
     c->scale[1] = fmax(c->scale[1], c->osnsp.certificate.ampere);
 }
 
+/* The switches of component k do not agree with its answer. If they would not in a vanishing step from the same state either,
+ * a step in one of their positions is none of the circuit. */
+static enum dalcs_status check_limit(struct dalcs_euler *e, int k, double sigma) {
+    struct dalcs_component *c = &e->component[k];
+    const size_t bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
+    struct dalcs_restless found;
+    memcpy(c->saved_mode, c->osnsp.mode, bytes);
+    const struct dalcs_restless_step vanishing = {.sigma = ldexp(sigma, MICRO), .u = c->u};
+    DALCS_TRY(dalcs_restless_find(&c->positions, false, &vanishing, c->probe_y, &found));
+    memcpy(c->osnsp.mode, c->saved_mode, bytes);
+    if (found.pair >= 0) {
+        c->failure.sigma = sigma;
+        c->failure.u = c->u;
+        c->failure.restless = found;
+        e->failure.system = k;
+        e->failure.time = e->t;
+        e->failure.h = e->h;
+        return DALCS_INFEASIBLE;
+    }
+    return dalcs_osnsp_solve(&c->osnsp, sigma, c->u, c->y);
+}
+
+static enum dalcs_status solve_step(struct dalcs_euler *e, int k, double sigma) {
+    struct dalcs_component *c = &e->component[k];
+    sigma = c->system->n_x > 0 ? sigma : 0.0;
+    DALCS_TRY(dalcs_euler_solve(e, k, sigma, c->u, c->y));
+    return c->positions.settled ? DALCS_OK : check_limit(e, k, sigma);
+}
+
 enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
     e->t_before = e->t;
     double h = dalcs_grid_advance(&e->grid, &e->at_jump);
@@ -198,7 +231,7 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
         c->y = swap;
         size_t n_x = (size_t)c->system->n_x;
         dalcs_component_sample(c, e->t, DALCS_LEFT, c->u);
-        DALCS_TRY(dalcs_euler_solve(e, k, n_x > 0 ? sigma : 0.0, c->u, c->y));
+        DALCS_TRY(solve_step(e, k, sigma));
         note_scale(c);
         if (dalcs_component_overgrows(c, c->y)) {
             e->failure.system = k;

@@ -90,8 +90,7 @@ static void flip(struct dalcs_positions *p, int i) {
     dalcs_osnsp_command(p->osnsp, p->pair[i], !dalcs_osnsp_is_on(p->osnsp, p->pair[i]));
 }
 
-/* All that want to; none does: they agree with the answer. */
-static bool move(struct dalcs_positions *p, const double *y) {
+bool dalcs_positions_move_all_once(struct dalcs_positions *p, const double *y) {
     bool any = false;
     for (int i = 0; i < p->n; i++) {
         if (dalcs_positions_moves(p, i, y)) {
@@ -145,7 +144,7 @@ static enum dalcs_status move_all(struct dalcs_positions *p, double sigma, const
     keep(p, p->mark);
     for (int round = 1; round <= 2 * (p->n + 1); round++) {
         keep(p, p->present);
-        p->settled = !move(p, y);
+        p->settled = !dalcs_positions_move_all_once(p, y);
         if (p->settled) {
             return DALCS_OK;
         }
@@ -234,7 +233,7 @@ static enum dalcs_status move_one(struct dalcs_positions *p, bool first_fails, d
         bool fails = status != DALCS_OK;
         *failing = *failing < 0 && fails ? k : *failing;
         keep(p, p->present);
-        p->settled = !fails && !move(p, y);
+        p->settled = !fails && !dalcs_positions_move_all_once(p, y);
         if (p->settled) {
             return DALCS_OK;
         }

@@ -274,7 +274,7 @@ enum dalcs_status dalcs_sliding_mean_of_several(struct dalcs_positions *p, const
                                                 double *noise) {
     struct several of;
     find_groups(p, y, &of);
-    if (of.n < 2 || p->osnsp->system->n_smooth > 0) {
+    if (of.n < 2) {
         return DALCS_OK;
     }
     bool are_complete;

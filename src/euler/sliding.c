@@ -108,7 +108,7 @@ enum dalcs_status dalcs_sliding_find_commanding(struct dalcs_positions *p, const
         p->leads[i] = false;
         p->sides.group[i] = 0;
     }
-    if (any || p->osnsp->system->n_smooth > 0) {
+    if (any) {
         return DALCS_OK;
     }
     memcpy(p->present, p->osnsp->mode, (size_t)p->osnsp->n_words * sizeof(*p->present));
@@ -191,8 +191,8 @@ static enum dalcs_status complete(struct dalcs_positions *p, const double *u, do
         p->leads[i] = i >= p->n && dalcs_turning_leads(p, i);
         any = any || p->leads[i];
     }
-    *is_complete = !any || s->n_smooth == 0;
-    if (!any || s->n_smooth > 0) {
+    *is_complete = !any;
+    if (!any) {
         return DALCS_OK;
     }
     memcpy(p->present, p->osnsp->mode, (size_t)p->osnsp->n_words * sizeof(*p->present));

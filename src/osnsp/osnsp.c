@@ -118,8 +118,12 @@ static bool is_answer(const struct dalcs_osnsp *p, bool sources_clash) {
            (is_sign || p->certificate.worst <= dalcs_beyond * p->options.certificate_tolerance);
 }
 
-enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u, double *y) {
+/* In p->mode with given sources. */
+static enum dalcs_status answer(struct dalcs_osnsp *p, double sigma, const double *u, double *y) {
     bool sources_clash;
+    if (p->cache.n_forms == 0 || p->cache.form[0]->sigma != sigma) {
+        DALCS_TRY(dalcs_forms_get(p, sigma));
+    }
     DALCS_TRY(dalcs_exact_try_mode(p, u, y, &sources_clash));
     if (!is_answer(p, sources_clash) && !p->asks.refines) {
         p->asks.refines = true; /* where a sign is wrong a map's answer is not refined by itself */
@@ -128,6 +132,12 @@ enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u, dou
         DALCS_TRY(status);
     }
     return is_answer(p, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
+}
+
+enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u, double *y) {
+    const double sigma = p->cache.form[0]->sigma;
+    return p->smooth.newton == NULL ? answer(p, sigma, u, y)
+                                    : dalcs_osnsp_solve_smooth(p, sigma, u, y, answer);
 }
 
 /* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR

@@ -215,7 +215,7 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
                                     double *y) DALCS_MUST_CHECK;
 
 /* The answer in p->mode behind such a call, whatever the signs of pairs are; p->signs has those that are wrong. Not
- * DALCS_OK: the mode has none. Not with smooth sources. */
+ * DALCS_OK: the mode has none, or none was found in it for smooth sources. */
 enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u,
                                      double *y) DALCS_MUST_CHECK;
 

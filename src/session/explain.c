@@ -275,6 +275,10 @@ enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_
                            : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
                                                 e->failure.time, e->steps + 1, e->failure.h);
     when = when == NULL ? "" : when;
+    if (e->component[e->failure.system].failure.restless.pair >= 0) {
+        dalcs_explain_restless(s, &e->component[e->failure.system], when);
+        return DALCS_NOT_CONVERGED;
+    }
     const bool is_smooth = newton != NULL;
     const char *hint = is_smooth ? NULL : dump_problem(r, e, when);
     if (status == DALCS_INFEASIBLE) {

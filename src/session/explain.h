@@ -35,6 +35,10 @@ bool dalcs_failed_at_pole(const struct dalcs_euler *e, enum dalcs_status status)
 enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
                                         enum dalcs_status status) DALCS_MUST_CHECK;
 
+/* No position of c->failure.restless agrees with its control. */
+void dalcs_explain_restless(struct dalcs_session *s, const struct dalcs_component *c,
+                            const char *when);
+
 /* Newton's method has found no values of smooth functions that agree with what they read. */
 void dalcs_explain_smooth(struct dalcs_session *s, const struct dalcs_component *c,
                           const char *when);

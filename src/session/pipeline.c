@@ -25,7 +25,7 @@ static void warn_of_switches(struct dalcs_run *r, const struct dalcs_component *
                        "control off, opening turns it on; values are means of both positions",
                        c->commands.n_slid, c->commands.n_slid == 1 ? "" : "s");
     }
-    if (c->commands.n_delayed == 0) {
+    if (c->commands.n_delayed == 0 || c->failure.restless.pair >= 0) { /* an error says it */
         return;
     }
     bool once = (steps == 0 && c->commands.n_delayed == 1) || c->is_static;

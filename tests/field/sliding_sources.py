@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """A jump times a quantity of its own, in a loop without a state: at the jump neither side of the switch of the product agrees
 with its control, and the product is what holds the control at the jump, between both sides. Beside one resistor and a
-source the answer is where a line meets the graph, found here by bisection; of a capacitor it is 0 while the product can
-carry the current.
+source the answer is where a line meets the graph, found here by bisection, also where the product has smooth functions of
+the other quantity; of a capacitor it is 0 while the product can carry the current.
 
 usage: sliding_sources.py PROGRAM
 """
@@ -30,6 +30,12 @@ LAWS = {  # of X, what the element reads, and of Y, another voltage
     "sgn(X)*(1+0.5*sin(9*time))": lambda x, y, t: sign(x) * (1 + 0.5 * math.sin(9 * t)),
     "sgn(X-0.3*Y)*Y": lambda x, y, t: sign(x - 0.3 * y) * y,
     "sgn(X)*abs(Y-1)": lambda x, y, t: sign(x) * abs(y - 1),
+    "sgn(X)*Y**2": lambda x, y, t: sign(x) * y * y,
+    "sgn(X)*exp(Y-1)": lambda x, y, t: sign(x) * math.exp(y - 1),
+    "u(X)*sqrt(Y)": lambda x, y, t: math.sqrt(y) if x > 0 else 0,
+    "X>0?Y**2:-(Y**3)": lambda x, y, t: y ** 2 if x > 0 else -y ** 3,
+    "sgn(X-0.3*Y)*tanh(Y)": lambda x, y, t: sign(x - 0.3 * y) * math.tanh(y),
+    "sgn(X)*(1+0.5*sin(Y))+X": lambda x, y, t: sign(x) * (1 + 0.5 * math.sin(y)) + x,
 }
 CASES = [1.0, 1e-3, 100.0]  # of X
 

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""A switch with hysteresis that acts on its control at once, without a state in between: closed it opens, open it closes.
+
+usage: loops_with_hysteresis.py PROGRAM
+
+Where it is open its control goes in proportion to a source that rises from 0, and reaches Vt + Vh at a known time. Where it is
+closed the control is below Vt - Vh at that time. So behind it no position agrees with the control, no time passes between
+two turns, and nothing says for which part of the time the switch is closed. The run ends there with status 1, and says so.
+With a capacitor at the control the same circuit oscillates; without a hysteresis the switch slides (Filippov 1988).
+"""
+
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+
+INVERTER = "r{0} p n{0} 1k\ns{0} n{0} 0 n{1} 0 m"
+
+
+def ring(n):
+    cards = ["v1 p 0 pwl(0 0 1m 10)"] + [INVERTER.format(k, (k + 1) % n) for k in range(n)]
+    return "\n".join(cards + [".model m sw(vt=5 vh=1 ron=1)"])
+
+
+SHUNT = "r1 a 0 10\ns1 a 0 a 0 m\n.model m sw(vt=8 vh=1 ron=0.1)"
+SENSED = "i1 0 a pwl(0 0 1m 40m)\nv2 a b 0\nr1 b 0 100"
+# cards for 1 ms; switches one of which is named; the time in s; a control that it may be of
+CASES = {
+    "itself": (f"i1 0 a pwl(0 0 1m 2)\n{SHUNT}", ["s1"], 0.45e-3, "v(a)"),
+    "large": ("i1 0 a pwl(0 0 1m 2k)\nr1 a 0 10\ns1 a 0 a 0 m\n.model m sw(vt=8k vh=1k ron=0.1)", ["s1"], 0.45e-3, "v(a)"),
+    "small": ("i1 0 a pwl(0 0 1m 2u)\nr1 a 0 10\ns1 a 0 a 0 m\n.model m sw(vt=8u vh=1u ron=0.1)", ["s1"], 0.45e-3, "v(a)"),
+    "a narrow one": ("i1 0 a pwl(0 0 1m 2)\nr1 a 0 10\ns1 a 0 a 0 m\n.model m sw(vt=18 vh=18m ron=0.1)", ["s1"], 0.9009e-3,
+                     "v(a)"),
+    "a pulse": (f"i1 0 a pwl(0 0 0.5m 1 0.55m 0 1m 0)\n{SHUNT}", ["s1"], 0.45e-3, "v(a)"),
+    "a step": (f"i1 0 a pulse(0 2 0.5m 0 0 1)\n{SHUNT}", ["s1"], 0.5e-3, "v(a)"),
+    "from the start": (f"i1 0 a 1\n{SHUNT}", ["s1"], 0.0, "v(a)"),
+    "e": ("v1 in 0 pwl(0 0 1m 20)\nr1 in a 1k\ns1 a 0 c 0 m\ne1 c 0 a 0 2\n.model m sw(vt=12 vh=2 ron=10)", ["s1"], 0.35e-3,
+          "v(c)"),
+    "b": ("v1 in 0 pwl(0 0 1m 10)\nr1 in a 100\ns1 a 0 c 0 m\nb1 c 0 v={v(a)-v(in)*0.1+0.2}\n"
+          ".model m sw(vt=1.75 vh=0.25 ron=1)", ["s1"], 0.2e-3, "v(c)"),
+    "w": (f"{SENSED}\nw1 a 0 v2 m\n.model m csw(it=15m ih=5m ron=1)", ["w1"], 0.5e-3, "i(v2)"),
+    "f": (f"{SENSED}\nf1 0 d v2 10\nr3 d 0 50\ns1 a 0 d 0 m\n.model m sw(vt=7.5 vh=2.5 ron=1)", ["s1"], 0.5e-3, "v(d)"),
+    "h": (f"{SENSED}\nh1 d 0 v2 500\ns1 a 0 d 0 m\n.model m sw(vt=7.5 vh=2.5 ron=1)", ["s1"], 0.5e-3, "v(d)"),
+    "a diode": ("i1 0 b pwl(0 0 1m 2)\nd1 b a d\n.model d d\n" + SHUNT, ["s1"], 0.45e-3, "v(a)"),
+    "two in a circle": ("v1 p 0 pwl(0 0 1m 10)\nr1 p a 1k\ns1 a 0 q 0 m\nv2 u 0 5\ns2 u q a 0 mh\nr2 q 0 10k\n"
+                        ".model m sw(vt=2.5 ron=1)\n.model mh sw(vt=5 vh=1 ron=10)", ["s2"], 0.6e-3, "v(a)"),
+    "a mosfet behind it": ("v1 p 0 pwl(0 0 1m 10)\nr1 p d 1k\nm1 d g 0 0 nm\ns2 h g d 0 ms\nv2 h 0 10\nr3 g 0 10k\n"
+                           ".model nm nmos(vto=3 kp=1)\n.model ms sw(vt=5 vh=1 ron=1)", ["s2"], 0.6e-3, "v(d)"),
+    "three in a ring": (ring(3), ["s0", "s1", "s2"], 0.6e-3, None),
+    "five in a ring": (ring(5), ["s0", "s1", "s2", "s3", "s4"], 0.6e-3, None),
+    "a coil beside it": (f"i1 0 a pwl(0 0 1m 2)\nl1 a l 1\nr2 l 0 1g\n{SHUNT}", ["s1"], 0.45e-3, "v(a)"),
+    "a filter behind it": (f"i1 0 a pwl(0 0 1m 2)\nr5 a w 1g\nc5 w 0 1n\n{SHUNT}", ["s1"], 0.45e-3, "v(a)"),
+    "a state elsewhere": (f"i1 0 a pwl(0 0 1m 2)\nv5 q 0 sin(0 3 5k)\nr5 q w 100\nc5 w 0 1u\ng5 0 a w 0 1n\n{SHUNT}", ["s1"],
+                          0.45e-3, "v(a)"),
+}
+
+
+def of(netlist, more=()):
+    return "\n".join(["a loop with hysteresis", netlist, *more, ".tran 1u 1m uic", ".end", ""])
+
+
+def check_end(checker, program, name, method):
+    cards, switches, time, control = CASES[name]
+    what = f"{name}, {method}"
+    result = run(program, of(cards), method=method)
+    found = re.search(r"error: (?:from|at) t = (\S+) (?:s )?(?:\(.*?\) )?(?:on )?no position of '(\w+)' agrees with its control, "
+                      r"([^:]+): where it is closed that is", result.stderr)
+    if not checker.check(result.status == 1 and found is not None, f"{what}: exit {result.status}: {result.stderr[:400]}"):
+        return
+    late = 0.0 if method is None else 2e-6  # a step of implicit Euler that ends behind the time
+    checker.check(-1e-9 <= float(found[1]) - time <= 1e-9 + late, f"{what}: at {found[1]}, not {time}")
+    checker.check(found[2] in switches, f"{what}: of {found[2]}")
+    checker.check(control is None or found[3] == control, f"{what}: by {found[3]}")
+
+
+def check_ways_out(checker, program):
+    """With a capacitor at the control it goes up to 9 V and down to 7 V; without a hysteresis it stays at 8 V."""
+    cards, _, _, _ = CASES["itself"]
+    result = run(program, of(cards, ["c1 a 0 1u"]), method=None, options=["--audit", "full"])
+    if checker.check(result.status == 0 and "slides" not in result.stderr, f"a capacitor: {result.stderr[:300]}"):
+        checker.close(max(result.column("v(a)")), 9.0, 0.02, "a capacitor: the largest voltage")
+    result = run(program, of(cards.replace(" vh=1", "")), method=None, options=["--audit", "full"])
+    if checker.check(result.status == 0 and "slides" in result.stderr, f"without a hysteresis: {result.stderr[:300]}"):
+        checker.close(result.column("v(a)")[-1], 8.0, 1e-9, "without a hysteresis: the voltage")
+
+
+def main():
+    program = sys.argv[1]
+    checker = Checker("loops_with_hysteresis")
+    for name in CASES:
+        check_end(checker, program, name, None)
+    for name in ("itself", "e", "w", "three in a ring", "a filter behind it"):
+        check_end(checker, program, name, "euler")
+    check_ways_out(checker, program)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
