@@ -174,6 +174,37 @@ def check_phases(checker, program, volts, limit, henry, period):
     checker.check(held > 20, f"{name}: no current is held")
 
 
+# ---- Switches with hysteresis beside two slides -----------------------------------------------------------
+
+MEMORIES = {  # of what the voltage at x{k} never reaches, in volts of the source; they stand as at the beginning
+    "open": "s{k}m a b{k} 0 x{k} m{k}\n.model m{k} sw(vt=0 vh={far} ron=1 roff=1e6)\nr{k}m b{k} 0 1\n",
+    "closed": "s{k}m a b{k} x{k} 0 m{k} on\n.model m{k} sw(vt=0 vh={far} ron=1 roff=1e6)\nr{k}m b{k} 0 1\n",
+    "of a Schmitt trigger": "a{k} 0 x{k} 0 0 0 0 b{k} 0 schmitt vt=0 vh={far} vhigh=0.5\nr{k}m b{k} 0 1\n",
+}
+
+
+def check_memories(checker, program, kind, volts, ohm, second):
+    """Currents that two switches hold with no hysteresis; others look at the voltages behind them."""
+    name = f"memories, {kind}, {volts} V, {ohm} ohm, {second} s"
+    amps = 0.1 * volts / ohm
+    lines = [name, f"v1 in 0 {volts!r}", f"rs in s {1e-3 * ohm!r}", "va a 0 1", f".model d d(ron={1e-3 * ohm!r} roff={1e5 * ohm!r})"]
+    for k, limit, start in ((1, amps, 0.5), (2, 1.2 * amps, 0.4)):
+        lines += [f"s{k} s x{k} 0 c{k} sw{k}", f"d{k} 0 x{k} d", f"l{k} x{k} y{k} {k * ohm * second!r}", f"vs{k} y{k} o{k} 0",
+                  f"h{k} c{k} 0 vs{k} 1", f"c{k} o{k} 0 {0.01 * k * second / ohm!r} ic={start * volts!r}",
+                  f"r{k} o{k} 0 {start * volts / limit!r}",
+                  f".model sw{k} sw(vt={-limit!r} ron={1e-3 * ohm!r} roff={1e5 * ohm!r})",
+                  MEMORIES[kind].format(k=k, far=100 * volts)]
+    rows = run(checker, program, name, "\n".join([*lines, f".tran {0.01 * second!r} {0.5 * second!r} uic", ".end", ""]), 20)
+    if rows is None:
+        return
+    for k, limit in ((1, amps), (2, 1.2 * amps)):
+        wanted = 1e0 / (1e6 + 1.0) if kind == "open" else 0.5 if kind == "closed" else 0.0
+        for at in rows:
+            if not near(checker, name, at, f"v(b{k})", wanted, 1e-9):
+                break
+        near(checker, name, rows[-1], f"i(l{k})", limit, 1e-6 * limit)
+
+
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
     checker = dalcs_program.Checker("several slides")
@@ -189,6 +220,9 @@ def main():
                 check_rectifiers(checker, program, kind, values)
     for values in dalcs_program.some_of([(300.0, 8.0, 10e-3, 3e-3), (5.0, 1e-3, 2.0, 1e-2)]):
         check_phases(checker, program, *values)
+    for kind in dalcs_program.some_of(list(MEMORIES)):
+        for values in dalcs_program.some_of([(10.0, 10.0, 1e-4), (600.0, 2.0, 1e-3), (1.0, 1e3, 1e-6)]):
+            check_memories(checker, program, kind, *values)
     return checker.finish()
 
 
