@@ -71,7 +71,8 @@ static void warn_of_others(const struct dalcs_cli *cli, const struct dalcs_argum
         {"--energy", "an envelope leaves periods out",
          arguments->energy && arguments->envelope.is_asked},
         {"--measures", "the netlist has no .meas",
-         arguments->files.measures != NULL && dalcs_session_measure_name(session, 0) == NULL},
+         arguments->files.measures != NULL && !has_many &&
+             dalcs_session_measure_name(session, 0) == NULL},
     };
 
     for (size_t k = 0; k < sizeof option / sizeof option[0]; k++) {
@@ -86,5 +87,8 @@ void dalcs_unused_options_warn(const struct dalcs_cli *cli, const struct dalcs_a
                                const struct dalcs_session *session, enum dalcs_analysis main) {
     const struct dalcs_request request = dalcs_session_request(session);
     warn_of_analyses(cli, arguments, &request, main);
-    warn_of_others(cli, arguments, session, &request);
+    if (!arguments->batch
+             .is_asked) { /* whose options are ngspice's, and mean what they mean there */
+        warn_of_others(cli, arguments, session, &request);
+    }
 }

@@ -289,6 +289,7 @@ class Results(Case):
                 (RECTIFIER, "-o out.csv --at 0,1m --curve cubics", "no rows are added: --curve"),
                 (RECTIFIER, "-o out.csv --curve lines", ""),
                 (RECTIFIER, "-o none --measures m.csv", "the netlist has no .meas: --measures"),
+                (many, "-o out.csv --measures m.csv", ""),
                 (RECTIFIER.replace(".tran", ".meas tran a max v(out)\n.tran"), "-o none --measures m.csv", "")):
             done = self.dalcs("run", self.write(text), "-q", *options.split())
             self.assertEqual([line for line in done.stderr.splitlines() if line.startswith("dalcs: ")],
