@@ -38,3 +38,13 @@ enum dalcs_status dalcs_text_file_read(const char *path, size_t limit, char **te
     }
     return status;
 }
+
+void dalcs_text_end_lines(char *text, size_t length) {
+    if (length == 0 || memchr(text, '\n', length) != NULL) {
+        return;
+    }
+    const char *end = text + length;
+    while ((text = memchr(text, '\r', (size_t)(end - text))) != NULL) {
+        *text = '\n';
+    }
+}

@@ -1,4 +1,4 @@
-/* text_file.h - a whole file in memory. */
+/* text_file.h - a whole file in memory, and its lines. */
 #ifndef DALCS_TEXT_FILE_H
 #define DALCS_TEXT_FILE_H
 
@@ -10,5 +10,8 @@
 enum dalcs_status dalcs_text_file_read(const char *path, size_t limit, char **text, size_t *length,
                                        const struct dalcs_location *where,
                                        struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+/* Lines that end with a carriage return alone, in a text without a newline, end with a newline then. */
+void dalcs_text_end_lines(char *text, size_t length);
 
 #endif

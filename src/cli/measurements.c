@@ -17,19 +17,25 @@ static void write_measurement(FILE *out, const struct dalcs_measurement *m) {
 }
 
 static void write_fourier(FILE *out, const struct dalcs_fourier *f) {
-    const double largest = f->n_harmonics > 1 ? f->magnitude[1] : 0.0;
+    const bool has_fundamental = isfinite(f->thd);
     fprintf(out, "\nFourier analysis for %s:\n", f->signal);
-    fprintf(out, "  No. Harmonics: %zu, THD: %.10g %%, from= %.9e to= %.9e\n\n", f->n_harmonics,
-            100.0 * f->thd, f->from, f->to);
+    fprintf(out, "  No. Harmonics: %zu, THD: ", f->n_harmonics);
+    if (has_fundamental) {
+        fprintf(out, "%.10g %%", 100.0 * f->thd);
+    } else {
+        fputs("none, no fundamental", out);
+    }
+    fprintf(out, ", from= %.9e to= %.9e\n\n", f->from, f->to);
     fprintf(out, "%-8s %-16s %-16s %-16s %-16s %s\n", "Harmonic", "Frequency", "Magnitude", "Phase",
             "Norm. Mag", "Norm. Phase");
     fprintf(out, "%-8s %-16s %-16s %-16s %-16s %s\n", "--------", "---------", "---------", "-----",
             "---------", "-----------");
     for (size_t k = 0; k < f->n_harmonics; k++) {
-        const double norm = k > 0 && largest > 0.0 ? f->magnitude[k] / largest : 0.0;
+        const bool is_normal = k > 0 && has_fundamental;
         fprintf(out, " %-7zu %-16.10g %-16.10g %-16.10g %-16.10g %.10g\n", k,
-                (double)k * f->frequency, f->magnitude[k], f->phase[k], norm,
-                k > 0 ? f->phase[k] - f->phase[1] : 0.0);
+                (double)k * f->frequency, f->magnitude[k], f->phase[k],
+                is_normal ? f->magnitude[k] / f->magnitude[1] : 0.0,
+                is_normal ? f->phase[k] - f->phase[1] : 0.0);
     }
 }
 

@@ -58,6 +58,10 @@ static enum dalcs_status parse_number(const struct dalcs_cli *cli, const char *n
 static enum dalcs_status parse_output(struct dalcs_plot_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *path) {
     const char *dot = strrchr(path, '.');
+    if (arguments->output != NULL) {
+        dalcs_cli_error(cli, "one picture at a time: -o '%s' and -o '%s'", arguments->output, path);
+        return DALCS_E_OPTION;
+    }
     arguments->output = path;
     arguments->is_page = dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
     if (!arguments->is_page && !dalcs_figure_can_write(path)) {

@@ -11,6 +11,7 @@
 #include "script.h"
 #include "settings.h"
 #include "steady_lines.h"
+#include "unused_options.h"
 #include "variants.h"
 #include "verb.h"
 #include "worst_case_lines.h"
@@ -50,42 +51,6 @@ static const char help[] =
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
 /* ---- Before the run ------------------------------------------------------------------------- */
-
-/* Reports options of the command line that cannot apply to this netlist. */
-static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_arguments *arguments,
-                        const struct dalcs_request *request, enum dalcs_analysis main) {
-    const struct {
-        const char *name;
-        bool given;
-    } option[] = {{"--tol", arguments->method.tolerance > 0.0},
-                  {"--stages", arguments->method.stages > 0},
-                  {"--step", arguments->method.step > 0.0},
-                  {"--compress", arguments->rows.compress > 0.0},
-                  {"--fill", arguments->rows.fill > 0.0},
-                  {"--curve", arguments->rows.curve != NULL},
-                  {"--at", dalcs_arguments_have_times(arguments)},
-                  {"--plot", arguments->files.plot != NULL},
-                  {"--energy", arguments->energy},
-                  {"--losses", arguments->losses.is_asked}};
-
-    for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
-        const bool is_plot = arguments->files.plot != NULL && strcmp(option[i].name, "--plot") == 0;
-        const bool is_of_steps = i < 3; /* which the search for an orbit takes, too */
-        if (is_plot && (arguments->steady.is_asked || arguments->bode.is_asked ||
-                        arguments->envelope.is_asked)) {
-            continue; /* it draws the file that is written */
-        } else if (option[i].given && arguments->bode.is_asked && !is_of_steps) {
-            fprintf(cli->err, "dalcs: warning: %s applies to waveforms: it has no effect\n",
-                    option[i].name);
-        } else if (option[i].given && !arguments->bode.is_asked &&
-                   !(is_of_steps && request->periodic) &&
-                   (is_plot ? !request->transient
-                            : main != DALCS_TRANSIENT && main != DALCS_PERIODIC)) {
-            fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
-                    option[i].name);
-        }
-    }
-}
 
 /* The one that a file with room for one result holds. */
 static enum dalcs_analysis main_analysis(const struct dalcs_request *request,
@@ -259,7 +224,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     if (is_table) {
         return run_variants(cli, arguments, session);
     }
-    warn_unused(cli, arguments, &request, main);
+    dalcs_unused_options_warn(cli, arguments, session, main);
     return run_into_files(&run, session, arguments, main, &n_written);
 }
 

@@ -3,8 +3,9 @@
 
 #include "memory.h"
 #include "quantity.h"
+#include "text_file.h"
 
-#include <errno.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,30 +48,42 @@ static enum dalcs_status add_line(struct dalcs_times *times, size_t *capacity,
     return DALCS_OK;
 }
 
+/* Of a text that ends with a NUL. */
+static enum dalcs_status read_lines(struct dalcs_times *times, size_t *capacity,
+                                    const struct dalcs_cli *cli, const char *path, double stop,
+                                    char *text) {
+    enum dalcs_status status = DALCS_OK;
+    for (long line = 1; status == DALCS_OK && text != NULL; line++) {
+        char *begin = strsep(&text, "\n");
+        status = add_line(times, capacity, cli, path, stop, line, begin);
+    }
+    return status;
+}
+
 /* One time a line up to `stop`. */
 static enum dalcs_status read_file(struct dalcs_times *times, size_t *capacity,
                                    const struct dalcs_cli *cli, const char *path, double stop) {
-    FILE *file = fopen(path, "r");
-    if (!file) {
-        dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(errno));
-        return DALCS_E_IO;
-    }
-    enum dalcs_status status = DALCS_OK;
-    size_t size = 0;
+    struct dalcs_diag said = {0};
     char *text = NULL;
-    errno = 0;
-    for (long line = 1; status == DALCS_OK && getline(&text, &size, file) >= 0; line++) {
-        status = add_line(times, capacity, cli, path, stop, line, text);
+    size_t length = 0;
+    enum dalcs_status status = dalcs_text_file_read(path, SIZE_MAX, &text, &length, NULL, &said);
+    for (size_t k = 0; k < said.n; k++) {
+        fprintf(cli->err, "dalcs: %s\n", said.item[k].text);
     }
-    if (status == DALCS_OK && !feof(file)) { /* an error, or no memory for a line */
-        dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(errno != 0 ? errno : EIO));
-        status = DALCS_E_IO;
-    } else if (status == DALCS_OK && times->n == 0) {
+    dalcs_diag_finish(&said);
+    char *ended = status == DALCS_OK ? realloc(text, length + 1) : NULL;
+    if (ended == NULL) {
+        free(text);
+        return status == DALCS_OK ? DALCS_E_NOMEM : status;
+    }
+    ended[length] = '\0';
+    dalcs_text_end_lines(ended, length);
+    status = read_lines(times, capacity, cli, path, stop, ended);
+    if (status == DALCS_OK && times->n == 0) {
         dalcs_cli_error(cli, "'%s' holds no times", path);
         status = DALCS_E_OPTION;
     }
-    free(text);
-    fclose(file);
+    free(ended);
     return status;
 }
 

@@ -182,14 +182,15 @@ enum dalcs_status dalcs_source_read(struct dalcs_netlist *netlist,
     netlist->n_bytes += length;
     struct dalcs_lexer lexer = {.netlist = netlist, .source = source, .diag = diag};
     DALCS_TRY(dalcs_encoding_to_utf8(&netlist->arena, &text, &length));
-    if (dalcs_foreign_is_reported(netlist, source, text, length, diag) ||
-        is_no_text(netlist, source, text, length, diag)) {
-        return DALCS_OK;
-    }
     lexer.raw = dalcs_arena_copy(&netlist->arena, text, length);
     lexer.low = dalcs_arena_alloc(&netlist->arena, length + 1, 1);
     if (lexer.raw == NULL || lexer.low == NULL) {
         return DALCS_E_NOMEM;
+    }
+    dalcs_text_end_lines(lexer.raw, length);
+    if (dalcs_foreign_is_reported(netlist, source, lexer.raw, length, diag) ||
+        is_no_text(netlist, source, lexer.raw, length, diag)) {
+        return DALCS_OK;
     }
     struct dalcs_names sections = {0};
     lexer.length = length;

@@ -62,6 +62,7 @@ static void integrate(struct dalcs_curve *curve, double time, double value) {
 }
 
 void dalcs_curve_add(struct dalcs_curve *curve, double time, double value) {
+    const bool follows_gap = curve->n_rows > 0 && !isfinite(curve->value);
     struct dalcs_curve_point point = {.row = curve->n_rows++, .time = time, .value = value};
     integrate(curve, time, value);
     if (!isfinite(value)) {
@@ -69,7 +70,7 @@ void dalcs_curve_add(struct dalcs_curve *curve, double time, double value) {
     }
     struct dalcs_curve_column *column = &curve->column[dalcs_curve_find_column(curve, time)];
     if (!column->used) {
-        *column = (struct dalcs_curve_column){true, point, point, point, point};
+        *column = (struct dalcs_curve_column){true, follows_gap, point, point, point, point};
     }
     if (value < column->lowest.value) {
         column->lowest = point;

@@ -18,6 +18,7 @@ struct dalcs_curve_point {
 /* What of a pixel column's points can be seen. */
 struct dalcs_curve_column {
     bool used;
+    bool follows_gap; /* no line leads to it */
     struct dalcs_curve_point first, lowest, highest, last;
 };
 

@@ -36,6 +36,8 @@ static void write_curve(FILE *script, const struct dalcs_curve *curve, double ti
         struct dalcs_curve_point point[4];
         const int n =
             curve->column[c].used ? dalcs_curve_column_points(&curve->column[c], point) : 0;
+        fputs(n > 0 && curve->column[c].follows_gap ? "\n" : "",
+              script); /* which ends a line in gnuplot */
         for (int k = 0; k < n; k++) {
             fprintf(script, "%.10g %.10g\n", point[k].time / time_scale, point[k].value / scale);
         }

@@ -63,7 +63,9 @@ static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, i
         fprintf(stream, "$v%dp%dc%d << end_of_data\n", v, p, i);
         for (int column = 0; column < DALCS_CURVE_COLUMNS; column++) {
             struct dalcs_curve_point point[4];
-            int n = dalcs_curve_column_points(&view->curve[p][i].column[column], point);
+            const struct dalcs_curve_column *drawn = &view->curve[p][i].column[column];
+            int n = dalcs_curve_column_points(drawn, point);
+            fputs(drawn->follows_gap ? "\n" : "", stream); /* which ends a line in gnuplot */
             for (int k = 0; k < n; k++) {
                 fprintf(stream, "%.15g %.*g\n", point[k].time / time_scale, digits,
                         point[k].value / scale);

@@ -19,7 +19,11 @@ function quantity(value, unit, digits = 5) {
   if (!Number.isFinite(value)) return "\u2013";
   const plain = unit === "" || unit === "\u00b0" || unit === "dB" || /[\^ ]/.test(unit);
   const power = value === 0 || plain ? 0 : Math.floor(Math.log10(Math.abs(value) * (1 + 1e-12)) / 3);
-  if (power < -6 || power > 4) return `${Number(value.toPrecision(digits))} ${unit}`;
+  const rounded = Number(value.toPrecision(digits));
+  if (plain && (Math.abs(rounded) >= 1e7 || (rounded !== 0 && Math.abs(rounded) < 1e-5))) {
+    return `${rounded.toExponential()} ${unit}`.trim();
+  }
+  if (power < -6 || power > 4) return `${rounded.toExponential()} ${unit}`;
   const mantissa = Number((value / 1000 ** power).toPrecision(digits));
   return `${mantissa} ${PREFIX[power + 6]}${unit}`.trim();
 }

@@ -37,12 +37,14 @@ static void write_bytes(struct base64 *base64, uint64_t bits, int n_bytes) {
 void dalcs_page_json_column(FILE *stream, const double *value, size_t n, bool exact) {
     struct base64 base64 = {.stream = stream};
     for (size_t i = 0; i < n; i++) {
+        const double drawn =
+            isfinite(value[i]) ? value[i] : (double)NAN; /* infinity has no place on an axis */
         if (exact) {
             uint64_t bits = 0;
-            memcpy(&bits, &value[i], sizeof bits);
+            memcpy(&bits, &drawn, sizeof bits);
             write_bytes(&base64, bits, 8);
         } else {
-            float rounded = (float)value[i];
+            float rounded = (float)drawn;
             uint32_t bits = 0;
             memcpy(&bits, &rounded, sizeof bits);
             write_bytes(&base64, bits, 4);

@@ -63,6 +63,11 @@ static enum dalcs_status read_plain(struct dalcs_waveforms *waveforms, const cha
         dalcs_waveforms_is_raw(text, length)
             ? dalcs_waveforms_read_raw(waveforms, path, text, length, plot, diag)
             : dalcs_waveforms_read_csv(waveforms, path, text, length, diag);
+    if (status == DALCS_OK && plot > waveforms->n_plots) {
+        dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "'%s' has 1 plot: there is no plot %zu", path,
+                       plot);
+        status = DALCS_E_OPTION;
+    }
     if (status != DALCS_OK) {
         dalcs_waveforms_finish(waveforms);
         return status;
@@ -110,6 +115,9 @@ enum dalcs_status dalcs_waveforms_read_file(struct dalcs_waveforms *waveforms, c
         return DALCS_E_NOMEM;
     }
     ended[length] = '\0';
+    if (!dalcs_waveforms_is_raw(ended, length) && !dalcs_utf16_is_header(ended, length)) {
+        dalcs_text_end_lines(ended, length);
+    }
     enum dalcs_status status =
         dalcs_waveforms_read_text(waveforms, path, ended, length, plot, diag);
     free(ended);

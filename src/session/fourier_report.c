@@ -57,15 +57,33 @@ static void warn_of_frequency(struct dalcs_run *r, const struct dalcs_measuring 
     }
 }
 
-/* Magnitudes and phases (degrees) of [n] harmonics; the result is the THD. */
-static double list_lines(const struct dalcs_harmonics *h, size_t n, double *magnitude,
-                         double *phase) {
-    double square = 0.0;
+/* Magnitudes and phases (degrees) of [n] harmonics. */
+static void list_lines(const struct dalcs_harmonics *h, size_t n, double *magnitude,
+                       double *phase) {
     for (size_t i = 0; i < n; i++) {
         double factor = i == 0 ? 1.0 : 2.0;
         magnitude[i] = i == 0 ? h->cosine[0] : factor * hypot(h->cosine[i], h->sine[i]);
         phase[i] = i == 0 ? 0.0 : 57.295779513082320877 * atan2(h->cosine[i], h->sine[i]);
-        square += i >= 2 ? magnitude[i] * magnitude[i] : 0.0;
+    }
+}
+
+/* Against a fundamental. One below the tolerance of the run is what the run is off by: there is none then. */
+static double distortion_of(const struct dalcs_run *r, const struct dalcs_harmonics *h, size_t n,
+                            const double *magnitude) {
+    const double resolved = r->tolerance * h->scale;
+    if (!(magnitude[1] > resolved)) {
+        char text[DALCS_QUANTITY_SIZE];
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, &h->card->where,
+                       "a THD needs the frequency of the signal; reltol and --tol resolve more",
+                       "'%s' has no fundamental and no THD: its component at %s, %.3g, is below "
+                       "%.3g, which the run resolves",
+                       h->card->formula.text, dalcs_quantity_write(text, h->frequency, "Hz", 9),
+                       magnitude[1], resolved);
+        return NAN;
+    }
+    double square = 0.0;
+    for (size_t i = 2; i < n; i++) {
+        square += magnitude[i] * magnitude[i];
     }
     return sqrt(square) / magnitude[1];
 }
@@ -98,7 +116,8 @@ enum dalcs_status dalcs_measures_tell_harmonics(struct dalcs_measures *measures,
             continue;
         }
         warn_of_frequency(r, m, h);
-        const double thd = list_lines(h, n_lines, magnitude, phase);
+        list_lines(h, n_lines, magnitude, phase);
+        const double thd = distortion_of(r, h, n_lines, magnitude);
         const char *text = h->card->formula.text;
         const char *signal = dalcs_arena_copy(&r->s->arena, text, strlen(text));
         if (signal == NULL) {

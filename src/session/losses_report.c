@@ -67,6 +67,11 @@ static bool has_whole_periods(const struct account *a, double frequency) {
     return rint(n) >= 1.0 && fabs(n - rint(n)) <= tolerance;
 }
 
+/* One below the tolerance of the run is what the run is off by. */
+static bool has_fundamental(const struct account *a, double amplitude, double rms) {
+    return sqrt(0.5) * amplitude > a->r->tolerance * rms;
+}
+
 /* Power factor and THD against the fundamental of the source. */
 static void judge_source(const struct account *a, const struct dalcs_loss *l,
                          struct dalcs_element_losses *e) {
@@ -79,8 +84,10 @@ static void judge_source(const struct account *a, const struct dalcs_loss *l,
     double along = -(l->c[0] * l->c[1] + l->s[0] * l->s[1]) * 4.0 / (a->length * a->length);
     double rest = e->i_rms * e->i_rms - e->i_average * e->i_average - 0.5 * ampere * ampere;
     e->power_factor = -e->power / (e->v_rms * e->i_rms);
-    e->displacement = along / (volt * ampere);
-    e->thd = sqrt(fmax(rest, 0.0)) / (sqrt(0.5) * ampere);
+    if (has_fundamental(a, volt, e->v_rms) && has_fundamental(a, ampere, e->i_rms)) {
+        e->displacement = along / (volt * ampere);
+        e->thd = sqrt(fmax(rest, 0.0)) / (sqrt(0.5) * ampere);
+    }
 }
 
 static enum dalcs_status add_element(struct account *a, int k) {
@@ -191,7 +198,15 @@ static enum dalcs_status judge_efficiency(struct account *a) {
 static void note_periods(const struct account *a, const struct dalcs_element_losses *e) {
     char text[2][DALCS_QUANTITY_SIZE];
     const double n = a->length * e->frequency;
-    if (e->frequency > 0.0 && isnan(e->thd) && !has_whole_periods(a, e->frequency)) {
+    if (!(e->frequency > 0.0) || !isnan(e->thd)) {
+        return;
+    }
+    if (has_whole_periods(a, e->frequency) && e->i_rms > 0.0) {
+        dalcs_diag_add(&a->r->s->diag, DALCS_NOTE, NULL, NULL,
+                       "losses: voltage or current of '%s' has no component at its frequency, %s: "
+                       "no displacement or THD",
+                       e->element, dalcs_quantity_write(text[0], e->frequency, "Hz", 6));
+    } else if (!has_whole_periods(a, e->frequency)) {
         dalcs_diag_add(&a->r->s->diag, DALCS_NOTE, NULL, NULL,
                        "losses: the window of %s is %.6g periods of '%s' (%s), not a whole number: "
                        "no power factor or THD",

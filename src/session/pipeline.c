@@ -302,6 +302,12 @@ static enum dalcs_status run_circuit(struct dalcs_session *session,
     if (session->source.steps.n > 0) {
         return dalcs_stepped_run(session, options, sink);
     }
+    if (options->only_step > 1) {
+        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, NULL,
+                       "this is one run, without .step and .mc: there is no run %zu of them",
+                       options->only_step);
+        return DALCS_E_OPTION;
+    }
     DALCS_TRY(dalcs_operating_currents(session, options, sink));
     DALCS_TRY(dalcs_run_asked(session, options, sink));
     return session->circuit.analyses.worst_case.present

@@ -249,6 +249,51 @@ class Results(Case):
         self.write("# times\n0\n\n1m\n2.5m ignored\n* note\n0.0333\n", "times.txt")
         self.dalcs("run", self.write(RECTIFIER), "--at", "times.txt", "-o", "out.csv")
         self.assertEqual([row[0] for row in self.table("out.csv")[1]], [0.0, 1e-3, 2.5e-3, 0.0333])
+        text = self.path("out.csv").read_bytes()
+        for end in b"\r\n", b"\r":
+            self.path("times.txt").write_bytes(self.path("times.txt").read_bytes().replace(b"\r", b"").replace(b"\n", end))
+            self.dalcs("run", "a.cir", "--at", "times.txt", "-o", "out.csv")
+            self.assertEqual(self.path("out.csv").read_bytes(), text)
+
+    def test_table_with_returns_alone(self):
+        self.dalcs("run", self.write(RECTIFIER), "-o", "out.csv", "-q")
+        shown = self.dalcs("plot", "out.csv").stdout
+        self.path("out.csv").write_bytes(self.path("out.csv").read_bytes().replace(b"\r", b"").replace(b"\n", b"\r"))
+        self.assertEqual(self.dalcs("plot", "out.csv").stdout, shown)
+        self.assertIn("laws that could be checked hold", self.dalcs("audit", "a.cir", "out.csv").stdout)
+
+    def test_runs_that_are_not_there(self):
+        self.write(RECTIFIER)
+        for options in (), ("--set", "r1=5"), ("--measures", "m.csv"):
+            done = self.dalcs("run", "a.cir", "-o", "none", "--only", "3", *options, expect=USAGE)
+            self.assertIn("error: this is one run, without .step and .mc: there is no run 3 of them", done.stderr)
+        self.assertIn("no run 2", self.dalcs("steady", "a.cir", "-o", "none", "--only", "2", expect=USAGE).stderr)
+        self.dalcs("run", "a.cir", "-o", "none", "--only", "1")
+        self.dalcs("run", "a.cir", "-o", "out.csv", "-q")
+        for command in ("plot", "out.csv"), ("audit", "a.cir", "out.csv"):
+            self.assertIn("'out.csv' has 1 plot: there is no plot 2", self.dalcs(*command, "--plot", "2", expect=USAGE).stderr)
+            self.dalcs(*command, "--plot", "1")
+
+    def test_options_without_effect(self):
+        many = RECTIFIER.replace(".tran", ".step r1 list 10 20 30\n.tran")
+        for text, options, words in (
+                (RECTIFIER, "-o out.csv --ascii", "no raw file is written: --ascii"),
+                (RECTIFIER, "-o none --ascii", "no raw file is written: --ascii"),
+                (RECTIFIER, "-o out.csv -o out.raw --ascii", ""),
+                (many, "-o out.csv --split-steps", "no raw file is written: --split-steps"),
+                (many, "-o out.raw --split-steps", ""),
+                (many, "--split-steps", ""),
+                (many, "-o out.raw --split-steps --only 2", "there is one run, and no step of .step: --split-steps"),
+                (RECTIFIER, "-o out.raw --split-steps", "there is one run, and no step of .step: --split-steps"),
+                (RECTIFIER, "-o out.csv --fill none --curve lines", "no rows are added: --curve"),
+                (RECTIFIER, "-o out.csv --at 0,1m --curve cubics", "no rows are added: --curve"),
+                (RECTIFIER, "-o out.csv --curve lines", ""),
+                (RECTIFIER, "-o none --measures m.csv", "the netlist has no .meas: --measures"),
+                (many, "-o out.csv --measures m.csv", ""),
+                (RECTIFIER.replace(".tran", ".meas tran a max v(out)\n.tran"), "-o none --measures m.csv", "")):
+            done = self.dalcs("run", self.write(text), "-q", *options.split())
+            self.assertEqual([line for line in done.stderr.splitlines() if line.startswith("dalcs: ")],
+                             [f"dalcs: warning: {words} has no effect"] if words else [], options)
 
     def test_fill(self):
         """Rows between those of .tran, which stay: more of them for less, for lines, and none where that is said."""

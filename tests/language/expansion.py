@@ -7,6 +7,7 @@ Each case is a netlist in the language, with its files, and what it means withou
 in the first line of the output differ.
 """
 
+import itertools
 import math
 import pathlib
 import sys
@@ -265,19 +266,19 @@ def same_bits(program, checker):
 
 
 def encodings(program, checker):
-    """UTF-16 of both orders, with and without a mark, and Latin-1; the micro sign in it."""
+    """UTF-16 of both orders, with and without a mark, and Latin-1; the micro sign in it. Lines end as on three systems."""
     text = RC.replace("470n", "0.47\u00b5")
     wanted = dalcs_program.run(program, text, method=None)
     for codec in ("utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "latin-1"):
-        for mark in ("", "\ufeff"):
+        for mark, end in itertools.product(("", "\ufeff"), ("\n", "\r\n", "\r")):
             if codec in ("utf-8-sig", "utf-16", "latin-1") and mark:
                 continue
             with tempfile.TemporaryDirectory() as folder:
                 main = write(pathlib.Path(folder), {"main.cir": text},
-                             lambda t, c=codec, m=mark: (m + t).replace("\n", "\r\n").encode(c))
+                             lambda t, c=codec, m=mark, e=end: (m + t).replace("\n", e).encode(c))
                 run = dalcs_program.run(program, main, method=None)
-            checker.check(run.status == 0, f"{codec}: {run.stderr}")
-            checker.check(run.output == wanted.output, f"{codec}: differs from UTF-8")
+            checker.check(run.status == 0, f"{codec}, {end!r}: {run.stderr}")
+            checker.check(run.output == wanted.output, f"{codec}, {end!r}: differs from UTF-8")
 
 
 def mixed_encodings(program, checker):

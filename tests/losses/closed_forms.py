@@ -101,6 +101,23 @@ L1 b 0 {4/(2*pi*50)}
     r.close("r1", "power", 3 * 200, 1e-5)
 
 
+def no_fundamental(program, checker):
+    """A current, or a voltage, without a component at the frequency of its source: a power factor, and no THD."""
+    r = Losses(program, checker, """no fundamental
+V1 a 0 PULSE(0 1 0 0 0 5m 20m)
+I1 a 0 1
+I2 0 b SIN(0 1 50)
+V2 b 0 3
+.tran 1m 40m
+.losses
+.end
+""")
+    r.close("v1", "power_factor", 0.5)
+    for name in "v1", "i2":
+        element = next(e for e in r.run.report["losses"][0]["elements"] if e["element"] == name)
+        checker.check(element.get("thd") is None and element.get("displacement") is None, f"{element}")
+
+
 def half_wave(program, checker):
     r = Losses(program, checker, """half wave
 V1 a 0 SIN(0 10 50)
@@ -446,7 +463,7 @@ def chart(program, checker):
 
 def main():
     checker = dalcs_program.Checker("losses")
-    for case in (divider, sine_on_resistor, sine_on_coil, half_wave, six_pulse, square_wave, buck,
+    for case in (divider, sine_on_resistor, sine_on_coil, no_fundamental, half_wave, six_pulse, square_wave, buck,
                  windows, rc_part, not_whole, coupled, winding, charge_jump, source_jump, flux_jump,
                  at_start, euler, asked_outside, chart):
         case(sys.argv[1], checker)

@@ -454,6 +454,44 @@ R3 tri 0 1
     checker.close(whole["magnitude"][3], 4 / PI / 3, CLOSE, "all whole periods")
 
 
+def no_fundamental(program, checker):
+    """What is left of a component that is 0 is rounding: there is no THD. One above what the run resolves has one."""
+    run = dalcs_program.run(program, """no fundamental
+Va a 0 SIN(0 325 50)
+Vb b 0 SIN(0 325 50 0 0 -120)
+Vc c 0 SIN(0 325 50 0 0 120)
+D1 a p
+D2 b p
+D3 c p
+D4 n a
+D5 n b
+D6 n c
+R1 p n 10
+V2 x 0 SIN(1k 1m 50)
+V3 w x SIN(0 2m 150)
+R2 w 0 1
+R3 z 0 1
+V4 u 0 SIN(1 1e-8 50)
+R4 u 0 1
+.tran 20u 60m
+.four 50 v(p,n) v(p) v(w) v(z) v(a)
+.four 300 v(p,n)
+.four 50 3 v(u)
+.end
+""", method=None, tolerance=1e-7)
+    checker.check(run.status == 0, run.stderr)
+    told = run.report["fourier"]
+    for k in 0, 1, 3, 6:
+        checker.check(told[k]["thd"] is None, f"{told[k]['signal']}: THD {told[k]['thd']}")
+    checker.check(run.stderr.count("has no fundamental and no THD") == 4, run.stderr)
+    checker.close(told[2]["thd"], 2.0, 1e-5, "a fundamental of 1e-6 of the mean")
+    checker.close(told[4]["thd"], 0.0, 1e-12, "a sine")
+    # 2/(k^2 - 1) of the mean at k times 50 Hz, k = 6, 12, ...
+    ripple = [2.0 / ((6 * k)**2 - 1) for k in range(1, 10)]
+    checker.close(told[5]["thd"], math.hypot(*ripple[1:]) / ripple[0], CLOSE, "the ripple of a bridge")
+    checker.check("THD: none, no fundamental" in run.output if isinstance(run.output, str) else True, "as text")
+
+
 def decibels(program, checker):
     """Close to 0 dB all that is left of a logarithm is rounding: it is no reason to look closer."""
     r = Results(program, checker, "decibels\nV1 in 0 AC 1\nR1 in out 1k\nC1 out 0 1u\n"
@@ -701,7 +739,7 @@ def mistakes(program, checker):
 def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
-    for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels,
+    for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, no_fundamental, decibels,
                  between_frequencies, one_point, powers, windows, degrees, rounding, thresholds, mistakes):
         test(program, checker)
     return checker.finish()

@@ -270,6 +270,27 @@ class Page(unittest.TestCase):
         finally:
             self.driver.get(old)
 
+    def test_values_without_a_place(self):
+        """An infinite value is a gap in a panel with a scale; labels of what has no prefix stay on one line."""
+        folder = pathlib.Path(self.folder.name)
+        (folder / "g.csv").write_text("time,v(a),i(b),x\n0,1,1e18,1e9\n1,inf,2e18,2e40\n2,3,-1e18,3\n3,-inf,nan,-1e9\n4,5,0,1e-9\n")
+        subprocess.run([DALCS, "plot", "g.csv", "-o", "g.html", "-q"], cwd=folder, check=True, capture_output=True)
+        old = self.driver.current_url
+        try:
+            self.driver.get((folder / "g.html").as_uri())
+            self.wait("document.body.dataset.ready === 'yes'")
+            self.assertEqual(self.script("return panels.map((p) => p.graph.yAxisRange().every(Number.isFinite));"), [True] * 3)
+            self.assertEqual(self.script("return run.signals[0].value.length;"), 5)
+            self.assertLess(self.script("return panels[0].graph.yAxisRange()[1];"), 6.0)
+            heights = self.script("return [...document.querySelectorAll('.dygraph-axis-label-y')].map((e) => e.offsetHeight);")
+            self.assertGreater(len(heights), 5)
+            self.assertEqual(len(set(heights)), 1, heights)
+            self.assertEqual(self.script("return [quantity(-1e18, 'A'), quantity(2e40, ''), quantity(2.5e-12, 'V'), quantity(1500, ''),"
+                                         "quantity(-123, 'dB'), quantity(1e-21, 'V')];"),
+                             ["-1e+18 A", "2e+40", "2.5 pV", "1500", "-123 dB", "1e-21 V"])
+        finally:
+            self.driver.get(old)
+
     def test_bars_and_themes(self):
         self.assertEqual(self.script("return run.bars.map((bar) => bar.name);"), ["d1"])
         # The current conducts half of the time: half of the bar is dark.

@@ -238,6 +238,23 @@ class Plot(unittest.TestCase):
         self.assertIn("db(loop(v))", self.texts("loop.svg"))
         self.assertNotIn("db(v(in))", self.texts("loop.svg"))
 
+    def test_gaps(self):
+        """No line leads over what has no value, in a run and in a family."""
+        value = ("1", "inf", "3", "4", "nan", "nan", "6", "-inf", "2", "5", "1", "1")
+        (self.folder / "gaps.csv").write_text("time,v(a)\n" + "".join(f"{k},{v}\n" for k, v in enumerate(value)))
+        (self.folder / "two.csv").write_text("load,time,v(a)\n" + "".join(
+            f"{load},{k},{v}\n" for load in (1, 2) for k, v in enumerate(value)))
+        self.plot("gaps.csv", "-o", "gaps.svg", "-q")
+        drawn = re.findall(r"<path stroke='rgb\(  0, 114, 178\)'\s+d='([^']*)'", (self.folder / "gaps.svg").read_text())
+        # Two points that stand alone draw nothing; the legend's line besides.
+        ends = [line.count("L") for line in " ".join(drawn).split("M") if "L" in line]
+        self.assertEqual(ends, [1, 1, 3], drawn)
+        self.plot("two.csv", "--family", "-s", "v(a)", "-o", "family.svg", "-q")
+        text = (self.folder / "family.svg").read_text()
+        self.assertEqual(len([line for path in re.findall(r" d='(M[^']*)'", text) for line in path.split("M")
+                              if line.count("L") == 3]), 2)
+        self.assertIn("one picture at a time: -o 'a.svg' and -o 'b.html'", self.refused("gaps.csv", "-o", "a.svg", "-o", "b.html"))
+
     def test_spectrum(self):
         self.plot("buck.raw", "-s", "v(sw)", "--from", "0.9m", "--spectrum", "1meg", "-o", "spectrum.svg", "-q")
         texts = self.texts("spectrum.svg")
