@@ -22,9 +22,9 @@ struct dalcs_restless_step {
     double *moving;  /* [n_x + n_inputs] for the steps behind it */
 };
 
-/* In this step and those behind it, and in such half as long: does a switch turn round and round in both, between controls that are no closer in
- * the shorter one? may_slide: one that may be between both positions does not count. y, p->osnsp->mode and p->osnsp->w
- * have no meaning behind it. */
+/* In this step and those behind it, and in such half as long: does a switch turn round and round in both, between controls
+ * that are no closer in the shorter ones? may_slide: one that may be between both positions does not count. y, at->moving,
+ * p->osnsp->mode and p->osnsp->w have no meaning behind it. */
 enum dalcs_status dalcs_restless_find(struct dalcs_positions *p, bool may_slide,
                                       const struct dalcs_restless_step *at, double *y,
                                       struct dalcs_restless *found) DALCS_MUST_CHECK;
