@@ -125,7 +125,7 @@ static void put_inputs(struct dalcs_radau_part *part, double h) {
     dalcs_excitation_inputs(&part->excitation, part->segment.t, h, part->work.u + n_x);
 }
 
-/* The switches do not agree with part->work.y1, the answer of a step of length h. If they would not in a vanishing one
+/* The switches do not agree with part->work.y1, the answer of a step of length h. If they would not in vanishing ones
  * either, a step in one of their positions is none of the circuit. */
 static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      double h) {
@@ -135,7 +135,8 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
     const double micro = dalcs_radau_micro_length(r, part, 0);
     const double sigma = has_states ? 1.0 / micro : 0.0;
     struct dalcs_restless found;
-    const struct dalcs_restless_step vanishing = {.sigma = sigma, .u = part->work.u};
+    const struct dalcs_restless_step vanishing = {
+        .sigma = sigma, .u = part->work.u, .moving = c->probe_u};
     memcpy(part->work.mode_before, c->osnsp.mode, bytes);
     DALCS_TRY(dalcs_slide_find_leading(r, part, micro));
     put_inputs(part, micro);

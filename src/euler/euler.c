@@ -186,14 +186,15 @@ static void note_scale(struct dalcs_component *c) {
     c->scale[1] = fmax(c->scale[1], c->osnsp.certificate.ampere);
 }
 
-/* The switches of component k do not agree with its answer. If they would not in a vanishing step from the same state either,
+/* The switches of component k do not agree with its answer. If they would not in vanishing steps from the same state either,
  * a step in one of their positions is none of the circuit. */
 static enum dalcs_status check_limit(struct dalcs_euler *e, int k, double sigma) {
     struct dalcs_component *c = &e->component[k];
     const size_t bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
     struct dalcs_restless found;
     memcpy(c->saved_mode, c->osnsp.mode, bytes);
-    const struct dalcs_restless_step vanishing = {.sigma = ldexp(sigma, MICRO), .u = c->u};
+    const struct dalcs_restless_step vanishing = {
+        .sigma = ldexp(sigma, MICRO), .u = c->u, .moving = c->probe_u};
     DALCS_TRY(dalcs_restless_find(&c->positions, false, &vanishing, c->probe_y, &found));
     memcpy(c->osnsp.mode, c->saved_mode, bytes);
     if (found.pair >= 0) {

@@ -5,6 +5,7 @@
 #include "sliding_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 /* What the control of one switch is where it is about to move. */
 struct turns {
@@ -38,10 +39,12 @@ static void note(const struct dalcs_positions *p, const double *y, struct turns 
 }
 
 /* From y, the answer where the switches stand: all that want to move do, as often as it takes to come round. A chain of n
- * takes n rounds to where it comes round, and twice as many to do so. */
-static enum dalcs_status go_round(struct dalcs_positions *p, double sigma, const double *u,
-                                  double *y, struct turns *of) {
+ * takes n rounds to where it comes round, and twice as many to do so. Each round is a step from where the one before ends:
+ * a capacitor that a switch has discharged at once is empty where it opens. */
+static enum dalcs_status go_round(struct dalcs_positions *p, double sigma, double *u, double *y,
+                                  struct turns *of) {
     const int n_before = p->n + 1;
+    const size_t n_states = (size_t)p->osnsp->system->n_x * sizeof(*u);
     enum dalcs_status status = DALCS_OK;
     for (int k = 0; k < 4 * n_before && status == DALCS_OK; k++) {
         if (k >= n_before) {
@@ -50,6 +53,7 @@ static enum dalcs_status go_round(struct dalcs_positions *p, double sigma, const
         if ((of->has_opened && of->has_closed) || !dalcs_positions_move_all_once(p, y)) {
             break;
         }
+        memcpy(u, y, n_states);
         status = dalcs_osnsp_solve(p->osnsp, sigma, u, y);
     }
     return status < DALCS_OK ? status : DALCS_OK;
@@ -64,13 +68,16 @@ static bool slides(const struct dalcs_positions *p, const struct turns *of) {
     return p->alternates && !any;
 }
 
-static enum dalcs_status turn_at(struct dalcs_positions *p, double sigma, const double *u,
-                                 double *y, struct turns *of) {
-    enum dalcs_status status = dalcs_positions_solve(p, sigma, u, y);
+static enum dalcs_status turn_at(struct dalcs_positions *p, double sigma,
+                                 const struct dalcs_restless_step *at, double *y,
+                                 struct turns *of) {
+    const struct dalcs_system *s = p->osnsp->system;
+    enum dalcs_status status = dalcs_positions_solve(p, sigma, at->u, y);
     if (status != DALCS_OK || p->settled || slides(p, of)) {
         return status < DALCS_OK ? status : DALCS_OK; /* an answer, or none that says anything */
     }
-    return go_round(p, sigma, u, y, of);
+    memcpy(at->moving, at->u, (size_t)(s->n_x + s->n_inputs) * sizeof(*at->u));
+    return go_round(p, sigma, at->moving, y, of);
 }
 
 /* What a switch does to its control, V or A; 0: it comes to rest. */
@@ -84,12 +91,12 @@ enum dalcs_status dalcs_restless_find(struct dalcs_positions *p, bool may_slide,
     struct turns whole = {.i = -1, .may_slide = may_slide};
     struct turns half;
     found->pair = -1;
-    DALCS_TRY(turn_at(p, at->sigma, at->u, y, &whole));
+    DALCS_TRY(turn_at(p, at->sigma, at, y, &whole));
     half = (struct turns){.i = whole.i, .may_slide = may_slide};
     if (gap_of(&whole) == 0.0) {
         return DALCS_OK;
     }
-    DALCS_TRY(turn_at(p, 2.0 * at->sigma, at->u, y, &half));
+    DALCS_TRY(turn_at(p, 2.0 * at->sigma, at, y, &half));
     if (gap_of(&half) > 0.0 && dalcs_power_of_step(gap_of(&whole), gap_of(&half)) <= 0.0) {
         *found = (struct dalcs_restless){
             .pair = p->pair[half.i], .closed = half.closed, .open = half.open};

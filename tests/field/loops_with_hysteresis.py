@@ -7,6 +7,7 @@ Where it is open its control goes in proportion to a source that rises from 0, a
 closed the control is below Vt - Vh at that time. So behind it no position agrees with the control, no time passes between
 two turns, and nothing says for which part of the time the switch is closed. The run ends there with status 1, and says so.
 With a capacitor at the control the same circuit oscillates; without a hysteresis the switch slides (Filippov 1988).
+A switch without a resistance empties the capacitor at its control at once, and opens: that is a sawtooth, and no such loop.
 """
 
 import pathlib
@@ -57,6 +58,18 @@ CASES = {
 }
 
 
+# sawtooth oscillators; what is taken at once; between which values it goes, and its period in s
+SAWTEETH = {
+    "a capacitor": ("i1 0 a 10m\nc1 a 0 1u\ns1 a 0 a 0 m\n.model m sw(vt=3 vh=2 ron={0})", "v(a)", 0.0, 5.0, 0.5e-3),
+    "a large one": ("i1 0 a 10k\nc1 a 0 1m\ns1 a 0 a 0 m\n.model m sw(vt=3k vh=2k ron={0})", "v(a)", 0.0, 5e3, 0.5e-3),
+    "read by an e": ("i1 0 a 10m\nc1 a 0 1u\ne1 b 0 a 0 1m\ns1 a 0 b 0 m\n.model m sw(vt=3m vh=2m ron={0})", "v(a)", 0.0, 5.0,
+                     0.5e-3),
+    "to a voltage": ("i1 0 a 10m\nc1 a 0 1u ic=2\nv2 q 0 2\ns1 a q a 0 m\n.model m sw(vt=5 vh=2 ron={0})", "v(a)", 2.0, 7.0, 0.5e-3),
+    "filled": ("i1 a 0 10m\nc1 a 0 1u ic=5\nv2 q 0 5\ne1 b 0 q a 1\ns1 q a b 0 m\n.model m sw(vt=3 vh=2 ron={0})", "v(a)", 0.0,
+               5.0, 0.5e-3),
+}
+
+
 def of(netlist, more=()):
     return "\n".join(["a loop with hysteresis", netlist, *more, ".tran 1u 1m uic", ".end", ""])
 
@@ -86,6 +99,18 @@ def check_ways_out(checker, program):
         checker.close(result.column("v(a)")[-1], 8.0, 1e-9, "without a hysteresis: the voltage")
 
 
+def check_sawtooth(checker, program, name, ron, method):
+    cards, signal, low, high, period = SAWTEETH[name]
+    what = f"a sawtooth, {name}, {ron} ohm, {method}"
+    result = run(program, of(cards.format(ron)), method=method)
+    if not checker.check(result.status == 0, f"{what}: exit {result.status}: {result.stderr[:300]}"):
+        return
+    values = result.column(signal)
+    slack = (high - low) * (1e-6 if method is None else 2.1e-6 / period)  # two steps of implicit Euler
+    checker.close(max(values), high, slack, f"{what}: the largest value")
+    checker.close(min(values), low, slack, f"{what}: the least value")
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("loops_with_hysteresis")
@@ -94,6 +119,10 @@ def main():
     for name in ("itself", "e", "w", "three in a ring", "a filter behind it"):
         check_end(checker, program, name, "euler")
     check_ways_out(checker, program)
+    for name in SAWTEETH:
+        for ron in ("0", "1n"):
+            check_sawtooth(checker, program, name, ron, None)
+            check_sawtooth(checker, program, name, ron, "euler")
     return checker.finish()
 
 
