@@ -67,8 +67,8 @@ static double rounding_of_share(const struct dalcs_smooth_input *of, double shar
     return rounding;
 }
 
-double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x) {
-    return rounding_of_share(of, 1.0, x) + dalcs_rounded * fabs(dalcs_smooth_value(of->kind, x));
+double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, double value, const double *x) {
+    return rounding_of_share(of, 1.0, x) + dalcs_rounded * fabs(value);
 }
 
 double dalcs_smooth_function_rounding(const struct dalcs_smooth_input *of, const double *x) {
