@@ -172,7 +172,8 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     part->watch->asked = -1.0;
     part->watch->drawn = -1;
     part->at.against = part->at.was_coarse ? part->at.against : 0;
-    part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL || part->at.against > 0;
+    part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL || part->at.against > 0 ||
+                        (part->at.was_coarse && part->has.formula);
     if (part->at.is_drawn) {
         return false;
     }
@@ -299,6 +300,9 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     end->t = stretch->to;
     end->side = DALCS_LEFT;
     look(audit, stretch->part, end);
+    if (part->at.is_coarse) {
+        audit_check_commutators(audit, part, end);
+    }
     if (part->at.is_coarse && part->at.past_coarse && part->at.past > 0.0) {
         audit_check_obeyed(audit, part, end);
     }

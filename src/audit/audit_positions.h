@@ -40,6 +40,11 @@ static inline void audit_count_position(struct dalcs_audit *audit, const struct 
 void audit_check_obeyed(struct dalcs_audit *audit, struct audit_part *part,
                         const struct dalcs_audit_state *end);
 
+/* At the end of a step of implicit Euler: a switch may stand as it was commanded until the next step, but a jump of a
+ * formula is a function of its argument and has no command. */
+void audit_check_commutators(struct dalcs_audit *audit, struct audit_part *part,
+                             const struct dalcs_audit_state *end);
+
 /* changes.c: those of them that have turned, where the stretch begins. */
 void audit_check_turns(struct dalcs_audit *audit, const struct audit_part *part, double t);
 

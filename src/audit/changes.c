@@ -183,6 +183,21 @@ void audit_check_obeyed(struct dalcs_audit *audit, struct audit_part *part,
     part->at.is_coarse = true;
 }
 
+void audit_check_commutators(struct dalcs_audit *audit, struct audit_part *part,
+                             const struct dalcs_audit_state *end) {
+    part->at.is_coarse = false;
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        if (dalcs_element_is_commutator(audit->circuit->device[device].name) &&
+            !end->is_mean[device]) {
+            audit_find(audit, part, DALCS_AUDIT_POSITION, device,
+                       fmax(0.0, contradicts(audit, part, end, device)),
+                       audit_control_scale(audit, part, device), end->t);
+        }
+    }
+    part->at.is_coarse = true;
+}
+
 /* Most have reached their thresholds before: then nothing else is read. */
 void audit_check_turns(struct dalcs_audit *audit, const struct audit_part *part, double t) {
     const int index = (int)(part - audit->part);

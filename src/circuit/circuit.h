@@ -13,6 +13,8 @@
 #include "stimulus.h"
 #include "sweep.h"
 
+#include <string.h>
+
 /* .ic v(a[,b]) = value */
 struct dalcs_initial_condition {
     int node[2]; /* second is 0 for v(a) */
@@ -253,6 +255,12 @@ static inline bool dalcs_circuit_is_audited(const struct dalcs_circuit *circuit)
 /* A resistor of 0 ohm: its two nodes are one, unless its current is a signal. */
 static inline bool dalcs_device_is_short(const struct dalcs_device *device) {
     return device->kind == DALCS_RESISTOR && device->value == 0.0;
+}
+
+/* Is it the switch that commutate.c makes of a jump of a formula? */
+static inline bool dalcs_element_is_commutator(const char *name) {
+    static const char commutator[] = "commutator(";
+    return strncmp(name, commutator, sizeof(commutator) - 1) == 0;
 }
 
 /* Ohms of a diode or a switch that blocks; INFINITY: it is a cut. */

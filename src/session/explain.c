@@ -111,10 +111,9 @@ static const double shorter = 1024.0;
 /* Is a jump of a formula in it, which circuit/commutate.c makes a switch of? What contradicts itself is one of its sides, and
  * the answer may be between them. */
 static bool has_jump(const struct dalcs_witness *w) {
-    static const char commutator[] = "commutator(";
     bool has = false;
     for (int k = 0; k < w->n_elements && !has; k++) {
-        has = strncmp(w->element[k], commutator, sizeof(commutator) - 1) == 0;
+        has = dalcs_element_is_commutator(w->element[k]);
     }
     return has;
 }

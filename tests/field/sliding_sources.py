@@ -66,10 +66,43 @@ def check_words(checker, program):
     checker.check(result.status == 0 or "no solution exists" not in result.stderr, f"words: {result.stderr}")
 
 
+TWO_CLAMPS = """a clamp that is a switch and one that is a jump
+v1 p 0 sin({u} {u} {f})
+r0 p n0 218.8
+c0 n0 0 {c0}
+rr0 n0 m0 0.219
+cc0 m0 0 {c1}
+rx0 n0 n1 231
+s0 n0 0 n0 0 m0
+.model m0 sw(vt={vs} ron=0.2188)
+r1 p n1 2676
+c1 n1 0 {c2}
+b1 n1 0 i={{{g}*u(v(n1)-{vb})*abs(v(p))/{u}}}
+.tran {step} {stop} uic
+.end
+"""
+
+
+def check_contradictions(checker, program):
+    """In no step is a jump of a formula on the side of its argument that it is not on: right, or refused."""
+    for volts, time in ((5e3, 1.0), (5.0, 1e-3)):
+        netlist = TWO_CLAMPS.format(u=volts, f=1 / time, c0=1.481e-4 * time, c1=1.481e-3 * time, c2=1.433e-4 * time,
+                                    vs=0.4416 * volts, vb=0.4028 * volts, g=1.4946e-3 * volts, step=1e-3 * time, stop=0.136 * time)
+        result = run(program, netlist, method=None)
+        name = f"two clamps, {volts} V, {time} s"
+        if result.status == 0:
+            at = dict(zip(result.names, result.rows[-1]))
+            checker.check(abs(at["v(n0)"] - 0.4416 * volts) < 1e-6 * volts and abs(at["v(n1)"] - 0.4028 * volts) < 1e-6 * volts,
+                          f"{name}: {at}")
+        else:
+            checker.check("commutator(b1)" in result.stderr, f"{name}: {result.stderr}")
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("sliding_sources")
     check_words(checker, program)
+    check_contradictions(checker, program)
     for text in kinds_of(LAWS):
         for scale in some_of(CASES):
             for is_current in (True, False):
