@@ -249,7 +249,7 @@ static void fill_stretch(struct dalcs_measuring *m, double at, const double *re,
                 const double ratio = m->row_at > 0.0 ? (at - m->row_at) / m->row_at : 0.0;
                 const double log_x = ratio > 0.0 ? log1p(x * ratio) / log1p(ratio) : x;
                 const double complex value =
-                    between(CMPLX(m->row[k], m->row_imaginary[k]), CMPLX(re[k], im[k]), x, log_x);
+                    between(m->row[k] + I * m->row_imaginary[k], re[k] + I * im[k], x, log_x);
                 s->value[k][i] = creal(value);
                 imaginary[i] = cimag(value);
             }
