@@ -66,17 +66,22 @@ void dalcs_euler_finish(struct dalcs_euler *e) {
     *e = (struct dalcs_euler){0};
 }
 
+static void note_failure(struct dalcs_euler *e, int k, double sigma, const double *u) {
+    struct dalcs_component *c = &e->component[k];
+    c->failure.sigma = sigma;
+    c->failure.u = u;
+    c->failure.restless.pair = -1;
+    e->failure.system = k;
+    e->failure.time = e->t;
+    e->failure.h = sigma > 0.0 ? 1.0 / sigma : e->h;
+}
+
 enum dalcs_status dalcs_euler_solve(struct dalcs_euler *e, int k, double sigma, const double *u,
                                     double *y) {
     struct dalcs_component *c = &e->component[k];
     enum dalcs_status status = dalcs_component_solve(c, sigma, u, y);
     if (status != DALCS_OK) {
-        c->failure.sigma = sigma;
-        c->failure.u = u;
-        c->failure.restless.pair = -1;
-        e->failure.system = k;
-        e->failure.time = e->t;
-        e->failure.h = sigma > 0.0 ? 1.0 / sigma : e->h;
+        note_failure(e, k, sigma, u);
         return status;
     }
     if (c->osnsp.certificate.worst > e->worst.certificate.worst) {
@@ -198,12 +203,8 @@ static enum dalcs_status check_limit(struct dalcs_euler *e, int k, double sigma)
     DALCS_TRY(dalcs_restless_find(&c->positions, false, &vanishing, c->probe_y, &found));
     memcpy(c->osnsp.mode, c->saved_mode, bytes);
     if (found.pair >= 0) {
-        c->failure.sigma = sigma;
-        c->failure.u = c->u;
+        note_failure(e, k, sigma, c->u);
         c->failure.restless = found;
-        e->failure.system = k;
-        e->failure.time = e->t;
-        e->failure.h = e->h;
         return DALCS_INFEASIBLE;
     }
     return dalcs_osnsp_solve(&c->osnsp, sigma, c->u, c->y);

@@ -75,15 +75,22 @@ void dalcs_positions_finish(struct dalcs_positions *p) {
     *p = (struct dalcs_positions){0};
 }
 
-bool dalcs_positions_moves(const struct dalcs_positions *p, int i, const double *y) {
+bool dalcs_positions_moves_from(const struct dalcs_positions *p, int i, const uint64_t *memory,
+                                const double *y) {
     const struct dalcs_system *s = p->osnsp->system;
     const struct dalcs_pair *pair = &s->pair[p->pair[i]];
-    if (dalcs_pair_remembers(pair) && p->keeps) {
+    const bool remembers = dalcs_pair_remembers(pair);
+    if (remembers && p->keeps) {
         return false;
     }
     double control = dalcs_csr_row_dot(&s->control, p->pair[i], y);
     bool is_on = dalcs_osnsp_is_on(p->osnsp, p->pair[i]);
-    return dalcs_pair_closes(pair, is_on, control, p->slack[i]) != is_on;
+    bool was_on = remembers ? dalcs_mode_has(memory, p->pair[i]) : is_on;
+    return dalcs_pair_closes(pair, was_on, control, p->slack[i]) != is_on;
+}
+
+bool dalcs_positions_moves(const struct dalcs_positions *p, int i, const double *y) {
+    return dalcs_positions_moves_from(p, i, p->osnsp->mode, y);
 }
 
 static void flip(struct dalcs_positions *p, int i) {

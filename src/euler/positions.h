@@ -65,6 +65,10 @@ enum dalcs_status dalcs_positions_solve_at_rest(struct dalcs_positions *p, const
 /* Does the answer y move the i-th switch? */
 bool dalcs_positions_moves(const struct dalcs_positions *p, int i, const double *y);
 
+/* The same where one with hysteresis remembers where it stands in `memory`, a mode, not where it stands now. */
+bool dalcs_positions_moves_from(const struct dalcs_positions *p, int i, const uint64_t *memory,
+                                const double *y);
+
 /* All that the answer y moves do. Returns whether there are any: none is where they agree with it. */
 bool dalcs_positions_move_all_once(struct dalcs_positions *p, const double *y);
 

@@ -73,20 +73,8 @@ static void put_leading(struct dalcs_positions *p, int corner) {
     }
 }
 
-/* Does the i-th stand where the answer y does not have it? The answers on the way to a corner are none of the circuit:
- * a switch with hysteresis remembers p->present, not these. */
-static bool is_elsewhere(const struct dalcs_positions *p, int i, const double *y) {
-    const struct dalcs_pair *pair = &p->osnsp->system->pair[p->pair[i]];
-    if (!dalcs_pair_remembers(pair) || p->keeps) {
-        return dalcs_positions_moves(p, i, y);
-    }
-    const double control = dalcs_csr_row_dot(&p->osnsp->system->control, p->pair[i], y);
-    const bool was_on = dalcs_mode_has(p->present, p->pair[i]);
-    return dalcs_pair_closes(pair, was_on, control, p->slack[i]) !=
-           dalcs_osnsp_is_on(p->osnsp, p->pair[i]);
-}
-
-/* All else goes where the answer y has it. Returns whether something changed. */
+/* All else goes where the answer y has it. The answers on the way to a corner are none of the circuit: a switch with
+ * hysteresis remembers p->present, not these. Returns whether something changed. */
 static bool put_others(struct dalcs_positions *p, const double *y) {
     const struct dalcs_osnsp *o = p->osnsp;
     bool any = false;
@@ -98,7 +86,7 @@ static bool put_others(struct dalcs_positions *p, const double *y) {
         }
     }
     for (int i = 0; i < p->n; i++) {
-        if (p->sides.group[i] < 0 && is_elsewhere(p, i, y)) {
+        if (p->sides.group[i] < 0 && dalcs_positions_moves_from(p, i, p->present, y)) {
             dalcs_turning_put(p, i, !dalcs_osnsp_is_on(o, p->pair[i]));
             any = true;
         }
