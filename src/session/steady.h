@@ -208,6 +208,11 @@ bool dalcs_steady_has_drift(const struct dalcs_steady *st);
  * stores nothing, and of all beside gates, 1 over its scale. */
 double dalcs_steady_unit(const struct dalcs_steady *st, int system, int x);
 
+/* unit /= scales that balance rows and columns of M [n][n] in these units (dgebal), of which entries that are rounding have
+ * no part. work: [n + n^2]. */
+enum dalcs_status dalcs_steady_balance(int n, const double *M, double *unit,
+                                       double *work) DALCS_MUST_CHECK;
+
 /* ---- steady_gates.c ---------------------------------------------------------------------------- */
 
 /* st->at becomes a point of a run, from which on gates are where they were after *n periods of the sources; 0: after no

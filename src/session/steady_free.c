@@ -26,6 +26,7 @@ struct bordered {
     double *unit;  /* [n - 1] what states are multiplied by */
     double *A, *b; /* [n][n] column after column, [n] */
     double *s;     /* [n] work */
+    double *work;  /* [n + n^2] */
 };
 
 static bool make_room(struct bordered *w, struct dalcs_arena *arena) {
@@ -34,7 +35,8 @@ static bool make_room(struct bordered *w, struct dalcs_arena *arena) {
     w->A = dalcs_arena_alloc(arena, n * n, sizeof(double));
     w->b = dalcs_arena_alloc(arena, n, sizeof(double));
     w->s = dalcs_arena_alloc(arena, n, sizeof(double));
-    return w->unit != NULL && w->A != NULL && w->b != NULL && w->s != NULL;
+    w->work = dalcs_arena_alloc(arena, n + n * n, sizeof(double));
+    return w->unit != NULL && w->A != NULL && w->b != NULL && w->s != NULL && w->work != NULL;
 }
 
 static void fill_system(const struct dalcs_steady *st, int system, struct bordered *w) {
@@ -67,15 +69,9 @@ static bool fill_border(const struct dalcs_steady *st, struct bordered *w) {
     return size > 0.0;
 }
 
-static enum dalcs_status solve(struct dalcs_steady *st, struct bordered *w, double *by) {
-    const int n = w->n - 1;
-    int rank;
-    for (int k = 0; k < st->layout.n_systems; k++) {
-        const int first = st->layout.first[k];
-        for (int x = first; x < st->layout.first[k + 1]; x++) {
-            w->unit[x] = dalcs_steady_unit(st, k, x - first);
-        }
-    }
+/* The step into w->b. */
+static enum dalcs_status solve_in_units(const struct dalcs_steady *st, struct bordered *w,
+                                        int *rank) {
     for (int k = 0; k < st->layout.n_systems; k++) {
         fill_system(st, k, w);
     }
@@ -83,9 +79,45 @@ static enum dalcs_status solve(struct dalcs_steady *st, struct bordered *w, doub
         return DALCS_SINGULAR; /* nothing moves */
     }
     const int failed = LAPACKE_dgelss(LAPACK_COL_MAJOR, w->n, w->n, 1, w->A, w->n, w->b, w->n, w->s,
-                                      is_singular, &rank);
-    if (failed != 0) {
-        return failed == LAPACK_WORK_MEMORY_ERROR ? DALCS_E_NOMEM : DALCS_SINGULAR;
+                                      is_singular, rank);
+    return failed == 0                          ? DALCS_OK
+           : failed == LAPACK_WORK_MEMORY_ERROR ? DALCS_E_NOMEM
+                                                : DALCS_SINGULAR;
+}
+
+static void take_energies(const struct dalcs_steady *st, struct bordered *w) {
+    for (int k = 0; k < st->layout.n_systems; k++) {
+        const int first = st->layout.first[k];
+        for (int x = first; x < st->layout.first[k + 1]; x++) {
+            w->unit[x] = dalcs_steady_unit(st, k, x - first);
+        }
+    }
+}
+
+/* As in steady_newton.c, what is conserved is so in units that balance M, too; else those are taken. */
+static enum dalcs_status look_closer(const struct dalcs_steady *st, struct bordered *w, int *rank) {
+    const int before = *rank;
+    for (int k = 0; k < st->layout.n_systems; k++) {
+        const int first = st->layout.first[k];
+        DALCS_TRY(dalcs_steady_balance(st->layout.first[k + 1] - first,
+                                       st->pass.M + st->layout.first_of_M[k], w->unit + first,
+                                       w->work));
+    }
+    DALCS_TRY(solve_in_units(st, w, rank));
+    if (*rank > before) {
+        return DALCS_OK;
+    }
+    take_energies(st, w);
+    return solve_in_units(st, w, rank);
+}
+
+static enum dalcs_status solve(struct dalcs_steady *st, struct bordered *w, double *by) {
+    const int n = w->n - 1;
+    int rank;
+    take_energies(st, w);
+    DALCS_TRY(solve_in_units(st, w, &rank));
+    if (rank < w->n) {
+        DALCS_TRY(look_closer(st, w, &rank));
     }
     const double factor = fmin(1.0, most_change / fabs(w->b[n]));
     st->own.n = w->n - rank;

@@ -147,24 +147,25 @@ static int count_rounding(const struct newton *w) {
     return m;
 }
 
-/* unit /= scales that balance rows and columns of M, of which entries that are rounding have no part. */
-static enum dalcs_status balance(struct newton *w, const double *M) {
-    const size_t n = (size_t)w->n;
+enum dalcs_status dalcs_steady_balance(int n, const double *M, double *unit, double *work) {
+    double *A = work + n;
     double largest = 0.0;
     int low;
     int high;
-    put_map(w, M);
-    for (size_t i = 0; i < n * n; i++) {
-        largest = fmax(largest, fabs(w->A[i]));
+    for (int k = 0; k < n; k++) {
+        for (int x = 0; x < n; x++) {
+            A[k * n + x] = unit[x] * M[k * n + x] / unit[k];
+            largest = fmax(largest, fabs(A[k * n + x]));
+        }
     }
-    for (size_t i = 0; i < n * n; i++) {
-        w->A[i] = fabs(w->A[i]) > DBL_EPSILON * largest ? w->A[i] : 0.0;
+    for (int i = 0; i < n * n; i++) {
+        A[i] = fabs(A[i]) > DBL_EPSILON * largest ? A[i] : 0.0;
     }
-    if (LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', w->n, w->A, w->n, &low, &high, w->c) != 0) {
+    if (LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, A, n, &low, &high, work) != 0) {
         return DALCS_SINGULAR;
     }
-    for (size_t k = 0; k < n; k++) {
-        w->unit[k] /= w->c[k];
+    for (int k = 0; k < n; k++) {
+        unit[k] /= work[k];
     }
     return DALCS_OK;
 }
@@ -176,7 +177,7 @@ static enum dalcs_status look_closer(struct newton *w, const double *M) {
     const int m = count_rounding(w);
     double *before = w->rest; /* not in use yet */
     memcpy(before, w->unit, (size_t)w->n * sizeof(double));
-    DALCS_TRY(balance(w, M));
+    DALCS_TRY(dalcs_steady_balance(w->n, M, w->unit, w->c));
     put_map(w, M);
     DALCS_TRY(decompose(w));
     if (count_rounding(w) < m) {

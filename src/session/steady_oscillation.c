@@ -70,6 +70,13 @@ static void nudge_states(struct search *s) {
     s->span = first_span;
 }
 
+static void drop_what_died_away(struct search *s) {
+    struct dalcs_steady *st = s->st;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        st->at.x[x] = fabs(st->at.x[x]) > rests_within * s->largest[x] ? st->at.x[x] : 0.0;
+    }
+}
+
 /* The middle of the longest time between two events of the watch from `from` to `to`. */
 static double calmest(const struct dalcs_steady_watch *watch, int from, int to) {
     double longest = -1.0;
@@ -84,21 +91,63 @@ static double calmest(const struct dalcs_steady_watch *watch, int from, int to) 
     return middle;
 }
 
-/* How often the events from `from` to `to` are those that an n-th of them are, by their kinds; at least 1. */
-static int repetitions(const struct dalcs_steady_watch *watch, int from, int to) {
-    const int n = to - from;
-    int length = 1;
-    for (; length < n; length++) {
-        bool same = n % length == 0;
-        for (int k = from; k + length < to && same; k++) {
-            same = watch->event[k].kind == watch->event[k + length].kind &&
-                   watch->event[k].part == watch->event[k + length].part;
+/* After how many events the later half of them are the same ones again, by their kinds; or 0. The first ones may be of
+ * other kinds: where a run begins in a mode that is one of several. */
+static int recurrence(const struct dalcs_steady_watch *watch) {
+    for (int length = 1; length <= watch->n / 2; length++) {
+        bool same = true;
+        for (int k = watch->n / 2; k < watch->n && same; k++) {
+            same = watch->event[k].kind == watch->event[k - length].kind &&
+                   watch->event[k].part == watch->event[k - length].part;
         }
         if (same) {
-            break;
+            return length;
         }
     }
-    return n / length;
+    return 0;
+}
+
+static bool is_near(const struct dalcs_steady *st, int x, double by) {
+    const double within = fmax(rests_within, st->distance);
+    return fabs(by) <= within * fmax(st->scale[x], fabs(st->at.x[x]));
+}
+
+/* Any time is a period of a state that stays, and Newton's method may come to one, as near as it comes to an orbit. What has
+ * only rounding for a sign may have events there. */
+static bool is_at_rest(const struct dalcs_steady *st, const struct dalcs_steady_watch *watch) {
+    bool rests = st->layout.memory.n_numbers == 0;
+    for (int x = 0; x < st->layout.n_x && rests; x++) {
+        rests = is_near(st, x, st->pass.first[x] * st->period);
+    }
+    for (int k = 0; k < watch->n && rests; k++) {
+        const struct dalcs_steady_event *e = &watch->event[k];
+        const int first = st->layout.first[e->part];
+        for (int x = first; x < st->layout.first[e->part + 1] && rests; x++) {
+            rests = is_near(st, x, e->x[x - first] - st->at.x[x]);
+        }
+    }
+    return rests;
+}
+
+/* How often the orbit's events repeat within what was taken for its period. They are those of the orbit, not of the guess:
+ * a run that settles has events in another order here and there. By times, since an event at the very end is not seen.
+ * 0: nothing moves. */
+static enum dalcs_status count_turns(struct dalcs_steady *st, int *n) {
+    struct dalcs_steady_watch watch;
+    int from = 0;
+    int to = 0;
+    bool recurs = false;
+    DALCS_TRY(dalcs_steady_watch_setup(&watch, st->layout.n_systems, MOST_EVENTS));
+    const enum dalcs_status status =
+        dalcs_steady_pass_watched(st, st->period, &watch, &recurs, &from, &to);
+    const int length = recurrence(&watch);
+    *n = status == DALCS_OK && is_at_rest(st, &watch) ? 0 : 1;
+    if (status == DALCS_OK && *n > 0 && length > 0) {
+        const double turn = watch.event[watch.n - 1].t - watch.event[watch.n - 1 - length].t;
+        *n = turn > st->period / MOST_EVENTS ? (int)lround(st->period / turn) : 1;
+    }
+    dalcs_steady_watch_finish(&watch);
+    return status;
 }
 
 /* Of an orbit that was found by a guess of n periods of it: the period that is its shortest one. */
@@ -121,9 +170,9 @@ static enum dalcs_status shorten(struct dalcs_steady *st, int n) {
 }
 
 /* From the last span's events on. */
-static enum dalcs_status try_period(struct search *s, int from, int to, bool *found) {
+static enum dalcs_status try_period(struct search *s, int from, int to, bool *found, bool *rests) {
     struct dalcs_steady *st = s->st;
-    const int n = repetitions(&s->watch, from, to);
+    int n = 1;
     st->period = s->watch.event[to].t - s->watch.event[from].t;
     const double middle = calmest(&s->watch, from, to);
     DALCS_TRY(dalcs_steady_pass_watched(st, middle, NULL, NULL, NULL, NULL));
@@ -133,6 +182,13 @@ static enum dalcs_status try_period(struct search *s, int from, int to, bool *fo
     DALCS_TRY(dalcs_steady_burst(st, found));
     if (*found) {
         DALCS_TRY(dalcs_steady_refine(st, &s->run));
+        DALCS_TRY(count_turns(st, &n));
+        if (n == 0) {
+            *rests = true;
+            *found = false;
+            drop_what_died_away(s);
+            return DALCS_OK;
+        }
         DALCS_TRY(shorten(st, n));
         return dalcs_steady_refine(st, &s->run);
     }
@@ -151,7 +207,7 @@ static enum dalcs_status go_on(struct search *s, bool *found, bool *rests) {
     DALCS_TRY(dalcs_steady_pass_watched(st, s->span, &s->watch, &recurs, &from, &to));
     note_largest(s);
     if (recurs && s->watch.n >= FEW_EVENTS) {
-        return try_period(s, from, to, found);
+        return try_period(s, from, to, found, rests);
     }
     s->rings = s->watch.n == 0 && dalcs_steady_watch_is_full(&s->watch);
     const bool is_still = st->has_point && s->watch.n == 0 && !has_moved(s);
@@ -162,9 +218,7 @@ static enum dalcs_status go_on(struct search *s, bool *found, bool *rests) {
         nudge_states(s);
     } else if (s->rests >= RESTS_FOR) {
         *rests = true;
-        for (int x = 0; x < st->layout.n_x; x++) { /* what is left of what has died away */
-            st->at.x[x] = fabs(st->at.x[x]) > rests_within * s->largest[x] ? st->at.x[x] : 0.0;
-        }
+        drop_what_died_away(s);
     }
     return DALCS_OK;
 }

@@ -113,7 +113,27 @@ def negative_resistance():
                both_ways(0.0, 1e-3 * volts, 0.0), None)
 
 
-KINDS = {f.__name__: f for f in (relaxation, inverter, royer, hysteretic_buck, bang_bang_boost,
+def resonant():
+    """A half-bridge whose frequency a slow loop sets: the small capacitor of the oscillator beside the tank's energies."""
+    for k in range(10):
+        slow, start = (30, 1.5) if k in (5, 7, 9) else (1, 2)
+        volts, turns = between(20, 400, k, 1), 1 + 9 * part(k, 2)
+        tank, store = between(10e-6, 100e-6, k, 3), between(10e-9, 100e-9, k, 4)
+        wave, rate = math.sqrt(tank / store), 1 / (2 * math.pi * math.sqrt(tank * store))
+        ohms, small = wave * between(0.3, 1, k, 5) / turns**2, between(100e-12, 2e-9, k, 6)
+        volts_out = (0.2 + 0.2 * part(k, 7)) * volts / turns
+        yield (f"Vin in 0 {volts!r}\nS1 in h q 0 sq\nS2 h 0 qn 0 sq\nEqn qn 0 value={{1-v(q)}}\n"
+               f"Cr h a {store!r}\nLr a p {tank!r}\nLp p 0 {5 * tank!r}\nLs s 0 {5 * tank / turns**2!r}\n"
+               f"Lt 0 t {5 * tank / turns**2!r}\nK1 Lp Ls Lt 1\nD1 s out dd\nD2 t out dd\n"
+               f"C1 out 0 {30 / (ohms * rate)!r} IC={volts_out!r}\nR1 out 0 {ohms!r}\n"
+               f"Bq 0 tr I={{(1-2*v(q))*v(ctl)*{small * rate!r}}}\nCt tr 0 {small!r} IC=0.1\nRt tr 0 100meg\n"
+               "Vone one 0 1\nSq one q tr 0 sch\nRq q 0 1k\n"
+               f"G1 0 ctl out ref {1e-3 / volts_out!r}\nRz ctl z 3k\nCz z 0 {10 * slow / (3e3 * rate)!r} IC={start}\nRo ctl 0 1meg\n"
+               f"Vref ref 0 {volts_out!r}\n.model sq SW(Ron={0.01 * wave!r} Vt=0.5 Roff=10meg)\n"
+               ".model sch SW(Ron=1u Vt=0.5 Vh=0.5 Roff=1g)\n.model dd D(Ron=1m)\n", None)
+
+
+KINDS = {f.__name__: f for f in (resonant, relaxation, inverter, royer, hysteretic_buck, bang_bang_boost,
                                  ring, negative_resistance)}
 KINDS.update(gate_oscillators.KINDS)
 
@@ -158,6 +178,8 @@ def main():
             checker.check(steady["self_oscillating"] and steady["stable"],
                           f"{label}: {steady['verdict']}")
             checker.check(abs(steady["flow"] - 1) < 1e-7, f"{label}: flow {steady['flow']!r}")
+            closed = [e for e in report["events"] if (e["element"], e["state"]) == ("sq", "on")]
+            checker.check(kind != "resonant" or len(closed) == 1, f"{label}: {len(closed)} turns")
             if period is None:
                 period = settled_period(program, folder, body, steady)
             if period is None:

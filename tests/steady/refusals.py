@@ -67,6 +67,16 @@ class Case:
         return report
 
 
+# A resonant converter whose loop sticks: Newton's method comes to that state, not to an orbit.
+STICKS = ("Vin in 0 180\nS1 in h q 0 sq\nS2 h 0 qn 0 sq\nEqn qn 0 value={1-v(q)}\nCr h a 39n\n"
+          "Lr a p 94u\nLp p 0 470u\nLs s 0 27u\nLt 0 t 27u\nK1 Lp Ls Lt 1\nD1 s out dd\nD2 t out dd\n"
+          "C1 out 0 330u IC=12.5\nR1 out 0 1.08\nBq 0 tr I={(1-2*v(q))*v(ctl)*0.1m}\n"
+          "Ct tr 0 1.2n IC=0.1\nRt tr 0 100meg\nVone one 0 1\nSq one q tr 0 sch\nRq q 0 1k\n"
+          "G1 0 ctl out ref 80u\nRz ctl z 3k\nCz z 0 1.2u IC=1.5\nRo ctl 0 1meg\nVref ref 0 12.5\n"
+          ".model sq SW(Ron=0.5 Vt=0.5 Roff=10meg)\n.model sch SW(Ron=1u Vt=0.5 Vh=0.5 Roff=1g)\n"
+          ".model dd D(Ron=1m)\n.pss uic\n")
+
+
 def refused(case):
     case.refuses((CASES / "two_clocks.cir").read_text(), 2, "'v1' (10 us)", "'v2' (31.8",
                  "no common period")
@@ -76,6 +86,7 @@ def refused(case):
                  "comes to rest", "v(c1) = 10 V")
     case.refuses("* dies away\nV1 a 0 10\nL1 a b 1m\nR1 b c 1\nC1 c 0 1u\n.pss 200u uic\n", 1,
                  "comes to rest", "v(c1) = 10 V")
+    case.refuses("* sticks\n" + STICKS, 1, "comes to rest", "v(cz) = -1 kV")
     case.refuses("* rings\nC1 x 0 1u IC=1\nL1 x 0 1m\n.pss uic\n", 1, "nothing switches")
     case.refuses("* no end\nI1 0 x 1m\nC1 x 0 1u\n.pss uic\n", 1, "nothing switches")
     case.refuses("* no memory\nV1 a 0 10\nR1 a 0 1k\n.pss\n", 2, "has a memory")
