@@ -161,7 +161,7 @@ class Look:
         if not self.check(changes(said), f"nothing grows: {said}"):
             return "no run"
         off = math.inf
-        for n in (4000, 16000):  # what settles besides may do so slowly
+        for n in (4000, 16000, 64000):  # what settles besides may do so slowly
             if off > 1e-5:
                 ends = [self.after(self.case.netlist, k, self.clock()) for k in (n, n + 1)]
                 if None in ends:
