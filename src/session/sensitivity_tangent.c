@@ -2,10 +2,10 @@
  *
  * An orbit x = Phi(x, p) moves with p by x' = (1 - M)^-1 dPhi/dp, where dPhi/dp is that from the states as they are. With
  * states that move along the tangent, x + d x', and a value p + d, a period measures f(d), and f'(0) is the derivative of
- * what the orbit itself measures: the curvature of f has no influence. So no circuit's orbit is looked for, and no M
- * made
+ * what the orbit itself measures: the curvature of f has no influence. So no circuit's orbit is looked for, and no M made
  * but the one. */
 #include "sensitivity_internal.h"
+#include "steady_step.h"
 
 #include <string.h>
 

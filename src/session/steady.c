@@ -6,7 +6,7 @@
  * the circuit can be. Where a burst ends nowhere, leaps of so many periods follow (steady_continuation.c), and a burst
  * from where they end. Where a controller is saturated, a quantity grows by as much each period and nothing
  * else happens: the search leaps along it, as far as the same events follow each other. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,71 +17,14 @@ enum { MOST_SHORTER = 10, MOST_UNHELPFUL = 4, MOST_LEAPS = 24 };
 /* Periods of runs between bursts, in all. */
 static const long most_periods = 4096;
 
-/* Residuals: with the first it is done; the second is good enough where a further step makes it no smaller. */
-static const double converged = 1e-11, good = 1e-10;
-
-/* Is every switch with hysteresis, and every gate, in its old state again? */
-static bool switches_return(const struct dalcs_steady *st) {
-    bool do_ = true;
-    for (int k = st->layout.n_switches; k < st->layout.n_pairs; k++) {
-        do_ = do_ && st->at.closed[k] == st->then.closed[k];
-    }
-    for (int k = 0; k < st->layout.n_systems; k++) {
-        const struct dalcs_system *s = &st->run->s->network.system[k];
-        for (int d = 0; d < s->n_pairs; d++) {
-            int i = st->layout.first_pair[k] + d;
-            do_ = do_ &&
-                  !(s->pair[d].kind == DALCS_PAIR_SWITCH && dalcs_pair_remembers(&s->pair[d]) &&
-                    st->at.closed[i] != st->then.closed[i]);
-        }
-    }
-    return do_;
-}
-
-static void go_by(struct dalcs_steady *st, const double *from, const double *step, double factor) {
-    for (int x = 0; x < st->layout.n_x; x++) {
-        st->at.x[x] = from[x] + factor * step[x];
-    }
-    memcpy(st->at.closed, st->then.closed, (size_t)st->layout.n_pairs * sizeof(bool));
-}
-
-bool dalcs_steady_comes_back(const struct dalcs_steady *st, double distance) {
-    const double off = fmax(distance, good);
-    bool does = true;
-    for (int k = 0; k < st->layout.n_systems; k++) {
-        const int first = st->layout.first[k];
-        const int n = st->layout.first[k + 1] - first;
-        const double *M = st->pass.M + st->layout.first_of_M[k];
-        for (int x = 0; x < n; x++) {
-            const double *scale = st->scale + first;
-            double most = off * scale[x]; /* M - 1 of what the states are off by */
-            for (int i = 0; i < n; i++) {
-                most += off * fabs(M[i * n + x]) * scale[i];
-            }
-            most += st->own.is_free ? off * st->period * fabs(st->pass.last[first + x]) : 0.0;
-            does = does && fabs(st->then.x[first + x] - st->at.x[first + x]) <= most;
-        }
-    }
-    return does;
-}
-
-enum dalcs_status dalcs_steady_next_step(struct dalcs_steady *st) {
-    st->own.longer = 0.0;
-    return st->own.is_free ? dalcs_steady_newton_free(st, &st->own.longer)
-                           : dalcs_steady_newton(st);
-}
-
-static void take_step(struct dalcs_steady *st) {
-    go_by(st, st->at.x, st->step, 1.0);
-    st->period += st->own.longer;
-    st->n.newton++;
-}
+/* A residual with which it is done. */
+static const double converged = 1e-11;
 
 /* Is the last pass an answer, and no further step better? `before`: the residual before it. */
 static bool is_done(const struct dalcs_steady *st, double before) {
     bool is = st->pass.residual <= converged ||
-              (st->pass.residual <= good && st->pass.residual >= before);
-    return is && switches_return(st);
+              (st->pass.residual <= dalcs_steady_good && st->pass.residual >= before);
+    return is && dalcs_steady_switches_return(st);
 }
 
 struct burst {
@@ -90,12 +33,6 @@ struct burst {
     int shorter, unhelpful; /* steps */
     bool done;
 };
-
-void dalcs_steady_copy_point(const struct dalcs_steady *st, struct dalcs_orbit_point *to,
-                             const struct dalcs_orbit_point *from) {
-    memcpy(to->x, from->x, (size_t)st->layout.n_x * sizeof(double));
-    memcpy(to->closed, from->closed, (size_t)st->layout.n_pairs * sizeof(bool));
-}
 
 /* Plain periods from the end of the last pass: the more, the more often steps have not helped. They lead to where the
  * circuit can be, and to modes that follow each other in the steady state. */
@@ -133,7 +70,7 @@ static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     const double before = st->pass.residual;
     bool helped = false;
     dalcs_steady_note_base(st);
-    take_step(st);
+    dalcs_steady_take_step(st);
     const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
     b->done = status == DALCS_OK && is_done(st, before);
@@ -201,14 +138,14 @@ static enum dalcs_status leap(struct dalcs_steady *st, double *from, double *mov
     bool same = true;
     int k = 0;
     for (; k < MOST_LEAPS && same; k++) {
-        go_by(st, from, st->kept.drift, ldexp(1.0, k));
+        dalcs_steady_go_by(st, from, st->kept.drift, ldexp(1.0, k));
         enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
         same = status == DALCS_OK && st->pass.signature == signature && goes_on(st, moved);
     }
     *endless = same;
     st->n.leaps++;
-    go_by(st, from, st->kept.drift, ldexp(1.0, k - (same ? 1 : 2)));
+    dalcs_steady_go_by(st, from, st->kept.drift, ldexp(1.0, k - (same ? 1 : 2)));
     return DALCS_OK;
 }
 
@@ -238,9 +175,9 @@ static enum dalcs_status drifts(struct dalcs_steady *st, const struct dalcs_orbi
         if (status != DALCS_OK || !same || !st->kept.is_stuck) {
             return DALCS_OK;
         }
-        *does = rest(st) <= good;
+        *does = rest(st) <= dalcs_steady_good;
         if (!*does) {
-            take_step(st);
+            dalcs_steady_take_step(st);
         }
     }
     return DALCS_OK;
@@ -251,14 +188,15 @@ enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st, struct dalcs_orbi
         const double before = st->pass.residual;
         const double period = st->period;
         enum dalcs_status status = dalcs_steady_next_step(st);
-        if (status != DALCS_OK || !(st->distance > good)) {
+        if (status != DALCS_OK || !(st->distance > dalcs_steady_good)) {
             return status < DALCS_OK ? status : DALCS_OK;
         }
         dalcs_steady_copy_point(st, best, &st->at);
-        take_step(st);
+        dalcs_steady_take_step(st);
         status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        if (status != DALCS_OK || !(st->pass.residual <= 0.5 * before) || !switches_return(st)) {
+        if (status != DALCS_OK || !(st->pass.residual <= 0.5 * before) ||
+            !dalcs_steady_switches_return(st)) {
             dalcs_steady_copy_point(st, &st->at, best);
             st->period = period;
             return dalcs_steady_pass(st, 1, DALCS_STEADY_M);

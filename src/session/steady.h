@@ -194,25 +194,6 @@ void dalcs_steady_count_crowd(struct dalcs_steady *st, const struct dalcs_radau 
 /* A message, and DALCS_NOT_CONVERGED. */
 enum dalcs_status dalcs_steady_tell_crowd(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
-/* ---- steady_newton.c --------------------------------------------------------------------------- */
-
-/* st->step of Newton's method from the last pass, and st->distance. Where M has a multiplier of 1 whose quantity is
- * conserved, it keeps that quantity; where that grows, or nothing periodic has as much of
- * it, st->is_stuck. */
-enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) DALCS_MUST_CHECK;
-
-/* Where st->is_stuck: does all go on alike along st->drift? Not where one that drifts drives another one, ever faster. */
-bool dalcs_steady_has_drift(const struct dalcs_steady *st);
-
-/* What a state of a system is multiplied by, so that energies are alike: the square root of what it stores; of one that
- * stores nothing, and of all beside gates, 1 over its scale. */
-double dalcs_steady_unit(const struct dalcs_steady *st, int system, int x);
-
-/* unit /= scales that balance rows and columns of M [n][n] in these units (dgebal), of which entries that are rounding have
- * no part. work: [n + n^2]. */
-enum dalcs_status dalcs_steady_balance(int n, const double *M, double *unit,
-                                       double *work) DALCS_MUST_CHECK;
-
 /* ---- steady_gates.c ---------------------------------------------------------------------------- */
 
 /* st->at becomes a point of a run, from which on gates are where they were after *n periods of the sources; 0: after no
@@ -222,11 +203,6 @@ enum dalcs_status dalcs_steady_find_repeats(struct dalcs_steady *st, int *n) DAL
 /* A note, if that is more than one. */
 void dalcs_steady_note_repeats(struct dalcs_steady *st, int n);
 
-/* ---- steady_free.c ----------------------------------------------------------------------------- */
-
-/* The same where st->is_free: st->step, and *by (s) of the period. */
-enum dalcs_status dalcs_steady_newton_free(struct dalcs_steady *st, double *by) DALCS_MUST_CHECK;
-
 /* ---- steady_oscillation.c ---------------------------------------------------------------------- */
 
 /* The orbit of a circuit that oscillates by itself, as dalcs_steady_search, and st->period; guess: s, 0 for none. *rests:
@@ -235,13 +211,6 @@ enum dalcs_status dalcs_steady_oscillation(struct dalcs_steady *st, double guess
                                            bool *rests) DALCS_MUST_CHECK;
 
 /* ---- steady.c ---------------------------------------------------------------------------------- */
-
-/* st->step of Newton's method from the last pass, and st->longer. */
-enum dalcs_status dalcs_steady_next_step(struct dalcs_steady *st) DALCS_MUST_CHECK;
-
-/* Is the last pass, which is with M, that of an orbit from which st->at is off by `distance` over the scales, and
- * st->period by that part of itself where it is free? A bound, but for terms of second order. */
-bool dalcs_steady_comes_back(const struct dalcs_steady *st, double distance);
 
 /* A burst of Newton's method from st->at. A run that fails on the way ends it, no more. */
 enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) DALCS_MUST_CHECK;
@@ -253,9 +222,6 @@ enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st,
 
 /* Room for one, as long as st lives; false: there is none. */
 bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point);
-void dalcs_steady_copy_point(const struct dalcs_steady *st, struct dalcs_orbit_point *to,
-                             const struct dalcs_orbit_point *from);
-
 /* From where any run starts to *found: st->at comes back, and the last pass is from there. *endless: there is none, as
  * st->drift goes on and on. */
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,

@@ -8,7 +8,7 @@
  * What is found from there counts only where the usual search could have found nothing else nearby: both orbits are
  * stable, and nothing is conserved. All else is looked for as if there were no anchor. */
 #include "pipeline.h"
-#include "steady.h"
+#include "steady_step.h"
 
 #include <stdlib.h>
 #include <string.h>

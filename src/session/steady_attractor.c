@@ -4,7 +4,7 @@
  * they were, and what it finds counts by the same check as any other orbit. Where there is none, the run is on a torus or
  * in chaos: in chaos what two runs differ by grows without end, by M of one period after the other, as long as it is
  * small; on a torus it neither grows nor fades, and there is always an n that brings all points back nearly. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* steady_beside.c - what is told of runs beside an unstable orbit, and of those that no orbit of one period was found for. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include "quantity.h"
 

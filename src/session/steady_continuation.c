@@ -17,7 +17,7 @@
  *
  * The numbers below are no thresholds of an answer: each of them a tenth or ten times as large, multipliers of 10 to 40
  * stages take 10 to 28 steps and 50 to 435 periods. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include <lapacke.h>
 #include <math.h>

@@ -3,7 +3,7 @@
  * Such an orbit lies near no point that is known: a run is started beside the unstable one and leaves it, and bursts of
  * Newton's method on the map of n periods start where it has come to. What they find may be the old orbit again, or one
  * of a part of n periods: these repeat earlier, and are none. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include <math.h>
 

@@ -10,7 +10,7 @@
  * stays between the same events, where one that is orthogonal to the flow would leave them along it. Without an event d
  * is orthogonal to the flow, in units in which energies are alike. Either is regular where 1 is a simple multiplier;
  * where it is not, a quantity is conserved, and the least step keeps it nearly. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include <lapacke.h>
 #include <math.h>

@@ -1,5 +1,6 @@
 /* steady_near.c - a steady state from that of a circuit that differs by little. */
 #include "sensitivity.h"
+#include "steady_step.h"
 
 #include <string.h>
 

@@ -4,7 +4,7 @@
  * leaves what they are, w'x, the charge of a floating node: if Phi(x) - x has no part of them, any amount of
  * them belongs to a steady state, and the step keeps the one there is, as a run would; else they grow from
  * period to period, and in this piece of the map there is no steady state. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include "magnitudes.h"
 

@@ -5,7 +5,7 @@
  * and period (steady_free.c) starts in the longest time between events there, where nothing happens at the beginning or
  * the end. Where it fails the run goes on. A circuit that rests is nudged once: a symmetric one may rest where it cannot
  * stay. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include "steady_watch.h"
 

@@ -1,5 +1,5 @@
 /* steady_run.c - .pss: the period, the search, then one period as the .tran that it is. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include "sensitivity.h"
 #include "stroboscope.h"

@@ -14,7 +14,7 @@
  *
  * Halving finds the longest leap over which M holds, and the next longer one is taken: it ends in another piece, whose M
  * leads on. */
-#include "steady.h"
+#include "steady_step.h"
 
 #include <math.h>
 #include <string.h>

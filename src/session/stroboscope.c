@@ -4,6 +4,7 @@
  * attractor as long as that exists. The orbit of one period is followed by Newton's method through the values where it
  * is unstable and no run goes to it. */
 #include "stroboscope.h"
+#include "steady_step.h"
 
 #include <math.h>
 #include <string.h>
