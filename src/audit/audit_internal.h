@@ -39,6 +39,7 @@ struct audit_part {
     struct audit_floor {     /* of scales */
         double largest_volt; /* V: so far */
         double volt, ampere; /* that every voltage and current is at least held to */
+        double levels[2];    /* V, A: the largest that one of its formulas adds up */
         double least, most;  /* S, of its conductances; 0: it has none */
     } floor;
 

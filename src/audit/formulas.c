@@ -159,6 +159,24 @@ static double output_defect(const struct dalcs_audit *audit, const struct audit_
     return off <= 0.0 ? 0.0 : audit_ratio(off, scale + audit_formula_size(audit, part, s, device));
 }
 
+/* The levels that a formula adds up, in the unit that it puts out: numbers, jumps and saturations. What cancels of them leaves
+ * its rounding, and nothing near it is known better. */
+static double levels_of(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                        int device) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
+    double sum = fabs(b->output.constant);
+    for (int k = 0; k < b->output.n; k++) {
+        const struct dalcs_affine_term *term = &b->output.term[k];
+        const bool is_bounded = term->kind == DALCS_QUANTITY_PAIR && term->index + 1 < b->n_pairs &&
+                                dalcs_affine_of_pair(&b->w[term->index], term->index + 1) != 0.0;
+        sum +=
+            is_bounded
+                ? fabs(term->coefficient * s->lambda[audit->net.first_lambda[device] + term->index])
+                : 0.0;
+    }
+    return sum;
+}
+
 /* A formula's output; each of its pairs. */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {
@@ -171,6 +189,8 @@ void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
     const double scale = is_voltage ? audit_volts(audit, part, d->node[0], d->node[1])
                                     : audit_amperes(audit, part, device);
     const enum dalcs_audit_law law = is_voltage ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
+    double *levels = &part->floor.levels[is_voltage ? 0 : 1];
+    *levels = fmax(*levels, levels_of(audit, s, device));
     double over = output_defect(audit, part, s, device, scale);
     if (over > part->tolerance && part->at.lateness > 0.0) {
         read_later(audit, part, s);

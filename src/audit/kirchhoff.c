@@ -86,8 +86,8 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
 void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
                        const struct dalcs_audit_state *s) {
     const int *part_of = audit->net.part_of; /* other voltages are not measured by those */
-    double volt = 0.0;
-    double ampere = 0.0;
+    double volt = part->floor.levels[0];
+    double ampere = part->floor.levels[1];
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
