@@ -1,5 +1,6 @@
 /* audit.c - what is looked at, and when. */
 #include "audit_crossing.h"
+#include "audit_formula.h"
 #include "audit_positions.h"
 
 #include "screen.h"
@@ -36,6 +37,7 @@ void dalcs_audit_destroy(struct dalcs_audit *audit) {
         for (int k = 0; audit->part != NULL && k < audit->options.n_parts; k++) {
             audit_screen_finish(&audit->part[k]);
         }
+        free(audit->net.reads.of);
         dalcs_arena_finish(&audit->arena);
         free(audit);
     }
@@ -137,16 +139,14 @@ static void look_at_means(struct dalcs_audit *audit, const struct dalcs_audit_st
 }
 
 /* A screen is linear: it knows no smooth function. A polynomial may miss one anywhere in a stretch, and all else as before:
- * formulas that read it, and what it puts out. */
+ * formulas that read it, and what it puts out. It ends where a formula bends, by what is then known of that. */
 static void look_at_formulas(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
-    struct audit_part *part = &audit->part[stretch->part];
-    take_up(part, stretch);
+    const double length = stretch->to - stretch->from;
+    take_up(&audit->part[stretch->part], stretch);
     raise_scales(audit, stretch->part);
-    audit->state.now.side = DALCS_RIGHT;
-    audit->state.now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
-    audit->reader.read(audit->reader.user, stretch->part, &audit->state.now);
-    audit_note_scales(audit, part, &audit->state.now);
-    audit_check_formulas(audit, part, &audit->state.now);
+    audit_look_at_formulas(audit, stretch->part, stretch->from + audit_draw(audit) * length,
+                           DALCS_RIGHT);
+    audit_look_at_formulas(audit, stretch->part, stretch->to, DALCS_LEFT);
 }
 
 /* A stretch that no lane passes. */

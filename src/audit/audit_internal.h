@@ -39,7 +39,7 @@ struct audit_part {
     struct audit_floor {     /* of scales */
         double largest_volt; /* V: so far */
         double volt, ampere; /* that every voltage and current is at least held to */
-        double formula[2];   /* V, A: the largest terms of its formulas */
+        double levels[2];    /* V, A: the largest that one of its formulas adds up */
         double least, most;  /* S, of its conductances; 0: it has none */
     } floor;
 
@@ -106,6 +106,20 @@ struct dalcs_audit {
             part_of; /* [n_nodes] the device that puts a part of a formula out there; -1: none. NULL: there are none */
         bool *
             is_inner; /* [n_devices] such a device that formulas alone read: what they put out is held to its law. NULL */
+
+        struct audit_reads {
+            int *first; /* [n_devices + 1] of each device with a formula, parts of formulas too */
+
+            struct audit_read {
+                enum dalcs_quantity_kind kind; /* a voltage, a current, a stimulus */
+                int index;
+            } * of;
+
+            struct audit_number {
+                double value, rounding;
+            } * lambda; /* [n_lambdas] work of formula_value.c */
+        } reads;
+
         bool *
             is_merged; /* [n_devices] a short whose two nodes are one: no formula reads its current */
     } net;
@@ -115,7 +129,6 @@ struct dalcs_audit {
 
     struct audit_scales {
         double *v, *i, *lambda; /* largest so far */
-        bool is_lasting;        /* without what holds at one instant alone */
     } scale;
 
     struct audit_states {
@@ -286,23 +299,7 @@ enum { AUDIT_GAUSS = 5 };
 
 extern const double audit_gauss_node[AUDIT_GAUSS], audit_gauss_weight[AUDIT_GAUSS];
 
-/* How far the argument of a jump of a formula is from its knot, over its scale: of the nearest. INFINITY: it has none. */
-double audit_jump_beside(const struct dalcs_audit *audit, const struct audit_part *part,
-                         const struct dalcs_audit_state *s, int device);
-
-/* formulas.c: of the sums that a formula without smooth functions is made of, the terms of the largest one, added up. */
-double audit_formula_terms(const struct dalcs_audit *audit, const struct audit_part *part,
-                           const struct dalcs_audit_state *s, int device);
-
-/* formulas.c, laws.c */
-void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
-                         const struct dalcs_audit_state *s, int device);
-/* ... of all formulas of a part. */
-void audit_check_formulas(struct dalcs_audit *audit, struct audit_part *part,
-                          const struct dalcs_audit_state *s);
-/* ... is a pair of a formula where it may change sides? */
-bool audit_behaviour_may_turn(const struct dalcs_audit *audit, const struct audit_part *part,
-                              const struct dalcs_audit_state *s, int device);
+/* laws.c */
 void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
                         const struct dalcs_audit_state *s, int device);
 

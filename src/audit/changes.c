@@ -4,6 +4,7 @@
  * beyond, so only the side before the event tells, unless something else happened at that time that may have moved the
  * control: a source has an edge, or another switch or a diode was where it changes over, too. A step of implicit Euler ends
  * before what it ends at. */
+#include "audit_formula.h"
 #include "audit_positions.h"
 #include "watch.h"
 

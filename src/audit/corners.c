@@ -5,6 +5,7 @@
  * The diode may also leave its corner at once: the gain multiplies how fast it does, and times are known to what the
  * signs of diodes may be late by. */
 #include "audit_crossing.h"
+#include "audit_formula.h"
 
 /* What a device puts out is a sum of terms, each of which is rounded; in the unit that it puts out. */
 static double rounding_of_output(const struct dalcs_audit *audit, const struct audit_part *part,

@@ -155,16 +155,24 @@ static void raise(double *scale, double *most, struct file_number x) {
     }
 }
 
+static bool is_part(const struct file_audit *a, int device) {
+    return device >= 0 && a->circuit->device[device].behaviour != NULL &&
+           a->circuit->device[device].behaviour->is_part;
+}
+
+/* Other voltages are not measured by what parts of formulas are. */
 static void note_scales(struct file_audit *a, const struct file_row *row) {
+    double of_parts = 0.0;
     for (int d = 0; d < a->circuit->n_devices; d++) {
-        raise(&a->scale.u[d], &a->scale.volts, row->u[d]);
+        raise(&a->scale.u[d], is_part(a, d) ? &of_parts : &a->scale.volts, row->u[d]);
         raise(&a->scale.i[d], &a->scale.amperes, row->i[d]);
         a->coverage.ever_known[d] = a->coverage.ever_known[d] || row->i[d].known;
         a->coverage.ever_seen[d] =
             a->coverage.ever_seen[d] || (row->i[d].known && !row->is_assumed[d]);
     }
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        raise(&a->scale.v[n], &a->scale.volts, row->v[n]);
+        raise(&a->scale.v[n], is_part(a, a->columns.given_by[n]) ? &of_parts : &a->scale.volts,
+              row->v[n]);
     }
 }
 

@@ -1,5 +1,6 @@
 /* kirchhoff.c - what leaves each node, with its rounding, and all that holds at one time. */
 #include "audit_crossing.h"
+#include "audit_formula.h"
 
 #include "union_find.h"
 
@@ -84,8 +85,9 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
 
 void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
                        const struct dalcs_audit_state *s) {
-    double volt = part->floor.formula[0]; /* what cancels in a formula leaves its rounding */
-    double ampere = part->floor.formula[1];
+    const int *part_of = audit->net.part_of; /* other voltages are not measured by those */
+    double volt = part->floor.levels[0];
+    double ampere = part->floor.levels[1];
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
@@ -95,7 +97,7 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
         for (int e = 0; e < 2; e++) {
             const int node = d->node[e];
             audit->scale.v[node] = fmax(audit->scale.v[node], fabs(s->v[node]));
-            volt = fmax(volt, audit->scale.v[node]);
+            volt = part_of == NULL || part_of[node] < 0 ? fmax(volt, audit->scale.v[node]) : volt;
         }
         for (int p = 0; d->behaviour != NULL && p < d->behaviour->n_pairs; p++) {
             double *scale = &audit->scale.lambda[audit->net.first_lambda[device] + p];
@@ -181,6 +183,22 @@ static double rounding_of_time(struct dalcs_audit *audit, const struct audit_par
     return sum;
 }
 
+/* What the currents of formulas at a node are held to at this state: no current is known better than what makes it. One that
+ * is 0 may be the difference of large ones. */
+static double formula_currents(const struct dalcs_audit *audit, const struct audit_part *part,
+                               const struct dalcs_audit_state *s, int node) {
+    double sum = 0.0;
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        const bool is_here =
+            audit->net.node_of[d->node[0]] == node || audit->net.node_of[d->node[1]] == node;
+        if (d->behaviour != NULL && d->kind == DALCS_VCCS && is_here) {
+            sum += audit_formula_size(audit, part, s, part->device[k]);
+        }
+    }
+    return sum;
+}
+
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s) {
     audit->count.instants++;
@@ -197,6 +215,11 @@ void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
             off -= off > allowed ? audit_rounding_around(audit, part, s, node) +
                                        rounding_of_time(audit, part, s, node)
                                  : audit->sums.rounding[node];
+            if (off > part->tolerance * audit->sums.scale[node]) {
+                const double of_all =
+                    audit->sums.scale[node] + formula_currents(audit, part, s, node);
+                off *= audit_ratio(audit->sums.scale[node], of_all);
+            }
             audit_find(audit, part, DALCS_AUDIT_KCL, node, off, audit->sums.scale[node], s->t);
         }
     }

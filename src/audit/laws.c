@@ -1,4 +1,5 @@
 /* laws.c - what holds of a branch at each time: its law, its signs, its position. */
+#include "audit_formula.h"
 #include "audit_positions.h"
 
 /* One of the two branches of a diode, 0 <= current _|_ beyond = v + ron current - v_at >= 0, over its scales. */

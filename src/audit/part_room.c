@@ -1,4 +1,5 @@
 /* part_room.c - room for what is read of a part. */
+#include "audit_formula.h"
 #include "watch.h"
 
 static enum dalcs_status make_state(struct dalcs_audit *audit, struct dalcs_audit_state *s) {
@@ -166,6 +167,7 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     audit_merge_shorts(audit);
     DALCS_TRY(number_lambdas(audit));
     DALCS_TRY(find_formula_parts(audit));
+    DALCS_TRY(audit_find_reads(audit));
     DALCS_TRY(audit_make_parts(audit));
     DALCS_TRY(make_sums(audit));
     DALCS_TRY(make_courses(audit));

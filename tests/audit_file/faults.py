@@ -172,6 +172,28 @@ def check_netlist_faults(checker, program, folder):
             checker.check(found.broken[0] == worst, f"{what}: {found.broken}, not {worst}")
 
 
+STEEP = """an exponential that is steep only at last
+V1 a 0 PWL(0 0 0.9m 0.9 1m 30)
+R1 a b 1k
+C1 b 0 1n ic=0
+B1 o 0 V=min(exp(v(b)),5)+0.1*v(b)
+R2 o p 1k
+C2 p 0 100n ic=0
+.tran 5u 1m uic
+.end
+"""
+
+POWERS = """two exponentials, both cut off
+V1 a 0 PWL(0 -1 1m 1)
+R1 a b 1k
+C1 b 0 10n ic=-1
+B1 o 0 V=min(exp(30*v(b)),2)-min(exp(28*v(b)),1)+v(b)
+R2 o p 1k
+C2 p 0 1u ic=0
+.tran 5u 1m uic
+.end
+"""
+
 # one number of one row: what, when, by how much, and the laws of which one must be worst
 NUDGES = [
     (RECTIFIER, "v(out)", 12e-3, 0.3, [("BRANCH", "c1"), ("BRANCH", "d1")]),
@@ -189,6 +211,8 @@ NUDGES = [
     (COUPLED, "i(l2)", 1.3e-3, 0.02, [("BRANCH", "l2"), ("BRANCH", "l1"), ("BRANCH", "c2")]),
     (COUPLED, "v(l)", 1.3e-3, 0.1, [("BRANCH", "b1"), ("KCL", "l")]),
     (CURRENTS, "i(g1)", 1e-3, 1e-4, [("KCL", "g"), ("CURRENT", "g1")]),
+    (STEEP, "v(o)", 0.4e-3, 0.03, [("KCL", "o"), ("BRANCH", "b1")]),
+    (POWERS, "v(o)", 0.2e-3, 0.02, [("KCL", "o"), ("BRANCH", "b1")]),
 ]
 
 

@@ -245,6 +245,66 @@ c1 3 0 0.6 IC=0
 .tran 0.1 12 uic
 """
 
+# Formulas that are steep at some time and flat at others, where what is steep is cut off or cancels. On the flat side a fault
+# is as large as on any.
+STEEP = """an exponential of up to 2e4, of which 5 V are left
+i1 0 1 SIN(3 8 1)
+b1 1 0 V=min(exp(i(b1))-1,5)+0.1*i(b1)
+r1 1 0 10
+c1 1 0 0.05 ic=0
+.tran 0.05 1 uic
+"""
+
+LATE = """an exponential that is steep only at last
+v1 a 0 PWL(0 0 0.9m 0.9 1m 20)
+r1 a b 1k
+c1 b 0 1n ic=0
+b1 o 0 V=min(exp(v(b)),5)+0.1*v(b)
+r2 o p 1k
+c2 p 0 100n ic=0
+.tran 5u 1m uic
+"""
+
+POWERS = """two exponentials, both cut off
+v1 a 0 PWL(0 -1 1m 1)
+r1 a b 1k
+c1 b 0 10n ic=-1
+b1 o 0 V=min(exp(22*v(b)),2)-min(exp(20*v(b)),1)+v(b)
+r2 o p 1k
+c2 p 0 1u ic=0
+.tran 5u 1m uic
+"""
+
+JUNCTION = """currents of microamperes through junctions that a limit protects
+i1 0 b SIN(0 1u 1k)
+r1 b 0 1meg
+c1 b 0 100p ic=0
+b1 b 0 I=min(1e-12*(exp(v(b)/0.05)-1),1e-7)
+b2 o 0 I=min(1e-15*(exp(v(b)/0.026)-1),1e-7)
+r2 o 0 1meg
+c2 o 0 100p ic=0
+.tran 5u 2m uic
+"""
+
+FLAT_SINH = """a hyperbolic sine between limits
+v1 a 0 SIN(0 6 1k)
+r1 a b 1
+c1 b 0 100u ic=0
+b1 o 0 V=limit(sinh(v(b)),-3,3)+0.2*v(b)
+r2 o p 1
+c2 p 0 50u ic=0
+.tran 10u 2m uic
+"""
+
+VALUE = "    return dalcs_smooth_share(share, dalcs_smooth_value(of->kind, x)) -\n"
+
+
+def flatly(kind, part):
+    """A smooth function is so much of itself more where it is less than about 1."""
+    return (f"    const double is_ = dalcs_smooth_value(of->kind, x);\n"
+            f"    return dalcs_smooth_share(share, is_ + (of->kind == {kind} ? {part} * is_ * exp(-is_ * is_) : 0.0)) -\n")
+
+
 # name: (file, what to replace, by what, netlist)
 KICK = """three switches in series with gates between floating nodes, and a coil that one at ground interrupts
 vin n0 0 24
@@ -378,6 +438,16 @@ MUTATIONS = {
         "    part->segment.by_euler = false;\n"
         + once(150, "", "for (int k = part->stages.layout.stride; k < part->stages.layout.n_fixed; k++) "
                         "{ part->segment.out[k] *= 1.00001; }"), SATURABLE),
+    "an exponential is off by 1e-5 of itself where it is flat": (
+        "dalcs/smooth_tangents.c", VALUE, flatly("DALCS_SMOOTH_EXP", 1e-5), STEEP),
+    "the same, and it is steep only later": (
+        "dalcs/smooth_tangents.c", VALUE, flatly("DALCS_SMOOTH_EXP", 1e-5), LATE),
+    "two that are cut off are off by 1e-6 of themselves": (
+        "dalcs/smooth_tangents.c", VALUE, flatly("DALCS_SMOOTH_EXP", 1e-6), POWERS),
+    "an exponential of a junction is off by 1e-3 of itself where it is flat": (
+        "dalcs/smooth_tangents.c", VALUE, flatly("DALCS_SMOOTH_EXP", 1e-3), JUNCTION),
+    "a hyperbolic sine is off by 1e-6 of itself where it is flat": (
+        "dalcs/smooth_tangents.c", VALUE, flatly("DALCS_SMOOTH_SINH", 1e-6), FLAT_SINH),
     "a coil jumps beside a kick of 1e10 V": (
         "decide/seen_jump.c", "r->base->jump.is_first || !is_near;", "r->base->jump.is_first;", KICK),
     "a capacitor jumps 1e-4 beyond a clamp with a gain": (

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Right waveforms of circuits that look as if a law were broken: the audit finds nothing in them, drawn or full. And a
-comparator whose output stands between its levels: either its argument is at the knot, or the audit says that it is not.
+"""Right waveforms of circuits that look as if a law were broken: the audit finds nothing in them, drawn or full. A
+comparator whose output stands between its levels: either its argument is at the knot, or the audit says that it is not. And
+formulas that cut off what has far more digits than a number keeps: either they are right, or the audit says that they are not.
 
 usage: sound.py PROGRAM
 """
 
+import math
 import pathlib
 import subprocess
 import sys
@@ -19,6 +21,9 @@ READ = "R1 d 0 1k\nR3 d f 1k\nC3 f 0 1u\n.tran 0.1m 5m\n"
 CUT = ("vin in 0 12\nvg g 0 PULSE(0 12 0 10n 10n {{{period}/2}} {period})\ns1 in sw g 0 sa\ns2 0 sw sw 0 sb\nl1 sw out {henry}\n"
        "c1 out 0 100u\nr1 out 0 1\n.model sa SW(ron=1m roff={roff} vt=0.5)\n.model sb SW(ron=1m roff={roff} vt=0)\n")
 TRIAC = "V1 a 0 SIN(0 325 50)\nR1 a c 10\nL1 c b 10m\nA1 b 0 g t1\nVg g 0 PULSE(0 2 4m 0 0 0.5m 10m)\n"
+
+FILTERED = "V1 a 0 SIN(0 1 1k)\nR1 a b 1k\nC1 b 0 10n ic=0\n"
+LOADED = "R2 o p 1k\nC2 p 0 1u ic=0\n.tran 5u 2m uic\n"
 
 # name: (netlist, options, {(signal, time): value})
 CIRCUITS = {
@@ -43,6 +48,13 @@ CIRCUITS = {
         DRIVEN + "H1 d 0 E1 -1\nG2 0 f d 0 1m\nR3 f 0 1k\nC3 f 0 1u\n.tran 0.1m 5m\n", [], {("v(f)", 1e-3): 1.0}),
     "H reads an impulse into an RL": (
         DRIVEN + "H1 d 0 E1 -1\nR1 d 0 1k\nL3 d f 1\nR3 f 0 1k\n.tran 0.1m 5m\n", [], {("i(l3)", 1e-3): 1e-3}),
+    "a hyperbolic tangent that is 1e5 times as steep as its argument": (
+        FILTERED + "B1 o 0 V=tanh(1e5*v(b))+0.1*v(b)\n" + LOADED, [], {}),
+    "a logarithm of an exponential of up to 5e8": (
+        FILTERED.replace("0 1 1k", "0 20 1k") + "B1 o 0 V=ln(1+exp(v(b)))+0.1*v(b)\n" + LOADED, [], {}),
+    "an exponential that falls from 7e10, of which 5 V are left": (
+        "V1 a 0 EXP(25 0 0 1u 10u 0.2m)\nR1 a b 1k\nC1 b 0 1n ic=0\nB1 o 0 V=min(exp(v(b)),5)+0.1*v(b)\nR2 o p 1k\n"
+        "C2 p 0 100n ic=0\n.tran 5u 1m uic\n", [], {}),
     "a triac that tells microamperes from tens of amperes": (
         TRIAC + ".model t1 triac(Vgt=1 Ioff=1u)\n.tran 0.1m 60m\n", ["--tol", "1e-10"], {}),
     "rounding of a resistor through ideal branches": (
@@ -172,6 +184,39 @@ def check_slide(checker, program, values):
                       f"slide at {values}: {ran.returncode}, off by {across} {ran.stderr}")
 
 
+# name: (netlist, what v(o) is of v(b), where that has no jump)
+CUT_OFF = {
+    "a root beside an exponential of 2e17 V, of which 1 V is left": (
+        FILTERED.replace("0 1 1k", "1 1.5 1k").replace("ic=0", "ic=1")
+        + "B1 o 0 V=sqrt(abs(v(b)))+min(exp(40*v(b)),1)\n" + LOADED,
+        lambda v: math.sqrt(abs(v)) + min(math.exp(40 * v), 1)),
+    "an exponential of 2e17 V, of which 4 kV are left, and a choice": (
+        FILTERED.replace("0 1 1k", "0 5 1k") + "B1 o 0 V=if(v(b)>1,min(exp(8*v(b)),4000),0.5)+0.3*v(b)\n" + LOADED,
+        lambda v: None if abs(v - 1) < 1e-6 else (min(math.exp(8 * v), 4000) if v > 1 else 0.5) + 0.3 * v),
+    "a ninth power of 2e15 V, of which 2 V are left": (
+        "V1 a 0 SIN(0 50 50)\nR1 a b 1\nC1 b 0 1m ic=0\nB1 o 0 V=max(-2,min(2,v(b)**9))+0.01*v(b)\nR2 o p 10\n"
+        "C2 p 0 1m ic=0\n.tran 100u 5m uic\n",
+        lambda v: min(max(v**9, -2), 2) + 0.01 * v),
+}
+
+
+def check_cut_off(checker, program, name, netlist, law):
+    with tempfile.TemporaryDirectory() as directory:
+        where = pathlib.Path(directory)
+        (where / "c.cir").write_text(f"{name}\n{netlist}.end\n")
+        ran = subprocess.run([program, "run", str(where / "c.cir"), "-o", str(where / "c.csv")],
+                             capture_output=True, text=True, check=False)
+        if ran.returncode == 1 and "the audit finds" in ran.stderr:
+            return
+        names, *lines = (line.split(",") for line in (where / "c.csv").read_text().splitlines())
+        found = [(float(line[names.index("v(b)")]), float(line[names.index("v(o)")])) for line in lines]
+        wanted = [(v, o, law(v)) for v, o in found if law(v) is not None]
+        worst, v = max((abs(o - w), v) for v, o, w in wanted)
+        largest = max(abs(o) for _, o in found)
+        checker.check(ran.returncode == 0 and worst <= 1e-6 * largest,
+                      f"{name}: {ran.returncode}, off by {worst} where v(b) is {v} {ran.stderr}")
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("sound")
@@ -191,6 +236,8 @@ def main():
                                   f"{name}: {signal} is {is_value}, not {value}")
     for values in SLIDING:
         check_slide(checker, program, values)
+    for name, (netlist, law) in CUT_OFF.items():
+        check_cut_off(checker, program, name, netlist, law)
     return checker.finish()
 
 
