@@ -191,19 +191,15 @@ static struct dalcs_extended *parts_of(const struct dalcs_stage_workshop *b, int
 }
 
 static void take_pairs(const struct dalcs_stage_workshop *b) {
-    const int n_pairs = b->stages->method->n_pairs;
     for (int i = 0; i < b->kept.n_kept; i++) {
         const struct dalcs_extended_four *x =
             b->solved.of_pairs + i * (b->kept.n_kept + b->n_rhs) + b->kept.n_kept;
         for (int j = 0; j < b->n_rhs; j++) {
             struct dalcs_extended *part = parts_of(b, j, i) + 1;
-            if (!dalcs_workshop_reaches(b, j, b->kept.kept[i])) {
-                memset(part, 0, 2 * (size_t)n_pairs * sizeof(*part));
-                continue;
-            }
-            for (int p = 0; p < n_pairs; p++) {
-                part[2 * p] = (struct dalcs_extended){x[j].re[p], x[j].re_low[p]};
-                part[2 * p + 1] = (struct dalcs_extended){x[j].im[p], x[j].im_low[p]};
+            const double is = dalcs_workshop_reaches(b, j, b->kept.kept[i]) ? 1.0 : 0.0;
+            for (int p = 0; p < b->stages->method->n_pairs; p++) {
+                part[2 * p] = (struct dalcs_extended){is * x[j].re[p], is * x[j].re_low[p]};
+                part[2 * p + 1] = (struct dalcs_extended){is * x[j].im[p], is * x[j].im_low[p]};
             }
         }
     }
