@@ -222,9 +222,9 @@ static void gradient_of_two(enum dalcs_smooth_kind kind, double x, double y, dou
         gradient[0] = y * pow(fabs(x), y - 1.0);
         gradient[1] = by_exponent(copysign(pow(fabs(x), y), x), fabs(x));
         break;
-    case DALCS_SMOOTH_HYPOT:
-        gradient[0] = x / length;
-        gradient[1] = y / length;
+    case DALCS_SMOOTH_HYPOT: /* at the tip of the cone 0 is between the slopes of all directions */
+        gradient[0] = length > 0.0 ? x / length : 0.0;
+        gradient[1] = length > 0.0 ? y / length : 0.0;
         break;
     default:
         gradient[0] = y / length / length;

@@ -67,8 +67,18 @@ static double rounding_of_share(const struct dalcs_smooth_input *of, double shar
     return rounding;
 }
 
-double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x) {
-    return rounding_of_share(of, 1.0, x);
+double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, double value, const double *x) {
+    return rounding_of_share(of, 1.0, x) + dalcs_rounded * fabs(value);
+}
+
+double dalcs_smooth_function_rounding(const struct dalcs_smooth_input *of, const double *x) {
+    double gradient[2];
+    double size = fabs(dalcs_smooth_value(of->kind, x));
+    dalcs_smooth_finite_gradient(of, x, gradient);
+    for (int j = 0; j < of->n; j++) {
+        size += of->column[j] >= 0 ? fabs(gradient[j] * x[j]) : 0.0;
+    }
+    return dalcs_rounded * size;
 }
 
 static double over(double off, double size) {

@@ -92,8 +92,12 @@ void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, con
 /* f - g x of one source. */
 double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x);
 
-/* What rounding of its arguments makes of it. */
-double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, const double *x);
+/* What rounding of the function, which is `value` there, and of its arguments makes of it: exp(x) near 0 is 1, which no
+ * argument of 0 rounds. */
+double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, double value, const double *x);
+
+/* The same without its line: what is left where the line is as steep as the function. */
+double dalcs_smooth_function_rounding(const struct dalcs_smooth_input *of, const double *x);
 
 /* What argument j of value q is made of: the numbers of a step are solved for together, and each is known to the rounding
  * of the largest, and of what the given values make of it. */

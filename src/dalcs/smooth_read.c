@@ -26,10 +26,28 @@ static double largest_voltage(const struct dalcs_system *s, const double *y) {
     return volt;
 }
 
+/* What the lambda of a pair is made of: its own row, less itself, over its own part in that. Where a kink leaves 0 that is
+ * the difference of what it reads. */
+static double terms_of_pair(const struct dalcs_system *s, int pair, const double *y) {
+    const int own = dalcs_system_n_equations(s) + pair;
+    double most = 0.0;
+    double part = 0.0;
+    for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
+        const double size = fabs(s->C.x[k]);
+        part = s->C.j[k] == own ? size : part;
+        most = s->C.j[k] < own - pair ? dalcs_larger(most, size * fabs(y[s->C.j[k]])) : most;
+    }
+    return part > 0.0 ? most / part : 0.0;
+}
+
 static double largest_term(const struct dalcs_system *s, int row, const double *y) {
+    const int n_equations = dalcs_system_n_equations(s);
     double most = 0.0;
     for (int k = s->A.p[row]; k < s->A.p[row + 1]; k++) {
-        most = dalcs_larger(most, fabs(s->A.x[k] * y[s->A.j[k]]));
+        const int pair = s->A.j[k] - n_equations;
+        const double size = pair >= 0 ? dalcs_larger(terms_of_pair(s, pair, y), fabs(y[s->A.j[k]]))
+                                      : fabs(y[s->A.j[k]]);
+        most = dalcs_larger(most, fabs(s->A.x[k]) * size);
     }
     return most;
 }
@@ -74,7 +92,7 @@ static void hold(struct dalcs_smooth_newton *newton, int first, const double *y)
     memcpy(inner->next + first, newton->phi + first,
            (size_t)newton->system->n_smooth * sizeof(double));
     for (int k = 0; k < newton->system->n_smooth; k++) {
-        /* What a kink leaves of 0 has no terms but itself: it is known to the rounding of the voltages. */
+        /* What reads 0 alone has no terms but itself: it is known to the rounding of the voltages. */
         const int q = first + k;
         const double off =
             dalcs_larger(dalcs_alike * newton->terms[q][0], dalcs_rounded * newton->volt);

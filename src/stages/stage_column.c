@@ -122,7 +122,7 @@ static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_colu
         long double own = dalcs_stage_workshop_drive(b, f, rhs_column);
         b->kept.follows_x[to - 1] = dalcs_extended_of(own);
         to -= own == 0.0L ? 1 : 0; /* most are driven by no source, and half by nothing at all */
-        if (from == to) {
+        if (from == to || !dalcs_workshop_reaches(b, rhs_column, b->kept.follower[f])) {
             put_nothing(b, b->kept.follower[f]);
             continue;
         }

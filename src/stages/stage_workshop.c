@@ -30,6 +30,10 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->eq.plain_rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
     b->eq.nonzero_p = dalcs_carve(storage, &used, n + 1, sizeof(int));
     b->eq.nonzero_i = dalcs_carve(storage, &used, n * n, sizeof(int));
+    b->reach.is_reached = dalcs_carve(storage, &used, n * n_rhs, sizeof(bool));
+    b->reach.column_of = dalcs_carve(storage, &used, n, sizeof(int));
+    b->reach.seen = dalcs_carve(storage, &used, n, sizeof(bool));
+    b->reach.queue = dalcs_carve(storage, &used, n, sizeof(int));
     b->eq.base = dalcs_carve(storage, &used, n * n, sizeof(double));
     b->eq.P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
     b->eq.rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
@@ -192,9 +196,10 @@ static void take_pairs(const struct dalcs_stage_workshop *b) {
             b->solved.of_pairs + i * (b->kept.n_kept + b->n_rhs) + b->kept.n_kept;
         for (int j = 0; j < b->n_rhs; j++) {
             struct dalcs_extended *part = parts_of(b, j, i) + 1;
+            const double is = dalcs_workshop_reaches(b, j, b->kept.kept[i]) ? 1.0 : 0.0;
             for (int p = 0; p < b->stages->method->n_pairs; p++) {
-                part[2 * p] = (struct dalcs_extended){x[j].re[p], x[j].re_low[p]};
-                part[2 * p + 1] = (struct dalcs_extended){x[j].im[p], x[j].im_low[p]};
+                part[2 * p] = (struct dalcs_extended){is * x[j].re[p], is * x[j].re_low[p]};
+                part[2 * p + 1] = (struct dalcs_extended){is * x[j].im[p], is * x[j].im_low[p]};
             }
         }
     }
@@ -207,8 +212,9 @@ static void take_real(const struct dalcs_stage_workshop *b) {
         double *low = high + b->solved.room;
         for (int k = 0; k < b->kept.n_kept; k++) {
             struct dalcs_extended *part = parts_of(b, j, k);
-            *part = dalcs_extended_of(
-                b->solved.of_real[k * (b->kept.n_kept + b->n_rhs) + b->kept.n_kept + j]);
+            const long double *row = b->solved.of_real + k * (b->kept.n_kept + b->n_rhs);
+            const bool is_reached = dalcs_workshop_reaches(b, j, b->kept.kept[k]);
+            *part = dalcs_extended_of(is_reached ? row[b->kept.n_kept + j] : 0.0L);
             high[b->kept.kept[k]] = part->high;
             low[b->kept.kept[k]] = part->low;
         }
@@ -218,7 +224,8 @@ static void take_real(const struct dalcs_stage_workshop *b) {
                 y += dalcs_extended_value(b->kept.follows_x[k]) *
                      dalcs_extended_value(*parts_of(b, j, b->kept.follows_j[k]));
             }
-            struct dalcs_extended value = dalcs_extended_of(y);
+            struct dalcs_extended value =
+                dalcs_extended_of(dalcs_workshop_reaches(b, j, b->kept.follower[f]) ? y : 0.0L);
             high[b->kept.follower[f]] = value.high;
             low[b->kept.follower[f]] = value.low;
         }
@@ -319,6 +326,7 @@ static void recall(struct dalcs_stage_workshop *b) {
     dalcs_arena_finish(&b->arena);
     memcpy(b->mode, b->entry->mode, (size_t)b->stages->n_words * sizeof(*b->mode));
     dalcs_workshop_fill(b);
+    dalcs_workshop_find_reach(b);
 }
 
 enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,

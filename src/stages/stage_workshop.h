@@ -37,6 +37,14 @@ struct dalcs_workshop_kept {
     struct dalcs_extended *follows_x;
 };
 
+/* What each right-hand side reaches (workshop_reach.c). */
+struct dalcs_workshop_reach {
+    bool *is_reached; /* [n_rhs][n] unknowns of a mode that leaves nothing open */
+    int *column_of;   /* [n] the unknown that stands with a row */
+    bool *seen;       /* [n] work */
+    int *queue;       /* [n] work */
+};
+
 /* The systems of the eigenvalues and their solutions. */
 struct dalcs_workshop_solved {
     long double *of_real; /* [n_kept][n_kept + n_rhs] the real system by rows, then its solutions */
@@ -87,6 +95,7 @@ struct dalcs_stage_workshop {
     bool is_known;      /* what was eliminated serves a map of this mode with another step length */
     bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
     struct dalcs_workshop_equations eq;
+    struct dalcs_workshop_reach reach;
     struct dalcs_workshop_kept kept;
     struct dalcs_workshop_solved solved;
     struct dalcs_workshop_open open;
@@ -120,6 +129,15 @@ void dalcs_workshop_fill(struct dalcs_stage_workshop *b);
 
 /* Rows and columns of |S| at the real eigenvalue get a largest entry near 1. */
 void dalcs_workshop_balance(struct dalcs_stage_workshop *b);
+
+/* Which unknowns each right-hand side reaches in a mode. */
+void dalcs_workshop_find_reach(struct dalcs_stage_workshop *b);
+
+/* May a right-hand side move an unknown? Else the solution is 0 there. */
+static inline bool dalcs_workshop_reaches(const struct dalcs_stage_workshop *b, int rhs_column,
+                                          int unknown) {
+    return b->open.nullity > 0 || b->reach.is_reached[rhs_column * b->n + unknown];
+}
 
 /* What the equations without derivatives say of an unknown without memory is the same for every
  * eigenvalue: those that they determine are solved for once. What is kept are the states and, where the

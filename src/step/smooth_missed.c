@@ -56,10 +56,10 @@ static enum dalcs_status apply(struct dalcs_radau_part *part, struct dalcs_stage
                              part->segment.in, part->segment.out, entry);
 }
 
-/* A source between two nodes: what it reads there, its polynomial, what its argument is made of, and by how much it
- * is not the polynomial. */
+/* A source between two nodes: what it reads there, its polynomial, what its argument is made of, by how much it is not the
+ * polynomial, and what of that may be rounding: of the function there, and of its values at the nodes by their weights. */
 struct between {
-    double x[2], phi, terms, off;
+    double x[2], phi, terms, off, rounding;
 };
 
 static struct between look_between(const struct dalcs_radau_part *part, int k) {
@@ -69,6 +69,7 @@ static struct between look_between(const struct dalcs_radau_part *part, int k) {
     const struct dalcs_smooth_input *of = &n->system->smooth[k];
     const double *ripple = part->segment.out + part->stages.layout.ripple;
     const bool is_root = dalcs_smooth_root_exponent(of) > 0.0;
+    double weights = 1.0;
     struct between b = {.x = {of->number[0], of->number[1]}};
     for (int node = 0; node <= m->s; node++) {
         const int q = node * n_smooth + k;
@@ -78,12 +79,15 @@ static struct between look_between(const struct dalcs_radau_part *part, int k) {
             b.x[j] += of->column[j] >= 0 ? m->worst.value[node] * n->x[q][j] : 0.0;
         }
         b.phi += m->worst.value[node] * n->phi[q];
+        weights += fabs(m->worst.value[node]);
     }
     for (int j = 0; j < of->n; j++) {
         b.x[j] += of->column[j] >= 0 ? ripple[of->column[j]] : 0.0;
     }
     b.x[0] = dalcs_smooth_held(of->kind, b.x, dalcs_alike * b.terms);
-    b.off = dalcs_smooth_rest(of, b.x) - b.phi;
+    const double value = dalcs_smooth_value(of->kind, b.x);
+    b.off = value - dalcs_smooth_line(of, 0) * b.x[0] - dalcs_smooth_line(of, 1) * b.x[1] - b.phi;
+    b.rounding = weights * dalcs_smooth_rounding(of, value, b.x);
     return b;
 }
 
@@ -97,7 +101,7 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes, double *by
     for (int k = 0; k < s->n_smooth; k++) {
         const struct dalcs_smooth_input *of = &s->smooth[k];
         const struct between b = look_between(part, k);
-        double rest = fabs(b.off) - dalcs_smooth_rounding(of, b.x);
+        double rest = fabs(b.off) - b.rounding;
         if (rest > 0.0 && dalcs_smooth_root_exponent(of) > 0.0) {
             const double by_terms =
                 dalcs_smooth_variation(of->kind, b.x, 0, dalcs_rounded * b.terms);

@@ -24,15 +24,17 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
         return DALCS_E_NOMEM;
     }
     part->smooth = p;
+    const size_t n = (size_t)(stages->method->s + 1) * (size_t)s->n_smooth;
     p->mode = dalcs_arena_alloc(&part->arena, (size_t)stages->n_words, sizeof(*p->mode));
     p->in = dalcs_arena_alloc(&part->arena, (size_t)stages->n_in, sizeof(double));
     p->out = dalcs_arena_alloc(&part->arena, dalcs_stages_room(stages), sizeof(double));
-    p->dx = dalcs_arena_alloc(&part->arena, (size_t)(stages->method->s + 1) * (size_t)s->n_smooth,
-                              sizeof(*p->dx));
+    p->dx = dalcs_arena_alloc(&part->arena, n, sizeof(*p->dx));
+    p->drift = dalcs_arena_alloc(&part->arena, n * (size_t)s->n_x + 1, sizeof(double));
+    p->rounding = dalcs_arena_alloc(&part->arena, (size_t)s->n_x + 1, sizeof(double));
     p->last = dalcs_arena_alloc(&part->arena, (size_t)s->n_smooth, sizeof(*p->last));
     p->most = dalcs_arena_alloc(&part->arena, (size_t)s->n_smooth, sizeof(*p->most));
-    if (p->mode == NULL || p->in == NULL || p->out == NULL || p->dx == NULL || p->last == NULL ||
-        p->most == NULL) {
+    if (p->drift == NULL || p->rounding == NULL || p->mode == NULL || p->in == NULL ||
+        p->out == NULL || p->dx == NULL || p->last == NULL || p->most == NULL) {
         return DALCS_E_NOMEM;
     }
     p->may_have_poles = dalcs_smooth_may_have_poles(s);
@@ -91,6 +93,10 @@ static enum dalcs_status find_slope(struct dalcs_radau_part *part,
             const int at = k / 2 / s->n_smooth * stride + column;
             n->slope[(size_t)k * (size_t)n->n + (size_t)q] =
                 column >= 0 ? (p->out[at] - part->segment.out[at]) / change : 0.0;
+        }
+        const int drift = part->stages.layout.drift;
+        for (int x = 0; x < s->n_x; x++) {
+            p->drift[q * s->n_x + x] = (p->out[drift + x] - part->segment.out[drift + x]) / change;
         }
     }
     p->slope_h = part->segment.h;
@@ -199,6 +205,24 @@ void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta) {
     }
     dalcs_smooth_step_arguments(part, theta, now->x);
     dalcs_smooth_euler_note(part);
+}
+
+const double *dalcs_smooth_step_rounding(struct dalcs_radau_part *part,
+                                         struct dalcs_stage_entry *entry) {
+    const struct dalcs_smooth_step *p = part->smooth;
+    const int n_x = part->component->system->n_x;
+    if (p == NULL || (!has_slope(part) && find_slope(part, entry) != DALCS_OK)) {
+        return NULL;
+    }
+    memset(p->rounding, 0, (size_t)n_x * sizeof(double));
+    for (int q = 0; q < p->newton.n; q++) {
+        const double rounding = dalcs_smooth_function_rounding(
+            dalcs_smooth_newton_input(&p->newton, q), p->newton.x[q]);
+        for (int x = 0; x < n_x && isfinite(rounding); x++) {
+            p->rounding[x] += fabs(p->drift[q * n_x + x]) * rounding;
+        }
+    }
+    return p->rounding;
 }
 
 enum dalcs_status dalcs_smooth_step_vary_begin(struct dalcs_radau_part *part,

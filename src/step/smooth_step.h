@@ -22,6 +22,12 @@ enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
 enum dalcs_status dalcs_smooth_step_refine(struct dalcs_radau_part *part,
                                            struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
 
+/* What rounding of the functions makes of the drift of the states, [n_x], in the present step: no shorter step has less of
+ * it beside what the functions do. Of a line far steeper than its function it excuses nothing. NULL: there are none, or it is not
+ * known. */
+const double *dalcs_smooth_step_rounding(struct dalcs_radau_part *part,
+                                         struct dalcs_stage_entry *entry);
+
 /* How a small change of the states changes the present step: the first call is for the slopes, the others put the changes
  * of the sources behind those of the states into in[n_in], out being the answer to in[] without them. */
 enum dalcs_status dalcs_smooth_step_vary_begin(struct dalcs_radau_part *part,

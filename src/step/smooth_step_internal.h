@@ -20,6 +20,8 @@ struct dalcs_smooth_step {
     int n_tangents;   /* of the one-step problem when the steps were factored */
     double slope_h;   /* s, of the step that newton.slope is of; 0: none */
     uint64_t *mode;   /* [n_words] and its mode */
+    double *drift;    /* [n][n_x] what a change of each value does to the drift of the states */
+    double *rounding; /* [n_x] of that drift */
     double *in, *out; /* a step with one value changed */
     double (*dx)[2];  /* [n] changes of arguments; what they are between nodes */
     bool may_have_poles;

@@ -12,6 +12,7 @@
 #include "magnitudes.h"
 #include "quads.h"
 #include "rounding.h"
+#include "smooth_step.h"
 #include "wide_vectors.h"
 
 #include <math.h>
@@ -91,9 +92,10 @@ double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const d
                         dalcs_larger(part->scales.column[column], part->scales.magnitude[column]));
 }
 
-/* The errors over what is allowed, with `rounding` besides. */
+/* The errors over what is allowed, with `rounding` besides, and `of_functions` of each state. */
 static void compare(const struct dalcs_radau_part *part, const struct allowance *a,
-                    const double *natural, double rounding, struct dalcs_step_quality *q) {
+                    const double *natural, double rounding, const double *of_functions,
+                    struct dalcs_step_quality *q) {
     const struct dalcs_system *s = part->component->system;
     const double *drift = part->segment.out + part->stages.layout.drift;
     const double *ripple = part->segment.out + part->stages.layout.ripple;
@@ -107,7 +109,8 @@ static void compare(const struct dalcs_radau_part *part, const struct allowance 
             continue;
         }
         double allowed = a->tolerance * dalcs_step_scale(part, c, q->unit) + rounding * natural[c] +
-                         a->besides[of];
+                         a->besides[of] +
+                         (of_functions != NULL && c < s->n_x ? of_functions[c] : 0.0);
         double error = c < s->n_x ? fabs(drift[c]) : 0.0;
         if (error > q->drift * allowed) {
             q->drift = error / allowed;
@@ -191,7 +194,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
     compare_all(part, &a, curved ? dalcs_system_n_columns(s) : s->n_x, s->n_x, drift, ripple, q);
     if (!(q->ratio <= 1.0)) { /* is it rounding? The test is needed for few steps. */
         compare(part, &a, dalcs_stage_natural_units(entry),
-                above_map(part) * dalcs_step_rounding(part, entry), q);
+                above_map(part) * dalcs_step_rounding(part, entry),
+                dalcs_smooth_step_rounding(part, entry), q);
     }
     q->own = q->ratio;
     if (q->ratio <= 1.0) {

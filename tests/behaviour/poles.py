@@ -61,6 +61,7 @@ POLES = (
 )
 
 
+MOST_STEPS = 4000
 RESTS = ("r2 b 0 1", "r2 b d 1k\nc2 d 0 1u\nr3 d 0 1k")
 
 
@@ -74,6 +75,8 @@ def check_poles(checker, program):
                           and "seems wrong" not in result.stderr, f"{where}: {result.stderr}")
             told = result.stderr.split("at t = ")[-1].split(" ")[0]
             checker.close(float(told or "nan"), time, 1e-9 * 1e-3 + 1e-7 * time, f"{where}: its time")
+            steps = result.report["work"]["steps"]  # as many for each digit of the way to the pole
+            checker.check(steps <= MOST_STEPS, f"{where}: {steps} steps")
 
 
 # ---- What is none --------------------------------------------------------------------------------
