@@ -204,8 +204,8 @@ MUTATIONS = {
     "an edge comes 1 ns after its delay": (
         "logic/logic_run.c", "l->now + (next->is", "l->now + 1e-9 + (next->is", GATES),
     "a corner of many is left out": (
-        "circuit/stimulus_terms.c", "    *piece = (struct dalcs_stimulus_piece){.to = dalcs_stimulus_next_edge(s, t),",
-        "    double to_ = dalcs_stimulus_next_edge(s, t);\n"
+        "circuit/stimulus_terms.c", "    *piece = (struct dalcs_stimulus_piece){.to = is_pulse ? 0.0 : dalcs_stimulus_next_edge(s, t),",
+        "    double to_ = is_pulse ? 0.0 : dalcs_stimulus_next_edge(s, t);\n"
         "    to_ = s->kind == DALCS_STIMULUS_PWL && fabs(to_ - 2e-3) < 1e-9 ? dalcs_stimulus_next_edge(s, to_) : to_;\n"
         "    *piece = (struct dalcs_stimulus_piece){.to = to_,", CORNERS),
     "a piece of a formula is too steep by 1e-5": (
