@@ -84,7 +84,7 @@ void audit_find_positions(const struct dalcs_audit *audit, const struct audit_pa
         return;
     }
     const struct jump j = jump_of(audit, part, before, after, device);
-    const bool is_either = before == after || fabs(j.after - j.before) > j.allowed ||
-                           is_formula_between(audit, part, before, device);
-    may_be[!now] = is_either && (j.half_width > 0.0 || before->is_closed[device] != now);
+    const bool turns = j.half_width > 0.0 || before->is_closed[device] != now;
+    may_be[!now] = turns && (before == after || fabs(j.after - j.before) > j.allowed ||
+                             is_formula_between(audit, part, before, device));
 }
