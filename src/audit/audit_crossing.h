@@ -16,6 +16,11 @@ void audit_find_clusters(const struct dalcs_audit *audit, const struct audit_par
                          const struct dalcs_audit_state *after, audit_joins *join);
 audit_joins audit_passes_charge;
 
+/* positions_between.c: the positions, open and closed, that a switch may have while states jump. */
+void audit_find_positions(const struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *before,
+                          const struct dalcs_audit_state *after, int device, bool may_be[2]);
+
 /* crossing.c: how charge may pass through a branch while an event takes place; from its first node to its second is
  * forward. */
 enum { AUDIT_FORWARD = 1, AUDIT_BACKWARD = 2 };

@@ -101,6 +101,7 @@ struct dalcs_audit {
             is_read; /* [n_nodes] ground, or a device of a part hangs on it: states have its voltage */
         bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
         bool *is_held;     /* [n_nodes] likewise, whatever it does */
+        bool *is_gated;    /* [n_nodes] such a one that the output of a gate is part of */
         int *first_lambda; /* [n_devices] */
         int *
             part_of; /* [n_nodes] the device that puts a part of a formula out there; -1: none. NULL: there are none */

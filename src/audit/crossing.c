@@ -11,25 +11,6 @@
 
 #include "union_find.h"
 
-/* The positions that a switch may have while states jump. It turns where its control reaches the threshold, and what jumps
- * is what the circuit does thereafter: behind what sources alone decide, or what stands still, it is where it is seen. A
- * control that jumps itself may have been beyond a threshold before, after or in between: a switch that remembers its side
- * turns, a state jumps, and it turns back on what it finds behind the jump. */
-static void find_positions(const struct dalcs_audit *audit, const struct audit_part *part,
-                           const struct dalcs_audit_state *before,
-                           const struct dalcs_audit_state *after, int device, bool may_be[2]) {
-    double half_width;
-    const double moved = fabs(audit_control(audit, after, device, &half_width) -
-                              audit_control(audit, before, device, &half_width));
-    const bool stands = moved <= part->tolerance * audit_control_scale(audit, part, device);
-    const bool now = after->is_closed[device];
-    const bool is_either = !audit_is_commanded(audit, device) && (!stands || before == after);
-    const bool turns_back = is_either && half_width > 0.0;
-    const bool can_differ = is_either && before->is_closed[device] != now;
-    may_be[now] = true;
-    may_be[!now] = turns_back || can_differ;
-}
-
 /* Coils without leakage between them hand an impulse of current on: their fluxes stay what they are. */
 static bool is_perfectly_coupled(const struct dalcs_audit *audit, const struct audit_part *part,
                                  int device) {
@@ -67,7 +48,7 @@ int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_par
         both = is_perfectly_coupled(audit, part, device);
         break;
     case DALCS_SWITCH:
-        find_positions(audit, part, before, after, device, may_be);
+        audit_find_positions(audit, part, before, after, device, may_be);
         both = audit->circuit->models.of_switch[d->model].ron == 0.0 && may_be[true];
         break;
     case DALCS_DIODE: {
@@ -103,7 +84,7 @@ static bool bounds_voltage(const struct dalcs_audit *audit, const struct audit_p
     case DALCS_RESISTOR:
         return !audit_has_impulse(audit, d);
     case DALCS_SWITCH:
-        find_positions(audit, part, before, after, device, may_be);
+        audit_find_positions(audit, part, before, after, device, may_be);
         return !audit_has_impulse(audit, d) &&
                (isfinite(audit->circuit->models.of_switch[d->model].roff) || !may_be[false]);
     case DALCS_DIODE: {

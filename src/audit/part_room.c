@@ -119,6 +119,24 @@ static bool hands_on(const struct dalcs_audit *audit, const struct dalcs_device 
     return only;
 }
 
+/* Is what it puts out part of a gate's output? */
+static bool is_of_gate(const struct dalcs_audit *audit, const struct dalcs_device *d) {
+    const struct dalcs_stimulus *s = audit->circuit->stimulus;
+    const bool *is_gated = audit->net.is_gated;
+    if (d->behaviour == NULL) {
+        return d->kind == DALCS_VSOURCE ? s[d->stimulus].is_written && !s[d->stimulus].is_external
+                                        : is_gated[d->node[2]] || is_gated[d->node[3]];
+    }
+    const struct dalcs_affine *f = &d->behaviour->output;
+    bool is = false;
+    for (int k = 0; k < f->n && !is; k++) {
+        is = f->term[k].kind == DALCS_QUANTITY_STIMULUS
+                 ? s[f->term[k].index].is_written && !s[f->term[k].index].is_external
+                 : is_gated[f->term[k].index];
+    }
+    return is;
+}
+
 /* Nodes that sources alone decide, whatever lies between. */
 static void find_held(const struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
@@ -129,7 +147,10 @@ static void find_held(const struct dalcs_audit *audit) {
             const struct dalcs_device *d = &c->device[i];
             bool *held[2] = {&audit->net.is_held[d->node[0]], &audit->net.is_held[d->node[1]]};
             if (*held[0] != *held[1] && hands_on(audit, d)) {
+                bool *gated = audit->net.is_gated;
                 *held[0] = *held[1] = grows = true;
+                gated[d->node[0]] = gated[d->node[1]] =
+                    gated[d->node[0]] || gated[d->node[1]] || is_of_gate(audit, d);
             }
         }
     }
@@ -156,10 +177,12 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     audit->net.is_read = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_fed = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_held = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    audit->net.is_gated = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_merged =
         dalcs_arena_alloc(&audit->arena, (size_t)audit->circuit->n_devices, sizeof(bool));
     if (audit->net.is_merged == NULL || audit->net.is_read == NULL || audit->net.is_held == NULL ||
-        audit->net.node_of == NULL || audit->net.has_charge == NULL || audit->net.is_fed == NULL) {
+        audit->net.node_of == NULL || audit->net.has_charge == NULL || audit->net.is_fed == NULL ||
+        audit->net.is_gated == NULL) {
         return DALCS_E_NOMEM;
     }
     find_fed(audit);

@@ -33,6 +33,9 @@ double dalcs_pulse_value(const struct dalcs_stimulus *s, double t, enum dalcs_si
 
 double dalcs_pulse_next_edge(const struct dalcs_stimulus *s, double t);
 
+/* The next edge, the value after t and that just before the edge, of one look. */
+double dalcs_pulse_line(const struct dalcs_stimulus *s, double t, double *level, double *last);
+
 double dalcs_pwl_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side);
 
 double dalcs_pwl_next_edge(const struct dalcs_stimulus *s, double t);

@@ -108,27 +108,54 @@ static double within_segment(const struct dalcs_stimulus *s, enum segment segmen
     return from + (segment_end(s, segment) - from) * (since / length);
 }
 
-double dalcs_pulse_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
-    struct edges edges;
-    int first;
-    int last;
-    const double near = dalcs_stimulus_tolerance(t, s->u.pulse.delay);
-    collect_edges(s, t, near, &edges);
-    find_cluster(&edges, t, near, &first, &last);
-    if (last > first && side == DALCS_RIGHT) {
-        return segment_start(s, edges.item[last - 1].segment);
-    }
-    if (first == 0) {
+/* Just before edge k of them, or at t behind the last one before that where it is no edge. */
+static double value_before(const struct dalcs_stimulus *s, const struct edges *edges, int k,
+                           const double *t, double near) {
+    if (k == 0) {
         return s->u.pulse.low;
     }
-    const struct edge *before = &edges.item[first - 1];
-    const bool follows = last > first && edges.item[first].segment == before->segment + 1;
-    if (follows) {
+    const struct edge *before = &edges->item[k - 1];
+    if (t == NULL && edges->item[k].segment == before->segment + 1) {
         return segment_end(s, before->segment);
     }
     /* Inside a segment, or at its end where the next period cuts it short. */
-    const double end = last > first ? edges.item[first].time : t;
+    const double end = t == NULL ? edges->item[k].time : *t;
     return within_segment(s, before->segment, end - before->time, near);
+}
+
+static double value_at(const struct dalcs_stimulus *s, const struct edges *edges,
+                       const int cluster[2], double t, enum dalcs_side side) {
+    const double near = dalcs_stimulus_tolerance(t, s->u.pulse.delay);
+    const bool is_edge = cluster[1] > cluster[0];
+    if (is_edge && side == DALCS_RIGHT) {
+        return segment_start(s, edges->item[cluster[1] - 1].segment);
+    }
+    return value_before(s, edges, cluster[0], is_edge ? NULL : &t, near);
+}
+
+double dalcs_pulse_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+    struct edges edges;
+    int cluster[2];
+    const double near = dalcs_stimulus_tolerance(t, s->u.pulse.delay);
+    collect_edges(s, t, near, &edges);
+    find_cluster(&edges, t, near, &cluster[0], &cluster[1]);
+    return value_at(s, &edges, cluster, t, side);
+}
+
+double dalcs_pulse_line(const struct dalcs_stimulus *s, double t, double *level, double *last) {
+    struct edges edges;
+    int cluster[2];
+    const double near = dalcs_stimulus_tolerance(t, s->u.pulse.delay);
+    collect_edges(s, t, near, &edges);
+    find_cluster(&edges, t, near, &cluster[0], &cluster[1]);
+    *level = *last = value_at(s, &edges, cluster, t, DALCS_RIGHT);
+    if (s->u.pulse.low == s->u.pulse.high || cluster[1] >= edges.n) {
+        return INFINITY;
+    }
+    const double to = edges.item[cluster[1]].time;
+    *last =
+        value_before(s, &edges, cluster[1], NULL, dalcs_stimulus_tolerance(to, s->u.pulse.delay));
+    return to;
 }
 
 double dalcs_pulse_next_edge(const struct dalcs_stimulus *s, double t) {

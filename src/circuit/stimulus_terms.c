@@ -88,9 +88,17 @@ int dalcs_stimulus_n_terms(const struct dalcs_stimulus *s) {
     return 0;
 }
 
+/* Of a straight line from t to `last` at its end. */
+static void set_slope(struct dalcs_stimulus_piece *piece, double t, double last) {
+    const double rise = last - piece->level;
+    piece->slope = rise == 0 ? 0 : rise / (piece->to - t);
+}
+
 void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
                              struct dalcs_stimulus_piece *piece) {
-    *piece = (struct dalcs_stimulus_piece){.to = dalcs_stimulus_next_edge(s, t),
+    const bool is_pulse = s->kind == DALCS_STIMULUS_PULSE; /* which says it with its values */
+    double last;
+    *piece = (struct dalcs_stimulus_piece){.to = is_pulse ? 0.0 : dalcs_stimulus_next_edge(s, t),
                                            .n_terms = dalcs_stimulus_n_terms(s),
                                            .term = piece->term};
     switch (s->kind) {
@@ -109,13 +117,15 @@ void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
     case DALCS_STIMULUS_DELAYED: /* a polynomial, of which this is where it begins */
         piece->level = dalcs_history_value(s->u.history, t, DALCS_RIGHT);
         return;
-    case DALCS_STIMULUS_DC:
     case DALCS_STIMULUS_PULSE:
+        piece->to = dalcs_pulse_line(s, t, &piece->level, &last);
+        set_slope(piece, t, last);
+        return;
+    case DALCS_STIMULUS_DC:
     case DALCS_STIMULUS_PWL:
         piece->level = dalcs_stimulus_value(s, t, DALCS_RIGHT);
         if (isfinite(piece->to)) {
-            const double rise = dalcs_stimulus_value(s, piece->to, DALCS_LEFT) - piece->level;
-            piece->slope = rise == 0 ? 0 : rise / (piece->to - t);
+            set_slope(piece, t, dalcs_stimulus_value(s, piece->to, DALCS_LEFT));
         }
         return;
     }

@@ -29,7 +29,8 @@ static enum dalcs_status allocate(struct dalcs_measures *measures, const struct 
     measures->now = dalcs_alloc((size_t)c->results.n_measured, sizeof(double));
     bool complete = measures->reads != NULL && measures->stimulus != NULL &&
                     measures->term != NULL && measures->before != NULL && measures->now != NULL;
-    return complete ? DALCS_OK : DALCS_E_NOMEM;
+    return complete ? dalcs_edges_ahead_setup(&measures->edges, (size_t)c->n_stimuli)
+                    : DALCS_E_NOMEM;
 }
 
 /* Which components, and what drives them. */
@@ -55,17 +56,10 @@ static void find_sources(struct dalcs_measures *measures, const struct dalcs_cir
             }
             if (!known) {
                 measures->stimulus[measures->n_stimuli++] = s;
+                dalcs_edges_ahead_add(&measures->edges, s);
             }
         }
     }
-}
-
-static double edge_after(const struct dalcs_measures *measures, double t) {
-    double edge = INFINITY;
-    for (int i = 0; i < measures->n_stimuli; i++) {
-        edge = fmin(edge, dalcs_stimulus_next_edge(measures->stimulus[i], t));
-    }
-    return edge;
 }
 
 static void read_signals(const struct dalcs_measures *measures, const struct dalcs_euler *e,
@@ -117,7 +111,7 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
     }
     DALCS_TRY(dalcs_rows_setup(&measures->rows, radau, c->results.measured, c->results.n_measured));
     find_sources(measures, c, e);
-    measures->next_edge = edge_after(measures, 0.0);
+    measures->next_edge = dalcs_edges_ahead_after(&measures->edges, 0.0);
     return dalcs_audit_measures_start(&measures->audit, audit, &measures->measuring);
 }
 
@@ -129,6 +123,7 @@ void dalcs_measures_finish(struct dalcs_measures *measures) {
     dalcs_audit_measures_finish(&measures->audit);
     free(measures->reads);
     free(measures->stimulus);
+    dalcs_edges_ahead_finish(&measures->edges);
     free(measures->term);
     free(measures->before);
     free(measures->now);
@@ -210,7 +205,8 @@ enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures,
         measures->t = to;
     }
     if (measures->next_edge <= t + near) {
-        measures->next_edge = edge_after(measures, fmax(t, measures->next_edge));
+        measures->next_edge =
+            dalcs_edges_ahead_after(&measures->edges, fmax(t, measures->next_edge));
     }
     return DALCS_OK;
 }
@@ -220,12 +216,12 @@ void dalcs_measures_end_at(struct dalcs_measures *measures, double t) {
 }
 
 void dalcs_measures_renew(struct dalcs_measures *measures, double t) {
-    measures->next_edge = edge_after(measures, t);
+    measures->next_edge = dalcs_edges_ahead_after(&measures->edges, t);
 }
 
 void dalcs_measures_skip(struct dalcs_measures *measures, double t) {
     measures->t = t;
-    measures->next_edge = edge_after(measures, t);
+    measures->next_edge = dalcs_edges_ahead_after(&measures->edges, t);
 }
 
 /* ---- Implicit Euler and rows ------------------------------------------------------------------- */

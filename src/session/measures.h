@@ -3,6 +3,7 @@
 #define DALCS_MEASURES_H
 
 #include "audit_measures.h"
+#include "edges_ahead.h"
 #include "measuring.h"
 #include "rows.h"
 #include "session_internal.h"
@@ -16,6 +17,7 @@ struct dalcs_measures {
     bool *reads;            /* [n_systems] components that measured signals come from */
     int n_stimuli;
     const struct dalcs_stimulus **stimulus; /* [n_stimuli] those that drive them and vary */
+    struct dalcs_edges_ahead edges;         /* theirs */
     struct dalcs_stimulus_term *term;       /* work */
     double t;                               /* s, measured so far */
     double begin;                           /* s, before which nothing is; INFINITY without .meas */

@@ -7,14 +7,6 @@
 /* A stretch of a sine is resolved up to this many radians, as in measures.c. */
 static const double most_turn = 3.6;
 
-static double edge_after(const struct dalcs_steady_means *m, double t) {
-    double edge = INFINITY;
-    for (int i = 0; i < m->circuit->n_stimuli; i++) {
-        edge = fmin(edge, dalcs_stimulus_next_edge(&m->circuit->stimulus[i], t));
-    }
-    return edge;
-}
-
 /* Signals that sources drive without memory have the shape of these, however long the steps are. */
 static enum dalcs_status find_longest(struct dalcs_steady_means *m) {
     int most = 1;
@@ -55,13 +47,16 @@ enum dalcs_status dalcs_steady_means_setup(struct dalcs_steady_means *m,
     enum dalcs_status status =
         m->sum != NULL && m->square != NULL ? find_longest(m) : DALCS_E_NOMEM;
     if (status == DALCS_OK) {
+        status = dalcs_edges_ahead_of_all(&m->edges, circuit->stimulus, circuit->n_stimuli);
+    }
+    if (status == DALCS_OK) {
         status = dalcs_rows_setup(&m->rows, radau, NULL, network->n_outputs);
     }
     if (status != DALCS_OK) {
         dalcs_steady_means_finish(m);
         return status;
     }
-    m->next_edge = edge_after(m, 0.0);
+    m->next_edge = dalcs_edges_ahead_after(&m->edges, 0.0);
     return DALCS_OK;
 }
 
@@ -69,6 +64,7 @@ void dalcs_steady_means_finish(struct dalcs_steady_means *m) {
     if (m->rows.radau != NULL) {
         dalcs_rows_finish(&m->rows);
     }
+    dalcs_edges_ahead_finish(&m->edges);
     free(m->sum);
     free(m->square);
     *m = (struct dalcs_steady_means){0};
@@ -102,7 +98,7 @@ enum dalcs_status dalcs_steady_means_reach(struct dalcs_steady_means *m, double 
             DALCS_TRY(add_stretch(m, m->t, to));
         }
         m->t = to;
-        m->next_edge = to >= m->next_edge ? edge_after(m, to) : m->next_edge;
+        m->next_edge = to >= m->next_edge ? dalcs_edges_ahead_after(&m->edges, to) : m->next_edge;
     }
     return DALCS_OK;
 }

@@ -2,6 +2,7 @@
 #ifndef DALCS_STEADY_MEANS_H
 #define DALCS_STEADY_MEANS_H
 
+#include "edges_ahead.h"
 #include "rows.h"
 #include "stretch.h"
 
@@ -9,8 +10,9 @@ struct dalcs_steady_means {
     const struct dalcs_circuit *circuit;
     struct dalcs_rows rows;
     struct dalcs_stretch_rule rule;
-    double t, longest, next_edge; /* s */
-    double *sum, *square;         /* [n_outputs] integrals over the time from 0 to t */
+    struct dalcs_edges_ahead edges; /* of all sources */
+    double t, longest, next_edge;   /* s */
+    double *sum, *square;           /* [n_outputs] integrals over the time from 0 to t */
 };
 
 enum dalcs_status dalcs_steady_means_setup(struct dalcs_steady_means *m,

@@ -5,6 +5,7 @@
 #include "audit_run.h"
 #include "cosimulation.h"
 #include "cycle.h"
+#include "edges_ahead.h"
 #include "extremes.h"
 #include "filling.h"
 #include "gates.h"
@@ -43,6 +44,7 @@ struct transient {
     struct dalcs_rows rows;
     struct dalcs_gate_samples samples;
     struct dalcs_filling filling;
+    struct dalcs_edges_ahead edges; /* of all sources */
     double t;
     double next_row;  /* s, that is due */
     double next_edge; /* s, of any source: rows are wanted there */
@@ -51,15 +53,12 @@ struct transient {
 };
 
 /* Of any source; it is not called before the first row. */
-static double edge_after(const struct transient *c, double t) {
-    const struct dalcs_circuit *circuit = &c->run->s->circuit;
+static double edge_after(struct transient *c, double t) {
     double edge = dalcs_logic_run_next(c->logic);
     t = dalcs_larger(t, c->recorder->schedule.start * (1.0 - before_start));
-    for (int i = 0; i < circuit->n_stimuli && dalcs_recorder_wants_sides(c->recorder, INFINITY);
-         i++) {
-        edge = fmin(edge, dalcs_stimulus_next_edge(&circuit->stimulus[i], t));
-    }
-    return edge;
+    return dalcs_recorder_wants_sides(c->recorder, INFINITY)
+               ? fmin(edge, dalcs_edges_ahead_after(&c->edges, t))
+               : edge;
 }
 
 /* After so many steps and rows more. */
@@ -296,11 +295,16 @@ enum dalcs_status dalcs_transient_walk(struct dalcs_run *r, struct dalcs_radau *
     logic->cut.user = audit;
     logic->cut.tell = tell_cut;
     c.next_row = dalcs_recorder_due(c.recorder);
+    DALCS_TRY(dalcs_edges_ahead_of_all(&c.edges, r->s->circuit.stimulus, r->s->circuit.n_stimuli));
     c.next_edge = edge_after(&c, 0.0);
     c.interval = c.to_go = dalcs_transient_progress_interval(&r->s->network);
-    DALCS_TRY(dalcs_rows_setup(&c.rows, radau, NULL, r->s->network.n_outputs));
-    enum dalcs_status status = dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->rows.fill,
-                                                   r->rows.lines, &FILLING_LIMIT);
+    enum dalcs_status status = dalcs_rows_setup(&c.rows, radau, NULL, r->s->network.n_outputs);
+    if (status != DALCS_OK) {
+        dalcs_edges_ahead_finish(&c.edges);
+        return status;
+    }
+    status = dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->rows.fill, r->rows.lines,
+                                 &FILLING_LIMIT);
     status = status == DALCS_OK ? dalcs_gate_samples_setup(&c.samples, logic) : status;
     dalcs_audit_run_begin(audit);
     dalcs_audit_run_told(audit, 0.0);
@@ -316,5 +320,6 @@ enum dalcs_status dalcs_transient_walk(struct dalcs_run *r, struct dalcs_radau *
     dalcs_filling_finish(&c.filling);
     dalcs_rows_finish(&c.rows);
     dalcs_gate_samples_finish(&c.samples);
+    dalcs_edges_ahead_finish(&c.edges);
     return status;
 }

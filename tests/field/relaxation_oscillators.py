@@ -4,7 +4,8 @@
 usage: relaxation_oscillators.py PROGRAM
 
 With a resistance the states fall fast, up to 1e-12 of the run, and the switch opens where its control passes the other
-threshold on the way. Without one they jump as far as the closed switch lets them, and it opens behind that.
+threshold on the way. Without one they jump as far as the closed switch lets them, and it opens behind that. So does one
+that gates command: its gate is low before and behind.
 """
 
 import math
@@ -131,6 +132,50 @@ def others(checker):
                     "second": ("WHEN v(d)=200 RISE=9", 0.47 * (8 * math.log(6) + math.log(3)))})
 
 
+def saw(checker, name, current, c, on, control, node="b 0", base="0", rounds=9):
+    """C fed by a current; gates discharge it at `on` and are back before time goes on: high for no time."""
+    period = c * on / current
+    cards = [f"i1 {base} b {current!r}", f"c1 b {base} {c!r}", *control]
+    high, low = node.split()
+    level = f"v({high})" if low == "0" else f"v({high},{low})"
+    outcome = measured(checker, name, cards, (rounds - 0.5) * period, {
+        "second": (f"WHEN {level}={on / 2!r} RISE=2", 1.5 * period),
+        "last": (f"WHEN {level}={on / 2!r} RISE={rounds - 1}", (rounds - 1.5) * period),
+        "most": (f"MAX {level}", on)})
+    jumps = outcome.report["jumps"] if outcome is not None else []
+    checker.check(len(jumps) == rounds - 1, f"{name}: {len(jumps)} jumps, not {rounds - 1}")
+
+
+def gated(checker):
+    schmitt = "SCHMITT vt={!r} vh={!r}"
+    switch = ".model sw sw(vt=0.5)"
+    for current, c, on in ((1e-3, 10e-9, 1.0), (2.0, 1e-3, 300.0), (1e-7, 1e-12, 0.02)):
+        law = schmitt.format(0.55 * on, 0.45 * on)
+        saw(checker, f"a Schmitt gate at {on} V", current, c, on, ["s1 b 0 q 0 sw", f"a1 b 0 0 0 0 0 q 0 {law}", switch])
+        saw(checker, f"a latch that is set all the time, at {on} V", current, c, on, [
+            "s1 b 0 nq 0 sw", f"a1 b 0 0 0 0 0 t 0 {schmitt.format(0.8 * on, 0.2 * on)}", "vz z 0 1",
+            "a2 z t 0 0 0 nq q 0 SRFLOP", "r9 q 0 1k", switch])
+        saw(checker, f"a formula, at {on} V", current, c, on, [
+            "s1 b 0 q 0 sw", f"b1 q 0 v=v(b) > {on!r} ? 1 : 0", ".model sw sw(vt=0.5 vh=0.2)"])
+        saw(checker, f"a latch behind a formula, at {on} V", current, c, on, [
+            "s1 b 0 nq 0 sw", f"b1 t 0 v=v(b) > {on!r} ? 1 : 0", "vz z 0 1", "a2 z t 0 0 0 nq q 0 SRFLOP", "r9 q 0 1k", switch])
+    saw(checker, "on a floating stage, through E", 1e-3, 10e-9, 1.0, [
+        "vf f 0 SIN(0 5 10k)", "s1 b f g f sw", f"a1 b f 0 0 0 0 q 0 {schmitt.format(0.55, 0.45)}", "e1 g f q 0 10",
+        ".model sw sw(vt=5)"], node="b f", base="f")
+    saw(checker, "a flip-flop that clears itself", 1e-3, 10e-9, 1.0, [
+        "s1 b 0 q 0 sw", f"a1 b 0 0 0 0 0 k 0 {schmitt.format(0.55, 0.45)}", "a2 k 0 0 0 0 nk x 0 BUF", "r9 x 0 1k", "vz z 0 1",
+        "a3 z 0 k 0 nk 0 q 0 DFLOP", switch])
+    # a timer with two comparators and no resistance in its discharge
+    measured(checker, "a timer", ["v1 a 0 5", "r1 a b 10k", "c1 b 0 10n", "vh h 0 3", "vl l 0 1", "a1 b h 0 0 0 0 x 0 SCHMITT",
+                                  "a2 l b 0 0 0 0 y 0 SCHMITT", "a3 x y 0 0 0 0 q 0 SRFLOP", "s1 b 0 q 0 sw", switch],
+             8.5e-4 * math.log(2.5), {
+                 "last": ("WHEN v(b)=2 RISE=8", 1e-4 * (7 * math.log(2.5) + math.log(5 / 3))), "most": ("MAX v(b)", 3.0)})
+    # the dual: a gate cuts a coil off, and is back with the current
+    measured(checker, "a gated interrupter", ["v1 a 0 10", "l1 a b 1m", "s1 b 0 nq 0 sw", "h1 h 0 v1 -1",
+                                              f"a1 h 0 0 0 0 nq q 0 {schmitt.format(0.55, 0.45)}", "r9 q 0 1k", switch],
+             8.5e-4, {"last": ("WHEN i(l1)=0.5 RISE=8", 7.5e-4), "most": ("MAX i(l1)", 1.0)})
+
+
 def at_rest(checker):
     """An integrator and a comparator, from where neither has a reason to leave: all is 0 but for rounding."""
     for volts in (1e-2, 10.0, 1e3):
@@ -146,6 +191,7 @@ def main():
     at_rest(checker)
     flashes(checker)
     others(checker)
+    gated(checker)
     return checker.finish()
 
 

@@ -143,6 +143,20 @@ r2 b 0 100
 .tran 20u 20m uic
 """
 
+SAW = """a saw whose gate joins two capacitors for no time, and a clock that loads it
+i1 0 b 1m
+c1 b 0 10n
+s1 b y q 0 sw
+a1 b 0 0 0 0 0 q 0 SCHMITT vt=0.55 vh=0.35
+c2 y 0 100n
+r2 y 0 10
+vck ck 0 PULSE(0 1 4u 0 0 1u 10u)
+s2 b z ck 0 sw
+r3 z 0 1k
+.model sw SW(vt=0.5)
+.tran 0.2u 200u uic
+"""
+
 FED = """a part that another one drives, through gates on an RC
 vr r 0 PULSE(0 1 0 0 0 50u 100u)
 rr r g 1k
@@ -195,6 +209,14 @@ MUTATIONS = {
         "    for (int k = 0; k < s->n_x && part->segment.t > 5.1e-3 && part->segment.t < 5.2e-3 && part->guards.fresh && "
         "dalcs_osnsp_is_on(&part->component->osnsp, 0); k++) if (s->column_is_current[k]) part->segment.in[k] *= 1.0001;\n",
         FED),
+    "charge is lost where a gate is high for no time": (
+        "decide/take_jump.c", "    memcpy(part->x, e->jump.after, ",
+        "    e->jump.after[1] *= 1.0001;\n    memcpy(part->x, e->jump.after, ", SAW),
+    "a capacitor jumps where its gate stands and a clock turns another switch": (
+        "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
+        "    part->segment.in[s->n_x] = 1.0;\n"
+        "    if (part->segment.t > 13.9e-6 && part->segment.t < 14.1e-6 && part->guards.fresh) part->segment.in[0] *= 1.0001;\n",
+        SAW),
     "coupled coils help where they should oppose": (
         "dalcs/coil_groups.c", "double mutual = m->k * sqrt", "double mutual = -m->k * sqrt", FLYBACK),
     "a thyristor turns off above its holding current": (
@@ -204,8 +226,8 @@ MUTATIONS = {
     "an edge comes 1 ns after its delay": (
         "logic/logic_run.c", "l->now + (next->is", "l->now + 1e-9 + (next->is", GATES),
     "a corner of many is left out": (
-        "circuit/stimulus_terms.c", "    *piece = (struct dalcs_stimulus_piece){.to = dalcs_stimulus_next_edge(s, t),",
-        "    double to_ = dalcs_stimulus_next_edge(s, t);\n"
+        "circuit/stimulus_terms.c", "    *piece = (struct dalcs_stimulus_piece){.to = is_pulse ? 0.0 : dalcs_stimulus_next_edge(s, t),",
+        "    double to_ = is_pulse ? 0.0 : dalcs_stimulus_next_edge(s, t);\n"
         "    to_ = s->kind == DALCS_STIMULUS_PWL && fabs(to_ - 2e-3) < 1e-9 ? dalcs_stimulus_next_edge(s, to_) : to_;\n"
         "    *piece = (struct dalcs_stimulus_piece){.to = to_,", CORNERS),
     "a piece of a formula is too steep by 1e-5": (
@@ -249,8 +271,8 @@ MUTATIONS = {
         "rows/rows.c", "        sum->group[g] += value;\n", "        sum->group[g] += 1.00001 * value;\n", CHARGED),
 
     "the error of a step is taken for a millionth of it": (
-        "integrator/segment.c", "    q->ratio = search->spared ? q->own : q->ratio;\n",
-        "        q->ratio = 1e-6 * (search->spared ? q->own : q->ratio);\n", STRINGS),
+        "integrator/segment.c", "    q->ratio = search->errors.spared ? q->own : q->ratio;\n",
+        "        q->ratio = 1e-6 * (search->errors.spared ? q->own : q->ratio);\n", STRINGS),
     "a guard has the wrong sign": (
         "locate/first_fall.c", "    return part->guards.n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;\n",
         "    if (part->segment.t > 20e-3) part->guards.n_doubtful = 0;\n"

@@ -1,4 +1,5 @@
 /* test_stimulus_pieces.c - what all sources keep to: edges in order, pieces between them, ends, repetitions. */
+#include "edges_ahead.h"
 #include "make_stimulus.h"
 
 #include <float.h>
@@ -266,5 +267,54 @@ START_TEST(test_known_pieces) {
 
 END_TEST
 
+static double edge_of_all(const struct dalcs_stimulus *s, int n, double t) {
+    double next = INFINITY;
+    for (int k = 0; k < n; k++) {
+        next = fmin(next, dalcs_stimulus_next_edge(&s[k], t));
+    }
+    return next;
+}
+
+/* What was kept of several stimuli is what they say: on edges, between them, going on and back. */
+START_TEST(test_edges_ahead) {
+    for (int trial = 0; trial < 300; trial++) {
+        struct dalcs_stimulus s[8];
+        for (int k = 0; k < 8; k++) {
+            s[k] = random_stimulus(k % 3 == 0 ? 0 : 1 + k % 2);
+        }
+        struct dalcs_edges_ahead ahead;
+        ck_assert_int_eq(dalcs_edges_ahead_of_all(&ahead, s, 8), DALCS_OK);
+        double t = 0;
+        for (int k = 0; k < 60; k++) {
+            const double next = edge_of_all(s, 8, t);
+            ck_assert_double_eq(dalcs_edges_ahead_after(&ahead, t), next);
+            const double end = isinf(next) ? t + 1 : next;
+            const double way = uniform(0, 1);
+            t = way < 0.2 ? uniform(0.5, 1) * t : way < 0.6 ? end : t + uniform(0, 2) * (end - t);
+            t = way > 0.9 ? end * (1 - DBL_EPSILON) : t; /* a rounding before it */
+        }
+        dalcs_edges_ahead_finish(&ahead);
+    }
+}
+
+END_TEST
+
+/* A gate goes on writing: an edge that comes later is seen, though there was none when it was asked first. */
+START_TEST(test_edges_written) {
+    const double time[] = {0, 2, 2};
+    const double value[] = {0, 0, 1};
+    struct dalcs_stimulus s = make_pwl(time, value, 1);
+    s.is_written = true;
+    struct dalcs_edges_ahead ahead;
+    ck_assert_int_eq(dalcs_edges_ahead_of_all(&ahead, &s, 1), DALCS_OK);
+    ck_assert(isinf(dalcs_edges_ahead_after(&ahead, 0)));
+    s.u.pwl.n = 3;
+    ck_assert_double_eq(dalcs_edges_ahead_after(&ahead, 1), 2);
+    dalcs_edges_ahead_finish(&ahead);
+}
+
+END_TEST
+
 RUN_TESTS("stimulus pieces", test_contract, test_counted_pulses, test_counted_cycles,
-          test_repeated_points, test_pieces, test_known_pieces)
+          test_repeated_points, test_pieces, test_known_pieces, test_edges_ahead,
+          test_edges_written)
