@@ -122,10 +122,11 @@ static void note_refusal(struct dalcs_part_length *l) {
     l->slides_kept = 1;
 }
 
-/* s: of the lengths that halve from the last one, so that step sizes come again, the longest below that of a try. */
+/* s: of the lengths that halve from the last one, so that step sizes come again, the longest up to half of that of a try: an
+ * error that shrinks with the step is then less than half. */
 static double shorter(const struct dalcs_part_length *l, double h) {
     double length = l->slide > 0.0 ? l->slide : h;
-    while (length >= h) {
+    while (length > 0.5 * h) {
         length *= 0.5;
     }
     return length;
