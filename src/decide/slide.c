@@ -56,14 +56,18 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     r->steps++;
 }
 
-/* s: with room up to `limit`, and at most half way to where it is known not to slide any more. */
+/* s: up to `limit`, and up to where it is known not to slide any more. What is left behind it is not shorter: the shorter a
+ * segment, the more of a mean is rounding. */
 static double length_to_try(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                             double limit) {
     const struct dalcs_part_length *l = &part->length;
     const double fixed = r->options.fixed_step;
-    double h = l->slide > 0.0 ? l->slide : ldexp(l->longest, -FIRST);
-    h = fmin(fixed > 0.0 ? fixed : h, l->longest);
-    return fmin(h, fmin(limit - part->segment.t, 0.5 * (l->slide_until - part->segment.t)));
+    const double h = fmin(l->slide > 0.0 ? l->slide : ldexp(l->longest, -FIRST), l->longest);
+    const double left = fmin(limit, l->slide_until) - part->segment.t;
+    if (fixed > 0.0) {
+        return fmin(fmin(fixed, l->longest), left);
+    }
+    return left > h && left < 2.0 * h ? 0.5 * left : fmin(h, left);
 }
 
 /* The error of an event is not along the threshold: the first step would go that way so much the faster, the shorter it is.
@@ -118,18 +122,27 @@ static void note_refusal(struct dalcs_part_length *l) {
     l->slides_kept = 1;
 }
 
+/* s: of the lengths that halve from the last one, so that step sizes come again, the longest up to half of that of a try: an
+ * error that shrinks with the step is then less than half. */
+static double shorter(const struct dalcs_part_length *l, double h) {
+    double length = l->slide > 0.0 ? l->slide : h;
+    while (length > 0.5 * h) {
+        length *= 0.5;
+    }
+    return length;
+}
+
 /* What is known of lengths behind a try. What rounding makes is less in a longer one. */
 static void note(struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
     struct dalcs_part_length *l = &part->length;
     const double error = are_rounding(part, of) ? of->states : fmax(of->states, of->pairs);
-    const double of_length = error / (1.0 + of->noise / part->inner_tolerance);
     if (!of->slides) {
-        l->slide_until = part->segment.t + of->h;
+        l->slide_until = part->segment.t + of->fails;
     } else if (error > 1.0) {
-        l->slide = 0.5 * of->h;
+        l->slide = shorter(l, of->h);
         note_refusal(l);
     } else if (of->h >= l->slide) {
-        l->slide = is_longer_worth_trying(l, of_length) ? 2.0 * of->h : of->h;
+        l->slide = is_longer_worth_trying(l, error) ? 2.0 * of->h : of->h;
     }
 }
 
@@ -187,6 +200,14 @@ static bool may_jump(const struct dalcs_slide_try *of, bool starts, double state
            dalcs_power_of_step(states_before, of->states) <= 0.0;
 }
 
+/* s: shorter behind an error. Where a mean ends within the try, one up to there: the end is known to a step of the first
+ * sequence, and not only to half of the try. What is left is no shorter than the step that ends a slide. */
+static double next_length(const struct dalcs_radau_part *part, const struct dalcs_slide_try *of,
+                          double least_end) {
+    return of->slides ? shorter(&part->length, of->h)
+                      : fmin(fmax(of->held, 0.5 * of->fails), of->fails - least_end);
+}
+
 /* Shorter and shorter ones. Where a diode turns, a state is off by no more than the step. One that starts and is found at no
  * length has no end to finish, and says nothing of how long the next one is. */
 static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -205,14 +226,18 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
     }
     for (;;) {
         DALCS_TRY(dalcs_slide_attempt(r, part, of));
-        bool is_last =
-            r->options.fixed_step > 0.0 || 0.5 * of->h < (of->slides ? least : least_end);
+        const double next = next_length(part, of, least_end);
+        bool is_last = r->options.fixed_step > 0.0 ||
+                       (of->slides ? next < least : of->fails < 2.0 * least_end);
         find_rounding(part, of, pairs_before);
         *slides = of->slides && (is_last || is_exact(part, of, pairs_before));
         note(part, of);
         if (*slides) {
             bool is_of_length = of->pairs <= 1.0 || are_rounding(part, of);
             part->length.slide = is_last || !is_of_length ? before : part->length.slide;
+            if (left - of->h < least_end) {
+                part->length.slide_until = INFINITY; /* it goes on beyond */
+            }
             accept(r, part, of);
             return DALCS_OK;
         }
@@ -222,11 +247,12 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
         }
         if (is_last || jumps) {
             part->length.slide = before;
+            of->h = of->slides ? of->h : of->fails;
             return starts ? DALCS_OK : finish(r, part, of, slides);
         }
         states_before = of->slides ? of->states : INFINITY;
         pairs_before = of->slides ? of->pairs : INFINITY;
-        of->h *= 0.5;
+        of->h = next;
     }
 }
 

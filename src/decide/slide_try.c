@@ -78,7 +78,8 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
     }
     struct dalcs_observed_sides sides;
     double noise = 0.0;
-    DALCS_TRY(dalcs_sliding_mean(&c->positions, part->work.u, step->y, &sides, &noise));
+    DALCS_TRY(
+        dalcs_sliding_mean(&c->positions, 1.0 / step->h, part->work.u, step->y, &sides, &noise));
     of->slides = sides.n > 0 && (of->begins || of->may_change || !c->positions.sides.have_changed);
     of->begins = false;
     if (!of->slides) {
@@ -138,6 +139,8 @@ static enum dalcs_status run_sequence(struct dalcs_radau *r, struct dalcs_radau_
                                               .y = y};
             DALCS_TRY(mean_step(r, part, &step, of));
             if (!of->slides) {
+                of->held = step.tau - step.h;
+                of->fails = step.tau;
                 return DALCS_OK;
             }
             state = y;

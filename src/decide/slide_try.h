@@ -19,8 +19,9 @@ struct dalcs_slide_try {
     bool may_change;                 /* what slides along its threshold within the segment */
     bool begins;                     /* nothing has slid so far */
     bool slides;
-    bool knows_start; /* without states: all columns there, and voltages of pairs */
-    double noise;     /* what rounding may make of the mean of both sides, over it */
+    double held, fails; /* s, if not: up to where there was a mean, and where there was none */
+    bool knows_start;   /* without states: all columns there, and voltages of pairs */
+    double noise;       /* what rounding may make of the mean of both sides, over it */
     /* Errors over what is allowed; of pairs without noise. */
     double states, pairs;
     bool is_coarse; /* noise may hide an error of pairs */

@@ -18,9 +18,11 @@ static bool allocate_sides(struct dalcs_positions *p, struct dalcs_arena *arena)
     sides->y = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)dalcs_system_n_columns(s),
                                  sizeof(double));
     sides->w = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)s->n_pairs, sizeof(double));
+    sides->mode =
+        dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)p->osnsp->n_words, sizeof(uint64_t));
     sides->conducted = dalcs_arena_alloc(arena, (size_t)p->osnsp->n_words, sizeof(uint64_t));
     sides->leading = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
-    return sides->group != NULL && sides->y != NULL && sides->w != NULL &&
+    return sides->group != NULL && sides->y != NULL && sides->w != NULL && sides->mode != NULL &&
            sides->conducted != NULL && sides->leading != NULL;
 }
 
@@ -42,6 +44,7 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
     p->jump = dalcs_arena_alloc(arena, (size_t)p->n_jumps, sizeof(int));
     p->gap = dalcs_arena_alloc(arena, n_turning, sizeof(double));
     p->follows = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
+    p->is_compared = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
     p->leads = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
     p->pair = dalcs_arena_alloc(arena, (size_t)p->n, sizeof(int));
     p->slack = dalcs_arena_alloc(arena, n_turning, sizeof(double));
@@ -55,7 +58,7 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
     if (p->pair == NULL || p->slack == NULL || p->mask == NULL || p->first == NULL ||
         p->present == NULL || p->mark == NULL || p->other == NULL || p->other_y == NULL ||
         p->other_w == NULL || p->jump == NULL || p->gap == NULL || p->follows == NULL ||
-        p->leads == NULL || !allocate_sides(p, arena)) {
+        p->is_compared == NULL || p->leads == NULL || !allocate_sides(p, arena)) {
         return DALCS_E_NOMEM;
     }
     for (int d = 0, i = 0, k = 0; d < s->n_pairs; d++) {

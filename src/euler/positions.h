@@ -28,6 +28,7 @@ struct dalcs_positions {
     bool joined;               /* sliding.h */
     double *gap;               /* [n + n_jumps] between both sides, in a micro-step */
     bool *follows;             /* [n + n_jumps] it turns since another one does */
+    bool *is_compared;         /* [n + n_jumps] that is known */
     bool *leads;               /* [n + n_jumps] a jump that others follow, at present */
     uint64_t *mask;            /* [n_words] bits of these switches */
     uint64_t *first, *present, *mark; /* [n_words] */
@@ -35,6 +36,7 @@ struct dalcs_positions {
     struct dalcs_slide_sides { /* of a mean */
         int *group;    /* [n + n_jumps] those that one part of the time suits, -1: no leading one */
         double *y, *w; /* [DALCS_MOST_SIDES][n_columns], [][n_pairs] */
+        uint64_t *mode;      /* [DALCS_MOST_SIDES][n_words] */
         uint64_t *conducted; /* [n_words] on some side */
         bool *leading;       /* [n + n_jumps] */
         bool have_changed;   /* others lead than in the mean before */

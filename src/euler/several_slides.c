@@ -20,23 +20,16 @@ struct several {
     int n;
     int first[MOST_SEVERAL]; /* of each group */
     double part[MOST_SEVERAL];
+    bool stays[MOST_SEVERAL]; /* on one side: part is 0 or 1 */
 };
 
-static double *corner_y(const struct dalcs_positions *p, int corner) {
-    return p->sides.y + (ptrdiff_t)corner * dalcs_system_n_columns(p->osnsp->system);
-}
-
-static double *corner_w(const struct dalcs_positions *p, int corner) {
-    return p->sides.w + (ptrdiff_t)corner * p->osnsp->system->n_pairs;
-}
-
 static double beyond(const struct dalcs_positions *p, int i, int corner) {
-    return dalcs_turning_beyond(p, i, corner_y(p, corner), corner_w(p, corner));
+    return dalcs_turning_beyond(p, i, dalcs_corner_y(p, corner), dalcs_corner_w(p, corner));
 }
 
 /* Those that one weight puts on their thresholds, as complementary switches, are one. of->n is 0 where they are too many. */
 static void find_groups(struct dalcs_positions *p, const double *y, struct several *of) {
-    of->n = 0;
+    *of = (struct several){0};
     for (int i = 0; i < dalcs_turning_n(p); i++) {
         p->sides.group[i] = -1;
     }
@@ -59,88 +52,6 @@ static void find_groups(struct dalcs_positions *p, const double *y, struct sever
         }
         p->sides.group[i] = g;
     }
-}
-
-/* Those that lead stand as in a corner; the output of a jump is on the side of what it commands (sliding.c). */
-static void put_leading(struct dalcs_positions *p, int corner) {
-    for (int i = 0; i < dalcs_turning_n(p); i++) {
-        const int g = p->sides.group[i];
-        if (g >= 0) {
-            const bool is_other = (corner >> g & 1) != 0;
-            const uint64_t *mode = is_other == (i < p->n) ? p->other : p->present;
-            dalcs_turning_put(p, i, dalcs_mode_has(mode, dalcs_turning_pair(p, i)));
-        }
-    }
-}
-
-/* All else goes where the answer y has it. The answers on the way to a corner are none of the circuit: a switch with
- * hysteresis remembers p->present, not these. Returns whether something changed. */
-static bool put_others(struct dalcs_positions *p, const double *y) {
-    const struct dalcs_osnsp *o = p->osnsp;
-    bool any = false;
-    for (int k = 0; k < o->signs.n_violating; k++) {
-        const int pair = o->signs.violating[k];
-        if (!dalcs_turning_is_of_leading_jump(p, pair)) {
-            dalcs_osnsp_command(p->osnsp, pair, !dalcs_osnsp_is_on(o, pair));
-            any = true;
-        }
-    }
-    for (int i = 0; i < p->n; i++) {
-        if (p->sides.group[i] < 0 && dalcs_positions_moves_from(p, i, p->present, y)) {
-            dalcs_turning_put(p, i, !dalcs_osnsp_is_on(o, p->pair[i]));
-            any = true;
-        }
-    }
-    return any;
-}
-
-static enum dalcs_status find_corner(struct dalcs_positions *p, const double *u, int corner,
-                                     bool *is_complete) {
-    struct dalcs_osnsp *o = p->osnsp;
-    double *y = corner_y(p, corner);
-    memcpy(o->mode, p->present, (size_t)o->n_words * sizeof(*o->mode));
-    put_leading(p, corner);
-    *is_complete = false;
-    for (int round = 0; round <= o->system->n_pairs && !*is_complete; round++) {
-        enum dalcs_status status = dalcs_osnsp_answer(o, u, y);
-        if (status != DALCS_OK) {
-            return status < DALCS_OK ? status : DALCS_OK;
-        }
-        *is_complete = !put_others(p, y);
-    }
-    memcpy(corner_w(p, corner), o->w, (size_t)o->system->n_pairs * sizeof(double));
-    for (int k = 0; k < o->n_words; k++) {
-        p->sides.conducted[k] |= o->mode[k];
-        p->mark[k] &= o->mode[k];
-    }
-    return DALCS_OK;
-}
-
-/* y is the answer on one side of all; that on the other side of all is p->other_y. What is on in all corners stays in
- * p->mark. */
-static enum dalcs_status find_corners(struct dalcs_positions *p, const double *u, const double *y,
-                                      const struct several *of, bool *are_complete) {
-    const struct dalcs_system *s = p->osnsp->system;
-    const size_t y_bytes = (size_t)dalcs_system_n_columns(s) * sizeof(double);
-    const size_t w_bytes = (size_t)s->n_pairs * sizeof(double);
-    const size_t mode_bytes = (size_t)p->osnsp->n_words * sizeof(uint64_t);
-    const int last = (1 << of->n) - 1;
-    memcpy(p->present, p->osnsp->mode, mode_bytes);
-    memcpy(corner_y(p, 0), y, y_bytes);
-    memcpy(corner_w(p, 0), p->osnsp->w, w_bytes);
-    memcpy(corner_y(p, last), p->other_y, y_bytes);
-    memcpy(corner_w(p, last), p->other_w, w_bytes);
-    for (int k = 0; k < p->osnsp->n_words; k++) {
-        p->sides.conducted[k] = p->present[k] | p->other[k];
-        p->mark[k] = p->present[k] & p->other[k];
-    }
-    enum dalcs_status status = DALCS_OK;
-    *are_complete = true;
-    for (int corner = 1; corner < last && status == DALCS_OK && *are_complete; corner++) {
-        status = find_corner(p, u, corner, are_complete);
-    }
-    memcpy(p->osnsp->mode, p->present, mode_bytes);
-    return status;
 }
 
 /* The part of the time in a corner, by all groups but one; -1: by all. */
@@ -181,6 +92,12 @@ static void fill_rows(const struct dalcs_positions *p, const struct several *of,
         }
         a[g * row + of->n] = beyond_in_mean(p, of, of->first[g], &largest);
     }
+    for (int g = 0; g < of->n; g++) {
+        for (int k = 0; k < of->n && of->stays[g]; k++) {
+            a[g * row + k] = a[k * row + g] = k == g ? -1.0 : 0.0;
+        }
+        a[g * row + of->n] *= of->stays[g] ? 0.0 : 1.0;
+    }
 }
 
 /* Does each turn its own control off, more than others turn it on? Where all principal minors are above 0 no other parts of
@@ -194,8 +111,7 @@ static bool is_only_one(const struct dalcs_positions *p, const struct several *o
     bool is = true;
     for (int by = 0; by < of->n; by++) {
         const int i = of->first[by];
-        const bool closes =
-            dalcs_mode_has(i < p->n ? p->other : p->present, dalcs_turning_pair(p, i));
+        const bool closes = of->stays[by] || dalcs_turning_is_on_at(p, i, true);
         for (int g = 0; g < of->n; g++) {
             m[g][by] = closes ? -a[g * row + by] : a[g * row + by];
         }
@@ -218,7 +134,7 @@ static bool find_parts(const struct dalcs_positions *p, struct several *of) {
     const int row = dalcs_dense_row(of->n, 1);
     double moved = INFINITY;
     for (int g = 0; g < of->n; g++) {
-        of->part[g] = 0.5;
+        of->part[g] = of->stays[g] ? of->part[g] : 0.5;
     }
     for (int k = 0; k < MOST_NEWTON && moved > dalcs_rounded; k++) {
         double a[ROWS];
@@ -232,40 +148,87 @@ static bool find_parts(const struct dalcs_positions *p, struct several *of) {
             moved = fmax(moved, fabs(a[g * row + of->n]));
         }
     }
-    bool are_inside = true;
-    for (int g = 0; g < of->n; g++) {
-        are_inside = are_inside && of->part[g] > 0.0 && of->part[g] < 1.0;
-    }
-    return are_inside;
+    return true;
 }
 
+/* The one whose part is farthest from any; -1: all are parts. */
+static int farthest_outside(const struct several *of) {
+    int farthest = -1;
+    double most = 0.0;
+    for (int g = 0; g < of->n; g++) {
+        const double outside = of->stays[g] ? -1.0 : fabs(of->part[g] - 0.5) - 0.5;
+        if (outside >= most) {
+            most = outside;
+            farthest = g;
+        }
+    }
+    return farthest;
+}
+
+/* One that would be on a side for more than all of the time stays there: it is about to leave its threshold, and in a step
+ * of implicit Euler goes to and fro with the others. Is there a part of the time for any of the rest? */
+static bool find_inside(const struct dalcs_positions *p, struct several *of) {
+    int n_stay = 0;
+    int outside = -1;
+    do {
+        if (!find_parts(p, of)) {
+            return false;
+        }
+        outside = farthest_outside(of);
+        if (outside >= 0) {
+            of->stays[outside] = true;
+            of->part[outside] = of->part[outside] < 0.5 ? 0.0 : 1.0;
+            n_stay++;
+        }
+    } while (outside >= 0 && n_stay < of->n);
+    return n_stay < of->n;
+}
+
+/* Is each at its threshold, or on the side of it that it stays on? */
 static bool all_fit(const struct dalcs_positions *p, const struct several *of) {
     bool fit = true;
     for (int i = 0; i < dalcs_turning_n(p) && fit; i++) {
-        if (p->sides.group[i] >= 0) {
+        const int g = p->sides.group[i];
+        if (g >= 0) {
             double largest;
             const double off = beyond_in_mean(p, of, i, &largest);
-            fit = dalcs_turning_is_at_threshold(p, i, off, largest);
+            fit = dalcs_turning_is_at_threshold(p, i, off, largest) ||
+                  (of->stays[g] && (off > 0.0) == dalcs_turning_is_on_at(p, i, of->part[g] > 0.5));
         }
     }
     return fit;
 }
 
+/* Of the corners that the mean is of. A pair that is off in one of them turns, though it may be on in the two that differ in
+ * all (sliding.h). */
 static void put_mean(struct dalcs_positions *p, const struct several *of, double *y,
                      struct dalcs_observed_sides *sides) {
     const struct dalcs_system *s = p->osnsp->system;
-    *sides = (struct dalcs_observed_sides){.n = 1 << of->n};
+    *sides = (struct dalcs_observed_sides){0};
     memset(y, 0, (size_t)dalcs_system_n_columns(s) * sizeof(double));
     memset(p->osnsp->w, 0, (size_t)s->n_pairs * sizeof(double));
-    for (int corner = 0; corner < sides->n; corner++) {
+    memset(p->sides.conducted, 0, (size_t)p->osnsp->n_words * sizeof(uint64_t));
+    memset(p->other, 0xff, (size_t)p->osnsp->n_words * sizeof(uint64_t));
+    for (int corner = 0; corner < 1 << of->n; corner++) {
         const double weight = weight_of(of, corner, -1);
-        sides->y[corner] = corner_y(p, corner);
-        sides->weight[corner] = weight;
+        if (weight == 0.0) {
+            continue;
+        }
+        if (sides->n == 0) {
+            memcpy(p->osnsp->mode, dalcs_corner_mode(p, corner),
+                   (size_t)p->osnsp->n_words * sizeof(uint64_t));
+        }
+        sides->y[sides->n] = dalcs_corner_y(p, corner);
+        sides->weight[sides->n++] = weight;
         for (int k = 0; k < dalcs_system_n_columns(s); k++) {
-            y[k] += weight * corner_y(p, corner)[k];
+            y[k] += weight * dalcs_corner_y(p, corner)[k];
         }
         for (int d = 0; d < s->n_pairs; d++) {
-            p->osnsp->w[d] += weight * corner_w(p, corner)[d];
+            p->osnsp->w[d] += weight * dalcs_corner_w(p, corner)[d];
+        }
+        for (int k = 0; k < p->osnsp->n_words; k++) {
+            p->sides.conducted[k] |= dalcs_corner_mode(p, corner)[k];
+            p->other[k] &= dalcs_corner_mode(p, corner)[k];
         }
     }
 }
@@ -279,18 +242,20 @@ enum dalcs_status dalcs_sliding_mean_of_several(struct dalcs_positions *p, const
         return DALCS_OK;
     }
     bool are_complete;
-    DALCS_TRY(find_corners(p, u, y, &of, &are_complete));
-    if (!are_complete || !find_parts(p, &of) || !all_fit(p, &of) || !is_only_one(p, &of)) {
+    DALCS_TRY(dalcs_corners_find(p, u, y, of.n, &are_complete));
+    if (!are_complete || !find_inside(p, &of) || !all_fit(p, &of) || !is_only_one(p, &of)) {
         return DALCS_OK;
     }
     *noise = 0.0;
     for (int g = 0; g < of.n; g++) {
         double own;
         (void)dalcs_turning_weight(p, of.first[g], y, &own);
-        *noise = fmax(*noise, own);
+        *noise = of.stays[g] ? *noise : fmax(*noise, own);
+    }
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        const int g = p->sides.group[i];
+        p->sides.group[i] = g >= 0 && of.stays[g] ? -1 : g;
     }
     put_mean(p, &of, y, sides);
-    /* A pair that is off in some corner turns, though it may be on in the two that differ in all (sliding.h). */
-    memcpy(p->other, p->mark, (size_t)p->osnsp->n_words * sizeof(*p->other));
     return DALCS_OK;
 }

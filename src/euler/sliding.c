@@ -1,16 +1,8 @@
 /* sliding.c - between the two sides of a switch that opens what closes it and closes what opens it. */
 #include "sliding_internal.h"
 
-#include "power_of_step.h"
-
 #include <math.h>
 #include <string.h>
-
-/* Does the i-th stand differently on both sides? */
-static bool turns(const struct dalcs_positions *p, int i) {
-    const int d = dalcs_turning_pair(p, i);
-    return dalcs_osnsp_is_on(p->osnsp, d) != dalcs_mode_has(p->other, d);
-}
 
 double dalcs_turning_beyond(const struct dalcs_positions *p, int i, const double *y,
                             const double *w) {
@@ -20,47 +12,18 @@ double dalcs_turning_beyond(const struct dalcs_positions *p, int i, const double
                     : y[dalcs_system_n_equations(s) + d + 1] - w[d];
 }
 
-static double here(const struct dalcs_positions *p, int i, const double *y) {
-    return dalcs_turning_beyond(p, i, y, p->osnsp->w);
-}
-
-static double there(const struct dalcs_positions *p, int i) {
-    return dalcs_turning_beyond(p, i, p->other_y, p->other_w);
-}
-
-void dalcs_sliding_begin(struct dalcs_positions *p) {
-    for (int i = 0; i < dalcs_turning_n(p); i++) {
-        p->gap[i] = 0.0;
-        p->follows[i] = false;
-    }
-}
-
-void dalcs_sliding_note_gaps(struct dalcs_positions *p, const double *y) {
-    for (int i = 0; i < dalcs_turning_n(p); i++) {
-        p->gap[i] = turns(p, i) ? fabs(there(p, i) - here(p, i, y)) : 0.0;
-    }
-}
-
-/* A gap halves with the step where what is read goes on through the event, and stays where that jumps with it. */
-void dalcs_sliding_compare_gaps(struct dalcs_positions *p, const double *y) {
-    for (int i = 0; i < dalcs_turning_n(p); i++) {
-        p->follows[i] =
-            turns(p, i) && dalcs_power_of_step(there(p, i) - here(p, i, y), p->gap[i]) <= 0.0;
-    }
-}
-
 /* Does another one decide that it turns? Where each follows another, in a loop without a state, and no formula moves
  * switches, these do for themselves. */
 static bool is_decided_by_another(const struct dalcs_positions *p, int i) {
     bool any_leads = false;
     for (int k = 0; k < dalcs_turning_n(p) && !any_leads; k++) {
-        any_leads = turns(p, k) && !p->follows[k];
+        any_leads = dalcs_turning_turns(p, k) && !p->follows[k];
     }
     return any_leads ? p->follows[i] : i >= p->n;
 }
 
 bool dalcs_turning_leads(const struct dalcs_positions *p, int i) {
-    return turns(p, i) && !is_decided_by_another(p, i);
+    return dalcs_turning_turns(p, i) && !is_decided_by_another(p, i);
 }
 
 void dalcs_turning_put(struct dalcs_positions *p, int i, bool is_on) {
@@ -70,63 +33,11 @@ void dalcs_turning_put(struct dalcs_positions *p, int i, bool is_on) {
     }
 }
 
-/* Does the last answer, with a jump's output on its other side and all else as it is, take the i-th nearer to where that
- * is on the other side than to where it is here, in the answer y and w? */
-static bool moves(const struct dalcs_positions *p, int i, const double *y, const double *w) {
-    const double now = dalcs_turning_beyond(p, i, p->sides.y, p->osnsp->w);
-    return fabs(now - there(p, i)) < fabs(now - dalcs_turning_beyond(p, i, y, w));
-}
-
-/* Into p->leads: it moves another one; into p->sides.group, 1: another jump moves it. */
-static enum dalcs_status find_moves(struct dalcs_positions *p, const double *u, const double *y,
-                                    const double *w) {
-    for (int j = p->n; j < dalcs_turning_n(p); j++) {
-        if (!turns(p, j)) {
-            continue;
-        }
-        const bool is_on = dalcs_osnsp_is_on(p->osnsp, dalcs_turning_pair(p, j));
-        dalcs_turning_put(p, j, !is_on);
-        enum dalcs_status status = dalcs_osnsp_answer(p->osnsp, u, p->sides.y);
-        memcpy(p->osnsp->mode, p->present, (size_t)p->osnsp->n_words * sizeof(*p->present));
-        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        for (int i = 0; i < dalcs_turning_n(p) && status == DALCS_OK; i++) {
-            if (i != j && turns(p, i) && moves(p, i, y, w)) {
-                p->leads[j] = true;
-                p->sides.group[i] = 1;
-            }
-        }
-    }
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_sliding_find_commanding(struct dalcs_positions *p, const double *u,
-                                                const double *y) {
-    const size_t bytes = (size_t)p->osnsp->system->n_pairs * sizeof(double);
-    bool any = false;
-    for (int i = 0; i < dalcs_turning_n(p); i++) {
-        any = any || (turns(p, i) && !p->follows[i]);
-        p->leads[i] = false;
-        p->sides.group[i] = 0;
-    }
-    if (any) {
-        return DALCS_OK;
-    }
-    memcpy(p->present, p->osnsp->mode, (size_t)p->osnsp->n_words * sizeof(*p->present));
-    memcpy(p->sides.w, p->osnsp->w, bytes);
-    enum dalcs_status status = find_moves(p, u, y, p->sides.w);
-    memcpy(p->osnsp->w, p->sides.w, bytes);
-    for (int i = p->n; i < dalcs_turning_n(p) && status == DALCS_OK; i++) {
-        p->follows[i] = p->follows[i] && !(p->leads[i] && p->sides.group[i] == 0);
-    }
-    return status;
-}
-
-/* Jumps that read a leading one take the side of their argument. Returns whether one changed. */
-static bool put_followers(struct dalcs_positions *p, const double *y) {
+bool dalcs_turning_put_followers(struct dalcs_positions *p, const double *y) {
     bool any = false;
     for (int i = p->n; i < dalcs_turning_n(p); i++) {
         const bool is_on = dalcs_osnsp_is_on(p->osnsp, dalcs_turning_pair(p, i));
-        if (p->leads[i] || is_on == (here(p, i, y) > 0.0)) {
+        if (p->leads[i] || is_on == (dalcs_turning_here(p, i, y) > 0.0)) {
             continue;
         }
         dalcs_turning_put(p, i, !is_on);
@@ -135,11 +46,11 @@ static bool put_followers(struct dalcs_positions *p, const double *y) {
     return any;
 }
 
-bool dalcs_turning_is_of_leading_jump(const struct dalcs_positions *p, int pair) {
+bool dalcs_turning_is_of_jump(const struct dalcs_positions *p, int pair, bool leading_only) {
     bool is = false;
     for (int i = p->n; i < dalcs_turning_n(p) && !is; i++) {
         const int behind = pair - dalcs_turning_pair(p, i);
-        is = p->leads[i] && (behind == 0 || behind == 1);
+        is = (p->leads[i] || !leading_only) && (behind == 0 || behind == 1);
     }
     return is;
 }
@@ -148,7 +59,7 @@ bool dalcs_turning_is_of_leading_jump(const struct dalcs_positions *p, int pair)
 static bool all_agree(const struct dalcs_positions *p, const double *y) {
     const struct dalcs_osnsp *o = p->osnsp;
     for (int k = 0; k < o->signs.n_violating; k++) {
-        if (!dalcs_turning_is_of_leading_jump(p, o->signs.violating[k])) {
+        if (!dalcs_turning_is_of_jump(p, o->signs.violating[k], true)) {
             return false;
         }
     }
@@ -171,7 +82,7 @@ static enum dalcs_status answer_with(struct dalcs_positions *p, const uint64_t *
         if (status != DALCS_OK) {
             return status < DALCS_OK ? status : DALCS_OK;
         }
-        if (!put_followers(p, y)) {
+        if (!dalcs_turning_put_followers(p, y)) {
             *is_complete = all_agree(p, y);
             break;
         }
@@ -208,7 +119,7 @@ static enum dalcs_status complete(struct dalcs_positions *p, const double *u, do
 bool dalcs_sliding_follows_one(const struct dalcs_positions *p) {
     int n_leading = 0;
     for (int i = 0; i < dalcs_turning_n(p); i++) {
-        if (turns(p, i) && !p->follows[i]) {
+        if (dalcs_turning_turns(p, i) && !p->follows[i]) {
             if (i < p->n) {
                 return false;
             }
@@ -220,9 +131,9 @@ bool dalcs_sliding_follows_one(const struct dalcs_positions *p) {
 
 double dalcs_turning_weight(const struct dalcs_positions *p, int i, const double *y,
                             double *noise) {
-    const double gap = there(p, i) - here(p, i, y);
+    const double gap = dalcs_turning_there(p, i) - dalcs_turning_here(p, i, y);
     *noise = p->slack[i] / fabs(gap);
-    return -here(p, i, y) / gap;
+    return -dalcs_turning_here(p, i, y) / gap;
 }
 
 bool dalcs_turning_is_at_threshold(const struct dalcs_positions *p, int i, double off,
@@ -232,8 +143,8 @@ bool dalcs_turning_is_at_threshold(const struct dalcs_positions *p, int i, doubl
 
 bool dalcs_turning_fits(const struct dalcs_positions *p, int i, double weight, const double *y) {
     const double turn_on = i < p->n ? p->osnsp->system->pair[p->pair[i]].turn_on : 0.0;
-    const double one = here(p, i, y);
-    const double other = there(p, i);
+    const double one = dalcs_turning_here(p, i, y);
+    const double other = dalcs_turning_there(p, i);
     return dalcs_turning_is_at_threshold(p, i, one + weight * (other - one),
                                          fabs(one + turn_on) + fabs(other + turn_on));
 }
@@ -259,21 +170,35 @@ static double common_weight(const struct dalcs_positions *p, const double *y, do
     return weight;
 }
 
-static void note_leading(struct dalcs_positions *p) {
+/* One weight is of all that lead; of several, those that slide are in groups. */
+static void note_leading(struct dalcs_positions *p, bool has_one_weight) {
     p->sides.have_changed = false;
     for (int i = 0; i < dalcs_turning_n(p); i++) {
-        const bool leads = dalcs_turning_leads(p, i);
+        const bool leads = has_one_weight ? dalcs_turning_leads(p, i) : p->sides.group[i] >= 0;
         p->sides.have_changed = p->sides.have_changed || leads != p->sides.leading[i];
         p->sides.leading[i] = leads;
     }
 }
 
-enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, const double *u, double *y,
-                                     struct dalcs_observed_sides *sides, double *noise) {
+/* In the mean the argument of a leading jump is 0, and so is each of its parts above and below: what either side has of them
+ * vanishes with the step, and is not of the flow. */
+static void put_on_threshold(struct dalcs_positions *p, double *y) {
+    const int first = dalcs_system_n_equations(p->osnsp->system);
+    for (int i = p->n; i < dalcs_turning_n(p); i++) {
+        if (p->sides.leading[i]) {
+            y[first + dalcs_turning_pair(p, i) + 1] = 0.0;
+            p->osnsp->w[dalcs_turning_pair(p, i)] = 0.0;
+        }
+    }
+}
+
+enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, double sigma, const double *u,
+                                     double *y, struct dalcs_observed_sides *sides, double *noise) {
     const struct dalcs_system *s = p->osnsp->system;
     const int n_columns = dalcs_system_n_columns(s);
     bool may_slide;
     sides->n = 0;
+    DALCS_TRY(dalcs_turning_compare_new(p, sigma, u, y));
     DALCS_TRY(complete(p, u, y, &may_slide));
     for (int i = 0; i < p->n && may_slide; i++) {
         may_slide = !dalcs_turning_leads(p, i) || !dalcs_pair_remembers(&s->pair[p->pair[i]]);
@@ -281,18 +206,22 @@ enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, const double *u,
     if (!may_slide) {
         return DALCS_OK;
     }
-    note_leading(p);
     const double weight = common_weight(p, y, noise);
     if (!(weight > 0.0)) {
-        return dalcs_sliding_mean_of_several(p, u, y, sides, noise);
+        DALCS_TRY(dalcs_sliding_mean_of_several(p, u, y, sides, noise));
+    } else {
+        memcpy(p->sides.y, y, (size_t)n_columns * sizeof(double));
+        *sides = (struct dalcs_observed_sides){
+            .n = 2, .y = {p->sides.y, p->other_y}, .weight = {1.0 - weight, weight}};
+        mix(y, p->other_y, weight, n_columns);
+        mix(p->osnsp->w, p->other_w, weight, s->n_pairs);
+        for (int k = 0; k < p->osnsp->n_words; k++) {
+            p->sides.conducted[k] = p->osnsp->mode[k] | p->other[k];
+        }
     }
-    memcpy(p->sides.y, y, (size_t)n_columns * sizeof(double));
-    *sides = (struct dalcs_observed_sides){
-        .n = 2, .y = {p->sides.y, p->other_y}, .weight = {1.0 - weight, weight}};
-    mix(y, p->other_y, weight, n_columns);
-    mix(p->osnsp->w, p->other_w, weight, s->n_pairs);
-    for (int k = 0; k < p->osnsp->n_words; k++) {
-        p->sides.conducted[k] = p->osnsp->mode[k] | p->other[k];
+    if (sides->n > 0) {
+        note_leading(p, weight > 0.0);
+        put_on_threshold(p, y);
     }
     return DALCS_OK;
 }

@@ -13,11 +13,11 @@
 #include "observer.h"
 #include "positions.h"
 
-/* Behind dalcs_positions_solve() with p->alternates, at the inputs u: y[n_columns] and p->osnsp->w, the answer on one
+/* Behind dalcs_positions_solve() with p->alternates, of a step of length 1 / sigma at the inputs u: y[n_columns] and p->osnsp->w, the answer on one
  * side, become the mean of all sides, which are told, with what rounding may make of their weights. sides->n = 0: there is
  * no such mean, and y has no meaning. */
-enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, const double *u, double *y,
-                                     struct dalcs_observed_sides *sides,
+enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, double sigma, const double *u,
+                                     double *y, struct dalcs_observed_sides *sides,
                                      double *noise) DALCS_MUST_CHECK;
 
 /* Before a slide: nothing is known of what turns. */

@@ -112,10 +112,11 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
 }
 
 /* Is it one but for signs? */
-static bool is_answer(const struct dalcs_osnsp *p, bool sources_clash) {
+static bool is_answer(struct dalcs_osnsp *p, const double *u, double *y, bool sources_clash) {
     const bool is_sign = p->certificate.where >= dalcs_system_n_equations(p->system);
+    const double most = dalcs_beyond * p->options.certificate_tolerance;
     return !sources_clash &&
-           (is_sign || p->certificate.worst <= dalcs_beyond * p->options.certificate_tolerance);
+           (p->certificate.worst <= most || (is_sign && dalcs_certificate_equations_hold(p, u, y)));
 }
 
 /* In p->mode with given sources. */
@@ -125,13 +126,13 @@ static enum dalcs_status answer(struct dalcs_osnsp *p, double sigma, const doubl
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
     DALCS_TRY(dalcs_exact_try_mode(p, u, y, &sources_clash));
-    if (!is_answer(p, sources_clash) && !p->asks.refines) {
+    if (!is_answer(p, u, y, sources_clash) && !p->asks.refines) {
         p->asks.refines = true; /* where a sign is wrong a map's answer is not refined by itself */
         enum dalcs_status status = dalcs_exact_try_mode(p, u, y, &sources_clash);
         p->asks.refines = false;
         DALCS_TRY(status);
     }
-    return is_answer(p, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
+    return is_answer(p, u, y, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
 }
 
 enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u, double *y) {

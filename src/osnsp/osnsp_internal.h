@@ -108,6 +108,9 @@ static inline bool dalcs_certificate_holds(const struct dalcs_osnsp *p, bool sou
 /* Do all pairs hold in an answer that was accepted, where these inputs u drive the circuit? */
 bool dalcs_certificate_pairs_hold(struct dalcs_osnsp *p, const double *u, const double *y);
 
+/* The same of the equations alone, within what is_answer() of osnsp.c allows: a sign that is more wrong hides them. */
+bool dalcs_certificate_equations_hold(struct dalcs_osnsp *p, const double *u, double *y);
+
 /* Of the answer evaluated last: is each wrong sign of a diode rounding beside what is next to that very diode?
  * The certificate measures it by the largest voltage and current anywhere, beside which a true one may be small. */
 bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, const double *y);
