@@ -177,6 +177,24 @@ static double levels_of(const struct dalcs_audit *audit, const struct dalcs_audi
     return sum;
 }
 
+/* The terms that are parts of it, where smooth functions are. What cancels of them leaves their rounding as well: 200 A times
+ * 1 - exp(-x). A kink without an end may leave out a part that is steep, and a flat side has nothing of that: none then. */
+double audit_formula_rounding(const struct dalcs_audit *audit, const struct audit_part *part,
+                              const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
+    double sum = 0.0;
+    for (int k = 0; k < b->output.n && b->n_pairs == 0; k++) {
+        const struct dalcs_affine_term *term = &b->output.term[k];
+        const int inner = term->kind == DALCS_QUANTITY_VOLTAGE && audit->net.part_of != NULL
+                              ? audit->net.part_of[term->index]
+                              : -1;
+        if (inner >= 0 && audit->circuit->device[inner].behaviour->smooth != NULL) {
+            sum += fabs(term->coefficient * audit_formula_value(audit, part, s, inner).value);
+        }
+    }
+    return AUDIT_ROUNDING * sum;
+}
+
 /* A formula's output; each of its pairs. */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {

@@ -88,6 +88,7 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
     const int *part_of = audit->net.part_of; /* other voltages are not measured by those */
     double volt = part->floor.levels[0];
     double ampere = part->floor.levels[1];
+    double rounding[2] = {0.0, 0.0}; /* V, A */
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
@@ -99,6 +100,10 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
             audit->scale.v[node] = fmax(audit->scale.v[node], fabs(s->v[node]));
             volt = part_of == NULL || part_of[node] < 0 ? fmax(volt, audit->scale.v[node]) : volt;
         }
+        if (d->behaviour != NULL) {
+            double *of = &rounding[d->kind == DALCS_VCVS ? 0 : 1];
+            *of = fmax(*of, audit_formula_rounding(audit, part, s, device));
+        }
         for (int p = 0; d->behaviour != NULL && p < d->behaviour->n_pairs; p++) {
             double *scale = &audit->scale.lambda[audit->net.first_lambda[device] + p];
             *scale = fmax(*scale, fabs(s->lambda[audit->net.first_lambda[device] + p]));
@@ -109,8 +114,15 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
      * that one's scale, and each unit vouches a millionth for the other through the conductances, of 1 S where there
      * are none. */
     const bool has_any = part->floor.most > 0.0;
-    part->floor.volt = fmax(1e-5 * volt, 1e-6 / (has_any ? part->floor.most : 1.0) * ampere);
-    part->floor.ampere = fmax(1e-5 * ampere, 1e-6 * (has_any ? part->floor.least : 1.0) * volt);
+    const double most = has_any ? part->floor.most : 1.0;
+    const double least = has_any ? part->floor.least : 1.0;
+    part->floor.volt = fmax(1e-5 * volt, 1e-6 / most * ampere);
+    part->floor.ampere = fmax(1e-5 * ampere, 1e-6 * least * volt);
+    /* Nothing is known to less than the rounding of a formula makes of it. */
+    const double volts = (rounding[0] + rounding[1] / most) / audit->options.failure;
+    const double amperes = (rounding[1] + rounding[0] * least) / audit->options.failure;
+    part->floor.volt = fmax(part->floor.volt, volts);
+    part->floor.ampere = fmax(part->floor.ampere, amperes);
 }
 
 /* What ideal branches hand on: an impedance of nothing is no barrier for a current that rounding makes. */
