@@ -6,9 +6,10 @@
 #include "steady.h"
 
 /* A search without crowds is at worst two runs of 8192 periods (steady.c), in which each pair changes its side and comes
- * back: two one-step problems. One whose steps of Euler, or that slide, take more is none that ends. Both are weighed by unknowns.
- * With a tenth, or ten times as much, tests/steady/crowded.py has the same answers. */
-static const double most_problems_of_a_pair = 2.0 * 8192.0 * 2.0;
+ * back, each time with a problem at the event and one a micro-step behind it: four one-step problems. One whose steps of
+ * Euler, or that slide, take more is none that ends. Both are weighed by unknowns. With a tenth, or ten times as much,
+ * tests/steady/crowded.py has the same answers. */
+static const double most_problems_of_a_pair = 2.0 * 8192.0 * 4.0;
 
 void dalcs_steady_limit_crowd(struct dalcs_steady *st, bool is_limited) {
     const struct dalcs_network *network = &st->run->s->network;

@@ -85,8 +85,10 @@ static struct between look_between(const struct dalcs_radau_part *part, int k) {
         b.x[j] += of->column[j] >= 0 ? ripple[of->column[j]] : 0.0;
     }
     b.x[0] = dalcs_smooth_held(of->kind, b.x, dalcs_alike * b.terms);
-    const double value = dalcs_smooth_value(of->kind, b.x);
-    b.off = value - dalcs_smooth_line(of, 0) * b.x[0] - dalcs_smooth_line(of, 1) * b.x[1] - b.phi;
+    const double rest = dalcs_smooth_rest(of, b.x);
+    const double value =
+        rest + dalcs_smooth_line(of, 0) * b.x[0] + dalcs_smooth_line(of, 1) * b.x[1];
+    b.off = rest - b.phi;
     b.rounding = weights * dalcs_smooth_rounding(of, value, b.x);
     return b;
 }

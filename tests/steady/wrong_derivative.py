@@ -40,7 +40,7 @@ MUTATIONS = {
                                    "st->step[first + x] = 0.5 * w.d[x]"),
 }
 
-PAIRS = ("session/steady_crowd.c", "= 2.0 * 8192.0 * 2.0;")
+PAIRS = ("session/steady_crowd.c", "= 2.0 * 8192.0 * 4.0;")
 FOLLOWED = ("session/steady_attractor.c", "most_work = 1e7;")
 
 
