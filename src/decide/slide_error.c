@@ -46,15 +46,13 @@ static double noise_of(const struct dalcs_radau_part *part, int column, double s
 static double error_of_column(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                               int column, bool is_current, const struct dalcs_slide_try *of) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const struct dalcs_system *s = part->component->system;
-    const bool is_pair = s->n_x > 0 && column >= dalcs_system_n_equations(s);
     const double rounding = of->knows_start ? rounding_of(part, column, is_current, of) : 0.0;
     double error = 0.0;
     double size = of->knows_start ? fabs(part->segment.out[column]) : 0.0;
     for (int node = 1; node < l->n_nodes; node++) {
         const double value = part->segment.out[node * l->stride + column];
         const double other = part->work.out_tried[node * l->stride + column];
-        error = fmax(error, fabs(value - other) - (is_pair ? 0.0 : rounding));
+        error = fmax(error, fabs(value - other) - rounding);
         size = fmax(size, fabs(value));
     }
     size = fmax(size, dalcs_step_scale(part, column, part->scales.unit));
