@@ -9,7 +9,6 @@
 #include "restart.h"
 #include "rounding.h"
 #include "sliding.h"
-#include "step_error.h"
 
 #include <math.h>
 #include <string.h>
@@ -143,6 +142,9 @@ static enum dalcs_status run_sequence(struct dalcs_radau *r, struct dalcs_radau_
                 of->fails = step.tau;
                 return DALCS_OK;
             }
+            if (node == 1 && k == 1 && part->component->system->n_x > 0) {
+                add_to_node(part, 0, y, of->weight[j - 1], of->estimate[j - 1]);
+            }
             state = y;
             y = y == part->work.y1 ? part->work.y2 : part->work.y1;
         }
@@ -180,92 +182,20 @@ static void put_voltages(struct dalcs_radau_part *part, const struct dalcs_slide
     }
 }
 
-/* At the start what is not known is where the polynomial through the other nodes begins. */
+/* Behind states the other columns begin where the polynomial through the other nodes does. */
 static void begin_columns(struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
     const struct dalcs_collocation *method = part->stages.method;
     const int stride = part->stages.layout.stride;
     const int n_x = part->component->system->n_x;
+    const bool is_known = n_x == 0 && of->knows_start;
     double *out = part->segment.out;
-    for (int node = 1; node <= method->s && !of->knows_start; node++) {
-        for (int k = n_x; k < stride; k++) {
-            out[k] += of->start[node] * out[node * stride + k];
+    for (int k = n_x; k < stride && !is_known; k++) {
+        double start = 0.0;
+        for (int node = 1; node <= method->s; node++) {
+            start += of->start[node] * out[node * stride + k];
         }
+        out[k] = start;
     }
-    memcpy(out, part->x, (size_t)n_x * sizeof(double));
-}
-
-/* How far the polynomial of a column through the nodes misses what is known at the start, as of any other step
- * (step_error.c), but for what rounding at the nodes makes of that. */
-static double miss_at_start(const struct dalcs_radau_part *part, int column, double rounding,
-                            const struct dalcs_slide_try *of) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    double amplified = 0.0;
-    double start = 0.0;
-    for (int node = 1; node < l->n_nodes; node++) {
-        amplified += fabs(of->start[node]) * rounding;
-        start += of->start[node] * part->segment.out[node * l->stride + column];
-    }
-    return l->n_nodes > 2 ? fmax(0.0, fabs(start - part->segment.out[column]) - amplified) : 0.0;
-}
-
-/* Of a column at a node. A pair stands between both units. */
-static double rounding_of(const struct dalcs_radau_part *part, int column, bool is_current,
-                          const struct dalcs_slide_try *of) {
-    const double *unit = part->scales.unit;
-    const double own = fmax(unit[is_current], of->largest[is_current]);
-    const double other = fmax(unit[!is_current], of->largest[!is_current]);
-    const bool is_pair = column >= dalcs_system_n_equations(part->component->system);
-    return of->rounding * (is_pair ? fmax(own, other) : own);
-}
-
-/* How far a column is off, over what is allowed: what the last order changes, and how far it misses the start. A state
- * beside larger ones, as a leak of a coil at rest beside one that conducts, has rounding of theirs. */
-static double error_of_column(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                              int column, bool is_current, const struct dalcs_slide_try *of) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    const bool is_known = column < part->component->system->n_x || of->knows_start;
-    const double rounding = is_known ? rounding_of(part, column, is_current, of) : 0.0;
-    double error = is_known ? miss_at_start(part, column, rounding, of) : 0.0;
-    double size = is_known ? fabs(part->segment.out[column]) : 0.0;
-    for (int node = 1; node < l->n_nodes; node++) {
-        const double value = part->segment.out[node * l->stride + column];
-        const double other = part->work.out_tried[node * l->stride + column];
-        error = fmax(error, fabs(value - other) - rounding);
-        size = fmax(size, fabs(value));
-    }
-    size = fmax(size, dalcs_step_scale(part, column, part->scales.unit));
-    return error > 0.0 ? error / (part->inner_tolerance * size + r->besides[is_current]) : 0.0;
-}
-
-/* The largest of states; without states of all but the currents of pairs. */
-static double error_of_states(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                              const struct dalcs_slide_try *of) {
-    const struct dalcs_system *s = part->component->system;
-    double worst = 0.0;
-    const int n = s->n_x > 0 ? s->n_x : dalcs_system_n_equations(s);
-    for (int x = 0; x < n; x++) {
-        worst = fmax(worst, error_of_column(r, part, x, s->column_is_current[x], of));
-    }
-    return worst;
-}
-
-/* And of the currents of pairs that conduct on either side. */
-static double error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                             const struct dalcs_slide_try *of) {
-    const struct dalcs_system *s = part->component->system;
-    struct dalcs_osnsp *p = &part->component->osnsp;
-    const size_t bytes = (size_t)p->n_words * sizeof(uint64_t);
-    double worst = 0.0;
-    memcpy(part->work.mode_before, p->mode, bytes);
-    memcpy(p->mode, part->work.mode_first, bytes);
-    for (int d = 0; d < s->n_pairs; d++) {
-        if (dalcs_mode_has(p->mode, d)) {
-            worst =
-                fmax(worst, error_of_column(r, part, dalcs_system_n_equations(s) + d, true, of));
-        }
-    }
-    memcpy(p->mode, part->work.mode_before, bytes);
-    return worst;
 }
 
 enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -283,8 +213,8 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
     }
     of->taken = of->noise = of->largest[0] = of->largest[1] = 0.0;
     of->begins = true;
-    of->knows_start = false;
-    if (part->component->system->n_x == 0) {
+    of->knows_start = part->component->system->n_x > 0;
+    if (!of->knows_start) {
         DALCS_TRY(find_start_of_sources(r, part, of));
     }
     of->slides = of->begins = true;
@@ -295,11 +225,9 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
     of->states = of->pairs = INFINITY;
     if (of->slides) {
         put_voltages(part, of);
+        memcpy(part->segment.out, part->x, (size_t)part->component->system->n_x * sizeof(double));
+        dalcs_slide_find_errors(r, part, of);
         begin_columns(part, of);
-        of->states = error_of_states(r, part, of);
-        of->pairs = error_of_pairs(r, part, of);
-        of->is_coarse = of->pairs > 1.0 || part->stages.method->s == 1;
-        of->pairs /= 1.0 + of->noise / part->inner_tolerance;
     }
     return DALCS_OK;
 }

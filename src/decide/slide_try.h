@@ -20,7 +20,7 @@ struct dalcs_slide_try {
     bool begins;                     /* nothing has slid so far */
     bool slides;
     double held, fails; /* s, if not: up to where there was a mean, and where there was none */
-    bool knows_start;   /* without states: all columns there, and voltages of pairs */
+    bool knows_start;   /* all columns there, and voltages of pairs */
     double noise;       /* what rounding may make of the mean of both sides, over it */
     /* Errors over what is allowed; of pairs without noise. */
     double states, pairs;
@@ -34,6 +34,10 @@ struct dalcs_slide_try dalcs_slide_try_of(const struct dalcs_collocation *method
  * before. */
 enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                       struct dalcs_slide_try *of) DALCS_MUST_CHECK;
+
+/* slide_error.c: what a try that slides is off by, into it. At the start are all columns, if they are known. */
+void dalcs_slide_find_errors(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                             struct dalcs_slide_try *of);
 
 /* Which of what turns decides where a slide is, from micro-steps of length h/2 and h (sliding.h). */
 enum dalcs_status dalcs_slide_find_leading(struct dalcs_radau *r, struct dalcs_radau_part *part,
