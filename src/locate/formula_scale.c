@@ -4,6 +4,7 @@
 #include "doubt.h"
 #include "extremes.h"
 #include "guard_scale.h"
+#include "smooth_step.h"
 #include "step_error.h"
 
 #include <math.h>
@@ -185,13 +186,17 @@ static double scale_of_terms(const struct dalcs_radau_part *part, int pair, int 
     return size > 0.0 ? size : INFINITY;
 }
 
-/* Of a kink whose output a function reads, which may be steep: what the argument is made of is known by itself. */
+/* Of a kink whose output a function reads, which may be steep: where no function moves the argument, what it is made of is known
+ * by itself. Elsewhere the rounding of functions is in it, too, and the unit's scale holds. */
 static double scale_of_own(const struct dalcs_radau_part *part, int pair, bool is_on,
                            const double *unit) {
-    const double slope = dalcs_pair_slope(part->component->system, pair);
     const double own = is_on ? scale_of_output(part, pair, 0) : scale_of_argument(part, pair, 0);
-    const double terms = isfinite(own) ? own : scale_of_terms(part, pair, 0, unit);
-    return isfinite(own) || !is_on || slope == 0.0 ? terms : terms / slope;
+    if (isfinite(own) || dalcs_smooth_step_moves(part, pair)) {
+        return own;
+    }
+    const double slope = dalcs_pair_slope(part->component->system, pair);
+    const double terms = scale_of_terms(part, pair, 0, unit);
+    return is_on && slope > 0.0 ? terms / slope : terms;
 }
 
 double dalcs_formula_scale(const struct dalcs_radau_part *part, int pair, double scale,
