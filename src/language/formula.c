@@ -108,7 +108,10 @@ static const struct dalcs_formula *rewrite(struct dalcs_formula_work *w,
     const struct dalcs_formula *made =
         is_transfer ? formula : dalcs_formula_signed_powers(arena, formula);
     if (made != NULL && w->variable == NULL) {
-        made = dalcs_formula_held_roots(arena, made);
+        made = dalcs_formula_joined_roots(arena, made);
+    }
+    if (made != NULL && w->variable == NULL) {
+        made = dalcs_formula_held(arena, made, dialect);
     }
     if (made != NULL && w->variable == NULL) {
         made = dalcs_formula_pieces(arena, made, dialect);

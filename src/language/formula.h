@@ -46,14 +46,18 @@ bool dalcs_formula_reads_value(const char *text);
 int dalcs_formula_find_control(const struct dalcs_card *card);
 
 /* Formulas written differently, in the arena; NULL: out of memory. The first has pwrs(x, y) where it is sgn(x)*abs(x)^y. The
- * second has what it holds on one side of a number in the arguments of roots. The third is a sum of smooth functions where it
- * has steps and smooth sides that meet. The fourth has values where parts are not chosen, too. The fifth has functions held in
- * their domains, as in LTspice and Xyce, which take the real part beyond. The sixth has functions that are bounded for quotients and logarithms of exponentials. */
+ * second has pwrs(x, y) for the roots of both sides of 0. The third has what it holds at a number in the arguments of functions
+ * that rise or fall. The fourth is a sum of smooth functions where it has steps and smooth sides that meet. The fifth has
+ * values where parts are not chosen, too. The sixth has functions held in their domains, as in LTspice and Xyce, which take
+ * the real part beyond. The seventh has functions that are bounded for quotients and logarithms of exponentials. */
 struct dalcs_arena;
 const struct dalcs_formula *dalcs_formula_signed_powers(struct dalcs_arena *arena,
                                                         const struct dalcs_formula *formula);
-const struct dalcs_formula *dalcs_formula_held_roots(struct dalcs_arena *arena,
-                                                     const struct dalcs_formula *formula);
+const struct dalcs_formula *dalcs_formula_joined_roots(struct dalcs_arena *arena,
+                                                       const struct dalcs_formula *formula);
+const struct dalcs_formula *dalcs_formula_held(struct dalcs_arena *arena,
+                                               const struct dalcs_formula *formula,
+                                               enum dalcs_dialect_name dialect);
 const struct dalcs_formula *dalcs_formula_pieces(struct dalcs_arena *arena,
                                                  const struct dalcs_formula *formula,
                                                  enum dalcs_dialect_name dialect);

@@ -171,6 +171,24 @@ const struct dalcs_formula *dalcs_rewriting_times(struct dalcs_rewriting *r,
                                          f);
 }
 
+/* Does it have no slope where its argument is 0, or no value beyond? */
+static bool is_root(const struct dalcs_formula *f) {
+    static const char *const roots[] = {"sqrt", "cbrt", "ln", "log", "log10", NULL};
+    static const char *const powers[] = {"pow", "pwr", "pwrs", NULL};
+    const bool is_power =
+        dalcs_formula_is_operation(f, DALCS_POWER) || dalcs_formula_is_call_of(f, powers);
+    return dalcs_formula_is_call_of(f, roots) ||
+           (is_power && (!is_number(f->argument[1]) ||
+                         f->argument[1]->number != floor(f->argument[1]->number)));
+}
+
+static bool is_root_beneath(const struct dalcs_formula *f, bool is_beneath) {
+    const bool is_factor = dalcs_formula_is_operation(f, DALCS_MULTIPLY) ||
+                           dalcs_formula_is_operation(f, DALCS_DIVIDE) ||
+                           dalcs_formula_is_operation(f, DALCS_NEGATE);
+    return is_root(f) || (is_beneath && is_factor);
+}
+
 static const struct dalcs_formula *rebuild(struct dalcs_rewriting *r, const struct dalcs_formula *f,
                                            const struct dalcs_formula **memo,
                                            dalcs_rewriting_change *change) {
@@ -180,11 +198,14 @@ static const struct dalcs_formula *rebuild(struct dalcs_rewriting *r, const stru
     const struct dalcs_formula **argument =
         dalcs_alloc((size_t)f->n, sizeof(const struct dalcs_formula *));
     bool is_new = false;
+    const bool is_beneath_root = r->is_beneath_root;
     r->failed = argument == NULL;
+    r->is_beneath_root = is_root_beneath(f, is_beneath_root);
     for (int k = 0; k < f->n && !r->failed; k++) {
         argument[k] = rebuild(r, f->argument[k], memo, change);
         is_new = is_new || argument[k] != f->argument[k];
     }
+    r->is_beneath_root = is_beneath_root;
     const struct dalcs_formula *made =
         is_new && !r->failed ? dalcs_rewriting_like(r, f, f->n, argument) : f;
     free(argument);
@@ -196,7 +217,15 @@ static const struct dalcs_formula *rebuild(struct dalcs_rewriting *r, const stru
 const struct dalcs_formula *dalcs_formula_rewrite(struct dalcs_arena *arena,
                                                   const struct dalcs_formula *formula,
                                                   dalcs_rewriting_change *change) {
-    struct dalcs_rewriting r = {.arena = arena, .n_parts = formula->number_of + 1};
+    return dalcs_formula_rewrite_in(arena, formula, DALCS_DIALECT_UNKNOWN, change);
+}
+
+const struct dalcs_formula *dalcs_formula_rewrite_in(struct dalcs_arena *arena,
+                                                     const struct dalcs_formula *formula,
+                                                     enum dalcs_dialect_name dialect,
+                                                     dalcs_rewriting_change *change) {
+    struct dalcs_rewriting r = {
+        .arena = arena, .dialect = dialect, .n_parts = formula->number_of + 1};
     const struct dalcs_formula **memo =
         dalcs_alloc((size_t)r.n_parts, sizeof(const struct dalcs_formula *));
     r.failed = memo == NULL;

@@ -6,8 +6,11 @@
 
 struct dalcs_rewriting {
     struct dalcs_arena *arena;
+    enum dalcs_dialect_name dialect;
     int n_parts; /* the next number */
-    bool failed; /* out of memory */
+    bool
+        is_beneath_root; /* is what is changed the argument of a root or a logarithm, or a factor of it? */
+    bool failed;         /* out of memory */
 };
 
 /* Are two formulas written alike? */
@@ -54,5 +57,9 @@ typedef const struct dalcs_formula *dalcs_rewriting_change(struct dalcs_rewritin
 const struct dalcs_formula *dalcs_formula_rewrite(struct dalcs_arena *arena,
                                                   const struct dalcs_formula *formula,
                                                   dalcs_rewriting_change *change);
+const struct dalcs_formula *dalcs_formula_rewrite_in(struct dalcs_arena *arena,
+                                                     const struct dalcs_formula *formula,
+                                                     enum dalcs_dialect_name dialect,
+                                                     dalcs_rewriting_change *change);
 
 #endif

@@ -4,6 +4,7 @@
 #include "doubt.h"
 #include "extremes.h"
 #include "guard_scale.h"
+#include "smooth_step.h"
 #include "step_error.h"
 
 #include <math.h>
@@ -159,25 +160,43 @@ static double noise_of(const struct dalcs_radau_part *part, int pair, bool is_on
     return is_on && slope > 0.0 ? noise / slope : noise;
 }
 
-/* Of the comparison with this first pair, by what its argument is made of; `scale` where that is other kinks. It is w of the first
- * pair or lambda of the second, and of no unit of theirs. */
-static double scale_of_compared(const struct dalcs_radau_part *part, int first, double scale,
-                                const double *unit) {
+/* Of w of a pair, by what its argument is made of: numbers, columns, and lambdas that are bounded. INFINITY: other kinks.
+ * Of a comparison it is w of the first pair or lambda of the second, and of no unit of theirs. */
+static double scale_of_terms(const struct dalcs_radau_part *part, int pair, int depth,
+                             const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    const int n_equations = dalcs_system_n_equations(s);
+    const int own = s->pair[pair].is_jump ? pair + 1 : pair;
     double size = 0.0;
-    for (int k = s->F.p[first]; k < s->F.p[first + 1]; k++) {
+    for (int k = s->F.p[pair]; k < s->F.p[pair + 1]; k++) {
         size += fabs(s->F.x[k] * part->excitation.constant[s->F.j[k]]);
     }
-    for (int k = s->C.p[first]; k < s->C.p[first + 1]; k++) {
+    for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
         const int c = s->C.j[k];
-        if (c < n_equations) {
+        const int e = c - dalcs_system_n_equations(s);
+        if (e < 0) {
             size += fabs(s->C.x[k]) * dalcs_step_scale(part, c, unit);
-        } else if (c != n_equations + first && c != n_equations + first + 1) {
-            return scale;
+        } else if (e != pair && e != own) {
+            const bool is_kink = s->pair[e].is_formula && !compares(s, e) && depth < DEEPEST;
+            const double slope = dalcs_pair_slope(s, e);
+            size += is_kink && slope > 0.0 && !compares(s, pair)
+                        ? fabs(s->C.x[k]) / slope * scale_of_terms(part, e, depth + 1, unit)
+                        : INFINITY;
         }
     }
-    return size > 0.0 ? size : scale;
+    return size > 0.0 ? size : INFINITY;
+}
+
+/* Of a kink whose output a function reads, which may be steep: where no function moves the argument, what it is made of is known
+ * by itself. Elsewhere the rounding of functions is in it, too, and the unit's scale holds. */
+static double scale_of_own(const struct dalcs_radau_part *part, int pair, bool is_on,
+                           const double *unit) {
+    const double own = is_on ? scale_of_output(part, pair, 0) : scale_of_argument(part, pair, 0);
+    if (isfinite(own) || dalcs_smooth_step_moves(part, pair)) {
+        return own;
+    }
+    const double slope = dalcs_pair_slope(part->component->system, pair);
+    const double terms = scale_of_terms(part, pair, 0, unit);
+    return is_on && slope > 0.0 ? terms / slope : terms;
 }
 
 double dalcs_formula_scale(const struct dalcs_radau_part *part, int pair, double scale,
@@ -190,11 +209,10 @@ double dalcs_formula_scale(const struct dalcs_radau_part *part, int pair, double
         const int first = s->pair[pair].is_jump ? pair : pair - 1;
         const double known =
             dalcs_formula_argument_noise(part, first, unit) / part->inner_tolerance;
-        return dalcs_smaller(scale,
-                             dalcs_larger(scale_of_compared(part, first, scale, unit), known));
+        return dalcs_smaller(scale, dalcs_larger(scale_of_terms(part, first, 0, unit), known));
     }
     const bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair);
-    const double own = is_on ? scale_of_output(part, pair, 0) : scale_of_argument(part, pair, 0);
+    const double own = scale_of_own(part, pair, is_on, unit);
     const double known = noise_of(part, pair, is_on, unit) / part->inner_tolerance;
     const double most = dalcs_guard_nothing_flows(part, unit) ? dalcs_larger(scale, known) : scale;
     return dalcs_smaller(most, dalcs_larger(own, known));

@@ -31,10 +31,11 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
     p->dx = dalcs_arena_alloc(&part->arena, n, sizeof(*p->dx));
     p->drift = dalcs_arena_alloc(&part->arena, n * (size_t)s->n_x + 1, sizeof(double));
     p->rounding = dalcs_arena_alloc(&part->arena, (size_t)s->n_x + 1, sizeof(double));
+    p->moved = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs + 1, sizeof(*p->moved));
     p->last = dalcs_arena_alloc(&part->arena, (size_t)s->n_smooth, sizeof(*p->last));
     p->most = dalcs_arena_alloc(&part->arena, (size_t)s->n_smooth, sizeof(*p->most));
-    if (p->drift == NULL || p->rounding == NULL || p->mode == NULL || p->in == NULL ||
-        p->out == NULL || p->dx == NULL || p->last == NULL || p->most == NULL) {
+    if (p->drift == NULL || p->rounding == NULL || p->moved == NULL || p->mode == NULL ||
+        p->in == NULL || p->out == NULL || p->dx == NULL || p->last == NULL || p->most == NULL) {
         return DALCS_E_NOMEM;
     }
     p->may_have_poles = dalcs_smooth_may_have_poles(s);
@@ -71,6 +72,22 @@ static bool has_slope(const struct dalcs_radau_part *part) {
     return p->slope_h == part->segment.h && dalcs_mode_is(p->mode, osnsp->mode, osnsp->n_words);
 }
 
+/* Which pairs lie beside what a change of some value makes of them. */
+static void note_moved(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const int n_equations = dalcs_system_n_equations(s);
+    for (int node = 0; node < part->stages.layout.n_nodes; node++) {
+        const int first = node * part->stages.layout.stride + n_equations;
+        for (int d = 0; d < s->n_pairs; d++) {
+            part->smooth->moved[d] |= part->smooth->out[first + d] != part->segment.out[first + d];
+        }
+    }
+}
+
+bool dalcs_smooth_step_moves(const struct dalcs_radau_part *part, int pair) {
+    return part->smooth == NULL || part->smooth->slope_h == 0.0 || part->smooth->moved[pair];
+}
+
 /* What a change of each value does to all arguments, by differences: the step is affine in them. */
 static enum dalcs_status find_slope(struct dalcs_radau_part *part,
                                     struct dalcs_stage_entry *entry) {
@@ -87,6 +104,7 @@ static enum dalcs_status find_slope(struct dalcs_radau_part *part,
         *in += change;
         DALCS_TRY(dalcs_stages_apply(&part->stages, entry, p->in, p->out));
         *in = before;
+        note_moved(part);
         for (int k = 0; k < 2 * n->n; k++) {
             const struct dalcs_smooth_input *of = &s->smooth[k / 2 % s->n_smooth];
             const int column = k % 2 < of->n ? of->column[k % 2] : -1;

@@ -28,6 +28,9 @@ enum dalcs_status dalcs_smooth_step_refine(struct dalcs_radau_part *part,
 const double *dalcs_smooth_step_rounding(struct dalcs_radau_part *part,
                                          struct dalcs_stage_entry *entry);
 
+/* Do functions move a pair by what they add to their lines, in a mode that was solved so far, or is it not known? */
+bool dalcs_smooth_step_moves(const struct dalcs_radau_part *part, int pair);
+
 /* How a small change of the states changes the present step: the first call is for the slopes, the others put the changes
  * of the sources behind those of the states into in[n_in], out being the answer to in[] without them. */
 enum dalcs_status dalcs_smooth_step_vary_begin(struct dalcs_radau_part *part,

@@ -24,6 +24,7 @@ struct dalcs_smooth_step {
     double *rounding; /* [n_x] of that drift */
     double *in, *out; /* a step with one value changed */
     double (*dx)[2];  /* [n] changes of arguments; what they are between nodes */
+    bool *moved;      /* [n_pairs] has a change of a value made something of lambda or w? */
     bool may_have_poles;
     double (*last)[2]; /* [n_smooth] arguments at the end of the segment before */
     double (*most)[2]; /* [n_smooth] the largest of each so far */
