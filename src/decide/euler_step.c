@@ -53,9 +53,12 @@ void dalcs_radau_accept_implicit(const struct dalcs_radau *r, struct dalcs_radau
     const struct dalcs_component *c = part->component;
     const struct dalcs_observer *observer = r->base->listener.observer;
     if (observer != NULL) {
+        const struct dalcs_observed_sides whole = {
+            .n = 1, .y = {part->work.y1}, .weight = {1.0}, .h = h, .times = 1.0};
         observer->scale(observer->user, part->index, &c->osnsp.certificate);
-        observer->step(observer->user, part->index, part->x, part->work.y1,
-                       part->work.u + c->system->n_x, h);
+        observer->try_by_euler(observer->user, part->index);
+        observer->step_by_euler(observer->user, part->index, part->x, part->work.y1, &whole,
+                                part->work.u + c->system->n_x);
     }
     fill_out(part);
     if (part->smooth != NULL) {

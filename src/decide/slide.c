@@ -34,22 +34,10 @@ static void prepare_positions(struct dalcs_radau_part *part) {
     }
 }
 
-static void take_back(const struct dalcs_radau *r) {
-    if (r->base->listener.observer != NULL) {
-        r->base->listener.observer->take_back(r->base->listener.observer->user);
-    }
-}
-
 static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
                    const struct dalcs_slide_try *of) {
-    const struct dalcs_observer *observer = r->base->listener.observer;
-    const struct dalcs_stage_layout *l = &part->stages.layout;
     part->component->commands.n_slid++;
     dalcs_sliding_join(&part->component->positions, part->work.mode_first);
-    if (observer != NULL) {
-        observer->slide(observer->user, part->index, part->x,
-                        part->segment.out + (ptrdiff_t)(l->n_nodes - 1) * l->stride, of->taken);
-    }
     dalcs_step_take_in(part);
     dalcs_radau_accept_euler(r, part, of->h);
     part->segment.is_coarse = of->is_coarse;
@@ -175,8 +163,6 @@ static enum dalcs_status finish(struct dalcs_radau *r, struct dalcs_radau_part *
     if (*done) {
         part->length.slide_until = INFINITY;
         accept(r, part, of);
-    } else {
-        take_back(r);
     }
     return DALCS_OK;
 }
@@ -189,7 +175,6 @@ static enum dalcs_status find_jumping(struct dalcs_radau *r, struct dalcs_radau_
     struct dalcs_slide_try vanishing = *of;
     vanishing.h = fmin(of->h, dalcs_radau_micro_length(r, part, 0));
     DALCS_TRY(dalcs_slide_attempt(r, part, &vanishing));
-    take_back(r);
     *jumps = vanishing.slides && dalcs_power_of_step(of->states, vanishing.states) <= 0.0;
     return DALCS_OK;
 }
@@ -241,7 +226,6 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
             accept(r, part, of);
             return DALCS_OK;
         }
-        take_back(r);
         if (!is_last && may_jump(of, starts, states_before)) {
             DALCS_TRY(find_jumping(r, part, of, &jumps));
         }

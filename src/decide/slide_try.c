@@ -58,8 +58,9 @@ struct dalcs_slide_try dalcs_slide_try_of(const struct dalcs_collocation *method
     return of;
 }
 
-/* A step of length h from state[n_x] to part->segment.t + tau into y, which counts so many times. */
+/* A step of length h from state[n_x] to part->segment.t + tau, on the way to a node, into y, which counts so many times. */
 struct counted_step {
+    int node;
     double h, tau, times;
     const double *state;
     double *y;
@@ -92,11 +93,12 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
         part->work.mode_first[k] |= c->positions.sides.conducted[k];
     }
     if (observer != NULL) {
-        sides.time = step->times * step->h;
+        sides.h = step->h;
+        sides.times = step->times;
+        sides.node = step->node;
         observer->scale(observer->user, part->index, &c->osnsp.certificate);
-        of->taken +=
-            step->times * observer->sliding_step(observer->user, part->index, step->state, step->y,
-                                                 &sides, part->work.u + c->system->n_x);
+        observer->step_by_euler(observer->user, part->index, step->state, step->y, &sides,
+                                part->work.u + c->system->n_x);
     }
     return DALCS_OK;
 }
@@ -131,7 +133,8 @@ static enum dalcs_status run_sequence(struct dalcs_radau *r, struct dalcs_radau_
         const double from = method->node[node - 1];
         const double width = method->node[node] - from;
         for (int k = 1; k <= j; k++) {
-            const struct counted_step step = {.h = of->h * width / j,
+            const struct counted_step step = {.node = node,
+                                              .h = of->h * width / j,
                                               .tau = of->h * (from + width * k / j),
                                               .times = of->weight[j - 1],
                                               .state = state,
@@ -209,9 +212,9 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
            (size_t)l->n_nodes * (size_t)part->component->system->n_pairs * sizeof(double));
     memset(part->work.mode_first, 0, (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
     if (observer != NULL) {
-        observer->hold(observer->user);
+        observer->try_by_euler(observer->user, part->index);
     }
-    of->taken = of->noise = of->largest[0] = of->largest[1] = 0.0;
+    of->noise = of->largest[0] = of->largest[1] = 0.0;
     of->begins = true;
     of->knows_start = part->component->system->n_x > 0;
     if (!of->knows_start) {

@@ -15,7 +15,6 @@ struct dalcs_slide_try {
     double start[DALCS_MAX_NODES];   /* of the nodes behind the start, in the value at the start */
     double rounding;                 /* of a state at a node, over its unit's largest */
     double largest[2];               /* V, A: without states, of all sides */
-    double taken;                    /* J */
     bool may_change;                 /* what slides along its threshold within the segment */
     bool begins;                     /* nothing has slid so far */
     bool slides;
@@ -30,8 +29,7 @@ struct dalcs_slide_try {
 /* One of length h (s), that is still to be tried. */
 struct dalcs_slide_try dalcs_slide_try_of(const struct dalcs_collocation *method, double h);
 
-/* Tries it: part->segment.out, and what conducts on either side in part->work.mode_first. The observer holds what it knew
- * before. */
+/* Tries it: part->segment.out, and what conducts on either side in part->work.mode_first. */
 enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                       struct dalcs_slide_try *of) DALCS_MUST_CHECK;
 

@@ -15,6 +15,13 @@
 
 #include "radau_state.h"
 
+/* J; what steps of implicit Euler move. */
+struct dalcs_energy_share {
+    double account[DALCS_N_POWER_ACCOUNTS];
+    double taken; /* by what stores energy, and by the method */
+    double turnover;
+};
+
 struct dalcs_energy_part {
     const struct dalcs_system *system;
     int n_terms, n_stepped;        /* the first n_stepped need steps, sources decide the others */
@@ -25,6 +32,8 @@ struct dalcs_energy_part {
     double *half;      /* [n_x] of the diagonal of the storage */
     bool is_coupled;   /* the storage has entries off its diagonal */
     double *defect;    /* [n_x] work: how far states are off */
+    struct dalcs_energy_share tried
+        [DALCS_MAX_NODES]; /* in the last segment by implicit Euler: evenly, and up to each node from the one before */
 };
 
 struct dalcs_energy_sums { /* J */
@@ -36,8 +45,8 @@ struct dalcs_energy_sums { /* J */
 };
 
 struct dalcs_energy {
-    struct dalcs_energy_sums sum, held; /* held: to take back what is entered from there on */
-    struct dalcs_observer observer;     /* the engine's way to enter things */
+    struct dalcs_energy_sums sum;
+    struct dalcs_observer observer; /* the engine's way to enter things */
     bool is_euler;
     int n_parts;
     struct dalcs_energy_part *part;

@@ -52,10 +52,12 @@ static double power_of(const struct dalcs_power_term *term, const double *y, con
     return 0.0;
 }
 
-static void enter_powers(struct dalcs_energy *energy, const struct dalcs_energy_part *part,
-                         const double *y, const double *inputs, double h) {
+void dalcs_energy_add_powers(const struct dalcs_energy_part *part, const double *y,
+                             const double *inputs, double h, double *account, double *turnover) {
     for (int i = 0; i < part->n_stepped; i++) {
-        dalcs_energy_enter(energy, part->term[i].account, h * power_of(&part->term[i], y, inputs));
+        const double joule = h * power_of(&part->term[i], y, inputs);
+        account[part->term[i].account] += joule;
+        *turnover += fabs(joule);
     }
 }
 
@@ -71,37 +73,12 @@ void dalcs_energy_step(void *user, int k, const double *x, const double *y, cons
                        double h) {
     struct dalcs_energy *energy = user;
     struct dalcs_energy_part *part = &energy->part[k];
-    enter_powers(energy, part, y, inputs, h);
+    dalcs_energy_add_powers(part, y, inputs, h, energy->sum.account, &energy->sum.turnover);
     double loss = dalcs_energy_enter_swing(energy, part, x, y, y);
     if (part->is_coupled) {
         loss = dalcs_euler_jump_energy(part->system, x, y);
     }
     enter_loss(energy, part, loss);
-}
-
-static double sliding_step(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs) {
-    struct dalcs_energy *energy = user;
-    struct dalcs_energy_part *part = &energy->part[k];
-    double taken =
-        dalcs_euler_stored_energy(part->system, y) - dalcs_euler_stored_energy(part->system, x);
-    for (int side = 0; side < sides->n; side++) {
-        const double *at = sides->y[side];
-        enter_powers(energy, part, at, inputs, sides->weight[side] * sides->time);
-        taken += sides->weight[side] * (dalcs_euler_jump_energy(part->system, x, at) +
-                                        dalcs_euler_jump_energy(part->system, y, at));
-    }
-    return taken;
-}
-
-static void slide(void *user, int k, const double *x, const double *y, double taken) {
-    struct dalcs_energy *energy = user;
-    struct dalcs_energy_part *part = &energy->part[k];
-    double stored =
-        dalcs_euler_stored_energy(part->system, y) - dalcs_euler_stored_energy(part->system, x);
-    dalcs_energy_enter_swing(energy, part, x, y, y);
-    energy->sum.method += taken - stored;
-    energy->sum.turnover += fabs(taken - stored);
 }
 
 static void scale(void *user, int k, const struct dalcs_certificate *certificate) {
@@ -141,17 +118,6 @@ static void jump(void *user, const struct dalcs_euler_jump *told) {
     dalcs_energy_enter_swing(energy, part, told->before, told->after, told->after);
 }
 
-/* Keeps the sums, which may be taken back; not the scales, which only grow. */
-static void hold(void *user) {
-    struct dalcs_energy *energy = user;
-    energy->held = energy->sum;
-}
-
-static void take_back(void *user) {
-    struct dalcs_energy *energy = user;
-    energy->sum = energy->held;
-}
-
 void dalcs_energy_observe(struct dalcs_observer *observer) {
     *observer = (struct dalcs_observer){.start = start,
                                         .scale = scale,
@@ -159,8 +125,6 @@ void dalcs_energy_observe(struct dalcs_observer *observer) {
                                         .jump = jump,
                                         .move = move,
                                         .segment = dalcs_energy_segment,
-                                        .sliding_step = sliding_step,
-                                        .slide = slide,
-                                        .hold = hold,
-                                        .take_back = take_back};
+                                        .try_by_euler = dalcs_energy_try,
+                                        .step_by_euler = dalcs_energy_try_step};
 }

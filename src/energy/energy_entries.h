@@ -18,6 +18,19 @@ double dalcs_energy_enter_swing(struct dalcs_energy *energy, const struct dalcs_
 void dalcs_energy_step(void *energy, int k, const double *x, const double *y, const double *inputs,
                        double h);
 
+/* Adds the powers of a part in an answer, over h (s), to accounts and turnover. */
+void dalcs_energy_add_powers(const struct dalcs_energy_part *part, const double *y,
+                             const double *inputs, double h, double *account, double *turnover);
+
+/* What a part of radau tries by implicit Euler: see observer.h. Nothing is entered before the segment is passed through. */
+void dalcs_energy_try(void *energy, int k);
+void dalcs_energy_try_step(void *energy, int k, const double *x, const double *y,
+                           const struct dalcs_observed_sides *sides, const double *inputs);
+
+/* Enters it. */
+void dalcs_energy_enter_tried(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
+                              const double *start);
+
 /* The present segment of a part of radau, likewise. */
 void dalcs_energy_segment(void *energy, const struct dalcs_radau_part *part, const double *start);
 

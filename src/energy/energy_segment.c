@@ -127,7 +127,8 @@ void dalcs_energy_segment(void *user, const struct dalcs_radau_part *part, const
     struct dalcs_energy_part *ledger = &energy->part[part->index];
     struct dalcs_stage_rule rule;
     if (part->segment.by_euler) {
-        return; /* entered when it was made */
+        dalcs_energy_enter_tried(energy, part, start);
+        return;
     }
     dalcs_stage_rule_set(&rule, part->stages.method, part->segment.end);
     for (int i = 0; i < ledger->n_stepped; i++) {

@@ -16,7 +16,9 @@ struct dalcs_observed_sides {
     int n;
     const double *y[DALCS_MOST_SIDES];
     double weight[DALCS_MOST_SIDES];
-    double time; /* s; of all, less than 0 where a step counts against others */
+    double h;     /* s, of the step to all of them */
+    double times; /* that it counts, less than 0 where it does so against others */
+    int node; /* the node of the method that the step is on its way to; 0: it goes evenly through the whole segment */
 };
 
 /* All of them are set; k is the number of a component, states are [n_x], y is [n_columns]. */
@@ -39,20 +41,18 @@ struct dalcs_observer {
     /* The state changes from x to after without a jump. */
     void (*move)(void *user, int k, const double *x, const double *after);
 
-    /* A part's present segment has been passed through from the state start to part->x. */
+    /* A part's present segment, or up to where it was cut, has been passed through from the state start to
+     * part->x. */
     void (*segment)(void *user, const struct dalcs_radau_part *part, const double *start);
 
-    /* sides->time / h times a step of length h from x to y, their mean: its powers are means of those on either side, no
-     * products of means. Returns J: what one of them stores, and loses by implicit Euler. */
-    double (*sliding_step)(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs);
+    /* A part of radau tries a segment by implicit Euler: what was told of the steps of its last try is void, unless that one
+     * has been passed through. A segment that was made may begin anew, or be cut, where gates decide. */
+    void (*try_by_euler)(void *user, int k);
 
-    /* A segment from x to y that is a sum of such steps, which take so much (J). */
-    void (*slide)(void *user, int k, const double *x, const double *y, double taken);
-
-    /* What is told from here on may be taken back; all of that is. */
-    void (*hold)(void *user);
-    void (*take_back)(void *user);
+    /* In such a try, a step from x to y, the mean of all sides. Its powers are means of those on the sides, no products of
+     * means. */
+    void (*step_by_euler)(void *user, int k, const double *x, const double *y,
+                          const struct dalcs_observed_sides *sides, const double *inputs);
 };
 
 #endif

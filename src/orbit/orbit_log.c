@@ -212,22 +212,16 @@ static void jump(void *user, const struct dalcs_euler_jump *told) {
     p->jumped = true;
 }
 
-static double sliding_step(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs) {
+static void try_by_euler(void *user, int k) {
     struct dalcs_orbit_log *log = user;
     log->is_exact = false;
     (void)k;
-    (void)x;
-    (void)y;
-    (void)sides;
-    (void)inputs;
-    return 0.0;
 }
 
 struct dalcs_observer dalcs_orbit_log_observer(struct dalcs_orbit_log *log) {
     struct dalcs_observer observer = dalcs_segments_observer(log, segment);
     observer.jump = jump;
-    observer.sliding_step = sliding_step;
+    observer.try_by_euler = try_by_euler;
     return observer;
 }
 

@@ -35,27 +35,19 @@ static void move(void *user, int k, const double *x, const double *after) {
     (void)after;
 }
 
-static double sliding_step(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs) {
+static void try_by_euler(void *user, int k) {
+    (void)user;
+    (void)k;
+}
+
+static void step_by_euler(void *user, int k, const double *x, const double *y,
+                          const struct dalcs_observed_sides *sides, const double *inputs) {
     (void)user;
     (void)k;
     (void)x;
     (void)y;
     (void)sides;
     (void)inputs;
-    return 0.0;
-}
-
-static void slide(void *user, int k, const double *x, const double *y, double taken) {
-    (void)user;
-    (void)k;
-    (void)x;
-    (void)y;
-    (void)taken;
-}
-
-static void hold(void *user) {
-    (void)user;
 }
 
 struct dalcs_observer dalcs_segments_observer(void *user, dalcs_segment_seen *segment) {
@@ -66,8 +58,6 @@ struct dalcs_observer dalcs_segments_observer(void *user, dalcs_segment_seen *se
                                    .jump = jump,
                                    .move = move,
                                    .segment = segment,
-                                   .sliding_step = sliding_step,
-                                   .slide = slide,
-                                   .hold = hold,
-                                   .take_back = hold};
+                                   .try_by_euler = try_by_euler,
+                                   .step_by_euler = step_by_euler};
 }

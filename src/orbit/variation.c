@@ -281,31 +281,16 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     }
 }
 
-/* ---- What slides is not exact ----------------------------------------------------------------------- */
+/* ---- What implicit Euler makes is not exact --------------------------------------------------------- */
 
-static double sliding_step(void *user, int k, const double *x, const double *y,
-                           const struct dalcs_observed_sides *sides, const double *inputs) {
+static void try_by_euler(void *user, int k) {
     struct dalcs_variation *variation = user;
     variation->part[k].is_exact = false;
-    (void)x;
-    (void)y;
-    (void)sides;
-    (void)inputs;
-    return 0.0;
-}
-
-static void slide(void *user, int k, const double *x, const double *y, double taken) {
-    struct dalcs_variation *variation = user;
-    variation->part[k].is_exact = false;
-    (void)x;
-    (void)y;
-    (void)taken;
 }
 
 struct dalcs_observer dalcs_variation_observer(struct dalcs_variation *variation) {
     struct dalcs_observer observer = dalcs_segments_observer(variation, segment);
     observer.jump = jump;
-    observer.sliding_step = sliding_step;
-    observer.slide = slide;
+    observer.try_by_euler = try_by_euler;
     return observer;
 }

@@ -215,6 +215,27 @@ static void note_periods(const struct account *a, const struct dalcs_element_los
     }
 }
 
+/* The values of a slide are means over time, whose product is no mean power. */
+static void tell_slides(const struct account *a, const struct dalcs_losses_run *losses) {
+    const struct dalcs_circuit *c = a->sum->circuit;
+    const char *first = NULL;
+    int n = 0;
+    for (int k = 0; k < c->n_devices; k++) {
+        if (losses->slid[k]) {
+            first = n == 0 ? c->device[k].name : first;
+            n++;
+        }
+    }
+    if (n > 0) {
+        dalcs_diag_add(&a->r->s->diag, DALCS_WARNING, NULL,
+                       "a hysteresis, Vh=, keeps a switch from sliding",
+                       "losses: '%s' turns where a switch slides along its threshold, one of %d "
+                       "elements: powers and rms values of these, and of what is in series with "
+                       "them, are made of means over the positions",
+                       first, n);
+    }
+}
+
 static void tell(const struct account *a) {
     for (size_t k = 0; k < a->losses->n_elements; k++) {
         const struct dalcs_element_losses *e = &a->element[k];
@@ -262,6 +283,7 @@ enum dalcs_status dalcs_losses_run_report(struct dalcs_losses_run *losses, struc
                  l->stored_change;
     DALCS_TRY(judge_efficiency(&a));
     tell(&a);
+    tell_slides(&a, losses);
     report->losses = all;
     report->n_losses++;
     return DALCS_OK;

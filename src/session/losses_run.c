@@ -1,6 +1,8 @@
 /* losses_run.c - passes segments and instants of a run on to the sums of losses. */
 #include "losses_run.h"
 
+#include "sliding.h"
+
 #include <stdlib.h>
 
 static enum dalcs_status find_pairs(struct dalcs_losses_run *losses, const struct dalcs_run *r) {
@@ -46,10 +48,11 @@ enum dalcs_status dalcs_losses_run_start(struct dalcs_losses_run *losses, struct
     losses->forward = dalcs_alloc((size_t)c->n_devices, sizeof(*losses->forward));
     losses->device_of = dalcs_alloc((size_t)r->s->network.n_systems, sizeof(*losses->device_of));
     losses->on = dalcs_alloc((size_t)c->n_devices, sizeof(bool));
+    losses->slid = dalcs_alloc((size_t)c->n_devices, sizeof(bool));
     losses->network = &r->s->network;
     losses->state_device = dalcs_alloc((size_t)r->s->network.n_states, sizeof(int));
     if (losses->forward == NULL || losses->device_of == NULL || losses->on == NULL ||
-        losses->state_device == NULL) {
+        losses->slid == NULL || losses->state_device == NULL) {
         return DALCS_E_NOMEM;
     }
     return find_pairs(losses, r);
@@ -66,6 +69,7 @@ void dalcs_losses_run_finish(struct dalcs_losses_run *losses) {
     free(losses->device_of);
     free(losses->forward);
     free(losses->on);
+    free(losses->slid);
     free(losses->state_device);
     dalcs_losses_sum_finish(&losses->sum);
     *losses = (struct dalcs_losses_run){0};
@@ -136,9 +140,24 @@ enum dalcs_status dalcs_losses_run_jump(struct dalcs_losses_run *losses,
     return DALCS_OK;
 }
 
+static void note_slides(struct dalcs_losses_run *losses, const struct dalcs_stretch *stretch) {
+    if (stretch->to <= losses->sum.from || stretch->from >= losses->sum.to) {
+        return;
+    }
+    for (int k = 0; k < losses->sum.circuit->n_devices; k++) {
+        const struct dalcs_loss_pair *of = &losses->forward[k];
+        if (of->system >= 0 && losses->engine->component[of->system].positions.joined) {
+            losses->slid[k] =
+                losses->slid[k] ||
+                dalcs_sliding_turns(&losses->engine->component[of->system].positions, of->pair);
+        }
+    }
+}
+
 void dalcs_losses_run_stretch(struct dalcs_losses_run *losses,
                               const struct dalcs_stretch *stretch) {
     take_sides(losses);
+    note_slides(losses, stretch);
     dalcs_audit_losses_begin(&losses->audit, &losses->sum, stretch);
     dalcs_losses_sum_stretch(&losses->sum, stretch, losses->on);
     dalcs_audit_losses_end(&losses->audit, &losses->sum, stretch);

@@ -20,6 +20,7 @@ struct dalcs_losses_run {
     const struct dalcs_network *network;
     int *state_device; /* [n_states] */
     bool *on;          /* [n_devices] */
+    bool *slid;        /* [n_devices] has a switch or diode turned in a slide within the window? */
     bool is_euler;
     struct dalcs_audit_losses audit;
 };
