@@ -194,7 +194,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     builder->signals.are_named =
         builder->signals.are_named ||
         builder->signals.saves_currents; /* the defaults have some of them */
-    if (builder->signals.n == 0) {
+    if (builder->signals.n == 0 && builder->signals.n_computed == 0) {
         dalcs_signals_add_default(builder);
     }
     if (builder->signals.saves_currents) {
