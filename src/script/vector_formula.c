@@ -85,12 +85,28 @@ static struct dalcs_vector *read_index(struct dalcs_vector_formula *f, struct da
     return part;
 }
 
+/* (re, im), behind its comma. */
+static struct dalcs_vector *read_imaginary(struct dalcs_vector_formula *f,
+                                           struct dalcs_vector *re) {
+    struct dalcs_vector *im = dalcs_vector_formula_choice(f);
+    struct dalcs_vector *unit = im != NULL ? dalcs_vector_make(f, 1, true) : NULL;
+    if (unit == NULL) {
+        return NULL;
+    }
+    unit->value[0] = I;
+    im = dalcs_vector_combine(f, DALCS_VECTOR_MULTIPLY, im, unit);
+    return im != NULL ? dalcs_vector_combine(f, DALCS_VECTOR_ADD, re, im) : NULL;
+}
+
 static struct dalcs_vector *parse_primary(struct dalcs_vector_formula *f) {
     struct dalcs_vector *v;
     skip_blanks(f);
     char c = f->text[f->at];
     if (dalcs_vector_formula_take(f, "(")) {
         v = dalcs_vector_formula_choice(f);
+        if (v != NULL && dalcs_vector_formula_take(f, ",")) {
+            v = read_imaginary(f, v);
+        }
         if (v != NULL && !dalcs_vector_formula_take(f, ")")) {
             v = dalcs_vector_fail(f, "a parenthesis is never closed");
         }
