@@ -85,10 +85,13 @@ static struct dalcs_vector *read_index(struct dalcs_vector_formula *f, struct da
     return part;
 }
 
-/* (re, im), behind its comma. */
+/* (re, im), behind its comma. Of parts that are complex themselves ngspice makes what is no number of algebra. */
 static struct dalcs_vector *read_imaginary(struct dalcs_vector_formula *f,
                                            struct dalcs_vector *re) {
     struct dalcs_vector *im = dalcs_vector_formula_choice(f);
+    if (im != NULL && (re->is_complex || im->is_complex)) {
+        return dalcs_vector_fail(f, "the two parts of a complex number must be real");
+    }
     struct dalcs_vector *unit = im != NULL ? dalcs_vector_make(f, 1, true) : NULL;
     if (unit == NULL) {
         return NULL;
