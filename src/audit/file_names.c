@@ -230,8 +230,13 @@ static enum dalcs_status refuse(const struct finder *f, struct dalcs_diag *diag)
     for (size_t c = 1; c < a->table->n_columns && c <= MOST_NAMED && status == DALCS_OK; c++) {
         status = dalcs_names_find_or_add(&column, a->table->name[c], 0, &found);
     }
-    for (int n = 1; n < a->circuit->n_nodes && n <= MOST_NAMED && status == DALCS_OK; n++) {
-        status = dalcs_names_find_or_add(&node, a->circuit->node_name[n], 0, &found);
+    int n_nodes = 0;
+    for (int n = 1; n < a->circuit->n_nodes && status == DALCS_OK; n++) {
+        const bool is_inner = dalcs_names_is_inner(a->circuit->node_name[n]);
+        n_nodes += is_inner ? 0 : 1;
+        if (!is_inner && n_nodes <= MOST_NAMED) {
+            status = dalcs_names_find_or_add(&node, a->circuit->node_name[n], 0, &found);
+        }
     }
     if (status == DALCS_OK) {
         const char *has = dalcs_names_join(&column, MOST_NAMED, &a->arena);
@@ -241,7 +246,7 @@ static enum dalcs_status refuse(const struct finder *f, struct dalcs_diag *diag)
             "the file has no signal of this circuit: it has %s%s; the netlist's nodes are "
             "%s%s",
             has != NULL ? has : "none", a->table->n_columns > MOST_NAMED + 1 ? ", ..." : "",
-            wants != NULL ? wants : "none", a->circuit->n_nodes > MOST_NAMED + 1 ? ", ..." : "");
+            wants != NULL ? wants : "none", n_nodes > MOST_NAMED ? ", ..." : "");
         status = DALCS_E_OPTION;
     }
     dalcs_names_finish(&column);

@@ -35,6 +35,8 @@ bool dalcs_sweep_read_item(struct dalcs_reader *reader, const char *letters,
 /* .sens; and which values it is of, once all cards are read. */
 void dalcs_sensitivity_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_sensitivity_check(struct dalcs_builder *builder);
+/* .tf, when elements are known; room for its source is the card table's. */
+void dalcs_transfer_card_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* v(node) at the start of a .tran, as by .ic. */
 void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place,

@@ -116,7 +116,7 @@ struct dalcs_builder_logic {
 
 /* The first card of each analysis, NULL before; initial conditions. */
 struct dalcs_builder_analyses {
-    const struct dalcs_token *pss, *tran, *op, *dc, *ac, *sens;
+    const struct dalcs_token *pss, *tran, *op, *dc, *ac, *sens, *tf;
     const struct dalcs_token *startup;       /* LTspice's word on .tran */
     const struct dalcs_token *initial_state; /* the first IC= or .ic i(...) */
     struct dalcs_names initial_pairs;        /* "0 4": index of the condition on nodes 0 and 4 */

@@ -37,6 +37,7 @@ static const struct dot_card DOT_CARDS[] = {
     {".dc", DALCS_CARD_DC, NULL, NULL, NOTHING, NULL},
     {".ac", DALCS_CARD_AC, NULL, NULL, NOTHING, NULL},
     {".sens", DALCS_CARD_SENS, NULL, NULL, NOTHING, NULL},
+    {".tf", DALCS_CARD_TRANSFER, NULL, NULL, NOTHING, NULL},
     {".step", DALCS_CARD_STEP, NULL, NULL, NOTHING, NULL},
     {".mc", DALCS_CARD_MC, NULL, NULL, NOTHING, NULL},
     {".wcase", DALCS_CARD_WORST_CASE, NULL, NULL, NOTHING, NULL},
@@ -72,11 +73,9 @@ static const struct dot_card DOT_CARDS[] = {
      "write agauss, aunif, ... in expressions, and .mc with the number of runs", NOTHING, NULL},
     {".embeddedsampling", DALCS_CARD_NONE, "Xyce's samplings",
      "write agauss, aunif, ... in expressions, and .mc with the number of runs", NOTHING, NULL},
-    {".tf", DALCS_CARD_NONE, "transfer functions of an operating point",
-     "the gain is v(out) of .ac list 1u with AC 1 on that source, the input resistance -1/i(v1), "
-     "and "
-     "the output resistance v(out) of a source I1 0 out AC 1 instead",
-     ANALYSES, NULL},
+    {".fft", DALCS_CARD_NONE, "spectra by a card",
+     ".four frequency v(out) computes harmonics; 'dalcs plot FILE --spectrum frequency' draws them",
+     NOTHING, NULL},
     {".machine", DALCS_CARD_NONE, "state machines",
      "A elements with SRFLOP, DFLOP or COUNTER are flip-flops and counters", ELEMENTS,
      ".endmachine"},
@@ -142,7 +141,7 @@ static const char *hint_of_element(char letter) {
 }
 
 static const char CARDS[] =
-    "the cards are: .model .ic .tran .op .dc .ac .step .options .save .print .end";
+    "the cards are: .model .ic .tran .op .dc .ac .tf .step .options .save .print .end";
 
 static void report_unknown(struct dalcs_builder *builder, const struct dalcs_token *name) {
     const char *names[sizeof DOT_CARDS / sizeof DOT_CARDS[0]];
@@ -190,7 +189,7 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
         dalcs_builder_warn(builder, name, ".meas tran name FIND formula AT=time is one",
                            "no file of results (.result) is written: the card is left out");
     } else if (dalcs_builder_is_one_of(name->text, NEVER, sizeof NEVER / sizeof NEVER[0])) {
-        dalcs_builder_error(builder, name, "use .tran, .op, .dc or .ac",
+        dalcs_builder_error(builder, name, "use .tran, .op, .dc, .ac or .tf",
                             "%s is not an analysis of ideal-diode circuits", name->text);
         builder->hidden |= DALCS_HIDDEN_ANALYSES;
     } else {
@@ -265,6 +264,9 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
     }
     table->has_series = table->has_series || is_model_with(card, "lser", "vser");
     table->has_limits = table->has_limits || is_model_with(card, "ilimit", "revilimit");
+    const bool is_transfer = strcmp(name->text, ".tf") == 0;
+    table->n_inner += is_transfer;
+    table->n_stimuli += is_transfer;
     table->n_inner += card->letter == '.' ? dalcs_card_table_count_formulas(card) : 0;
     return card->letter == '.' ? classify_dot(table, name) : classify_element(table, card);
 }

@@ -16,6 +16,7 @@ enum dalcs_card_class {
     DALCS_CARD_DC,
     DALCS_CARD_AC,
     DALCS_CARD_SENS,
+    DALCS_CARD_TRANSFER,
     DALCS_CARD_STEP,
     DALCS_CARD_MC,
     DALCS_CARD_WORST_CASE,

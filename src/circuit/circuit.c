@@ -92,8 +92,8 @@ static void check_presence(struct dalcs_builder *builder) {
     }
     const bool asks = builder->analyses.tran != NULL || builder->analyses.op != NULL ||
                       builder->analyses.dc != NULL || builder->analyses.ac != NULL ||
-                      builder->analyses.pss != NULL || builder->netlist->commands.n > 0 ||
-                      builder->netlist->asks.steady;
+                      builder->analyses.pss != NULL || builder->analyses.tf != NULL ||
+                      builder->netlist->commands.n > 0 || builder->netlist->asks.steady;
     if (!asks && (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
         dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
                                "the netlist has no analysis: no .tran, .op, .dc or .ac");
@@ -194,7 +194,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     builder->signals.are_named =
         builder->signals.are_named ||
         builder->signals.saves_currents; /* the defaults have some of them */
-    if (builder->signals.n == 0) {
+    if (builder->signals.n == 0 && builder->signals.n_computed == 0) {
         dalcs_signals_add_default(builder);
     }
     if (builder->signals.saves_currents) {

@@ -58,6 +58,22 @@ struct dalcs_orbit_ac_card {
     int sideband;     /* rows are of the components so many frequencies of the orbit higher */
 };
 
+/* The three values of .tf. */
+enum { DALCS_TRANSFER_GAIN, DALCS_TRANSFER_OUTPUT, DALCS_TRANSFER_INPUT, DALCS_N_TRANSFER };
+
+/* The values of .tf. */
+struct dalcs_transfer_card {
+    bool present;
+    bool source_is_voltage;
+    int source;        /* device */
+    int output_device; /* the V source of i(vsource); -1: the output is a voltage */
+    int node[2];       /* of the voltage */
+    int probe;         /* stimulus of the current source between them; -1: there is none */
+    int output, input; /* what is read there: measured signals */
+    const char *name[DALCS_N_TRANSFER];
+    struct dalcs_location where;
+};
+
 /* The items of .sens. */
 struct dalcs_sensitivity_card {
     bool present;
@@ -151,6 +167,7 @@ struct dalcs_circuit_analyses {
     struct dalcs_sweep dc[DALCS_MOST_DC];
     struct dalcs_sweep ac; /* frequencies of .ac in Hz; n is 0 without one */
     struct dalcs_orbit_ac_card orbit_ac;
+    struct dalcs_transfer_card transfer;
     struct dalcs_sensitivity_card sensitivity;
     struct dalcs_worst_case_card worst_case;
     int n_steps; /* of .step and .mc, the innermost first */
@@ -249,7 +266,8 @@ static inline bool dalcs_circuit_has_waves(const struct dalcs_circuit *circuit) 
 /* Has an analysis answers that the audit reads? */
 static inline bool dalcs_circuit_is_audited(const struct dalcs_circuit *circuit) {
     return dalcs_circuit_has_waves(circuit) || circuit->analyses.operating_point ||
-           circuit->analyses.n_dc > 0 || circuit->analyses.ac.n > 0;
+           circuit->analyses.n_dc > 0 || circuit->analyses.ac.n > 0 ||
+           circuit->analyses.transfer.present;
 }
 
 /* A resistor of 0 ohm: its two nodes are one, unless its current is a signal. */

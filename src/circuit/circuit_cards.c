@@ -93,6 +93,7 @@ static const struct {
     [DALCS_CARD_DC] = {REFERENCES, dalcs_sweep_parse_dc},
     [DALCS_CARD_AC] = {REFERENCES, dalcs_sweep_parse_ac},
     [DALCS_CARD_SENS] = {REFERENCES, dalcs_sensitivity_parse},
+    [DALCS_CARD_TRANSFER] = {REFERENCES, dalcs_transfer_card_parse},
     [DALCS_CARD_STEP] = {REFERENCES, dalcs_sweep_parse_step},
     [DALCS_CARD_MC] = {REFERENCES, dalcs_monte_carlo_parse},
     [DALCS_CARD_WORST_CASE] = {REFERENCES, dalcs_worst_case_parse},

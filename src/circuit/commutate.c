@@ -33,6 +33,16 @@ static const struct dalcs_form *two_values(struct dalcs_compiler *c, const struc
     return dalcs_form_apply(c, &step, v);
 }
 
+/* May .dc, .ac or .tf give it any other value? */
+static bool is_varied(const struct dalcs_compiler *c, const struct dalcs_stimulus *s) {
+    const struct dalcs_circuit *circuit = c->builder->circuit;
+    const struct dalcs_transfer_card *tf = &circuit->analyses.transfer;
+    const int output = tf->present ? tf->output_device : -1;
+    return circuit->analyses.n_dc > 0 || s->ac_real != 0 || s->ac_imaginary != 0 ||
+           (tf->present && s == &circuit->stimulus[circuit->device[tf->source].stimulus]) ||
+           (output >= 0 && s == &circuit->stimulus[circuit->device[output].stimulus]);
+}
+
 /* A pulse whose edges take no time, or so little that they are steps at their middles. */
 static const struct dalcs_form *pulse(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                       const struct dalcs_form *v, const struct dalcs_stimulus *s) {
@@ -41,10 +51,8 @@ static const struct dalcs_form *pulse(struct dalcs_compiler *c, const struct dal
     }
     const double edges = fmax(s->u.pulse.rise, s->u.pulse.fall);
     const double shortest = fmin(s->u.pulse.width, s->u.pulse.period - s->u.pulse.width);
-    /* .dc and .ac may give it any other value */
-    const bool is_free = c->builder->circuit->analyses.n_dc > 0 || s->ac_real != 0 ||
-                         s->ac_imaginary != 0 ||
-                         (s->has_dc && s->dc != s->u.pulse.low && s->dc != s->u.pulse.high);
+    const bool is_free =
+        is_varied(c, s) || (s->has_dc && s->dc != s->u.pulse.low && s->dc != s->u.pulse.high);
     if (is_free || s->u.pulse.low == s->u.pulse.high || !(edges <= 0.05 * shortest)) {
         return NULL;
     }
@@ -86,8 +94,7 @@ static const struct dalcs_form *source_steps(struct dalcs_compiler *c,
         const struct dalcs_device *device = &circuit->device[k];
         if (device->kind == DALCS_VSOURCE && device->stimulus >= 0) {
             const struct dalcs_stimulus *s = &circuit->stimulus[device->stimulus];
-            const bool is_number = s->kind == DALCS_STIMULUS_DC && circuit->analyses.n_dc == 0 &&
-                                   s->ac_real == 0 && s->ac_imaginary == 0;
+            const bool is_number = s->kind == DALCS_STIMULUS_DC && !is_varied(c, s);
             return is_number ? dalcs_form_number(c, s->dc) : pulse(c, f, v, s);
         }
         const struct dalcs_formula *formula =

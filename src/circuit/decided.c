@@ -15,8 +15,8 @@
 
 static bool is_free(const struct dalcs_builder *builder) {
     return builder->analyses.dc != NULL || builder->analyses.ac != NULL ||
-           builder->netlist->commands.n > 0 || builder->netlist->asks.response ||
-           builder->circuit->control.is_whole;
+           builder->analyses.tf != NULL || builder->netlist->commands.n > 0 ||
+           builder->netlist->asks.response || builder->circuit->control.is_whole;
 }
 
 /* Breadth first along V sources: end e of device i has the number 2 i + e, and 1. */

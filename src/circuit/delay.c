@@ -76,7 +76,7 @@ static const struct dalcs_stimulus *source_of(struct dalcs_compiler *c, int node
 
 /* .dc sweeps it, or .ac needs a phase that no source has. */
 static bool may_be_another(const struct dalcs_compiler *c, const struct dalcs_stimulus *s) {
-    return c->builder->circuit->analyses.n_dc > 0 ||
+    return c->builder->circuit->analyses.n_dc > 0 || c->builder->analyses.tf != NULL ||
            (c->builder->analyses.ac != NULL && (s->ac_real != 0 || s->ac_imaginary != 0));
 }
 

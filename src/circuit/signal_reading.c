@@ -228,6 +228,15 @@ static void skip_inner(struct dalcs_reader *reader) {
     if (dalcs_signals_read_power(reader)) {
         return;
     }
+    const struct dalcs_token *name = dalcs_reader_peek(reader, 2);
+    const struct dalcs_token *close = dalcs_reader_peek(reader, 3);
+    const bool names_element = strcmp(token->text, "n") != 0 && name != NULL &&
+                               name->text[0] != 'x' && close != NULL &&
+                               close->kind == DALCS_TOKEN_CLOSE;
+    if (names_element && find_device(builder, name) < 0) {
+        skip_call(reader);
+        return;
+    }
     if (strcmp(token->text, "n") == 0) {
         dalcs_builder_warn(builder, token, NULL,
                            "what is inside of a model is not recorded: "

@@ -52,6 +52,11 @@ static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
 /* Options that exclude one another. */
 static enum dalcs_status check_together(const struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli) {
+    if (arguments->files.no_waveforms && arguments->files.n_outputs > 0) {
+        dalcs_cli_error(cli, "-o none writes no file, -o %s writes one: choose one",
+                        arguments->files.output[0]);
+        return DALCS_E_OPTION;
+    }
     if (dalcs_arguments_have_times(arguments) && arguments->rows.compress > 0.0) {
         dalcs_cli_error(cli,
                         "--compress leaves rows out, --at prints each of its times: choose one");

@@ -89,6 +89,7 @@ static enum dalcs_status take_theme(struct dalcs_plot_arguments *arguments,
         dalcs_cli_error(cli, "--theme: '%s' is not light, dark or print", text);
         return DALCS_E_OPTION;
     }
+    arguments->has_theme = true;
     return DALCS_OK;
 }
 
@@ -216,6 +217,12 @@ enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *argume
     }
     if (status == DALCS_OK && !arguments->help) {
         status = check_width(cli, arguments);
+    }
+    if (status == DALCS_OK && !arguments->help && arguments->has_theme &&
+        arguments->output == NULL) {
+        dalcs_cli_error(cli, "--theme is for pictures and pages: give -o a name that ends in .svg, "
+                             ".png, .pdf or .html");
+        status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && arguments->is_page && arguments->theme == &dalcs_theme_print) {
         dalcs_cli_error(cli, "--theme print is for pictures: a page is light or dark");

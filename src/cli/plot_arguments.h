@@ -14,6 +14,7 @@ struct dalcs_plot_arguments {
     double from, to; /* NAN: not given */
     double spectrum; /* Hz, up to there; 0: waveforms are drawn as they are */
     const struct dalcs_theme *theme;
+    bool has_theme;   /* --theme was given */
     size_t plot, run; /* from 1; 0: not given */
     size_t width;     /* of a picture; 0: not given */
     bool histogram;

@@ -69,7 +69,8 @@ static enum dalcs_status choose_tables(struct dalcs_print_table *print,
     if (print->table == NULL) {
         return DALCS_E_NOMEM;
     }
-    if (n_cards == 0 && plot->analysis != DALCS_OPERATING_POINT) {
+    if ((n_cards == 0 && plot->analysis != DALCS_OPERATING_POINT) ||
+        plot->analysis == DALCS_TRANSFER) {
         return add_all(&print->table[print->n_tables++], plot);
     }
     for (size_t k = 0; k < n_cards; k++) {
@@ -83,7 +84,7 @@ static enum dalcs_status choose_tables(struct dalcs_print_table *print,
 /* ---- Printing --------------------------------------------------------------------------------- */
 
 static bool has_scale(const struct dalcs_plot *plot) {
-    return plot->analysis != DALCS_OPERATING_POINT;
+    return !dalcs_analysis_is_point(plot->analysis);
 }
 
 static bool is_pair(const struct dalcs_plot *plot, const struct dalcs_print_table_column *column) {
@@ -96,7 +97,8 @@ static void print_heading(const struct dalcs_print_table *print,
                                            [DALCS_TRANSIENT] = "Transient Analysis",
                                            [DALCS_PERIODIC] = "Periodic Steady State",
                                            [DALCS_DC_SWEEP] = "DC transfer characteristic",
-                                           [DALCS_AC] = "AC Analysis"};
+                                           [DALCS_AC] = "AC Analysis",
+                                           [DALCS_TRANSFER] = "Transfer Function"};
     const struct dalcs_plot *plot = print->plot;
     FILE *out = print->out;
     const size_t length = strlen(plot->title);

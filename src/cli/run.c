@@ -61,6 +61,7 @@ static enum dalcs_analysis main_analysis(const struct dalcs_request *request,
            : request->ac                                        ? DALCS_AC
            : request->periodic                                  ? DALCS_PERIODIC
            : request->dc_sweep                                  ? DALCS_DC_SWEEP
+           : request->transfer                                  ? DALCS_TRANSFER
                                                                 : DALCS_OPERATING_POINT;
 }
 

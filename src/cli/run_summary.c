@@ -42,8 +42,9 @@ static void tell_analyses(const struct dalcs_run *run, const struct dalcs_argume
                           const struct dalcs_report *report) {
     FILE *out = run->cli->out;
 
-    static const enum dalcs_analysis shown[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
-                                                DALCS_PERIODIC, DALCS_TRANSIENT};
+    static const enum dalcs_analysis shown[] = {DALCS_OPERATING_POINT, DALCS_TRANSFER,
+                                                DALCS_DC_SWEEP,        DALCS_AC,
+                                                DALCS_PERIODIC,        DALCS_TRANSIENT};
 
     for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
         const struct dalcs_plot *plot = run->outputs.measure[shown[i]].plot;

@@ -53,9 +53,10 @@ static void write_line(FILE *out, const struct dalcs_plot *plot,
         fprintf(out, " %*.6g", width_of(plot->parameter[i]), line->parameter[i]);
     }
     for (size_t i = 0; i < least(plot->n_signals, DALCS_STEP_SIGNALS); i++) {
-        const char *unit = plot->unit[i] == DALCS_AMPERE ? "A"
-                           : plot->unit[i] == DALCS_VOLT ? "V"
-                                                         : "";
+        const char *unit = plot->unit[i] == DALCS_AMPERE     ? "A"
+                           : plot->unit[i] == DALCS_VOLT     ? "V"
+                           : plot->unit[i] == DALCS_UNIT_OHM ? "ohm"
+                                                             : "";
         fprintf(out, " %*s", width_of(plot->name[i]),
                 dalcs_quantity_write_column(text, line->value[i], unit, DIGITS));
     }
@@ -82,11 +83,10 @@ static const struct dalcs_step_line *find_line(const struct dalcs_step_lines *li
 
 void dalcs_step_lines_write(FILE *out, const struct dalcs_step_lines *lines,
                             const struct dalcs_report *report, enum dalcs_analysis analysis) {
-    static const char *const what[] = {[DALCS_OPERATING_POINT] = "operating point",
-                                       [DALCS_TRANSIENT] = "average over .tran",
-                                       [DALCS_PERIODIC] = "average over a period",
-                                       [DALCS_DC_SWEEP] = "last value of .dc",
-                                       [DALCS_AC] = "largest magnitude of .ac"};
+    static const char *const what[] = {
+        [DALCS_OPERATING_POINT] = "operating point", [DALCS_TRANSIENT] = "average over .tran",
+        [DALCS_PERIODIC] = "average over a period",  [DALCS_DC_SWEEP] = "last value of .dc",
+        [DALCS_AC] = "largest magnitude of .ac",     [DALCS_TRANSFER] = ".tf"};
     const struct dalcs_plot *plot = lines->plot[analysis];
     size_t n_written = 0;
     if (!plot) {

@@ -45,7 +45,8 @@ static void write_cell(FILE *out, const struct dalcs_measure *measure, size_t i,
     const double invisible =
         has_averages(measure->plot) ? INVISIBLE_IN_WAVEFORMS : DALCS_SUMMARY_INVISIBLE;
     const double largest = largest_of(measure, i);
-    write_value(out, measure, i, fabs(value) <= invisible * largest ? 0.0 : value);
+    const bool is_rounding = isfinite(value) && fabs(value) <= invisible * largest;
+    write_value(out, measure, i, is_rounding && isfinite(largest) ? 0.0 : value);
 }
 
 static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool ends) {
@@ -54,7 +55,8 @@ static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool
         [DALCS_TRANSIENT] = "        min         max     average         rms       final",
         [DALCS_PERIODIC] = "        min         max     average         rms       final",
         [DALCS_DC_SWEEP] = "        min         max       final",
-        [DALCS_AC] = "      |min|       |max|     |final|"};
+        [DALCS_AC] = "      |min|       |max|     |final|",
+        [DALCS_TRANSFER] = "         tf"};
     if (plot->analysis == DALCS_DC_SWEEP || plot->analysis == DALCS_AC) {
         fprintf(out, "\n  %s over %s", plot->analysis == DALCS_AC ? ".ac" : ".dc", plot->scale);
     }
@@ -66,7 +68,7 @@ static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool
 
 static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i, bool ends) {
     const struct dalcs_measure_signal signal = dalcs_measure_of(measure, i);
-    if (measure->plot->analysis != DALCS_OPERATING_POINT && !ends) {
+    if (!dalcs_analysis_is_point(measure->plot->analysis) && !ends) {
         write_cell(out, measure, i, signal.min);
         write_cell(out, measure, i, signal.max);
     }

@@ -87,6 +87,7 @@ struct dalcs_request {
     bool worst_case; /* .wcase */
     bool euler;      /* .options method=euler */
     bool compresses; /* .options compress: most rows are left out */
+    bool transfer;   /* .tf */
 };
 struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
 

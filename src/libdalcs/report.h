@@ -252,6 +252,14 @@ struct dalcs_report {
     long frequencies; /* of .ac, at which laws were checked: beside the instants of `audit` */
     long
         unjudged; /* positions of switches where the waveform is coarse: beside the positions of `audit` */
+
+    /* .tf, by the names that its plot has. An impedance may be infinite. */
+    struct {
+        bool present;
+        const char
+            *name[3]; /* "transfer_function", "output_impedance_at_v(out)", "v1#input_impedance" */
+        double value[3];
+    } transfer;
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

@@ -12,8 +12,14 @@ enum dalcs_analysis {
     DALCS_DC_SWEEP,
     DALCS_AC,
     DALCS_PERIODIC, /* one period of a steady state */
+    DALCS_TRANSFER, /* .tf */
     DALCS_N_ANALYSES
 };
+
+/* Has a plot of it one row and no scale? */
+static inline bool dalcs_analysis_is_point(enum dalcs_analysis analysis) {
+    return analysis == DALCS_OPERATING_POINT || analysis == DALCS_TRANSFER;
+}
 
 /* What a signal's values are in. */
 enum dalcs_unit {
@@ -42,7 +48,7 @@ struct dalcs_plot {
     const double *parameter_value; /* [n_parameters] in this step */
 };
 
-/* Receives results while they are made: for each analysis begin, rows, end, in this order: .op, .dc,
+/* Receives results while they are made: for each analysis begin, rows, end, in this order: .op, .dc, .tf,
  * .pss, .ac, .tran; with .step all steps of an analysis before the next analysis. Any
  * callback may be NULL, or return a status other than DALCS_OK, which ends the run with that
  * status; end is then not called. Nor is it for a step of .step that fails: the next begin follows. */
@@ -50,7 +56,7 @@ struct dalcs_sink {
     void *user;
     enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
     /* `time` is the row's scale. Times ascend; two rows of equal time are the two sides of a
-     * discontinuity. Values are borrowed until the callback returns. An operating point has one row,
+     * discontinuity. Values are borrowed until the callback returns. An operating point and a .tf have one row,
      * at 0. A nested .dc runs through its inner sweep again and again. Where rows are
      * left out (compress) the newest is held back: it may come after progress said to stop. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
@@ -189,7 +195,7 @@ void dalcs_run_options_set_times(struct dalcs_run_options *options, const double
 void dalcs_run_options_set_frequencies(struct dalcs_run_options *options, const double *at,
                                        size_t n);
 
-/* Runs .op, .dc, .ac and .tran, whichever the netlist has, for each .step, with options and a sink that
+/* Runs .op, .dc, .tf, .ac and .tran, whichever the netlist has, for each .step, with options and a sink that
  * are read during the call only. DALCS_E_NETLIST: no netlist was read. DALCS_E_OPTION: a message says
  * which. What a callback returned, where that ended the run. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the
  * messages name the time and the elements; rows already handed to the sink stay true. DALCS_REFUTED: they name the law

@@ -163,7 +163,8 @@ enum dalcs_status ng_plots_begin(struct ng_plots *plots, const struct dalcs_plot
         [DALCS_TRANSIENT] = {"tran", "Transient Analysis"},
         [DALCS_DC_SWEEP] = {"dc", "DC transfer characteristic"},
         [DALCS_AC] = {"ac", "AC Analysis"},
-        [DALCS_PERIODIC] = {"pss", "Periodic Steady State"}};
+        [DALCS_PERIODIC] = {"pss", "Periodic Steady State"},
+        [DALCS_TRANSFER] = {"tf", "Transfer Function"}};
     const enum dalcs_analysis analysis = about->analysis;
     char type[24];
     struct ng_plot *plot = NULL;
@@ -172,7 +173,7 @@ enum dalcs_status ng_plots_begin(struct ng_plots *plots, const struct dalcs_plot
     enum dalcs_status status = add_plot(plots, type, known[analysis][1], about->title, &plot);
     if (status == DALCS_OK) {
         plot->analysis = analysis;
-        plot->has_scale = analysis != DALCS_OPERATING_POINT;
+        plot->has_scale = !dalcs_analysis_is_point(analysis);
         plots->current = plots->n - 1;
         status = add_signals(plot, about);
     }

@@ -87,7 +87,8 @@ static void write_header(struct raw *raw, FILE *stream, const struct dalcs_plot 
                                        [DALCS_TRANSIENT] = "Transient Analysis",
                                        [DALCS_PERIODIC] = "Periodic Steady State",
                                        [DALCS_DC_SWEEP] = "DC transfer characteristic",
-                                       [DALCS_AC] = "AC Analysis"};
+                                       [DALCS_AC] = "AC Analysis",
+                                       [DALCS_TRANSFER] = "Transfer Function"};
     raw->plot_at = ftello(stream);
     write_title(stream, plot->title ? plot->title : "");
     write_date(stream);
@@ -132,7 +133,7 @@ static bool make_block(struct raw *raw, const struct dalcs_plot *plot) {
  * the step are columns of their own. */
 static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plot *plot) {
     struct raw *raw = state;
-    const bool has_scale = plot->analysis != DALCS_OPERATING_POINT;
+    const bool has_scale = !dalcs_analysis_is_point(plot->analysis);
     const size_t n_columns = plot->n_signals + plot->n_parameters + (has_scale ? 1 : 0);
     const bool goes_on = plot->step > 0 && n_columns == raw->n_columns;
     raw->has_scale = has_scale;

@@ -25,11 +25,9 @@ const struct dalcs_table_format *dalcs_table_find_format(const char *path) {
 }
 
 static int rank_of(enum dalcs_analysis analysis) {
-    static const int rank[] = {[DALCS_OPERATING_POINT] = 0,
-                               [DALCS_DC_SWEEP] = 1,
-                               [DALCS_AC] = 3,
-                               [DALCS_PERIODIC] = 2,
-                               [DALCS_TRANSIENT] = 4};
+    static const int rank[] = {
+        [DALCS_OPERATING_POINT] = 0, [DALCS_TRANSFER] = 1, [DALCS_DC_SWEEP] = 2,
+        [DALCS_PERIODIC] = 3,        [DALCS_AC] = 4,       [DALCS_TRANSIENT] = 5};
     return rank[analysis];
 }
 

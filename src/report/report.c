@@ -271,6 +271,17 @@ static void write_steady(struct dalcs_json *json, const struct dalcs_report *rep
     dalcs_json_close(json, '}');
 }
 
+static void write_transfer(struct dalcs_json *json, const struct dalcs_report *report) {
+    if (!report->transfer.present) {
+        return;
+    }
+    dalcs_json_open(json, "transfer", '{', false);
+    for (size_t k = 0; k < sizeof report->transfer.name / sizeof report->transfer.name[0]; k++) {
+        dalcs_json_number(json, report->transfer.name[k], report->transfer.value[k]);
+    }
+    dalcs_json_close(json, '}');
+}
+
 static void write_infeasible(struct dalcs_json *json, const struct dalcs_report *report) {
     if (!report->infeasible.present) {
         return;
@@ -339,6 +350,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_energy(&json, report);
     write_steady(&json, report);
     dalcs_response_json_write(&json, report);
+    write_transfer(&json, report);
     dalcs_sensitivity_json_write(&json, report);
     dalcs_worst_case_json_write(&json, report);
     dalcs_failed_steps_json_write(&json, report);

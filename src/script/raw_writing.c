@@ -158,7 +158,7 @@ enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_writing
                                     const struct dalcs_vector *scale,
                                     const struct dalcs_vector *const *vector, size_t n,
                                     int *error) {
-    const bool is_point = plot->analysis == DALCS_OPERATING_POINT;
+    const bool is_point = dalcs_analysis_is_point(plot->analysis);
     const struct dalcs_vector *beside = is_point ? NULL : scale;
     const size_t length = is_point ? 1 : scale->n;
     struct columns c = {0};

@@ -179,7 +179,7 @@ static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size
 
 static bool has_analysis(const struct dalcs_session *session) {
     const struct dalcs_request asked = dalcs_session_request(session);
-    return asked.operating_point || asked.transient || asked.dc_sweep || asked.ac;
+    return asked.operating_point || asked.transient || asked.dc_sweep || asked.ac || asked.transfer;
 }
 
 enum dalcs_status dalcs_script_open(struct dalcs_script **script,

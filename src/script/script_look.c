@@ -36,7 +36,7 @@ bool dalcs_script_keeps_all(const struct dalcs_statements *all) {
 }
 
 bool dalcs_script_keeps_plots(const struct dalcs_statements *all) {
-    static const char *const type[] = {"tran", "ac", "dc", "op", "pss", "sp", "unknown"};
+    static const char *const type[] = {"tran", "ac", "dc", "op", "tf", "pss", "sp", "unknown"};
     bool found = strstr(all->text, "curplot") != NULL || strstr(all->text, "$plots") != NULL ||
                  strstr(all->text, "}.") != NULL;
     for (size_t k = 0; k < all->n && !found; k++) {
@@ -69,6 +69,7 @@ enum dalcs_status dalcs_script_look(const struct dalcs_session *session, bool *i
     } ranked[] = {{"tran", DALCS_TRANSIENT},
                   {"ac", DALCS_AC},
                   {"dc", DALCS_DC_SWEEP},
+                  {"tf", DALCS_TRANSFER},
                   {"op", DALCS_OPERATING_POINT}};
 
     struct dalcs_statements all = {0};

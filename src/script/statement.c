@@ -18,6 +18,7 @@ static const struct {
     {"op", DALCS_STATEMENT_ANALYSIS},
     {"dc", DALCS_STATEMENT_ANALYSIS},
     {"ac", DALCS_STATEMENT_ANALYSIS},
+    {"tf", DALCS_STATEMENT_ANALYSIS},
     {"run", DALCS_STATEMENT_ANALYSIS},
     {"meas", DALCS_STATEMENT_MEASURE},
     {"measure", DALCS_STATEMENT_MEASURE},
@@ -83,18 +84,18 @@ enum { N_WORDS = sizeof WORDS / sizeof WORDS[0] };
 
 /* Commands of ngspice whose job is done elsewhere in dalcs, or not at all. */
 static const char *const SKIPPED[] = {
-    "gnuplot",    "asciiplot", "iplot",    "remcirc",   "listing",       "noise",     "pz",
-    "sens",       "tf",        "disto",    "sp",        "pss",           "status",    "show",
-    "showmod",    "version",   "shell",    "history",   "help",          "alias",     "unalias",
-    "load",       "edit",      "trace",    "where",     "delete",        "bug",       "cd",
-    "circbyline", "deftype",   "diff",     "dump",      "eprint",        "eprvcd",    "fopen",
-    "fread",      "fclose",    "getcwd",   "inventory", "jobs",          "mc_source", "mdump",
-    "mrdump",     "rehash",    "reshape",  "rspice",    "setcirc",       "shift",     "snload",
-    "snsave",     "state",     "strslice", "strstr",    "sysinfo",       "tutorial",  "wrnodev",
-    "wrs2p",      "xgraph",    "aspice",   "codemodel", "devhelp",       "bltplot",   "pause",
-    "wrspice",    "cutout",    "pre_osdi", "cdump",     "pre_codemodel", "rempar",    "setdcop",
-    "print_cirs", "use",       "osdi",     "tranop",    "prompt",        "edisplay",  "pyplot",
-    "pre_set",    "sndparam",  "sndprint", "transpose"};
+    "gnuplot",  "asciiplot", "iplot",     "remcirc",       "listing",   "noise",   "pz",
+    "sens",     "disto",     "sp",        "pss",           "status",    "show",    "showmod",
+    "version",  "shell",     "history",   "help",          "alias",     "unalias", "load",
+    "edit",     "trace",     "where",     "delete",        "bug",       "cd",      "circbyline",
+    "deftype",  "diff",      "dump",      "eprint",        "eprvcd",    "fopen",   "fread",
+    "fclose",   "getcwd",    "inventory", "jobs",          "mc_source", "mdump",   "mrdump",
+    "rehash",   "reshape",   "rspice",    "setcirc",       "shift",     "snload",  "snsave",
+    "state",    "strslice",  "strstr",    "sysinfo",       "tutorial",  "wrnodev", "wrs2p",
+    "xgraph",   "aspice",    "codemodel", "devhelp",       "bltplot",   "pause",   "wrspice",
+    "cutout",   "pre_osdi",  "cdump",     "pre_codemodel", "rempar",    "setdcop", "print_cirs",
+    "use",      "osdi",      "tranop",    "prompt",        "edisplay",  "pyplot",  "pre_set",
+    "sndparam", "sndprint",  "transpose"};
 
 /* Why some of them are not done, where a reader would wonder. */
 static const struct {
@@ -113,7 +114,6 @@ static const struct {
     {"pz", "it is no analysis of circuits with ideal diodes"},
     {"sens", "it is no analysis of circuits with ideal diodes"},
     {"disto", "it is no analysis of circuits with ideal diodes"},
-    {"tf", "op or ac with a source of 1 gives it"},
 };
 
 static const char *reason_of(const char *word) {

@@ -85,12 +85,31 @@ static struct dalcs_vector *read_index(struct dalcs_vector_formula *f, struct da
     return part;
 }
 
+/* (re, im), behind its comma. Of parts that are complex themselves ngspice makes what is no number of algebra. */
+static struct dalcs_vector *read_imaginary(struct dalcs_vector_formula *f,
+                                           struct dalcs_vector *re) {
+    struct dalcs_vector *im = dalcs_vector_formula_choice(f);
+    if (im != NULL && (re->is_complex || im->is_complex)) {
+        return dalcs_vector_fail(f, "the two parts of a complex number must be real");
+    }
+    struct dalcs_vector *unit = im != NULL ? dalcs_vector_make(f, 1, true) : NULL;
+    if (unit == NULL) {
+        return NULL;
+    }
+    unit->value[0] = I;
+    im = dalcs_vector_combine(f, DALCS_VECTOR_MULTIPLY, im, unit);
+    return im != NULL ? dalcs_vector_combine(f, DALCS_VECTOR_ADD, re, im) : NULL;
+}
+
 static struct dalcs_vector *parse_primary(struct dalcs_vector_formula *f) {
     struct dalcs_vector *v;
     skip_blanks(f);
     char c = f->text[f->at];
     if (dalcs_vector_formula_take(f, "(")) {
         v = dalcs_vector_formula_choice(f);
+        if (v != NULL && dalcs_vector_formula_take(f, ",")) {
+            v = read_imaginary(f, v);
+        }
         if (v != NULL && !dalcs_vector_formula_take(f, ")")) {
             v = dalcs_vector_fail(f, "a parenthesis is never closed");
         }

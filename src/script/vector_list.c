@@ -52,7 +52,7 @@ static enum dalcs_status add_all(struct dalcs_script *script, struct list *list,
                                  const struct dalcs_plot_vectors *plot, char kind) {
     for (size_t k = 0; k < plot->n; k++) {
         const struct dalcs_vector *v = plot->vector[k];
-        const bool is_scale = plot->analysis != DALCS_OPERATING_POINT && v == plot->scale;
+        const bool is_scale = !dalcs_analysis_is_point(plot->analysis) && v == plot->scale;
         const bool fits =
             (kind != 'v' || v->unit == DALCS_VOLT) && (kind != 'i' || v->unit == DALCS_AMPERE);
         if (fits && !is_scale) {

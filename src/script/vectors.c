@@ -111,7 +111,8 @@ static enum dalcs_status make_plot(struct dalcs_vectors *v, const struct dalcs_p
         [DALCS_TRANSIENT] = {"tran", "Transient Analysis"},
         [DALCS_DC_SWEEP] = {"dc", "DC transfer characteristic"},
         [DALCS_AC] = {"ac", "AC Analysis"},
-        [DALCS_PERIODIC] = {"pss", "Periodic Steady State"}};
+        [DALCS_PERIODIC] = {"pss", "Periodic Steady State"},
+        [DALCS_TRANSFER] = {"tf", "Transfer Function"}};
     if (!v->keeps_plots) {
         dalcs_plots_destroy_all(v);
     } else if (plot->step > 0 && v->current != NULL) { /* of several steps the last one stays */
@@ -135,7 +136,7 @@ static const char *scale_of(const struct dalcs_plot *plot) {
 }
 
 enum dalcs_status dalcs_vectors_begin(struct dalcs_vectors *v, const struct dalcs_plot *plot) {
-    const bool is_point = plot->analysis == DALCS_OPERATING_POINT;
+    const bool is_point = dalcs_analysis_is_point(plot->analysis);
     DALCS_TRY(make_plot(v, plot));
     v->row_capacity = 0;
     v->n_columns = 0;

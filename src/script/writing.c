@@ -61,7 +61,7 @@ struct group {
 };
 
 static struct group group_of(const struct dalcs_plot_vectors *plot, const struct dalcs_vector *v) {
-    const bool has_own = plot->analysis != DALCS_OPERATING_POINT && plot->scale != NULL &&
+    const bool has_own = !dalcs_analysis_is_point(plot->analysis) && plot->scale != NULL &&
                          plot->scale->n == v->n && v->n > 1;
     return (struct group){v->scale != NULL ? v->scale : has_own ? plot->scale : NULL, v->n};
 }

@@ -201,7 +201,8 @@ static bool is_row_right(const struct dalcs_audit_response *a, const double *row
 
 enum dalcs_status dalcs_audit_response_refute(struct dalcs_run *r, double frequency,
                                               const char *what, double off, const char *unit) {
-    dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.analyses.ac.where,
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR,
+                   r->response_at != NULL ? r->response_at : &r->s->circuit.analyses.ac.where,
                    "please report this netlist",
                    "the response at %.9g Hz seems wrong: the audit finds %s off by %.3g %s",
                    frequency, what != NULL ? what : "a law", off, unit);

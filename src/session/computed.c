@@ -76,6 +76,10 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     const struct dalcs_circuit *circuit = &c->session->circuit;
     const size_t n_shown = (size_t)circuit->results.n_shown;
     const size_t n_named = (size_t)circuit->results.n_named;
+    c->passes = plot->analysis == DALCS_TRANSFER; /* whose values are no signals */
+    if (c->passes) {
+        return c->to->begin(c->to->user, plot);
+    }
     struct dalcs_arena *arena = &c->session->arena; /* a plot lives as long as the session */
     c->is_complex = plot->is_complex;
     c->n_in = plot->n_signals;
@@ -114,6 +118,9 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
 
 static enum dalcs_status row(void *user, double time, const double *value) {
     struct dalcs_computing *c = user;
+    if (c->passes) {
+        return c->to->row(c->to->user, time, value);
+    }
     fill(c, time, value, c->row);
     return c->to->row(c->to->user, time, c->row);
 }

@@ -12,6 +12,7 @@ struct dalcs_computing {
     size_t n_in, n_out; /* signals of a row as it comes, and as it goes */
     size_t n_before;    /* those in front of the circuit's: what an outer .dc sweeps */
     bool is_complex;
+    bool passes; /* rows go through as they are */
     double *row; /* as it goes */
 };
 

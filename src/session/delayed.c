@@ -18,7 +18,9 @@ static bool asks_orbit(const struct dalcs_run *r) {
 
 enum dalcs_status dalcs_delayed_check(const struct dalcs_run *r, enum dalcs_analysis analysis) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    const bool is_response = (analysis == DALCS_AC && c->analyses.ac.n > 0) || asks_orbit(r);
+    const bool is_response = (analysis == DALCS_AC && c->analyses.ac.n > 0) ||
+                             (analysis == DALCS_TRANSFER && c->analyses.transfer.present) ||
+                             asks_orbit(r);
     const bool is_sweep = analysis == DALCS_DC_SWEEP && c->analyses.n_dc > 0;
     const bool is_fixed = analysis == DALCS_TRANSIENT && c->analyses.transient.present &&
                           (r->method == DALCS_METHOD_EULER || r->radau.fixed_step > 0.0);

@@ -170,6 +170,8 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
         }
         return circuit->analyses.periodic.present || r->options->bode ? dalcs_periodic_ac_run(r)
                                                                       : dalcs_small_signal_run(r);
+    case DALCS_TRANSFER:
+        return circuit->analyses.transfer.present ? dalcs_transfer_function_run(r) : DALCS_OK;
     case DALCS_PERIODIC:
         if (r->s->steady.stroboscope != NULL) {
             return dalcs_stroboscope_run(r);
@@ -233,7 +235,8 @@ enum dalcs_status dalcs_run_analyses(struct dalcs_session *session,
 }
 
 const enum dalcs_analysis dalcs_analyses_in_order[DALCS_N_IN_ORDER] = {
-    DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_PERIODIC, DALCS_AC, DALCS_TRANSIENT};
+    DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_TRANSFER,
+    DALCS_PERIODIC,        DALCS_AC,       DALCS_TRANSIENT};
 
 enum dalcs_status dalcs_run_asked(struct dalcs_session *session,
                                   const struct dalcs_run_options *options,

@@ -4,7 +4,7 @@
 
 #include "session_internal.h"
 
-enum { DALCS_N_IN_ORDER = 5 };
+enum { DALCS_N_IN_ORDER = 6 };
 
 /* In the order in which they run. */
 extern const enum dalcs_analysis dalcs_analyses_in_order[DALCS_N_IN_ORDER];

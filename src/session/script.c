@@ -66,7 +66,7 @@ void dalcs_session_script_message(struct dalcs_session *session, size_t line, si
 /* ---- Runs with cards of their own ------------------------------------------------------------- */
 
 static bool is_analysis(const struct dalcs_card *card) {
-    static const char *const name[] = {".tran", ".op", ".dc", ".ac", ".step", ".mc"};
+    static const char *const name[] = {".tran", ".op", ".dc", ".ac", ".tf", ".step", ".mc"};
     for (size_t k = 0; k < sizeof name / sizeof name[0]; k++) {
         if (strcmp(card->token->text, name[k]) == 0) {
             return true;

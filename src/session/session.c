@@ -204,7 +204,8 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session) 
                                   .periodic = session->circuit.analyses.periodic.present,
                                   .worst_case = session->circuit.analyses.worst_case.present,
                                   .euler = o->method != NULL && strcmp(o->method, "euler") == 0,
-                                  .compresses = o->compress > 0.0};
+                                  .compresses = o->compress > 0.0,
+                                  .transfer = session->circuit.analyses.transfer.present};
 }
 
 bool dalcs_session_print(const struct dalcs_session *session, size_t card, int analysis,
@@ -222,6 +223,9 @@ bool dalcs_session_print(const struct dalcs_session *session, size_t card, int a
     const struct dalcs_circuit *circuit = &session->circuit;
     if (card >= (size_t)circuit->results.n_prints || analysis < 0 || analysis >= DALCS_N_ANALYSES) {
         return false;
+    }
+    if (analysis == DALCS_TRANSFER) {
+        return false; /* its values are no signals */
     }
     const struct dalcs_print_card *found = &circuit->results.print[card];
     if (!found->is_of[measured[analysis]] || column >= (size_t)found->n) {

@@ -177,7 +177,8 @@ struct dalcs_run {
     } measures;
 
     struct dalcs_audited_points points;
-    const struct dalcs_plot *step; /* its step and parameters; NULL without .step */
+    const struct dalcs_location *response_at; /* the card of the response at hand; NULL: .ac */
+    const struct dalcs_plot *step;            /* its step and parameters; NULL without .step */
 
     struct dalcs_run_signals { /* [n_outputs] each, of the network: */
         const char **name;     /* rows have the first n_shown, messages may name any */
@@ -276,6 +277,9 @@ bool dalcs_override_of(const struct dalcs_sweep *sweep, double value,
 
 /* Runs .dc into r->sink. */
 enum dalcs_status dalcs_dc_sweep_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* Runs .tf into r->sink. */
+enum dalcs_status dalcs_transfer_function_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
 /* Runs .ac into r->sink. */
 enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) DALCS_MUST_CHECK;

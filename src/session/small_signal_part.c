@@ -4,6 +4,7 @@
 #include "pi.h"
 #include "smooth_newton.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -240,4 +241,28 @@ enum dalcs_status dalcs_small_signal_part_solve(struct dalcs_small_signal_part *
     }
     dalcs_lu_finish(&lu);
     return DALCS_OK;
+}
+
+/* ---- Rounding ----------------------------------------------------------------------------------- */
+
+/* The sum of the sizes of a row's terms, by columns. */
+static double row_size(const struct dalcs_small_signal_part *part, int row) {
+    double sum = 0.0;
+    for (int j = 0; j < part->n; j++) {
+        for (int k = part->p[j]; k < part->p[j + 1]; k++) {
+            sum += part->i[k] == row ? fabs(part->re[k] * part->y[0][j]) : 0.0;
+        }
+    }
+    return sum;
+}
+
+/* Each equation bounds it: what the other terms have lost is in it. */
+double dalcs_small_signal_part_rounding(const struct dalcs_small_signal_part *part, int column) {
+    double least = INFINITY;
+    for (int k = part->p[column]; k < part->p[column + 1]; k++) {
+        if (part->re[k] != 0.0) {
+            least = fmin(least, DBL_EPSILON * row_size(part, part->i[k]) / fabs(part->re[k]));
+        }
+    }
+    return isfinite(least) ? least : 0.0;
 }

@@ -32,4 +32,7 @@ enum dalcs_status dalcs_small_signal_part_solve(struct dalcs_small_signal_part *
                                                 double frequency,
                                                 double rcond_min) DALCS_MUST_CHECK;
 
+/* How large an unknown at 0 Hz may be by rounding alone, where it is 0: the error of the equations that it is in. */
+double dalcs_small_signal_part_rounding(const struct dalcs_small_signal_part *part, int column);
+
 #endif

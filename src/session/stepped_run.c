@@ -138,6 +138,7 @@ static bool is_asked(const struct dalcs_circuit *circuit, const struct dalcs_run
     const bool asked[] = {[DALCS_OPERATING_POINT] = circuit->analyses.operating_point,
                           [DALCS_TRANSIENT] = circuit->analyses.transient.present,
                           [DALCS_DC_SWEEP] = circuit->analyses.n_dc > 0,
+                          [DALCS_TRANSFER] = circuit->analyses.transfer.present,
                           [DALCS_AC] = circuit->analyses.ac.n > 0,
                           [DALCS_PERIODIC] = circuit->analyses.periodic.present};
     return asked[analysis];

@@ -180,6 +180,9 @@ def check_refusals(checker, program, folder):
     checker.check(found.status == 2 and found.answer is None and
                   "the file has no signal of this circuit: it has v(a), v(b), v(p), i(d1)" in found.stderr
                   and "nodes are x" in found.stderr, f"another circuit: {found.status} {found.stderr}")
+    found = audit(program, folder, other.replace(".tran", ".print tran {2*v(x)}\n.tran"), table.without("i(v1)"))
+    checker.check(found.status == 2 and found.stderr.rstrip().endswith("nodes are x"),
+                  f"another circuit, which records a formula: {found.status} {found.stderr}")
     found = audit(program, folder, other, table)
     checker.check(found.answer["foreign"] == ["v(a)", "v(b)", "v(p)", "i(d1)", "i(d2)", "i(d3)", "i(d4)"],
                   f"in part: {found.answer}")

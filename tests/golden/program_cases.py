@@ -149,6 +149,7 @@ class Usage(Case):
         self.assertIn("--curve: 'spline' is neither cubics nor lines",
                       self.refused("run", "a.cir", "--curve", "spline"))
         self.assertIn("choose one", self.refused("run", "a.cir", "--compress", "1m", "--at", "x"))
+        self.assertIn("choose one", self.refused("run", "a.cir", "-o", "none", "-o", "a.csv"))
         for value in "r1", "=1", "r1=", "r1=many", "r1=nan":
             self.assertIn(f"--set: '{value}' is not NAME=NUMBER", self.refused("run", "a.cir", "--set", value))
         self.assertIn("no parameter or element 'r9'", self.refused("run", "a.cir", "--set", "r9=1"))
@@ -236,6 +237,15 @@ class Results(Case):
         self.assertEqual(rows[0][0], 0.0)
         self.assertEqual(rows[-1][0], 0.04)
         self.assertAlmostEqual(max(row[header.index("v(out)")] for row in rows), 10.0, places=2)
+
+    def test_formulas_alone(self):
+        """What .print names are all columns, whatever its formulas are computed by."""
+        for formula, name in (("{1/(2+v(in))}",) * 2, ("{v(in)*v(out)}",) * 2, ("p(r1)",) * 2, ("{v(in) - 1}", "{v(in)-1}"),
+                              ("par('abs(v(out))')", "{abs(v(out))}")):
+            self.write(RECTIFIER.replace(".tran", f".print tran {formula}\n.tran"))
+            self.dalcs("run", "a.cir", "-o", "out.csv", "-q")
+            header, _ = self.table("out.csv")
+            self.assertEqual(header, ["time", name])
 
     def test_step_takes_suffixes(self):
         self.write(RECTIFIER)

@@ -392,6 +392,7 @@ class Plot(unittest.TestCase):
                 (["buck.raw", "--from", "x"], USAGE, "--from: 'x' is not a number"),
                 (["buck.raw", "-o", "a.gif"], USAGE, "name it .svg, .png, .pdf or .html"),
                 (["buck.raw", "--theme", "red"], USAGE, "not light, dark or print"),
+                (["buck.raw", "--theme", "dark"], USAGE, "--theme is for pictures and pages"),
                 (["buck.raw", "--theme", "print", "-o", "a.html"], USAGE, "a page is light or dark"),
                 (["buck.raw", "--run", "0"], USAGE, "--run: '0' is not a number from 1 on"),
                 (["buck.raw", "--sinals", "a"], USAGE, "did you mean '--signals'?"),

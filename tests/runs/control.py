@@ -72,6 +72,10 @@ print scaled[0] scaled[2] length(scaled) mean(scaled)
 let x = -3
 print x abs(x) sqrt(16) exp(1) ln(2) log10(1000) floor(2.7) 7*(2-5)/3
 print x lt 0 x gt 0 x eq -3
+let z = (1,2)
+let w = z*(x,real(z))
+let turned = gain*(0,1)
+print real(z) imag(z) real(w) imag(w) abs((3,4)) imag(turned[1]) real(turned[2])
 .endc
 """, [], 1e-7),
     "loops": ("""

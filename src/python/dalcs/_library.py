@@ -14,7 +14,7 @@ from . import _where
 OK, SINGULAR, NOT_CONVERGED, INFEASIBLE, REFUTED = 0, 1, 2, 3, 4
 E_NOMEM, E_NETLIST, E_OPTION, E_CANCELLED, E_INTERNAL = -1, -3, -4, -6, -7
 
-ANALYSES = ("op", "tran", "dc", "ac", "pss")
+ANALYSES = ("op", "tran", "dc", "ac", "pss", "tf")
 UNITS = ("V", "A", "s", "Hz", "ohm", "")
 LEVELS = ("note", "warning", "error")
 FORMS = {"dalcs": 0, "lcs": 1, "osnsp": 2}
