@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Elements that grow more than this over those of the matrix cost too many digits. */
-static const double least_reciprocal_growth = 1e-3;
+/* Elements that grow beyond those of the matrix cost digits, one for each ten times: pivots of other values may cost one. A
+ * current of a nanoampere beside voltages of functions has few to spare. */
+static const double least_reciprocal_growth = 0.1;
 
 void dalcs_lu_common_init(klu_common *common) {
     klu_defaults(common);
