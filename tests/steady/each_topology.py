@@ -146,7 +146,7 @@ class Look:
         frequency = fraction[0] / fraction[1] / case.clock
         body = case.netlist.replace("{S}", f"SIN({case.level!r} {amplitude!r} {frequency!r})")
         cards = f".save {case.signal}\n.pss {fraction[1] * case.clock!r} uic\n.four {frequency!r} 1 {case.signal}\n"
-        done, report = self.run("run", body + cards, "--tol", "1e-11", "-o", "none")
+        done, report = self.run("run", body + cards, "--tol", "1e-11")
         if not self.check(done.returncode == 0, f"with a sine at {fraction}: {done.stderr}"):
             return math.nan
         part = report["fourier"][0]
