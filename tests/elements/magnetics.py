@@ -12,6 +12,7 @@ import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import runge_kutta  # noqa: E402
 from dalcs_program import Checker, run  # noqa: E402
 
 EXACT = 2e-8
@@ -200,23 +201,17 @@ def check_ferroresonance(checker, program, method, scale):
     stop = 12.0
     h = stop / n
 
-    def rates(t, phi, v):
-        i = math.sinh(phi)
-        return 1.1 * math.sin(2 * math.pi * 0.3 * t) - 0.05 * i - v, i / 0.6
+    def rates(t, x):
+        i = math.sinh(x[0])
+        return 1.1 * math.sin(2 * math.pi * 0.3 * t) - 0.05 * i - x[1], i / 0.6
 
-    phi, v = 0.0, 0.0
+    x = [0.0, 0.0]
     marks = {n // 24 * k for k in range(1, 24)}
     wanted = []
     for k in range(n):
         if k in marks:
-            wanted.append(ampere * math.sinh(phi))
-        t = k * h
-        a = rates(t, phi, v)
-        b = rates(t + h / 2, phi + h / 2 * a[0], v + h / 2 * a[1])
-        c = rates(t + h / 2, phi + h / 2 * b[0], v + h / 2 * b[1])
-        d = rates(t + h, phi + h * c[0], v + h * c[1])
-        phi += h / 6 * (a[0] + 2 * b[0] + 2 * c[0] + d[0])
-        v += h / 6 * (a[1] + 2 * b[1] + 2 * c[1] + d[1])
+            wanted.append(ampere * math.sinh(x[0]))
+        x = runge_kutta.step(rates, k * h, x, h)
     at = [k * h * second for k in sorted(marks)]
     title = f"ferroresonance at {volt:g} V, {ampere:g} A, {second:g} s"
     lines = [f"v1 1 0 sin(0 {1.1 * volt!r} {0.3 / second!r})", f"r1 1 2 {0.05 * volt / ampere!r}",

@@ -13,6 +13,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import runge_kutta  # noqa: E402
 from dalcs_program import Checker, run, some_of  # noqa: E402
 
 LAWS = {
@@ -45,23 +46,17 @@ Ca a 0 {{1m/{ohm!r}}}
 def reference(law):
     """v(a) and v(b), in volts of the source, at the rows."""
 
-    def rates(t, a, b):
-        i = law(3 * (a - b))
-        return (math.sin(100 * math.pi * t) - 1.1 * a - i) / 1e-3, (i - b) / 5e-3
+    def rates(t, x):
+        i = law(3 * (x[0] - x[1]))
+        return (math.sin(100 * math.pi * t) - 1.1 * x[0] - i) / 1e-3, (i - x[1]) / 5e-3
 
     h = ROWS[0] / PER_ROW
-    a = b = 0.0
+    x = [0.0, 0.0]
     rows = []
     for k in range(len(ROWS) * PER_ROW):
-        t = k * h
-        k1 = rates(t, a, b)
-        k2 = rates(t + h / 2, a + h / 2 * k1[0], b + h / 2 * k1[1])
-        k3 = rates(t + h / 2, a + h / 2 * k2[0], b + h / 2 * k2[1])
-        k4 = rates(t + h, a + h * k3[0], b + h * k3[1])
-        a += h / 6 * (k1[0] + 2 * k2[0] + 2 * k3[0] + k4[0])
-        b += h / 6 * (k1[1] + 2 * k2[1] + 2 * k3[1] + k4[1])
+        x = runge_kutta.step(rates, k * h, x, h)
         if (k + 1) % PER_ROW == 0:
-            rows.append((a, b))
+            rows.append(tuple(x))
     return rows
 
 

@@ -17,6 +17,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 
 import dalcs_program  # noqa: E402
+import runge_kutta  # noqa: E402
 
 PAPERS = dalcs_program.NETLISTS / "papers"
 
@@ -37,15 +38,11 @@ def at(columns, name, time):
     return columns[name][best]
 
 
-def runge_kutta(f, x, stop, n):
+def solution(f, x, stop, n):
     """{time: x} at n steps' ends."""
     h, t = stop / n, 0.0
     for k in range(n):
-        k1 = f(t, x)
-        k2 = f(t + h / 2, [a + h / 2 * b for a, b in zip(x, k1)])
-        k3 = f(t + h / 2, [a + h / 2 * b for a, b in zip(x, k2)])
-        k4 = f(t + h, [a + h * b for a, b in zip(x, k3)])
-        x = [a + h / 6 * (p + 2 * q + 2 * r + s) for a, p, q, r, s in zip(x, k1, k2, k3, k4)]
+        x = runge_kutta.step(f, t, x, h)
         t = (k + 1) * h
         yield t, x
 
@@ -133,7 +130,7 @@ def check_integrated(checker, program):
         if not checker.check(status == 0, f"{name}: {stderr}"):
             continue
         scale = max(abs(v) for s in signals for v in columns[s])
-        steps = runge_kutta(f, x0, stop, n) if held is None else projected(f, held, x0, stop, n)
+        steps = solution(f, x0, stop, n) if held is None else projected(f, held, x0, stop, n)
         for k, (t, x) in enumerate(steps):
             if (k + 1) % (n // 20) == 0:
                 for signal, value in zip(signals, x):

@@ -17,6 +17,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import runge_kutta  # noqa: E402
 from dalcs_program import Checker, run, some_of  # noqa: E402
 
 R, C, LOAD, VOLTS, HERTZ, STOP = 1.0, 1e-6, 1e4, 10.0, 1e3, 2e-3
@@ -42,11 +43,7 @@ def rates(t, v, is_fed):
 
 
 def step(t, h, v, is_fed):
-    k1 = rates(t, v, is_fed)
-    k2 = rates(t + h / 2, [x + h / 2 * k for x, k in zip(v, k1)], is_fed)
-    k3 = rates(t + h / 2, [x + h / 2 * k for x, k in zip(v, k2)], is_fed)
-    k4 = rates(t + h, [x + h * k for x, k in zip(v, k3)], is_fed)
-    return [x + h / 6 * (a + 2 * b + 2 * c + d) for x, a, b, c, d in zip(v, k1, k2, k3, k4)]
+    return runge_kutta.step(lambda t, v: rates(t, v, is_fed), t, v, h)
 
 
 def drop(t, v):

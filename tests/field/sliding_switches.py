@@ -14,6 +14,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
+import runge_kutta  # noqa: E402
 from dalcs_program import Checker, kinds_of, run, some_of  # noqa: E402
 
 SIZES = (("a regulator", 0.5, 5.0, 10e-6), ("kiloamperes", 5e3, 5e3, 1e-3), ("microamperes", 5e-6, 5.0, 1.0),
@@ -187,12 +188,7 @@ class Regulator:
             self.mode = "on" if self.mode != "on" and along > 0.5 * (opened + closed) else "off"
 
     def step(self, h):
-        t, x = self.t, self.x
-        k1 = self.flow(t, x)
-        k2 = self.flow(t + h / 2, [a + h / 2 * b for a, b in zip(x, k1)])
-        k3 = self.flow(t + h / 2, [a + h / 2 * b for a, b in zip(x, k2)])
-        k4 = self.flow(t + h, [a + h * b for a, b in zip(x, k3)])
-        return [a + h / 6 * (b + 2 * c + 2 * d + e) for a, b, c, d, e in zip(x, k1, k2, k3, k4)]
+        return runge_kutta.step(self.flow, self.t, self.x, h)
 
     def advance(self, until, steps):
         h = (until - self.t) / steps
