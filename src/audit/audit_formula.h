@@ -24,6 +24,10 @@ double audit_formula_size(const struct dalcs_audit *audit, const struct audit_pa
 double audit_formula_terms(const struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *s, int device);
 
+/* ... the levels that it adds up: numbers, jumps and saturations. */
+double audit_formula_levels(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                            int device);
+
 /* ... what rounding of its parts leaves in what it puts out. */
 double audit_formula_rounding(const struct dalcs_audit *audit, const struct audit_part *part,
                               const struct dalcs_audit_state *s, int device);

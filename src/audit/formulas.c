@@ -161,8 +161,8 @@ static double output_defect(const struct dalcs_audit *audit, const struct audit_
 
 /* The levels that a formula adds up, in the unit that it puts out: numbers, jumps and saturations. What cancels of them leaves
  * its rounding, and nothing near it is known better. */
-static double levels_of(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
-                        int device) {
+double audit_formula_levels(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                            int device) {
     const struct dalcs_behaviour *b = audit->circuit->device[device].behaviour;
     double sum = fabs(b->output.constant);
     for (int k = 0; k < b->output.n; k++) {
@@ -207,8 +207,6 @@ void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
     const double scale = is_voltage ? audit_volts(audit, part, d->node[0], d->node[1])
                                     : audit_amperes(audit, part, device);
     const enum dalcs_audit_law law = is_voltage ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
-    double *levels = &part->floor.levels[is_voltage ? 0 : 1];
-    *levels = fmax(*levels, levels_of(audit, s, device));
     double over = output_defect(audit, part, s, device, scale);
     if (over > part->tolerance && part->at.lateness > 0.0) {
         read_later(audit, part, s);

@@ -83,11 +83,20 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
     audit->sums.rounding[0] = 0.0;
 }
 
+static void note_levels(struct dalcs_audit *audit, struct audit_part *part,
+                        const struct dalcs_audit_state *s, int device) {
+    const bool is_inner = audit->net.is_inner != NULL && audit->net.is_inner[device];
+    if (!is_inner) {
+        double *of = &part->floor.levels[audit->circuit->device[device].kind == DALCS_VCVS ? 0 : 1];
+        *of = fmax(*of, audit_formula_levels(audit, s, device));
+    }
+}
+
 void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
                        const struct dalcs_audit_state *s) {
     const int *part_of = audit->net.part_of; /* other voltages are not measured by those */
-    double volt = part->floor.levels[0];
-    double ampere = part->floor.levels[1];
+    double volt = 0.0;
+    double ampere = 0.0;
     double rounding[2] = {0.0, 0.0}; /* V, A */
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
@@ -103,12 +112,15 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
         if (d->behaviour != NULL) {
             double *of = &rounding[d->kind == DALCS_VCVS ? 0 : 1];
             *of = fmax(*of, audit_formula_rounding(audit, part, s, device));
+            note_levels(audit, part, s, device);
         }
         for (int p = 0; d->behaviour != NULL && p < d->behaviour->n_pairs; p++) {
             double *scale = &audit->scale.lambda[audit->net.first_lambda[device] + p];
             *scale = fmax(*scale, fabs(s->lambda[audit->net.first_lambda[device] + p]));
         }
     }
+    volt = fmax(volt, part->floor.levels[0]);
+    ampere = fmax(ampere, part->floor.levels[1]);
     part->floor.largest_volt = volt;
     /* doc/methods.md, "What the tolerance means": signals below 1e-5 of the largest of their unit are held to
      * that one's scale, and each unit vouches a millionth for the other through the conductances, of 1 S where there

@@ -54,33 +54,6 @@ void dalcs_smooth_newton_forget(struct dalcs_smooth_newton *newton) {
     memset(newton->slope, 0, 2 * (size_t)newton->n * (size_t)newton->n * sizeof(double));
 }
 
-static double rounding_of_share(const struct dalcs_smooth_input *of, double share,
-                                const double *x) {
-    double gradient[2];
-    double rounding = 0.0;
-    dalcs_smooth_finite_gradient(of, x, gradient);
-    for (int j = 0; j < of->n; j++) {
-        const double slope =
-            fabs(dalcs_smooth_share(share, gradient[j])) + fabs(dalcs_smooth_line(of, j));
-        rounding += of->column[j] >= 0 ? dalcs_rounded * slope * fabs(x[j]) : 0.0;
-    }
-    return rounding;
-}
-
-double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, double value, const double *x) {
-    return rounding_of_share(of, 1.0, x) + dalcs_rounded * fabs(value);
-}
-
-double dalcs_smooth_function_rounding(const struct dalcs_smooth_input *of, const double *x) {
-    double gradient[2];
-    double size = fabs(dalcs_smooth_value(of->kind, x));
-    dalcs_smooth_finite_gradient(of, x, gradient);
-    for (int j = 0; j < of->n; j++) {
-        size += of->column[j] >= 0 ? fabs(gradient[j] * x[j]) : 0.0;
-    }
-    return dalcs_rounded * size;
-}
-
 static double over(double off, double size) {
     return off == 0.0 ? 0.0 : isfinite(size) ? off / size : INFINITY;
 }
@@ -117,7 +90,7 @@ static double off_of(const struct dalcs_smooth_newton *newton, int q, double tol
     const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
     const double *x = newton->x[q];
     *least = tolerance * fabs(dalcs_smooth_share(newton->share, dalcs_smooth_value(of->kind, x))) +
-             rounding_of_share(of, newton->share, x);
+             dalcs_smooth_share_rounding(of, newton->share, x);
     return fabs(dalcs_smooth_rest_of_share(of, newton->share, x) - newton->phi[q]);
 }
 
@@ -299,6 +272,27 @@ static bool factor(struct dalcs_smooth_newton *newton) {
                           newton->pivot) == 0;
 }
 
+/* What the others make of value q by its tangent, where it follows them by less than they move: to the rounding of its own
+ * terms. The solution has it to the rounding of what it was before, of which a function that is flat has nothing: 0 behind
+ * 1e-17 comes out as 1e-33. */
+static double value_beside(const struct dalcs_smooth_newton *newton, int q) {
+    const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
+    const double *a = newton->tangent[q];
+    double gradient[2];
+    double follows = 0.0;
+    dalcs_smooth_gradient_of_rest(of, newton->share, a, gradient);
+    double value = dalcs_smooth_rest_of_share(of, newton->share, a);
+    for (int j = 0; j < of->n; j++) {
+        const double *slope = newton->slope + (size_t)(2 * q + j) * (size_t)newton->n;
+        value += of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
+        for (int p = 0; p < newton->n && of->column[j] >= 0; p++) {
+            value += gradient[j] * slope[p] * newton->step[p];
+            follows += fabs(gradient[j] * slope[p]);
+        }
+    }
+    return follows < 1.0 ? value : newton->before[q] + newton->step[q];
+}
+
 bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
     newton->limits = false;
     newton->halved = 0;
@@ -312,7 +306,7 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
                                          newton->n, newton->pivot, newton->step, newton->n) == 0;
     memcpy(newton->before, newton->phi, (size_t)newton->n * sizeof(double));
     for (int q = 0; q < newton->n && is_solved; q++) {
-        newton->phi[q] += newton->step[q];
+        newton->phi[q] = value_beside(newton, q);
         is_solved = isfinite(newton->phi[q]);
     }
     return is_solved;

@@ -96,6 +96,10 @@ double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x);
  * argument of 0 rounds. */
 double dalcs_smooth_rounding(const struct dalcs_smooth_input *of, double value, const double *x);
 
+/* ... what that of its arguments leaves, where a share of the function is taken. */
+double dalcs_smooth_share_rounding(const struct dalcs_smooth_input *of, double share,
+                                   const double *x);
+
 /* The same without its line: what is left where the line is as steep as the function. */
 double dalcs_smooth_function_rounding(const struct dalcs_smooth_input *of, const double *x);
 

@@ -321,6 +321,7 @@ class Reference:
 
     def newton(self, s, h, v):
         g, right = self.matrix(s, h)
+        polished = 0
         for _ in range(200):
             slopes = g.copy()
             f = self.residual(g, right, v, slopes)
@@ -338,7 +339,10 @@ class Reference:
                             break
                 v = v + high * d
                 continue
-            return v + d
+            # at rest the current of a coil is its voltage times 1e7 stops
+            v, polished = v + d, polished + 1
+            if not self.at_rest or polished == 4:
+                return v
         raise ArithmeticError("the reference does not converge")
 
     def advance(self, v, h):
