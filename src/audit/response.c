@@ -177,6 +177,7 @@ static void check_lines(struct dalcs_response_audit *a, const struct dalcs_respo
     const struct dalcs_device *d = &a->circuit->device[device];
     const double complex u = across(is, d), i = is->i[device];
     double least = INFINITY, of[2] = {0.0, 0.0};
+    bool is_known = false;
     for (int k = 0; k < l->n && is->size[device] >= 0.0; k++) {
         const double p = l->line[k].p, q = l->line[k].q;
         const double defect = response_magnitude(p * u - q * i);
@@ -184,13 +185,16 @@ static void check_lines(struct dalcs_response_audit *a, const struct dalcs_respo
         const double allowed =
             a->tolerance * fmax(response_magnitude(p * u), response_magnitude(q * i)) +
             a->rounding * (size + p * a->volts + q * a->amperes);
-        if (defect <= least * allowed) {
-            least = allowed > 0.0 ? defect / allowed : 0.0;
+        /* Where no node has a voltage nothing is allowed, and a line may hold without a defect all the same. */
+        const double ratio = defect > 0.0 ? defect / allowed : 0.0;
+        if (!is_known || ratio < least) {
+            least = ratio;
             of[0] = defect;
             of[1] = allowed;
+            is_known = true;
         }
     }
-    if (least < INFINITY) {
+    if (is_known) {
         response_found(a, DALCS_RESPONSE_BRANCH, device, of[0], of[1]);
     } else {
         a->n_not_checked++;

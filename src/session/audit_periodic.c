@@ -94,9 +94,10 @@ static enum dalcs_status look_inside(struct dalcs_audit_periodic *a,
     return DALCS_OK;
 }
 
-/* Does nothing happen between a piece and the next one? */
+/* Does nothing happen between a piece and the next one? Charge may jump through a diode that is open before and behind. */
 static bool goes_on(const struct dalcs_periodic_flow *flow, const struct dalcs_flow_piece *piece) {
     return piece->end == NULL && piece + 1 < flow->pieces.piece + flow->pieces.n &&
+           piece[1].jump == NULL &&
            dalcs_mode_is(piece->map->mode, piece[1].map->mode, flow->stages.n_words);
 }
 

@@ -36,6 +36,7 @@ struct search {
     struct dalcs_orbit_point run; /* where the run has come to */
     double *largest;              /* [n_x] of each state so far */
     double span;                  /* s, the next one */
+    int spans;                    /* so many since the first one, or since it was nudged */
     int bursts, rests;
     bool nudged;
     bool rings; /* without an event */
@@ -66,7 +67,7 @@ static void nudge_states(struct search *s) {
         st->at.x[x] += nudge * (0.5 + part) * (s->largest[x] > 0.0 ? s->largest[x] : 1.0);
     }
     s->nudged = true;
-    s->rests = 0;
+    s->spans = s->rests = 0;
     s->span = first_span;
 }
 
@@ -179,6 +180,7 @@ static enum dalcs_status try_period(struct search *s, int from, int to, bool *fo
     dalcs_steady_take(st);
     dalcs_steady_copy_point(st, &s->run, &st->at);
     s->bursts++;
+    s->spans++;
     DALCS_TRY(dalcs_steady_burst(st, found));
     if (*found) {
         DALCS_TRY(dalcs_steady_refine(st, &s->run));
@@ -214,6 +216,7 @@ static enum dalcs_status go_on(struct search *s, bool *found, bool *rests) {
     s->rests = is_still ? s->rests + 1 : 0;
     dalcs_steady_take(st);
     s->span *= 2.0;
+    s->spans++;
     if (s->rests >= RESTS_FOR && !s->nudged) {
         nudge_states(s);
     } else if (s->rests >= RESTS_FOR) {
@@ -237,8 +240,7 @@ enum dalcs_status dalcs_steady_oscillation(struct dalcs_steady *st, double guess
         *rests = true;
         return DALCS_OK;
     }
-    for (int k = 0; k < MOST_SPANS && s.bursts < MOST_BURSTS && !*found && !*rests && !s.rings;
-         k++) {
+    while (s.spans < MOST_SPANS && s.bursts < MOST_BURSTS && !*found && !*rests && !s.rings) {
         status = go_on(&s, found, rests);
         dalcs_steady_watch_finish(&s.watch);
         DALCS_TRY(status);

@@ -6,14 +6,17 @@
 #include <math.h>
 #include <string.h>
 
-static uint64_t mode_of(const struct dalcs_radau_part *part) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
+static uint64_t hash_of(const uint64_t *word, int n_words) {
     uint64_t mode = 0;
-    for (int k = 0; k < p->n_words; k++) {
-        mode = (mode ^ p->mode[k]) * 0x9e3779b97f4a7c15u;
+    for (int k = 0; k < n_words; k++) {
+        mode = (mode ^ word[k]) * 0x9e3779b97f4a7c15u;
         mode ^= mode >> 29;
     }
     return mode;
+}
+
+static uint64_t mode_of(const struct dalcs_radau_part *part) {
+    return hash_of(part->component->osnsp.mode, part->component->osnsp.n_words);
 }
 
 /* Where formulas are curved a part may oscillate in one mode: then its events are the extremes of its first state, which
@@ -42,14 +45,25 @@ static void segment(void *user, const struct dalcs_radau_part *part, const doubl
     struct dalcs_steady_watch *watch = user;
     watch->n_segments++;
     const uint64_t mode = part->smooth != NULL ? direction_of(part, start) : mode_of(part);
-    const uint64_t before = watch->mode[part->index];
-    const bool is_event = watch->begun[part->index] && mode != before;
+    const uint64_t jumped = watch->jumped[part->index];
+    const bool is_new = mode != watch->mode[part->index];
+    const uint64_t before = watch->mode[part->index] ^ (is_new ? 0 : jumped);
+    const bool is_event = watch->begun[part->index] && (is_new || jumped != 0);
     watch->mode[part->index] = mode;
+    watch->jumped[part->index] = 0;
     watch->begun[part->index] = true;
     if (!is_event || watch->n == watch->most || watch->status != DALCS_OK) {
         return;
     }
     note_event(watch, part, part->segment.t, start, (before * 0xff51afd7ed558ccdu) ^ mode);
+}
+
+/* A switch that closes and opens in one instant leaves the mode as it was, and moves charge: its mode is that of the jump. */
+static void jump(void *user, const struct dalcs_euler_jump *told) {
+    struct dalcs_steady_watch *watch = user;
+    const struct dalcs_radau_part *part = &watch->radau->part[told->system];
+    watch->jumped[told->system] =
+        hash_of(part->work.mode_first, part->component->osnsp.n_words) | 1u;
 }
 
 /* ---- Gates ------------------------------------------------------------------------------------------------- */
@@ -103,8 +117,12 @@ void dalcs_steady_watch_gates(struct dalcs_steady_watch *watch, struct dalcs_log
 
 /* ---- The watch --------------------------------------------------------------------------------------------- */
 
-struct dalcs_observer dalcs_steady_watch_observer(struct dalcs_steady_watch *watch) {
-    return dalcs_segments_observer(watch, segment);
+struct dalcs_observer dalcs_steady_watch_observer(struct dalcs_steady_watch *watch,
+                                                  const struct dalcs_radau *radau) {
+    struct dalcs_observer observer = dalcs_segments_observer(watch, segment);
+    watch->radau = radau;
+    observer.jump = jump;
+    return observer;
 }
 
 bool dalcs_steady_watch_is_full(const struct dalcs_steady_watch *watch) {
@@ -117,8 +135,10 @@ enum dalcs_status dalcs_steady_watch_setup(struct dalcs_steady_watch *watch, int
     *watch = (struct dalcs_steady_watch){.most = most, .n_parts = n_parts};
     watch->event = dalcs_arena_alloc(&watch->arena, (size_t)most, sizeof(*watch->event));
     watch->mode = dalcs_arena_alloc(&watch->arena, (size_t)n_parts + 1, sizeof(*watch->mode));
+    watch->jumped = dalcs_arena_alloc(&watch->arena, (size_t)n_parts + 1, sizeof(*watch->jumped));
     watch->begun = dalcs_arena_alloc(&watch->arena, (size_t)n_parts + 1, sizeof(bool));
-    if (watch->event == NULL || watch->mode == NULL || watch->begun == NULL) {
+    if (watch->event == NULL || watch->mode == NULL || watch->jumped == NULL ||
+        watch->begun == NULL) {
         dalcs_steady_watch_finish(watch);
         return DALCS_E_NOMEM;
     }

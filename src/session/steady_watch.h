@@ -23,7 +23,9 @@ struct dalcs_steady_watch {
     int n, most;
     struct dalcs_steady_event *event; /* [n], of `most` */
     int n_parts;
-    uint64_t *mode; /* [n_parts] the last one, and whether there was one */
+    const struct dalcs_radau *radau; /* of the run that is observed */
+    uint64_t *mode;                  /* [n_parts] the last one, and whether there was one */
+    uint64_t *jumped; /* [n_parts] the mode of a jump since the last segment; 0: there was none */
     bool *begun;
 
     struct dalcs_watched_gates {
@@ -47,7 +49,8 @@ void dalcs_steady_watch_finish(struct dalcs_steady_watch *watch);
 void dalcs_steady_watch_gates(struct dalcs_steady_watch *watch, struct dalcs_logic_run *logic);
 
 /* For radau->base->listener.observer; user is the watch. */
-struct dalcs_observer dalcs_steady_watch_observer(struct dalcs_steady_watch *watch);
+struct dalcs_observer dalcs_steady_watch_observer(struct dalcs_steady_watch *watch,
+                                                  const struct dalcs_radau *radau);
 
 /* The last event and one like it before, between which a period may lie: from -> to. False: no event has come twice. */
 bool dalcs_steady_watch_recurs(const struct dalcs_steady_watch *watch,

@@ -119,6 +119,12 @@ def not_reached():
     yield Topology("supplies apart", "Vin in 0 {S}\nVb b 0 23\n" + gate(1, 10e-6, 0, 0.4) + "D5 in x\nD6 b x\n" +
                    BUCK.replace("S1 in", "S1 x") + IDEAL, 24.0, 1e-3, 10e-6, "v(out)")
     yield doubler("doubler with leakage", "R1 out 0 10k\nRa a out 20k")
+    # charge passes in an instant through diodes that are open before it and behind it: nothing but the jump tells it
+    yield Topology("leaks that open both diodes", "Vin in 0 {S}\n" + square("ck", 0.0, 5.0, 10e-6) +
+                   "C1 ck a 100n\nD1 in a\nD2 a out\nC2 out 0 1u\nR1 out 0 20k\nRa a 0 20k\nRb a out 5k\n", 5.0, 1e-3, 10e-6, "v(out)")
+    yield Topology("three stages that leak", "Vin in 0 {S}\n" + square("k", 0.0, 3.3, 1e-6) + square("q", 0.0, 3.3, 1e-6, 0.45, 0.52) +
+                   "D0 in n0\nC0 k n0 10p\nD1 n0 n1\nC1 q n1 10p\nD2 n1 n2\nC2 k n2 10p\nD3 n2 out\nCo out 0 50p\nI1 out 0 1u\n"
+                   "R0 n0 n1 5meg\nR1 n1 n2 5meg\nR2 n2 out 5meg\n", 3.3, 1e-4, 1e-6, "v(out)")
 
 
 class Look:

@@ -43,6 +43,10 @@ CASES = (
     ("a transformer of coils, which are shorts", "v1 in 0 1\nr1 in a 4\nl1 a 0 1m\nl2 b 0 4m\nk1 l1 l2 0.9\nr2 b 0 5\n.tf v(b) v1",
      0.0, 0.0, 4),
     ("an inner resistance", ".options dialect=ltspice\nv1 in 0 1 rser=3\nr1 in 0 1k\n.tf v(in) v1", 1000 / 1003, 3000 / 1003, 1003),
+    # a part of a short and nothing else: all its voltages are 0, and the diodes may as well block
+    ("a diode in a tie", "v1 in 0 1\nd1 in a\nc1 a 0 1u\ni1 0 a 0\n.tf v(a) i1", 0.0, 0.0, 0.0),
+    ("two diodes in a tie", "v1 in 0 1k\nr1 in 0 1k\nd1 in a\nd2 a b\nc1 b 0 1p\ni1 0 b 0\n.tf v(b) i1", 0.0, 0.0, 0.0),
+    ("two against each other in a tie", "i1 0 a 0\nd1 a 0\nd2 0 a\nc1 a 0 1m\n.tf v(a) i1", 0.0, 0.0, 0.0),
     ("large and small", "v1 in 0 1\nr1 in a 1e9\nr2 a 0 1m\n.tf v(a) v1", 1e-3 / (1e9 + 1e-3), 1e9 * 1e-3 / (1e9 + 1e-3), 1e9 + 1e-3),
 )
 

@@ -133,7 +133,26 @@ def resonant():
                ".model sch SW(Ron=1u Vt=0.5 Vh=0.5 Roff=1g)\n.model dd D(Ron=1m)\n", None)
 
 
-KINDS = {f.__name__: f for f in (resonant, relaxation, inverter, royer, hysteretic_buck, bang_bang_boost,
+def emptied():
+    """Saws: a switch without resistance closes and opens in one instant, and leaves its mode as it was."""
+    saw = "S1 c 0 c 0 sw\n.model sw SW(Vt={!r} Vh={!r})\n"
+    for k in range(3):
+        amperes, store, high = between(1e-6, 1, k, 1), between(1e-12, 1e-3, k, 2), between(0.1, 300, k, 3)
+        yield f"I1 0 c {amperes!r}\nC1 c 0 {store!r}\n" + saw.format(0.55 * high, 0.45 * high), store * high / amperes
+        volts, ohms = high / 0.7, between(10, 1e6, k, 4)
+        yield (f"V1 in 0 {volts!r}\nR1 in c {ohms!r}\nC1 c 0 {store!r}\n" + saw.format(0.55 * high, 0.45 * high),
+               ohms * store * math.log(1 / 0.3))
+    yield ("I1 0 c 1m\nC1 c 0 10n\nS1 c 0 q 0 sg\nA1 c 0 0 0 0 0 q 0 SCHMITT Vt=1 Vh=0.5\n.model sg SW(Vt=0.5)\n", 1.5e-5)
+    # no charge is left in the filter over a period
+    yield ("I1 0 c 0.3m\nC1 c 0 1n\nR1 c o 100k\nC2 o 0 10n\n" + saw.format(1.6, 1.4), 1e-5)
+    # into a larger capacitor, until both have one voltage: what goes in is what its load takes
+    yield ("I1 0 a 1m\nC1 a 0 1u\nS1 a b a b sw\nC2 b 0 10u\nR2 b 0 3k\n.model sw SW(Vt=0.55 Vh=0.45)\n", 10e-3 / 11)
+    # the dual: the current of a coil is cut off in no time
+    yield ("V1 in 0 10\nL1 in a 1m\nR1 a x 5\nS1 x 0 c 0 sw\nB1 c 0 V=-i(L1)\n.model sw SW(Vt=-0.55 Vh=0.45)\n",
+           2e-4 * math.log(2))
+
+
+KINDS = {f.__name__: f for f in (emptied, resonant, relaxation, inverter, royer, hysteretic_buck, bang_bang_boost,
                                  ring, negative_resistance)}
 KINDS.update(gate_oscillators.KINDS)
 

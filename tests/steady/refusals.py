@@ -88,6 +88,11 @@ def refused(case):
                  "comes to rest", "v(c1) = 10 V")
     case.refuses("* sticks\n" + STICKS, 1, "comes to rest", "v(cz) = -1 kV")
     case.refuses("* rings\nC1 x 0 1u IC=1\nL1 x 0 1m\n.pss uic\n", 1, "nothing switches")
+    # energies that have died away below the least number, and a circuit of seconds, which is nudged before it rests again
+    case.refuses("* rings for a while\nC1 a 0 1m IC=4000\nL1 a b 1000\nR1 b 0 200\n.pss osc uic\n", 1, "comes to rest")
+    case.refuses("* in picoseconds\nC1 a 0 21p IC=1\nL1 a b 47n\nR1 b 0 9.4\n.pss osc uic\n", 1, "comes to rest")
+    case.refuses("* loses it all\nC1 a 0 1u IC=5\nR1 a 0 1k\n.pss osc uic\n", 1, "comes to rest")
+    case.refuses("* in seconds\nV1 in 0 10\nR1 in a 1.2k\nL1 a b 26\nC1 b 0 2.2u\nR2 b 0 34k\n.pss osc uic\n", 1, "comes to rest")
     case.refuses("* no end\nI1 0 x 1m\nC1 x 0 1u\n.pss uic\n", 1, "nothing switches")
     case.refuses("* no memory\nV1 a 0 10\nR1 a 0 1k\n.pss\n", 2, "has a memory")
     case.refuses("* a clock\n" + CLOCK + BUCK + ".pss 10u osc uic\n", 2, "leave osc out")
