@@ -46,8 +46,9 @@ struct dalcs_orbit_stretch {
 struct dalcs_orbit_low {
     int pair;
     bool on;
-    double t;     /* s */
-    double value; /* V or A: w or lambda there */
+    bool is_first; /* since it has this side */
+    double t;      /* s */
+    double value;  /* V or A: w or lambda there */
     double
         gap; /* s: it goes to its other side, but this little before a command acts on it; else 0 */
     double above

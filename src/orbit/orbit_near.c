@@ -19,6 +19,7 @@ struct dalcs_near_pair {
     int last;         /* of p->near.low, since it has this side; -1: none */
     double own[2];    /* w and lambda at their largest */
     bool has_crossed; /* at the end of the last segment */
+    bool goes_along;  /* with another that has crossed there */
     bool was_away;    /* before the lows that are looked at, between which it stayed near */
     double begins;    /* V or A: at the first node of the period */
 
@@ -43,6 +44,7 @@ static enum dalcs_status add_low(struct dalcs_orbit_part *p, int pair, double t,
     DALCS_TRY(dalcs_grow(&near->low, &near->capacity, (size_t)near->n + 1, sizeof *near->low));
     near->low[near->n] = (struct dalcs_orbit_low){.pair = pair,
                                                   .on = dalcs_mode_has(near->mode, pair),
+                                                  .is_first = of->last < 0,
                                                   .t = t,
                                                   .value = value,
                                                   .above = {of->peak, INFINITY}};
@@ -125,6 +127,26 @@ static bool is_moved(const struct dalcs_near_pair *of, double value) {
            fabs(value - of->before) > dalcs_small * fmax(value, of->before);
 }
 
+/* Does another guard cross in the present segment that this one differs from by a constant, or is a multiple of? Then no signal
+ * tells one from the other: a triac's half and the switch in series with it open by one current. */
+static bool goes_along(const struct dalcs_radau_part *part, int pair) {
+    const struct dalcs_part_guards *g = &part->guards;
+    const int stride = part->stages.layout.stride, n = part->stages.layout.n_nodes;
+    const double *own = part->segment.out + dalcs_orbit_guard_row(part, pair);
+    bool does = false;
+    for (int c = 0; c < g->n_crossed && !does; c++) {
+        const double *of = part->segment.out + dalcs_orbit_guard_row(part, g->crossed[c]);
+        const double by[2] = {own[(n - 1) * stride] - own[stride],
+                              of[(n - 1) * stride] - of[stride]};
+        does = by[0] != 0.0 && by[1] != 0.0;
+        for (int k = 2; k < n - 1 && does; k++) {
+            const double part_of_own = (own[k * stride] - own[stride]) / by[0];
+            does = fabs(part_of_own - (of[k * stride] - of[stride]) / by[1]) <= dalcs_nothing;
+        }
+    }
+    return does;
+}
+
 /* The side of a pair is over. If not by its own event, it was away from 0 behind the last low, or was near until then. */
 static enum dalcs_status end_side(struct dalcs_orbit_part *p, int pair, double t) {
     struct dalcs_near_pair *of = &p->near.pair[pair];
@@ -143,8 +165,9 @@ static enum dalcs_status change_sides(struct dalcs_orbit_part *p, const uint64_t
     const bool is_same = dalcs_mode_is(near->mode, mode, p->rates.part->stages.n_words);
     for (int k = 0; k < n_pairs_of(p) && !is_same; k++) {
         struct dalcs_near_pair *of = &near->pair[k];
-        if (is_diode(p, k) &&
-            (of->has_crossed || dalcs_mode_has(near->mode, k) != dalcs_mode_has(mode, k))) {
+        const bool has_turned = dalcs_mode_has(near->mode, k) != dalcs_mode_has(mode, k);
+        of->has_crossed = of->has_crossed || (has_turned && of->goes_along);
+        if (is_diode(p, k) && (of->has_crossed || has_turned)) {
             DALCS_TRY(end_side(p, k, p->rates.part->segment.t));
             DALCS_TRY(meet_command(p, k, p->rates.part->segment.t));
             of->event = of->has_crossed ? of->crossed : (struct dalcs_near_event){.rate = 0.0};
@@ -195,7 +218,8 @@ static enum dalcs_status end_segment(struct dalcs_orbit_part *p) {
         for (int c = 0; c < part->guards.n_crossed; c++) {
             of->has_crossed = of->has_crossed || part->guards.crossed[c] == k;
         }
-        if (of->has_crossed) {
+        of->goes_along = !of->has_crossed && of->falls && goes_along(part, k);
+        if (of->has_crossed || of->goes_along) {
             of->crossed = (struct dalcs_near_event){.t = part->segment.t_end,
                                                     .rate = fabs(dalcs_orbit_guard_rate(part, row)),
                                                     .was_on = dalcs_mode_has(p->near.mode, k)};
@@ -256,11 +280,11 @@ static enum dalcs_status close_period(struct dalcs_orbit_part *p) {
 }
 
 /* A diode that comes from its own event, or goes to it, is near to it alone: it was away on both sides of a low. Lows between
- * which it does not go away are one. */
+ * which it does not go away are one, if it has one side from the first of them to the last. */
 static bool is_near(const struct dalcs_orbit_part *p, const struct dalcs_orbit_low *low) {
     struct dalcs_near_pair *of = &p->near.pair[low->pair];
     const double nothing = dalcs_small * of->own[low->on ? 1 : 0];
-    const bool stays = of->was_away && low->value <= nothing;
+    const bool stays = of->was_away && !low->is_first && low->value <= nothing;
     of->was_away = low->above[0] > nothing || stays;
     const bool is = of->was_away && low->value <= nothing && low->above[1] > nothing;
     of->was_away = of->was_away && low->value <= nothing && low->above[1] <= nothing;

@@ -11,21 +11,44 @@
 #include <math.h>
 #include <string.h>
 
+/* A row at one of the nodes. */
+static double complex value_at(const struct dalcs_periodic_response *r,
+                               const struct dalcs_flow_map *map, double complex phase, int row,
+                               int node) {
+    const struct dalcs_periodic_flow *flow = r->flow;
+    const size_t size = dalcs_periodic_flow_size(flow);
+    const size_t at = dalcs_periodic_flow_at(flow, node, row);
+    double complex sum = phase * map->driven[at];
+    for (int k = 0; k < flow->n_columns; k++) {
+        sum += r->now[k] * map->state[(size_t)k * size + at];
+    }
+    return sum;
+}
+
 /* The largest of a row behind the start of the piece. */
 static double largest_of(const struct dalcs_periodic_response *r, const struct dalcs_flow_map *map,
                          double complex phase, int row) {
-    const struct dalcs_periodic_flow *flow = r->flow;
-    const size_t size = dalcs_periodic_flow_size(flow);
     double largest = 0.0;
-    for (int node = 1; node < flow->stages.layout.n_nodes; node++) {
-        const size_t at = dalcs_periodic_flow_at(flow, node, row);
-        double complex sum = phase * map->driven[at];
-        for (int k = 0; k < flow->n_columns; k++) {
-            sum += r->now[k] * map->state[(size_t)k * size + at];
-        }
-        largest = fmax(largest, cabs(sum));
+    for (int node = 1; node < r->flow->stages.layout.n_nodes; node++) {
+        largest = fmax(largest, cabs(value_at(r, map, phase, row, node)));
     }
     return largest;
+}
+
+/* A row at a part of the piece, by the polynomial through the nodes behind its start. */
+static double moved_at(const struct dalcs_periodic_response *r, const struct dalcs_flow_map *map,
+                       double complex phase, int row, double theta) {
+    const double *at = r->flow->stages.method->node;
+    const int n = r->flow->stages.layout.n_nodes;
+    double complex sum = 0.0;
+    for (int node = 1; node < n; node++) {
+        double weight = 1.0;
+        for (int k = 1; k < n; k++) {
+            weight *= k == node ? 1.0 : (theta - at[k]) / (at[node] - at[k]);
+        }
+        sum += weight * value_at(r, map, phase, row, node);
+    }
+    return cabs(sum);
 }
 
 /* In A, else in V: a row of an open pair has its w. */
@@ -165,7 +188,7 @@ const struct dalcs_orbit_low *dalcs_periodic_near_look(const struct dalcs_period
             find_units(r, map, phase, unit);
         }
         const int row = dalcs_system_n_equations(r->flow->system) + low->pair;
-        const double moved = largest_of(r, map, phase, row);
+        const double moved = moved_at(r, map, phase, row, (low->t - piece->t) / map->h);
         const double nothing =
             dalcs_alike * unit[low->on ? 1 : 0] + rounding_of(r, map, low->pair, unit);
         *reach = low->value / moved;

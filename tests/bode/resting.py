@@ -119,6 +119,16 @@ def not_reached():
     yield Topology("supplies apart", "Vin in 0 {S}\nVb b 0 23\n" + gate(1, 10e-6, 0, 0.4) + "D5 in x\nD6 b x\n" +
                    BUCK.replace("S1 in", "S1 x") + IDEAL, 24.0, 1e-3, 10e-6, "v(out)")
     yield doubler("doubler with leakage", "R1 out 0 10k\nRa a out 20k")
+    # a half and the switch in series with it open by one current, which no signal parts
+    line = "Vl a 0 SIN(0 325 50)\nVs b a {S}\nVg g 0 PULSE(0 1 4m 0 0 1m 10m)\n"
+    for name, before, model, load in (("a triac", "A1 b o g 0 tr\n", "Voff=1m", "L1 o x 50m\nR1 x 0 60\n"),
+                                      ("a triac behind a coil", "Ls b c 1m\nA1 c o g 0 tr\n", "Voff=1m", "L1 o x 50m\nR1 x 0 60\n"),
+                                      ("a triac and a capacitor", "Ls b c 1m\nA1 c o g 0 tr\n", "",
+                                       "R2 o 0 1k\nC2 o 0 100n\nL1 o x 20m\nR1 x 0 25\n")):
+        yield Topology(name, line + before + load + f".model tr triac(Ron=10m {model})\n", 0.0, 1e-2, 0.02, "i(l1)")
+    # a voltage that an edge takes to 0.01 V moves with the signal behind the edge alone
+    yield Topology("class DE", "Vin d 0 {S}\n" + gate(1, 1e-6, 0, 0.25) + gate(2, 1e-6, 0.5, 0.25) + "S1 d sw g1 0 sm\nD1 sw d\nS2 sw 0 g2 0 sm\n"
+                   "D2 0 sw\nCp sw 0 1n\nLr sw r 10u\nCr r o 3.3n\nR1 o 0 15\n.model sm SW(Ron=10m Vt=0.5)\n", 50.0, 0.1, 1e-6, "v(o)")
     # charge passes in an instant through diodes that are open before it and behind it: nothing but the jump tells it
     yield Topology("leaks that open both diodes", "Vin in 0 {S}\n" + square("ck", 0.0, 5.0, 10e-6) +
                    "C1 ck a 100n\nD1 in a\nD2 a out\nC2 out 0 1u\nR1 out 0 20k\nRa a 0 20k\nRb a out 5k\n", 5.0, 1e-3, 10e-6, "v(out)")
