@@ -61,6 +61,7 @@ struct dalcs_slide_try dalcs_slide_try_of(const struct dalcs_collocation *method
 /* A step of length h from state[n_x] to part->segment.t + tau, on the way to a node, into y, which counts so many times. */
 struct counted_step {
     int node;
+    bool ends_at_node;
     double h, tau, times;
     const double *state;
     double *y;
@@ -69,7 +70,8 @@ struct counted_step {
 static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    const struct counted_step *step, struct dalcs_slide_try *of) {
     struct dalcs_component *c = part->component;
-    const struct dalcs_observer *observer = r->base->listener.observer;
+    const struct dalcs_euler_listener *listener = &r->base->listener;
+    const struct dalcs_observer *observer = listener->observer;
     of->slides = false;
     enum dalcs_status status =
         dalcs_radau_implicit_step(r, part, step->h, step->tau, step->state, step->y);
@@ -92,10 +94,15 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
     for (int k = 0; k < c->osnsp.n_words; k++) {
         part->work.mode_first[k] |= c->positions.sides.conducted[k];
     }
+    sides.h = step->h;
+    sides.time = part->segment.t + step->tau;
+    sides.times = step->times;
+    sides.node = step->node;
+    if (step->ends_at_node && listener->on_slide_node != NULL) {
+        listener->on_slide_node(listener->sides_user, part->index, &sides,
+                                part->work.u + c->system->n_x);
+    }
     if (observer != NULL) {
-        sides.h = step->h;
-        sides.times = step->times;
-        sides.node = step->node;
         observer->scale(observer->user, part->index, &c->osnsp.certificate);
         observer->step_by_euler(observer->user, part->index, step->state, step->y, &sides,
                                 part->work.u + c->system->n_x);
@@ -134,6 +141,7 @@ static enum dalcs_status run_sequence(struct dalcs_radau *r, struct dalcs_radau_
         const double width = method->node[node] - from;
         for (int k = 1; k <= j; k++) {
             const struct counted_step step = {.node = node,
+                                              .ends_at_node = k == j,
                                               .h = of->h * width / j,
                                               .tau = of->h * (from + width * k / j),
                                               .times = of->weight[j - 1],
@@ -161,7 +169,7 @@ static enum dalcs_status find_start_of_sources(struct dalcs_radau *r, struct dal
                                                struct dalcs_slide_try *of) {
     const struct dalcs_system *s = part->component->system;
     const struct counted_step at_start = {
-        .h = of->h, .tau = 0.0, .times = 0.0, .state = part->x, .y = part->work.y1};
+        .ends_at_node = true, .h = of->h, .state = part->x, .y = part->work.y1};
     DALCS_TRY(mean_step(r, part, &at_start, of));
     of->knows_start = of->slides || part->component->positions.settled;
     if (of->knows_start) {
@@ -205,14 +213,17 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
                                       struct dalcs_slide_try *of) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const size_t bytes = (size_t)l->n_nodes * (size_t)l->stride * sizeof(double);
-    const struct dalcs_observer *observer = r->base->listener.observer;
+    const struct dalcs_euler_listener *listener = &r->base->listener;
     memset(part->segment.out, 0, bytes);
     memset(part->work.out_tried, 0, bytes);
     memset(part->work.node_w, 0,
            (size_t)l->n_nodes * (size_t)part->component->system->n_pairs * sizeof(double));
     memset(part->work.mode_first, 0, (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
-    if (observer != NULL) {
-        observer->try_by_euler(observer->user, part->index);
+    if (listener->observer != NULL) {
+        listener->observer->try_by_euler(listener->observer->user, part->index);
+    }
+    if (listener->on_slide_begun != NULL) {
+        listener->on_slide_begun(listener->sides_user, part->index);
     }
     of->noise = of->largest[0] = of->largest[1] = 0.0;
     of->begins = true;

@@ -51,6 +51,13 @@ struct dalcs_euler_listener {
     enum dalcs_status (*on_operating_point)(const struct dalcs_circuit *circuit,
                                             struct dalcs_euler *e);
     const struct dalcs_observer *observer; /* borrowed */
+
+    /* A part of radau begins to try a segment of a slide; all sides of an answer at a node of it, with their `times`, at node 0
+     * once. What was told of its last try is void, unless that one has been passed through. */
+    void *sides_user;
+    void (*on_slide_begun)(void *user, int k);
+    void (*on_slide_node)(void *user, int k, const struct dalcs_observed_sides *sides,
+                          const double *inputs);
 };
 
 struct dalcs_euler {

@@ -17,6 +17,7 @@ struct dalcs_observed_sides {
     const double *y[DALCS_MOST_SIDES];
     double weight[DALCS_MOST_SIDES];
     double h;     /* s, of the step to all of them */
+    double time;  /* s, where that ends */
     double times; /* that it counts, less than 0 where it does so against others */
     int node; /* the node of the method that the step is on its way to; 0: it goes evenly through the whole segment */
 };

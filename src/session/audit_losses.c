@@ -104,6 +104,47 @@ static double scale_of(const struct dalcs_audit_losses *a, const struct dalcs_st
     return fmax(largest, dalcs_audit_signal_scale(a->run->audit, index));
 }
 
+/* J that a device takes by its own law, where that tells it from the other integrals; NAN: it does not. On each side of a slide a
+ * switch obeys (v - ron i)(v - roff i) = 0, so that the means of v^2, v i and i^2 do. */
+static double energy_by_law(const struct dalcs_circuit *c, int k, const struct dalcs_loss *added) {
+    const struct dalcs_device *d = &c->device[k];
+    if (d->kind == DALCS_RESISTOR) {
+        return d->value * added->i_square;
+    }
+    if (d->kind == DALCS_SWITCH && d->model >= 0) {
+        const struct dalcs_switch_model *m = &c->models.of_switch[d->model];
+        return isinf(m->roff)
+                   ? m->ron * added->i_square
+                   : (added->v_square + m->ron * m->roff * added->i_square) / (m->ron + m->roff);
+    }
+    if (d->kind == DALCS_DIODE) {
+        const struct dalcs_diode_model *m = &c->models.of_diode[d->model];
+        const bool is_plain = isinf(m->roff) && isinf(m->vrev) && m->exponential.voltage == 0.0;
+        return is_plain ? m->vfwd * added->i + m->ron * added->i_square : (double)NAN;
+    }
+    return NAN;
+}
+
+/* In a slide the auditor knows means of signals alone, of which no power is made: the integrals are held to each other. */
+static void check_sides(const struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
+                        double from, double to) {
+    const struct dalcs_loss *now = &sum->device[a->device], *then = &a->before;
+    const struct dalcs_loss added = {.v_square = now->v_square - then->v_square,
+                                     .i = now->i - then->i,
+                                     .i_square = now->i_square - then->i_square,
+                                     .energy = now->energy - then->energy};
+    const struct dalcs_audit_sum own = {
+        energy_by_law(sum->circuit, a->device, &added),
+        4.0 * DBL_EPSILON * (fabs(now->energy) + sqrt(now->v_square) * sqrt(now->i_square))};
+    const double scale =
+        sqrt(fmax(added.v_square, 0.0)) * sqrt(fmax(added.i_square, 0.0)) / (to - from);
+    const struct dalcs_audit_number number = {DALCS_AUDIT_LOSSES, a->device, scale};
+    const struct dalcs_audit_claim told = {1, from, to, added.energy};
+    if (!isnan(own.value)) {
+        dalcs_audit_claim_part(a->run->audit, &number, &told, &own);
+    }
+}
+
 void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
                             const struct dalcs_stretch *stretch) {
     if (a->device < 0) {
@@ -125,7 +166,14 @@ void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_los
                  {1, 2, now->i_square, then->i_square, ampere},
                  {2, 1, now->energy, then->energy, volt * ampere}};
 
+    const bool slides = dalcs_losses_sum_slides(sum, a->device);
+    if (slides) {
+        check_sides(a, sum, from, to);
+    }
     for (size_t k = 0; k < sizeof claim / sizeof claim[0]; k++) {
+        if (slides && (claim[k].which == 2 || claim[k].power == 2)) {
+            continue;
+        }
         struct asked q = {a,
                           stretch,
                           {of->voltage, of->current},

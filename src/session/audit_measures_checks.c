@@ -111,8 +111,8 @@ void audit_measures_check_item(struct dalcs_audit_measures *a, const struct dalc
     const struct dalcs_measured *item = &m->item[k];
     const enum dalcs_measure_kind kind = item->card->kind;
     double from, to;
-    if (!audit_measures_find_window(m, item, &from, &to)) {
-        return;
+    if (!audit_measures_find_window(m, item, &from, &to) || dalcs_measuring_adds_sides(m, item)) {
+        return; /* of a slide the auditor knows means of signals alone */
     }
     a->item[k].was_looked = true;
     if (kind <= DALCS_MEASURE_INTEGRAL) {
@@ -220,7 +220,8 @@ void audit_measures_ask_once(struct dalcs_audit_measures *a, const struct dalcs_
     }
     double from, to;
     if (item->card->kind > DALCS_MEASURE_INTEGRAL && item->card->kind <= DALCS_MEASURE_MAX_AT &&
-        audit_measures_find_window(m, item, &from, &to) && t >= from && t <= to) {
+        !dalcs_measuring_adds_sides(m, item) && audit_measures_find_window(m, item, &from, &to) &&
+        t >= from && t <= to) {
         const double value = dalcs_stretch_value(s, &item->card->formula, t);
         const struct dalcs_audit_number number = audit_measures_number(k, item->scale);
         const enum dalcs_measure_kind kind = item->card->kind;
@@ -242,7 +243,8 @@ void audit_measures_check_line(struct dalcs_audit_measures *a, const struct dalc
     struct audit_line *own = &a->line[k];
     const double from = fmax(h->from, s->from);
     const double to = fmin(h->to, s->to);
-    if (h->has_no_value || !(from < to)) {
+    const bool is_of_sides = m->sides != NULL && dalcs_side_means_slides(m->sides, h->mean);
+    if (h->has_no_value || !(from < to) || is_of_sides) {
         return;
     }
     own->was_looked = true;

@@ -106,13 +106,16 @@ enum dalcs_status dalcs_measures_tell_harmonics(struct dalcs_measures *measures,
         if (magnitude == NULL || phase == NULL) {
             return DALCS_E_NOMEM;
         }
-        if (h->from < m->start - 1e-9 * m->stop || h->has_no_value) {
-            dalcs_diag_add(&r->s->diag, DALCS_WARNING, &h->card->where, NULL,
-                           h->has_no_value
-                               ? "'%s' is undefined at some of its times: no Fourier analysis"
-                               : "'%s': the run is shorter than the periods that are to "
-                                 "be analysed",
-                           h->card->formula.text);
+        if (h->from < m->start - 1e-9 * m->stop || h->has_no_value || h->is_means) {
+            dalcs_diag_add(
+                &r->s->diag, DALCS_WARNING, &h->card->where, NULL,
+                h->is_means       ? "'%s': a switch slides along its threshold meanwhile, where "
+                                    "signals are means over its positions, and this is not linear in "
+                                    "them: no Fourier analysis"
+                : h->has_no_value ? "'%s' is undefined at some of its times: no Fourier analysis"
+                                  : "'%s': the run is shorter than the periods that are to "
+                                    "be analysed",
+                h->card->formula.text);
             continue;
         }
         warn_of_frequency(r, m, h);

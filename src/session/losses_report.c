@@ -215,13 +215,14 @@ static void note_periods(const struct account *a, const struct dalcs_element_los
     }
 }
 
-/* The values of a slide are means over time, whose product is no mean power. */
+/* A slide is the limit of infinitely many switchings, which tables do not count. */
 static void tell_slides(const struct account *a, const struct dalcs_losses_run *losses) {
     const struct dalcs_circuit *c = a->sum->circuit;
     const char *first = NULL;
     int n = 0;
     for (int k = 0; k < c->n_devices; k++) {
-        if (losses->slid[k]) {
+        const int *table = c->results.losses->device[k].table;
+        if (losses->slid[k] && (table[0] >= 0 || table[1] >= 0)) {
             first = n == 0 ? c->device[k].name : first;
             n++;
         }
@@ -230,8 +231,8 @@ static void tell_slides(const struct account *a, const struct dalcs_losses_run *
         dalcs_diag_add(&a->r->s->diag, DALCS_WARNING, NULL,
                        "a hysteresis, Vh=, keeps a switch from sliding",
                        "losses: '%s' turns where a switch slides along its threshold, one of %d "
-                       "elements: powers and rms values of these, and of what is in series with "
-                       "them, are made of means over the positions",
+                       "elements with a table: it switches without end there, and no energy of its "
+                       "table is counted",
                        first, n);
     }
 }

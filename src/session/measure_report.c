@@ -183,6 +183,13 @@ static void tell(struct result *r, const double *results) {
         fail(r, "'%s' is undefined at some of its times", card->formula.text);
         return;
     }
+    if (item->is_means) {
+        fail(r,
+             "a switch slides along its threshold meanwhile, where signals are means over its "
+             "positions, and this is not linear in them%s",
+             card->is_late ? "; without the result of another measurement it can be measured" : "");
+        return;
+    }
     switch (card->kind) {
     case DALCS_MEASURE_PARAM: {
         double value = dalcs_signal_formula_value(

@@ -70,9 +70,17 @@ static void read_signals(const struct dalcs_measures *measures, const struct dal
     }
 }
 
-enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct dalcs_run *r,
-                                       const struct dalcs_euler *e, struct dalcs_radau *radau,
-                                       struct dalcs_audit_run *audit) {
+/* What is told beside the waveforms of a slide. */
+static enum dalcs_status ask_sides(struct dalcs_measures *measures, struct dalcs_radau *radau) {
+    struct dalcs_side_means *sides = &measures->sides;
+    DALCS_TRY(dalcs_side_means_setup(sides, radau, measures->measuring.circuit->results.measured));
+    DALCS_TRY(dalcs_measuring_ask_sides(&measures->measuring, sides));
+    return measures->losses != NULL ? dalcs_losses_sum_ask_sides(&measures->losses->sum, sides)
+                                    : DALCS_OK;
+}
+
+enum dalcs_status dalcs_measures_prepare(struct dalcs_measures *measures, struct dalcs_run *r,
+                                         struct dalcs_radau *radau) {
     const struct dalcs_circuit *c = &r->s->circuit;
     measures->next_edge = INFINITY;
     measures->begin = INFINITY;
@@ -87,6 +95,16 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
     measures->wanted = true;
     measures->begin = dalcs_measuring_begin(&measures->measuring);
     measures->losses = r->transient.losses;
+    return radau != NULL ? ask_sides(measures, radau) : DALCS_OK;
+}
+
+enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct dalcs_run *r,
+                                       const struct dalcs_euler *e, struct dalcs_radau *radau,
+                                       struct dalcs_audit_run *audit) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    if (!measures->wanted) {
+        return DALCS_OK;
+    }
     if (r->transient.losses != NULL) {
         r->transient.losses->audit.run = radau != NULL && audit->audit != NULL ? audit : NULL;
         measures->begin = fmin(measures->begin, dalcs_losses_run_begin(r->transient.losses));
@@ -120,6 +138,7 @@ void dalcs_measures_finish(struct dalcs_measures *measures) {
         dalcs_measuring_finish(&measures->measuring);
     }
     dalcs_rows_finish(&measures->rows);
+    dalcs_side_means_finish(&measures->sides);
     dalcs_audit_measures_finish(&measures->audit);
     free(measures->reads);
     free(measures->stimulus);

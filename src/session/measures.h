@@ -25,9 +25,12 @@ struct dalcs_measures {
     struct dalcs_losses_run *losses;        /* NULL: not asked for */
     double *before, *now; /* [n_measured] of euler, at the ends of a step; or of a row */
     struct dalcs_audit_measures audit;
+    struct dalcs_side_means sides; /* of radau */
 };
 
-/* After the start of a transient: radau is NULL with implicit Euler. */
+/* Before the first segment of a transient, and after its start: radau is NULL with implicit Euler. */
+enum dalcs_status dalcs_measures_prepare(struct dalcs_measures *measures, struct dalcs_run *r,
+                                         struct dalcs_radau *radau) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct dalcs_run *r,
                                        const struct dalcs_euler *e, struct dalcs_radau *radau,
                                        struct dalcs_audit_run *audit) DALCS_MUST_CHECK;

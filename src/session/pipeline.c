@@ -16,35 +16,6 @@
 #include <math.h>
 #include <time.h>
 
-/* Switches that no command agreed with what followed from it. */
-static void warn_of_switches(struct dalcs_run *r, const struct dalcs_component *c, long steps) {
-    if (c->commands.n_slid > 0) {
-        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
-                       "a hysteresis, Vh=, keeps it from switching without end",
-                       "in %ld step%s a switch slides along its threshold: closing turns its "
-                       "control off, opening turns it on; values are means of both positions",
-                       c->commands.n_slid, c->commands.n_slid == 1 ? "" : "s");
-    }
-    if (c->commands.n_delayed == 0 || c->failure.restless.pair >= 0) { /* an error says it */
-        return;
-    }
-    bool once = (steps == 0 && c->commands.n_delayed == 1) || c->is_static;
-    if (once && c->commands.restless != NULL) {
-        dalcs_diag_add(
-            &r->s->diag, DALCS_WARNING, NULL,
-            c->is_static ? NULL : "with uic, and IC= where it matters, a run starts without one",
-            "at the operating point '%s' and what controls it do not agree: closed it "
-            "opens, open it closes; it is left as it stood",
-            c->commands.restless);
-    } else {
-        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
-                       "a hysteresis, Vh=, keeps it from switching without end",
-                       "in %ld one-step problem%s a switch and the voltage that controls it did "
-                       "not agree; its last command stood until the next one",
-                       c->commands.n_delayed, c->commands.n_delayed == 1 ? "" : "s");
-    }
-}
-
 /* The counts of one engine run into the report. */
 void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e) {
     struct dalcs_report *report = &r->s->results.report;
@@ -56,7 +27,7 @@ void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e) {
         report->work.factorizations += c->factorizations;
         report->work.cache_hits += c->cache_hits;
         report->work.singular += c->singular;
-        warn_of_switches(r, &e->component[k], e->steps);
+        dalcs_run_warn_of_switches(r, &e->component[k], e->steps);
     }
     if (e->worst.certificate.worst >= report->certificate.worst) {
         const char *where = dalcs_explain_row(r->s, e, e->worst.system, e->worst.certificate.where);

@@ -31,6 +31,9 @@ enum dalcs_status dalcs_stepped_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
 
+/* Switches that slid, and those that no command agreed with what followed from it. steps: of implicit Euler. */
+void dalcs_run_warn_of_switches(struct dalcs_run *r, const struct dalcs_component *c, long steps);
+
 /* Runs .op into r->sink. */
 enum dalcs_status dalcs_operating_point_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 

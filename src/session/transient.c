@@ -184,6 +184,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct parts *p) {
     if (r->orbit != NULL && !p->is_euler) {
         DALCS_TRY(dalcs_audit_gates_go_on(&p->audit.gates, &p->logic));
     }
+    DALCS_TRY(dalcs_measures_prepare(&p->measures, r, radau));
     DALCS_TRY(radau != NULL ? dalcs_radau_begin(radau) : DALCS_OK);
     DALCS_TRY(dalcs_transient_decide(r, &p->logic, 0.0));
     if (radau != NULL) {

@@ -2,6 +2,7 @@
  * them turns little. */
 #include "harmonics.h"
 #include "pi.h"
+#include "side_span.h"
 
 #include "memory.h"
 
@@ -17,6 +18,7 @@ enum dalcs_status dalcs_harmonics_setup(struct dalcs_harmonics *h,
     size_t n = (size_t)card->n_harmonics + 1;
     *h = (struct dalcs_harmonics){.card = card,
                                   .frequency = card->frequency,
+                                  .mean = -1,
                                   .from = stop - card->n_periods / card->frequency,
                                   .to = stop};
     if (is_orbit) {
@@ -77,12 +79,19 @@ static bool add_span(void *user, const struct dalcs_span *span) {
     return true;
 }
 
-void dalcs_harmonics_add(struct dalcs_harmonics *h, const struct dalcs_stretch *stretch) {
+void dalcs_harmonics_add(struct dalcs_harmonics *h, const struct dalcs_stretch *stretch,
+                         const struct dalcs_side_means *sides) {
     double from = fmax(h->from, stretch->from);
     double to = fmin(h->to, stretch->to);
     struct addition a = {h, stretch};
-    if (from < to &&
-        !dalcs_stretch_visit(stretch, &h->card->formula, from, to, &h->scale, &a, add_span)) {
+    if (from < to && sides != NULL) {
+        struct dalcs_span span;
+        dalcs_side_means_span(sides, h->mean, stretch->rule, from, to, &span);
+        h->has_no_value = h->has_no_value || isnan(span.coefficient[0]);
+        h->scale = fmax(h->scale, fabs(span.coefficient[0]));
+        add_span(&a, &span);
+    } else if (from < to && !dalcs_stretch_visit(stretch, &h->card->formula, from, to, &h->scale,
+                                                 &a, add_span)) {
         h->has_no_value = true;
     }
 }

@@ -3,6 +3,7 @@
 #define DALCS_HARMONICS_H
 
 #include "measurement.h"
+#include "side_means.h"
 #include "stretch.h"
 
 struct dalcs_harmonics {
@@ -12,6 +13,8 @@ struct dalcs_harmonics {
     double scale;
     double *cosine, *sine; /* [n_harmonics + 1] integrals over [from, to], over its length */
     bool has_no_value;
+    int mean;      /* of the formula over the sides of a slide; -1: none */
+    bool is_means; /* it is made of means over the sides of a slide, and not linear in them */
 };
 
 /* For a run that ends at stop, in s; is_orbit: that is a period, whose multiple of its frequency next to the card's is
@@ -21,6 +24,8 @@ enum dalcs_status dalcs_harmonics_setup(struct dalcs_harmonics *h,
                                         bool is_orbit) DALCS_MUST_CHECK;
 void dalcs_harmonics_finish(struct dalcs_harmonics *h);
 
-void dalcs_harmonics_add(struct dalcs_harmonics *h, const struct dalcs_stretch *stretch);
+/* sides: of its mean, where that slides; else NULL. */
+void dalcs_harmonics_add(struct dalcs_harmonics *h, const struct dalcs_stretch *stretch,
+                         const struct dalcs_side_means *sides);
 
 #endif

@@ -12,7 +12,7 @@ struct dalcs_kept_stretches *dalcs_kept_stretches_create(const struct dalcs_stre
     struct dalcs_kept_stretches *kept = dalcs_alloc(1, sizeof(*kept));
     if (kept != NULL) {
         size_t parts = like->imaginary != NULL ? 2 : 1;
-        kept->n_values = 2 + parts * N * (size_t)like->n_signals;
+        kept->n_values = 3 + parts * N * (size_t)like->n_signals;
     }
     return kept;
 }
@@ -37,9 +37,10 @@ void dalcs_kept_stretches_add(struct dalcs_kept_stretches *kept,
     bool is_point = stretch->from == stretch->to;
     to[0] = stretch->from;
     to[1] = stretch->to;
-    memcpy(to + 2, is_point ? stretch->coefficient : stretch->value, n * sizeof(double));
+    to[2] = stretch->slides ? 1.0 : 0.0;
+    memcpy(to + 3, is_point ? stretch->coefficient : stretch->value, n * sizeof(double));
     if (stretch->imaginary != NULL) {
-        memcpy(to + 2 + n, stretch->imaginary, n * sizeof(double));
+        memcpy(to + 3 + n, stretch->imaginary, n * sizeof(double));
     }
 }
 
@@ -49,15 +50,16 @@ void dalcs_kept_stretches_load(const struct dalcs_kept_stretches *kept, size_t k
     const double *from = kept->value + k * kept->n_values;
     stretch->from = from[0];
     stretch->to = from[1];
+    stretch->slides = from[2] != 0.0;
     if (stretch->from == stretch->to) {
-        memcpy(stretch->coefficient, from + 2, n * sizeof(double));
+        memcpy(stretch->coefficient, from + 3, n * sizeof(double));
     } else {
-        memcpy(stretch->value, from + 2, n * sizeof(double));
+        memcpy(stretch->value, from + 3, n * sizeof(double));
         for (int i = 0; i < stretch->n_signals; i++) {
             dalcs_stretch_expand(stretch->rule, stretch->value[i], stretch->coefficient[i]);
         }
     }
     if (stretch->imaginary != NULL) {
-        memcpy(stretch->imaginary, from + 2 + n, n * sizeof(double));
+        memcpy(stretch->imaginary, from + 3 + n, n * sizeof(double));
     }
 }

@@ -8,8 +8,9 @@
 
 struct dalcs_kept_stretches {
     size_t n;
-    size_t n_values; /* of each: its two ends, then what the signals are at the nodes */
-    double *value;   /* [n n_values] heap */
+    size_t
+        n_values; /* of each: its two ends, whether it slides, then what the signals are at the nodes */
+    double *value; /* [n n_values] heap */
     size_t capacity;
     bool out_of_memory; /* something is missing */
 };

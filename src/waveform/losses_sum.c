@@ -1,6 +1,7 @@
 /* losses_sum.c - sums over stretches, and what switches by their tables. */
 #include "losses_sum.h"
 #include "pi.h"
+#include "side_span.h"
 
 #include "memory.h"
 
@@ -41,8 +42,32 @@ enum dalcs_status dalcs_losses_sum_setup(struct dalcs_losses_sum *sum,
     for (size_t k = 0; k < n; k++) {
         sum->device[k].frequency = frequency_of(circuit, &circuit->device[k]);
         sum->device[k].first = NAN;
+        sum->device[k].mean[0] = sum->device[k].mean[1] = sum->device[k].mean[2] = -1;
     }
     return DALCS_OK;
+}
+
+enum dalcs_status dalcs_losses_sum_ask_sides(struct dalcs_losses_sum *sum,
+                                             struct dalcs_side_means *sides) {
+    sum->sides = sides;
+    for (int k = 0; k < sum->circuit->n_devices; k++) {
+        const struct dalcs_loss_device *of = &sum->circuit->results.losses->device[k];
+        const struct dalcs_side_mean product[3] = {{.signal = {of->voltage, of->voltage}},
+                                                   {.signal = {of->current, of->current}},
+                                                   {.signal = {of->voltage, of->current}}};
+        for (int i = 0; i < 3 && of->voltage >= 0; i++) {
+            DALCS_TRY(dalcs_side_means_add(sides, &product[i], &sum->device[k].mean[i]));
+        }
+    }
+    return DALCS_OK;
+}
+
+bool dalcs_losses_sum_slides(const struct dalcs_losses_sum *sum, int device) {
+    bool slides = false;
+    for (int i = 0; i < 3 && sum->sides != NULL; i++) {
+        slides = slides || dalcs_side_means_slides(sum->sides, sum->device[device].mean[i]);
+    }
+    return slides;
 }
 
 void dalcs_losses_sum_finish(struct dalcs_losses_sum *sum) {
@@ -157,6 +182,21 @@ static void add_fundamental(struct dalcs_loss *d, const struct cut *cut, double 
     d->s[1] += weight * ampere * sin(turn);
 }
 
+/* Integrals of v^2, i^2, v i over the cut where the device slides: means over the sides, no products of means. The others, which
+ * are products, are left. */
+static void take_sides(const struct dalcs_losses_sum *sum, const struct dalcs_stretch_rule *rule,
+                       int k, const struct cut *cut, double *product) {
+    for (int i = 0; i < 3; i++) {
+        const int mean = sum->device[k].mean[i];
+        if (dalcs_side_means_slides(sum->sides, mean)) {
+            struct dalcs_span span;
+            dalcs_side_means_span(sum->sides, mean, rule, cut->from, cut->from + cut->length,
+                                  &span);
+            product[i] = cut->length * span.coefficient[0];
+        }
+    }
+}
+
 static void add_cut(const struct dalcs_losses_sum *sum, const struct dalcs_stretch *stretch, int k,
                     const struct cut *cut) {
     const struct dalcs_loss_device *of = &sum->circuit->results.losses->device[k];
@@ -164,6 +204,7 @@ static void add_cut(const struct dalcs_losses_sum *sum, const struct dalcs_stret
     const double *i = stretch->coefficient[of->current];
     bool is_whole = cut->a == -1.0 && cut->b == 1.0;
     struct dalcs_loss *d = &sum->device[k];
+    double product[3] = {0.0, 0.0, 0.0}; /* v^2, i^2, v i */
     for (int node = 0; node < N; node++) {
         double theta = 0.5 * (1.0 + stretch->rule->node[node]);
         double x = cut->a + theta * (cut->b - cut->a);
@@ -171,14 +212,20 @@ static void add_cut(const struct dalcs_losses_sum *sum, const struct dalcs_stret
         double ampere = is_whole ? stretch->value[of->current][node] : dalcs_stretch_at(i, x);
         double weight = cut->length * stretch->rule->weight[node];
         d->v += weight * volt;
-        d->v_square += weight * volt * volt;
+        product[0] += weight * volt * volt;
         d->i += weight * ampere;
-        d->i_square += weight * ampere * ampere;
-        d->energy += weight * volt * ampere;
+        product[1] += weight * ampere * ampere;
+        product[2] += weight * volt * ampere;
         if (d->frequency > 0.0) {
             add_fundamental(d, cut, theta, weight, volt, ampere, sum->from);
         }
     }
+    if (sum->sides != NULL) {
+        take_sides(sum, stretch->rule, k, cut, product);
+    }
+    d->v_square += product[0];
+    d->i_square += product[1];
+    d->energy += product[2];
     d->end[0] = dalcs_stretch_at(v, cut->b);
     d->end[1] = dalcs_stretch_at(i, cut->b);
 }

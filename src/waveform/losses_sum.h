@@ -6,6 +6,7 @@
 #define DALCS_LOSSES_SUM_H
 
 #include "circuit.h"
+#include "side_means.h"
 #include "stretch.h"
 
 /* Of one device. */
@@ -20,6 +21,7 @@ struct dalcs_loss {
     bool is_on;
     double frequency;  /* Hz, of a source with a period; 0: none */
     double c[2], s[2]; /* integrals of v and i times cos and sin of its fundamental */
+    int mean[3];       /* of v^2, i^2, v i over the sides of a slide; -1: as products */
 };
 
 /* A jump of one part, between two stretches. */
@@ -46,6 +48,7 @@ struct dalcs_losses_sum {
     double *node;                 /* [n_nodes] work */
     int *n_open;                  /* [n_nodes] work */
     double loops;                 /* J lost in jumps where no switch or diode carries them */
+    const struct dalcs_side_means *sides; /* borrowed; NULL: nothing slides */
 };
 
 /* For a run up to `stop`; `near`: s. */
@@ -53,6 +56,13 @@ enum dalcs_status dalcs_losses_sum_setup(struct dalcs_losses_sum *sum,
                                          const struct dalcs_circuit *circuit, double stop,
                                          double near) DALCS_MUST_CHECK;
 void dalcs_losses_sum_finish(struct dalcs_losses_sum *sum);
+
+/* What slides is asked of these means from then on. */
+enum dalcs_status dalcs_losses_sum_ask_sides(struct dalcs_losses_sum *sum,
+                                             struct dalcs_side_means *sides) DALCS_MUST_CHECK;
+
+/* Is the device part of a slide at present? */
+bool dalcs_losses_sum_slides(const struct dalcs_losses_sum *sum, int device);
 
 /* The values before the first stretch: value[n_measured]. */
 void dalcs_losses_sum_before_start(struct dalcs_losses_sum *sum, const double *value);

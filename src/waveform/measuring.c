@@ -2,9 +2,11 @@
 #include "measuring.h"
 
 #include "measuring_extremes.h"
+#include "measuring_rows.h"
+#include "measuring_sides.h"
 #include "rounding.h"
+#include "side_span.h"
 
-#include <complex.h>
 #include <math.h>
 #include <string.h>
 
@@ -42,6 +44,20 @@ static bool add_span(void *user, const struct dalcs_span *span) {
     return true;
 }
 
+/* Of a slide: means over its sides, where the waveform has means of signals alone. */
+static void add_sides(const struct dalcs_measuring *m, struct dalcs_measured *item, double from,
+                      double to) {
+    struct dalcs_span span;
+    dalcs_side_means_span(m->sides, item->mean, &m->rule, from, to, &span);
+    item->has_no_value = isnan(span.coefficient[0]);
+    if (item->card->kind == DALCS_MEASURE_RMS) {
+        item->square += span.coefficient[0] * (to - from);
+    } else {
+        item->scale = fmax(item->scale, fabs(span.coefficient[0]));
+        add_span(&(struct addition){item, &m->rule}, &span);
+    }
+}
+
 static void add_stretch(const struct dalcs_measuring *m, struct dalcs_measured *item, double from,
                         double to) {
     const struct dalcs_instant *trig = &item->instant[0];
@@ -53,6 +69,10 @@ static void add_stretch(const struct dalcs_measuring *m, struct dalcs_measured *
     if (from < to) {
         item->begin = fmin(item->begin, from);
         item->end = to;
+        if (dalcs_measuring_adds_sides(m, item)) {
+            add_sides(m, item, from, to);
+            return;
+        }
         struct addition a = {item, &m->rule};
         item->has_no_value = !dalcs_stretch_visit(&m->stretch, &item->card->formula, from, to,
                                                   &item->scale, &a, add_span);
@@ -111,6 +131,8 @@ static void measure(const struct dalcs_measuring *m, struct dalcs_measured *item
     if (!(from <= to)) {
         return;
     }
+    item->is_means =
+        item->is_means || ((m->sides != NULL || s->slides) && dalcs_measuring_adds_means(m, item));
     bool is_new = dalcs_instant_look(&item->instant[0], s, from, to);
     dalcs_instant_look(&item->instant[1], s, from, to);
     if (is_new && needs_value(item)) {
@@ -129,6 +151,7 @@ void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to) 
     struct dalcs_stretch *s = &m->stretch;
     s->from = from;
     s->to = to;
+    s->slides = m->kept != NULL && m->sides != NULL && dalcs_side_means_any_slides(m->sides);
     for (int k = 0; k < s->n_signals; k++) {
         dalcs_stretch_expand(&m->rule, s->value[k], s->coefficient[k]);
     }
@@ -141,7 +164,10 @@ void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to) 
         }
     }
     for (int k = 0; k < m->n_harmonics; k++) {
-        dalcs_harmonics_add(&m->harmonics[k], s);
+        struct dalcs_harmonics *h = &m->harmonics[k];
+        const bool slides = m->sides != NULL && dalcs_side_means_slides(m->sides, h->mean);
+        h->is_means = h->is_means || (h->mean < 0 && dalcs_measuring_is_bent(m, &h->card->formula));
+        dalcs_harmonics_add(h, s, slides ? m->sides : NULL);
     }
     if (m->watch != NULL) {
         m->watch->end(m->watch->user, m, -1);
@@ -227,39 +253,6 @@ void dalcs_measuring_before_start(struct dalcs_measuring *m, const double *value
     }
 }
 
-/* Between two frequencies: a line over the logarithm of the frequency, in decibels and in phase. So each power of the
- * frequency is exact, where a chord of complex values is too small by far. Through 0, and around it by more than a right
- * angle, there is no such line: a chord. x: from 0 at a to 1 at b over the frequency; log_x: over its logarithm. */
-static double complex between(double complex a, double complex b, double x, double log_x) {
-    const bool turns = creal(a * conj(b)) <= 0.0;
-    return turns ? a + x * (b - a) : a * cexp(log_x * clog(b / a));
-}
-
-/* The stretch from s->from to s->to between the row before and the one at `at`. */
-static void fill_stretch(struct dalcs_measuring *m, double at, const double *re, const double *im) {
-    struct dalcs_stretch *s = &m->stretch;
-    const double first = (s->from - m->row_at) / (at - m->row_at);
-    const double last = (s->to - m->row_at) / (at - m->row_at);
-    double imaginary[DALCS_STRETCH_NODES];
-    for (int k = 0; k < s->n_signals; k++) {
-        for (int i = 0; i < N; i++) {
-            const double x = first + 0.5 * (1.0 + m->rule.node[i]) * (last - first);
-            s->value[k][i] = m->row[k] + x * (re[k] - m->row[k]);
-            if (s->imaginary != NULL) {
-                const double ratio = m->row_at > 0.0 ? (at - m->row_at) / m->row_at : 0.0;
-                const double log_x = ratio > 0.0 ? log1p(x * ratio) / log1p(ratio) : x;
-                const double complex value =
-                    between(m->row[k] + I * m->row_imaginary[k], re[k] + I * im[k], x, log_x);
-                s->value[k][i] = creal(value);
-                imaginary[i] = cimag(value);
-            }
-        }
-        if (s->imaginary != NULL) {
-            dalcs_stretch_expand(&m->rule, imaginary, s->imaginary[k]);
-        }
-    }
-}
-
 /* Of frequencies an octave at a time: over it the polynomial of a power is off by its rounding alone. */
 static void join_rows(struct dalcs_measuring *m, double at, const double *re, const double *im) {
     double from = m->row_at;
@@ -267,7 +260,7 @@ static void join_rows(struct dalcs_measuring *m, double at, const double *re, co
         const bool is_long = m->stretch.imaginary != NULL && from > 0.0 && 2.0 * from < at;
         m->stretch.from = from;
         m->stretch.to = is_long ? 2.0 * from : at;
-        fill_stretch(m, at, re, im);
+        dalcs_measuring_fill_stretch(m, at, re, im);
         from = m->stretch.to;
         dalcs_measuring_stretch(m, m->stretch.from, m->stretch.to);
     }
@@ -325,6 +318,8 @@ bool dalcs_measuring_late(struct dalcs_measuring *m, int k, const double *result
     struct dalcs_measured *item = &m->item[k];
     const struct dalcs_measure_card *card = item->card;
     struct dalcs_stretch *s = &m->stretch;
+    struct dalcs_side_means *sides = m->sides;
+    m->sides = NULL; /* they are those of the last segment */
     bool is_known = take_time(&card->from_formula, result, &item->from) &&
                     take_time(&card->to_formula, result, &item->to);
     for (int i = 0; i < 2 && is_known; i++) {
@@ -345,5 +340,6 @@ bool dalcs_measuring_late(struct dalcs_measuring *m, int k, const double *result
         evaluate(m, item, s->to);
     }
     s->result = NULL;
+    m->sides = sides;
     return is_known;
 }

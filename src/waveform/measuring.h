@@ -9,6 +9,7 @@
 #include "harmonics.h"
 #include "instant.h"
 #include "kept_stretches.h"
+#include "side_means.h"
 
 struct dalcs_measured {
     const struct dalcs_measure_card *card;
@@ -18,6 +19,8 @@ struct dalcs_measured {
     double integral, square;
     double least, least_at, most, most_at;
     double scale; /* largest magnitude so far */
+    int mean; /* of its formula, or of the square of that, over the sides of a slide; -1: none */
+    bool is_means; /* it is made of means over the sides of a slide, and not linear in them */
     bool has_value, has_no_value;
     bool waits; /* for the next stretch, which starts where it is to be evaluated */
     double value;
@@ -48,6 +51,7 @@ struct dalcs_measuring {
     bool has_row;
     double row_at;
     const struct dalcs_measuring_watch *watch; /* borrowed; may be NULL */
+    struct dalcs_side_means *sides;            /* borrowed; NULL: nothing slides */
 };
 
 /* Does the circuit have measurements in such an analysis? */
@@ -63,6 +67,13 @@ enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
                                         enum dalcs_measured_analysis analysis, double start,
                                         double stop) DALCS_MUST_CHECK;
 void dalcs_measuring_finish(struct dalcs_measuring *m);
+
+/* Sums over slides are asked of these means from then on. */
+enum dalcs_status dalcs_measuring_ask_sides(struct dalcs_measuring *m,
+                                            struct dalcs_side_means *sides) DALCS_MUST_CHECK;
+
+/* Is what the present stretch adds to the item's sums a mean over the sides of a slide? */
+bool dalcs_measuring_adds_sides(const struct dalcs_measuring *m, const struct dalcs_measured *item);
 
 /* What lies before this time counts for nothing; INFINITY: nothing is measured. */
 double dalcs_measuring_begin(const struct dalcs_measuring *m);

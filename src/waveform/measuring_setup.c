@@ -46,6 +46,7 @@ static bool start_items(struct dalcs_measuring *m) {
         m->item[k] = (struct dalcs_measured){.card = card,
                                              .instant = {dalcs_instant_start(&card->instant[0]),
                                                          dalcs_instant_start(&card->instant[1])},
+                                             .mean = -1,
                                              .from = card->from,
                                              .to = card->to,
                                              .begin = INFINITY,

@@ -39,7 +39,8 @@ struct dalcs_stretch {
     double (*value)[DALCS_STRETCH_NODES];       /* [n_signals] at the nodes */
     double (*coefficient)[DALCS_STRETCH_NODES]; /* [n_signals] */
     double (*imaginary)[DALCS_STRETCH_NODES];   /* [n_signals], likewise, of an .ac; NULL: real */
-    const double *result;                       /* of measurements that formulas may use, or NULL */
+    bool slides; /* some signals are means over the sides of a slide: of those that are kept */
+    const double *result; /* of measurements that formulas may use, or NULL */
 };
 
 /* A formula from one time to another, resolved. */

@@ -1,0 +1,46 @@
+/* switch_warnings.c - switches that slid, and those that no command agreed with, in words. */
+#include "pipeline.h"
+
+/* Columns are computed row by row, from means of signals. */
+static void warn_of_columns(struct dalcs_run *r) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    int k = 0;
+    while (k < c->results.n_computed && c->results.computed[k].formula.is_affine) {
+        k++;
+    }
+    if (k < c->results.n_computed) {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, ".meas avg and .losses have mean powers",
+                       "'%s' is computed from these means: where a switch slides it is no mean of "
+                       "what it is in both positions",
+                       c->results.computed[k].name);
+    }
+}
+
+void dalcs_run_warn_of_switches(struct dalcs_run *r, const struct dalcs_component *c, long steps) {
+    if (c->commands.n_slid > 0) {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
+                       "a hysteresis, Vh=, keeps it from switching without end",
+                       "in %ld step%s a switch slides along its threshold: closing turns its "
+                       "control off, opening turns it on; values are means of both positions",
+                       c->commands.n_slid, c->commands.n_slid == 1 ? "" : "s");
+        warn_of_columns(r);
+    }
+    if (c->commands.n_delayed == 0 || c->failure.restless.pair >= 0) { /* an error says it */
+        return;
+    }
+    bool once = (steps == 0 && c->commands.n_delayed == 1) || c->is_static;
+    if (once && c->commands.restless != NULL) {
+        dalcs_diag_add(
+            &r->s->diag, DALCS_WARNING, NULL,
+            c->is_static ? NULL : "with uic, and IC= where it matters, a run starts without one",
+            "at the operating point '%s' and what controls it do not agree: closed it "
+            "opens, open it closes; it is left as it stood",
+            c->commands.restless);
+    } else {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
+                       "a hysteresis, Vh=, keeps it from switching without end",
+                       "in %ld one-step problem%s a switch and the voltage that controls it did "
+                       "not agree; its last command stood until the next one",
+                       c->commands.n_delayed, c->commands.n_delayed == 1 ? "" : "s");
+    }
+}
