@@ -99,7 +99,7 @@ MUTATIONS = {
     "the distortion has the fundamental in it": (
         "session/fourier_report.c", "size_t i = 2; i < n; i++", "size_t i = 1; i < n; i++", METER),
     "losses are too small by 1e-4": (
-        "waveform/losses_sum.c", "d->energy += weight * volt * ampere;", "d->energy += 0.9999 * weight * volt * ampere;",
+        "waveform/losses_sum.c", "product[2] += weight * volt * ampere;", "product[2] += 0.9999 * weight * volt * ampere;",
         TABLES),
     "losses of a part of a stretch are of another one": (
         "waveform/losses_sum.c", "double x = cut->a + theta * (cut->b - cut->a);",
