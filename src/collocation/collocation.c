@@ -78,3 +78,14 @@ void dalcs_collocation_weights(const struct dalcs_collocation *c, double theta, 
         take_node(c, theta, weight);
     }
 }
+
+/* Lagrange's form: the barycentric weights are those of all nodes. */
+void dalcs_collocation_weights_from(const struct dalcs_collocation *c, int first, double theta,
+                                    double *weight) {
+    for (int i = 0; i <= c->s; i++) {
+        weight[i] = i < first ? 0.0 : 1.0;
+        for (int j = first; j <= c->s && i >= first; j++) {
+            weight[i] *= j != i ? (theta - c->node[j]) / (c->node[i] - c->node[j]) : 1.0;
+        }
+    }
+}

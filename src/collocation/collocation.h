@@ -99,4 +99,8 @@ void dalcs_collocation_parts(const struct dalcs_collocation *c, const double *at
  * weight * value at node. */
 void dalcs_collocation_weights(const struct dalcs_collocation *c, double theta, double *weight);
 
+/* The same of the polynomial through the nodes from `first` on alone; of those before it the weights are 0. */
+void dalcs_collocation_weights_from(const struct dalcs_collocation *c, int first, double theta,
+                                    double *weight);
+
 #endif

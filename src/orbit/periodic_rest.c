@@ -38,15 +38,11 @@ static double largest_of(const struct dalcs_periodic_response *r, const struct d
 /* A row at a part of the piece, by the polynomial through the nodes behind its start. */
 static double moved_at(const struct dalcs_periodic_response *r, const struct dalcs_flow_map *map,
                        double complex phase, int row, double theta) {
-    const double *at = r->flow->stages.method->node;
-    const int n = r->flow->stages.layout.n_nodes;
+    double weight[DALCS_MAX_NODES];
     double complex sum = 0.0;
-    for (int node = 1; node < n; node++) {
-        double weight = 1.0;
-        for (int k = 1; k < n; k++) {
-            weight *= k == node ? 1.0 : (theta - at[k]) / (at[node] - at[k]);
-        }
-        sum += weight * value_at(r, map, phase, row, node);
+    dalcs_collocation_weights_from(r->flow->stages.method, 1, theta, weight);
+    for (int node = 1; node < r->flow->stages.layout.n_nodes; node++) {
+        sum += weight[node] * value_at(r, map, phase, row, node);
     }
     return cabs(sum);
 }

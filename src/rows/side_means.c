@@ -170,21 +170,18 @@ bool dalcs_side_means_any_slides(const struct dalcs_side_means *means) {
     return slides;
 }
 
-/* Lagrange's polynomial through the nodes; that at the start counts where it is known, as for columns without states. */
+/* By the polynomial through the nodes; that at the start counts where it is known, as for columns without states. */
 double dalcs_side_mean_at(const struct dalcs_side_means *means, int index, double time) {
     const struct dalcs_side_mean *mean = &means->mean[index];
     const struct dalcs_radau_part *part = &means->radau->part[mean->part];
     const struct dalcs_collocation *method = part->stages.method;
     const double theta = fmin((time - part->segment.t) / part->segment.h, part->segment.end);
     const int first = means->part[mean->part].knows_start ? 0 : 1;
+    double weight[DALCS_MAX_NODES];
     double sum = 0.0;
+    dalcs_collocation_weights_from(method, first, theta, weight);
     for (int i = first; i <= method->s; i++) {
-        double weight = 1.0;
-        for (int j = first; j <= method->s; j++) {
-            weight *=
-                j != i ? (theta - method->node[j]) / (method->node[i] - method->node[j]) : 1.0;
-        }
-        sum += weight * mean->node[i];
+        sum += weight[i] * mean->node[i];
     }
     return sum;
 }
