@@ -3,6 +3,7 @@
 #include "report.h"
 #include "response_json.h"
 #include "sensitivity_json.h"
+#include "steady_json.h"
 #include "worst_case_json.h"
 
 #include "failed_steps_json.h"
@@ -93,15 +94,6 @@ static void write_audit(struct dalcs_json *json, const struct dalcs_report *repo
         dalcs_json_close(json, '}');
     }
     dalcs_json_close(json, ']');
-    dalcs_json_close(json, '}');
-}
-
-static void write_states(struct dalcs_json *json, const char *key,
-                         const struct dalcs_report *report, const double *value) {
-    dalcs_json_open(json, key, '{', false);
-    for (size_t i = 0; value && i < report->n_states; i++) {
-        dalcs_json_number(json, report->state_name[i], value[i]);
-    }
     dalcs_json_close(json, '}');
 }
 
@@ -197,80 +189,6 @@ static void write_energy(struct dalcs_json *json, const struct dalcs_report *rep
 }
 
 /* "states": just before the edges at the beginning of the period. */
-static void write_multipliers(struct dalcs_json *json, const struct dalcs_floquet *m, size_t n) {
-    dalcs_json_open(json, "multipliers", '[', false);
-    for (size_t i = 0; i < n; i++) {
-        dalcs_json_open(json, NULL, '{', true);
-        dalcs_json_number(json, "re", m[i].re);
-        dalcs_json_number(json, "im", m[i].im);
-        dalcs_json_string(json, "state", m[i].state);
-        dalcs_json_close(json, '}');
-    }
-    dalcs_json_close(json, ']');
-}
-
-/* What the search found beside the orbit. */
-static void write_beside_orbit(struct dalcs_json *json, const struct dalcs_report *report) {
-    if (report->steady.doubled.period > 0.0) {
-        dalcs_json_open(json, "doubled", '{', false);
-        dalcs_json_number(json, "period", report->steady.doubled.period);
-        dalcs_json_boolean(json, "stable", report->steady.doubled.stable);
-        write_multipliers(json, report->steady.doubled.multiplier,
-                          report->steady.doubled.n_multipliers);
-        dalcs_json_close(json, '}');
-    }
-    if (report->steady.attractor.kind != NULL) {
-        dalcs_json_open(json, "attractor", '{', false);
-        dalcs_json_string(json, "kind", report->steady.attractor.kind);
-        if (report->steady.attractor.periods > 0) {
-            dalcs_json_integer(json, "periods", report->steady.attractor.periods);
-            dalcs_json_number(json, "period", report->steady.attractor.period);
-        }
-        dalcs_json_number(json, "growth", report->steady.attractor.growth);
-        dalcs_json_close(json, '}');
-    }
-}
-
-static void write_steady(struct dalcs_json *json, const struct dalcs_report *report) {
-    if (!report->steady.present) {
-        return;
-    }
-    dalcs_json_open(json, "steady", '{', false);
-    dalcs_json_number(json, "period", report->steady.period);
-    dalcs_json_integer(json, "newton", report->steady.newton);
-    dalcs_json_integer(json, "bursts", report->steady.bursts);
-    dalcs_json_integer(json, "leaps", report->steady.leaps);
-    dalcs_json_integer(json, "periods", report->steady.periods);
-    dalcs_json_number(json, "residual", report->steady.residual);
-    dalcs_json_number(json, "distance", report->steady.distance);
-    dalcs_json_number(json, "defect", report->steady.defect);
-    dalcs_json_boolean(json, "exact", report->steady.exact);
-    dalcs_json_boolean(json, "stable", report->steady.stable);
-    dalcs_json_string(json, "verdict", report->steady.verdict);
-    if (report->steady.self_oscillating) {
-        dalcs_json_boolean(json, "self_oscillating", true);
-        dalcs_json_number(json, "flow", report->steady.flow);
-    }
-    write_multipliers(json, report->steady.multiplier, report->steady.n_multipliers);
-    write_beside_orbit(json, report);
-    dalcs_json_open(json, "conserved", '[', false);
-    for (size_t i = 0; i < report->steady.n_conserved; i++) {
-        dalcs_json_string(json, NULL, report->steady.conserved[i]);
-    }
-    dalcs_json_close(json, ']');
-    write_states(json, "states", report, report->steady.state);
-    dalcs_json_open(json, "signals", '{', false);
-    for (size_t i = 0; i < report->steady.n_signals; i++) {
-        const struct dalcs_steady_signal *signal = &report->steady.signal[i];
-        dalcs_json_open(json, signal->name, '{', true);
-        dalcs_json_number(json, "average", signal->average);
-        dalcs_json_number(json, "rms", signal->rms);
-        dalcs_json_close(json, '}');
-    }
-    dalcs_json_close(json, '}');
-    dalcs_json_close(json, '}');
-}
-
 static void write_transfer(struct dalcs_json *json, const struct dalcs_report *report) {
     if (!report->transfer.present) {
         return;
@@ -339,8 +257,8 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_work(&json, report);
     write_certificate(&json, report);
     write_audit(&json, report);
-    write_states(&json, "start", report, report->start);
-    write_states(&json, "final", report, report->final);
+    dalcs_states_json_write(&json, "start", report, report->start);
+    dalcs_states_json_write(&json, "final", report, report->final);
     write_events(&json, report);
     write_jumps(&json, report);
     write_nonunique(&json, report);
@@ -348,7 +266,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_envelope(&json, report);
     write_losses(&json, report);
     write_energy(&json, report);
-    write_steady(&json, report);
+    dalcs_steady_json_write(&json, report);
     dalcs_response_json_write(&json, report);
     write_transfer(&json, report);
     dalcs_sensitivity_json_write(&json, report);
