@@ -3,7 +3,7 @@
 
 #include "elimination.h"
 #include "extremes.h"
-#include "magnitudes.h"
+#include "step_measures.h"
 
 #include <math.h>
 #include <string.h>
@@ -67,54 +67,6 @@ static enum dalcs_status balance(struct dalcs_step_form *f, struct dalcs_elimina
         }
     }
     return DALCS_OK;
-}
-
-struct conductances {
-    double least, most, log_sum;
-    int n;
-};
-
-/* A coefficient of a voltage in a row of currents is a conductance, the other way round a
- * resistance. */
-static void see_conductance(struct conductances *g, bool row_is_current, bool column_is_current,
-                            double a) {
-    if (row_is_current != column_is_current && a > 0.0) {
-        double conductance = row_is_current ? a : 1.0 / a;
-        g->least = g->n == 0 ? conductance : fmin(g->least, conductance);
-        g->most = fmax(g->most, conductance);
-        g->log_sum += log(conductance);
-        g->n++;
-    }
-}
-
-/* The norm of every row of the system over voltages and over currents, and how far a voltage counts
- * as a current. */
-static void measure_rows(struct dalcs_step_form *f, const struct dalcs_system *s) {
-    int n_equations = dalcs_system_n_equations(s);
-    struct conductances g = {0};
-    for (int r = 0; r < n_equations; r++) {
-        double *norm[2] = {&f->checks.volts[r], &f->checks.amperes[r]};
-        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-            bool is_current = s->column_is_current[s->A.j[k]];
-            *norm[is_current] += fabs(s->A.x[k]);
-            see_conductance(&g, s->row_is_current[r], is_current, fabs(s->A.x[k]));
-        }
-        for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
-            bool is_current = s->column_is_current[s->P.j[k]];
-            *norm[is_current] += f->sigma * fabs(s->P.x[k]);
-            see_conductance(&g, s->row_is_current[r], is_current, f->sigma * fabs(s->P.x[k]));
-        }
-    }
-    for (int k = 0; k < s->C.p[s->n_pairs]; k++) {
-        see_conductance(&g, false, s->column_is_current[s->C.j[k]], fabs(s->C.x[k]));
-    }
-    double typical = g.n > 0 ? exp(g.log_sum / g.n) : 1.0;
-    f->least_conductance = g.n > 0 ? g.least : 1.0;
-    f->most_conductance = g.n > 0 ? g.most : 1.0;
-    /* A voltage next to a large one is known no better than to its own rounding, whose current may spread where
-     * conductances are much smaller than the typical one. */
-    f->volt_in_amperes = dalcs_small * typical;
-    f->ampere_in_volts = dalcs_small / typical;
 }
 
 /* What was collected becomes *a, and t is empty again. */
@@ -286,7 +238,7 @@ static enum dalcs_status collect_all(struct dalcs_step_form *f, struct dalcs_eli
         }
     }
     DALCS_TRY(gather_checked_rows(f, s, t));
-    measure_rows(f, s);
+    dalcs_step_form_measure(f, s);
     return balance(f, e);
 }
 
