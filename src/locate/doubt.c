@@ -5,10 +5,50 @@
 #include "magnitudes.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* A pair by its nodes. */
+struct place_of_pair {
+    int row[2], pair;
+};
+
+static int compare_places(const void *a, const void *b) {
+    const struct place_of_pair *p = a;
+    const struct place_of_pair *q = b;
+    const int first = (p->row[0] > q->row[0]) - (p->row[0] < q->row[0]);
+    const int second = (p->row[1] > q->row[1]) - (p->row[1] < q->row[1]);
+    return first != 0 ? first : second != 0 ? second : p->pair - q->pair;
+}
+
+/* Those between the same nodes, one after the other in a ring. */
+static enum dalcs_status find_parallel(struct dalcs_radau_part *part) {
+    const int n = part->component->system->n_pairs;
+    struct dalcs_arena work = {0};
+    struct place_of_pair *of = dalcs_arena_alloc(&work, (size_t)n, sizeof(*of));
+    part->laws.next_parallel = dalcs_arena_alloc(&part->arena, (size_t)n, sizeof(int));
+    if (of == NULL || part->laws.next_parallel == NULL) {
+        dalcs_arena_finish(&work);
+        return DALCS_E_NOMEM;
+    }
+    for (int d = 0; d < n; d++) {
+        const int *row = part->laws.pair_row + 2 * (size_t)d;
+        of[d] = (struct place_of_pair){{row[0], row[1]}, d};
+    }
+    qsort(of, (size_t)n, sizeof(*of), compare_places);
+    for (int first = 0, k = 0; k < n; k++) {
+        const bool is_last =
+            k + 1 == n || of[k + 1].row[0] != of[k].row[0] || of[k + 1].row[1] != of[k].row[1];
+        part->laws.next_parallel[of[k].pair] = is_last ? of[first].pair : of[k + 1].pair;
+        first = is_last ? k + 1 : first;
+    }
+    dalcs_arena_finish(&work);
+    return DALCS_OK;
+}
 
 enum dalcs_status dalcs_doubt_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
+    DALCS_TRY(find_parallel(part));
     size_t n = (size_t)dalcs_system_n_equations(s);
     part->laws.charging_row = dalcs_arena_alloc(&part->arena, n, sizeof(int));
     if (part->laws.charging_row == NULL) {
@@ -41,11 +81,12 @@ static double size_of(const struct dalcs_radau_part *part, int column, const dou
     return dalcs_smaller(scale, part->scales.magnitude[column] + charge / part->segment.h);
 }
 
-/* What the columns of a row other than `but` make of errors that are the same part of each. */
+/* What the columns of a row other than `but` make of errors that are the same part of each, or more than `most`: at a node
+ * where hundreds of pairs meet, that of a pair's other node is less than that of a few of them. */
 static double spread_of(const struct dalcs_radau_part *part, const struct dalcs_csr *m, int row,
-                        int but, const double *unit) {
+                        int but, double most, const double *unit) {
     double spread = 0.0;
-    for (int k = m->p[row]; k < m->p[row + 1]; k++) {
+    for (int k = m->p[row]; k < m->p[row + 1] && spread <= most; k++) {
         int c = m->j[k];
         spread += c == but ? 0.0 : fabs(m->x[k]) * size_of(part, c, unit);
     }
@@ -55,27 +96,22 @@ static double spread_of(const struct dalcs_radau_part *part, const struct dalcs_
 /* Of the current of a closed pair, by the KCL of its nodes: the better one. */
 static double spread_of_current(const struct dalcs_radau_part *part, int pair, const double *unit) {
     const struct dalcs_system *s = part->component->system;
+    const int *row = part->laws.pair_row + 2 * (size_t)pair;
+    const bool begins_with_other =
+        row[1] >= 0 && s->A.p[row[1] + 1] - s->A.p[row[1]] < s->A.p[row[0] + 1] - s->A.p[row[0]];
     double least = INFINITY;
     for (int e = 0; e < 2; e++) {
-        int row = part->laws.pair_row[2 * pair + e];
-        if (row < 0) {
+        const int r = row[begins_with_other ? 1 - e : e];
+        if (r < 0) {
             continue; /* ground */
         }
-        double spread = spread_of(part, &s->A, row, dalcs_system_n_equations(s) + pair, unit);
-        if (row < s->n_x) {
-            spread += spread_of(part, &s->P, row, -1, unit) / part->segment.h;
+        double spread = spread_of(part, &s->A, r, dalcs_system_n_equations(s) + pair, least, unit);
+        if (r < s->n_x && spread <= least) {
+            spread += spread_of(part, &s->P, r, -1, INFINITY, unit) / part->segment.h;
         }
         least = dalcs_smaller(least, spread);
     }
     return least;
-}
-
-/* Do two pairs hang between the same nodes? */
-static bool are_parallel(const struct dalcs_radau_part *part, int a, int b) {
-    const int *of_a = part->laws.pair_row + 2 * (size_t)a;
-    const int *of_b = part->laws.pair_row + 2 * (size_t)b;
-    return of_a[0] >= 0 && ((of_a[0] == of_b[0] && of_a[1] == of_b[1]) ||
-                            (of_a[0] == of_b[1] && of_a[1] == of_b[0]));
 }
 
 double dalcs_pair_slope(const struct dalcs_system *s, int pair) {
@@ -90,10 +126,11 @@ double dalcs_pair_slope(const struct dalcs_system *s, int pair) {
  * a current, not the difference of two nodes that may be at kilovolts. */
 static double spread_of_voltage(const struct dalcs_radau_part *part, int pair, const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    double spread = spread_of(part, &s->C, pair, -1, unit);
-    for (int k = 0; k < s->n_pairs; k++) {
-        if (k != pair && dalcs_osnsp_is_on(&part->component->osnsp, k) &&
-            are_parallel(part, pair, k)) {
+    double spread = spread_of(part, &s->C, pair, -1, INFINITY, unit);
+    const bool is_across_ground = part->laws.pair_row[2 * (size_t)pair] < 0;
+    for (int k = part->laws.next_parallel[pair]; k != pair && !is_across_ground;
+         k = part->laws.next_parallel[k]) {
+        if (dalcs_osnsp_is_on(&part->component->osnsp, k)) {
             spread =
                 dalcs_smaller(spread, dalcs_pair_slope(s, k) * spread_of_current(part, k, unit));
         }

@@ -110,8 +110,10 @@ struct dalcs_part_laws {
     struct dalcs_pair_law *law;      /* [n_pairs][3] what gives the current of a pair */
     struct dalcs_pair_rate *rate;
     struct dalcs_formula_places *places; /* formula_scale.h; NULL: no formula has a kink */
-    int *charging_row;  /* [n_equations] of the capacitor that a current charges, -1: none */
-    int *pair_row;      /* [n_pairs][2] KCL rows that its current enters, -1: ground */
+    int *charging_row; /* [n_equations] of the capacitor that a current charges, -1: none */
+    int *pair_row;     /* [n_pairs][2] KCL rows that its current enters, ascending, -1: ground */
+    int *
+        next_parallel; /* [n_pairs] the next one between the same nodes, in a ring; NULL: on maps */
     double *inductance; /* [n_equations] H, at nodes; work */
     bool reads_rates; /* does an element read what charges a capacitor, or the voltage of a coil? */
 };
