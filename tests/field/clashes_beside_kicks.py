@@ -44,10 +44,10 @@ Dr y i d
 CONVERTERS = {
     "a leg": ("10m", 10, 1e-6, 200e-6, 1, 0.02),
     "two legs": ("10m", 10, 1e-6, 200e-6, 2, 0.015),
-    "a coil of 50 mH": ("50m", 2, 1e-6, 200e-6, 1, 0.04),
+    "a coil of 50 mH": ("50m", 2, 1e-6, 200e-6, 1, 0.035),
     "25 kHz": ("10m", 10, 3e-7, 40e-6, 1, 0.015),
 }
-SOURCES = (3e-3, 311.0, 5e3)
+SOURCES = (3e-3, 311.0)
 
 
 def netlist(name, volts):
