@@ -46,6 +46,10 @@ struct audit_hanging audit_find_hanging(const struct dalcs_audit *audit,
                                         const struct dalcs_audit_state *at, audit_has_node *has,
                                         int root);
 
+/* S: the largest conductance that a coil with so many H follows within the present step, or the least one. */
+double audit_find_damping(const struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *at, double henry);
+
 /* C, what that conductance moves in a time that the run does not resolve: an event is no better known. */
 double audit_charge_unresolved(const struct dalcs_audit *audit, const struct audit_part *part,
                                const struct dalcs_audit_state *after, audit_has_node *has,

@@ -160,6 +160,16 @@ struct audit_hanging audit_find_hanging(const struct dalcs_audit *audit,
     return on;
 }
 
+double audit_find_damping(const struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *at, double henry) {
+    double siemens = part->floor.least;
+    for (int k = 0; k < part->n_devices; k++) {
+        const double own = conductance_of(audit, at, part->device[k]);
+        siemens = own * henry <= part->at.step ? fmax(siemens, own) : siemens;
+    }
+    return siemens;
+}
+
 double audit_charge_unresolved(const struct dalcs_audit *audit, const struct audit_part *part,
                                const struct dalcs_audit_state *after, audit_has_node *has,
                                int root) {

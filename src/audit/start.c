@@ -124,8 +124,26 @@ static bool has_moving_current(const struct dalcs_audit *audit, const struct aud
     return has;
 }
 
+/* How far stages that lie behind a transient of L/R may be off at their beginning, in V: a resistance takes its current from
+ * the coil as fast as the coil's ends move, alike or not. No more than the promised error of a voltage, but for what the
+ * least conductance takes. */
+static double behind_leak(const struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *first, const struct dalcs_device *d,
+                          double reach) {
+    const struct dalcs_audit_state *later = &audit->state.shifted;
+    double moved = 0.0;
+    for (int end = 0; end < 2; end++) {
+        moved += fabs(later->v[d->node[end]] - first->v[d->node[end]]);
+    }
+    const double per_siemens = reach * moved / part->at.step * d->value;
+    const double siemens = audit_find_damping(audit, part, first, d->value);
+    return fmax(per_siemens * part->floor.least,
+                fmin(per_siemens * siemens, part->floor.largest_volt * audit->options.failure));
+}
+
 static void check_coils(struct dalcs_audit *audit, const struct audit_part *part,
                         const struct dalcs_audit_state *first, double reach) {
+    const struct dalcs_audit_state *later = &audit->state.shifted;
     bool is_read = false;
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
@@ -138,15 +156,11 @@ static void check_coils(struct dalcs_audit *audit, const struct audit_part *part
             is_read = true;
         }
         if (d->kind == DALCS_INDUCTOR) {
-            const double slope =
-                fabs(audit_voltage(&audit->state.shifted, d) - audit_voltage(first, d)) /
-                part->at.step;
             const double off = fabs(audit_voltage(first, d)) - 2.0 * audit->sums.volts -
-                               audit->options.vntol - reach * slope * d->value * part->floor.least;
+                               audit->options.vntol - behind_leak(audit, part, first, d, reach);
             /* What is 0 at the start has the scale that the first step gives it, as it has in the engine. */
-            const double *later = audit->state.shifted.v;
             const double scale = fmax(audit_volts(audit, part, d->node[0], d->node[1]),
-                                      fabs(later[d->node[0]]) + fabs(later[d->node[1]]));
+                                      fabs(later->v[d->node[0]]) + fabs(later->v[d->node[1]]));
             audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off * part->at.step,
                        scale * part->at.step, first->t);
         }

@@ -208,6 +208,13 @@ void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_
     bool ok = true;
     if (!dalcs_reader_at_end(&reader) && dalcs_reader_is_number(dalcs_reader_peek(&reader, 0))) {
         ok = dalcs_reader_list_number(&reader, DALCS_SECOND, "a period", &periodic->period);
+        if (ok && !dalcs_reader_at_end(&reader) &&
+            dalcs_reader_is_number(dalcs_reader_peek(&reader, 0))) {
+            dalcs_builder_error(builder, dalcs_reader_peek(&reader, 0), PSS_USAGE,
+                                "this is ngspice's .pss, which begins with a frequency; here the "
+                                "period of an oscillator need not be known: .pss osc");
+            return;
+        }
     }
     while (ok && !dalcs_reader_at_end(&reader)) {
         ok = read_pss_word(&reader, periodic);

@@ -89,6 +89,8 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->work.w1 = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
     part->work.after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->work.before = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
+    part->work.size =
+        dalcs_arena_alloc(&part->arena, (size_t)dalcs_system_n_columns(s), sizeof(double));
     const bool slides = part->component->positions.n > 0;
     if (slides) {
         part->work.node_w = dalcs_arena_alloc(&part->arena, (size_t)l->n_nodes * (size_t)s->n_pairs,
@@ -105,9 +107,9 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
                     part->guards.crossed != NULL && part->guards.tied != NULL &&
                     part->work.u != NULL && part->work.y1 != NULL && part->work.y2 != NULL &&
                     part->work.w1 != NULL && part->work.after != NULL &&
-                    part->work.before != NULL && (!slides || part->work.node_w != NULL) &&
-                    part->used.input != NULL && part->scales.current_drift != NULL &&
-                    part->scales.current_parts != NULL;
+                    part->work.before != NULL && part->work.size != NULL &&
+                    (!slides || part->work.node_w != NULL) && part->used.input != NULL &&
+                    part->scales.current_drift != NULL && part->scales.current_parts != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 

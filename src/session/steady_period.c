@@ -36,8 +36,6 @@ struct clocks {
     struct clock *clock;
 };
 
-/* ---- One source ---------------------------------------------------------------------------------- */
-
 const char *dalcs_steady_source_name(const struct dalcs_circuit *c, int stimulus) {
     const char *name = "a formula";
     for (int i = 0; i < c->n_devices; i++) {
@@ -213,8 +211,6 @@ static enum dalcs_status look_at(struct clocks *c, struct dalcs_stimulus *s, con
     return DALCS_OK;
 }
 
-/* ---- All of them --------------------------------------------------------------------------------- */
-
 /* p/q near to the ratio, q small; false: there is none. */
 static bool find_fraction(double ratio, double *p, double *q) {
     double before[2] = {0.0, 1.0}; /* p, q */
@@ -290,19 +286,40 @@ static enum dalcs_status find_common(const struct clocks *c, double *period) {
     return DALCS_OK;
 }
 
+/* What is asked for is no period of the clock. Where it is far too long it may have been meant as a frequency, as ngspice's
+ * .pss has one: `inverse` says so. */
+static enum dalcs_status refuse_asked(const struct clocks *c, double asked,
+                                      const struct clock *clock, const char *inverse) {
+    char text[256];
+    char own[DALCS_QUANTITY_SIZE];
+    char wanted[DALCS_QUANTITY_SIZE];
+    const bool is_long = asked / clock->period > most_periods;
+    snprintf(text, sizeof text, "a period of %s is %s that of '%s', which is %s",
+             dalcs_quantity_write(wanted, asked, "s", 9),
+             is_long ? "more than 100000 times" : "no multiple of", clock->name,
+             dalcs_quantity_write(own, clock->period, "s", 9));
+    return refuse(c->run, NULL,
+                  is_long ? inverse : "leave the period out: it follows from the sources", text);
+}
+
+/* Beyond 1 s a number is larger than its inverse. */
 static enum dalcs_status take_asked(const struct clocks *c, double asked, double *period) {
+    bool is_frequency = asked > 1.0 && c->n == 0;
+    char text[256];
+    char as[2][DALCS_QUANTITY_SIZE];
+    snprintf(text, sizeof text, "a time is asked for, no frequency: %s has a period of %s",
+             dalcs_quantity_write(as[0], asked, "Hz", 9),
+             dalcs_quantity_write(as[1], 1.0 / asked, "s", 9));
     for (int k = 0; k < c->n && asked > 0.0; k++) {
         double n = asked / c->clock[k].period;
-        if (!(rint(n) >= 1.0) || fabs(n - rint(n)) > same_ratio * n) {
-            char text[256];
-            char own[DALCS_QUANTITY_SIZE];
-            char wanted[DALCS_QUANTITY_SIZE];
-            snprintf(text, sizeof text,
-                     "a period of %s is no multiple of that of '%s', which is %s",
-                     dalcs_quantity_write(wanted, asked, "s", 9), c->clock[k].name,
-                     dalcs_quantity_write(own, c->clock[k].period, "s", 9));
-            return refuse(c->run, NULL, "leave the period out: it follows from the sources", text);
+        if (!(rint(n) >= 1.0) || n > most_periods || fabs(n - rint(n)) > same_ratio * n) {
+            return refuse_asked(c, asked, &c->clock[k], text);
         }
+        double inverse = asked > 1.0 ? asked * c->clock[k].period : 0.0;
+        is_frequency = is_frequency || fabs(inverse - 1.0) <= same_ratio;
+    }
+    if (is_frequency) {
+        dalcs_diag_add(&c->run->s->diag, DALCS_NOTE, NULL, NULL, "%s", text);
     }
     *period = asked > 0.0 ? asked : *period;
     return DALCS_OK;

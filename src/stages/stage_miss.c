@@ -52,6 +52,14 @@ struct dalcs_row_miss dalcs_stage_factors_miss_of_row(const struct dalcs_stages 
     return miss;
 }
 
+double dalcs_stage_clash_size(const struct dalcs_stages *stages,
+                              const struct dalcs_stage_entry *entry, int k, int node,
+                              const double *in, const double *size) {
+    const struct dalcs_stage_singular *g = &entry->factors->singular;
+    return g->scale[k] *
+           dalcs_stage_factors_miss_of_row(stages, entry, g->row[k], node, in, size).terms;
+}
+
 double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
                                 const struct dalcs_stage_entry *entry, const double *in,
                                 const double *out) {

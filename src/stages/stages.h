@@ -138,6 +138,12 @@ int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
 /* Are clashes what rows miss that were given up, instead of what sources disagree by? */
 bool dalcs_stage_gives_rows_up(const struct dalcs_stage_entry *entry);
 
+/* stage_miss.c: what the terms of such a row add up to where its columns are as large as size[n_columns], in the unit of its
+ * clash k at this node, by an entry without a map. */
+double dalcs_stage_clash_size(const struct dalcs_stages *stages,
+                              const struct dalcs_stage_entry *entry, int k, int node,
+                              const double *in, const double *size);
+
 /* Room for any answer: a mode has no more null vectors than columns, each with a clash at every stage; in whole eights. */
 static inline size_t dalcs_stages_room(const struct dalcs_stages *stages) {
     const size_t n_columns = (size_t)dalcs_system_n_columns(stages->system);

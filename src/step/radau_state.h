@@ -145,6 +145,7 @@ struct dalcs_part_work {
     double *out_tried;                /* a step put aside while the state is projected */
     double *node_w;                   /* [n_nodes][n_pairs] of a slide; NULL: no switch can slide */
     double *before; /* [n_x] the state before a jump, while the one behind is looked for */
+    double *size;   /* [n_columns] how large each column is, where a clash is looked at */
     uint64_t *mode_tied, *mode_turned;
     uint64_t *mode_first;  /* of the first of two micro-steps */
     uint64_t *mode_longer; /* behind two micro-steps of twice the length */

@@ -206,30 +206,37 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
     }
 }
 
-/* Up to where a clash is none, by its row in the answer. Sources disagree by errors of one-step problems. What a comparison
- * reads is at rest or moves, however slowly: rounding alone is nothing. */
+/* Up to where clash k at a node is none. Sources disagree by errors of one-step problems. What a comparison reads is at rest
+ * or moves, however slowly: rounding alone is nothing, and that of a row is of what it reads. Voltages elsewhere have no
+ * part in it, such as those of a coil that a switch interrupts. */
 static double clash_limit(const struct dalcs_radau_part *part,
-                          const struct dalcs_stage_entry *entry, int row, const double *unit) {
-    const double largest = dalcs_larger(unit[0], unit[1]);
+                          const struct dalcs_stage_entry *entry, int k, int node,
+                          const double *unit) {
+    const struct dalcs_stages *stages = &part->stages;
+    const int row = stages->layout.n_fixed + k * stages->method->s + node - 1;
     if (!dalcs_stage_gives_rows_up(entry)) {
-        return dalcs_alike * largest;
+        return dalcs_alike * dalcs_larger(unit[0], unit[1]);
     }
-    return dalcs_stage_has_map(entry)
-               ? dalcs_beyond * dalcs_sum_rounded *
-                     dalcs_stage_spread(&part->stages, entry, row, part->segment.in,
-                                        part->scales.column)
-               : dalcs_answer_rounded * largest;
+    if (dalcs_stage_has_map(entry)) {
+        return dalcs_beyond * dalcs_sum_rounded *
+               dalcs_stage_spread(stages, entry, row, part->segment.in, part->scales.column);
+    }
+    double *size = part->work.size;
+    for (int c = 0; c < dalcs_system_n_columns(part->component->system); c++) {
+        size[c] = dalcs_step_scale(part, c, unit);
+    }
+    return dalcs_answer_rounded *
+           dalcs_stage_clash_size(stages, entry, k, node, part->segment.in, size);
 }
 
 bool dalcs_step_clashes(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
                         double end, const double *unit) {
     const struct dalcs_collocation *m = part->stages.method;
     const double *clash = part->segment.out + part->stages.layout.n_fixed;
-    const double *last = clash + dalcs_stage_n_clashes(entry);
-    for (; clash < last; clash += m->s) { /* those of one null vector, at the stages */
-        for (int i = 0; i < m->s && (i == 0 || m->node[i + 1] <= end); i++) {
-            const int row = (int)(clash + i - part->segment.out);
-            if (fabs(clash[i]) > clash_limit(part, entry, row, unit)) {
+    const int n = dalcs_stage_n_clashes(entry) / m->s; /* null vectors, each at all stages */
+    for (int k = 0; k < n; k++) {
+        for (int node = 1; node <= m->s && (node == 1 || m->node[node] <= end); node++) {
+            if (fabs(clash[k * m->s + node - 1]) > clash_limit(part, entry, k, node, unit)) {
                 return true;
             }
         }

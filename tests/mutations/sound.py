@@ -24,6 +24,8 @@ TRIAC = "V1 a 0 SIN(0 325 50)\nR1 a c 10\nL1 c b 10m\nA1 b 0 g t1\nVg g 0 PULSE(
 
 FILTERED = "V1 a 0 SIN(0 1 1k)\nR1 a b 1k\nC1 b 0 10n ic=0\n"
 LOADED = "R2 o p 1k\nC2 p 0 1u ic=0\n.tran 5u 2m uic\n"
+LINE_COILS = ("va a 0 SIN(0 311 50)\nvc c 0 SIN(0 311 50 0 0 120)\nl1 a a1 1m\nl3 c c1 1m\nd1 a1 p d\nd3 c1 p d\n"
+              "d4 n a1 d\nd6 n c1 d\nrg n 0 1meg\nld p x 50m\nrd x n 50\n.tran 10u 20m\n")
 
 # name: (netlist, options, {(signal, time): value})
 CIRCUITS = {
@@ -74,6 +76,10 @@ CIRCUITS = {
     "a bridge with a snubber behind an ideal transformer, from rest": (
         "v1 p 0 SIN(0 325 50)\nlp p 0 10\nls a b 0.1\nk1 lp ls 1\nc1 a b 100n\nd1 a o d\nd2 b o d\nd3 0 a d\nd4 0 b d\n"
         "c2 o 0 1m\nr1 o 0 100\n.model d D(ron=10m)\n.tran 40m\n", [], {}),
+    "coils in both lines of a bridge that a megohm ties to ground, from rest": (
+        LINE_COILS + ".model d D\n", [], {}),
+    "the same, where diodes leak less than that": (
+        LINE_COILS + ".model d D(ron=1m roff=1e9)\n", [], {}),
     "a coil before two knees, from rest": (
         "v1 a 0 PULSE(0 325 0 1e-05 1e-05 0.0004 0.001)\nr1 a b 0.1\nl1 b c 0.000159\nc1 c d 1.59e-05\nr2 d e 10\nr3 e f 100\n"
         "d1 0 f d\n.model d D(ron=10m vfwd=0.6 vrev=3 rrev=0.1)\n.tran 0.001\n", [], {}),

@@ -101,6 +101,12 @@ def refused(case):
                  "R2 b c 1k\nC1 c 0 1u\n.pss uic\n", 2, "no common period of less than 100000")
     case.refuses("* no multiple\n" + CLOCK + BUCK + ".pss 15u uic\n", 2,
                  "15 us is no multiple of that of 'vg', which is 10 us")
+    case.refuses("* a frequency\n" + CLOCK + BUCK + ".pss 100k uic\n", 2,
+                 "100 ks is more than 100000 times that of 'vg'", "100 kHz has a period of 10 us")
+    case.refuses("* as for ngspice\n" + CLOCK + BUCK + ".pss 100k 1m out 1024 10 50 5e-3 uic\n", 3,
+                 "begins with a frequency", ".pss osc")
+    case.finds("* its own frequency\nVg g 0 PULSE(0 1 0 0 0 8m 20m)\n" + BUCK + ".pss 50 uic\n", 50.0,
+               "50 Hz has a period of 20 ms", options=("--fill", "none"))
     case.refuses("* no multiple\n" + CLOCK + BUCK + ".pss uic\n", 2, "no multiple of that of 'vg'",
                  options=("--period", "5u"))
     case.refuses("* euler\n" + CLOCK + BUCK + ".options method=euler\n.pss uic\n", 2,
