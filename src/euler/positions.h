@@ -34,9 +34,13 @@ struct dalcs_positions {
     uint64_t *first, *present, *mark; /* [n_words] */
 
     struct dalcs_slide_sides { /* of a mean */
-        int *group;    /* [n + n_jumps] those that one part of the time suits, -1: no leading one */
-        double *y, *w; /* [DALCS_MOST_SIDES][n_columns], [][n_pairs] */
-        uint64_t *mode;      /* [DALCS_MOST_SIDES][n_words] */
+        int *
+            kin; /* [n + n_jumps] the first of those that one part of the time suits, -1: no leading one */
+        int *group;     /* [n + n_jumps] of those that slide, -1: not of them */
+        bool *is_other; /* [n + n_jumps] of first ones that do not: the side that they stay on */
+        double *y, *w;  /* [DALCS_MOST_SIDES][n_columns], [][n_pairs] */
+        double *w_of_y; /* [n_pairs] of the answer on one side of all */
+        uint64_t *mode; /* [DALCS_MOST_SIDES][n_words] */
         uint64_t *conducted; /* [n_words] on some side */
         bool *leading;       /* [n + n_jumps] */
         bool have_changed;   /* others lead than in the mean before */
