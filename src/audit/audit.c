@@ -169,10 +169,13 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     part->at.length = stretch->to - stretch->from;
     part->at.past_coarse = part->at.was_coarse;
     part->at.was_coarse = stretch->rule == DALCS_AUDIT_COARSE;
+    part->at.past_undecided = part->at.was_undecided;
+    part->at.was_undecided = stretch->is_undecided;
     part->watch->asked = -1.0;
     part->watch->drawn = -1;
     part->at.against = part->at.was_coarse ? part->at.against : 0;
     part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL || part->at.against > 0 ||
+                        (part->at.was_undecided && part->at.past_undecided) ||
                         (part->at.was_coarse && part->has.formula);
     if (part->at.is_drawn) {
         return false;

@@ -118,6 +118,7 @@ struct dalcs_audit_stretch {
     int degree;        /* of its polynomials over such a step */
     double first_look; /* what the first look at it takes besides, in instructions, about */
     bool is_cut;       /* it went on, and nobody follows it */
+    bool is_undecided; /* a coarse one: no position of some switch was found to suit its control */
     bool is_last; /* of the part: an interval is looked at for the scales that the run ends with */
 
     /* NULL: nothing that holds at all its times, steps of implicit Euler or means of two positions */
@@ -277,7 +278,7 @@ struct dalcs_audit_summary {
     long screened;  /* all laws of which were asked at once, at one instant */
     long positions; /* of switches that were compared with their controls */
     long unjudged;  /* the same where the waveform is coarse: they may be late by a step */
-    int against;    /* a switch that stood against its control over steps, from 1 on; 0: none */
+    bool stays;     /* a switch that stood against its control over steps is what is worst */
     double defect;  /* over the scale, of the law that is worst against what is allowed */
     double allowed; /* what it was held to */
     double time;    /* s */

@@ -54,7 +54,9 @@ struct audit_part {
         bool was_coarse,
             past_coarse;  /* the stretch that was complete last, and the one before that */
         bool from_coarse; /* the one before the event that is looked at */
-        bool is_drawn;    /* for a closer look */
+        bool was_undecided,
+            past_undecided; /* no position suits some switch in it, and in the one before that */
+        bool is_drawn;      /* for a closer look */
         int against; /* a switch that stood against its control over the step before, from 1 on; 0: none */
     } at;
 
@@ -160,6 +162,8 @@ struct dalcs_audit {
         double defect, scale; /* the largest of each, in the law's own unit */
         double time;          /* s, of the defect */
         int part;
+        bool
+            stays; /* a switch against its control, over whole steps (audit_positions.h): that is the defect */
     } * worst_of[DALCS_AUDIT_N_LAWS], /* [dalcs_audit_n_of] */
         *flux;                        /* [n_devices] of coils, in no time */
 

@@ -157,6 +157,28 @@ static double stays_against(struct dalcs_audit *audit, const struct audit_part *
            moved;
 }
 
+/* A switch is wrong by so much, at `end` of a step. */
+static void find_against(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *end, int device, double off) {
+    struct audit_worst *worst = &audit->worst_of[DALCS_AUDIT_POSITION][device];
+    const double before = worst->defect;
+    audit_find(audit, part, DALCS_AUDIT_POSITION, device, off,
+               audit_control_scale(audit, part, device), end->t);
+    worst->stays = worst->stays || worst->defect > before;
+}
+
+/* Behind a step in which no position suits some switch another one: a switch that is late by a step is not any more. */
+static void check_undecided(struct dalcs_audit *audit, const struct audit_part *part,
+                            const struct dalcs_audit_state *end) {
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        if (audit->circuit->device[device].kind == DALCS_SWITCH && !end->is_mean[device]) {
+            find_against(audit, part, end, device,
+                         fmax(0.0, contradicts(audit, part, end, device)));
+        }
+    }
+}
+
 void audit_check_obeyed(struct dalcs_audit *audit, struct audit_part *part,
                         const struct dalcs_audit_state *end) {
     const struct dalcs_audit_state *begin = &audit->state.shifted;
@@ -171,15 +193,15 @@ void audit_check_obeyed(struct dalcs_audit *audit, struct audit_part *part,
         const double off = stays_against(audit, part, begin, end, device);
         const double scale = audit_control_scale(audit, part, device);
         if (device == before) {
-            audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, scale, end->t);
-            audit->count.against = audit_ratio(off, scale) > audit->options.failure
-                                       ? device + 1
-                                       : audit->count.against;
+            find_against(audit, part, end, device, off);
         }
         if (audit_ratio(off, scale) > most) {
             most = audit_ratio(off, scale);
             part->at.against = device + 1;
         }
+    }
+    if (part->at.was_undecided && part->at.past_undecided) {
+        check_undecided(audit, part, end);
     }
     part->at.is_coarse = true;
 }

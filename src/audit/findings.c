@@ -115,6 +115,7 @@ struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit
                 sum.time = f.time;
                 sum.law = law;
                 sum.index = i;
+                sum.stays = audit->worst_of[law][i].stays;
             }
         }
     }

@@ -46,6 +46,7 @@ void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_pa
     part->segment.why = part->segment.t_end >= limit ? DALCS_END_AT_EDGE : DALCS_END_OF_STEP;
     part->guards.n_crossed = 0;
     part->guards.fresh = true;
+    part->guards.undecided = false;
 }
 
 void dalcs_radau_accept_implicit(const struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -129,9 +130,10 @@ static void put_inputs(struct dalcs_radau_part *part, double h) {
 }
 
 /* The switches do not agree with part->work.y1, the answer of a step of length h. If they would not in vanishing ones
- * either, a step in one of their positions is none of the circuit. */
-static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                     double h) {
+ * either, a step in one of their positions is none of the circuit. Those without hysteresis may have a mean of both: where
+ * vanishing steps have none either, the step is *undecided, and the audit ends the run if the next one is, too. */
+static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                     bool *undecided) {
     struct dalcs_component *c = part->component;
     const bool has_states = c->system->n_x > 0;
     const size_t bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
@@ -149,6 +151,14 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
         enum dalcs_status status = dalcs_micro_fail(r, part, sigma, part->work.u, DALCS_INFEASIBLE);
         c->failure.restless = found;
         return status;
+    }
+    DALCS_TRY(dalcs_restless_find(&c->positions, false, &vanishing, part->work.y2, &found));
+    memcpy(c->osnsp.mode, part->work.mode_before, bytes);
+    if (found.pair >= 0) {
+        bool slides;
+        DALCS_TRY(dalcs_slide_micro_steps(r, part, micro, &slides));
+        memcpy(c->osnsp.mode, part->work.mode_before, bytes);
+        *undecided = !slides;
     }
     put_inputs(part, h);
     return dalcs_osnsp_solve(&c->osnsp, has_states ? 1.0 / h : 0.0, part->work.u, part->work.y1);
@@ -175,11 +185,13 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
     if (dalcs_smooth_euler_meets_pole(part)) {
         return dalcs_micro_fail(r, part, 1.0 / h, part->work.u, DALCS_NOT_CONVERGED);
     }
+    bool undecided = false;
     if (!c->positions.settled) { /* the present command stands */
-        DALCS_TRY(check_limit(r, part, h));
+        DALCS_TRY(check_limit(r, part, h, &undecided));
         c->commands.n_delayed++;
     }
     dalcs_radau_accept_implicit(r, part, h);
+    part->guards.undecided = undecided;
     r->euler_steps++;
     return DALCS_OK;
 }

@@ -14,15 +14,19 @@ static bool allocate_sides(struct dalcs_positions *p, struct dalcs_arena *arena)
     const struct dalcs_system *s = p->osnsp->system;
     const size_t n_turning = (size_t)p->n + (size_t)p->n_jumps;
     struct dalcs_slide_sides *sides = &p->sides;
+    sides->kin = dalcs_arena_alloc(arena, n_turning, sizeof(int));
     sides->group = dalcs_arena_alloc(arena, n_turning, sizeof(int));
+    sides->is_other = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
     sides->y = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)dalcs_system_n_columns(s),
                                  sizeof(double));
+    sides->w_of_y = dalcs_arena_alloc(arena, (size_t)s->n_pairs, sizeof(double));
     sides->w = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)s->n_pairs, sizeof(double));
     sides->mode =
         dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)p->osnsp->n_words, sizeof(uint64_t));
     sides->conducted = dalcs_arena_alloc(arena, (size_t)p->osnsp->n_words, sizeof(uint64_t));
     sides->leading = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
-    return sides->group != NULL && sides->y != NULL && sides->w != NULL && sides->mode != NULL &&
+    return sides->kin != NULL && sides->is_other != NULL && sides->group != NULL &&
+           sides->y != NULL && sides->w != NULL && sides->w_of_y != NULL && sides->mode != NULL &&
            sides->conducted != NULL && sides->leading != NULL;
 }
 
@@ -52,13 +56,15 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
     p->first = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->present = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->mark = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
+    p->turned = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->other = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
     p->other_y = dalcs_arena_alloc(arena, (size_t)dalcs_system_n_columns(s), sizeof(double));
     p->other_w = dalcs_arena_alloc(arena, (size_t)s->n_pairs, sizeof(double));
     if (p->pair == NULL || p->slack == NULL || p->mask == NULL || p->first == NULL ||
-        p->present == NULL || p->mark == NULL || p->other == NULL || p->other_y == NULL ||
-        p->other_w == NULL || p->jump == NULL || p->gap == NULL || p->follows == NULL ||
-        p->is_compared == NULL || p->leads == NULL || !allocate_sides(p, arena)) {
+        p->present == NULL || p->mark == NULL || p->turned == NULL || p->other == NULL ||
+        p->other_y == NULL || p->other_w == NULL || p->jump == NULL || p->gap == NULL ||
+        p->follows == NULL || p->is_compared == NULL || p->leads == NULL ||
+        !allocate_sides(p, arena)) {
         return DALCS_E_NOMEM;
     }
     for (int d = 0, i = 0, k = 0; d < s->n_pairs; d++) {
@@ -165,6 +171,9 @@ static enum dalcs_status move_all(struct dalcs_positions *p, double sigma, const
         }
         if ((round & (round - 1)) == 0) {
             keep(p, p->mark);
+        }
+        for (int k = 0; k < p->osnsp->n_words; k++) {
+            p->turned[k] |= (p->osnsp->mode[k] ^ p->present[k]) & p->mask[k];
         }
         keep_other(p, y);
         DALCS_TRY(dalcs_osnsp_solve(p->osnsp, sigma, u, y));
@@ -277,6 +286,34 @@ static enum dalcs_status search(struct dalcs_positions *p, bool first_fails, boo
     return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
 }
 
+/* Where more than two positions recur, y is the answer in some of them: the others are those in which all that have turned
+ * stand on their other side. What slides between both is for the mean to find (several_slides.c). A switch with hysteresis
+ * has no place between its positions. */
+static enum dalcs_status find_other(struct dalcs_positions *p, double sigma, const double *u,
+                                    double *y) {
+    for (int i = 0; i < p->n; i++) {
+        if (dalcs_mode_has(p->turned, p->pair[i]) &&
+            dalcs_pair_remembers(&p->osnsp->system->pair[p->pair[i]])) {
+            return DALCS_OK;
+        }
+    }
+    keep(p, p->mark);
+    for (int i = 0; i < p->n; i++) {
+        if (dalcs_mode_has(p->turned, p->pair[i])) {
+            flip(p, i);
+        }
+    }
+    enum dalcs_status status = dalcs_osnsp_solve(p->osnsp, sigma, u, p->other_y);
+    if (status < DALCS_OK) {
+        return status;
+    }
+    p->alternates = status == DALCS_OK;
+    keep(p, p->other);
+    memcpy(p->other_w, p->osnsp->w, (size_t)p->osnsp->system->n_pairs * sizeof(double));
+    go_back(p, p->mark);
+    return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
+}
+
 enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
                                         double *y) {
     p->moved = p->alternates = false;
@@ -286,6 +323,7 @@ enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma,
         return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
     }
     keep(p, p->first);
+    memset(p->turned, 0, (size_t)p->osnsp->n_words * sizeof(*p->turned));
     enum dalcs_status first = dalcs_osnsp_solve(p->osnsp, sigma, u, y);
     p->has_first = first == DALCS_OK;
     enum dalcs_status status = first == DALCS_OK ? move_all(p, sigma, u, y) : first;
@@ -294,7 +332,9 @@ enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma,
     if (status < DALCS_OK || (status == DALCS_OK && p->settled) || has_all) {
         return status;
     }
-    return search(p, first != DALCS_OK, status != DALCS_OK, sigma, u, y);
+    const bool has_all_answers = status == DALCS_OK;
+    DALCS_TRY(search(p, !p->has_first, !has_all_answers, sigma, u, y));
+    return p->settled || p->alternates || !has_all_answers ? DALCS_OK : find_other(p, sigma, u, y);
 }
 
 enum dalcs_status dalcs_positions_solve_at_rest(struct dalcs_positions *p, const double *u,

@@ -22,7 +22,7 @@ struct dalcs_positions {
     bool settled;   /* and all agree with the answer */
     bool has_first; /* the positions that it began from had an answer */
     bool
-        alternates; /* if not: all that want to move go to and fro between two positions, each with an answer */
+        alternates; /* if not: all that want to move go to and fro, and stand otherwise in two positions, each with an answer */
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
     uint64_t *other;           /* and its mode, [n_words] */
     bool joined;               /* sliding.h */
@@ -31,12 +31,17 @@ struct dalcs_positions {
     bool *is_compared;         /* [n + n_jumps] that is known */
     bool *leads;               /* [n + n_jumps] a jump that others follow, at present */
     uint64_t *mask;            /* [n_words] bits of these switches */
+    uint64_t *turned;          /* [n_words] of them, that have turned in the last call */
     uint64_t *first, *present, *mark; /* [n_words] */
 
     struct dalcs_slide_sides { /* of a mean */
-        int *group;    /* [n + n_jumps] those that one part of the time suits, -1: no leading one */
-        double *y, *w; /* [DALCS_MOST_SIDES][n_columns], [][n_pairs] */
-        uint64_t *mode;      /* [DALCS_MOST_SIDES][n_words] */
+        int *
+            kin; /* [n + n_jumps] the first of those that one part of the time suits, -1: no leading one */
+        int *group;     /* [n + n_jumps] of those that slide, -1: not of them */
+        bool *is_other; /* [n + n_jumps] of first ones that do not: the side that they stay on */
+        double *y, *w;  /* [DALCS_MOST_SIDES][n_columns], [][n_pairs] */
+        double *w_of_y; /* [n_pairs] of the answer on one side of all */
+        uint64_t *mode; /* [DALCS_MOST_SIDES][n_words] */
         uint64_t *conducted; /* [n_words] on some side */
         bool *leading;       /* [n + n_jumps] */
         bool have_changed;   /* others lead than in the mean before */

@@ -2,161 +2,85 @@
  *
  * Each is on its other side for a part of the time of its own. Where no clock ties them to each other, each side of one
  * goes with each of the others, for the product of their parts of the time, and these are such that the mean has each at its
- * threshold (Alexander and Seidman, Sliding modes in intersecting switching surfaces, 1998: blending). */
-#include "sliding_internal.h"
-
-#include "dense_solve.h"
-#include "rounding.h"
+ * threshold (Alexander and Seidman, Sliding modes in intersecting switching surfaces, 1998: blending).
+ *
+ * Not all that alternate in a step slide. The rest stay, on the side that their controls ask for in the mean: part_g is
+ * within 0 and 1 and its control on the threshold, or part_g is 0 or 1 and its control beyond, to that side. It is a
+ * complementarity problem of the parts within bounds. */
+#include "several_parts.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Newton's method: where what each reads goes on in a straight line with what each does, one of these does. */
-enum { MOST_SEVERAL = 3, MOST_NEWTON = 16, ROWS = 4 * MOST_SEVERAL };
+/* Rounds of one search, of each group. Where all principal minors are above 0 a search ends (Murty 1974): mostly each group
+ * changes once or twice. */
+enum { ROUNDS_OF_EACH = 8 };
 
-_Static_assert(1 << MOST_SEVERAL == DALCS_MOST_SIDES, "a side for each of their positions");
-
-struct several {
-    int n;
-    int first[MOST_SEVERAL]; /* of each group */
-    double part[MOST_SEVERAL];
-    bool stays[MOST_SEVERAL]; /* on one side: part is 0 or 1 */
-};
-
-static double beyond(const struct dalcs_positions *p, int i, int corner) {
-    return dalcs_turning_beyond(p, i, dalcs_corner_y(p, corner), dalcs_corner_w(p, corner));
-}
-
-/* Those that one weight puts on their thresholds, as complementary switches, are one. of->n is 0 where they are too many. */
-static void find_groups(struct dalcs_positions *p, const double *y, struct several *of) {
-    *of = (struct several){0};
+/* Those that one weight puts on their thresholds, as complementary switches, are one: they are kin of the first. Returns
+ * the number of groups. */
+static int find_groups(struct dalcs_positions *p, const double *y) {
+    int n = 0;
     for (int i = 0; i < dalcs_turning_n(p); i++) {
-        p->sides.group[i] = -1;
-    }
-    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        p->sides.kin[i] = -1;
         if (!dalcs_turning_leads(p, i)) {
             continue;
         }
         double noise;
         int g = 0;
-        while (g < of->n &&
-               !dalcs_turning_fits(p, i, dalcs_turning_weight(p, of->first[g], y, &noise), y)) {
+        while (g < i && !(p->sides.kin[g] == g &&
+                          dalcs_turning_fits(p, i, dalcs_turning_weight(p, g, y, &noise), y))) {
             g++;
         }
-        if (g == MOST_SEVERAL) {
-            of->n = 0;
-            return;
-        }
-        if (g == of->n) {
-            of->first[of->n++] = i;
-        }
-        p->sides.group[i] = g;
+        p->sides.kin[i] = g;
+        n += g == i ? 1 : 0;
+    }
+    return n;
+}
+
+static void add(struct dalcs_positions *p, struct dalcs_several *of, int first) {
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        p->sides.group[i] = p->sides.kin[i] == first ? of->n : p->sides.group[i];
+    }
+    of->part[of->n] = 0.5;
+    of->first[of->n++] = first;
+}
+
+/* The answers of corners in which a group is on one side are those without it. */
+static void leave_out_corners(struct dalcs_positions *p, int n, int group, bool on_other) {
+    const struct dalcs_system *s = p->osnsp->system;
+    for (int corner = 0; corner < 1 << (n - 1); corner++) {
+        const int low = corner & ((1 << group) - 1);
+        const int from = (corner - low) << 1 | (on_other ? 1 << group : 0) | low;
+        memmove(dalcs_corner_y(p, corner), dalcs_corner_y(p, from),
+                (size_t)dalcs_system_n_columns(s) * sizeof(double));
+        memmove(dalcs_corner_w(p, corner), dalcs_corner_w(p, from),
+                (size_t)s->n_pairs * sizeof(double));
+        memmove(dalcs_corner_mode(p, corner), dalcs_corner_mode(p, from),
+                (size_t)p->osnsp->n_words * sizeof(uint64_t));
     }
 }
 
-/* The part of the time in a corner, by all groups but one; -1: by all. */
-static double weight_of(const struct several *of, int corner, int but) {
-    double weight = 1.0;
-    for (int g = 0; g < of->n; g++) {
-        weight *= g == but ? 1.0 : (corner >> g & 1) != 0 ? of->part[g] : 1.0 - of->part[g];
+/* The group of those that slide stays on one side. */
+static void stay(struct dalcs_positions *p, struct dalcs_several *of, int group, bool on_other) {
+    leave_out_corners(p, of->n, group, on_other);
+    p->sides.is_other[of->first[group]] = on_other;
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        const int g = p->sides.group[i];
+        p->sides.group[i] = g == group ? -1 : g - (g > group ? 1 : 0);
     }
-    return weight;
-}
-
-/* How far the mean has the i-th beyond its threshold, and what the controls are that make it up. */
-static double beyond_in_mean(const struct dalcs_positions *p, const struct several *of, int i,
-                             double *largest) {
-    const double turn_on = i < p->n ? p->osnsp->system->pair[p->pair[i]].turn_on : 0.0;
-    double sum = 0.0;
-    *largest = 0.0;
-    for (int corner = 0; corner < 1 << of->n; corner++) {
-        const double at = beyond(p, i, corner);
-        sum += weight_of(of, corner, -1) * at;
-        *largest += fabs(at + turn_on);
-    }
-    return sum;
-}
-
-/* In rows of a quad: how far each first one is beyond its threshold, behind how that changes with the parts of the time. */
-static void fill_rows(const struct dalcs_positions *p, const struct several *of, double *a) {
-    const int row = dalcs_dense_row(of->n, 1);
-    memset(a, 0, ROWS * sizeof(*a));
-    for (int g = 0; g < of->n; g++) {
-        double largest;
-        for (int corner = 0; corner < 1 << of->n; corner++) {
-            const double at = beyond(p, of->first[g], corner);
-            for (int by = 0; by < of->n; by++) {
-                const double sign = (corner >> by & 1) != 0 ? 1.0 : -1.0;
-                a[g * row + by] += sign * weight_of(of, corner, by) * at;
-            }
-        }
-        a[g * row + of->n] = beyond_in_mean(p, of, of->first[g], &largest);
-    }
-    for (int g = 0; g < of->n; g++) {
-        for (int k = 0; k < of->n && of->stays[g]; k++) {
-            a[g * row + k] = a[k * row + g] = k == g ? -1.0 : 0.0;
-        }
-        a[g * row + of->n] *= of->stays[g] ? 0.0 : 1.0;
+    of->n--;
+    for (int g = group; g < of->n; g++) {
+        of->first[g] = of->first[g + 1];
+        of->part[g] = of->part[g + 1];
     }
 }
 
-/* Does each turn its own control off, more than others turn it on? Where all principal minors are above 0 no other parts of
- * the time do (Cottle, Pang and Stone, The Linear Complementarity Problem, thm 3.3.7). Of switches that hold each other
- * open, as in a flip-flop, two stay, and the mean is where neither does. */
-static bool is_only_one(const struct dalcs_positions *p, const struct several *of) {
-    const int row = dalcs_dense_row(of->n, 1);
-    double a[ROWS];
-    double m[MOST_SEVERAL][MOST_SEVERAL] = {{0}};
-    fill_rows(p, of, a);
-    bool is = true;
-    for (int by = 0; by < of->n; by++) {
-        const int i = of->first[by];
-        const bool closes = of->stays[by] || dalcs_turning_is_on_at(p, i, true);
-        for (int g = 0; g < of->n; g++) {
-            m[g][by] = closes ? -a[g * row + by] : a[g * row + by];
-        }
-    }
-    for (int g = 0; g < of->n; g++) {
-        is = is && m[g][g] > 0.0;
-        for (int k = 0; k < g; k++) {
-            is = is && m[g][g] * m[k][k] > m[g][k] * m[k][g];
-        }
-    }
-    return is &&
-           (of->n < MOST_SEVERAL || m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                                            m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                                            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) >
-                                        0.0);
-}
-
-/* By Newton's method, from half of the time on. */
-static bool find_parts(const struct dalcs_positions *p, struct several *of) {
-    const int row = dalcs_dense_row(of->n, 1);
-    double moved = INFINITY;
-    for (int g = 0; g < of->n; g++) {
-        of->part[g] = of->stays[g] ? of->part[g] : 0.5;
-    }
-    for (int k = 0; k < MOST_NEWTON && moved > dalcs_rounded; k++) {
-        double a[ROWS];
-        fill_rows(p, of, a);
-        if (!(dalcs_dense_solve(of->n, 1, a) > 0.0)) {
-            return false;
-        }
-        moved = 0.0;
-        for (int g = 0; g < of->n; g++) {
-            of->part[g] -= a[g * row + of->n];
-            moved = fmax(moved, fabs(a[g * row + of->n]));
-        }
-    }
-    return true;
-}
-
-/* The one whose part is farthest from any; -1: all are parts. */
-static int farthest_outside(const struct several *of) {
+/* Of those that slide, the one whose part is farthest from any; -1: all are parts. */
+static int farthest_outside(const struct dalcs_several *of) {
     int farthest = -1;
     double most = 0.0;
     for (int g = 0; g < of->n; g++) {
-        const double outside = of->stays[g] ? -1.0 : fabs(of->part[g] - 0.5) - 0.5;
+        const double outside = fabs(of->part[g] - 0.5) - 0.5;
         if (outside >= most) {
             most = outside;
             farthest = g;
@@ -165,43 +89,110 @@ static int farthest_outside(const struct several *of) {
     return farthest;
 }
 
-/* One that would be on a side for more than all of the time stays there: it is about to leave its threshold, and in a step
- * of implicit Euler goes to and fro with the others. Is there a part of the time for any of the rest? */
-static bool find_inside(const struct dalcs_positions *p, struct several *of) {
-    int n_stay = 0;
-    int outside = -1;
-    do {
-        if (!find_parts(p, of)) {
-            return false;
-        }
-        outside = farthest_outside(of);
-        if (outside >= 0) {
-            of->stays[outside] = true;
-            of->part[outside] = of->part[outside] < 0.5 ? 0.0 : 1.0;
-            n_stay++;
-        }
-    } while (outside >= 0 && n_stay < of->n);
-    return n_stay < of->n;
+/* How far the mean has the i-th off its threshold, to the side that it does not stay on; 0: it fits. */
+static double find_off(const struct dalcs_positions *p, const struct dalcs_several *of, int i) {
+    double largest;
+    const double off = dalcs_several_beyond(p, of, i, &largest);
+    const bool fits =
+        dalcs_turning_is_at_threshold(p, i, off, largest) ||
+        (p->sides.group[i] < 0 &&
+         (off > 0.0) == dalcs_turning_is_on_at(p, i, p->sides.is_other[p->sides.kin[i]]));
+    return fits ? 0.0 : fabs(off);
 }
 
-/* Is each at its threshold, or on the side of it that it stays on? */
-static bool all_fit(const struct dalcs_positions *p, const struct several *of) {
-    bool fit = true;
-    for (int i = 0; i < dalcs_turning_n(p) && fit; i++) {
-        const int g = p->sides.group[i];
-        if (g >= 0) {
-            double largest;
-            const double off = beyond_in_mean(p, of, i, &largest);
-            fit = dalcs_turning_is_at_threshold(p, i, off, largest) ||
-                  (of->stays[g] && (off > 0.0) == dalcs_turning_is_on_at(p, i, of->part[g] > 0.5));
+/* The one that the mean contradicts most: of several with thresholds of one voltage, the first that it comes to. -1: none. */
+static int find_against(const struct dalcs_positions *p, const struct dalcs_several *of) {
+    int against = -1;
+    double most = 0.0;
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        const double off = p->sides.kin[i] >= 0 ? find_off(p, of, i) : 0.0;
+        if (off > most) {
+            most = off;
+            against = i;
         }
     }
-    return fit;
+    return against;
+}
+
+/* The last one of those that slide has begun to, and no only mean has it do so with the rest. If it reads what another one
+ * reads, that one stays where the last one on its threshold has it. Else it goes to its other side: it holds itself there. */
+static void make_place(struct dalcs_positions *p, struct dalcs_several *of, bool *has_corners) {
+    const int last = of->n - 1;
+    bool is_on = false;
+    dalcs_several_halve(of);
+    const int tied = dalcs_several_find_tied(p, of, &is_on);
+    *has_corners = tied >= 0;
+    if (tied >= 0) {
+        stay(p, of, tied, dalcs_turning_is_on_at(p, of->first[tied], true) == is_on);
+    } else {
+        stay(p, of, last, !p->sides.is_other[of->first[last]]);
+    }
+}
+
+/* From those that slide in `of` and the sides of the rest: one that would be on a side for more than all of the time stays
+ * there. One that stays, and that the mean contradicts, slides. *found: some slide, and the mean contradicts none. */
+static enum dalcs_status search(struct dalcs_positions *p, const double *u, const double *y,
+                                int n_groups, struct dalcs_several *of, bool *found) {
+    bool has_corners = false;
+    bool has_new = false; /* the last one of those that slide stood before */
+    *found = false;
+    for (int round = 0; round < ROUNDS_OF_EACH * n_groups; round++) {
+        if (!has_corners) {
+            DALCS_TRY(dalcs_corners_find(p, u, y, of->n, &has_corners));
+        }
+        if (has_new && has_corners && !dalcs_several_is_only_one(p, of)) {
+            make_place(p, of, &has_corners);
+            has_new = false;
+            continue;
+        }
+        if (!has_corners || !dalcs_several_find_parts(p, of)) {
+            return DALCS_OK;
+        }
+        const int outside = farthest_outside(of);
+        if (outside >= 0) {
+            stay(p, of, outside, of->part[outside] > 0.5);
+            has_new = false;
+            continue;
+        }
+        const int against = find_against(p, of);
+        *found = against < 0 && of->n > 0 && dalcs_several_is_only_one(p, of);
+        if (against < 0 || p->sides.group[against] >= 0 || of->n == DALCS_MOST_SEVERAL) {
+            return DALCS_OK;
+        }
+        add(p, of, p->sides.kin[against]);
+        has_new = true;
+        has_corners = false;
+    }
+    return DALCS_OK;
+}
+
+/* Where few alternate all of them slide; else, and where that has no mean, all stay where they stood. */
+static enum dalcs_status find_sliding(struct dalcs_positions *p, const double *u, const double *y,
+                                      struct dalcs_several *of, bool *found) {
+    const int n_groups = find_groups(p, y);
+    *found = false;
+    for (int all = n_groups <= DALCS_MOST_SEVERAL ? 1 : 0; all >= 0 && n_groups > 1 && !*found;
+         all--) {
+        *of = (struct dalcs_several){0};
+        for (int i = 0; i < dalcs_turning_n(p); i++) {
+            const int pair = dalcs_turning_pair(p, i);
+            p->sides.group[i] = -1;
+            p->sides.is_other[i] =
+                i < p->n && dalcs_mode_has(p->first, pair) != dalcs_osnsp_is_on(p->osnsp, pair);
+        }
+        for (int i = 0; i < dalcs_turning_n(p) && all == 1; i++) {
+            if (p->sides.kin[i] == i) {
+                add(p, of, i);
+            }
+        }
+        DALCS_TRY(search(p, u, y, n_groups, of, found));
+    }
+    return DALCS_OK;
 }
 
 /* Of the corners that the mean is of. A pair that is off in one of them turns, though it may be on in the two that differ in
  * all (sliding.h). */
-static void put_mean(struct dalcs_positions *p, const struct several *of, double *y,
+static void put_mean(struct dalcs_positions *p, const struct dalcs_several *of, double *y,
                      struct dalcs_observed_sides *sides) {
     const struct dalcs_system *s = p->osnsp->system;
     *sides = (struct dalcs_observed_sides){0};
@@ -209,15 +200,9 @@ static void put_mean(struct dalcs_positions *p, const struct several *of, double
     memset(p->osnsp->w, 0, (size_t)s->n_pairs * sizeof(double));
     memset(p->sides.conducted, 0, (size_t)p->osnsp->n_words * sizeof(uint64_t));
     memset(p->other, 0xff, (size_t)p->osnsp->n_words * sizeof(uint64_t));
+    memcpy(p->osnsp->mode, dalcs_corner_mode(p, 0), (size_t)p->osnsp->n_words * sizeof(uint64_t));
     for (int corner = 0; corner < 1 << of->n; corner++) {
-        const double weight = weight_of(of, corner, -1);
-        if (weight == 0.0) {
-            continue;
-        }
-        if (sides->n == 0) {
-            memcpy(p->osnsp->mode, dalcs_corner_mode(p, corner),
-                   (size_t)p->osnsp->n_words * sizeof(uint64_t));
-        }
+        const double weight = dalcs_several_weight(of, corner, -1);
         sides->y[sides->n] = dalcs_corner_y(p, corner);
         sides->weight[sides->n++] = weight;
         for (int k = 0; k < dalcs_system_n_columns(s); k++) {
@@ -236,26 +221,18 @@ static void put_mean(struct dalcs_positions *p, const struct several *of, double
 enum dalcs_status dalcs_sliding_mean_of_several(struct dalcs_positions *p, const double *u,
                                                 double *y, struct dalcs_observed_sides *sides,
                                                 double *noise) {
-    struct several of;
-    find_groups(p, y, &of);
-    if (of.n < 2) {
-        return DALCS_OK;
-    }
-    bool are_complete;
-    DALCS_TRY(dalcs_corners_find(p, u, y, of.n, &are_complete));
-    if (!are_complete || !find_inside(p, &of) || !all_fit(p, &of) || !is_only_one(p, &of)) {
-        return DALCS_OK;
-    }
+    struct dalcs_several of;
+    bool found;
+    memcpy(p->sides.w_of_y, p->osnsp->w, (size_t)p->osnsp->system->n_pairs * sizeof(double));
+    DALCS_TRY(find_sliding(p, u, y, &of, &found));
     *noise = 0.0;
-    for (int g = 0; g < of.n; g++) {
+    for (int g = 0; g < of.n && found; g++) {
         double own;
         (void)dalcs_turning_weight(p, of.first[g], y, &own);
-        *noise = of.stays[g] ? *noise : fmax(*noise, own);
+        *noise = fmax(*noise, own);
     }
-    for (int i = 0; i < dalcs_turning_n(p); i++) {
-        const int g = p->sides.group[i];
-        p->sides.group[i] = g >= 0 && of.stays[g] ? -1 : g;
+    if (found) {
+        put_mean(p, &of, y, sides);
     }
-    put_mean(p, &of, y, sides);
     return DALCS_OK;
 }

@@ -4,12 +4,16 @@
 
 #include <string.h>
 
-/* Those that lead stand as in a corner. */
+/* Those that slide stand as in a corner, and the rest of those that lead on their side. */
+static bool is_on_other(const struct dalcs_positions *p, int i, int corner) {
+    const int g = p->sides.group[i];
+    return g >= 0 ? (corner >> g & 1) != 0 : p->sides.is_other[p->sides.kin[i]];
+}
+
 static void put_leading(struct dalcs_positions *p, int corner) {
     for (int i = 0; i < dalcs_turning_n(p); i++) {
-        const int g = p->sides.group[i];
-        if (g >= 0) {
-            dalcs_turning_put(p, i, dalcs_turning_is_on_at(p, i, (corner >> g & 1) != 0));
+        if (p->sides.kin[i] >= 0) {
+            dalcs_turning_put(p, i, dalcs_turning_is_on_at(p, i, is_on_other(p, i, corner)));
         }
     }
 }
@@ -33,7 +37,7 @@ static bool flip_diodes(struct dalcs_positions *p, bool all, bool are_jumps_whol
 static bool put_switches(struct dalcs_positions *p, const double *y) {
     bool any = false;
     for (int i = 0; i < p->n; i++) {
-        if (p->sides.group[i] < 0 && dalcs_positions_moves_from(p, i, p->present, y)) {
+        if (p->sides.kin[i] < 0 && dalcs_positions_moves_from(p, i, p->present, y)) {
             dalcs_turning_put(p, i, !dalcs_osnsp_is_on(p->osnsp, p->pair[i]));
             any = true;
         }
@@ -75,26 +79,37 @@ static enum dalcs_status find_corner(struct dalcs_positions *p, const double *u,
     return DALCS_OK;
 }
 
+/* On one side of all, and on the other side of all, the answers are known: y with p->sides.w_of_y, and p->other_y. Where jumps
+ * lead their modes are not those of the answers (sliding.c). */
+static bool is_known(struct dalcs_positions *p, const double *y, int corner) {
+    const struct dalcs_system *s = p->osnsp->system;
+    bool is[2] = {p->n_jumps == 0, p->n_jumps == 0};
+    for (int i = 0; i < p->n; i++) {
+        if (p->sides.kin[i] >= 0) {
+            is[is_on_other(p, i, corner) ? 0 : 1] = false;
+        }
+    }
+    if (is[0] || is[1]) {
+        memcpy(dalcs_corner_y(p, corner), is[1] ? p->other_y : y,
+               (size_t)dalcs_system_n_columns(s) * sizeof(double));
+        memcpy(dalcs_corner_w(p, corner), is[1] ? p->other_w : p->sides.w_of_y,
+               (size_t)s->n_pairs * sizeof(double));
+        memcpy(dalcs_corner_mode(p, corner), is[1] ? p->other : p->present,
+               (size_t)p->osnsp->n_words * sizeof(uint64_t));
+    }
+    return is[0] || is[1];
+}
+
 enum dalcs_status dalcs_corners_find(struct dalcs_positions *p, const double *u, const double *y,
                                      int n_groups, bool *are_complete) {
-    const struct dalcs_system *s = p->osnsp->system;
-    const size_t y_bytes = (size_t)dalcs_system_n_columns(s) * sizeof(double);
-    const size_t w_bytes = (size_t)s->n_pairs * sizeof(double);
     const size_t mode_bytes = (size_t)p->osnsp->n_words * sizeof(uint64_t);
-    const int last = (1 << n_groups) - 1;
     memcpy(p->present, p->osnsp->mode, mode_bytes);
-    memcpy(dalcs_corner_y(p, 0), y, y_bytes);
-    memcpy(dalcs_corner_w(p, 0), p->osnsp->w, w_bytes);
-    memcpy(dalcs_corner_y(p, last), p->other_y, y_bytes);
-    memcpy(dalcs_corner_w(p, last), p->other_w, w_bytes);
-    memcpy(dalcs_corner_mode(p, 0), p->present, mode_bytes);
-    memcpy(dalcs_corner_mode(p, last), p->other, mode_bytes);
     enum dalcs_status status = DALCS_OK;
     *are_complete = true;
-    const int known = p->n_jumps > 0 ? 0 : 1;
-    for (int corner = known; corner <= last - known && status == DALCS_OK && *are_complete;
-         corner++) {
-        status = find_corner(p, u, corner, are_complete);
+    for (int corner = 0; corner < 1 << n_groups && status == DALCS_OK && *are_complete; corner++) {
+        if (!is_known(p, y, corner)) {
+            status = find_corner(p, u, corner, are_complete);
+        }
     }
     memcpy(p->osnsp->mode, p->present, mode_bytes);
     return status;

@@ -1,5 +1,5 @@
-/* sliding_internal.h - what turns, on both sides of a slide. Private to sliding.c, slide_leaders.c, slide_corners.c and
- * several_slides.c.
+/* sliding_internal.h - what turns, on both sides of a slide. Private to sliding.c, slide_leaders.c, slide_corners.c,
+ * several_slides.c and several_parts.c.
  *
  * The i-th of what may turn is a switch, i < p->n, or a formula that jumps, behind those. */
 #ifndef DALCS_SLIDING_INTERNAL_H
@@ -81,8 +81,8 @@ static inline bool dalcs_turning_is_on_at(const struct dalcs_positions *p, int i
     return dalcs_mode_has(mode, dalcs_turning_pair(p, i));
 }
 
-/* slide_corners.c: the answers on all sides of groups, in p->sides; y is that on one side of all, and that on the other side
- * of all is p->other_y. Where jumps lead their modes are not those of the answers (sliding.c). */
+/* slide_corners.c: the answers on all sides of groups that slide, in p->sides; the rest of what leads stays as told there. y and
+ * p->sides.w_of_y are that on one side of all, and p->other_y that on the other side of all. */
 enum dalcs_status dalcs_corners_find(struct dalcs_positions *p, const double *u, const double *y,
                                      int n_groups, bool *are_complete) DALCS_MUST_CHECK;
 

@@ -203,6 +203,7 @@ struct dalcs_audit_stretch *dalcs_audit_reader_stretch(struct dalcs_audit_run *a
     stretch->is_cut = to < part->segment.t_end;
     stretch->step = part->segment.h;
     stretch->rule = dalcs_segment_is_coarse(part) ? DALCS_AUDIT_COARSE : DALCS_AUDIT_SMOOTH;
+    stretch->is_undecided = dalcs_segment_is_coarse(part) && part->guards.undecided;
     stretch->stored = store(m, part);
     return stretch;
 }

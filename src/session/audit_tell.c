@@ -117,7 +117,7 @@ static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
                        "and the part around it to ground, and what sources drive into it does not "
                        "come out",
                        time, node);
-    } else if (found->law == DALCS_AUDIT_POSITION && found->against == found->index + 1) {
+    } else if (found->stays) {
         dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, NULL,
                        "what it does acts on its control at once: a capacitor, a coil or a delay "
                        "between them decides, and without a hysteresis it may slide",

@@ -101,7 +101,9 @@ struct dalcs_part_guards {
     int n_crossed;
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
     bool slides;  /* micro-steps: a switch opens what closes it, and closes what opens it */
-    bool *tied;   /* [n_pairs] work */
+    bool
+        undecided; /* a segment by implicit Euler: no position suits a switch, however short a step is */
+    bool *tied; /* [n_pairs] work */
 };
 
 /* What gives the current of a pair: pair_laws.h. */
