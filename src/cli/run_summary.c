@@ -58,7 +58,7 @@ static void tell_analyses(const struct dalcs_run *run, const struct dalcs_argume
         } else if (plot != NULL && plot->n_steps > 1) {
             dalcs_step_lines_write(out, &run->outputs.steps, report, shown[i]);
         } else {
-            dalcs_summary_write_signals(out, &run->outputs.measure[shown[i]],
+            dalcs_summary_write_signals(out, &run->outputs.measure[shown[i]], report,
                                         arguments->files.all_signals);
         }
     }

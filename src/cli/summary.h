@@ -16,7 +16,8 @@ void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report);
 void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report);
 
 /* A table, of the first 24 signals or of all; nothing when there were no rows. */
-void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all);
+void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure,
+                                 const struct dalcs_report *report, bool all);
 
 /* Likewise, of rows with no averages: where they end. */
 void dalcs_summary_write_ends(FILE *out, const struct dalcs_measure *measure, bool all);

@@ -66,15 +66,59 @@ static void write_head(FILE *out, const struct dalcs_plot *plot, int width, bool
     fprintf(out, "\n  %-*s %s\n", width, "signal", ends ? "      final" : head[plot->analysis]);
 }
 
-static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i, bool ends) {
+/* The signal in the report of an orbit, whose means are exact and count impulses; NULL: there is none. */
+static const struct dalcs_steady_signal *find_exact(const struct dalcs_measure *measure, size_t i,
+                                                    const struct dalcs_report *report) {
+    const struct dalcs_plot *plot = measure->plot;
+    for (size_t k = 0; plot->analysis == DALCS_PERIODIC && k < report->steady.n_signals; k++) {
+        if (strcmp(report->steady.signal[k].name, plot->name[i]) == 0) {
+            return &report->steady.signal[k];
+        }
+    }
+    return NULL;
+}
+
+static void write_means(FILE *out, const struct dalcs_measure *measure, size_t i,
+                        const struct dalcs_report *report) {
+    const struct dalcs_steady_signal *exact = find_exact(measure, i, report);
+    if (exact == NULL || !isnan(exact->rms)) {
+        write_value(out, measure, i, dalcs_measure_shown_average(measure, i));
+        write_value(out, measure, i, dalcs_measure_rms(measure, i));
+        return;
+    }
+    char text[DALCS_QUANTITY_SIZE];
+    const char *unit = unit_name(measure->plot->unit[i]);
+    const bool is_rounding =
+        fabs(exact->average) <= INVISIBLE_IN_WAVEFORMS * largest_of(measure, i);
+    const double average = is_rounding ? 0.0 : exact->average;
+    fprintf(out, " %11s    none    ",
+            isnan(average) ? "none    " : dalcs_quantity_write_column(text, average, unit, DIGITS));
+}
+
+/* Rows have no impulses. */
+static void write_remark(FILE *out, const struct dalcs_measure *measure,
+                         const struct dalcs_report *report) {
+    size_t n = 0;
+    for (size_t k = 0; k < report->n_jumps; k++) {
+        n += report->jump[k].n_impulses;
+    }
+    if (measure->plot->analysis == DALCS_TRANSIENT && n > 0) {
+        fputs("  averages and rms values of rows are without the impulses of jumps, which .losses "
+              "and "
+              ".meas count\n",
+              out);
+    }
+}
+
+static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i,
+                        const struct dalcs_report *report, bool ends) {
     const struct dalcs_measure_signal signal = dalcs_measure_of(measure, i);
     if (!dalcs_analysis_is_point(measure->plot->analysis) && !ends) {
         write_cell(out, measure, i, signal.min);
         write_cell(out, measure, i, signal.max);
     }
     if (has_averages(measure->plot) && !ends) {
-        write_value(out, measure, i, dalcs_measure_shown_average(measure, i));
-        write_value(out, measure, i, dalcs_measure_rms(measure, i));
+        write_means(out, measure, i, report);
     }
     write_cell(out, measure, i, signal.final);
 }
@@ -92,7 +136,8 @@ void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report) {
     fputs(report->n_sides > MAX_SIGNALS ? ", ...\n" : "\n", out);
 }
 
-static void write_signals(FILE *out, const struct dalcs_measure *measure, bool all, bool ends) {
+static void write_signals(FILE *out, const struct dalcs_measure *measure,
+                          const struct dalcs_report *report, bool all, bool ends) {
     const struct dalcs_plot *plot = measure->plot;
     if (!plot || measure->n_rows == 0 || plot->n_signals == 0) {
         return;
@@ -106,18 +151,22 @@ static void write_signals(FILE *out, const struct dalcs_measure *measure, bool a
     write_head(out, plot, width, ends);
     for (size_t i = 0; i < n; i++) {
         fprintf(out, "  %-*s", width, plot->name[i]);
-        write_cells(out, measure, i, ends);
+        write_cells(out, measure, i, report, ends);
         fputc('\n', out);
     }
     if (n < plot->n_signals) {
         fprintf(out, "  ... and %zu more: --all-signals\n", plot->n_signals - n);
     }
+    if (!ends) {
+        write_remark(out, measure, report);
+    }
 }
 
-void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all) {
-    write_signals(out, measure, all, false);
+void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure,
+                                 const struct dalcs_report *report, bool all) {
+    write_signals(out, measure, report, all, false);
 }
 
 void dalcs_summary_write_ends(FILE *out, const struct dalcs_measure *measure, bool all) {
-    write_signals(out, measure, all, true);
+    write_signals(out, measure, NULL, all, true);
 }

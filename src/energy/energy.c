@@ -47,7 +47,8 @@ static enum dalcs_status part_setup(struct dalcs_energy_part *part,
     part->term = dalcs_alloc((size_t)power->n, sizeof(*part->term));
     part->half = dalcs_alloc((size_t)system->n_x, sizeof(double));
     part->defect = dalcs_alloc((size_t)system->n_x, sizeof(double));
-    if (part->term == NULL || part->half == NULL || part->defect == NULL) {
+    part->column = dalcs_alloc((size_t)dalcs_system_n_columns(system), sizeof(double));
+    if (part->term == NULL || part->half == NULL || part->defect == NULL || part->column == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int x = 0; x < system->n_x; x++) {
@@ -92,6 +93,7 @@ void dalcs_energy_finish(struct dalcs_energy *energy) {
         free(energy->part[k].term);
         free(energy->part[k].half);
         free(energy->part[k].defect);
+        free(energy->part[k].column);
     }
     free(energy->part);
     *energy = (struct dalcs_energy){0};
@@ -99,32 +101,47 @@ void dalcs_energy_finish(struct dalcs_energy *energy) {
 
 /* ---- The end ------------------------------------------------------------------------------- */
 
-/* The largest conductance in the equations of a block that are currents, and the largest resistance in
- * those that are voltages. */
-static void raise_entries(const struct dalcs_system *s, const struct dalcs_csr *block,
-                          double seconds, double *conductance, double *resistance) {
-    for (int r = 0; r < block->n_rows; r++) {
-        double *most = s->row_is_current[r] ? conductance : resistance;
-        for (int k = block->p[r]; k < block->p[r + 1]; k++) {
-            if (s->column_is_current[block->j[k]] != s->row_is_current[r]) {
-                *most = dalcs_larger(*most, fabs(block->x[k]) / seconds);
-            }
+/* What the row of a block adds up in size, where the largest of each unit are these. */
+static double size_of_row(const struct dalcs_system *s, const struct dalcs_csr *block, int row,
+                          const double *largest) {
+    double size = 0.0;
+    for (int k = block->p[row]; k < block->p[row + 1]; k++) {
+        size += fabs(block->x[k]) * largest[s->column_is_current[block->j[k]] ? 1 : 0];
+    }
+    return size;
+}
+
+/* The balance of a certified answer is the sum of what each equation is off by, times the column that the equation is paired
+ * with: KCL times its node's voltage, the law of a branch times its current (Tellegen). An equation is off by a part of what it
+ * adds up. So an open switch counts with its own leak, v^2 / roff, and not with roff times the square of what others carry.
+ * column: the largest magnitudes of all. The powers over the run add up. */
+static double power_of_rounding(const struct dalcs_system *s, double stop, const double *largest,
+                                const double *column) {
+    double power = 0.0;
+    for (int r = 0; r < s->A.n_rows; r++) {
+        double size = size_of_row(s, &s->A, r, largest);
+        if (r < s->n_x) {
+            size += size_of_row(s, &s->P, r, largest) / stop;
         }
+        power += size * column[s->dual[r]];
+    }
+    return power;
+}
+
+/* The largest of each unit. */
+static void raise_units(const struct dalcs_energy_part *part, double *largest) {
+    for (int k = 0; k < dalcs_system_n_columns(part->system); k++) {
+        double *unit = &largest[part->system->column_is_current[k] ? 1 : 0];
+        *unit = dalcs_larger(*unit, part->column[k]);
     }
 }
 
-/* Currents and voltages of any answer may be off by a part of what the largest drive through the
- * largest conductance and resistance; where a circuit has hardly any voltage, by a part of what its
- * currents make at the largest conductance, and vice versa. Their powers over the run add up. */
-static double power_of_rounding(const struct dalcs_system *s, double stop, const double *largest) {
-    double g = 0.0;
-    double r = 0.0;
-    raise_entries(s, &s->A, 1.0, &g, &r);
-    raise_entries(s, &s->P, stop, &g, &r);
-    double power = g * largest[0] * largest[0] + r * largest[1] * largest[1];
-    double v = g > 0.0 ? dalcs_larger(largest[0], largest[1] / g) : largest[0];
-    double i = r > 0.0 ? dalcs_larger(largest[1], largest[0] / r) : largest[1];
-    return dalcs_system_n_columns(s) * (power + v * i);
+/* What has been largest in segments of radau counts, too. */
+static void raise_columns(const struct dalcs_energy_part *part,
+                          const struct dalcs_radau_part *radau) {
+    for (int k = 0; k < dalcs_system_n_columns(part->system); k++) {
+        part->column[k] = dalcs_larger(part->column[k], radau->scales.column[k]);
+    }
 }
 
 static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_radau_part *radau,
@@ -141,6 +158,7 @@ static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_r
         /* an answer near 0 has the absolute error of the quantities that thresholds and sources drive */
         dalcs_excitation_inputs(&radau->excitation, stop, 0.0, radau->work.u + part->system->n_x);
         dalcs_micro_raise_to_drives(radau, largest);
+        raise_columns(part, radau);
     }
     return dalcs_energy_enter_decided(energy, part, radau->component, &radau->excitation.bystanders,
                                       stop);
@@ -169,8 +187,9 @@ enum dalcs_status dalcs_energy_close(struct dalcs_energy *energy, struct dalcs_e
         } else {
             close_euler(energy, k, &e->component[k], stop, largest);
         }
-        energy->sum.rounding +=
-            dalcs_answer_rounded * stop * power_of_rounding(part->system, stop, largest);
+        raise_units(part, largest);
+        energy->sum.rounding += dalcs_answer_rounded * stop *
+                                power_of_rounding(part->system, stop, largest, part->column);
     }
     energy->sum.stored_change += energy->sum.account[DALCS_POWER_STORED];
     return DALCS_OK;

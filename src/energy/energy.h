@@ -28,10 +28,11 @@ struct dalcs_energy_part {
     struct dalcs_power_term *term; /* [n_terms] */
     double stored_at_start;        /* J */
     double lost;                   /* J, in the jumps that the next step of euler crosses */
-    double largest[2]; /* V, A: physical scales of the steps of euler, and of what sources drive */
-    double *half;      /* [n_x] of the diagonal of the storage */
-    bool is_coupled;   /* the storage has entries off its diagonal */
-    double *defect;    /* [n_x] work: how far states are off */
+    double largest[2];             /* V, A: what sources drive */
+    double *column;                /* [n_columns] the largest of the steps of euler */
+    double *half;                  /* [n_x] of the diagonal of the storage */
+    bool is_coupled;               /* the storage has entries off its diagonal */
+    double *defect;                /* [n_x] work: how far states are off */
     struct dalcs_energy_share tried
         [DALCS_MAX_NODES]; /* in the last segment by implicit Euler: evenly, and up to each node from the one before */
 };

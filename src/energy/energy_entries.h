@@ -22,6 +22,9 @@ void dalcs_energy_step(void *energy, int k, const double *x, const double *y, co
 void dalcs_energy_add_powers(const struct dalcs_energy_part *part, const double *y,
                              const double *inputs, double h, double *account, double *turnover);
 
+/* An answer counts for what its columns are at most. */
+void dalcs_energy_raise_columns(const struct dalcs_energy_part *part, const double *y);
+
 /* What a part of radau tries by implicit Euler: see observer.h. Nothing is entered before the segment is passed through. */
 void dalcs_energy_try(void *energy, int k);
 void dalcs_energy_try_step(void *energy, int k, const double *x, const double *y,

@@ -21,6 +21,7 @@ void dalcs_energy_try_step(void *user, int k, const double *x, const double *y,
         dalcs_euler_stored_energy(part->system, y) - dalcs_euler_stored_energy(part->system, x);
     for (int side = 0; side < sides->n; side++) {
         const double *at = sides->y[side];
+        dalcs_energy_raise_columns(part, at);
         dalcs_energy_add_powers(part, at, inputs, sides->weight[side] * sides->times * sides->h,
                                 share->account, &share->turnover);
         taken += sides->weight[side] * (dalcs_euler_jump_energy(part->system, x, at) +

@@ -142,4 +142,7 @@ double dalcs_euler_stored_energy(const struct dalcs_system *s, const double *x);
 double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *before,
                                const double *after);
 
+/* J, in the thresholds of diodes that charge[n_pairs] passes; power NULL: of a system file, none. */
+double dalcs_euler_jump_in_thresholds(const struct dalcs_power *power, const double *charge);
+
 #endif

@@ -26,17 +26,24 @@ double dalcs_euler_stored_energy(const struct dalcs_system *s, const double *x) 
     return energy;
 }
 
-/* What a jump cost, J: stored, lost, and in the thresholds that charge has passed. */
-static double cost_of(const struct dalcs_system *s, const double *before,
-                      const struct dalcs_jump_answer *jump) {
-    double cost = dalcs_euler_stored_energy(s, jump->after) - dalcs_euler_stored_energy(s, before) +
-                  dalcs_euler_jump_energy(s, before, jump->after);
-    for (int d = 0; d < s->n_pairs; d++) {
-        for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
-            cost += s->F.j[k] == 0 ? s->F.x[k] * jump->charge[d] : 0.0;
+double dalcs_euler_jump_in_thresholds(const struct dalcs_power *power, const double *charge) {
+    double energy = 0.0;
+    for (int i = 0; power != NULL && i < power->n; i++) {
+        const struct dalcs_power_term *term = &power->term[i];
+        if (term->pair >= 0 && term->factor == DALCS_POWER_CONSTANT) {
+            energy += term->coefficient * charge[term->pair];
         }
     }
-    return cost;
+    return energy;
+}
+
+/* What a jump cost, J: stored, lost, and in the thresholds that charge has passed. Other pairs have constants, too: the limit of
+ * a channel's current, the threshold of what only reads. Nothing is lost in these. */
+static double cost_of(const struct dalcs_system *s, const struct dalcs_power *power,
+                      const double *before, const struct dalcs_jump_answer *jump) {
+    return dalcs_euler_stored_energy(s, jump->after) - dalcs_euler_stored_energy(s, before) +
+           dalcs_euler_jump_energy(s, before, jump->after) +
+           dalcs_euler_jump_in_thresholds(power, jump->charge);
 }
 
 enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const double *u) {
@@ -47,11 +54,7 @@ enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const doub
     memcpy(e->jump.charge, e->charge, (size_t)s->n_pairs * sizeof(double));
     memcpy(e->jump.flux, e->flux, (size_t)s->n_pairs * sizeof(double));
     DALCS_TRY(dalcs_jumps_build(&e->jumps, e->circuit, e->network, &p->options));
-    DALCS_TRY(dalcs_jumps_solve(&e->jumps, k, p->mode, u, u + s->n_x, &e->jump));
-    if (!e->jump.is_known) {
-        e->jump.source_work = cost_of(s, u, &e->jump);
-    }
-    return DALCS_OK;
+    return dalcs_jumps_solve(&e->jumps, k, p->mode, u, u + s->n_x, &e->jump);
 }
 
 /* e->telling.from and e->telling.to: the states before and after a jump, without what is rounding. Impulses of charge come with
@@ -89,6 +92,10 @@ enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double t
                                           const double *before, const double *from,
                                           const double *to) {
     const struct dalcs_system *s = e->component[k].system;
+    if (!e->jump.is_known) { /* of the states that are taken, which micro-steps have seen since */
+        const struct dalcs_power *power = e->network->power;
+        e->jump.source_work = cost_of(s, power != NULL ? &power[k] : NULL, before, &e->jump);
+    }
     struct dalcs_euler_jump jump = {
         .time = time,
         .system = k,

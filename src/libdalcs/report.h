@@ -149,9 +149,9 @@ struct dalcs_report {
         size_t n_signals;
 
         const struct dalcs_steady_signal {
-            const char *name; /* "v(out)" */
-            double average, rms;
-        } * signal; /* [n_signals] over the period, exact */
+            const char *name;    /* "v(out)" */
+            double average, rms; /* not a number: one of an impulse */
+        } * signal;              /* [n_signals] over the period, exact */
 
         struct {
             double period; /* s; 0: of two periods of the sources none was found, or looked for */

@@ -82,7 +82,7 @@ struct dalcs_element_losses {
     const char
         *kind; /* "source", "resistor", "winding" (Rser of a coil), "diode", "switch", "coil",
                          "capacitor" */
-    double v_average, v_rms, i_average, i_rms; /* V, A */
+    double v_average, v_rms, i_average, i_rms; /* V, A; not a number: an rms of an impulse */
     double power;         /* W, the mean of what it takes; what a source delivers is negative */
     double jumps;         /* J of that, at instants when states jumped */
     double stored_change; /* J, of coils and capacitors */

@@ -13,6 +13,10 @@ static const double invisible = 1e-12;
 
 static void write_cell(FILE *out, double value, double largest, const char *unit) {
     char text[DALCS_QUANTITY_SIZE];
+    if (isnan(value)) {
+        fprintf(out, " %8s   ", "none"); /* where the others have their digits */
+        return;
+    }
     value = fabs(value) <= invisible * largest ? 0.0 : value;
     fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit, DIGITS));
 }

@@ -85,6 +85,14 @@ void dalcs_json_number(struct dalcs_json *json, const char *key, double value) {
     fprintf(json->stream, isfinite(value) ? "%s" : "\"%s\"", text);
 }
 
+void dalcs_json_finite(struct dalcs_json *json, const char *key, double value) {
+    if (isfinite(value)) {
+        dalcs_json_number(json, key, value);
+    } else {
+        dalcs_json_string(json, key, NULL);
+    }
+}
+
 void dalcs_json_integer(struct dalcs_json *json, const char *key, long value) {
     start_value(json, key);
     fprintf(json->stream, "%ld", value);

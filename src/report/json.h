@@ -25,6 +25,8 @@ void dalcs_json_close(struct dalcs_json *json, char close);
 
 /* inf and nan, which JSON lacks, become strings. */
 void dalcs_json_number(struct dalcs_json *json, const char *key, double value);
+/* null where it is not a number */
+void dalcs_json_finite(struct dalcs_json *json, const char *key, double value);
 void dalcs_json_integer(struct dalcs_json *json, const char *key, long value);
 
 void dalcs_json_boolean(struct dalcs_json *json, const char *key, bool value);

@@ -1,25 +1,14 @@
 /* losses_json.c - the same as an entry of the report. */
 #include "losses_json.h"
 
-#include <math.h>
-
-/* null where it is not a number */
-static void write_number(struct dalcs_json *json, const char *name, double value) {
-    if (isfinite(value)) {
-        dalcs_json_number(json, name, value);
-    } else {
-        dalcs_json_string(json, name, NULL);
-    }
-}
-
 static void write_element(struct dalcs_json *json, const struct dalcs_element_losses *e) {
     dalcs_json_open(json, NULL, '{', true);
     dalcs_json_string(json, "element", e->element);
     dalcs_json_string(json, "kind", e->kind);
-    dalcs_json_number(json, "v_average", e->v_average);
-    dalcs_json_number(json, "v_rms", e->v_rms);
-    dalcs_json_number(json, "i_average", e->i_average);
-    dalcs_json_number(json, "i_rms", e->i_rms);
+    dalcs_json_finite(json, "v_average", e->v_average);
+    dalcs_json_finite(json, "v_rms", e->v_rms);
+    dalcs_json_finite(json, "i_average", e->i_average);
+    dalcs_json_finite(json, "i_rms", e->i_rms);
     dalcs_json_number(json, "power", e->power);
     dalcs_json_number(json, "jumps", e->jumps);
     dalcs_json_number(json, "stored_change", e->stored_change);
@@ -29,9 +18,9 @@ static void write_element(struct dalcs_json *json, const struct dalcs_element_lo
     dalcs_json_number(json, "clamped", (double)e->n_clamped);
     if (e->frequency > 0.0) {
         dalcs_json_number(json, "frequency", e->frequency);
-        write_number(json, "power_factor", e->power_factor);
-        write_number(json, "displacement", e->displacement);
-        write_number(json, "thd", e->thd);
+        dalcs_json_finite(json, "power_factor", e->power_factor);
+        dalcs_json_finite(json, "displacement", e->displacement);
+        dalcs_json_finite(json, "thd", e->thd);
     }
     dalcs_json_close(json, '}');
 }
@@ -57,7 +46,7 @@ void dalcs_losses_json_write(struct dalcs_json *json, const struct dalcs_losses 
     dalcs_json_string(json, "inputs", l->inputs);
     dalcs_json_number(json, "output", l->output);
     dalcs_json_string(json, "outputs", l->outputs);
-    write_number(json, "efficiency", l->efficiency);
+    dalcs_json_finite(json, "efficiency", l->efficiency);
     dalcs_json_open(json, "elements", '[', false);
     for (size_t k = 0; k < l->n_elements; k++) {
         write_element(json, &l->element[k]);

@@ -76,8 +76,8 @@ void dalcs_steady_json_write(struct dalcs_json *json, const struct dalcs_report 
     for (size_t i = 0; i < report->steady.n_signals; i++) {
         const struct dalcs_steady_signal *signal = &report->steady.signal[i];
         dalcs_json_open(json, signal->name, '{', true);
-        dalcs_json_number(json, "average", signal->average);
-        dalcs_json_number(json, "rms", signal->rms);
+        dalcs_json_finite(json, "average", signal->average);
+        dalcs_json_finite(json, "rms", signal->rms);
         dalcs_json_close(json, '}');
     }
     dalcs_json_close(json, '}');

@@ -1,6 +1,7 @@
 /* audit_losses.c - sums of losses, checked at times of the auditor's own: of one device in a stretch, its integrals of
  * voltage, current, their squares and their product. The first stretches of the window take one device after the other. */
 #include "audit_losses.h"
+#include "magnitudes.h"
 #include "rounding.h"
 
 #include "audit_reader.h"
@@ -213,9 +214,9 @@ void dalcs_audit_losses_told(const struct dalcs_audit_losses *a, const struct da
     const struct dalcs_loss *l = &sum->device[k];
     const double length =
         fmin(c->results.losses->to, a->run->radau->options.stop) - c->results.losses->from;
-    double worst = part_off(told->v_average * length, l->v, 0.0);
+    double worst = part_off(told->v_average * length, l->v + l->area[0].sum, 0.0);
     worst = fmax(worst, part_off(told->v_rms * told->v_rms * length, l->v_square, 0.0));
-    worst = fmax(worst, part_off(told->i_average * length, l->i, 0.0));
+    worst = fmax(worst, part_off(told->i_average * length, l->i + l->area[1].sum, 0.0));
     worst = fmax(worst, part_off(told->i_rms * told->i_rms * length, l->i_square, 0.0));
     if (d->kind == DALCS_CAPACITOR) {
         const double change = stored(d, l->end) - stored(d, l->begin);
@@ -226,4 +227,84 @@ void dalcs_audit_losses_told(const struct dalcs_audit_losses *a, const struct da
                                      sqrt(l->v_square) * sqrt(l->i_square)));
     }
     dalcs_audit_add_to(a->run->audit, DALCS_AUDIT_LOSSES, k, worst, sum->to);
+}
+
+/* ---- Laws of means -------------------------------------------------------------------------------- */
+
+/* What is told of a run, with the largest rms voltage and current: what is rounding of them is no defect. */
+struct means {
+    const struct dalcs_losses_sum *sum;
+    const struct dalcs_element_losses *told; /* of the next device that is told of */
+    double length, largest[2];
+};
+
+static double off_mean(const struct means *m, int unit, double told, double is, double size) {
+    return part_off(told, is, size + dalcs_beyond * m->largest[unit] * dalcs_answer_rounded);
+}
+
+/* Over any window the charge of a capacitor changes by the integral of its current, and the flux of a coil on its own by
+ * that of its voltage: impulses included. */
+static double off_storage(const struct means *m, int k, const struct dalcs_element_losses *told) {
+    const struct dalcs_device *d = &m->sum->circuit->device[k];
+    const struct dalcs_loss *l = &m->sum->device[k];
+    const int own = d->kind == DALCS_CAPACITOR ? 0 : 1;
+    const double square = own == 0 ? l->i_square : l->v_square;
+    const double is = d->value * (l->end[own] - l->begin[own]) / m->length;
+    const double size = d->value * (fabs(l->end[own]) + fabs(l->begin[own])) / m->length +
+                        sqrt(square / m->length) + l->area[1 - own].size / m->length;
+    return off_mean(m, 1 - own, own == 0 ? told->i_average : told->v_average, is, size);
+}
+
+static bool is_coupled(const struct dalcs_circuit *c, int k) {
+    bool is = false;
+    for (int j = 0; j < c->n_couplings && !is; j++) {
+        is = c->coupling[j].inductor[0] == k || c->coupling[j].inductor[1] == k;
+    }
+    return is;
+}
+
+static void add_means(const struct dalcs_audit_losses *a, struct means *m, double *leaves,
+                      double *size, int k) {
+    const struct dalcs_circuit *c = m->sum->circuit;
+    const struct dalcs_device *d = &c->device[k];
+    const bool is_told = c->results.losses->device[k].voltage >= 0;
+    const bool stores =
+        d->kind == DALCS_CAPACITOR || (d->kind == DALCS_INDUCTOR && !is_coupled(c, k));
+    const double i = is_told ? m->told->i_average : (double)NAN;
+    const double i_size = is_told ? m->sum->device[k].area[1].size / m->length +
+                                        sqrt(m->sum->device[k].i_square / m->length)
+                                  : 0.0;
+    if (is_told && stores) {
+        dalcs_audit_add_to(a->run->audit, DALCS_AUDIT_LOSSES, k, off_storage(m, k, m->told),
+                           m->sum->to);
+    }
+    for (int side = 0; side < 2; side++) {
+        leaves[d->node[side]] += side == 0 ? i : -i;
+        size[d->node[side]] += i_size;
+    }
+    m->told += is_told ? 1 : 0;
+}
+
+/* By Kirchhoff's law the mean currents that leave a node add up to 0, where all its elements are told of. */
+void dalcs_audit_losses_laws(const struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
+                             const struct dalcs_element_losses *told, double *work) {
+    const struct dalcs_circuit *c = sum->circuit;
+    double *leaves = work, *size = work + c->n_nodes;
+    struct means m = {.sum = sum, .told = told, .length = sum->to - sum->from};
+    if (a->run == NULL || sum->impulses == NULL) {
+        return;
+    }
+    for (int k = 0; k < c->n_devices; k++) {
+        m.largest[0] = fmax(m.largest[0], sqrt(sum->device[k].v_square / m.length));
+        m.largest[1] = fmax(m.largest[1], sqrt(sum->device[k].i_square / m.length));
+    }
+    for (int k = 0; k < c->n_devices; k++) {
+        add_means(a, &m, leaves, size, k);
+    }
+    for (int n = 0; n < c->n_nodes; n++) {
+        if (!isnan(leaves[n])) {
+            dalcs_audit_add_to(a->run->audit, DALCS_AUDIT_LOSSES, 0,
+                               off_mean(&m, 1, leaves[n], 0.0, size[n]), sum->to);
+        }
+    }
 }

@@ -26,4 +26,8 @@ void dalcs_audit_losses_end(struct dalcs_audit_losses *a, const struct dalcs_los
 void dalcs_audit_losses_told(const struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
                              int k, const struct dalcs_element_losses *told);
 
+/* The laws that bind those of all that are told of, in their order; work[2 * n_nodes] is 0. */
+void dalcs_audit_losses_laws(const struct dalcs_audit_losses *a, const struct dalcs_losses_sum *sum,
+                             const struct dalcs_element_losses *told, double *work);
+
 #endif

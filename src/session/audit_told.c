@@ -63,13 +63,13 @@ static void check_sum(const struct told *q) {
     off_in_time(q, detail(q, "to"), to);
     switch (item->card->kind) {
     case DALCS_MEASURE_AVERAGE:
-        off(q, value - item->integral / (to - from));
+        off(q, value - (item->integral + item->impulses.sum) / (to - from));
         break;
     case DALCS_MEASURE_RMS:
         off(q, value < 0.0 ? value : value - sqrt(item->square / (to - from)));
         break;
     case DALCS_MEASURE_INTEGRAL:
-        off(q, (value - item->integral) / (to - from));
+        off(q, (value - item->integral - item->impulses.sum) / (to - from));
         break;
     default:
         off(q, value - (item->most - item->least));

@@ -109,9 +109,12 @@ enum dalcs_status dalcs_measures_tell_harmonics(struct dalcs_measures *measures,
         if (h->from < m->start - 1e-9 * m->stop || h->has_no_value || h->is_means) {
             dalcs_diag_add(
                 &r->s->diag, DALCS_WARNING, &h->card->where, NULL,
-                h->is_means       ? "'%s': a switch slides along its threshold meanwhile, where "
-                                    "signals are means over its positions, and this is not linear in "
-                                    "them: no Fourier analysis"
+                h->is_means ? "'%s': a switch slides along its threshold meanwhile, where "
+                              "signals are means over its positions, and this is not linear in "
+                              "them: no Fourier analysis"
+                : h->has_no_value && h->n_impulses > 0
+                    ? "'%s' has an impulse, whose area the circuit or the formula does not tell: "
+                      "no Fourier analysis"
                 : h->has_no_value ? "'%s' is undefined at some of its times: no Fourier analysis"
                                   : "'%s': the run is shorter than the periods that are to "
                                     "be analysed",

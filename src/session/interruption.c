@@ -5,6 +5,7 @@
  * after the jump makes its two nodes one. The coils connect the nodes that remain. One that jumps is cut off
  * by a switch that has just opened and lies with it on a loop of coils and of what has just opened: around any other
  * loop its flux could not go. */
+#include "impulses.h"
 #include "losses_run.h"
 
 #include "branch_graph.h"
@@ -245,6 +246,9 @@ enum dalcs_status dalcs_note_jump(void *user, const struct dalcs_euler_jump *j) 
     int farthest = farthest_current(s, j);
     if (farthest >= 0 && has_quiet_switch(r, s, j->mode)) {
         DALCS_TRY(r->s->circuit.n_devices > 0 ? find_cuts(r, j) : judge_by_flux(r, j, farthest));
+    }
+    if (r->transient.impulses != NULL) {
+        dalcs_impulses_note(r->transient.impulses, j);
     }
     if (r->transient.losses != NULL) {
         DALCS_TRY(dalcs_losses_run_jump(r->transient.losses, j));

@@ -76,7 +76,8 @@ static bool has_fundamental(const struct account *a, double amplitude, double rm
 static void judge_source(const struct account *a, const struct dalcs_loss *l,
                          struct dalcs_element_losses *e) {
     e->frequency = l->frequency;
-    if (!(l->frequency > 0.0) || !has_whole_periods(a, l->frequency)) {
+    const bool has_impulses = isnan(e->v_rms) || isnan(e->i_rms);
+    if (!(l->frequency > 0.0) || !has_whole_periods(a, l->frequency) || has_impulses) {
         return;
     }
     double volt = hypot(l->c[0], l->s[0]) * 2.0 / a->length;
@@ -88,6 +89,11 @@ static void judge_source(const struct account *a, const struct dalcs_loss *l,
         e->displacement = along / (volt * ampere);
         e->thd = sqrt(fmax(rest, 0.0)) / (sqrt(0.5) * ampere);
     }
+}
+
+/* The square of an impulse has no integral. */
+static double rms_of(const struct account *a, double square, int n_impulses) {
+    return n_impulses > 0 ? (double)NAN : sqrt(square / a->length);
 }
 
 static enum dalcs_status add_element(struct account *a, int k) {
@@ -102,10 +108,10 @@ static enum dalcs_status add_element(struct account *a, int k) {
     *e = (struct dalcs_element_losses){
         .element = dalcs_arena_copy(&a->r->s->arena, d->name, strlen(d->name)),
         .kind = kind_of(d),
-        .v_average = l->v / a->length,
-        .v_rms = sqrt(l->v_square / a->length),
-        .i_average = l->i / a->length,
-        .i_rms = sqrt(l->i_square / a->length),
+        .v_average = (l->v + l->area[0].sum) / a->length,
+        .v_rms = rms_of(a, l->v_square, l->area[0].n),
+        .i_average = (l->i + l->area[1].sum) / a->length,
+        .i_rms = rms_of(a, l->i_square, l->area[1].n),
         .power = energy / a->length,
         .jumps = l->jump,
         .stored_change = is_curved ? energy
@@ -198,7 +204,7 @@ static enum dalcs_status judge_efficiency(struct account *a) {
 static void note_periods(const struct account *a, const struct dalcs_element_losses *e) {
     char text[2][DALCS_QUANTITY_SIZE];
     const double n = a->length * e->frequency;
-    if (!(e->frequency > 0.0) || !isnan(e->thd)) {
+    if (!(e->frequency > 0.0) || !isnan(e->thd) || isnan(e->v_rms) || isnan(e->i_rms)) {
         return;
     }
     if (has_whole_periods(a, e->frequency) && e->i_rms > 0.0) {
@@ -212,6 +218,36 @@ static void note_periods(const struct account *a, const struct dalcs_element_los
                        "no power factor or THD",
                        dalcs_quantity_write(text[0], a->length, "s", 6), n, e->element,
                        dalcs_quantity_write(text[1], 1.0 / e->frequency, "s", 6));
+    }
+}
+
+/* An impulse has an area, but no height. */
+static void tell_impulses(const struct account *a) {
+    const char *first = NULL;
+    const char *unknown = NULL;
+    int n = 0;
+    for (size_t k = 0; k < a->losses->n_elements; k++) {
+        const struct dalcs_element_losses *e = &a->element[k];
+        if (isnan(e->v_rms) || isnan(e->i_rms)) {
+            first = n++ == 0 ? e->element : first;
+        }
+        if (unknown == NULL && (isnan(e->v_average) || isnan(e->i_average))) {
+            unknown = e->element;
+        }
+    }
+    if (n > 0) {
+        dalcs_diag_add(
+            &a->r->s->diag, DALCS_NOTE, NULL, NULL,
+            "losses: '%s' has an impulse of its voltage or current where states jump, one "
+            "of %d element%s: its area counts in the average, and there is no rms, power "
+            "factor or THD",
+            first, n, n == 1 ? "" : "s");
+    }
+    if (unknown != NULL) {
+        dalcs_diag_add(&a->r->s->diag, DALCS_WARNING, NULL,
+                       "a resistance in the loop of the impulse has it pass in a time",
+                       "losses: the circuit does not tell an impulse of '%s': it has no average",
+                       unknown);
     }
 }
 
@@ -278,12 +314,18 @@ enum dalcs_status dalcs_losses_run_report(struct dalcs_losses_run *losses, struc
             dalcs_audit_losses_told(&losses->audit, sum, k, &a.element[l->n_elements - 1]);
         }
     }
+    double *work = dalcs_arena_alloc(&r->s->arena, 2 * (size_t)c->n_nodes, sizeof(double));
+    if (work == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_audit_losses_laws(&losses->audit, sum, a.element, work);
     l->jumps = sum->loops;
     l->turnover += fabs(sum->loops);
     l->balance = l->sources - l->resistors - l->windings - l->diodes - l->switches - l->jumps -
                  l->stored_change;
     DALCS_TRY(judge_efficiency(&a));
     tell(&a);
+    tell_impulses(&a);
     tell_slides(&a, losses);
     report->losses = all;
     report->n_losses++;

@@ -111,14 +111,13 @@ enum dalcs_status dalcs_losses_run_jump(struct dalcs_losses_run *losses,
         return DALCS_OK;
     }
     const struct dalcs_system *s = losses->engine->component[j->system].system;
-    struct dalcs_loss_jump *jump = dalcs_losses_sum_jump(&losses->sum, s->n_pairs);
+    struct dalcs_loss_jump *jump = dalcs_losses_sum_jump(&losses->sum, j->time, s->n_pairs);
     if (jump == NULL) {
         return DALCS_E_NOMEM;
     }
     if (!losses->sum.has_last) {
         note_first(losses, j);
     }
-    jump->time = j->time;
     jump->energy_lost = j->energy_lost;
     jump->is_in_steps = losses->is_euler;
     for (int d = 0; d < s->n_pairs; d++) {

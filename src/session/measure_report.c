@@ -130,6 +130,30 @@ static bool check_window(struct result *r) {
     return true;
 }
 
+/* An impulse has an area, but no height. */
+static bool check_impulses(struct result *r) {
+    const struct dalcs_measured *item = r->item;
+    const char *text = item->card->formula.text;
+    char at[DALCS_QUANTITY_SIZE];
+    if (item->impulses.n == 0) {
+        return true;
+    }
+    moment(r, at, item->impulses.first);
+    if (item->card->kind == DALCS_MEASURE_RMS) {
+        fail(r, "'%s' has an impulse at %s: the square of an impulse has no integral", text, at);
+    } else if (item->card->kind > DALCS_MEASURE_INTEGRAL) {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, &item->card->where, NULL,
+                       "%s: '%s' has an impulse at %s, which has no height: this is its extreme "
+                       "beside impulses",
+                       item->card->name, text, at);
+    } else if (isnan(item->impulses.sum)) {
+        fail(r, "'%s' has an impulse at %s, whose area %s", text, at,
+             r->measuring->is_euler ? "implicit Euler spreads over its steps; method=auto counts it"
+                                    : "the circuit or the formula does not tell");
+    }
+    return r->measurement->failure == NULL;
+}
+
 /* Sums and extremes. */
 static void tell_statistic(struct result *r) {
     const struct dalcs_measured *item = r->item;
@@ -139,6 +163,9 @@ static void tell_statistic(struct result *r) {
         return;
     }
     if (!check_window(r)) {
+        return;
+    }
+    if (!check_impulses(r)) {
         return;
     }
     switch (item->card->kind) {
@@ -159,7 +186,7 @@ static void tell_statistic(struct result *r) {
         detail(r, "with", item->most);
         return;
     case DALCS_MEASURE_AVERAGE:
-        give(r, item->integral / length);
+        give(r, (item->integral + item->impulses.sum) / length);
         break;
     case DALCS_MEASURE_RMS:
         give(r, sqrt(item->square / length));
@@ -168,7 +195,7 @@ static void tell_statistic(struct result *r) {
         give(r, item->most - item->least);
         break;
     default:
-        give(r, item->integral);
+        give(r, item->integral + item->impulses.sum);
         break;
     }
     detail(r, "from", item->begin);

@@ -93,8 +93,12 @@ enum dalcs_status dalcs_measures_prepare(struct dalcs_measures *measures, struct
     DALCS_TRY(dalcs_measuring_setup(&measures->measuring, c, analysis, c->analyses.transient.start,
                                     c->analyses.transient.stop));
     measures->wanted = true;
-    measures->begin = dalcs_measuring_begin(&measures->measuring);
+    measures->measuring.near = radau != NULL ? radau->resolution : 0.0;
+    measures->measuring.is_euler = radau == NULL;
+    /* what is just before a window is known, too */
+    measures->begin = dalcs_measuring_begin(&measures->measuring) - 4.0 * measures->measuring.near;
     measures->losses = r->transient.losses;
+    measures->impulses = r->transient.impulses;
     return radau != NULL ? ask_sides(measures, radau) : DALCS_OK;
 }
 
@@ -176,6 +180,20 @@ static double longest(const struct dalcs_measures *measures, double t) {
     return length;
 }
 
+/* Of the measured signals. */
+static bool find_impulses(struct dalcs_measures *measures, double t) {
+    struct dalcs_measuring *m = &measures->measuring;
+    const struct dalcs_circuit_results *results = &m->circuit->results;
+    if (measures->impulses == NULL || !dalcs_impulses_at(measures->impulses, t)) {
+        return false;
+    }
+    for (int k = 0; k < results->n_measured; k++) {
+        m->impulse[k] =
+            dalcs_impulses_of(measures->impulses, &results->signal[results->measured[k]]);
+    }
+    return true;
+}
+
 static enum dalcs_status hand_over(struct dalcs_measures *measures, double from, double to) {
     struct dalcs_measuring *m = &measures->measuring;
     double time[DALCS_STRETCH_NODES];
@@ -191,7 +209,7 @@ static enum dalcs_status hand_over(struct dalcs_measures *measures, double from,
                    (size_t)n_done * sizeof(double));
         }
     }
-    dalcs_measuring_stretch(m, from, to);
+    dalcs_measuring_stretch(m, from, to, find_impulses(measures, from));
     if (measures->losses != NULL) {
         dalcs_losses_run_stretch(measures->losses, &m->stretch);
     }
@@ -257,6 +275,20 @@ static void add_constant_stretch(struct dalcs_measures *measures) {
     dalcs_losses_run_stretch(measures->losses, &m->stretch);
 }
 
+/* A step of implicit Euler holds an impulse as a value, whose straight lines to others have another area. */
+static bool find_blurred(struct dalcs_measures *measures) {
+    struct dalcs_measuring *m = &measures->measuring;
+    struct dalcs_impulses *impulses = measures->impulses;
+    if (impulses == NULL || !impulses->is_noted || !find_impulses(measures, impulses->time)) {
+        return false;
+    }
+    for (int k = 0; k < m->circuit->results.n_measured; k++) {
+        m->impulse[k] = m->impulse[k] != 0.0 ? (double)NAN : 0.0;
+    }
+    impulses->is_noted = false;
+    return true;
+}
+
 void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_euler *e) {
     struct dalcs_measuring *m = &measures->measuring;
     if (!measures->wanted) {
@@ -273,7 +305,7 @@ void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_eul
                 measures->before[k] + theta * (measures->now[k] - measures->before[k]);
         }
     }
-    dalcs_measuring_stretch(m, e->t_before, e->t);
+    dalcs_measuring_stretch(m, e->t_before, e->t, find_blurred(measures));
     if (measures->losses != NULL) {
         add_constant_stretch(measures);
     }

@@ -4,6 +4,7 @@
 
 #include "audit_measures.h"
 #include "edges_ahead.h"
+#include "impulses.h"
 #include "measuring.h"
 #include "rows.h"
 #include "session_internal.h"
@@ -23,6 +24,7 @@ struct dalcs_measures {
     double begin;                           /* s, before which nothing is; INFINITY without .meas */
     double next_edge;                       /* s, of the stimuli; INFINITY without .meas */
     struct dalcs_losses_run *losses;        /* NULL: not asked for */
+    struct dalcs_impulses *impulses;        /* borrowed */
     double *before, *now; /* [n_measured] of euler, at the ends of a step; or of a row */
     struct dalcs_audit_measures audit;
     struct dalcs_side_means sides; /* of radau */

@@ -13,6 +13,7 @@
 #include <stdatomic.h>
 
 struct dalcs_cosimulation;
+struct dalcs_impulses;
 struct dalcs_logic_run;
 struct dalcs_losses_run;
 struct dalcs_orbit_point;
@@ -189,6 +190,7 @@ struct dalcs_run {
 
     struct dalcs_run_transient {                 /* of the one that runs */
         struct dalcs_losses_run *losses;         /* NULL: none */
+        struct dalcs_impulses *impulses;         /* NULL: nothing asks for them */
         struct dalcs_cosimulation *cosimulation; /* likewise */
     } transient;
 

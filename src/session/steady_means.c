@@ -35,29 +35,74 @@ static enum dalcs_status find_longest(struct dalcs_steady_means *m) {
     return DALCS_OK;
 }
 
+/* ---- Jumps --------------------------------------------------------------------------------------- */
+
+void dalcs_steady_means_close(struct dalcs_steady_means *m) {
+    if (!m->impulses.is_noted || !dalcs_impulses_at(&m->impulses, m->impulses.time)) {
+        return;
+    }
+    for (int k = 0; k < m->impulses.network->n_outputs; k++) {
+        const double area = dalcs_impulses_of(&m->impulses, &m->circuit->results.signal[k]);
+        m->sum[k] += area;
+        m->has_impulse[k] = m->has_impulse[k] || area != 0.0;
+    }
+    m->impulses.is_noted = false;
+}
+
+/* Those of all parts at one time belong together. */
+static enum dalcs_status note_jump(void *user, const struct dalcs_euler_jump *jump) {
+    struct dalcs_steady_means *m = user;
+    if (m->impulses.is_noted && fabs(m->impulses.time - jump->time) > m->impulses.near) {
+        dalcs_steady_means_close(m);
+    }
+    dalcs_impulses_note(&m->impulses, jump);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_steady_means_listen(struct dalcs_steady_means *m,
+                                            const struct dalcs_circuit *circuit,
+                                            const struct dalcs_network *network,
+                                            struct dalcs_euler *engine, double near) {
+    const size_t n = (size_t)network->n_outputs + 1;
+    m->circuit = circuit;
+    m->sum = dalcs_alloc(n, sizeof(double));
+    m->square = dalcs_alloc(n, sizeof(double));
+    m->has_impulse = dalcs_alloc(n, sizeof(bool));
+    if (m->sum == NULL || m->square == NULL || m->has_impulse == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    if (circuit->n_devices == 0) {
+        return DALCS_OK; /* of a system file, whose signals are of no elements */
+    }
+    engine->listener.jump_user = m;
+    engine->listener.on_jump = note_jump;
+    return dalcs_impulses_setup(&m->impulses, circuit, network, near);
+}
+
+double dalcs_steady_means_average(const struct dalcs_steady_means *m, int output, double duration) {
+    return m->sum[output] / duration;
+}
+
+double dalcs_steady_means_rms(const struct dalcs_steady_means *m, int output, double duration) {
+    return m->has_impulse[output] ? (double)NAN : sqrt(m->square[output] / duration);
+}
+
+/* ---- Stretches ----------------------------------------------------------------------------------- */
+
 enum dalcs_status dalcs_steady_means_setup(struct dalcs_steady_means *m,
                                            const struct dalcs_circuit *circuit,
                                            const struct dalcs_network *network,
                                            struct dalcs_radau *radau) {
-    const size_t n = (size_t)network->n_outputs + 1;
-    *m = (struct dalcs_steady_means){.circuit = circuit};
     m->rule = dalcs_stretch_rule;
-    m->sum = dalcs_alloc(n, sizeof(double));
-    m->square = dalcs_alloc(n, sizeof(double));
-    enum dalcs_status status =
-        m->sum != NULL && m->square != NULL ? find_longest(m) : DALCS_E_NOMEM;
+    enum dalcs_status status = find_longest(m);
     if (status == DALCS_OK) {
         status = dalcs_edges_ahead_of_all(&m->edges, circuit->stimulus, circuit->n_stimuli);
     }
     if (status == DALCS_OK) {
         status = dalcs_rows_setup(&m->rows, radau, NULL, network->n_outputs);
     }
-    if (status != DALCS_OK) {
-        dalcs_steady_means_finish(m);
-        return status;
-    }
-    m->next_edge = dalcs_edges_ahead_after(&m->edges, 0.0);
-    return DALCS_OK;
+    m->next_edge = status == DALCS_OK ? dalcs_edges_ahead_after(&m->edges, 0.0) : 0.0;
+    return status;
 }
 
 void dalcs_steady_means_finish(struct dalcs_steady_means *m) {
@@ -67,6 +112,8 @@ void dalcs_steady_means_finish(struct dalcs_steady_means *m) {
     dalcs_edges_ahead_finish(&m->edges);
     free(m->sum);
     free(m->square);
+    free(m->has_impulse);
+    dalcs_impulses_finish(&m->impulses);
     *m = (struct dalcs_steady_means){0};
 }
 

@@ -140,16 +140,15 @@ static enum dalcs_status read_point(struct dalcs_steady *st, const struct pass *
 /* All periods once the run has started. */
 static enum dalcs_status go_with_means(struct dalcs_steady *st, struct pass *p) {
     const struct dalcs_session *s = st->run->s;
-    struct dalcs_steady_means means;
-    DALCS_TRY(dalcs_steady_means_setup(&means, &s->circuit, &s->network, p->radau));
-    p->means = &means;
-    enum dalcs_status status = go(p);
+    const struct dalcs_steady_means *means = p->means;
     const double duration = p->radau->options.stop;
+    DALCS_TRY(dalcs_steady_means_setup(p->means, &s->circuit, &s->network, p->radau));
+    enum dalcs_status status = go(p);
+    dalcs_steady_means_close(p->means);
     for (int k = 0; k < s->network.n_outputs; k++) {
-        st->found.average[k] = means.sum[k] / duration;
-        st->found.rms[k] = sqrt(means.square[k] / duration);
+        st->found.average[k] = dalcs_steady_means_average(means, k, duration);
+        st->found.rms[k] = dalcs_steady_means_rms(means, k, duration);
     }
-    dalcs_steady_means_finish(&means);
     dalcs_recorder_states(&s->network, p->euler, st->found.state);
     return status;
 }
@@ -173,10 +172,21 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct pass *p,
         observer = dalcs_variation_observer(&variation);
         p->euler->listener.observer = &observer;
     }
-    enum dalcs_status status = start(st, p);
+    struct dalcs_steady_means means = {0};
+    const struct dalcs_session *s = st->run->s;
+    enum dalcs_status status = DALCS_OK;
+    if (asked == DALCS_STEADY_MEANS) {
+        p->means = &means;
+        status = dalcs_steady_means_listen(&means, &s->circuit, &s->network, p->euler,
+                                           p->radau->resolution);
+    }
+    status = status == DALCS_OK ? start(st, p) : status;
     if (status == DALCS_OK) {
         status = asked == DALCS_STEADY_MEANS ? go_with_means(st, p) : go(p);
     }
+    p->means = NULL;
+    p->euler->listener.on_jump = NULL;
+    dalcs_steady_means_finish(&means);
     if (status == DALCS_OK) {
         status = read_point(st, p);
     }

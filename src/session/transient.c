@@ -63,6 +63,7 @@ struct parts {
     struct dalcs_energy energy;
     struct dalcs_measures measures;
     struct dalcs_losses_run losses;
+    struct dalcs_impulses impulses;
     struct dalcs_audit_run audit;
     struct dalcs_logic_run logic;
     struct dalcs_cosimulation cosimulation;
@@ -144,8 +145,8 @@ static enum dalcs_status set_up_euler(struct dalcs_run *r, struct parts *p) {
     const double stop = s->circuit.analyses.transient.stop;
     struct dalcs_euler *e = &p->euler;
     DALCS_TRY(dalcs_euler_setup(e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
-    e->listener.detects_jumps =
-        r->options->record || dalcs_run_keeps_ledger(r) || dalcs_run_wants_losses(r);
+    e->listener.detects_jumps = r->options->record || dalcs_run_keeps_ledger(r) ||
+                                dalcs_run_wants_losses(r) || s->circuit.results.n_measured > 0;
     e->listener.jump_user = r;
     e->listener.on_jump = dalcs_note_jump;
     e->listener.open_user = &r->nonunique.undetermined;
@@ -168,6 +169,12 @@ static enum dalcs_status set_up_others(struct dalcs_run *r, struct parts *p) {
     if (dalcs_run_wants_losses(r)) {
         DALCS_TRY(dalcs_losses_run_start(&p->losses, r, &p->euler, p->is_euler,
                                          p->is_euler ? 0.0 : p->radau.resolution));
+    }
+    if (r->s->circuit.results.n_measured > 0) {
+        DALCS_TRY(dalcs_impulses_setup(&p->impulses, &r->s->circuit, &r->s->network,
+                                       p->is_euler ? 0.0 : p->radau.resolution));
+        r->transient.impulses = &p->impulses;
+        p->losses.sum.impulses = p->is_euler ? NULL : &p->impulses; /* in its steps */
     }
     if (dalcs_run_keeps_ledger(r)) {
         DALCS_TRY(dalcs_energy_setup(&p->energy, &p->euler, radau_of(p)));
@@ -239,6 +246,8 @@ static void finish(struct dalcs_run *r, struct parts *p) {
     dalcs_measures_finish(&p->measures);
     dalcs_losses_run_finish(&p->losses);
     r->transient.losses = NULL;
+    dalcs_impulses_finish(&p->impulses);
+    r->transient.impulses = NULL;
     dalcs_energy_finish(&p->energy);
     dalcs_radau_finish(&p->radau);
     dalcs_euler_finish(&p->euler);

@@ -95,3 +95,19 @@ void dalcs_harmonics_add(struct dalcs_harmonics *h, const struct dalcs_stretch *
         h->has_no_value = true;
     }
 }
+
+void dalcs_harmonics_add_impulses(struct dalcs_harmonics *h, const struct dalcs_stretch *stretch,
+                                  double near) {
+    const double at = stretch->from;
+    if (stretch->impulse == NULL || at < h->from - near || at >= h->to - near) {
+        return;
+    }
+    const double area = dalcs_stretch_impulse(stretch, &h->card->formula);
+    if (area != 0.0) {
+        const double mean = area / (h->to - h->from);
+        add_value(h, at, mean);
+        h->scale = isnan(mean) ? h->scale : fmax(h->scale, fabs(mean));
+        h->n_impulses++;
+    }
+    h->has_no_value = h->has_no_value || isnan(area);
+}

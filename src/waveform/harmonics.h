@@ -13,8 +13,9 @@ struct dalcs_harmonics {
     double scale;
     double *cosine, *sine; /* [n_harmonics + 1] integrals over [from, to], over its length */
     bool has_no_value;
-    int mean;      /* of the formula over the sides of a slide; -1: none */
-    bool is_means; /* it is made of means over the sides of a slide, and not linear in them */
+    int n_impulses; /* so many of its formula */
+    int mean;       /* of the formula over the sides of a slide; -1: none */
+    bool is_means;  /* it is made of means over the sides of a slide, and not linear in them */
 };
 
 /* For a run that ends at stop, in s; is_orbit: that is a period, whose multiple of its frequency next to the card's is
@@ -27,5 +28,9 @@ void dalcs_harmonics_finish(struct dalcs_harmonics *h);
 /* sides: of its mean, where that slides; else NULL. */
 void dalcs_harmonics_add(struct dalcs_harmonics *h, const struct dalcs_stretch *stretch,
                          const struct dalcs_side_means *sides);
+
+/* Those at the start of the stretch, of [from, to); `near`: s, one that close to an end is there. */
+void dalcs_harmonics_add_impulses(struct dalcs_harmonics *h, const struct dalcs_stretch *stretch,
+                                  double near);
 
 #endif

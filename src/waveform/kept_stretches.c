@@ -8,6 +8,9 @@
 
 enum { N = DALCS_STRETCH_NODES };
 
+/* What each is: impulses with or without values before them, a stretch that slides or one that does not. */
+static const double plain = 0.0, slides = 1.0, impulses = 2.0, first_impulses = 3.0;
+
 struct dalcs_kept_stretches *dalcs_kept_stretches_create(const struct dalcs_stretch *like) {
     struct dalcs_kept_stretches *kept = dalcs_alloc(1, sizeof(*kept));
     if (kept != NULL) {
@@ -24,33 +27,59 @@ void dalcs_kept_stretches_destroy(struct dalcs_kept_stretches *kept) {
     }
 }
 
-void dalcs_kept_stretches_add(struct dalcs_kept_stretches *kept,
-                              const struct dalcs_stretch *stretch) {
-    size_t n = N * (size_t)stretch->n_signals;
+/* NULL: out of memory. */
+static double *one_more(struct dalcs_kept_stretches *kept) {
     if (kept->out_of_memory ||
         dalcs_grow(&kept->value, &kept->capacity, (kept->n + 1) * kept->n_values, sizeof(double)) !=
             DALCS_OK) {
         kept->out_of_memory = true;
+        return NULL;
+    }
+    return kept->value + kept->n++ * kept->n_values;
+}
+
+void dalcs_kept_stretches_add(struct dalcs_kept_stretches *kept,
+                              const struct dalcs_stretch *stretch) {
+    size_t n = N * (size_t)stretch->n_signals;
+    double *to = one_more(kept);
+    if (to == NULL) {
         return;
     }
-    double *to = kept->value + kept->n++ * kept->n_values;
     bool is_point = stretch->from == stretch->to;
     to[0] = stretch->from;
     to[1] = stretch->to;
-    to[2] = stretch->slides ? 1.0 : 0.0;
+    to[2] = stretch->slides ? slides : plain;
     memcpy(to + 3, is_point ? stretch->coefficient : stretch->value, n * sizeof(double));
     if (stretch->imaginary != NULL) {
         memcpy(to + 3 + n, stretch->imaginary, n * sizeof(double));
     }
 }
 
-void dalcs_kept_stretches_load(const struct dalcs_kept_stretches *kept, size_t k,
+void dalcs_kept_stretches_add_impulses(struct dalcs_kept_stretches *kept,
+                                       const struct dalcs_stretch *stretch, double at) {
+    const size_t n = (size_t)stretch->n_signals;
+    double *to = one_more(kept);
+    if (to != NULL) {
+        to[0] = to[1] = at;
+        to[2] = stretch->left != NULL ? impulses : first_impulses;
+        memcpy(to + 3, stretch->impulse, n * sizeof(double));
+        memcpy(to + 3 + n, stretch->left != NULL ? stretch->left : stretch->impulse,
+               n * sizeof(double));
+    }
+}
+
+bool dalcs_kept_stretches_load(const struct dalcs_kept_stretches *kept, size_t k,
                                struct dalcs_stretch *stretch) {
     size_t n = N * (size_t)stretch->n_signals;
     const double *from = kept->value + k * kept->n_values;
+    if (from[2] >= impulses) {
+        stretch->impulse = from + 3;
+        stretch->left = from[2] == impulses ? from + 3 + stretch->n_signals : NULL;
+        return true;
+    }
     stretch->from = from[0];
     stretch->to = from[1];
-    stretch->slides = from[2] != 0.0;
+    stretch->slides = from[2] == slides;
     if (stretch->from == stretch->to) {
         memcpy(stretch->coefficient, from + 3, n * sizeof(double));
     } else {
@@ -62,4 +91,5 @@ void dalcs_kept_stretches_load(const struct dalcs_kept_stretches *kept, size_t k
     if (stretch->imaginary != NULL) {
         memcpy(stretch->imaginary, from + 3 + n, n * sizeof(double));
     }
+    return false;
 }

@@ -8,9 +8,8 @@
 
 struct dalcs_kept_stretches {
     size_t n;
-    size_t
-        n_values; /* of each: its two ends, whether it slides, then what the signals are at the nodes */
-    double *value; /* [n n_values] heap */
+    size_t n_values; /* of each: its two ends, what it is, then what the signals are at the nodes */
+    double *value;   /* [n n_values] heap */
     size_t capacity;
     bool out_of_memory; /* something is missing */
 };
@@ -23,8 +22,12 @@ void dalcs_kept_stretches_destroy(struct dalcs_kept_stretches *kept);
 void dalcs_kept_stretches_add(struct dalcs_kept_stretches *kept,
                               const struct dalcs_stretch *stretch);
 
-/* Makes the stretch the k-th of those that were kept. */
-void dalcs_kept_stretches_load(const struct dalcs_kept_stretches *kept, size_t k,
+/* Keeps the impulses at the start of the next one. */
+void dalcs_kept_stretches_add_impulses(struct dalcs_kept_stretches *kept,
+                                       const struct dalcs_stretch *stretch, double at);
+
+/* Makes the stretch the k-th of those that were kept; or, true, gives it the impulses that are the k-th. */
+bool dalcs_kept_stretches_load(const struct dalcs_kept_stretches *kept, size_t k,
                                struct dalcs_stretch *stretch);
 
 #endif

@@ -32,10 +32,7 @@ enum dalcs_status dalcs_losses_sum_setup(struct dalcs_losses_sum *sum,
                                      .to = fmin(circuit->results.losses->to, stop),
                                      .near = near};
     sum->device = dalcs_alloc(n, sizeof(*sum->device));
-    sum->impulse = dalcs_alloc(n, sizeof(double));
-    sum->node = dalcs_alloc((size_t)circuit->n_nodes, sizeof(double));
-    sum->n_open = dalcs_alloc((size_t)circuit->n_nodes, sizeof(int));
-    if (sum->device == NULL || sum->impulse == NULL || sum->node == NULL || sum->n_open == NULL) {
+    if (sum->device == NULL) {
         dalcs_losses_sum_finish(sum);
         return DALCS_E_NOMEM;
     }
@@ -76,9 +73,6 @@ void dalcs_losses_sum_finish(struct dalcs_losses_sum *sum) {
     }
     free(sum->jump);
     free(sum->device);
-    free(sum->impulse);
-    free(sum->node);
-    free(sum->n_open);
     *sum = (struct dalcs_losses_sum){0};
 }
 
@@ -93,7 +87,10 @@ void dalcs_losses_sum_before_start(struct dalcs_losses_sum *sum, const double *v
     sum->has_last = true;
 }
 
-struct dalcs_loss_jump *dalcs_losses_sum_jump(struct dalcs_losses_sum *sum, int n) {
+struct dalcs_loss_jump *dalcs_losses_sum_jump(struct dalcs_losses_sum *sum, double time, int n) {
+    if (sum->n_jumps > 0 && fabs(sum->jump[0].time - time) > sum->near) {
+        sum->n_jumps = 0; /* no stretch has begun there */
+    }
     if (sum->n_jumps == sum->jump_capacity) {
         int capacity = 2 * sum->jump_capacity + 4;
         struct dalcs_loss_jump *more =
@@ -113,6 +110,7 @@ struct dalcs_loss_jump *dalcs_losses_sum_jump(struct dalcs_losses_sum *sum, int 
         jump->capacity = jump->impulse != NULL ? n : 0;
     }
     jump->n = 0;
+    jump->time = time;
     if (n > jump->capacity) {
         return NULL;
     }
@@ -136,6 +134,24 @@ static void switch_by_table(const struct dalcs_losses_sum *sum, int k, bool on) 
     }
 }
 
+static void add_areas(const struct dalcs_losses_sum *sum, double t) {
+    const struct dalcs_circuit *c = sum->circuit;
+    if (sum->impulses == NULL || !dalcs_impulses_at(sum->impulses, t)) {
+        return;
+    }
+    for (int k = 0; k < c->n_devices; k++) {
+        const struct dalcs_loss_device *of = &c->results.losses->device[k];
+        const int measured[2] = {of->voltage, of->current};
+        for (int i = 0; i < 2 && of->voltage >= 0; i++) {
+            const int signal = c->results.measured[measured[i]];
+            const double area = dalcs_impulses_of(sum->impulses, &c->results.signal[signal]);
+            sum->device[k].area[i].n += area != 0.0 ? 1 : 0;
+            sum->device[k].area[i].sum += area;
+            sum->device[k].area[i].size += fabs(area);
+        }
+    }
+}
+
 /* Between the last stretch and the one from time t on. */
 static void pass(struct dalcs_losses_sum *sum, double t, const bool *on) {
     bool is_inside = t >= sum->from - sum->near && t < sum->to - sum->near;
@@ -146,7 +162,9 @@ static void pass(struct dalcs_losses_sum *sum, double t, const bool *on) {
         sum->device[k].is_on = on[k];
     }
     sum->knows_sides = true;
-    if (is_inside && sum->n_jumps > 0) {
+    /* those of times that were passed over are of no stretch */
+    if (is_inside && sum->n_jumps > 0 && fabs(sum->jump[0].time - t) <= sum->near) {
+        add_areas(sum, t);
         dalcs_losses_sum_take_jumps(sum);
     }
     sum->n_jumps = 0;

@@ -6,6 +6,7 @@
 #define DALCS_LOSSES_SUM_H
 
 #include "circuit.h"
+#include "impulses.h"
 #include "side_means.h"
 #include "stretch.h"
 
@@ -19,6 +20,12 @@ struct dalcs_loss {
     double switching;       /* J, by tables */
     int n_on, n_off, n_clamped;
     bool is_on;
+
+    struct dalcs_loss_area { /* of the impulses of its voltage and of its current */
+        int n;
+        double sum, size; /* V s, A s, and of their magnitudes; NAN: not known */
+    } area[2];
+
     double frequency;  /* Hz, of a source with a period; 0: none */
     double c[2], s[2]; /* integrals of v and i times cos and sin of its fundamental */
     int mean[3];       /* of v^2, i^2, v i over the sides of a slide; -1: as products */
@@ -43,11 +50,9 @@ struct dalcs_losses_sum {
     bool has_last, has_begun, knows_sides;
     struct dalcs_loss *device; /* [n_devices] */
     int n_jumps, jump_capacity;
-    struct dalcs_loss_jump *jump; /* since the last stretch */
-    double *impulse;              /* [n_devices] work: C, then Wb */
-    double *node;                 /* [n_nodes] work */
-    int *n_open;                  /* [n_nodes] work */
-    double loops;                 /* J lost in jumps where no switch or diode carries them */
+    struct dalcs_loss_jump *jump;    /* since the last stretch */
+    struct dalcs_impulses *impulses; /* borrowed; NULL: of implicit Euler, whose steps hold them */
+    double loops;                    /* J lost in jumps where no switch or diode carries them */
     const struct dalcs_side_means *sides; /* borrowed; NULL: nothing slides */
 };
 
@@ -68,7 +73,7 @@ bool dalcs_losses_sum_slides(const struct dalcs_losses_sum *sum, int device);
 void dalcs_losses_sum_before_start(struct dalcs_losses_sum *sum, const double *value);
 
 /* Room for one more jump with n impulses; NULL: out of memory. */
-struct dalcs_loss_jump *dalcs_losses_sum_jump(struct dalcs_losses_sum *sum, int n);
+struct dalcs_loss_jump *dalcs_losses_sum_jump(struct dalcs_losses_sum *sum, double time, int n);
 
 /* Stretches follow each other; on[n_devices]: conducts, or is closed, in this one. */
 void dalcs_losses_sum_stretch(struct dalcs_losses_sum *sum, const struct dalcs_stretch *stretch,

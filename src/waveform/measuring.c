@@ -58,14 +58,34 @@ static void add_sides(const struct dalcs_measuring *m, struct dalcs_measured *it
     }
 }
 
-static void add_stretch(const struct dalcs_measuring *m, struct dalcs_measured *item, double from,
-                        double to) {
+/* Those at the start of the stretch, of a window [from, to): windows side by side add up. */
+static void add_impulses(const struct dalcs_measuring *m, struct dalcs_measured *item, double from,
+                         double to) {
+    const double at = m->stretch.from;
+    struct dalcs_measured_impulses *impulses = &item->impulses;
+    if (m->stretch.impulse == NULL || at < from - m->near || at >= to - m->near) {
+        return;
+    }
+    const double area = dalcs_stretch_impulse(&m->stretch, &item->card->formula);
+    if (area != 0.0) {
+        impulses->first = impulses->n == 0 ? at : impulses->first;
+        impulses->n++;
+        impulses->sum += area;
+    }
+}
+
+static void add_stretch(const struct dalcs_measuring *m, struct dalcs_measured *item) {
     const struct dalcs_instant *trig = &item->instant[0];
     const struct dalcs_instant *targ = &item->instant[1];
+    double from = fmax(m->start, item->from);
+    double to = fmin(m->stop, item->to);
     if (trig->card->kind != DALCS_INSTANT_NONE) {
         from = trig->found ? fmax(from, trig->time) : INFINITY;
         to = targ->found ? fmin(to, targ->time) : to;
     }
+    add_impulses(m, item, from, to);
+    from = fmax(m->stretch.from, from);
+    to = fmin(m->stretch.to, to);
     if (from < to) {
         item->begin = fmin(item->begin, from);
         item->end = to;
@@ -143,12 +163,30 @@ static void measure(const struct dalcs_measuring *m, struct dalcs_measured *item
         }
     }
     if (card->kind <= DALCS_MEASURE_MAX_AT) {
-        add_stretch(m, item, from, to);
+        add_stretch(m, item);
     }
 }
 
-void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to) {
+/* What was just before, while the stretch before is still there. */
+static void take_impulses(struct dalcs_measuring *m, double from) {
     struct dalcs_stretch *s = &m->stretch;
+    const bool is_next = m->has_row && fabs(s->to - from) <= m->near;
+    for (int k = 0; k < s->n_signals; k++) {
+        m->row[k] = dalcs_stretch_at(s->coefficient[k], 1.0);
+    }
+    s->impulse = m->impulse;
+    s->left = is_next ? m->row : NULL;
+    if (m->kept != NULL) {
+        dalcs_kept_stretches_add_impulses(m->kept, s, from);
+    }
+}
+
+void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to, bool has_impulses) {
+    struct dalcs_stretch *s = &m->stretch;
+    s->impulse = NULL;
+    if (has_impulses) {
+        take_impulses(m, from);
+    }
     s->from = from;
     s->to = to;
     s->slides = m->kept != NULL && m->sides != NULL && dalcs_side_means_any_slides(m->sides);
@@ -168,7 +206,9 @@ void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to) 
         const bool slides = m->sides != NULL && dalcs_side_means_slides(m->sides, h->mean);
         h->is_means = h->is_means || (h->mean < 0 && dalcs_measuring_is_bent(m, &h->card->formula));
         dalcs_harmonics_add(h, s, slides ? m->sides : NULL);
+        dalcs_harmonics_add_impulses(h, s, m->near);
     }
+    m->has_row = true;
     if (m->watch != NULL) {
         m->watch->end(m->watch->user, m, -1);
     }
@@ -250,6 +290,7 @@ static void measure_point(struct dalcs_measuring *m, double at, const double *re
 void dalcs_measuring_before_start(struct dalcs_measuring *m, const double *value) {
     if (m->start <= 0.0) {
         measure_point(m, 0.0, value, NULL);
+        m->has_row = true;
     }
 }
 
@@ -262,7 +303,7 @@ static void join_rows(struct dalcs_measuring *m, double at, const double *re, co
         m->stretch.to = is_long ? 2.0 * from : at;
         dalcs_measuring_fill_stretch(m, at, re, im);
         from = m->stretch.to;
-        dalcs_measuring_stretch(m, m->stretch.from, m->stretch.to);
+        dalcs_measuring_stretch(m, m->stretch.from, m->stretch.to, false);
     }
 }
 
@@ -329,12 +370,15 @@ bool dalcs_measuring_late(struct dalcs_measuring *m, int k, const double *result
     }
     s->result = result;
     for (size_t i = 0; i < m->kept->n && is_known; i++) {
-        dalcs_kept_stretches_load(m->kept, i, s);
+        if (dalcs_kept_stretches_load(m->kept, i, s)) {
+            continue; /* the next one begins with them */
+        }
         if (s->from == s->to) {
             measure_at_point(m, item);
         } else {
             measure_watched(m, k);
         }
+        s->impulse = NULL;
     }
     if (item->waits) {
         evaluate(m, item, s->to);

@@ -19,6 +19,13 @@ struct dalcs_measured {
     double integral, square;
     double least, least_at, most, most_at;
     double scale; /* largest magnitude so far */
+
+    struct dalcs_measured_impulses {
+        int n;
+        double first; /* s, of the first one */
+        double sum;   /* of their areas, which belong to an integral besides; NAN: one has none */
+    } impulses;
+
     int mean; /* of its formula, or of the square of that, over the sides of a slide; -1: none */
     bool is_means; /* it is made of means over the sides of a slide, and not linear in them */
     bool has_value, has_no_value;
@@ -39,6 +46,8 @@ struct dalcs_measuring {
     const struct dalcs_circuit *circuit;
     enum dalcs_measured_analysis analysis;
     double start, stop; /* what is measured, whatever cards say */
+    double near;        /* s; an impulse that close to a window's end is there */
+    bool is_euler;
     struct dalcs_stretch_rule rule;
     struct dalcs_stretch stretch; /* to be filled */
     double (*values)[DALCS_STRETCH_NODES];
@@ -46,7 +55,8 @@ struct dalcs_measuring {
     struct dalcs_measured *item; /* [circuit->results.n_measures], those of other analyses unused */
     int n_harmonics;
     struct dalcs_harmonics *harmonics; /* one for each .four; in a .tran and a period */
-    double *row, *row_imaginary;       /* [n_signals] the last one */
+    double *row, *row_imaginary; /* [n_signals] the last one; in time what was before a jump */
+    double *impulse;             /* [n_signals] to be filled; those at the start of a stretch */
     struct dalcs_kept_stretches *kept; /* all of the run; NULL: no measurement is late */
     bool has_row;
     double row_at;
@@ -79,8 +89,8 @@ bool dalcs_measuring_adds_sides(const struct dalcs_measuring *m, const struct da
 double dalcs_measuring_begin(const struct dalcs_measuring *m);
 
 /* m->stretch.value[circuit->n_measured] has been filled, at the nodes between from and to. Stretches
- * follow each other. */
-void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to);
+ * follow each other. has_impulses: m->impulse has been filled, too. */
+void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to, bool has_impulses);
 
 /* Before the first stretch: value[n_measured] before an edge at t = 0. */
 void dalcs_measuring_before_start(struct dalcs_measuring *m, const double *value);

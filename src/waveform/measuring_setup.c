@@ -72,11 +72,12 @@ enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
     m->values = dalcs_alloc(3 * n_signals, sizeof(*m->values));
     m->row = dalcs_alloc(n_signals, sizeof(double));
     m->row_imaginary = dalcs_alloc(n_signals, sizeof(double));
+    m->impulse = dalcs_alloc(n_signals, sizeof(double));
     m->item = dalcs_alloc((size_t)m->n, sizeof(*m->item));
-    enum dalcs_status status =
-        m->values == NULL || m->row == NULL || m->row_imaginary == NULL || m->item == NULL
-            ? DALCS_E_NOMEM
-            : set_up_harmonics(m, stop);
+    enum dalcs_status status = m->values == NULL || m->row == NULL || m->row_imaginary == NULL ||
+                                       m->impulse == NULL || m->item == NULL
+                                   ? DALCS_E_NOMEM
+                                   : set_up_harmonics(m, stop);
     if (status != DALCS_OK) {
         dalcs_measuring_finish(m);
         return status;
@@ -106,6 +107,7 @@ void dalcs_measuring_finish(struct dalcs_measuring *m) {
     free(m->values);
     free(m->row);
     free(m->row_imaginary);
+    free(m->impulse);
     free(m->item);
     *m = (struct dalcs_measuring){0};
 }

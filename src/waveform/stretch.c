@@ -111,7 +111,7 @@ struct place {
     double x;
 };
 
-static double complex_part(enum dalcs_signal_part part, double re, double im) {
+double dalcs_signal_part_of(enum dalcs_signal_part part, double re, double im) {
     static const double degrees = 57.295779513082320877;
     switch (part) {
     case DALCS_PART_DECIBEL:
@@ -135,7 +135,9 @@ static double signal_at(const struct dalcs_signal_formula_point *point, int inde
                                  : dalcs_stretch_at(stretch->coefficient[index], place->x);
     double im =
         stretch->imaginary != NULL ? dalcs_stretch_at(stretch->imaginary[index], place->x) : 0.0;
-    return stretch->imaginary == NULL && part == DALCS_PART_PLAIN ? re : complex_part(part, re, im);
+    return stretch->imaginary == NULL && part == DALCS_PART_PLAIN
+               ? re
+               : dalcs_signal_part_of(part, re, im);
 }
 
 static double evaluate(const struct dalcs_stretch *stretch,

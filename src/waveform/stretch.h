@@ -41,6 +41,8 @@ struct dalcs_stretch {
     double (*imaginary)[DALCS_STRETCH_NODES];   /* [n_signals], likewise, of an .ac; NULL: real */
     bool slides; /* some signals are means over the sides of a slide: of those that are kept */
     const double *result; /* of measurements that formulas may use, or NULL */
+    const double *impulse,
+        *left; /* [n_signals] V s or A s at its start, the values before; NULL: none */
 };
 
 /* A formula from one time to another, resolved. */
@@ -66,6 +68,14 @@ double dalcs_stretch_value(const struct dalcs_stretch *stretch,
 double dalcs_stretch_value_near(const struct dalcs_stretch *stretch,
                                 const struct dalcs_signal_formula *formula, double time,
                                 double off);
+
+/* V s or A s, or what the formula makes of that, at the start of the stretch; NAN where it has no integral there: where it
+ * is not linear in what has an impulse, or multiplies it by what jumps. */
+double dalcs_stretch_impulse(const struct dalcs_stretch *stretch,
+                             const struct dalcs_signal_formula *formula);
+
+/* Of a signal. */
+double dalcs_signal_part_of(enum dalcs_signal_part part, double re, double im);
 
 /* Part of a span: x from a to b. */
 void dalcs_span_cut(const struct dalcs_stretch_rule *rule, const struct dalcs_span *span, double a,

@@ -55,7 +55,7 @@ class Look:
         """The largest difference of states, over the largest rms value of their unit."""
         worst = 0.0
         for kind, unit in (("c", "v("), ("l", "i(")):
-            scale = max((signal["rms"] for name, signal in steady["signals"].items() if name.startswith(unit)), default=0.0)
+            scale = max((signal["rms"] or 0.0 for name, signal in steady["signals"].items() if name.startswith(unit)), default=0.0)
             scale = scale if scale > ROUNDING else 1.0  # where no diode conducts currents are rounding
             for name in other:
                 if name.rsplit(".", 1)[-1][0] == kind:

@@ -34,7 +34,7 @@ def off(steady, final):
     """The largest difference of states, over the largest rms value of their unit."""
     worst = 0.0
     for kind, unit in (("c", "v("), ("l", "i(")):
-        scale = max(signal["rms"] for name, signal in steady["signals"].items()
+        scale = max(signal["rms"] or 0.0 for name, signal in steady["signals"].items()
                     if name.startswith(unit))
         worst = max([worst] + [abs(steady["states"][name] - final[name]) / scale
                                for name in final if name[0] == kind])

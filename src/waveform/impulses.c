@@ -1,0 +1,134 @@
+/* impulses.c - jumps of parts as impulses of elements. */
+#include "impulses.h"
+
+#include "magnitudes.h"
+#include "memory.h"
+#include "names.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static enum dalcs_status find_devices(struct dalcs_impulses *impulses) {
+    const struct dalcs_circuit *c = impulses->circuit;
+    const struct dalcs_network *n = impulses->network;
+    struct dalcs_names names = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int k = 0; k < c->n_devices && status == DALCS_OK; k++) {
+        status = dalcs_names_add(&names, c->device[k].name, k);
+    }
+    for (int i = 0; i < n->n_states && status == DALCS_OK; i++) {
+        impulses->state_device[i] = dalcs_names_find(&names, n->state[i].element);
+    }
+    for (int s = 0; s < n->n_systems && status == DALCS_OK; s++) {
+        const struct dalcs_system *system = &n->system[s];
+        impulses->device_of[s] = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
+        status = impulses->device_of[s] == NULL ? DALCS_E_NOMEM : DALCS_OK;
+        for (int d = 0; d < system->n_pairs && status == DALCS_OK; d++) {
+            const struct dalcs_pair *pair = &system->pair[d];
+            impulses->device_of[s][d] =
+                pair->is_formula ? -1 : dalcs_names_find(&names, pair->element);
+        }
+    }
+    dalcs_names_finish(&names);
+    return status;
+}
+
+enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
+                                       const struct dalcs_circuit *circuit,
+                                       const struct dalcs_network *network, double near) {
+    const size_t n = (size_t)circuit->n_devices;
+    const size_t n_nodes = (size_t)circuit->n_nodes;
+    *impulses = (struct dalcs_impulses){.circuit = circuit, .network = network, .near = near};
+    impulses->device_of = dalcs_alloc((size_t)network->n_systems, sizeof(*impulses->device_of));
+    impulses->state_device = dalcs_alloc((size_t)network->n_states, sizeof(int));
+    impulses->change = dalcs_alloc(4 * n, sizeof(double));
+    impulses->node = dalcs_alloc(3 * n_nodes, sizeof(double));
+    impulses->n_open = dalcs_alloc(n_nodes, sizeof(int));
+    if (impulses->device_of == NULL || impulses->state_device == NULL || impulses->change == NULL ||
+        impulses->node == NULL || impulses->n_open == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    impulses->level = impulses->change + n;
+    impulses->charge = impulses->level + n;
+    impulses->across = impulses->charge + n;
+    impulses->sum = impulses->node + n_nodes;
+    impulses->size = impulses->sum + n_nodes;
+    return find_devices(impulses);
+}
+
+void dalcs_impulses_finish(struct dalcs_impulses *impulses) {
+    for (int s = 0; impulses->device_of != NULL && s < impulses->network->n_systems; s++) {
+        free(impulses->device_of[s]);
+    }
+    free(impulses->device_of);
+    free(impulses->state_device);
+    free(impulses->change);
+    free(impulses->node);
+    free(impulses->n_open);
+    *impulses = (struct dalcs_impulses){0};
+}
+
+/* Smaller than what a one-step problem may be off by is none, as in the log of jumps. */
+static void note_pairs(struct dalcs_impulses *impulses, const struct dalcs_euler_jump *j) {
+    const struct dalcs_system *s = &impulses->network->system[j->system];
+    double largest[2] = {0.0, 0.0};
+    for (int d = 0; d < s->n_pairs; d++) {
+        largest[0] = fmax(largest[0], fabs(j->charge[d]));
+        largest[1] = fmax(largest[1], fabs(j->flux[d]));
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        const int k = impulses->device_of[j->system][d];
+        const bool is_back = s->pair[d].is_breakdown;
+        if (k >= 0 && fabs(j->charge[d]) > dalcs_alike * largest[0]) {
+            impulses->charge[k] += is_back ? -j->charge[d] : j->charge[d];
+        }
+        if (k >= 0 && !is_back && fabs(j->flux[d]) > dalcs_alike * largest[1]) {
+            impulses->across[k] -= j->flux[d]; /* w is a voltage in reverse */
+        }
+    }
+}
+
+void dalcs_impulses_note(struct dalcs_impulses *impulses, const struct dalcs_euler_jump *j) {
+    static const double no_inputs[1] = {1.0}; /* states are columns only */
+    const struct dalcs_network *n = impulses->network;
+    if (!impulses->is_noted || fabs(impulses->time - j->time) > impulses->near) {
+        memset(impulses->change, 0, 4 * (size_t)impulses->circuit->n_devices * sizeof(double));
+    }
+    impulses->is_noted = true;
+    impulses->is_solved = false;
+    impulses->time = j->time;
+    for (int i = 0; i < n->n_states; i++) {
+        const struct dalcs_probe *probe = &n->state[i].probe;
+        const int k = impulses->state_device[i];
+        if (probe->system == j->system && k >= 0) {
+            const bool is_known = dalcs_probe_is_known(probe, j->n_known);
+            const double before = dalcs_probe_value(probe, j->before, no_inputs);
+            const double after = dalcs_probe_value(probe, j->after, no_inputs);
+            impulses->change[k] += is_known ? after - before : (double)NAN;
+            impulses->level[k] += is_known ? fabs(before) + fabs(after) : 0.0;
+        }
+    }
+    note_pairs(impulses, j);
+}
+
+bool dalcs_impulses_at(struct dalcs_impulses *impulses, double time) {
+    if (!impulses->is_noted || fabs(impulses->time - time) > impulses->near) {
+        return false;
+    }
+    if (!impulses->is_solved) {
+        dalcs_impulses_solve(impulses);
+        impulses->is_solved = true;
+    }
+    return true;
+}
+
+double dalcs_impulses_of(const struct dalcs_impulses *impulses, const struct dalcs_signal *signal) {
+    if (signal->kind == DALCS_SIGNAL_CURRENT) {
+        return impulses->charge[signal->device];
+    }
+    const double plus = impulses->node[signal->node[0]];
+    const double minus = impulses->node[signal->node[1]];
+    const bool is_rounding = fabs(plus - minus) <= dalcs_alike * fmax(fabs(plus), fabs(minus));
+    return is_rounding ? 0.0 : plus - minus;
+}
