@@ -114,8 +114,9 @@ static enum dalcs_status check(struct dalcs_run *r) {
 static bool make_room(struct dalcs_envelope *e) {
     const struct dalcs_steady_layout *l = &e->st.layout;
     const size_t n_x = (size_t)l->n_x + 1;
-    double **const vector[] = {&e->at.F,        &e->at.G,   &e->at.g,     &e->at.h,    &e->at.base,
-                               &e->at.expected, &e->at.off, &e->at.error, &e->at.scale};
+    double **const vector[] = {&e->at.F,        &e->at.G,    &e->at.g,     &e->at.h,
+                               &e->at.base,     &e->at.more, &e->at.turn,  &e->at.work,
+                               &e->at.expected, &e->at.off,  &e->at.error, &e->at.scale};
     bool complete = true;
     for (size_t k = 0; k < sizeof vector / sizeof vector[0]; k++) {
         *vector[k] = dalcs_arena_alloc(&e->arena, n_x, sizeof(double));

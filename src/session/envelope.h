@@ -71,8 +71,9 @@ struct dalcs_envelope {
     bool has_pass; /* st.at to st.then is the period at n */
     double tolerance;
     long n, n_all; /* periods: where st.at is; the last one, which is written */
-    long n_G;  /* the second of the two periods that G is of; 0: it is not known since a corner */
-    int level; /* the next leap is over 2^level periods */
+    long n_G; /* the second of the two periods that G is of; 0: it is not known since a corner */
+    double apart; /* periods that at.more is over; INFINITY: it is not known since a corner */
+    int level;    /* the next leap is over 2^level periods */
     struct dalcs_envelope_leap *leap; /* [n_systems] */
     double *M;                        /* of the first of two periods */
     bool *closed;                     /* [n_pairs] at the base */
@@ -87,6 +88,9 @@ struct dalcs_envelope {
     struct { /* [n_x] each */
         double *F, *G, *g, *h, *expected, *off, *error, *scale;
         double *base; /* where a leap begins */
+        double *more; /* that G gains each period, as it was found last */
+        double *turn; /* that `more` gains each period */
+        double *work;
     } at;
 
     struct dalcs_arena arena;

@@ -32,7 +32,9 @@ enum dalcs_status dalcs_envelope_pass(struct dalcs_envelope *e, long n, bool *fa
 static void find_g(struct dalcs_envelope *e) {
     const struct dalcs_steady *st = &e->st;
     const double apart = e->n_G > 0 ? (double)(e->n - e->n_G) : INFINITY;
+    const double between = 0.5 * (apart + (e->n_G > 0 ? e->apart : INFINITY));
     e->n_G = e->n;
+    e->apart = apart;
     for (int k = 0; k < st->layout.n_systems; k++) {
         const int first = st->layout.first[k];
         const int n = st->layout.first[k + 1] - first;
@@ -48,6 +50,8 @@ static void find_g(struct dalcs_envelope *e) {
             }
             const double more = (G - e->at.G[first + x]) / apart;
             e->at.G[first + x] = G;
+            e->at.turn[first + x] = (more - e->at.more[first + x]) / between;
+            e->at.more[first + x] = more;
             e->at.g[first + x] = G + more;
             e->at.h[first + x] = bent + more;
         }
@@ -77,22 +81,41 @@ static void leap(struct dalcs_envelope *e) {
     memcpy(st->at.closed, e->closed, (size_t)st->layout.n_pairs * sizeof(bool));
 }
 
+/* What x is off by behind a leap at whose end F is off by off[n_x], over the scales. */
+static double error_by(struct dalcs_envelope *e, const double *off) {
+    const struct dalcs_steady *st = &e->st;
+    double worst = 0.0;
+    for (int k = 0; k < st->layout.n_systems; k++) {
+        const int first = st->layout.first[k];
+        dalcs_envelope_leap_error(&e->leap[k], off + first, e->at.error + first);
+    }
+    for (int x = 0; x < st->layout.n_x; x++) {
+        const double of = fmax(fabs(e->at.error[x]), fabs(off[x]));
+        worst = of > 0.0 ? fmax(worst, of / e->at.scale[x]) : worst;
+    }
+    return worst;
+}
+
+/* What the leap makes of a G that does not go on along a line: by `turn` j (j + apart) / 2 off in the j-th of its periods. At
+ * the end of the leap what M has changed by may cancel it in F, and not in x. */
+static double error_of_turn(struct dalcs_envelope *e) {
+    const double n = ldexp(1.0, e->level) - 1.0;
+    const double sum = 0.5 * n * (n + 1.0);
+    const double squares = sum * (2.0 * n + 1.0) / 3.0;
+    for (int x = 0; x < e->st.layout.n_x; x++) {
+        e->at.work[x] =
+            0.5 * e->at.turn[x] * (squares + (isfinite(e->apart) ? e->apart : 0.0) * sum);
+    }
+    return error_by(e, e->at.work);
+}
+
 /* Of the leap to st->at, over the scales. */
 static double error_of(struct dalcs_envelope *e) {
     const struct dalcs_steady *st = &e->st;
-    double worst = 0.0;
     for (int x = 0; x < st->layout.n_x; x++) {
         e->at.off[x] = st->then.x[x] - st->at.x[x] - e->at.expected[x];
     }
-    for (int k = 0; k < st->layout.n_systems; k++) {
-        const int first = st->layout.first[k];
-        dalcs_envelope_leap_error(&e->leap[k], e->at.off + first, e->at.error + first);
-    }
-    for (int x = 0; x < st->layout.n_x; x++) {
-        const double off = fmax(fabs(e->at.error[x]), fabs(e->at.off[x]));
-        worst = off > 0.0 ? fmax(worst, off / e->at.scale[x]) : worst;
-    }
-    return worst;
+    return fmax(error_by(e, e->at.off), error_of_turn(e));
 }
 
 bool dalcs_envelope_returns(const struct dalcs_envelope *e) {

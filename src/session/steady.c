@@ -8,6 +8,8 @@
  * else happens: the search leaps along it, as far as the same events follow each other. */
 #include "steady_step.h"
 
+#include "magnitudes.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -117,31 +119,40 @@ enum dalcs_status dalcs_steady_burst(struct dalcs_steady *st, bool *done) {
     return status == DALCS_OK ? burst_on(st, done) : DALCS_OK;
 }
 
-/* Does the last pass go on along st->drift as far as a pass from before, but for what far away is rounding? */
-static bool goes_on(const struct dalcs_steady *st, const double *moved) {
+/* By how much a conserved quantity grew in the last pass. */
+static double growth_of(const struct dalcs_steady *st, const struct dalcs_steady_conserved *c) {
+    const int first = st->layout.first[c->system];
+    double sum = 0.0;
+    for (int x = first; x < st->layout.first[c->system + 1]; x++) {
+        sum += c->weight[x - first] * (st->then.x[x] - st->at.x[x]);
+    }
+    return sum;
+}
+
+/* Do the quantities that grow do so in the last pass as in that before the leap, but for what far away is rounding? What
+ * else moves has no part in them. */
+static bool goes_on(const struct dalcs_steady *st) {
     bool does = true;
-    for (int x = 0; x < st->layout.n_x; x++) {
-        const double now = st->then.x[x] - st->at.x[x];
-        does = does && (st->kept.drift[x] == 0.0 || fabs(now - moved[x]) <= 0.5 * fabs(moved[x]));
+    for (int k = 0; k < st->kept.n; k++) {
+        const struct dalcs_steady_conserved *c = &st->kept.of[k];
+        const double off = c->growth != 0.0 ? growth_of(st, c) - c->growth : 0.0;
+        does = does && fabs(off) <= 0.5 * fabs(c->growth);
     }
     return does;
 }
 
 /* Along st->drift from where the last pass has come to, as far as the same modes follow each other and take it as far.
- * *endless: that is as far as it was tried. `from`, `moved`: work. */
-static enum dalcs_status leap(struct dalcs_steady *st, double *from, double *moved, bool *endless) {
+ * *endless: that is as far as it was tried. `from`: work. */
+static enum dalcs_status leap(struct dalcs_steady *st, double *from, bool *endless) {
     const uint64_t signature = st->pass.signature;
-    for (int x = 0; x < st->layout.n_x; x++) {
-        from[x] = st->then.x[x];
-        moved[x] = st->then.x[x] - st->at.x[x];
-    }
+    memcpy(from, st->then.x, (size_t)st->layout.n_x * sizeof(double));
     bool same = true;
     int k = 0;
     for (; k < MOST_LEAPS && same; k++) {
         dalcs_steady_go_by(st, from, st->kept.drift, ldexp(1.0, k));
         enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-        same = status == DALCS_OK && st->pass.signature == signature && goes_on(st, moved);
+        same = status == DALCS_OK && st->pass.signature == signature && goes_on(st);
     }
     *endless = same;
     st->n.leaps++;
@@ -160,13 +171,14 @@ static double rest(const struct dalcs_steady *st) {
 }
 
 /* Does what drifts at this point of a run do so for ever? It does if Newton's method, in the same modes, comes to where
- * nothing else moves: what still moves may lead to other modes. st->drift is that of there. */
+ * nothing else moves: what still moves may lead to other modes. Runs come to that only if it is stable. st->drift is that
+ * of there. */
 static enum dalcs_status drifts(struct dalcs_steady *st, const struct dalcs_orbit_point *point,
                                 bool *does) {
     uint64_t signature = 0;
     *does = false;
     dalcs_steady_copy_point(st, &st->at, point);
-    for (int k = 0; k < DALCS_STEADY_STEPS && !*does; k++) {
+    for (int k = 0; k < DALCS_STEADY_STEPS; k++) {
         enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         const bool same = k == 0 || st->pass.signature == signature;
         signature = st->pass.signature;
@@ -175,10 +187,11 @@ static enum dalcs_status drifts(struct dalcs_steady *st, const struct dalcs_orbi
         if (status != DALCS_OK || !same || !st->kept.is_stuck) {
             return DALCS_OK;
         }
-        *does = rest(st) <= dalcs_steady_good;
-        if (!*does) {
-            dalcs_steady_take_step(st);
+        if (rest(st) <= dalcs_steady_good) {
+            *does = dalcs_steady_largest_multiplier(st) <= 1.0 + dalcs_alike;
+            return DALCS_OK;
         }
+        dalcs_steady_take_step(st);
     }
     return DALCS_OK;
 }
@@ -208,16 +221,16 @@ enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st, struct dalcs_orbi
 /* Where a leap leads no run need go. So growth without end, or no steady state, behind one counts for nothing: the search
  * goes back to where the first leap began, and goes on without any. */
 struct search {
-    struct dalcs_orbit_point run;         /* where it has come to */
-    struct dalcs_orbit_point from, moved; /* work */
-    struct dalcs_orbit_point before;      /* the first leap */
-    long wait, total, total_before; /* periods: of the next run, so far, before the first leap */
+    struct dalcs_orbit_point run;    /* where it has come to */
+    struct dalcs_orbit_point from;   /* work */
+    struct dalcs_orbit_point before; /* the first leap */
+    long wait, total, total_before;  /* periods: of the next run, so far, before the first leap */
     bool has_leapt, may_leap;
 };
 
 static bool make_points(struct dalcs_steady *st, struct search *s) {
     return dalcs_steady_make_point(st, &s->run) && dalcs_steady_make_point(st, &s->from) &&
-           dalcs_steady_make_point(st, &s->moved) && dalcs_steady_make_point(st, &s->before);
+           dalcs_steady_make_point(st, &s->before);
 }
 
 static void go_back(struct dalcs_steady *st, struct search *s) {
@@ -232,7 +245,7 @@ static enum dalcs_status leave(struct dalcs_steady *st, struct search *s, bool *
         dalcs_steady_copy_point(st, &st->at, &s->run);
         return DALCS_OK;
     }
-    DALCS_TRY(leap(st, s->from.x, s->moved.x, endless));
+    DALCS_TRY(leap(st, s->from.x, endless));
     if (!*endless && s->may_leap) {
         if (!s->has_leapt) {
             dalcs_steady_copy_point(st, &s->before, &s->run);

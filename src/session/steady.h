@@ -91,6 +91,7 @@ struct dalcs_steady {
         struct dalcs_steady_conserved {
             int system;
             double *weight; /* [n] of the system's states */
+            double growth;  /* of their sum in a period; 0: it does not grow, but for rounding */
         } * of;             /* [n] */
 
         bool is_stuck; /* one grows by `drift` */

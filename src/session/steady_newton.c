@@ -99,10 +99,17 @@ static bool part_conserved(struct newton *w, int m, double *vector) {
     return can;
 }
 
+/* How much of the vector is along a left vector; 0: no more than rounding. */
+static double part_of(const struct newton *w, int k, const double *vector) {
+    const double part = dot(w->U + (size_t)k * (size_t)w->n, vector, w->n);
+    return fabs(part) > grows * sqrt(dot(vector, vector, w->n)) ? part : 0.0;
+}
+
 static enum dalcs_status note_conserved(struct dalcs_steady *st, int system, const struct newton *w,
                                         int vector) {
     struct dalcs_steady_conserved *c = &st->kept.of[st->kept.n];
     c->system = system;
+    c->growth = part_of(w, vector, w->F);
     c->weight = dalcs_arena_alloc(&st->arena, (size_t)w->n, sizeof(double));
     if (c->weight == NULL) {
         return DALCS_E_NOMEM;
@@ -198,10 +205,9 @@ static void find_defect(const struct dalcs_steady *st, int system, struct newton
 
 /* Have the last m left vectors a part of the vector? */
 static bool has_conserved(const struct newton *w, int m, const double *vector) {
-    const double size = sqrt(dot(vector, vector, w->n));
     bool has = false;
     for (int k = w->n - m; k < w->n; k++) {
-        has = has || fabs(dot(w->U + (size_t)k * (size_t)w->n, vector, w->n)) > grows * size;
+        has = has || part_of(w, k, vector) != 0.0;
     }
     return has;
 }

@@ -149,8 +149,27 @@ RECTIFIER = "V1 s 0 SIN(0 20 50)\nD1 s a\nC1 a 0 1m\nR1 a 0 50\n"
 SAMPLE = "A1 out 0 g 0 0 0 h 0 SAMPLEHOLD\n"
 ACCUMULATOR = "A1 nx 0 g 0 0 0 acc 0 SAMPLEHOLD\nB1 nx 0 V=v(acc)+0.01*{}\n"
 
-# name, netlist, what rises by how much each period from any start: what it integrates decides that, and not it alone
+SAW = "Vtri tri 0 PULSE(0 1 0 10u 0 0 10u)\n.model sz SW(Ron=10m Vt=0)\n"
+
+
+def out_of_reach(fb, ref, most=0.95):
+    """A PI control at its limit, whose output never comes to the reference."""
+    return (f"Vref ref 0 {ref}\nG1 0 ctl ref {fb} 1m\nRz ctl z 1k\nCz z 0 100n\nBl lim 0 V=limit(v(ctl),0.02,{most})\n"
+            "E2 cmp 0 lim tri 1\n")
+
+
+# name, netlist, what rises by how much each period from any start: what it integrates decides that, and not it alone. Those
+# of a control out of reach are what runs of up to 60000 periods rise by in the last one; other states take thousands.
 DRIFTS = [
+    ("out of reach, a snubber", SAW + "Vin in 0 48\nL1 in sw 200u\nL2 0 s 20u\nK1 L1 L2 0.98\nS1 sw 0 cmp 0 sz\nDc sw c\nCc c in 1u\n"
+     "Rc c in 47k\nD1 s out\nC1 out 0 1m\nR1 out 0 5\n" + out_of_reach("out", 100, 0.5), "v(cz) rises by 8.57522 V"),
+    ("out of reach, flux of a transformer", SAW + "Vin in 0 48\nL1 in sw 2m\nL2 s 0 0.5m\nL3 0 r 2m\nK1 L1 L2 L3 0.9999\n"
+     "S1 sw 0 cmp 0 sz\nDc sw cl\nRc cl in 10k\nCc cl in 1n\nD3 r in\nD1 s f\nD2 0 f\nLo f out 40u\nC1 out 0 100u\nR1 out 0 2\n" +
+     out_of_reach("out", 30, 0.45), "v(cz) rises by 1.92683 V"),
+    ("out of reach, behind an LLC converter", SAW + "Vin d 0 100\nVg g 0 PULSE(1 -1 0 0 0 5u 10u)\nE9 gn 0 0 g 1\nS1 d sw g 0 sz\n"
+     "S2 sw 0 gn 0 sz\nLr sw r 20u\nCr r p 126n\nLm p 0 100u\nLs s1 0 4u\nLt 0 s2 4u\nK1 Lm Ls Lt 0.999\nD1 s1 f\nD2 s2 f\n"
+     "Rq s1 s2 1k\nCf f 0 47u\nS5 f out cmp 0 sz\nL5 out o2 10u\nD5 0 out\nC5 o2 0 100u\nR5 o2 0 2\n" +
+     out_of_reach("o2", 30), "v(cz) rises by 2.05427 V"),
     ("integral of a converter's output", CLOCK + BUCK + integral("out", "i"), "v(ci) rises by 48 mV"),
     ("of a sample of it", CLOCK + BUCK + SAMPLE + integral("h", "i"), "v(ci) rises by 47.9447 mV"),
     ("of the one before", CLOCK + BUCK + SAMPLE + "A2 h 0 g 0 0 0 h2 0 SAMPLEHOLD\n" + integral("h2", "i"),
