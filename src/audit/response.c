@@ -229,7 +229,10 @@ static void check_resistor(struct dalcs_response_audit *a, struct dalcs_response
     } else if (is->size[device] >= 0.0) {
         check_voltage(a, is, device, times(d->value, is->i[device], is->size[device]), 0.0);
     } else {
-        take_current(a, is, device, read_voltage(a, is, 1.0 / d->value, d->node), 0.0);
+        /* each end has the rounding of coils */
+        struct response_sum y = read_voltage(a, is, 1.0 / d->value, d->node);
+        y.size += a->small.of_flux / dalcs_answer_rounded / fabs(d->value);
+        take_current(a, is, device, y, 0.0);
     }
 }
 

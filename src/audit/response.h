@@ -66,6 +66,7 @@ struct dalcs_response_audit {
 
     struct { /* the largest small signals of an orbit so far */
         double volts, amperes;
+        double of_flux; /* V: what rounding leaves in the derivatives of fluxes there */
     } small;
 
     struct dalcs_response_devices of; /* borrowed */

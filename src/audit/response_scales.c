@@ -33,6 +33,7 @@ static void add_derivatives(struct dalcs_response_audit *a, double steepness) {
         }
     }
     a->volts = fmax(a->volts, drop / a->rounding);
+    a->small.of_flux = dalcs_rounded * steepness * flux;
     a->volts += steepness * flux;
     a->amperes += steepness * charge;
 }

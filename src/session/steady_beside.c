@@ -17,6 +17,11 @@ static void speak_again(struct dalcs_steady *st, struct dalcs_diag diag) {
     st->run->s->diag = diag;
 }
 
+/* A run beside an orbit may come to where gates do not settle. It tells nothing then, and the orbit is what it is. */
+static enum dalcs_status without_gates(enum dalcs_status looked) {
+    return looked == DALCS_E_NETLIST ? DALCS_OK : looked;
+}
+
 /* From st->at, which is on the orbit of the report. */
 static enum dalcs_status look(struct dalcs_steady *st) {
     struct dalcs_report *report = &st->run->s->results.report;
@@ -57,7 +62,7 @@ enum dalcs_status dalcs_steady_look_beside(struct dalcs_steady *st) {
     const struct dalcs_diag diag = keep_silent(st);
     const enum dalcs_status status = look(st);
     speak_again(st, diag);
-    DALCS_TRY(status);
+    DALCS_TRY(without_gates(status));
     DALCS_TRY(dalcs_steady_go_back(st, &orbit, one));
     st->n = count;
     st->pass.is_exact = is_exact;
@@ -72,7 +77,8 @@ enum dalcs_status dalcs_steady_look_ahead(struct dalcs_steady *st, bool *found,
     const struct dalcs_diag diag = keep_silent(st);
     const enum dalcs_status looked = dalcs_steady_find_attractor(st, 0.0, a);
     speak_again(st, diag);
-    DALCS_TRY(looked);
+    DALCS_TRY(without_gates(looked));
+    a->kind = looked == DALCS_OK ? a->kind : DALCS_STEADY_UNKNOWN;
     *found = a->kind == DALCS_STEADY_ORBIT;
     if (!*found) { /* what is told of the last period is of one of the run */
         const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN);

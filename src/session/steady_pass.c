@@ -275,6 +275,7 @@ enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
     struct dalcs_euler e;
     struct dalcs_radau radau = {0};
     struct pass p;
+    const struct dalcs_diag_mark mark = dalcs_diag_mark(&r->s->diag);
     DALCS_TRY(engine_setup(r, &e, &radau, r->h, (double)n * st->period));
     enum dalcs_status status = pass_setup(&p, r, &e, &radau);
     p.of = st;
@@ -283,6 +284,11 @@ enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
         st->n.periods += n;
         r->s->results.report.work.steps += radau.steps;
         dalcs_steady_count_crowd(st, &radau);
+    }
+    if (asked == DALCS_STEADY_M && status == DALCS_E_NETLIST) {
+        /* Gates that do not settle where a step has led: a run that fails. A run from the start comes there or not. */
+        dalcs_diag_forget(&r->s->diag, &mark);
+        status = DALCS_NOT_CONVERGED;
     }
     status = asked == DALCS_STEADY_M ? status : dalcs_explain_failure(r, &e, status);
     pass_finish(&p);

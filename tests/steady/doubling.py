@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Orbits of two periods of the clock, of a voltage-mode buck converter whose supply is raised (Hamill and Deane).
+"""Orbits of two periods of the clock, of a voltage-mode buck converter whose supply is raised (Hamill and Deane); orbits beside
+which runs fail.
 
 usage: doubling.py PROGRAM
 """
@@ -108,6 +109,30 @@ def near_the_border(program, folder, checker):
         checker.close(large / small, math.sqrt(10.0), 0.05, f"{apart} apart")
 
 
+def beside_gates(program, folder, checker):
+    """Peak current control into a battery: a multiplier of -m2/m1, the slopes of the current. Where it is below -1 a run comes to
+    where the current is at its peak while the clock is high: the latch does not settle, and the orbit is there all the same."""
+    boost, buck, both = ("L1 in sw {1} IC={2}\nS1 sw 0 q 0 sm\nD1 sw out\nVo out 0 {0}\n", "S1 in sw q 0 sm\nD1 0 sw\nL1 sw out {1} IC={2}\nVo out 0 {0}\n",
+                         "S1 in sw q 0 sm\nL1 sw 0 {1} IC={2}\nD1 out sw\nVo out 0 -{0}\n")
+    for power, vin, vout, coil, peak, multiplier in ((boost, 10, 25, 1e-3, 2.5, -1.5), (boost, 10, 20.1, 1e-3, 2.5, -1.01),
+                                                     (buck, 12, 9, 440e-6, 5, -3.0), (buck, 48, 40, 5e-3, 1, -5.0),
+                                                     (both, 12, 24, 500e-6, 4, -2.0), (boost, 10, 15, 1e-3, 2.5, -0.5)):
+        (folder / "c.cir").write_text(f"* peak\nVin in 0 {vin}\n{power.format(vout, coil, 0.8 * peak)}B1 lim 0 V={peak}-i(L1)\n"
+                                      """Vclk clk 0 PULSE(0 1 0 0 0 4u 100u)
+A1 lim 0 0 0 0 over 0 0 BUF Ref=0
+A2 clk over 0 0 0 0 q 0 SRFLOP
+.model sm SW(Ron=0 Vt=0.5)
+.pss uic
+""")
+        done = subprocess.run([program, "steady", "c.cir", "-o", "c.csv", "--report", "c.json", "-q"], cwd=folder, capture_output=True,
+                              text=True, check=False)
+        name = f"{vin} V, {vout} V"
+        if checker.check(done.returncode == 0 and done.stderr == "", f"{name}: {done.returncode}, {done.stderr}"):
+            steady = json.loads((folder / "c.json").read_text())["steady"]
+            checker.close(steady["multipliers"][0]["re"], multiplier, 1e-9, name)
+            checker.check(steady["stable"] == (multiplier > -1), f"{name}: {steady['verdict']}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("doubling")
@@ -115,6 +140,7 @@ def main():
         for volts in (18.0, 20.5, 22.0, 23.4, 24.2, 25.0, 25.7, 26.5, 27.3, 28.0, 29.1, 30.0):
             look_at(program, pathlib.Path(name), checker, volts)
         near_the_border(program, pathlib.Path(name), checker)
+        beside_gates(program, pathlib.Path(name), checker)
     return checker.finish()
 
 
