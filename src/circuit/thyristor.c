@@ -5,10 +5,11 @@
  * A thyristor is an ideal diode in series with a switch of the element's name that keeps closed what closed it. Its
  * control is a sum of which each part is a straight line cut off at both ends, with v of the gate against its
  * reference, i the current and u the voltage of the whole; the switch closes above 1.5 and opens below -0.5:
- *     without Ih   1.5 v/Vgt in [0, 2]  +  0.5 u/Voff in [-1, 0]       opens where u has fallen to -Voff
  *     with Ih      2.5 v/Vgt in [0, 3]  +  i/Ih - 1.5 in [-1, 0]       opens where i has fallen to Ih
+ *     with Voff    1.5 v/Vgt in [0, 2]  +  0.5 u/Voff in [-1, 0]       opens where u has fallen to -Voff
  *     of a GTO     besides 0.5 v/Vgoff in [-3, 0]                      opens where v has fallen to -Vgoff
- * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current.
+ * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current. With neither it
+ * is as with Ih = Ioff.
  *
  * With a latching current Il it opens with its gate, unless another switch, which closes where i has fallen to Ih and
  * opens where it has reached Il, has opened: while that is closed, 1 is taken from the control, whose part of i is not
@@ -90,17 +91,27 @@ static bool check(struct dalcs_builder *builder, const struct dalcs_parameter *p
     return true;
 }
 
+/* A, down to which it conducts without its gate. Without Ih that is the end of its current, which a voltage backwards shows
+ * only where nothing ideal stands against it: a diode there, or another thyristor, takes the current over at 0 V. */
+static double holding_of(const struct dalcs_parameter *p, bool is_triac) {
+    if (p[IH].value > 0 || p[IL].value > 0) {
+        return p[IH].place != NULL ? p[IH].value : 0.5 * p[IL].value;
+    }
+    return is_triac || p[VOFF].place != NULL ? 0 : p[IOFF].value;
+}
+
 struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
                                                     const struct dalcs_token *type,
                                                     struct dalcs_diode_model *valve) {
     struct dalcs_builder *builder = reader->builder;
+    const bool is_triac = strcmp(type->text, "triac") == 0;
     struct dalcs_parameter p[N_PARAMETERS] = {
         [VGT] = {"vgt", DALCS_VOLTAGE, false, 0.5, NULL},
         [VGOFF] = {"vgoff", DALCS_VOLTAGE, false, 0.5, NULL},
         [IH] = {"ih", DALCS_CURRENT, false, 0, NULL},
         [IL] = {"il", DALCS_CURRENT, false, 0, NULL},
         [VOFF] = {"voff", DALCS_VOLTAGE, false, 1e-3, NULL},
-        [IOFF] = {"ioff", DALCS_CURRENT, false, 1e-6, NULL},
+        [IOFF] = {"ioff", DALCS_CURRENT, false, is_triac ? 1e-6 : 1e-9, NULL},
         [RON] = {"ron", DALCS_OHM, false, 0, NULL},
         [VFWD] = {"vfwd", DALCS_VOLTAGE, false, 0, NULL},
     };
@@ -114,12 +125,12 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
         builder->out_of_memory = true;
         return NULL;
     }
-    *t = (struct dalcs_thyristor){.kind = strcmp(type->text, "triac") == 0 ? TRIAC
+    *t = (struct dalcs_thyristor){.kind = is_triac                         ? TRIAC
                                           : strcmp(type->text, "gto") == 0 ? GTO
                                                                            : THYRISTOR,
                                   .trigger = p[VGT].value,
                                   .turn_off = p[VGOFF].value,
-                                  .holding = p[IH].place != NULL ? p[IH].value : 0.5 * p[IL].value,
+                                  .holding = holding_of(p, is_triac),
                                   .latching = p[IL].value,
                                   .reversed = p[VOFF].value,
                                   .other = p[IOFF].value,
