@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Thyristors whose current something ideal against them takes over at 0 V: a diode, or another thyristor.
+"""Thyristors whose current something ideal takes over at 0 V: a diode or a thyristor against them, or a switch.
 
 usage: thyristor_takeovers.py PROGRAM
 
@@ -85,6 +85,17 @@ def burst(checker, program, back, volts, ratio, periods):
     look_at(checker, program, name, text, times, "i(l1)", [forced(t) if start < t < high else 0.0 for t in times])
 
 
+def bypass(checker, program, volts):
+    """A soft starter whose contactor takes the current over, and ends it when the gates are long off."""
+    name = f"a contactor across two thyristors, {volts:g} V"
+    text = (f"v1 in 0 sin(0 {volts!r} 50)\nr1 in x 5\na1 x y g x th\na2 y x g x th\ns1 x y b 0 sw\nvm y 0 0\n"
+            "vg g x pulse(0 1 10m 0 0 43m 1)\nvb b 0 pulse(0 1 32m 0 0 41m 1)\n.model sw SW(ron=0 vt=0.5)\n"
+            ".model th thyristor\n.tran 1m 110m\n.end\n")
+    times = [0.001 * (k + 0.31) for k in range(109)]
+    look_at(checker, program, name, text, times, "i(vm)",
+            [volts / 5 * math.sin(100 * math.pi * t) if 0.01 < t < 0.073 else 0.0 for t in times])
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("thyristor_takeovers")
@@ -95,6 +106,8 @@ def main():
     for back in ("a thyristor", "a triac"):
         for volts, ratio, periods in some_of([(325.0, 1.0, 2.3), (4e5, 5.0, 1.1), (2.0, 0.01, 0.7), (325.0, 0.2, 1.5)]):
             burst(checker, program, back, volts, ratio, periods)
+    for volts in (325.0, 1.0):
+        bypass(checker, program, volts)
     return checker.finish()
 
 
