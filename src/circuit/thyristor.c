@@ -5,10 +5,11 @@
  * A thyristor is an ideal diode in series with a switch of the element's name that keeps closed what closed it. Its
  * control is a sum of which each part is a straight line cut off at both ends, with v of the gate against its
  * reference, i the current and u the voltage of the whole; the switch closes above 1.5 and opens below -0.5:
- *     without Ih   1.5 v/Vgt in [0, 2]  +  0.5 u/Voff in [-1, 0]       opens where u has fallen to -Voff
  *     with Ih      2.5 v/Vgt in [0, 3]  +  i/Ih - 1.5 in [-1, 0]       opens where i has fallen to Ih
+ *     without Ih   1.5 v/Vgt in [0, 2]  +  0.5 u/Voff in [-1, 0]       opens where u has fallen to -Voff
  *     of a GTO     besides 0.5 v/Vgoff in [-3, 0]                      opens where v has fallen to -Vgoff
- * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current.
+ * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current. Where something
+ * may take its current over without a voltage (takeover.c), it is as with Ih = Ioff.
  *
  * With a latching current Il it opens with its gate, unless another switch, which closes where i has fallen to Ih and
  * opens where it has reached Il, has opened: while that is closed, 1 is taken from the control, whose part of i is not
@@ -39,8 +40,9 @@ struct dalcs_thyristor {
     double holding;           /* A; 0: none */
     double latching;          /* A; 0: as long as its gate it conducts whatever flows */
     double reversed;          /* V */
-    double other;             /* A in the other half of a triac */
-    double drop;              /* V when it conducts, at least */
+    bool sees_voltage;        /* of that, whatever stands against it */
+    double other; /* A in the other half of a triac; that end its own current, where that is seen */
+    double drop;  /* V when it conducts, at least */
 };
 
 enum { VGT, VGOFF, IH, IL, VOFF, IOFF, RON, VFWD, N_PARAMETERS };
@@ -94,13 +96,14 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
                                                     const struct dalcs_token *type,
                                                     struct dalcs_diode_model *valve) {
     struct dalcs_builder *builder = reader->builder;
+    const bool is_triac = strcmp(type->text, "triac") == 0;
     struct dalcs_parameter p[N_PARAMETERS] = {
         [VGT] = {"vgt", DALCS_VOLTAGE, false, 0.5, NULL},
         [VGOFF] = {"vgoff", DALCS_VOLTAGE, false, 0.5, NULL},
         [IH] = {"ih", DALCS_CURRENT, false, 0, NULL},
         [IL] = {"il", DALCS_CURRENT, false, 0, NULL},
         [VOFF] = {"voff", DALCS_VOLTAGE, false, 1e-3, NULL},
-        [IOFF] = {"ioff", DALCS_CURRENT, false, 1e-6, NULL},
+        [IOFF] = {"ioff", DALCS_CURRENT, false, is_triac ? 1e-6 : 1e-9, NULL},
         [RON] = {"ron", DALCS_OHM, false, 0, NULL},
         [VFWD] = {"vfwd", DALCS_VOLTAGE, false, 0, NULL},
     };
@@ -114,12 +117,13 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
         builder->out_of_memory = true;
         return NULL;
     }
-    *t = (struct dalcs_thyristor){.kind = strcmp(type->text, "triac") == 0 ? TRIAC
+    *t = (struct dalcs_thyristor){.kind = is_triac                         ? TRIAC
                                           : strcmp(type->text, "gto") == 0 ? GTO
                                                                            : THYRISTOR,
                                   .trigger = p[VGT].value,
                                   .turn_off = p[VGOFF].value,
                                   .holding = p[IH].place != NULL ? p[IH].value : 0.5 * p[IL].value,
+                                  .sees_voltage = is_triac || p[VOFF].place != NULL,
                                   .latching = p[IL].value,
                                   .reversed = p[VOFF].value,
                                   .other = p[IOFF].value,
@@ -300,6 +304,12 @@ static bool expand_back(struct dalcs_builder *builder, const struct dalcs_token 
     return expand_half(builder, element, back, model, &turned);
 }
 
+const struct dalcs_model *dalcs_thyristor_model(const struct dalcs_builder *builder,
+                                                const struct dalcs_card *card) {
+    return &builder->models
+                .model[dalcs_names_find(&builder->models.names, card->token[card->n - 1].text)];
+}
+
 bool dalcs_thyristor_is(const struct dalcs_builder *builder, const struct dalcs_card *card) {
     const int index = dalcs_names_find(&builder->models.names, card->token[card->n - 1].text);
     return index >= 0 && builder->models.model[index].kind == DALCS_MODEL_THYRISTOR;
@@ -318,20 +328,23 @@ void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_car
     if (device == NULL || !dalcs_reader_nodes(&reader, n_nodes, node)) {
         return;
     }
-    const struct dalcs_model *model =
-        &builder->models
-             .model[dalcs_names_find(&builder->models.names, card->token[card->n - 1].text)];
+    struct dalcs_model model = *dalcs_thyristor_model(builder, card);
+    struct dalcs_thyristor own = *model.thyristor;
+    model.thyristor = &own;
+    if (own.holding == 0 && !own.sees_voltage && dalcs_thyristor_is_taken_over(builder, card)) {
+        own.holding = own.other;
+    }
     const struct dalcs_token *token = card->token;
     const struct places places = {
         &token[1], &token[2], &token[3], n_nodes == 4 ? &token[4] : &token[2], token, 1};
-    const bool is_triac = model->thyristor->kind == TRIAC;
+    const bool is_triac = own.kind == TRIAC;
     device->node[0] = node[0];
     device->node[1] = node[1];
     if (is_triac && !dalcs_builder_add_terminal(builder, token, device)) {
         return;
     }
     const int both[2] = {device->node[0], node[1]};
-    if (expand_half(builder, token, device, model, &places) && is_triac) {
-        (void)expand_back(builder, token, both, model, &places); /* it has said what is wrong */
+    if (expand_half(builder, token, device, &model, &places) && is_triac) {
+        (void)expand_back(builder, token, both, &model, &places); /* it has said what is wrong */
     }
 }
