@@ -45,6 +45,7 @@ struct dalcs_positions {
         uint64_t *conducted; /* [n_words] on some side */
         bool *leading;       /* [n + n_jumps] */
         bool have_changed;   /* others lead than in the mean before */
+        double sigma;        /* of the step */
     } sides;
 
     struct dalcs_tried_positions { /* one at a time */
