@@ -145,7 +145,8 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
     memcpy(part->work.mode_before, c->osnsp.mode, bytes);
     DALCS_TRY(dalcs_slide_find_leading(r, part, micro));
     put_inputs(part, micro);
-    DALCS_TRY(dalcs_restless_find(&c->positions, true, &vanishing, part->work.y2, &found));
+    DALCS_TRY(dalcs_restless_find(&c->positions, !c->positions.sides.remember, &vanishing,
+                                  part->work.y2, &found));
     memcpy(c->osnsp.mode, part->work.mode_before, bytes);
     if (found.pair >= 0) {
         enum dalcs_status status = dalcs_micro_fail(r, part, sigma, part->work.u, DALCS_INFEASIBLE);

@@ -9,7 +9,7 @@ struct dalcs_euler_jump;
 struct dalcs_radau_part;
 
 /* Of three switches that slide for themselves. */
-enum { DALCS_MOST_SIDES = 8 };
+enum { DALCS_MOST_SIDES = 32 };
 
 /* The answers on all sides of what slides, two for a switch, and the part of the time for which each holds. */
 struct dalcs_observed_sides {

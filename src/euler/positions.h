@@ -45,6 +45,8 @@ struct dalcs_positions {
         uint64_t *conducted; /* [n_words] on some side */
         bool *leading;       /* [n + n_jumps] */
         bool have_changed;   /* others lead than in the mean before */
+        bool remember;       /* formulas that turn hold themselves: there is no mean */
+        double sigma;        /* of the step */
     } sides;
 
     struct dalcs_tried_positions { /* one at a time */

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Newton's method: where what each reads goes on in a straight line with what each does, one of these does. */
-enum { MOST_NEWTON = 16, ROWS = 4 * DALCS_MOST_SEVERAL };
+enum { MOST_NEWTON = 16, ROWS = 2 * DALCS_QUAD * DALCS_MOST_SEVERAL };
 
 static double beyond(const struct dalcs_positions *p, int i, int corner) {
     return dalcs_turning_beyond(p, i, dalcs_corner_y(p, corner), dalcs_corner_w(p, corner));
@@ -52,9 +52,11 @@ static void fill_rows(const struct dalcs_positions *p, const struct dalcs_severa
     }
 }
 
+typedef double turning_off[DALCS_MOST_SEVERAL][DALCS_MOST_SEVERAL];
+
 /* How much each part of the time turns the first ones off. */
 static void find_turning_off(const struct dalcs_positions *p, const struct dalcs_several *of,
-                             double m[DALCS_MOST_SEVERAL][DALCS_MOST_SEVERAL]) {
+                             turning_off m) {
     const int row = dalcs_dense_row(of->n, 1);
     double a[ROWS];
     fill_rows(p, of, a);
@@ -75,28 +77,31 @@ static double difference(double one, double other) {
 
 /* Where all principal minors are above 0 no other parts of the time do (Cottle, Pang and Stone, The Linear Complementarity
  * Problem, thm 3.3.7). Of switches that hold each other open, as in a flip-flop, two stay, and the mean is where neither
- * does. */
-bool dalcs_several_is_only_one(const struct dalcs_positions *p, const struct dalcs_several *of) {
-    double m[DALCS_MOST_SEVERAL][DALCS_MOST_SEVERAL] = {{0}};
-    find_turning_off(p, of, m);
-    bool is = true;
-    for (int g = 0; g < of->n; g++) {
-        is = is && m[g][g] > 0.0;
-        for (int k = 0; k < g; k++) {
-            is = is && difference(m[g][g] * m[k][k], m[g][k] * m[k][g]) > 0.0;
+ * does. All are, where they are without the first row and column, and in the Schur complement of the first pivot (Tsatsomeros
+ * and Li, Linear Multilinear Algebra 47, 2000). m[n][n] is from `first` on. */
+static bool has_minors(const turning_off *m, int first, int n) {
+    turning_off rest;
+    bool is = first == n || (*m)[first][first] > 0.0;
+    for (int i = first + 1; i < n && is; i++) {
+        for (int k = first + 1; k < n; k++) {
+            rest[i][k] =
+                difference((*m)[i][k], (*m)[i][first] / (*m)[first][first] * (*m)[first][k]);
         }
     }
-    return is && (of->n < DALCS_MOST_SEVERAL ||
-                  m[0][0] * difference(m[1][1] * m[2][2], m[1][2] * m[2][1]) -
-                          m[0][1] * difference(m[1][0] * m[2][2], m[1][2] * m[2][0]) +
-                          m[0][2] * difference(m[1][0] * m[2][1], m[1][1] * m[2][0]) >
-                      0.0);
+    return is && (first + 1 >= n || (has_minors(m, first + 1, n) &&
+                                     has_minors((const turning_off *)&rest, first + 1, n)));
+}
+
+bool dalcs_several_is_only_one(const struct dalcs_positions *p, const struct dalcs_several *of) {
+    turning_off m;
+    find_turning_off(p, of, m);
+    return has_minors((const turning_off *)&m, 0, of->n);
 }
 
 int dalcs_several_find_tied(const struct dalcs_positions *p, const struct dalcs_several *of,
                             bool *is_on) {
     const int last = of->n - 1;
-    double m[DALCS_MOST_SEVERAL][DALCS_MOST_SEVERAL] = {{0}};
+    turning_off m;
     double largest;
     int tied = -1;
     find_turning_off(p, of, m);

@@ -4,7 +4,7 @@
 
 #include "sliding_internal.h"
 
-enum { DALCS_MOST_SEVERAL = 3 };
+enum { DALCS_MOST_SEVERAL = 5 };
 
 _Static_assert(1 << DALCS_MOST_SEVERAL == DALCS_MOST_SIDES, "a side for each of their positions");
 

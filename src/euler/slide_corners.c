@@ -67,12 +67,33 @@ static enum dalcs_status find_corner_by(struct dalcs_positions *p, const double 
     return DALCS_OK;
 }
 
+/* The same by the whole one-step problem, where turning diodes one by one does not come to their mode. It has jumps where
+ * their arguments are: for those that lead there is none. */
+static enum dalcs_status solve_corner(struct dalcs_positions *p, const double *u, int corner,
+                                      bool *is_complete) {
+    struct dalcs_osnsp *o = p->osnsp;
+    double *y = dalcs_corner_y(p, corner);
+    memcpy(o->mode, p->present, (size_t)o->n_words * sizeof(*o->mode));
+    put_leading(p, corner);
+    for (int round = 0; round <= 2 * p->n && !*is_complete; round++) {
+        enum dalcs_status status = dalcs_osnsp_solve(o, p->sides.sigma, u, y);
+        if (status != DALCS_OK) {
+            return status < DALCS_OK ? status : DALCS_OK;
+        }
+        *is_complete = !put_switches(p, y);
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status find_corner(struct dalcs_positions *p, const double *u, int corner,
                                      bool *is_complete) {
     const struct dalcs_osnsp *o = p->osnsp;
     DALCS_TRY(find_corner_by(p, u, corner, false, is_complete));
     if (!*is_complete && p->n_jumps > 0) {
         DALCS_TRY(find_corner_by(p, u, corner, true, is_complete));
+    }
+    if (!*is_complete && p->n_jumps == 0) {
+        DALCS_TRY(solve_corner(p, u, corner, is_complete));
     }
     memcpy(dalcs_corner_w(p, corner), o->w, (size_t)o->system->n_pairs * sizeof(double));
     memcpy(dalcs_corner_mode(p, corner), o->mode, (size_t)o->n_words * sizeof(*o->mode));

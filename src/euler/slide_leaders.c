@@ -11,6 +11,7 @@ void dalcs_sliding_begin(struct dalcs_positions *p) {
         p->gap[i] = 0.0;
         p->follows[i] = p->is_compared[i] = false;
     }
+    p->sides.remember = false;
 }
 
 void dalcs_sliding_note_gaps(struct dalcs_positions *p, const double *y) {
@@ -74,6 +75,10 @@ enum dalcs_status dalcs_sliding_find_commanding(struct dalcs_positions *p, const
         p->sides.group[i] = 0;
     }
     if (any) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_turning_find_memory(p, u, y, &p->sides.remember));
+    if (p->sides.remember) {
         return DALCS_OK;
     }
     memcpy(p->present, p->osnsp->mode, (size_t)p->osnsp->n_words * sizeof(*p->present));

@@ -198,6 +198,10 @@ enum dalcs_status dalcs_sliding_mean(struct dalcs_positions *p, double sigma, co
     const int n_columns = dalcs_system_n_columns(s);
     bool may_slide;
     sides->n = 0;
+    p->sides.sigma = sigma;
+    if (p->sides.remember) {
+        return DALCS_OK;
+    }
     DALCS_TRY(dalcs_turning_compare_new(p, sigma, u, y));
     DALCS_TRY(complete(p, u, y, &may_slide));
     for (int i = 0; i < p->n && may_slide; i++) {

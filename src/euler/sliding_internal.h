@@ -43,6 +43,10 @@ static inline double dalcs_turning_there(const struct dalcs_positions *p, int i)
 enum dalcs_status dalcs_turning_compare_new(struct dalcs_positions *p, double sigma,
                                             const double *u, const double *y) DALCS_MUST_CHECK;
 
+/* slide_memory.c: do formulas that turn hold each other on their sides, in the answer y of a loop without a state? */
+enum dalcs_status dalcs_turning_find_memory(struct dalcs_positions *p, const double *u,
+                                            const double *y, bool *remembers) DALCS_MUST_CHECK;
+
 /* The weight of the other side with which the i-th is at its threshold, and what rounding may make of it. */
 double dalcs_turning_weight(const struct dalcs_positions *p, int i, const double *y, double *noise);
 

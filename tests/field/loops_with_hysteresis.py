@@ -49,6 +49,15 @@ CASES = {
                         ".model m sw(vt=2.5 ron=1)\n.model mh sw(vt=5 vh=1 ron=10)", ["s2"], 0.6e-3, "v(a)"),
     "a mosfet behind it": ("v1 p 0 pwl(0 0 1m 10)\nr1 p d 1k\nm1 d g 0 0 nm\ns2 h g d 0 ms\nv2 h 0 10\nr3 g 0 10k\n"
                            ".model nm nmos(vto=3 kp=1)\n.model ms sw(vt=5 vh=1 ron=1)", ["s2"], 0.6e-3, "v(d)"),
+    "of two formulas": ("i1 0 a pwl(0 0 1m 2)\nr1 a 0 10\nb1 q 0 v={if(v(a)>v(w),5,0)}\nbw w 0 v={if(v(q)>2.5,7,9)}\n"
+                        "s1 a 0 q 0 m\n.model m sw(vt=2.5 ron=0.1)", ["s1"], 0.45e-3, "v(q)"),
+    "of one formula": ("i1 0 a pwl(0 0 1m 2)\nr1 a 0 10\nb1 q 0 v={if(v(a)+0.4*v(q)>9,5,0)}\n"
+                       "s1 a 0 q 0 m\n.model m sw(vt=2.5 ron=0.1)", ["s1"], 0.45e-3, "v(q)"),
+    "of three formulas": ("v1 s 0 pwl(0 0 1m 2m)\nr1 s a 1meg\nb1 q 0 v={if(v(a)>v(w),1,0)}\nb2 n 0 v={if(v(q)>0.5,0,1)}\n"
+                          "bw w 0 v={if(v(n)>0.5,0.9m,0.7m)}\ns1 a 0 q 0 m\n.model m sw(vt=0.5 ron=100k roff=1g)", ["s1"],
+                          0.45045e-3, "v(q)"),
+    "of a limiter": ("i1 0 a pwl(0 0 1m 2)\nr1 a 0 10\nb1 q 0 v={5*u(v(p)-8)}\nbp p 0 v={v(a)+0.2*v(q)-u(v(n)-2)}\nb2 n 0 v={5-v(q)}\n"
+                     "s1 a 0 q 0 m\n.model m sw(vt=2.5 ron=0.1)", ["s1"], 0.45e-3, "v(q)"),
     "three in a ring": (ring(3), ["s0", "s1", "s2"], 0.6e-3, None),
     "five in a ring": (ring(5), ["s0", "s1", "s2", "s3", "s4"], 0.6e-3, None),
     "a coil beside it": (f"i1 0 a pwl(0 0 1m 2)\nl1 a l 1\nr2 l 0 1g\n{SHUNT}", ["s1"], 0.45e-3, "v(a)"),

@@ -99,6 +99,25 @@ def check_clamped(checker, program, first, volts, clamp, rs, of):
             return
 
 
+def check_clamped_many(checker, program, volts, clamp, rs, of):
+    """The same with more of them, each next to its own current: the diode is off where none draws any."""
+    name = f"{len(of)} clamped choppers, {volts} V"
+    lines = [name, f"v1 s 0 {volts!r}", f"rs s a {rs!r}", f"v2 b 0 {clamp!r}", "dc b a d", ".model d d(ron=0)"]
+    for k, (r, l, current) in enumerate(of):
+        lines += [f"d{k} 0 x{k} d", f"l{k} x{k} y{k} {l!r} ic={0.99 * current!r}", f"vs{k} y{k} o{k} 0", f"ro{k} o{k} 0 {r!r}",
+                  COMMANDS["switches"].format(k=k, I=current, ron=0.0)]
+    reached = max(0.01 * current * l / (clamp - r * current) for r, l, current in of)
+    rows = run(checker, program, name, "\n".join([*lines, f".tran {reached / 2!r} {2 * reached!r} uic", ".end", ""]))
+    none = math.prod(1.0 - r * current / clamp for r, _, current in of)
+    drawn = sum(r * current / clamp * current for r, _, current in of)
+    for at in rows or []:
+        if at["time"] > 1.5 * reached:
+            for k, (r, _, current) in enumerate(of):
+                near(checker, name, at, f"i(l{k})", current, 1e-9 * current)
+                near(checker, name, at, f"i(s{k})", r * current / clamp * current, 1e-8 * drawn)
+            near(checker, name, at, "i(dc)", drawn - (1.0 - none) * (volts - clamp) / rs, 1e-7 * drawn)
+
+
 # ---- Synchronous rectifiers that read their own voltage ---------------------------------------------------
 
 RECTIFIERS = {  # the k-th from n{k} to n{j}, which closes above {U}
@@ -214,6 +233,7 @@ def main():
                 check_choppers(checker, program, command, values)
     for first in 0.0, 2.0:
         check_clamped(checker, program, first, 24.0, 20.0, 10.0, [(3.0, 1e-3, 2.0), (5.0, 2e-3, 1.5)])
+    check_clamped_many(checker, program, 24.0, 20.0, 10.0, [(3.0, 1e-3, 2.0), (5.0, 2e-3, 1.5), (4.0, 1e-3, 1.0), (8.0, 1.5e-3, 0.7)])
     for values in dalcs_program.some_of(SERIES):
         for kind in dalcs_program.some_of(list(RECTIFIERS)):
             if kind != "drivers" or len(values) == 3:
