@@ -190,6 +190,8 @@ static bool find_impulses(struct dalcs_measures *measures, double t) {
     for (int k = 0; k < results->n_measured; k++) {
         m->impulse[k] =
             dalcs_impulses_of(measures->impulses, &results->signal[results->measured[k]]);
+        m->row[k] =
+            dalcs_impulses_change(measures->impulses, &results->signal[results->measured[k]]);
     }
     return true;
 }

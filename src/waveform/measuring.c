@@ -167,15 +167,17 @@ static void measure(const struct dalcs_measuring *m, struct dalcs_measured *item
     }
 }
 
-/* What was just before, while the stretch before is still there. */
+/* What was just before: that of the stretch before, where it is known, or what it is now less what has changed. */
 static void take_impulses(struct dalcs_measuring *m, double from) {
     struct dalcs_stretch *s = &m->stretch;
     const bool is_next = m->has_row && fabs(s->to - from) <= m->near;
     for (int k = 0; k < s->n_signals; k++) {
-        m->row[k] = dalcs_stretch_at(s->coefficient[k], 1.0);
+        const double before = dalcs_stretch_at(s->coefficient[k], 1.0);
+        dalcs_stretch_expand(&m->rule, s->value[k], s->coefficient[k]);
+        m->row[k] = is_next ? before : dalcs_stretch_at(s->coefficient[k], -1.0) - m->row[k];
     }
     s->impulse = m->impulse;
-    s->left = is_next ? m->row : NULL;
+    s->left = m->row;
     if (m->kept != NULL) {
         dalcs_kept_stretches_add_impulses(m->kept, s, from);
     }

@@ -230,7 +230,9 @@ I1 0 b 1
 .meas tran q integ i(c1)
 .meas tran f integ v(b)
 .meas tran later integ i(c1) from=1u
+.meas tran work integ v(a)*i(v1)
 """)
+    r.meas("work", -7e-5)
     r.meas("q", 7e-6)
     r.meas("f", -1e-3)
     r.meas("later", 0.0, 7e-6)
@@ -282,6 +284,7 @@ Ve e 0 pulse(0 1 50u 0 0 50u 100u)
 .pss 100u
 .losses
 .meas pss in avg i(v1)
+.meas pss power avg v(in)*i(v1)
 .save v(out) i(v1) i(c1) v(in)
 """)
     # of one period: v in the middle is u, behind the jump w = (10 C1 + C2 u)/(C1 + C2); then both decay, then C2 alone
@@ -289,6 +292,7 @@ Ve e 0 pulse(0 1 50u 0 0 50u 100u)
     w = 10 * 1e-6 / 11e-6 / (1 - 10 / 11 * both * alone)
     charge = 1e-6 * (10 - w * both)
     r.meas("in", -charge / 100e-6)
+    r.meas("power", -charge / 10e-6)
     r.loss("v1", "i_average", -charge / 100e-6)
     r.loss("c1", "i_average", 0.0, charge / 100e-6)
     r.close(r.steady.get("i(v1)", {}).get("average"), -charge / 100e-6, "average of the orbit")
