@@ -291,7 +291,7 @@ void dalcs_audit_losses_laws(const struct dalcs_audit_losses *a, const struct da
     const struct dalcs_circuit *c = sum->circuit;
     double *leaves = work, *size = work + c->n_nodes;
     struct means m = {.sum = sum, .told = told, .length = sum->to - sum->from};
-    if (a->run == NULL || sum->impulses == NULL) {
+    if (a->run == NULL) {
         return;
     }
     for (int k = 0; k < c->n_devices; k++) {

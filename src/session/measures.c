@@ -281,6 +281,9 @@ void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_eul
     if (measures->losses != NULL) {
         add_constant_stretch(measures);
     }
+    if (measures->impulses != NULL) {
+        measures->impulses->is_noted = false; /* they were of this step */
+    }
 }
 
 void dalcs_measures_cross(struct dalcs_measures *measures, const struct dalcs_euler *e) {

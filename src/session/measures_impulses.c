@@ -28,6 +28,5 @@ bool dalcs_measures_find_blurred(struct dalcs_measures *measures) {
     for (int k = 0; k < m->circuit->results.n_measured; k++) {
         m->impulse[k] = m->impulse[k] != 0.0 ? (double)NAN : 0.0;
     }
-    impulses->is_noted = false;
     return true;
 }

@@ -151,6 +151,25 @@ C2 b 0 1u
 """, method="euler")
     r.none(r.measured["q"], "the integral")
     r.loss("s1", "i_average", 2.5e-3)
+    r.none(r.of["s1"]["i_rms"], "the rms")
+    r = Case(program, checker, """implicit Euler, at an event
+I1 0 a 10m
+C1 a 0 1u
+C2 b 0 3u
+S1 a b a 0 r
+.model r sw(vt=5 vh=4.5 ron=0)
+.tran 5u 2m uic
+.losses
+""", method="euler")
+    r.loss("s1", "jumps", r.sum["switches"])
+    r.close(r.sum["switches"], 0.375 * 9.5**2 * 1e-6, "energy of the jump", 1e9 * 0.04 * 34e-6)
+    r = Case(program, checker, """implicit Euler, beside it
+C1 a 0 1u ic=10
+S1 a b g 0 s
+C2 b 0 1u
+.tran 10u 2m uic
+.meas tran v integ v(b)
+""", method="euler")
     checker.check(r.measured["v"] is not None, r.run.stderr)
 
 
