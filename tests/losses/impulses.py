@@ -233,6 +233,19 @@ H1 e 0 V2 3
     r.meas("h", 1.5e-5)
     r.meas("r", 1.5e-8)
     r.meas("c", -5e-6)
+    r = Case(program, checker, """work of a source that reads an impulse
+C1 a 0 1u ic=10
+S1 a b g 0 s
+V2 b c 0
+C2 c 0 1u
+F1 0 d V2 2
+C3 d 0 4u
+.tran 10u 2m uic
+.losses
+""")  # 10 uC into 4 uF, of which no part is lost; 5 uC from 10 V to 5 V
+    r.loss("f1", "jumps", -12.5e-6)
+    r.loss("s1", "jumps", 25e-6)
+    r.close(r.sum["balance"], 0.0, "balance", 25e-6)
     r = Case(program, checker, netlist.format(load="R3 e f 1k\nR4 f 0 1k"))  # a divider: not told, no guess
     r.none(r.measured["r"], "i(r3)")
     r.meas("c", -5e-6)
