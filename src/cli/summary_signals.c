@@ -103,9 +103,8 @@ static void write_remark(FILE *out, const struct dalcs_measure *measure,
         n += report->jump[k].n_impulses;
     }
     if (measure->plot->analysis == DALCS_TRANSIENT && n > 0) {
-        fputs("  averages and rms values of rows are without the impulses of jumps, which .losses "
-              "and "
-              ".meas count\n",
+        fputs("  averages and rms values of rows are without impulses, .losses and .meas count "
+              "them\n",
               out);
     }
 }

@@ -231,15 +231,35 @@ void dalcs_audit_losses_told(const struct dalcs_audit_losses *a, const struct da
 
 /* ---- Laws of means -------------------------------------------------------------------------------- */
 
-/* What is told of a run, with the largest rms voltage and current: what is rounding of them is no defect. */
+/* What is told of a run, with the largest V and A of means: what is rounding of them is no defect. */
 struct means {
+    const struct dalcs_audit_losses *a;
     const struct dalcs_losses_sum *sum;
     const struct dalcs_element_losses *told; /* of the next device that is told of */
     double length, largest[2];
 };
 
+static double scale_of_probe(const struct means *m, const struct dalcs_probe *probe) {
+    double scale = 0.0;
+    for (int i = 0; probe->system >= 0 && i < probe->n_terms; i++) {
+        const struct dalcs_radau_part *part = &m->a->run->radau->part[probe->system];
+        const double largest =
+            part->kind == DALCS_PART_STEPPED ? part->scales.column[probe->term[i].index] : 0.0;
+        scale += fabs(probe->term[i].coefficient) * largest;
+    }
+    return scale;
+}
+
+static double scale_in_run(const struct means *m, int signal) {
+    const struct dalcs_output *out =
+        &m->a->run->run->s->network.output[m->sum->circuit->results.measured[signal]];
+    return scale_of_probe(m, &out->plus) + scale_of_probe(m, &out->minus);
+}
+
 static double off_mean(const struct means *m, int unit, double told, double is, double size) {
-    return part_off(told, is, size + dalcs_beyond * m->largest[unit] * dalcs_answer_rounded);
+    const bool is_rounding =
+        fabs(told - is) <= dalcs_beyond * dalcs_answer_rounded * m->largest[unit];
+    return is_rounding ? 0.0 : part_off(told, is, size);
 }
 
 /* Over any window the charge of a capacitor changes by the integral of its current, and the flux of a coil on its own by
@@ -247,11 +267,14 @@ static double off_mean(const struct means *m, int unit, double told, double is, 
 static double off_storage(const struct means *m, int k, const struct dalcs_element_losses *told) {
     const struct dalcs_device *d = &m->sum->circuit->device[k];
     const struct dalcs_loss *l = &m->sum->device[k];
+    const struct dalcs_loss_device *of = &m->sum->circuit->results.losses->device[k];
     const int own = d->kind == DALCS_CAPACITOR ? 0 : 1;
     const double square = own == 0 ? l->i_square : l->v_square;
     const double is = d->value * (l->end[own] - l->begin[own]) / m->length;
-    const double size = d->value * (fabs(l->end[own]) + fabs(l->begin[own])) / m->length +
-                        sqrt(square / m->length) + l->area[1 - own].size / m->length;
+    const int state = own == 0 ? of->voltage : of->current;
+    const int driven = own == 0 ? of->current : of->voltage;
+    const double size = d->value * scale_in_run(m, state) / m->length + sqrt(square / m->length) +
+                        l->area[1 - own].size / m->length + scale_in_run(m, driven);
     return off_mean(m, 1 - own, own == 0 ? told->i_average : told->v_average, is, size);
 }
 
@@ -263,6 +286,20 @@ static bool is_coupled(const struct dalcs_circuit *c, int k) {
     return is;
 }
 
+/* Of rms values, and of the means that all charge of a capacitor, all flux of a coil makes. */
+static void raise_largest(struct means *m, int k) {
+    const struct dalcs_device *d = &m->sum->circuit->device[k];
+    const struct dalcs_loss_device *of = &m->sum->circuit->results.losses->device[k];
+    const struct dalcs_loss *l = &m->sum->device[k];
+    m->largest[0] = fmax(m->largest[0], sqrt(l->v_square / m->length));
+    m->largest[1] = fmax(m->largest[1], sqrt(l->i_square / m->length));
+    if (of->voltage >= 0 && d->kind == DALCS_CAPACITOR) {
+        m->largest[1] = fmax(m->largest[1], d->value * scale_in_run(m, of->voltage) / m->length);
+    } else if (of->voltage >= 0 && d->kind == DALCS_INDUCTOR) {
+        m->largest[0] = fmax(m->largest[0], d->value * scale_in_run(m, of->current) / m->length);
+    }
+}
+
 static void add_means(const struct dalcs_audit_losses *a, struct means *m, double *leaves,
                       double *size, int k) {
     const struct dalcs_circuit *c = m->sum->circuit;
@@ -272,7 +309,8 @@ static void add_means(const struct dalcs_audit_losses *a, struct means *m, doubl
         d->kind == DALCS_CAPACITOR || (d->kind == DALCS_INDUCTOR && !is_coupled(c, k));
     const double i = is_told ? m->told->i_average : (double)NAN;
     const double i_size = is_told ? m->sum->device[k].area[1].size / m->length +
-                                        sqrt(m->sum->device[k].i_square / m->length)
+                                        sqrt(m->sum->device[k].i_square / m->length) +
+                                        scale_in_run(m, c->results.losses->device[k].current)
                                   : 0.0;
     if (is_told && stores) {
         dalcs_audit_add_to(a->run->audit, DALCS_AUDIT_LOSSES, k, off_storage(m, k, m->told),
@@ -290,13 +328,12 @@ void dalcs_audit_losses_laws(const struct dalcs_audit_losses *a, const struct da
                              const struct dalcs_element_losses *told, double *work) {
     const struct dalcs_circuit *c = sum->circuit;
     double *leaves = work, *size = work + c->n_nodes;
-    struct means m = {.sum = sum, .told = told, .length = sum->to - sum->from};
-    if (a->run == NULL || sum->impulses == NULL) {
+    struct means m = {.a = a, .sum = sum, .told = told, .length = sum->to - sum->from};
+    if (a->run == NULL) {
         return;
     }
     for (int k = 0; k < c->n_devices; k++) {
-        m.largest[0] = fmax(m.largest[0], sqrt(sum->device[k].v_square / m.length));
-        m.largest[1] = fmax(m.largest[1], sqrt(sum->device[k].i_square / m.length));
+        raise_largest(&m, k);
     }
     for (int k = 0; k < c->n_devices; k++) {
         add_means(a, &m, leaves, size, k);

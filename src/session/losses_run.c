@@ -45,6 +45,7 @@ enum dalcs_status dalcs_losses_run_start(struct dalcs_losses_run *losses, struct
     losses->engine = e;
     losses->is_euler = is_euler;
     DALCS_TRY(dalcs_losses_sum_setup(&losses->sum, c, c->analyses.transient.stop, near));
+    losses->sum.is_euler = is_euler;
     losses->forward = dalcs_alloc((size_t)c->n_devices, sizeof(*losses->forward));
     losses->device_of = dalcs_alloc((size_t)r->s->network.n_systems, sizeof(*losses->device_of));
     losses->on = dalcs_alloc((size_t)c->n_devices, sizeof(bool));

@@ -180,20 +180,6 @@ static double longest(const struct dalcs_measures *measures, double t) {
     return length;
 }
 
-/* Of the measured signals. */
-static bool find_impulses(struct dalcs_measures *measures, double t) {
-    struct dalcs_measuring *m = &measures->measuring;
-    const struct dalcs_circuit_results *results = &m->circuit->results;
-    if (measures->impulses == NULL || !dalcs_impulses_at(measures->impulses, t)) {
-        return false;
-    }
-    for (int k = 0; k < results->n_measured; k++) {
-        m->impulse[k] =
-            dalcs_impulses_of(measures->impulses, &results->signal[results->measured[k]]);
-    }
-    return true;
-}
-
 static enum dalcs_status hand_over(struct dalcs_measures *measures, double from, double to) {
     struct dalcs_measuring *m = &measures->measuring;
     double time[DALCS_STRETCH_NODES];
@@ -209,7 +195,7 @@ static enum dalcs_status hand_over(struct dalcs_measures *measures, double from,
                    (size_t)n_done * sizeof(double));
         }
     }
-    dalcs_measuring_stretch(m, from, to, find_impulses(measures, from));
+    dalcs_measuring_stretch(m, from, to, dalcs_measures_find_impulses(measures, from));
     if (measures->losses != NULL) {
         dalcs_losses_run_stretch(measures->losses, &m->stretch);
     }
@@ -275,20 +261,6 @@ static void add_constant_stretch(struct dalcs_measures *measures) {
     dalcs_losses_run_stretch(measures->losses, &m->stretch);
 }
 
-/* A step of implicit Euler holds an impulse as a value, whose straight lines to others have another area. */
-static bool find_blurred(struct dalcs_measures *measures) {
-    struct dalcs_measuring *m = &measures->measuring;
-    struct dalcs_impulses *impulses = measures->impulses;
-    if (impulses == NULL || !impulses->is_noted || !find_impulses(measures, impulses->time)) {
-        return false;
-    }
-    for (int k = 0; k < m->circuit->results.n_measured; k++) {
-        m->impulse[k] = m->impulse[k] != 0.0 ? (double)NAN : 0.0;
-    }
-    impulses->is_noted = false;
-    return true;
-}
-
 void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_euler *e) {
     struct dalcs_measuring *m = &measures->measuring;
     if (!measures->wanted) {
@@ -305,9 +277,12 @@ void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_eul
                 measures->before[k] + theta * (measures->now[k] - measures->before[k]);
         }
     }
-    dalcs_measuring_stretch(m, e->t_before, e->t, find_blurred(measures));
+    dalcs_measuring_stretch(m, e->t_before, e->t, dalcs_measures_find_blurred(measures));
     if (measures->losses != NULL) {
         add_constant_stretch(measures);
+    }
+    if (measures->impulses != NULL) {
+        measures->impulses->is_noted = false; /* they were of this step */
     }
 }
 

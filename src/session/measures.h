@@ -69,6 +69,15 @@ void dalcs_measures_row(struct dalcs_measures *measures, double at,
 void dalcs_measures_complex_row(struct dalcs_measures *measures, double at,
                                 const double *value /* [n_outputs] pairs of real and imaginary */);
 
+/* ---- measures_impulses.c -------------------------------------------------------------------------- */
+
+/* Those at t, into measures->measuring; false: there are none. */
+bool dalcs_measures_find_impulses(struct dalcs_measures *measures, double t);
+
+/* Of the last step of implicit Euler, which holds an impulse as a value, whose straight lines to others have another area: it
+ * is not known. */
+bool dalcs_measures_find_blurred(struct dalcs_measures *measures);
+
 /* ---- fourier_report.c ----------------------------------------------------------------------------- */
 
 /* The same for all formulas of a card. */

@@ -18,11 +18,14 @@ static void warn_of_columns(struct dalcs_run *r) {
 
 void dalcs_run_warn_of_switches(struct dalcs_run *r, const struct dalcs_component *c, long steps) {
     if (c->commands.n_slid > 0) {
-        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
-                       "a hysteresis, Vh=, keeps it from switching without end",
-                       "in %ld step%s a switch slides along its threshold: closing turns its "
-                       "control off, opening turns it on; values are means of both positions",
-                       c->commands.n_slid, c->commands.n_slid == 1 ? "" : "s");
+        dalcs_diag_add(
+            &r->s->diag, DALCS_WARNING, NULL,
+            "a hysteresis, Vh=, keeps it from switching without end; .meas and .losses "
+            "have rms values and powers of the positions",
+            "in %ld step%s a switch slides along its threshold: closing turns its "
+            "control off, opening turns it on; values are means of both positions, and rms "
+            "values and products made of rows are those of means",
+            c->commands.n_slid, c->commands.n_slid == 1 ? "" : "s");
         warn_of_columns(r);
     }
     if (c->commands.n_delayed == 0 || c->failure.restless.pair >= 0) { /* an error says it */

@@ -174,7 +174,7 @@ static enum dalcs_status set_up_others(struct dalcs_run *r, struct parts *p) {
         DALCS_TRY(dalcs_impulses_setup(&p->impulses, &r->s->circuit, &r->s->network,
                                        p->is_euler ? 0.0 : p->radau.resolution));
         r->transient.impulses = &p->impulses;
-        p->losses.sum.impulses = p->is_euler ? NULL : &p->impulses; /* in its steps */
+        p->losses.sum.impulses = &p->impulses;
     }
     if (dalcs_run_keeps_ledger(r)) {
         DALCS_TRY(dalcs_energy_setup(&p->energy, &p->euler, radau_of(p)));

@@ -23,7 +23,8 @@ static double signal_of(const struct dalcs_signal_formula_point *point, int inde
                         enum dalcs_signal_part part) {
     const struct pulse *p = point->user;
     const struct dalcs_stretch *s = p->stretch;
-    const double value = p->is_alone  ? 0.0
+    const bool is_nothing = p->is_alone || s->impulse[index] != 0.0; /* beside the pulse */
+    const double value = is_nothing   ? 0.0
                          : p->is_left ? s->left[index]
                                       : dalcs_stretch_at(s->coefficient[index], -1.0);
     const double all = value + p->times * s->impulse[index];
@@ -43,7 +44,7 @@ static double area_of_bent(const struct dalcs_stretch *s,
     double most = -INFINITY;
     for (int i = 0; i < 6; i++) {
         const struct pulse p = {s, i < 3, false, times[i % 3] * height};
-        const double one = s->left != NULL ? area(&p, formula) : (double)NAN;
+        const double one = area(&p, formula);
         if (!isfinite(one)) {
             return NAN;
         }

@@ -212,6 +212,40 @@ static bool adds_up(const struct dalcs_impulses *m) {
     return adds;
 }
 
+/* From node to node over batteries and wires, or over capacitors, which say by how much their voltage changes. */
+static bool spread_moves(struct dalcs_impulses *m, bool over_capacitors) {
+    const struct dalcs_circuit *c = m->circuit;
+    bool moves = false;
+    for (int k = 0; k < c->n_devices; k++) {
+        const struct dalcs_device *d = &c->device[k];
+        const bool is_battery = d->kind == DALCS_VSOURCE && d->stimulus >= 0 &&
+                                c->stimulus[d->stimulus].kind == DALCS_STIMULUS_DC;
+        const bool leads = over_capacitors ? d->kind == DALCS_CAPACITOR && !isnan(m->change[k])
+                                           : is_battery || dalcs_device_is_short(d);
+        const double change = over_capacitors ? m->change[k] : 0.0;
+        double *end[2] = {&m->moved[d->node[0]], &m->moved[d->node[1]]};
+        if (leads && isnan(*end[0]) && !isnan(*end[1])) {
+            *end[0] = *end[1] + change;
+            moves = true;
+        } else if (leads && isnan(*end[1]) && !isnan(*end[0])) {
+            *end[1] = *end[0] - change;
+            moves = true;
+        }
+    }
+    return moves;
+}
+
+/* A battery holds its node, whatever a capacitor there was said to start from. */
+static void find_moves(struct dalcs_impulses *m) {
+    for (int n = 0; n < m->circuit->n_nodes; n++) {
+        m->moved[n] = n == 0 ? 0.0 : (double)NAN;
+    }
+    do {
+        while (spread_moves(m, false)) {
+        }
+    } while (spread_moves(m, true));
+}
+
 /* What is left is what jumps are made of. */
 static void forget(struct dalcs_impulses *m) {
     const struct dalcs_circuit *c = m->circuit;
@@ -257,6 +291,7 @@ static void begin(struct dalcs_impulses *m) {
 
 void dalcs_impulses_solve(struct dalcs_impulses *m) {
     begin(m);
+    find_moves(m);
     do {
         while (go_round(m, false)) {
         }

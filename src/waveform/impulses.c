@@ -43,7 +43,7 @@ enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
     impulses->device_of = dalcs_alloc((size_t)network->n_systems, sizeof(*impulses->device_of));
     impulses->state_device = dalcs_alloc((size_t)network->n_states, sizeof(int));
     impulses->change = dalcs_alloc(4 * n, sizeof(double));
-    impulses->node = dalcs_alloc(3 * n_nodes, sizeof(double));
+    impulses->node = dalcs_alloc(4 * n_nodes, sizeof(double));
     impulses->n_open = dalcs_alloc(n_nodes, sizeof(int));
     if (impulses->device_of == NULL || impulses->state_device == NULL || impulses->change == NULL ||
         impulses->node == NULL || impulses->n_open == NULL) {
@@ -54,6 +54,7 @@ enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
     impulses->across = impulses->charge + n;
     impulses->sum = impulses->node + n_nodes;
     impulses->size = impulses->sum + n_nodes;
+    impulses->moved = impulses->size + n_nodes;
     return find_devices(impulses);
 }
 
@@ -131,4 +132,11 @@ double dalcs_impulses_of(const struct dalcs_impulses *impulses, const struct dal
     const double minus = impulses->node[signal->node[1]];
     const bool is_rounding = fabs(plus - minus) <= dalcs_alike * fmax(fabs(plus), fabs(minus));
     return is_rounding ? 0.0 : plus - minus;
+}
+
+double dalcs_impulses_change(const struct dalcs_impulses *impulses,
+                             const struct dalcs_signal *signal) {
+    return signal->kind == DALCS_SIGNAL_CURRENT
+               ? (double)NAN
+               : impulses->moved[signal->node[0]] - impulses->moved[signal->node[1]];
 }

@@ -26,6 +26,7 @@ struct dalcs_impulses {
     double *
         across; /* [n_devices] Wb from node[0] to node[1], of what is no resistor; NAN: not known */
     double *node;       /* [n_nodes] Wb against ground; NAN: not known */
+    double *moved;      /* [n_nodes] V that a node moves by; NAN: not known */
     double *sum, *size; /* [n_nodes] work: charges that leave, their sizes */
     int *n_open;        /* [n_nodes] work */
 };
@@ -44,6 +45,10 @@ bool dalcs_impulses_at(struct dalcs_impulses *impulses, double time);
 
 /* V s or A s of a signal at that instant; NAN: not known. */
 double dalcs_impulses_of(const struct dalcs_impulses *impulses, const struct dalcs_signal *signal);
+
+/* V by which a signal changes at once at that instant; NAN: not known, as of currents. */
+double dalcs_impulses_change(const struct dalcs_impulses *impulses,
+                             const struct dalcs_signal *signal);
 
 /* ---- impulse_laws.c ------------------------------------------------------------------------------ */
 

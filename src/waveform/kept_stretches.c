@@ -8,8 +8,8 @@
 
 enum { N = DALCS_STRETCH_NODES };
 
-/* What each is: impulses with or without values before them, a stretch that slides or one that does not. */
-static const double plain = 0.0, slides = 1.0, impulses = 2.0, first_impulses = 3.0;
+/* What each is: a stretch that does not slide or one that does, or impulses with the values before them. */
+static const double plain = 0.0, slides = 1.0, impulses = 2.0;
 
 struct dalcs_kept_stretches *dalcs_kept_stretches_create(const struct dalcs_stretch *like) {
     struct dalcs_kept_stretches *kept = dalcs_alloc(1, sizeof(*kept));
@@ -61,10 +61,9 @@ void dalcs_kept_stretches_add_impulses(struct dalcs_kept_stretches *kept,
     double *to = one_more(kept);
     if (to != NULL) {
         to[0] = to[1] = at;
-        to[2] = stretch->left != NULL ? impulses : first_impulses;
+        to[2] = impulses;
         memcpy(to + 3, stretch->impulse, n * sizeof(double));
-        memcpy(to + 3 + n, stretch->left != NULL ? stretch->left : stretch->impulse,
-               n * sizeof(double));
+        memcpy(to + 3 + n, stretch->left, n * sizeof(double));
     }
 }
 
@@ -72,9 +71,9 @@ bool dalcs_kept_stretches_load(const struct dalcs_kept_stretches *kept, size_t k
                                struct dalcs_stretch *stretch) {
     size_t n = N * (size_t)stretch->n_signals;
     const double *from = kept->value + k * kept->n_values;
-    if (from[2] >= impulses) {
+    if (from[2] == impulses) {
         stretch->impulse = from + 3;
-        stretch->left = from[2] == impulses ? from + 3 + stretch->n_signals : NULL;
+        stretch->left = from + 3 + stretch->n_signals;
         return true;
     }
     stretch->from = from[0];

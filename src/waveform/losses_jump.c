@@ -10,26 +10,26 @@
 #include <math.h>
 #include <string.h>
 
-/* The energies of sources: charges at the voltage, fluxes at the current just after. */
-static void give_charges(const struct dalcs_losses_sum *sum) {
+/* The energies of sources: charges at the voltage, fluxes at the current just after. One that puts out an impulse of what it
+ * reads drives it while that goes from one side to the other: at the mean of both. Returns what that takes from the losses. */
+static double give(const struct dalcs_losses_sum *sum) {
     const struct dalcs_circuit *c = sum->circuit;
-    const double *charge = sum->impulses->charge;
+    double less = 0.0;
     for (int k = 0; k < c->n_devices; k++) {
-        if (dalcs_holds_voltage(&c->device[k]) && !isnan(charge[k])) {
-            sum->device[k].jump += charge[k] * sum->device[k].now[0];
+        const struct dalcs_device *device = &c->device[k];
+        struct dalcs_loss *d = &sum->device[k];
+        const bool holds[2] = {dalcs_holds_voltage(device), dalcs_holds_current(device)};
+        const double passed[2] = {sum->impulses->charge[k],
+                                  sum->impulses->node[device->node[0]] -
+                                      sum->impulses->node[device->node[1]]};
+        for (int i = 0; i < 2 && (holds[0] || holds[1]); i++) {
+            const double driven =
+                holds[i] || isnan(passed[i]) ? 0.0 : 0.5 * passed[i] * (d->now[i] - d->last[i]);
+            d->jump += isnan(passed[i]) ? 0.0 : passed[i] * d->now[i] - driven;
+            less -= driven;
         }
     }
-}
-
-static void give_fluxes(const struct dalcs_losses_sum *sum) {
-    const struct dalcs_circuit *c = sum->circuit;
-    for (int k = 0; k < c->n_devices; k++) {
-        const struct dalcs_device *d = &c->device[k];
-        const double flux = sum->impulses->node[d->node[0]] - sum->impulses->node[d->node[1]];
-        if (dalcs_holds_current(d) && !isnan(flux)) {
-            sum->device[k].jump += flux * sum->device[k].now[1];
-        }
-    }
+    return less;
 }
 
 /* What collapses times what passes; without a collapse what passes alone. */
@@ -41,7 +41,8 @@ static double weight_of(const struct dalcs_losses_sum *sum, const struct dalcs_l
     return fabs(i->charge) * volt + fabs(i->flux) * ampere;
 }
 
-static void share_loss(struct dalcs_losses_sum *sum, const struct dalcs_loss_jump *jump) {
+static void share_loss(struct dalcs_losses_sum *sum, const struct dalcs_loss_jump *jump,
+                       double lost) {
     double total = 0.0;
     bool by_collapse = true;
     for (int round = 0; round < 2 && !(total > 0.0); round++) {
@@ -52,28 +53,27 @@ static void share_loss(struct dalcs_losses_sum *sum, const struct dalcs_loss_jum
         }
     }
     if (!(total > 0.0)) {
-        sum->loops += jump->energy_lost;
+        sum->loops += lost;
         return;
     }
     for (int k = 0; k < jump->n; k++) {
         double part = weight_of(sum, &jump->impulse[k], by_collapse) / total;
-        sum->device[jump->impulse[k].device].jump += part * jump->energy_lost;
+        sum->device[jump->impulse[k].device].jump += part * lost;
     }
 }
 
 void dalcs_losses_sum_take_jumps(struct dalcs_losses_sum *sum) {
-    bool in_steps = false;
+    const bool in_steps = sum->jump[0].is_in_steps;
+    double less = in_steps || sum->impulses == NULL ? 0.0 : give(sum);
+    int largest = 0;
+    for (int j = 1; j < sum->n_jumps; j++) {
+        largest = sum->jump[j].energy_lost > sum->jump[largest].energy_lost ? j : largest;
+    }
     for (int j = 0; j < sum->n_jumps; j++) {
         const struct dalcs_loss_jump *jump = &sum->jump[j];
-        share_loss(sum, jump);
-        in_steps = in_steps || jump->is_in_steps;
-        for (int k = 0; k < jump->n && !jump->is_in_steps; k++) {
+        share_loss(sum, jump, jump->energy_lost - (j == largest ? less : 0.0));
+        for (int k = 0; k < jump->n && !in_steps; k++) {
             sum->device[jump->impulse[k].device].jump += jump->impulse[k].in_thresholds;
         }
     }
-    if (in_steps || sum->impulses == NULL) {
-        return;
-    }
-    give_charges(sum);
-    give_fluxes(sum);
 }

@@ -88,7 +88,7 @@ void dalcs_losses_sum_before_start(struct dalcs_losses_sum *sum, const double *v
 }
 
 struct dalcs_loss_jump *dalcs_losses_sum_jump(struct dalcs_losses_sum *sum, double time, int n) {
-    if (sum->n_jumps > 0 && fabs(sum->jump[0].time - time) > sum->near) {
+    if (sum->n_jumps > 0 && !sum->is_euler && fabs(sum->jump[0].time - time) > sum->near) {
         sum->n_jumps = 0; /* no stretch has begun there */
     }
     if (sum->n_jumps == sum->jump_capacity) {
@@ -146,7 +146,7 @@ static void add_areas(const struct dalcs_losses_sum *sum, double t) {
             const int signal = c->results.measured[measured[i]];
             const double area = dalcs_impulses_of(sum->impulses, &c->results.signal[signal]);
             sum->device[k].area[i].n += area != 0.0 ? 1 : 0;
-            sum->device[k].area[i].sum += area;
+            sum->device[k].area[i].sum += sum->is_euler ? 0.0 : area; /* its steps hold it */
             sum->device[k].area[i].size += fabs(area);
         }
     }
@@ -162,9 +162,11 @@ static void pass(struct dalcs_losses_sum *sum, double t, const bool *on) {
         sum->device[k].is_on = on[k];
     }
     sum->knows_sides = true;
-    /* those of times that were passed over are of no stretch */
-    if (is_inside && sum->n_jumps > 0 && fabs(sum->jump[0].time - t) <= sum->near) {
-        add_areas(sum, t);
+    /* those of times that were passed over are of no stretch; implicit Euler passes none over */
+    const bool is_here =
+        sum->n_jumps > 0 && (sum->is_euler || fabs(sum->jump[0].time - t) <= sum->near);
+    if (is_inside && is_here) {
+        add_areas(sum, sum->jump[0].time);
         dalcs_losses_sum_take_jumps(sum);
     }
     sum->n_jumps = 0;

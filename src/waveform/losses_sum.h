@@ -47,11 +47,11 @@ struct dalcs_loss_jump {
 struct dalcs_losses_sum {
     const struct dalcs_circuit *circuit;
     double from, to, near; /* s; times closer than the last are the same */
-    bool has_last, has_begun, knows_sides;
+    bool has_last, has_begun, knows_sides, is_euler;
     struct dalcs_loss *device; /* [n_devices] */
     int n_jumps, jump_capacity;
     struct dalcs_loss_jump *jump;    /* since the last stretch */
-    struct dalcs_impulses *impulses; /* borrowed; NULL: of implicit Euler, whose steps hold them */
+    struct dalcs_impulses *impulses; /* borrowed */
     double loops;                    /* J lost in jumps where no switch or diode carries them */
     const struct dalcs_side_means *sides; /* borrowed; NULL: nothing slides */
 };

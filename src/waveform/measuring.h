@@ -56,7 +56,8 @@ struct dalcs_measuring {
     int n_harmonics;
     struct dalcs_harmonics *harmonics; /* one for each .four; in a .tran and a period */
     double *row, *row_imaginary; /* [n_signals] the last one; in time what was before a jump */
-    double *impulse;             /* [n_signals] to be filled; those at the start of a stretch */
+    double *
+        impulse; /* [n_signals] to be filled: those at the start of a stretch; `row` with what changes there */
     struct dalcs_kept_stretches *kept; /* all of the run; NULL: no measurement is late */
     bool has_row;
     double row_at;

@@ -42,7 +42,7 @@ struct dalcs_stretch {
     bool slides; /* some signals are means over the sides of a slide: of those that are kept */
     const double *result; /* of measurements that formulas may use, or NULL */
     const double *impulse,
-        *left; /* [n_signals] V s or A s at its start, the values before; NULL: none */
+        *left; /* [n_signals] V s or A s at its start, and the values before, NAN where they are not known; NULL: none */
 };
 
 /* A formula from one time to another, resolved. */

@@ -151,6 +151,25 @@ C2 b 0 1u
 """, method="euler")
     r.none(r.measured["q"], "the integral")
     r.loss("s1", "i_average", 2.5e-3)
+    r.none(r.of["s1"]["i_rms"], "the rms")
+    r = Case(program, checker, """implicit Euler, at an event
+I1 0 a 10m
+C1 a 0 1u
+C2 b 0 3u
+S1 a b a 0 r
+.model r sw(vt=5 vh=4.5 ron=0)
+.tran 5u 2m uic
+.losses
+""", method="euler")
+    r.loss("s1", "jumps", r.sum["switches"])
+    r.close(r.sum["switches"], 0.375 * 9.5**2 * 1e-6, "energy of the jump", 1e9 * 0.04 * 34e-6)
+    r = Case(program, checker, """implicit Euler, beside it
+C1 a 0 1u ic=10
+S1 a b g 0 s
+C2 b 0 1u
+.tran 10u 2m uic
+.meas tran v integ v(b)
+""", method="euler")
     checker.check(r.measured["v"] is not None, r.run.stderr)
 
 
@@ -214,6 +233,19 @@ H1 e 0 V2 3
     r.meas("h", 1.5e-5)
     r.meas("r", 1.5e-8)
     r.meas("c", -5e-6)
+    r = Case(program, checker, """work of a source that reads an impulse
+C1 a 0 1u ic=10
+S1 a b g 0 s
+V2 b c 0
+C2 c 0 1u
+F1 0 d V2 2
+C3 d 0 4u
+.tran 10u 2m uic
+.losses
+""")  # 10 uC into 4 uF, of which no part is lost; 5 uC from 10 V to 5 V
+    r.loss("f1", "jumps", -12.5e-6)
+    r.loss("s1", "jumps", 25e-6)
+    r.close(r.sum["balance"], 0.0, "balance", 25e-6)
     r = Case(program, checker, netlist.format(load="R3 e f 1k\nR4 f 0 1k"))  # a divider: not told, no guess
     r.none(r.measured["r"], "i(r3)")
     r.meas("c", -5e-6)
@@ -230,7 +262,9 @@ I1 0 b 1
 .meas tran q integ i(c1)
 .meas tran f integ v(b)
 .meas tran later integ i(c1) from=1u
+.meas tran work integ v(a)*i(v1)
 """)
+    r.meas("work", -7e-5)
     r.meas("q", 7e-6)
     r.meas("f", -1e-3)
     r.meas("later", 0.0, 7e-6)
@@ -282,6 +316,7 @@ Ve e 0 pulse(0 1 50u 0 0 50u 100u)
 .pss 100u
 .losses
 .meas pss in avg i(v1)
+.meas pss power avg v(in)*i(v1)
 .save v(out) i(v1) i(c1) v(in)
 """)
     # of one period: v in the middle is u, behind the jump w = (10 C1 + C2 u)/(C1 + C2); then both decay, then C2 alone
@@ -289,6 +324,7 @@ Ve e 0 pulse(0 1 50u 0 0 50u 100u)
     w = 10 * 1e-6 / 11e-6 / (1 - 10 / 11 * both * alone)
     charge = 1e-6 * (10 - w * both)
     r.meas("in", -charge / 100e-6)
+    r.meas("power", -charge / 10e-6)
     r.loss("v1", "i_average", -charge / 100e-6)
     r.loss("c1", "i_average", 0.0, charge / 100e-6)
     r.close(r.steady.get("i(v1)", {}).get("average"), -charge / 100e-6, "average of the orbit")

@@ -52,17 +52,20 @@ vg g 0 PULSE(0 1 1m 0 0 0.5m 2m)
 .tran 50u 20m uic
 """
 
+# Its losses are asked for, too.
+IMPULSES = SHARED + ".losses\n"
+
 # name: (file, what to replace, by what, netlist)
 MUTATIONS = {
     "a window begins where the run does": (
-        "waveform/measuring.c", "fmax(s->from, fmax(m->start, item->from))", "fmax(s->from, m->start)", METER),
+        "waveform/measuring_sums.c", "double from = fmax(m->start, item->from);", "double from = m->start;", METER),
     "a window goes on to the end of the stretch": (
         "waveform/stretch.c", "double b = place_of(stretch, to);", "double b = 1.0; (void)to;", METER),
     "an integral is too large by 1e-4": (
-        "waveform/measuring.c", "item->integral += length * span->coefficient[0];",
+        "waveform/measuring_sums.c", "item->integral += length * span->coefficient[0];",
         "item->integral += 1.0001 * length * span->coefficient[0];", METER),
     "a square is too large by 1e-4": (
-        "waveform/measuring.c", "item->square += length * square;", "item->square += 1.0001 * length * square;", METER),
+        "waveform/measuring_sums.c", "item->square += length * square;", "item->square += 1.0001 * length * square;", METER),
     "extremes between the ends of stretches are not seen": (
         "waveform/measuring_extremes.c", "if (!(first > 0.0 && last < 0.0)) {", "if (first == first) {", METER),
     "falls are not counted": (
@@ -79,7 +82,8 @@ MUTATIONS = {
     "a slope is half as steep": (
         "waveform/measuring.c", "s->value = 2.0 * dalcs_stretch_at", "s->value = 1.0 * dalcs_stretch_at", METER),
     "a mean is told without its window": (
-        "session/measure_report.c", "give(r, item->integral / length);", "give(r, item->integral);", METER),
+        "session/measure_report.c", "give(r, (item->integral + item->impulses.sum) / length);", "give(r, item->integral);",
+        METER),
     "an rms value is told as its square": (
         "session/measure_report.c", "give(r, sqrt(item->square / length));", "give(r, item->square / length);", METER),
     "the time of the least is told for that of the most": (
@@ -105,7 +109,12 @@ MUTATIONS = {
         "waveform/losses_sum.c", "double x = cut->a + theta * (cut->b - cut->a);",
         "double x = 0.9 * cut->a + theta * (cut->b - cut->a);", METER),
     "an rms current is told for a voltage": (
-        "session/losses_report.c", ".i_rms = sqrt(l->i_square", ".i_rms = sqrt(l->v_square", TABLES),
+        "session/losses_report.c", ".i_rms = rms_of(a, l->i_square", ".i_rms = rms_of(a, l->v_square", TABLES),
+    "means leave impulses out": (
+        "waveform/losses_sum.c", "sum->is_euler ? 0.0 : area;", "0.0;", IMPULSES),
+    "a charge is told of half the jump": (
+        "waveform/impulse_laws.c", "charge = d->value * m->change[k];", "charge = 0.5 * d->value * m->change[k];",
+        IMPULSES),
     "power is energy": (
         "session/losses_report.c", ".power = energy / a->length", ".power = energy", TABLES),
     "events are told the other way": (
