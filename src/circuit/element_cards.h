@@ -137,11 +137,11 @@ void dalcs_diode_parse_block(struct dalcs_builder *builder, const struct dalcs_c
 /* Thyristors, GTOs and triacs: an A card whose model is one. */
 bool dalcs_thyristor_is(const struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
-const struct dalcs_model *dalcs_thyristor_model(const struct dalcs_builder *builder,
-                                                const struct dalcs_card *card);
 
-/* takeover.c: may its current, behind its end, go on the other way without a voltage? */
-bool dalcs_thyristor_is_taken_over(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* takeover.c, when all elements are known: may the current of one, behind its end, go on the other way without a voltage? Then
+ * it sees that end by the current. */
+void dalcs_thyristor_settle(struct dalcs_builder *builder);
+
 /* M, Z and Q elements. */
 void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* Their resistances, when all elements are known; refuses those that are no switches. */

@@ -24,6 +24,7 @@
  * current of the other to fall to Ioff would close where that is a millionth of what it was, and there no sign can be
  * told from rounding. Formulas that only read are in no loop with what they read: the circuit stays passive
  * (theory.md, section 10). */
+#include "thyristor.h"
 #include "element_cards.h"
 #include "formula_writer.h"
 #include "model_cards.h"
@@ -31,19 +32,6 @@
 
 #include <math.h>
 #include <string.h>
-
-enum kind { THYRISTOR, TRIAC, GTO };
-
-struct dalcs_thyristor {
-    enum kind kind;
-    double trigger, turn_off; /* V of the gate */
-    double holding;           /* A; 0: none */
-    double latching;          /* A; 0: as long as its gate it conducts whatever flows */
-    double reversed;          /* V */
-    bool sees_voltage;        /* of that, whatever stands against it */
-    double other; /* A in the other half of a triac; that end its own current, where that is seen */
-    double drop;  /* V when it conducts, at least */
-};
 
 enum { VGT, VGOFF, IH, IL, VOFF, IOFF, RON, VFWD, N_PARAMETERS };
 
@@ -117,9 +105,9 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
         builder->out_of_memory = true;
         return NULL;
     }
-    *t = (struct dalcs_thyristor){.kind = is_triac                         ? TRIAC
-                                          : strcmp(type->text, "gto") == 0 ? GTO
-                                                                           : THYRISTOR,
+    *t = (struct dalcs_thyristor){.kind = is_triac                         ? DALCS_TRIAC
+                                          : strcmp(type->text, "gto") == 0 ? DALCS_GTO
+                                                                           : DALCS_THYRISTOR,
                                   .trigger = p[VGT].value,
                                   .turn_off = p[VGOFF].value,
                                   .holding = p[IH].place != NULL ? p[IH].value : 0.5 * p[IL].value,
@@ -136,7 +124,7 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
                             "with a latching current there is a holding current above 0");
         return NULL;
     }
-    if (p[VGOFF].place != NULL && t->kind != GTO) {
+    if (p[VGOFF].place != NULL && t->kind != DALCS_GTO) {
         dalcs_builder_error(builder, p[VGOFF].place, "make it a gto", "no gate turns a %s off",
                             type->text);
         return NULL;
@@ -144,69 +132,11 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
     return t;
 }
 
-/* ---- The formula of the control ------------------------------------------------------------------------ */
-
-/* factor x + offset, in [low, high] */
-static const struct dalcs_formula *cut(struct dalcs_formula_writer *w, double factor,
-                                       const struct dalcs_formula *x, double offset, double low,
-                                       double high) {
-    const struct dalcs_formula *line =
-        dalcs_formula_operation(w, DALCS_MULTIPLY, dalcs_formula_number(w, factor), x);
-    line = dalcs_formula_operation(w, DALCS_ADD, line, dalcs_formula_number(w, offset));
-    return dalcs_formula_call(w, "limit", 3,
-                              (const struct dalcs_formula *const[]){line,
-                                                                    dalcs_formula_number(w, low),
-                                                                    dalcs_formula_number(w, high)});
-}
-
-/* The names that a control reads. */
-struct places {
-    const struct dalcs_token *anode, *cathode, *gate, *reference;
-    const struct dalcs_token *self;
-    double direction; /* of the half: 1, or -1 where it is the back of a triac */
-};
-
-static const struct dalcs_formula *
-control(struct dalcs_formula_writer *w, const struct dalcs_thyristor *t, const struct places *p) {
-    const struct dalcs_formula *v =
-        dalcs_formula_signal(w, DALCS_FORMULA_VOLTAGE, p->gate, p->reference);
-    if (t->kind == TRIAC) {
-        v = dalcs_formula_call(w, "abs", 1, &v);
-    }
-    const bool holds = t->holding > 0;
-    const struct dalcs_formula *i = dalcs_formula_signal(w, DALCS_FORMULA_CURRENT, p->self, NULL);
-    const struct dalcs_formula *u =
-        dalcs_formula_signal(w, DALCS_FORMULA_VOLTAGE, p->anode, p->cathode);
-    if (t->kind == TRIAC && !holds) {
-        const struct dalcs_formula *above =
-            dalcs_formula_operation(w, DALCS_SUBTRACT, v, dalcs_formula_number(w, t->trigger));
-        const struct dalcs_formula *gate = dalcs_formula_operation(
-            w, DALCS_MULTIPLY, dalcs_formula_number(w, 4), dalcs_formula_call(w, "u", 1, &above));
-        const struct dalcs_formula *both =
-            dalcs_formula_operation(w, DALCS_ADD, gate, cut(w, 0.5 / t->reversed, u, 0, -1, 0));
-        return t->drop >= t->reversed
-                   ? both
-                   : dalcs_formula_operation(w, DALCS_ADD, both,
-                                             cut(w, 0.5 * p->direction / t->other, i, 0, -1, 0));
-    }
-    const struct dalcs_formula *sum =
-        cut(w, (holds ? 2.5 : 1.5) / t->trigger, v, 0, 0, holds ? 3 : 2);
-    const struct dalcs_formula *keep = holds ? cut(w, p->direction / t->holding, i, -1.5, -1, 0)
-                                             : cut(w, 0.5 / t->reversed, u, 0, -1, 0);
-    if (t->latching == 0) {
-        sum = dalcs_formula_operation(w, DALCS_ADD, sum, keep);
-    }
-    if (t->kind == GTO) {
-        sum = dalcs_formula_operation(w, DALCS_ADD, sum, cut(w, 0.5 / t->turn_off, v, 0, -3, 0));
-    }
-    return sum;
-}
-
 /* ---- The element ---------------------------------------------------------------------------------------- */
 
 /* A node that is at 1 V until the current has reached Il, and from Ih down; -1 after an error. */
 static int add_latch(struct dalcs_builder *builder, const struct dalcs_thyristor *t,
-                     const struct dalcs_token *name, const struct places *places) {
+                     const struct dalcs_token *name, const struct dalcs_thyristor_places *places) {
     struct dalcs_formula_writer w;
     if (!dalcs_formula_writer_start(&w, builder, name)) {
         builder->out_of_memory = true;
@@ -249,7 +179,7 @@ static int add_latch(struct dalcs_builder *builder, const struct dalcs_thyristor
 /* A half: its switch, from `anode` to `cathode` through a diode. */
 static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token *element,
                         struct dalcs_device *half, const struct dalcs_model *model,
-                        const struct places *places) {
+                        const struct dalcs_thyristor_places *places) {
     const bool is_back = strcmp(half->name, element->text) != 0;
     const int anode = half->node[0];
     const int inside =
@@ -259,15 +189,12 @@ static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token 
     const struct dalcs_switch_model latch = {
         .name = model->name->text, .roff = (double)INFINITY, .vt = 0.5, .vh = 1};
     half->model = dalcs_switch_add_model(builder, &latch);
-    struct dalcs_formula_writer w;
-    if (inside < 0 || valve == NULL || half->model < 0 ||
-        !dalcs_formula_writer_start(&w, builder, element)) {
+    if (inside < 0 || valve == NULL || half->model < 0) {
         builder->out_of_memory = true;
         return false;
     }
     struct dalcs_token *name = dalcs_formula_name(builder, element, half->name);
-    const struct dalcs_token *formula =
-        dalcs_formula_token(&w, control(&w, model->thyristor, places));
+    const struct dalcs_token *formula = dalcs_thyristor_control(builder, model->thyristor, places);
     const int node = formula != NULL && name != NULL
                          ? dalcs_behavioural_add_readout(builder, formula, "control", name)
                          : -1;
@@ -289,7 +216,7 @@ static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token 
 /* The other half of a triac. */
 static bool expand_back(struct dalcs_builder *builder, const struct dalcs_token *element,
                         const int *node, const struct dalcs_model *model,
-                        const struct places *places) {
+                        const struct dalcs_thyristor_places *places) {
     struct dalcs_device *back =
         dalcs_builder_add_inner_device(builder, DALCS_SWITCH, "back", element);
     if (back == NULL) {
@@ -297,17 +224,11 @@ static bool expand_back(struct dalcs_builder *builder, const struct dalcs_token 
     }
     back->node[0] = node[1];
     back->node[1] = node[0];
-    struct places turned = *places;
+    struct dalcs_thyristor_places turned = *places;
     turned.anode = places->cathode;
     turned.cathode = places->anode;
     turned.direction = -1;
     return expand_half(builder, element, back, model, &turned);
-}
-
-const struct dalcs_model *dalcs_thyristor_model(const struct dalcs_builder *builder,
-                                                const struct dalcs_card *card) {
-    return &builder->models
-                .model[dalcs_names_find(&builder->models.names, card->token[card->n - 1].text)];
 }
 
 bool dalcs_thyristor_is(const struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -328,23 +249,25 @@ void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_car
     if (device == NULL || !dalcs_reader_nodes(&reader, n_nodes, node)) {
         return;
     }
-    struct dalcs_model model = *dalcs_thyristor_model(builder, card);
-    struct dalcs_thyristor own = *model.thyristor;
-    model.thyristor = &own;
-    if (own.holding == 0 && !own.sees_voltage && dalcs_thyristor_is_taken_over(builder, card)) {
-        own.holding = own.other;
-    }
+    const struct dalcs_model *model =
+        &builder->models
+             .model[dalcs_names_find(&builder->models.names, card->token[card->n - 1].text)];
     const struct dalcs_token *token = card->token;
-    const struct places places = {
+    const struct dalcs_thyristor_places places = {
         &token[1], &token[2], &token[3], n_nodes == 4 ? &token[4] : &token[2], token, 1};
-    const bool is_triac = own.kind == TRIAC;
+    const bool is_triac = model->thyristor->kind == DALCS_TRIAC;
     device->node[0] = node[0];
     device->node[1] = node[1];
     if (is_triac && !dalcs_builder_add_terminal(builder, token, device)) {
         return;
     }
     const int both[2] = {device->node[0], node[1]};
-    if (expand_half(builder, token, device, &model, &places) && is_triac) {
-        (void)expand_back(builder, token, both, &model, &places); /* it has said what is wrong */
+    if (!expand_half(builder, token, device, model, &places)) {
+        return; /* it has said what is wrong */
+    }
+    if (is_triac) {
+        (void)expand_back(builder, token, both, model, &places);
+    } else if (model->thyristor->holding == 0 && !model->thyristor->sees_voltage) {
+        dalcs_thyristor_wait(builder, model->thyristor, &places, both);
     }
 }

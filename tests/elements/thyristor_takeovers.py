@@ -21,10 +21,17 @@ BACK = {
     "a diode": "d1 y x d\n",
     "two diodes": "d1 y u d\nd2 u x d\n",
     "a diode with a meter": "vm y u 0\nd1 u x d\n",
+    "a diode with a meter of a parameter": "vm y u dc {none} ac 1\nd1 u x d\n",
+    "a diode with a meter in volts": "vm y u 0V\nd1 u x d\n",
+    "a diode with a wire": "r3 y u 0.0\nd1 u x d\n",
+    "a diode with a wire of a parameter": "r3 y u {none}\nd1 u x d\n",
+    "a diode with a coil of 0 H": "l3 y u 0\nd1 u x d\n",
+    "a diode that is a code model": "a3 y x sd\n",
+    "a diode in a subcircuit": "x3 Y X outer\n.subckt outer p q\nx4 p q inner\n.ends\n.subckt inner A K\nd1 a k d\n.ends\n",
     "a thyristor": "a2 y x g x th\n",
     "a triac": "a2 y x g x tr\n",
 }
-MODELS = ".model d D(ron=0)\n.model tr triac\n"
+MODELS = ".param none=0\n.model sd sidiode(ron=0)\n.model d D(ron=0)\n.model tr triac\n"
 
 
 def look_at(checker, program, name, text, times, column, exact):
@@ -59,6 +66,17 @@ def resonant(checker, program, back, volts, ohms, drop):
         return 2 * drop
 
     look_at(checker, program, name, text, times, "v(y)", [exact(t) for t in times])
+
+
+def two_names_of_ground(checker, program, cathode, back):
+    """The pulse ends in a capacitor on the other side of the source, as the cathode is ground."""
+    w, volts, ohms = 1e5, 100.0, 10.0
+    text = (f"v1 in y {volts!r}\nl1 in x {ohms / w!r} ic=0\nc1 y 0 {1 / (ohms * w)!r} ic=0\na1 x {cathode} g {cathode} th\n"
+            f"d1 {back} x d\nvg g 0 pulse(0 1 {1 / w!r} 0 0 {0.5 / w!r} 1)\n{MODELS}.model th thyristor\n"
+            f".tran {1 / w!r} {12 / w!r} uic\n.end\n")
+    times = [(k + 0.3) / 8 / w for k in range(95)]
+    look_at(checker, program, f"a cathode at {cathode}, a diode at {back}", text, times, "v(y)",
+            [-volts * (1 - math.cos(min(max(w * t - 1, 0), 2 * math.pi))) for t in times])
 
 
 def burst(checker, program, back, volts, ratio, periods):
@@ -99,7 +117,9 @@ def bypass(checker, program, volts):
 def main():
     program = sys.argv[1]
     checker = Checker("thyristor_takeovers")
-    for back in ("a diode", "two diodes", "a diode with a meter", "a thyristor", "a triac"):
+    for cathode, back in ("gnd", "0"), ("0", "GND"), ("gnd", "gnd"):
+        two_names_of_ground(checker, program, cathode, back)
+    for back in BACK:
         for volts, ohms, drop in some_of([(100.0, 10.0, 0.0), (1e4, 1.0, 0.0), (3.0, 10.0, 0.0), (50.0, 2.0, 0.7), (1e5, 1.0, 0.0)]):
             if drop == 0 or "diode" in back:
                 resonant(checker, program, back, volts, ohms, drop)
