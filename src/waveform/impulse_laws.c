@@ -45,6 +45,17 @@ static double flux_of(const struct dalcs_impulses *m, int k) {
     return flux;
 }
 
+/* Coils without leakage pass charge to each other, as windings of an ideal transformer do. */
+static bool passes_charge(const struct dalcs_circuit *c, int k) {
+    bool passes = false;
+    for (int j = 0; j < c->n_couplings; j++) {
+        const struct dalcs_coupling *coupling = &c->coupling[j];
+        passes = passes || ((coupling->inductor[0] == k || coupling->inductor[1] == k) &&
+                            fabs(coupling->k) == 1.0);
+    }
+    return passes;
+}
+
 /* ---- What sources read --------------------------------------------------------------------------- */
 
 static double read_sum(const struct dalcs_impulses *m, const struct dalcs_affine *f) {
@@ -279,6 +290,7 @@ static void begin(struct dalcs_impulses *m) {
             charge = d->value * m->change[k];
         } else if (d->kind == DALCS_INDUCTOR) {
             m->across[k] = flux_of(m, k);
+            charge = passes_charge(c, k) ? (double)NAN : charge;
         } else if (dalcs_holds_voltage(d) || dalcs_holds_current(d) || is_resistor(d)) {
             charge = NAN;
         }

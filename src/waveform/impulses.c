@@ -4,6 +4,7 @@
 #include "magnitudes.h"
 #include "memory.h"
 #include "names.h"
+#include "union_find.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,6 +35,24 @@ static enum dalcs_status find_devices(struct dalcs_impulses *impulses) {
     return status;
 }
 
+/* A source with a formula says what it puts out: it may jump of its own. */
+static void hold(struct dalcs_impulses *impulses) {
+    const struct dalcs_circuit *c = impulses->circuit;
+    dalcs_union_reset(impulses->held, c->n_nodes);
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (int k = 0; k < c->n_devices; k++) {
+            const struct dalcs_device *d = &c->device[k];
+            const bool reads = d->behaviour == NULL && d->kind == DALCS_VCVS;
+            if (dalcs_holds_voltage(d) &&
+                (!reads || dalcs_union_find(impulses->held, d->node[2]) ==
+                               dalcs_union_find(impulses->held, d->node[3]))) {
+                grows = dalcs_union_join(impulses->held, d->node[0], d->node[1]) || grows;
+            }
+        }
+    }
+}
+
 enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
                                        const struct dalcs_circuit *circuit,
                                        const struct dalcs_network *network, double near) {
@@ -44,7 +63,7 @@ enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
     impulses->state_device = dalcs_alloc((size_t)network->n_states, sizeof(int));
     impulses->change = dalcs_alloc(4 * n, sizeof(double));
     impulses->node = dalcs_alloc(4 * n_nodes, sizeof(double));
-    impulses->n_open = dalcs_alloc(n_nodes, sizeof(int));
+    impulses->n_open = dalcs_alloc(2 * n_nodes, sizeof(int));
     if (impulses->device_of == NULL || impulses->state_device == NULL || impulses->change == NULL ||
         impulses->node == NULL || impulses->n_open == NULL) {
         return DALCS_E_NOMEM;
@@ -55,6 +74,8 @@ enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
     impulses->sum = impulses->node + n_nodes;
     impulses->size = impulses->sum + n_nodes;
     impulses->moved = impulses->size + n_nodes;
+    impulses->held = impulses->n_open + n_nodes;
+    hold(impulses);
     return find_devices(impulses);
 }
 
@@ -122,6 +143,11 @@ bool dalcs_impulses_at(struct dalcs_impulses *impulses, double time) {
         impulses->is_solved = true;
     }
     return true;
+}
+
+bool dalcs_impulses_is_held(const struct dalcs_impulses *impulses, int device) {
+    const int *node = impulses->circuit->device[device].node;
+    return dalcs_union_find(impulses->held, node[0]) == dalcs_union_find(impulses->held, node[1]);
 }
 
 double dalcs_impulses_of(const struct dalcs_impulses *impulses, const struct dalcs_signal *signal) {

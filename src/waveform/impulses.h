@@ -27,6 +27,7 @@ struct dalcs_impulses {
         across; /* [n_devices] Wb from node[0] to node[1], of what is no resistor; NAN: not known */
     double *node;       /* [n_nodes] Wb against ground; NAN: not known */
     double *moved;      /* [n_nodes] V that a node moves by; NAN: not known */
+    int *held;          /* [n_nodes] union_find.h: sources say what is between them */
     double *sum, *size; /* [n_nodes] work: charges that leave, their sizes */
     int *n_open;        /* [n_nodes] work */
 };
@@ -42,6 +43,9 @@ void dalcs_impulses_note(struct dalcs_impulses *impulses, const struct dalcs_eul
 
 /* Are there any at this time? Then all are known, as far as the circuit tells them. */
 bool dalcs_impulses_at(struct dalcs_impulses *impulses, double time);
+
+/* Do sources say what a device's voltage is, whatever jumps? Of one that reads only where they say what it reads. */
+bool dalcs_impulses_is_held(const struct dalcs_impulses *impulses, int device);
 
 /* V s or A s of a signal at that instant; NAN: not known. */
 double dalcs_impulses_of(const struct dalcs_impulses *impulses, const struct dalcs_signal *signal);

@@ -10,21 +10,43 @@
 #include <math.h>
 #include <string.h>
 
-/* The energies of sources: charges at the voltage, fluxes at the current just after. One that puts out an impulse of what it
- * reads drives it while that goes from one side to the other: at the mean of both. Returns what that takes from the losses. */
+/* Does an impulse of voltage come to an end of it? */
+static bool is_struck(const struct dalcs_losses_sum *sum, int k) {
+    const int *node = sum->circuit->device[k].node;
+    return sum->impulses->node[node[0]] != 0.0 || sum->impulses->node[node[1]] != 0.0;
+}
+
+/* What a source passes while its voltage or its current goes from one side to the other is at the mean of both: an impulse
+ * that it puts out of what it reads, and what passes one whose own quantity is of what the jump moves. Where other sources say
+ * what that is, their jump comes first. */
+static bool follows(const struct dalcs_losses_sum *sum, int k, bool is_flux) {
+    const struct dalcs_device *d = &sum->circuit->device[k];
+    const bool holds = is_flux ? dalcs_holds_current(d) : dalcs_holds_voltage(d);
+    if (d->behaviour != NULL) {
+        return !holds;
+    }
+    if (is_flux) {
+        return !holds || (d->kind == DALCS_CCCS && is_struck(sum, d->control));
+    }
+    return (d->kind == DALCS_VCVS || !holds) && !dalcs_impulses_is_held(sum->impulses, k);
+}
+
+/* The energies of sources: charges at the voltage, fluxes at the current just after, or at the mean. Returns what that takes
+ * from the losses. */
 static double give(const struct dalcs_losses_sum *sum) {
     const struct dalcs_circuit *c = sum->circuit;
     double less = 0.0;
     for (int k = 0; k < c->n_devices; k++) {
         const struct dalcs_device *device = &c->device[k];
         struct dalcs_loss *d = &sum->device[k];
-        const bool holds[2] = {dalcs_holds_voltage(device), dalcs_holds_current(device)};
+        const bool holds = dalcs_holds_voltage(device) || dalcs_holds_current(device);
         const double passed[2] = {sum->impulses->charge[k],
                                   sum->impulses->node[device->node[0]] -
                                       sum->impulses->node[device->node[1]]};
-        for (int i = 0; i < 2 && (holds[0] || holds[1]); i++) {
-            const double driven =
-                holds[i] || isnan(passed[i]) ? 0.0 : 0.5 * passed[i] * (d->now[i] - d->last[i]);
+        for (int i = 0; i < 2 && holds; i++) {
+            const double driven = isnan(passed[i]) || !follows(sum, k, i == 1)
+                                      ? 0.0
+                                      : 0.5 * passed[i] * (d->now[i] - d->last[i]);
             d->jump += isnan(passed[i]) ? 0.0 : passed[i] * d->now[i] - driven;
             less -= driven;
         }
