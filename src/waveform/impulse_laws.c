@@ -74,17 +74,6 @@ static double read_sum(const struct dalcs_impulses *m, const struct dalcs_affine
     return difference(plus, minus);
 }
 
-static bool reads_none(const struct dalcs_impulses *m, const struct dalcs_affine *f) {
-    bool none = true;
-    for (int i = 0; i < f->n && none; i++) {
-        const struct dalcs_affine_term *t = &f->term[i];
-        none = t->kind == DALCS_QUANTITY_VOLTAGE   ? m->node[t->index] == 0.0
-               : t->kind == DALCS_QUANTITY_CURRENT ? m->charge[t->index] == 0.0
-                                                   : true;
-    }
-    return none;
-}
-
 /* Of what a source puts out, where it reads others. One that is bent puts out no impulse where it reads none, and else
  * what its formula does not tell. */
 static double put_out(const struct dalcs_impulses *m, const struct dalcs_device *d) {
@@ -104,9 +93,9 @@ static double put_out(const struct dalcs_impulses *m, const struct dalcs_device 
     if (b->n_pairs == 0 && b->smooth == NULL) {
         return read_sum(m, &b->output);
     }
-    bool none = reads_none(m, &b->output);
+    bool none = read_sum(m, &b->output) == 0.0;
     for (int p = 0; p < b->n_pairs && none; p++) {
-        none = reads_none(m, &b->w[p]);
+        none = read_sum(m, &b->w[p]) == 0.0;
     }
     return none ? 0.0 : (double)NAN;
 }
