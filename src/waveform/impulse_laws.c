@@ -66,7 +66,8 @@ static double read_sum(const struct dalcs_impulses *m, const struct dalcs_affine
         const double term = t->kind == DALCS_QUANTITY_VOLTAGE ? t->coefficient * m->node[t->index]
                             : t->kind == DALCS_QUANTITY_CURRENT
                                 ? t->coefficient * m->charge[t->index]
-                                : 0.0;
+                            : t->kind == DALCS_QUANTITY_PAIR ? t->coefficient * m->pair[t->index]
+                                                             : 0.0;
         plus += term > 0.0 ? term : 0.0;
         minus -= term < 0.0 ? term : 0.0;
         plus = isnan(term) ? term : plus;
@@ -74,8 +75,34 @@ static double read_sum(const struct dalcs_impulses *m, const struct dalcs_affine
     return difference(plus, minus);
 }
 
-/* Of what a source puts out, where it reads others. One that is bent puts out no impulse where it reads none, and else
- * what its formula does not tell. */
+/* Of a source with bends: its formula far from all of them, where their places do not count. Pairs follow one from the other;
+ * where they do not, as those of a jump, or where one has no answer without the places, it is not told. */
+static double far_away(const struct dalcs_impulses *m, const struct dalcs_behaviour *b) {
+    memset(m->pair, 0, (size_t)b->n_pairs * sizeof(double));
+    bool reads = read_sum(m, &b->output) != 0.0;
+    for (int p = 0; p < b->n_pairs; p++) {
+        reads = reads || read_sum(m, &b->w[p]) != 0.0;
+    }
+    for (int p = 0; p < b->n_pairs && reads; p++) {
+        m->pair[p] = NAN;
+    }
+    for (bool moves = reads; moves;) {
+        moves = false;
+        for (int p = 0; p < b->n_pairs; p++) {
+            if (isnan(m->pair[p])) {
+                const double own = dalcs_affine_of_pair(&b->w[p], p);
+                m->pair[p] = 0.0;
+                const double w = read_sum(m, &b->w[p]);
+                m->pair[p] = w >= 0.0 ? 0.0 : w < 0.0 && own > 0.0 ? -w / own : (double)NAN;
+                moves = moves || !isnan(m->pair[p]);
+            }
+        }
+    }
+    return read_sum(m, &b->output);
+}
+
+/* Of what a source puts out, where it reads others. A smooth one puts out no impulse where it reads none, and else what is not
+ * told. */
 static double put_out(const struct dalcs_impulses *m, const struct dalcs_device *d) {
     const struct dalcs_behaviour *b = d->behaviour;
     if (d->is_storage) {
@@ -90,8 +117,8 @@ static double put_out(const struct dalcs_impulses *m, const struct dalcs_device 
     if (b == NULL) {
         return 0.0;
     }
-    if (b->n_pairs == 0 && b->smooth == NULL) {
-        return read_sum(m, &b->output);
+    if (b->smooth == NULL) {
+        return far_away(m, b);
     }
     bool none = read_sum(m, &b->output) == 0.0;
     for (int p = 0; p < b->n_pairs && none; p++) {

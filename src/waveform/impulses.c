@@ -53,6 +53,15 @@ static void hold(struct dalcs_impulses *impulses) {
     }
 }
 
+static size_t most_pairs(const struct dalcs_circuit *c) {
+    int most = 0;
+    for (int k = 0; k < c->n_devices; k++) {
+        const struct dalcs_behaviour *b = c->device[k].behaviour;
+        most = b != NULL && b->n_pairs > most ? b->n_pairs : most;
+    }
+    return (size_t)most;
+}
+
 enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
                                        const struct dalcs_circuit *circuit,
                                        const struct dalcs_network *network, double near) {
@@ -63,9 +72,10 @@ enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
     impulses->state_device = dalcs_alloc((size_t)network->n_states, sizeof(int));
     impulses->change = dalcs_alloc(4 * n, sizeof(double));
     impulses->node = dalcs_alloc(4 * n_nodes, sizeof(double));
+    impulses->pair = dalcs_alloc(most_pairs(circuit), sizeof(double));
     impulses->n_open = dalcs_alloc(2 * n_nodes, sizeof(int));
     if (impulses->device_of == NULL || impulses->state_device == NULL || impulses->change == NULL ||
-        impulses->node == NULL || impulses->n_open == NULL) {
+        impulses->node == NULL || impulses->n_open == NULL || impulses->pair == NULL) {
         return DALCS_E_NOMEM;
     }
     impulses->level = impulses->change + n;
@@ -88,6 +98,7 @@ void dalcs_impulses_finish(struct dalcs_impulses *impulses) {
     free(impulses->change);
     free(impulses->node);
     free(impulses->n_open);
+    free(impulses->pair);
     *impulses = (struct dalcs_impulses){0};
 }
 

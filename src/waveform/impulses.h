@@ -30,6 +30,7 @@ struct dalcs_impulses {
     int *held;          /* [n_nodes] union_find.h: sources say what is between them */
     double *sum, *size; /* [n_nodes] work: charges that leave, their sizes */
     int *n_open;        /* [n_nodes] work */
+    double *pair;       /* [most pairs of a source] work */
 };
 
 enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,

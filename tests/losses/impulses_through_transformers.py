@@ -84,6 +84,15 @@ def main():
             _, of = run(program, checker, title, f"V1 i 0 {volts}\nR1 p b {volts}\nL1 b 0 {henry} ic=1\nS1 i p q 0 s\nA1 i p h p th\n"
                         f"Vh h p 0\n.model th {model}\n")
             near(checker, f"{title}: mean voltage", of.get("l1", {}).get("v_average"), -henry / 2e-3, henry / 2e-3)
+    formulas = {"limit(v(b),-1,1)": lambda f: 0, "max(v(b),-1)": lambda f: max(f, 0), "abs(v(b))": abs, "abs(v(b)-3)+1": abs,
+                "v(b)+2*max(v(b),5)": lambda f: f + 2 * max(f, 0),
+                "max(0,2*v(b)-abs(v(b)-1))": lambda f: max(0, 2 * f - abs(f)), "table(v(b),-1,2,0,0,1,3)": lambda f: 0}
+    at_0 = {"abs(v(b)-3)+1": 4, "v(b)+2*max(v(b),5)": 10}
+    for formula, area in formulas.items():  # of what a cut coil drives: far from its bends
+        for ampere in 1, -1:
+            title = f"{formula} of {ampere} A that is cut"
+            _, of = run(program, checker, title, f"V1 i 0 {ampere}\nR1 p b 1\nL1 b 0 1m ic={ampere}\nS1 i p q 0 s\nB1 o 0 V={formula}\nR2 o 0 1\n")
+            near(checker, f"{title}: mean", of.get("r2", {}).get("v_average"), area(-0.001 * ampere) / 2e-3 + at_0.get(formula, 0), 1)
     return checker.finish()
 
 
