@@ -196,11 +196,6 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     return passes;
 }
 
-bool dalcs_audit_begins(struct dalcs_audit *audit, int index) {
-    const struct audit_part *part = &audit->part[index];
-    return part->is_open || !part->has_entered;
-}
-
 void dalcs_audit_put_off(struct dalcs_audit *audit, int index) {
     audit->part[index].watch->is_put_off = true;
     audit->part[index].watch->batch.gathered.is_on = false;
@@ -323,10 +318,6 @@ void audit_look_again(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         dalcs_audit_leave(audit, stretch);
         leave_behind(part);
     }
-}
-
-void dalcs_audit_has_no_rest(struct dalcs_audit *audit, int part) {
-    audit->part[part].is_restless = true;
 }
 
 void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {

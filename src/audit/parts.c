@@ -182,3 +182,12 @@ void audit_merge_shorts(struct dalcs_audit *audit) {
         audit->net.node_of[n] = dalcs_union_find(audit->net.node_of, n);
     }
 }
+
+void dalcs_audit_has_no_rest(struct dalcs_audit *audit, int part) {
+    audit->part[part].is_restless = true;
+}
+
+bool dalcs_audit_begins(struct dalcs_audit *audit, int index) {
+    const struct audit_part *part = &audit->part[index];
+    return part->is_open || !part->has_entered;
+}

@@ -10,6 +10,7 @@
 
 #include "accept.h"
 #include "extremes.h"
+#include "first_level.h"
 #include "front.h"
 #include "guards.h"
 #include "magnitudes.h"
@@ -27,11 +28,7 @@
 
 #include <math.h>
 
-enum {
-    MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
-    FLURRY = 4096,
-    MOST_FRONTS_REFUSED = 16
-};
+enum { FLURRY = 4096, MOST_FRONTS_REFUSED = 16 };
 
 /* Are all signals before nothing beside these? A coil's current may have no path in this mode. In a step that short it makes
  * signals so large that any error is small beside them. */
@@ -269,37 +266,6 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     return DALCS_OK;
 }
 
-/* Nothing conducts any more: sines no longer act on the states through diodes, and the states decay by themselves.
- * Where pulses or commands end steps that says nothing of their length, and fewer stages would use up what is allowed:
- * of a multiplier's voltages 0.4 of the tolerance instead of 0.01. */
-static bool is_let_go(const struct dalcs_radau_part *part) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    bool only_sines = part->stages.method->s == DALCS_MAX_STAGES &&
-                      part->excitation.shortest_period < INFINITY &&
-                      part->length.longest_needed == INFINITY && part->commands.n == 0;
-    bool conducts = false;
-    for (int d = 0; d < p->system->n_pairs && only_sines && !conducts; d++) {
-        conducts = dalcs_osnsp_is_on(p, d);
-    }
-    return only_sines && !conducts;
-}
-
-/* A mode that has been before, though not after this one, may have the map of a longer step that suited it then,
- * or the factors of a shorter one: it costs less to begin with that. Else with a step as long as those before. */
-static int cheapest_level(struct dalcs_radau_part *part) {
-    bool has_maps = part->segment.rounding == 1.0;
-    int level = has_maps ? dalcs_transition_longest_level(part) : part->length.level;
-    for (int k = 0; k <= MOST_PREFERRED; k++) {
-        double h = dalcs_radau_ladder(part, level + k);
-        if (dalcs_stages_find(&part->stages, part->component->osnsp.mode, h) != NULL) {
-            return level + k;
-        }
-    }
-    bool may_be_longer = has_maps && level == part->length.level &&
-                         dalcs_radau_ladder(part, level - 1) <= part->length.longest;
-    return may_be_longer && is_let_go(part) ? level - 1 : level;
-}
-
 /* guessed: the mode is what followed the last time. */
 static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                           double limit, bool guessed) {
@@ -316,7 +282,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
         search.guessed = search.front;
     }
     if (part->guards.fresh && part->guards.flipped && !guessed && !search.fixed) {
-        part->length.level = search.first_level = search.asked_level = cheapest_level(part);
+        part->length.level = search.first_level = search.asked_level = dalcs_first_level(part);
     }
     if (asks) { /* what the caller demands is no guess: the mode before does not replace it */
         DALCS_TRY(dalcs_search_ask(r, part, &search, false));

@@ -180,7 +180,7 @@ def main():
     jsonschema.Draft202012Validator.check_schema(schema)
     source = "".join((root / "src" / "report" / name).read_text(encoding="utf-8")
                      for name in ("report.c", "losses_json.c", "measurements_json.c", "response_json.c",
-                                  "sensitivity_json.c", "worst_case_json.c", "failed_steps_json.c"))
+                                  "sensitivity_json.c", "steady_json.c", "worst_case_json.c", "failed_steps_json.c"))
     netlists = sorted((root / "netlists").glob("**/*.cir")) + sorted(
         (root / "tests" / "reference").glob("*.cir"))
     with tempfile.TemporaryDirectory() as name:
