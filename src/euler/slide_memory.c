@@ -18,7 +18,8 @@ struct loop {
                [DALCS_MOST_SEVERAL]; /* to the argument of the first, by the second */
 };
 
-/* What the output of the k-th adds to each argument, from y and w, the answer here. */
+/* What the output of the k-th adds to each argument, from y and w, the answer here. An argument that the output has no part in
+ * differs by the rounding of both answers, either way: that adds nothing. */
 static enum dalcs_status find_added(struct dalcs_positions *p, const double *u, const double *y,
                                     const double *w, int k, struct loop *of) {
     const int j = of->of[k];
@@ -29,7 +30,8 @@ static enum dalcs_status find_added(struct dalcs_positions *p, const double *u, 
     for (int i = 0; i < of->n; i++) {
         const double now = dalcs_turning_beyond(p, of->of[i], p->sides.y, p->osnsp->w);
         const double added = now - dalcs_turning_beyond(p, of->of[i], y, w);
-        of->adds[i][k] = status != DALCS_OK ? 0.0 : is_on ? -added : added;
+        const bool adds = status == DALCS_OK && fabs(added) > 2.0 * p->slack[of->of[i]];
+        of->adds[i][k] = !adds ? 0.0 : is_on ? -added : added;
     }
     return status < DALCS_OK ? status : DALCS_OK;
 }

@@ -120,6 +120,24 @@ def check_sawtooth(checker, program, name, ron, method):
     checker.close(min(values), low, slack, f"{what}: the least value")
 
 
+# a switch beside a diode in series with a coil, closed by a comparator without hysteresis; unit of voltage, formula
+BESIDE_A_DIODE = [(1.0, "v(a)-v(o)>10m ? 1 : 0"), (1.0, "u(v(a)-v(o)-10m)"), (1e3, "if(v(a)-v(o)>10,1,0)")]
+
+
+def check_no_hysteresis(checker, program, unit, formula):
+    """From 0.1 A to 1.1 A the diode has the switch close and the switch has itself open: both are at 10 mV, and nothing jumps."""
+    netlist = (f"v1 s 0 sin(0 {10.0 * unit!r} 1k)\nl1 s a {10e-6 * unit!r}\nd1 a o d\n.model d d(ron={0.1 * unit!r})\ns1 a o g 0 m\n"
+               f"b1 g 0 v={{{formula}}}\nc1 o 0 {10e-6 / unit!r}\nr1 o 0 {100.0 * unit!r}\n.model m sw(vt=0.5 ron={0.01 * unit!r})")
+    what = f"{formula}, {unit} V"
+    result = run(program, of(netlist).replace(" 1m uic", " 200u uic"), method=None)
+    if not checker.check(result.status == 0, f"{what}: exit {result.status}: {result.stderr[:300]}"):
+        return
+    drops = [v for v, i in zip(result.column("v(a,o)"), result.column("i(l1)")) if 0.11 < i < 1.09]
+    checker.check(len(drops) > 10, f"{what}: {len(drops)} rows")
+    checker.close(max(drops), 0.01 * unit, 1e-8 * unit, f"{what}: the largest drop")
+    checker.close(min(drops), 0.01 * unit, 1e-8 * unit, f"{what}: the least drop")
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("loops_with_hysteresis")
@@ -128,6 +146,8 @@ def main():
     for name in ("itself", "e", "w", "three in a ring", "a filter behind it"):
         check_end(checker, program, name, "euler")
     check_ways_out(checker, program)
+    for unit, formula in BESIDE_A_DIODE:
+        check_no_hysteresis(checker, program, unit, formula)
     for name in SAWTEETH:
         for ron in ("0", "1n"):
             check_sawtooth(checker, program, name, ron, None)
