@@ -6,32 +6,20 @@
 #include <stdlib.h>
 
 static enum dalcs_status find_pairs(struct dalcs_losses_run *losses, const struct dalcs_run *r) {
-    const struct dalcs_circuit *c = &r->s->circuit;
     const struct dalcs_network *n = &r->s->network;
-    struct dalcs_names names = {0};
-    enum dalcs_status status = DALCS_OK;
-    for (int k = 0; k < c->n_devices && status == DALCS_OK; k++) {
+    DALCS_TRY(dalcs_device_map_setup(&losses->devices, &r->s->circuit, n));
+    for (int k = 0; k < r->s->circuit.n_devices; k++) {
         losses->forward[k] = (struct dalcs_loss_pair){-1, -1};
-        status = dalcs_names_add(&names, c->device[k].name, k);
     }
-    for (int i = 0; i < n->n_states && status == DALCS_OK; i++) {
-        losses->state_device[i] = dalcs_names_find(&names, n->state[i].element);
-    }
-    for (int s = 0; s < n->n_systems && status == DALCS_OK; s++) {
-        const struct dalcs_system *system = &n->system[s];
-        losses->device_of[s] = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
-        status = losses->device_of[s] == NULL ? DALCS_E_NOMEM : DALCS_OK;
-        for (int d = 0; d < system->n_pairs && status == DALCS_OK; d++) {
-            const struct dalcs_pair *pair = &system->pair[d];
-            int k = pair->is_formula ? -1 : dalcs_names_find(&names, pair->element);
-            losses->device_of[s][d] = k;
-            if (k >= 0 && !pair->is_breakdown) {
+    for (int s = 0; s < n->n_systems; s++) {
+        for (int d = 0; d < n->system[s].n_pairs; d++) {
+            const int k = losses->devices.of_pair[s][d];
+            if (k >= 0 && !n->system[s].pair[d].is_breakdown) {
                 losses->forward[k] = (struct dalcs_loss_pair){s, d};
             }
         }
     }
-    dalcs_names_finish(&names);
-    return status;
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_losses_run_start(struct dalcs_losses_run *losses, struct dalcs_run *r,
@@ -47,13 +35,10 @@ enum dalcs_status dalcs_losses_run_start(struct dalcs_losses_run *losses, struct
     DALCS_TRY(dalcs_losses_sum_setup(&losses->sum, c, c->analyses.transient.stop, near));
     losses->sum.is_euler = is_euler;
     losses->forward = dalcs_alloc((size_t)c->n_devices, sizeof(*losses->forward));
-    losses->device_of = dalcs_alloc((size_t)r->s->network.n_systems, sizeof(*losses->device_of));
     losses->on = dalcs_alloc((size_t)c->n_devices, sizeof(bool));
     losses->slid = dalcs_alloc((size_t)c->n_devices, sizeof(bool));
     losses->network = &r->s->network;
-    losses->state_device = dalcs_alloc((size_t)r->s->network.n_states, sizeof(int));
-    if (losses->forward == NULL || losses->device_of == NULL || losses->on == NULL ||
-        losses->slid == NULL || losses->state_device == NULL) {
+    if (losses->forward == NULL || losses->on == NULL || losses->slid == NULL) {
         return DALCS_E_NOMEM;
     }
     return find_pairs(losses, r);
@@ -64,14 +49,10 @@ double dalcs_losses_run_begin(const struct dalcs_losses_run *losses) {
 }
 
 void dalcs_losses_run_finish(struct dalcs_losses_run *losses) {
-    for (int s = 0; losses->device_of != NULL && s < losses->engine->n_components; s++) {
-        free(losses->device_of[s]);
-    }
-    free(losses->device_of);
+    dalcs_device_map_finish(&losses->devices);
     free(losses->forward);
     free(losses->on);
     free(losses->slid);
-    free(losses->state_device);
     dalcs_losses_sum_finish(&losses->sum);
     *losses = (struct dalcs_losses_run){0};
 }
@@ -97,9 +78,9 @@ static void note_first(struct dalcs_losses_run *losses, const struct dalcs_euler
     static const double no_inputs[1] = {1.0}; /* states are columns only */
     for (int i = 0; i < losses->network->n_states; i++) {
         const struct dalcs_state *x = &losses->network->state[i];
-        if (x->probe.system == j->system && losses->state_device[i] >= 0 &&
+        if (x->probe.system == j->system && losses->devices.of_state[i] >= 0 &&
             dalcs_probe_is_known(&x->probe, j->n_known)) {
-            losses->sum.device[losses->state_device[i]].first =
+            losses->sum.device[losses->devices.of_state[i]].first =
                 dalcs_probe_value(&x->probe, j->before, no_inputs);
         }
     }
@@ -122,7 +103,7 @@ enum dalcs_status dalcs_losses_run_jump(struct dalcs_losses_run *losses,
     jump->energy_lost = j->energy_lost;
     jump->is_in_steps = losses->is_euler;
     for (int d = 0; d < s->n_pairs; d++) {
-        const int k = losses->device_of[j->system][d];
+        const int k = losses->devices.of_pair[j->system][d];
         if (k < 0) {
             continue;
         }

@@ -3,6 +3,7 @@
 #define DALCS_SESSION_LOSSES_H
 
 #include "audit_losses.h"
+#include "device_map.h"
 #include "losses_sum.h"
 #include "session_internal.h"
 
@@ -16,11 +17,10 @@ struct dalcs_losses_run {
         int system, pair;
     } * forward; /* [n_devices] the pair of a switch or diode; system -1: none */
 
-    int **device_of; /* [n_systems][n_pairs] -1: of no device */
+    struct dalcs_device_map devices;
     const struct dalcs_network *network;
-    int *state_device; /* [n_states] */
-    bool *on;          /* [n_devices] */
-    bool *slid;        /* [n_devices] has a switch or diode turned in a slide within the window? */
+    bool *on;   /* [n_devices] */
+    bool *slid; /* [n_devices] has a switch or diode turned in a slide within the window? */
     bool is_euler;
     struct dalcs_audit_losses audit;
 };

@@ -3,37 +3,11 @@
 
 #include "magnitudes.h"
 #include "memory.h"
-#include "names.h"
 #include "union_find.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static enum dalcs_status find_devices(struct dalcs_impulses *impulses) {
-    const struct dalcs_circuit *c = impulses->circuit;
-    const struct dalcs_network *n = impulses->network;
-    struct dalcs_names names = {0};
-    enum dalcs_status status = DALCS_OK;
-    for (int k = 0; k < c->n_devices && status == DALCS_OK; k++) {
-        status = dalcs_names_add(&names, c->device[k].name, k);
-    }
-    for (int i = 0; i < n->n_states && status == DALCS_OK; i++) {
-        impulses->state_device[i] = dalcs_names_find(&names, n->state[i].element);
-    }
-    for (int s = 0; s < n->n_systems && status == DALCS_OK; s++) {
-        const struct dalcs_system *system = &n->system[s];
-        impulses->device_of[s] = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
-        status = impulses->device_of[s] == NULL ? DALCS_E_NOMEM : DALCS_OK;
-        for (int d = 0; d < system->n_pairs && status == DALCS_OK; d++) {
-            const struct dalcs_pair *pair = &system->pair[d];
-            impulses->device_of[s][d] =
-                pair->is_formula ? -1 : dalcs_names_find(&names, pair->element);
-        }
-    }
-    dalcs_names_finish(&names);
-    return status;
-}
 
 /* A source with a formula says what it puts out: it may jump of its own. */
 static void hold(struct dalcs_impulses *impulses) {
@@ -68,14 +42,12 @@ enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
     const size_t n = (size_t)circuit->n_devices;
     const size_t n_nodes = (size_t)circuit->n_nodes;
     *impulses = (struct dalcs_impulses){.circuit = circuit, .network = network, .near = near};
-    impulses->device_of = dalcs_alloc((size_t)network->n_systems, sizeof(*impulses->device_of));
-    impulses->state_device = dalcs_alloc((size_t)network->n_states, sizeof(int));
     impulses->change = dalcs_alloc(4 * n, sizeof(double));
     impulses->node = dalcs_alloc(4 * n_nodes, sizeof(double));
     impulses->pair = dalcs_alloc(most_pairs(circuit), sizeof(double));
     impulses->n_open = dalcs_alloc(2 * n_nodes, sizeof(int));
-    if (impulses->device_of == NULL || impulses->state_device == NULL || impulses->change == NULL ||
-        impulses->node == NULL || impulses->n_open == NULL || impulses->pair == NULL) {
+    if (impulses->change == NULL || impulses->node == NULL || impulses->n_open == NULL ||
+        impulses->pair == NULL) {
         return DALCS_E_NOMEM;
     }
     impulses->level = impulses->change + n;
@@ -86,15 +58,11 @@ enum dalcs_status dalcs_impulses_setup(struct dalcs_impulses *impulses,
     impulses->moved = impulses->size + n_nodes;
     impulses->held = impulses->n_open + n_nodes;
     hold(impulses);
-    return find_devices(impulses);
+    return dalcs_device_map_setup(&impulses->devices, circuit, network);
 }
 
 void dalcs_impulses_finish(struct dalcs_impulses *impulses) {
-    for (int s = 0; impulses->device_of != NULL && s < impulses->network->n_systems; s++) {
-        free(impulses->device_of[s]);
-    }
-    free(impulses->device_of);
-    free(impulses->state_device);
+    dalcs_device_map_finish(&impulses->devices);
     free(impulses->change);
     free(impulses->node);
     free(impulses->n_open);
@@ -111,7 +79,7 @@ static void note_pairs(struct dalcs_impulses *impulses, const struct dalcs_euler
         largest[1] = fmax(largest[1], fabs(j->flux[d]));
     }
     for (int d = 0; d < s->n_pairs; d++) {
-        const int k = impulses->device_of[j->system][d];
+        const int k = impulses->devices.of_pair[j->system][d];
         const bool is_back = s->pair[d].is_breakdown;
         if (k >= 0 && fabs(j->charge[d]) > dalcs_alike * largest[0]) {
             impulses->charge[k] += is_back ? -j->charge[d] : j->charge[d];
@@ -133,7 +101,7 @@ void dalcs_impulses_note(struct dalcs_impulses *impulses, const struct dalcs_eul
     impulses->time = j->time;
     for (int i = 0; i < n->n_states; i++) {
         const struct dalcs_probe *probe = &n->state[i].probe;
-        const int k = impulses->state_device[i];
+        const int k = impulses->devices.of_state[i];
         if (probe->system == j->system && k >= 0) {
             const bool is_known = dalcs_probe_is_known(probe, j->n_known);
             const double before = dalcs_probe_value(probe, j->before, no_inputs);

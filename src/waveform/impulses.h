@@ -8,15 +8,15 @@
 #ifndef DALCS_IMPULSES_H
 #define DALCS_IMPULSES_H
 
+#include "device_map.h"
 #include "euler.h"
 
 /* At one instant. Zero-initialise; without a setup there are none. */
 struct dalcs_impulses {
     const struct dalcs_circuit *circuit;
     const struct dalcs_network *network;
-    int **device_of;   /* [n_systems][n_pairs] -1: of no device */
-    int *state_device; /* [n_states] */
-    double near;       /* s; times closer than this are the same */
+    struct dalcs_device_map devices;
+    double near; /* s; times closer than this are the same */
     bool is_noted, is_solved;
     double time; /* s, of those that are noted */
     double *
